@@ -1,4 +1,4 @@
-/* flow.c: points and sources, and where they are at a time. */
+/* flow.c: points and sources, and their positions at a time. */
 #include "flow/flow.h"
 
 #include <math.h>
@@ -18,11 +18,11 @@ int flow_n_points(const struct fish *fish) {
     return flow_tail(fish) + 1;
 }
 
-static enum status make_chunks(struct flow *flow) {
+static enum status flow_make_chunks(struct flow *flow) {
     int n = 0;
     for (int f = 0; f < flow->school->n_fish; f++) n += parallel_n_chunks(flow->points[f].n);
     flow->chunk = calloc((size_t)n, sizeof *flow->chunk);
-    if (!flow->chunk) return status_fail(STATUS_MEMORY, "out of memory: %d pieces of the flow", n);
+    if (!flow->chunk) return status_fail(STATUS_MEMORY, "out of memory: %d chunks of the flow", n);
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct range points = flow->points[f];
         for (int i = 0; i < parallel_n_chunks(points.n); i++) {
@@ -30,11 +30,12 @@ static enum status make_chunks(struct flow *flow) {
             flow->chunk[flow->n_chunks++] = (struct chunk){f, {points.first + part.first, part.n}};
         }
     }
+
     return STATUS_OK;
 }
 
-// fish of one length, in the order of the first of each
-static enum status find_classes(struct flow *flow) {
+// one class per length, in the order of the first fish of each length
+static enum status flow_find_classes(struct flow *flow) {
     const struct school *const school = flow->school;
     const size_t n_fish = (size_t)school->n_fish;
     flow->class_of = calloc(n_fish, sizeof *flow->class_of);
@@ -53,6 +54,7 @@ static enum status find_classes(struct flow *flow) {
         flow->class[c] = (struct flow_class){.smoothing = fish->smoothing, .sheet_smoothing = fish->sheet_smoothing};
         flow->n_classes++;
     }
+
     for (int c = 0; c < flow->n_classes; c++) {
         struct flow_class *const class = &flow->class[c];
         class->group = calloc(n_fish + (size_t)flow->n_classes + 1, sizeof *class->group);
@@ -69,11 +71,12 @@ static enum status find_classes(struct flow *flow) {
         }
         class->points.n = flow->n_points - class->points.first;
     }
+
     return STATUS_OK;
 }
 
-// the bound sheets as each class feels them
-static void view_sheets(struct flow *flow) {
+// the bound sheets with the smoothing of each class
+static void flow_view_sheets(struct flow *flow) {
     for (int c = 0; c < flow->n_classes; c++) {
         struct flow_class *const class = &flow->class[c];
         class->sheet = flow->sheet;
@@ -102,26 +105,29 @@ static enum status flow_fill(struct flow *flow) {
     flow->free_sheet = calloc(n_fish, sizeof *flow->free_sheet);
     if (!flow->points || !flow->without_own || !flow->released_range || !flow->sheet_range || !flow->by_interpolation ||
         !flow->wake_range || !flow->body_range || !flow->middles || !flow->free_sheet) {
-        return status_fail(STATUS_MEMORY, "out of memory: the flow around %d fish", school->n_fish);
+        return status_fail(STATUS_MEMORY, "out of memory: flow around %d fish", school->n_fish);
     }
-    TRY(find_classes(flow));
+
+    TRY(flow_find_classes(flow));
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         flow->sheet_range[f] = (struct range){flow->sheet.n, fish->n_sheet};
         TRY(vortices_append(&flow->sheet, fish->n_sheet, fish->sheet_smoothing));
         TRY(vortices_append(&flow->nascent, 1, fish->smoothing));
     }
+
     double **const at_points[] = {&flow->x,         &flow->y,         &flow->u,        &flow->v,
                                   &flow->u_x,       &flow->u_y,       &flow->v_x,      &flow->motion[0],
                                   &flow->motion[1], &flow->motion[2], &flow->motion[3]};
     TRY(array_many_doubles(at_points, sizeof at_points / sizeof *at_points, flow->n_points, "the points of the flow"));
-    TRY(make_chunks(flow));
+    TRY(flow_make_chunks(flow));
     if (school->walls.n > 0) {
         TRY(array_doubles(&flow->image_u, flow->n_points, "the points of the flow"));
         TRY(array_doubles(&flow->image_v, flow->n_points, "the points of the flow"));
     }
+
     TRY(array_doubles(&flow->opposite, flow->sheet.n, "the bound vortices"));
-    view_sheets(flow);
+    flow_view_sheets(flow);
     TRY(velocity_sum_create(&flow->velocity_sum));
     if (school->finite) return ring_sources_create(&flow->rings, school, flow->n_points);
     if (school->wake_tolerance <= 0) return STATUS_OK;
@@ -138,6 +144,7 @@ enum status flow_create(struct flow **flow, const struct school *school) {
         flow_free(new);
         return status;
     }
+
     *flow = new;
     return STATUS_OK;
 }
@@ -151,6 +158,7 @@ void flow_free(struct flow *flow) {
         if (flow->middles) wake_free(&flow->middles[f]);
         if (flow->free_sheet) free_sheet_free(&flow->free_sheet[f]);
     }
+
     for (int c = 0; flow->class && c < flow->n_classes; c++) free(flow->class[c].group);
     void *const owned[] = {flow->points,
                            flow->without_own,
@@ -198,7 +206,7 @@ void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, dou
     to[flow_tail(fish)] = of_nodes[fish->n_nodes - 1];
 }
 
-static void place_sheet(struct flow *flow, int f, const double *y) {
+static void flow_place_sheet(struct flow *flow, int f, const double *y) {
     const struct fish *fish = &flow->school->fish[f];
     const int first = flow->sheet_range[f].first;
     for (int j = 0; j < fish->n_sheet; j++) {
@@ -217,12 +225,13 @@ const struct wake *flow_seen_wakes(const struct flow *flow, const struct state *
     return flow_has_free_sheets(flow) ? flow->middles : state->wake;
 }
 
-static void place_nascent(struct flow *flow, const struct state *state, int f, const double *y) {
+static void flow_place_nascent(struct flow *flow, const struct state *state, int f, const double *y) {
     const struct fish *fish = &flow->school->fish[f];
     const struct wake *const wake = &state->wake[f];
     const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
     const double circulation = y[fish->at.circulation] - wake->shed_before, tau = flow->t - state->t;
     double position[2];
+
     if (flow->rings) return;
     if (flow_has_free_sheets(flow)) {
         free_sheet_nascent_point(wake, flow->school->interval, tau, tail, 0.5, position);
@@ -232,6 +241,7 @@ static void place_nascent(struct flow *flow, const struct state *state, int f, c
     } else {
         wake_nascent(wake, tau, tail, position);
     }
+
     flow->nascent.x[f] = position[0];
     flow->nascent.y[f] = position[1];
     flow->nascent.circulation[f] = circulation;
@@ -245,11 +255,12 @@ enum status flow_place_released(struct flow *flow, const struct state *state) {
     return STATUS_OK;
 }
 
-// the free sheets at the flow's time, made again where the wakes have changed
-static enum status place_free_sheets(struct flow *flow, const struct state *state, int is_new) {
+// free sheets at the time of the flow; build the sheets again if the wakes have changed
+static enum status flow_place_free_sheets(struct flow *flow, const struct state *state, int is_new) {
     const struct school *const school = flow->school;
     int n_placed = 0, n_failed = 0;
-    // a stretch is made from its ends, both at the beginning and at the end of the interval
+
+    // building a stretch requires both ends at the start and at the end of the interval
     for (int f = 0; f < school->n_fish; f++) n_placed += is_new ? 4 * state->wake[f].n_vortex : flow->free_sheet[f].n;
     const int threads = parallel_threads(school->threads, school->n_fish, n_placed, PARALLEL_VORTICES);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
@@ -267,17 +278,18 @@ static enum status place_free_sheets(struct flow *flow, const struct state *stat
             n_failed++;
         }
     }
-    // a message stays with the thread that wrote it
-    return n_failed == 0 ? STATUS_OK
-                         : status_fail(STATUS_MEMORY, "out of memory: the free sheets of %d fish", n_failed);
+
+    // messages are per thread: write the message on the calling thread
+    return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: free sheets of %d fish", n_failed);
 }
 
-// drop what was made for other wakes or another time: the released vortices move on known paths, so that at one time
-// they are the same for every y
-static enum status go_to(struct flow *flow, const struct state *state, double t) {
+// Set the time, and discard data of other wakes or another time. The released vortices move on known paths, so that
+// their positions at one time are independent of y.
+static enum status flow_set_time(struct flow *flow, const struct state *state, double t) {
     const struct school *school = flow->school;
     const unsigned long version = state_wake_version(state, school);
     const int is_new = !flow->has_sources || flow->version != version;
+
     if (!is_new && flow->t == t) return STATUS_OK;
     flow->has_sources = 0;
     flow->has_released = 0;
@@ -286,15 +298,16 @@ static enum status go_to(struct flow *flow, const struct state *state, double t)
     if (flow->rings) {
         TRY(ring_sources_place_wakes(flow->rings, school, state, t - state->t, is_new));
     } else if (flow_has_free_sheets(flow)) {
-        TRY(place_free_sheets(flow, state, is_new));
+        TRY(flow_place_free_sheets(flow, state, is_new));
     }
+
     if (flow->interpolated_version != version) flow->is_interpolated = 0;
     if (flow->is_interpolated) wake_interpolation_update(flow->interpolation, t);
     flow->has_sources = 1;
     return STATUS_OK;
 }
 
-static enum status place_rings(struct flow *flow, const struct state *state, const double *y) {
+static enum status flow_place_rings(struct flow *flow, const struct state *state, const double *y) {
     for (int f = 0; f < flow->school->n_fish; f++) {
         const int point = flow->points[f].first, sheet = flow->sheet_range[f].first;
         const struct ring_body body = {.point = {flow->x + point, flow->y + point},
@@ -303,11 +316,12 @@ static enum status place_rings(struct flow *flow, const struct state *state, con
         TRY(ring_sources_place(flow->rings, flow->school, state, f, flow->t - state->t, y, &body,
                                &flow->nascent.circulation[f]));
     }
+
     return STATUS_OK;
 }
 
 enum status flow_place(struct flow *flow, const struct state *state, double t, const double *y) {
-    TRY(go_to(flow, state, t));
+    TRY(flow_set_time(flow, state, t));
     const struct school *const school = flow->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
 #pragma omp parallel for num_threads(threads) schedule(static)
@@ -315,14 +329,15 @@ enum status flow_place(struct flow *flow, const struct state *state, double t, c
         const struct fish *fish = &flow->school->fish[f];
         flow_from_nodes(flow, f, y + fish->at.x, flow->x);
         flow_from_nodes(flow, f, y + fish->at.y, flow->y);
-        place_sheet(flow, f, y);
-        place_nascent(flow, state, f, y);
+        flow_place_sheet(flow, f, y);
+        flow_place_nascent(flow, state, f, y);
         const int first = flow->points[f].first;
         flow->by_interpolation[f] =
             flow->is_interpolated &&
             wake_interpolation_is_valid(flow->interpolation, f, flow->x + first, flow->y + first);
     }
+
     flow->all_interpolated = 1;
     for (int f = 0; f < school->n_fish; f++) flow->all_interpolated &= flow->by_interpolation[f];
-    return flow->rings ? place_rings(flow, state, y) : STATUS_OK;
+    return flow->rings ? flow_place_rings(flow, state, y) : STATUS_OK;
 }

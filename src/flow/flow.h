@@ -1,21 +1,20 @@
-/* flow.h: where the points of all bodies are that feel the fluid, and the vortices that move it. What these do is in
- * flow_at_bodies.h, flow_derivative.h, flow_at_wake.h, flow_at_markers.h and flow_field.h. doc/model.md, sections 6 to
- * 9, 17. Tested by tests/flow/test_flow.c.
+/* flow.h: positions of the evaluation points of all bodies, and positions and strengths of the sources. The velocities
+ * are in flow_at_bodies.h, flow_derivative.h, flow_at_wake.h, flow_at_markers.h and flow_field.h. doc/model.md,
+ * sections 6 to 9, 17. Tested by tests/flow/test_flow.c.
  *
- * The points of one fish, in this order; which sheets each of them feels:
+ * The points of one fish, in this order, and the bound sheets that act at each point:
  *
  *     | control points (M-1)          | edge midpoints (N-1)  | tail (1)                         |
- *     | all; own with no smoothing    | those of other fish   | all, with sheet_smoothing        |
+ *     | all; own without smoothing    | sheets of other fish  | all, with sheet_smoothing        |
  *
- * With force: reactive the edge midpoints leave out the own wake too (doc/model.md, section 9).
+ * With force: reactive the own wake is omitted at the edge midpoints (doc/model.md, section 9).
  *
- * The sources: per fish its free vortices, released ones and the nascent one, and its bound vortices. With shedding:
- * sheet the free vortices are the middles of the stretches of a sheet, and the control points of the own fish see more
- * (free_sheet.h).
+ * Sources per fish: free vortices (released and nascent) and bound vortices. With shedding: sheet the free vortices
+ * are the middles of the stretches of a sheet; the own control points have additional sources (free_sheet.h).
  *
- * Smoothing: a point vortex has its own whoever feels it. With shedding: sheet a source and a target have one smoothing
- * for each other in both directions (model.md, section 8), which differs between targets of different lengths: fish of
- * one length are a class. */
+ * Smoothing: the smoothing of a point vortex does not depend on the target. With shedding: sheet a source and a target
+ * have a common smoothing in both directions (doc/model.md, section 8), which depends on the length of the target: fish
+ * of equal length form a class. */
 #ifndef FLOW_H
 #define FLOW_H
 
@@ -28,27 +27,27 @@
 #include "wake/free_sheet.h"
 #include "wake/wake_interpolation.h"
 
-/* Points of one fish that a thread takes at once. */
+/* Points of one fish that a thread evaluates at once. */
 struct chunk {
     int fish;
-    struct range at; /* among the points of all fish */
+    struct range at; /* range among the points of all fish */
 };
 
-/* Fish that feel every source with the same smoothing: with shedding: sheet those of one length, else all. Their points
- * follow one another, and so do their markers. */
+/* Fish with the same smoothing for every source: with shedding: sheet the fish of one length, else all fish. The points
+ * of a class are consecutive, and so are the markers. */
 struct flow_class {
     double smoothing, sheet_smoothing; /* delta and e of these fish, m */
-    struct range points, markers;      /* of all of them; markers: at the last flow_at_wake */
-    struct vortices sheet;             /* the bound vortices as their points feel them: a view of those of the flow */
-    struct vortex_group *group; /* of that view and of another (flow_at_markers.c)     (n_fish + n_classes + 1) */
-    int sheet_by_tree, images_by_many; /* what of it is summed for all points at once, in this evaluation */
+    struct range points, markers;      /* ranges of the class; markers: at the last flow_at_wake */
+    struct vortices sheet;             /* the bound vortices with the smoothing of this class: a view of flow.sheet */
+    struct vortex_group *group; /* groups of this view and of flow_at_markers.c        (n_fish + n_classes + 1) */
+    int sheet_by_tree, images_by_many; /* whether one sum covers all points, in this evaluation */
 };
 
 struct flow {
     const struct school *school;
     double t;              /* time of the sources, s */
-    unsigned long version; /* of the wakes that the sources below were made of */
-    int has_sources;       /* whether they have been placed at all */
+    unsigned long version; /* version of the wakes from which the sources below were built */
+    int has_sources;       /* whether the sources have been placed */
 
     int n_classes;
     struct flow_class *class; /*                                                      (n_classes) */
@@ -56,42 +55,42 @@ struct flow {
 
     /* points */
     struct range *points;      /* of each fish, class after class                   (n_fish) */
-    struct range *without_own; /* those of them that leave out the own wake         (n_fish) */
+    struct range *without_own; /* points at which the own wake is omitted         (n_fish) */
     int n_points;
     int n_chunks;
-    struct chunk *chunk;     /* all points, in pieces for the threads               (n_chunks) */
-    double *x, *y, *u, *v;   /* place, m, and velocity of the fluid, m s-1         (n_points) */
+    struct chunk *chunk;     /* all points in chunks for the threads               (n_chunks) */
+    double *x, *y, *u, *v;   /* position, m, and velocity of the fluid, m s-1     (n_points) */
     double *u_x, *u_y, *v_x; /* gradient, after flow_gradient, s-1                 (n_points) */
 
     /* sources */
-    /* with shedding: sheet, what others see of each free sheet, as a wake of vortices; else it is not used (n_fish) */
+    /* with shedding: sheet, each free sheet as a wake of vortices for other targets; else unused (n_fish) */
     struct wake *middles;
-    struct free_sheet *free_sheet; /* and what the own body sees besides                (n_fish) */
-    struct vortices released;      /* the free vortices of all fish; placed only where a fish is not interpolated */
+    struct free_sheet *free_sheet; /* correction for the own control points               (n_fish) */
+    struct vortices released;      /* free vortices of all fish; placed only if a fish is not interpolated */
     struct range *released_range;  /* of each fish                                   (n_fish) */
-    int has_released;              /* whether they are placed at t */
-    /* with shedding: sheet, what convects the markers, as of the last flow_at_wake: they themselves, class after class,
-     * then the bodies */
+    int has_released;              /* whether the released vortices are placed at t */
+    /* with shedding: sheet, the vortices that convect the markers, at the last flow_at_wake: the markers, class after
+     * class, then the bodies */
     struct vortices convecting;
     int n_markers;
-    struct range *body_range; /* what each fish has of the bodies                          (n_fish) */
-    struct range *wake_range; /* what each fish has of the markers, or of the vortices in `released` (n_fish) */
+    struct range *body_range; /* range of the body of each fish                         (n_fish) */
+    struct range *wake_range; /* range of the markers of each fish, or in `released`              (n_fish) */
     double *wake_u, *wake_v;  /* velocity at vortices or markers, after flow_at_wake, m s-1 */
-    /* beside walls, the part of it at markers that images cause, and after flow_images that at points (n_points) */
+    /* with walls: velocity of the images at markers, and after flow_images at points (n_points) */
     double *wake_image_u, *wake_image_v, *image_u, *image_v;
     int wake_capacity;
-    struct vortices nascent;   /* one of each fish                               (n_fish) */
+    struct vortices nascent;   /* one nascent vortex per fish                  (n_fish) */
     struct vortices sheet;     /* the bound vortices of all fish */
     struct range *sheet_range; /* of each fish                                   (n_fish) */
-    double *opposite;          /* circulations of the bound vortices with the other sign (sheet.n) */
+    double *opposite;          /* opposite circulations of the bound vortices     (sheet.n) */
 
-    struct flow_rings *rings;                 /* of a school with `finite`: ring_sources.h; else NULL */
-    struct velocity_sum *velocity_sum;        /* where wakes or sheets are summed by the tree */
-    struct wake_interpolation *interpolation; /* of the released vortices; NULL: they are never interpolated */
-    int is_interpolated;                      /* whether it was built, for the wakes of this version: */
+    struct flow_rings *rings;                 /* only for a school with `finite`: ring_sources.h; else NULL */
+    struct velocity_sum *velocity_sum;        /* tree sums of wakes and sheets */
+    struct wake_interpolation *interpolation; /* interpolation of the released vortices; NULL: never interpolated */
+    int is_interpolated;                      /* whether the interpolation was built for the wakes of this version: */
     unsigned long interpolated_version;
-    unsigned char *by_interpolation; /* whether it serves the fish where it is now        (n_fish) */
-    int all_interpolated;            /* whether it serves all of them */
+    unsigned char *by_interpolation; /* whether the interpolation is valid for each fish      (n_fish) */
+    int all_interpolated;            /* whether the interpolation is valid for all fish */
     double *motion[4];               /* velocity and acceleration of the points           (n_points) */
 };
 
@@ -100,37 +99,38 @@ struct flow {
 struct influence_block {
     int n_points, n_columns;
     double *u, *v; /* (n_columns, n_points) */
-    double *div;   /* with rings: of div u; else, or where nobody needs it, NULL (n_columns, n_points) */
-    double *edge;  /* where a depth varies: of a; else NULL                   (2, n_columns, n_points) */
+    double *div;   /* with rings: derivative of div u; NULL if not required (n_columns, n_points) */
+    double *edge;  /* with varying depth: derivative of a; else NULL (2, n_columns, n_points) */
 };
 
 /* Fails with STATUS_MEMORY. flow_free accepts NULL. */
 enum status flow_create(struct flow **flow, const struct school *school);
 void flow_free(struct flow *flow);
 
-/* The number of points of a fish. */
+/* Number of points of a fish. */
 int flow_n_points(const struct fish *fish);
 
-/* Index, among the points of a fish, of the midpoint of an edge and of the tail; control point c is point c. */
+/* Index, among the points of a fish, of the midpoint of an edge and of the tail. Control point c has index c. */
 int flow_midpoint(const struct fish *fish, int edge);
 int flow_tail(const struct fish *fish);
 
-/* Place all sources where they are at time t (at or after the event of the state) for the unknowns y, and the points of
- * all fish; the released vortices, which are not needed at bodies for which they are interpolated, on demand. Fail with
+/* Place all sources and the points of all fish at time t (at or after the event of the state) for the unknowns y.
+ * flow_place_released places the released vortices, which are not required at interpolated bodies. Fail with
  * STATUS_MEMORY. */
 enum status flow_place(struct flow *flow, const struct state *state, double t, const double *y);
 enum status flow_place_released(struct flow *flow, const struct state *state);
 
-/* Whether the wakes are free sheets: with shedding: sheet. */
+/* Whether the wakes are free sheets (shedding: sheet). */
 int flow_has_free_sheets(const struct flow *flow);
 
-/* The smoothing with which the points of fish f feel the bound sheet of another fish g, and the images of any, m. */
+/* Smoothing of the bound sheet of fish g at the points of another fish f, and of the images of any fish, m. */
 double flow_sheet_smoothing(const struct flow *flow, int f, int g);
 
-/* The wakes as vortices that everybody sees: those in the queues, or the middles of the stretches between markers. */
+/* The wakes as vortices: the queues, or the middles of the stretches between markers. */
 const struct wake *flow_seen_wakes(const struct flow *flow, const struct state *state);
 
-/* What the points of fish f have of a quantity that its nodes have; of_points is that of all fish (n_points). */
+/* Interpolate a quantity at the nodes of fish f to the points of fish f; of_points: values at the points of all fish
+ * (n_points). */
 void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, double *of_points);
 
 #endif

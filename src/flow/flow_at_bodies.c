@@ -1,4 +1,4 @@
-/* flow_at_bodies.c: all sources onto all points, in chunks of points. */
+/* flow_at_bodies.c: velocity of all sources at all points, in chunks of points. */
 #include "flow/flow_at_bodies.h"
 
 #include <stddef.h>
@@ -15,6 +15,7 @@ struct flow_at_body flow_at_body(const struct flow *flow, int f) {
         at.edge = flow->rings->edge + first;
         at.edge_stride = flow->n_points;
     }
+
     flow_external_acceleration(flow->school, flow->t, at.acceleration);
     return at;
 }
@@ -37,20 +38,20 @@ void flow_sum_exactly(struct flow *flow) {
 }
 
 // all points of all fish as targets
-static struct induced targets(const struct flow *flow, int with_gradient) {
+static struct induced flow_targets(const struct flow *flow, int with_gradient) {
     struct induced all = {.n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->u, .v = flow->v};
     if (with_gradient) {
         all.u_x = flow->u_x;
         all.u_y = flow->u_y;
         all.v_x = flow->v_x;
     }
+
     return all;
 }
 
-// sort the bound vortices and the points for the sums until the next event, where the tree sums them: there is one
-// plan, for one class
-static enum status plan_sheets(struct flow *flow) {
-    const struct induced at = targets(flow, 0);
+// plan the tree sum of the bound vortices at the points until the next event; the single plan requires a single class
+static enum status flow_plan_sheets(struct flow *flow) {
+    const struct induced at = flow_targets(flow, 0);
     const double tolerance = flow->school->wake_tolerance;
     if (flow->n_classes > 1 || !velocity_sum_by_tree(&flow->sheet, at.n, tolerance)) return STATUS_OK;
     return velocity_sum_plan(flow->velocity_sum, &flow->class[0].sheet, tolerance, flow->school->threads, &at);
@@ -64,31 +65,33 @@ enum status flow_interpolate(struct flow *flow, const struct state *state) {
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct fish *const fish = &flow->school->fish[f];
-        // where there are momenta, a is their rate
+        // with momenta as unknowns, the acceleration is the rate of the velocity
         const double *const acceleration = fish_has_momentum(fish) ? state->yp + fish->at.vx : state->y + fish->at.ax;
         for (int i = 0; i < 2; i++) {
             flow_from_nodes(flow, f, state->y + fish->at.vx + i * fish->n_nodes, flow->motion[i]);
             flow_from_nodes(flow, f, acceleration + i * fish->n_nodes, flow->motion[2 + i]);
         }
     }
+
     const struct wake_interpolation_points points = {flow->x,         flow->y,         flow->motion[0],
                                                      flow->motion[1], flow->motion[2], flow->motion[3]};
     TRY(wake_interpolation_build(flow->interpolation, flow_seen_wakes(flow, state), state->t, &points));
     wake_interpolation_update(flow->interpolation, flow->t);
-    TRY(plan_sheets(flow));
+    TRY(flow_plan_sheets(flow));
     flow->is_interpolated = 1;
     flow->interpolated_version = flow->version;
     return STATUS_OK;
 }
 
-// the part of a chunk that lies in a range of points
+// overlap of a chunk and a range of points
 static struct range overlap(const struct chunk *chunk, struct range range) {
     const int first = chunk->at.first > range.first ? chunk->at.first : range.first;
     const int end = chunk->at.first + chunk->at.n, range_end = range.first + range.n;
     return (struct range){first, (end < range_end ? end : range_end) - first};
 }
 
-// add what the own bound sheet, with one smoothing and these circulations, causes at some points of its fish
+// add the velocity of the own bound sheet, with one smoothing and the given circulations, at a range of points of the
+// fish
 static void induce_own(const struct flow *flow, const struct chunk *chunk, struct range points, double smoothing,
                        double *circulation, const struct induced *all) {
     const struct range which = overlap(chunk, points);
@@ -103,20 +106,22 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, struc
     vortices_induce(&sheet, flow->sheet_range[chunk->fish], &at);
 }
 
-// the bound sheets at a chunk: those of other fish; the own one at control points with no smoothing, at the tail with
-// some, not at the midpoints
+// bound sheets at a chunk: the sheets of other fish, and the own sheet at control points without smoothing, at the tail
+// with smoothing, not at the midpoints
 static void induce_sheets(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
     const struct fish *fish = &flow->school->fish[chunk->fish];
     const struct flow_class *const class = &flow->class[flow->class_of[chunk->fish]];
     const struct range own = flow->sheet_range[chunk->fish], points = flow->points[chunk->fish];
     const struct range control = {points.first, fish->n_control}, tail = {points.first + flow_tail(fish), 1};
+
     induce_own(flow, chunk, control, 0, flow->sheet.circulation, all);
     if (class->sheet_by_tree) {
-        // the tree has summed all of them at all points
+        // the tree has summed all sheets at all points: subtract the own sheet
         const struct range but_tail = {points.first, points.n - 1};
         induce_own(flow, chunk, but_tail, fish->sheet_smoothing, flow->opposite, all);
         return;
     }
+
     const struct induced at = vortices_targets(all, chunk->at);
     const int behind = own.first + own.n;
     vortices_induce(&class->sheet, (struct range){0, own.first}, &at);
@@ -124,11 +129,12 @@ static void induce_sheets(const struct flow *flow, const struct chunk *chunk, co
     induce_own(flow, chunk, tail, fish->sheet_smoothing, flow->sheet.circulation, all);
 }
 
-// what the control points of a fish see of its own free sheet besides what everybody sees
+// correction of the own free sheet at the control points of a fish
 static void induce_free_sheet(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
     const struct free_sheet *const sheet = &flow->free_sheet[chunk->fish];
     const struct range control = {flow->points[chunk->fish].first, flow->school->fish[chunk->fish].n_control};
     const struct range which = overlap(chunk, control);
+
     if (which.n <= 0) return;
     const struct induced at = vortices_targets(all, which);
     const double smoothing = flow->school->fish[chunk->fish].smoothing;
@@ -146,7 +152,7 @@ static void induce_free_sheet(const struct flow *flow, const struct chunk *chunk
     }
 }
 
-// the wakes as others see them at a chunk, and at points that leave out the own wake those of others
+// wakes at a chunk; the own wake is omitted at the points of without_own
 static void induce_wakes(const struct flow *flow, const struct chunk *chunk, const struct induced *at) {
     const struct range unfelt = {flow->without_own[chunk->fish].first - chunk->at.first,
                                  flow->without_own[chunk->fish].n};
@@ -155,21 +161,23 @@ static void induce_wakes(const struct flow *flow, const struct chunk *chunk, con
     } else {
         vortices_induce_without(&flow->released, flow->released_range[chunk->fish], unfelt, at);
     }
+
     vortices_induce_without(&flow->nascent, (struct range){chunk->fish, 1}, unfelt, at);
 }
 
-// the images of all fish, with the smoothing that others see
+// images of all fish, with the smoothing of the class
 static void induce_images(const struct flow *flow, const struct chunk *chunk, const struct induced *at) {
     const struct walls *const walls = &flow->school->walls;
     const struct flow_class *const class = &flow->class[flow->class_of[chunk->fish]];
     if (!flow->by_interpolation[chunk->fish]) {
         images_induce(walls, &flow->released, (struct range){0, flow->released.n}, at);
     }
+
     images_induce(walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
     if (!class->images_by_many) images_induce(walls, &class->sheet, (struct range){0, class->sheet.n}, at);
 }
 
-static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
+static void flow_evaluate_chunk(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
     const struct school *school = flow->school;
     const struct induced at = vortices_targets(all, chunk->at);
     for (int p = 0; p < at.n; p++) {
@@ -178,20 +186,22 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, c
         at.u[p] += u;
         at.v[p] += v;
     }
+
     for (int p = 0; at.u_x && p < at.n; p++) at.u_y[p] += school->shear;
     if (flow->rings) {
         flow_rings_at_chunk(flow, chunk, at.u_x != NULL);
         return;
     }
+
     induce_wakes(flow, chunk, &at);
     induce_sheets(flow, chunk, all);
     if (flow_has_free_sheets(flow)) induce_free_sheet(flow, chunk, all);
     if (school->walls.n > 0) induce_images(flow, chunk, &at);
 }
 
-// all bound sheets at all points of a class by the tree, and their images by tree or cells
-static enum status sum_sheets(struct flow *flow, const struct flow_class *class, int threads,
-                              const struct induced *all) {
+// all bound sheets at all points of a class by the tree, and the images of the sheets by tree or cells
+static enum status flow_sum_sheets(struct flow *flow, const struct flow_class *class, int threads,
+                                   const struct induced *all) {
     const double tolerance = flow->school->wake_tolerance;
     const struct induced at = vortices_targets(all, class->points);
     if (class->sheet_by_tree) {
@@ -199,12 +209,13 @@ static enum status sum_sheets(struct flow *flow, const struct flow_class *class,
         TRY((is_planned ? velocity_sum_by_plan : velocity_sum_induce)(flow->velocity_sum, &class->sheet, tolerance,
                                                                       threads, &at));
     }
+
     if (!class->images_by_many) return STATUS_OK;
     return images_induce_many(&flow->school->walls, flow->velocity_sum, &class->sheet, tolerance, threads, &at);
 }
 
-// decide what is summed for all points of a class at once, and sum it
-static enum status sum_many(struct flow *flow, int threads, const struct induced *all) {
+// select the sums over all points of a class, and evaluate these sums
+static enum status flow_sum_many(struct flow *flow, int threads, const struct induced *all) {
     const double tolerance = flow->school->wake_tolerance;
     for (int c = 0; c < flow->n_classes; c++) {
         struct flow_class *const class = &flow->class[c];
@@ -212,61 +223,67 @@ static enum status sum_many(struct flow *flow, int threads, const struct induced
         const int by_cells = images_by_cells(&flow->school->walls, &class->sheet, tolerance, &at);
         class->sheet_by_tree = velocity_sum_by_tree(&class->sheet, at.n, tolerance);
         class->images_by_many = class->sheet_by_tree || by_cells;
-        TRY(sum_sheets(flow, class, threads, all));
+        TRY(flow_sum_sheets(flow, class, threads, all));
     }
+
     return STATUS_OK;
 }
 
-// interactions of an evaluation that depend on the unknowns
-static double work_of(const struct flow *flow) {
+// number of interactions of an evaluation that depend on the unknowns
+static double flow_work(const struct flow *flow) {
     if (flow->rings) return flow_rings_work(flow);
     const int n_sources = flow->sheet.n + flow->nascent.n + (flow->has_released ? flow->released.n : 0);
     double work = (double)flow->n_points * n_sources;
     for (int f = 0; flow_has_free_sheets(flow) && f < flow->school->n_fish; f++) {
-        // one with a smoothing of its own costs about two
+        // an interaction with individual smoothing costs about two
         work += 2.0 * flow->school->fish[f].n_control * flow->free_sheet[f].n;
     }
+
     return work;
 }
 
-static void evaluate(struct flow *flow, int with_gradient) {
-    const struct induced all = targets(flow, with_gradient);
-    const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work_of(flow), PARALLEL_INTERACTIONS);
+static void flow_evaluate(struct flow *flow, int with_gradient) {
+    const struct induced all = flow_targets(flow, with_gradient);
+    const int threads = parallel_threads(flow->school->threads, flow->n_chunks, flow_work(flow), PARALLEL_INTERACTIONS);
     vortices_zero(&all);
     if (flow->rings) flow_rings_zero(flow, with_gradient);
-    if (!flow->rings && sum_many(flow, threads, &all) != STATUS_OK) {
-        // without memory for a tree there is still the direct sum
+    if (!flow->rings && flow_sum_many(flow, threads, &all) != STATUS_OK) {
+        // out of memory for a tree: use the direct sum
         for (int c = 0; c < flow->n_classes; c++) flow->class[c].sheet_by_tree = flow->class[c].images_by_many = 0;
         vortices_zero(&all);
     }
+
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], &all);
+    for (int c = 0; c < flow->n_chunks; c++) flow_evaluate_chunk(flow, &flow->chunk[c], &all);
 }
 
-static enum status sum(struct flow *flow, const struct state *state, double t, const double *y, int with_gradient) {
+static enum status flow_sum(struct flow *flow, const struct state *state, double t, const double *y,
+                            int with_gradient) {
     TRY(flow_place(flow, state, t, y));
     if (!flow->all_interpolated && !flow->rings) TRY(flow_place_released(flow, state));
-    evaluate(flow, with_gradient);
+    flow_evaluate(flow, with_gradient);
     return STATUS_OK;
 }
 
 enum status flow_velocity(struct flow *flow, const struct state *state, double t, const double *y) {
-    return sum(flow, state, t, y, 0);
+    return flow_sum(flow, state, t, y, 0);
 }
 
 enum status flow_gradient(struct flow *flow, const struct state *state, double t, const double *y) {
-    return sum(flow, state, t, y, 1);
+    return flow_sum(flow, state, t, y, 1);
 }
 
 enum status flow_images(struct flow *flow, const struct state *state) {
     const struct school *const school = flow->school;
     const struct induced all = {
         .n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->image_u, .v = flow->image_v};
+
     TRY(flow_place(flow, state, state->t, state->y));
     if (flow->rings) {
         flow_rings_images(flow);
         return STATUS_OK;
     }
+
     TRY(flow_place_released(flow, state));
     vortices_zero(&all);
     for (int c = 0; c < flow->n_classes; c++) {
@@ -277,5 +294,6 @@ enum status flow_images(struct flow *flow, const struct state *state) {
                                    school->threads, &at));
         }
     }
+
     return STATUS_OK;
 }

@@ -1,25 +1,25 @@
-/* flow_at_markers.h: the velocity of the fluid at the markers of all free sheets. doc/model.md, section 8. Part of
+/* flow_at_markers.h: velocity of the fluid at the markers of all free sheets. doc/model.md, section 8. Part of
  * flow_at_wake.h. Tested by tests/flow/test_flow.c.
  *
- * What convects markers is what pushes bodies, with the same smoothing for the same pair, so that the impulse of bodies
- * and wakes is conserved:
+ * The velocity at markers and the force on bodies have the same sources, with the same smoothing for the same pair, so
+ * that the impulse of bodies and wakes is conserved:
  *
  *     markers of all fish     mean of squares of delta of both fish
- *     the sheets of bodies    delta of the marker's fish; of the own body the tapered delta(d): free_sheet.h
- *     images of all of them   the same, never tapered
+ *     sheets of bodies        delta of the fish of the marker; own body: tapered delta(d), free_sheet.h
+ *     images                  as above, never tapered
  *
- * A body with force: pressure acts from its control points with the circulations of section 15, which its force has
- * too; any other from its bound vortices. */
+ * Sources of a body with force: pressure: the control points with the circulations of section 15, which also determine
+ * the force; of any other body: the bound vortices. */
 #ifndef FLOW_AT_MARKERS_H
 #define FLOW_AT_MARKERS_H
 
 #include "flow/flow.h"
 
-/* Place the markers of all fish and their bodies at the event of the state, for which the flow has been placed: the
- * vortices `convecting`, wake_range and body_range. Fails with STATUS_MEMORY. */
+/* Set the vortices `convecting`, wake_range and body_range to markers and bodies of all fish at the event of the state,
+ * after flow_place. Fails with STATUS_MEMORY. */
 enum status flow_at_markers_place(struct flow *flow, const struct state *state);
 
-/* Set wake_u and wake_v to the velocity at these markers. Fails with STATUS_MEMORY. */
+/* Set wake_u and wake_v to the velocity at the markers. Fails with STATUS_MEMORY. */
 enum status flow_at_markers(struct flow *flow, const struct state *state);
 
 #endif

@@ -1,4 +1,4 @@
-/* flow_at_wake.c: bodies and wakes at wakes of point vortices; by the tree where there are many. */
+/* flow_at_wake.c: velocity of bodies and wakes at wakes of point vortices; by the tree for many vortices. */
 #include "flow/flow_at_wake.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "flow/flow_rings.h"
 #include "vortex/pairwise.h"
 
-// the external flow, the nascent vortices and what is not summed of the sheets at the free vortices
+// external flow, nascent vortices, and direct sums of sheets and images at the free vortices
 static void others_at_wake(const struct flow *flow, int sheets_by_tree, int images_by_cells,
                            const struct induced *all) {
     const struct walls *const walls = &flow->school->walls;
@@ -36,25 +36,27 @@ static enum status reserve_at_wake(struct flow *flow, int n) {
     for (int i = 0; i < (has_images ? 4 : 2); i++) {
         free(*all[i]);
         *all[i] = calloc((size_t)capacity, sizeof **all[i]);
-        if (!*all[i]) return status_fail(STATUS_MEMORY, "out of memory: the velocities of %d vortices", n);
+        if (!*all[i]) return status_fail(STATUS_MEMORY, "out of memory: velocities of %d vortices", n);
     }
+
     flow->wake_capacity = capacity;
     return STATUS_OK;
 }
 
-// what all free vortices induce at themselves, and the sheets that are not summed otherwise: those that the tree sums
-// share it
+// mutual velocity of all free vortices, and velocity of sheets that are not summed directly; one tree sums both
 static enum status induce_many(struct flow *flow, int sheets_too, const struct vortices *moving, int threads,
                                const struct induced *at) {
     const double tolerance = flow->school->wake_tolerance;
     const int by_tree = velocity_sum_by_tree(moving, moving->n, tolerance);
     struct velocity_sum *const sum = flow->velocity_sum;
+
     if (by_tree) {
         const struct vortices *const all[] = {moving, &flow->sheet};
         TRY(velocity_sum_induce_all(sum, sheets_too ? 2 : 1, all, tolerance, threads, at));
     } else if (sheets_too) {
         TRY(velocity_sum_induce(sum, &flow->sheet, tolerance, threads, at));
     }
+
     return by_tree ? STATUS_OK : pairwise_add_velocity(moving, PAIRWISE_OF_SOURCE, threads, at->u, at->v);
 }
 
@@ -67,6 +69,7 @@ static enum status flow_at_vortices(struct flow *flow) {
     const int by_cells = images_by_cells(walls, &flow->sheet, tolerance, &at);
     const int threads =
         parallel_threads(flow->school->threads, moving->n, (double)moving->n * moving->n, PARALLEL_INTERACTIONS);
+
     others_at_wake(flow, sheets_by_tree, by_cells, &at);
     if (by_cells) TRY(images_induce_many(walls, flow->velocity_sum, &flow->sheet, tolerance, threads, &at));
     TRY(images_induce_many(walls, flow->velocity_sum, moving, tolerance, threads, &at));
@@ -81,11 +84,13 @@ enum status flow_at_wake(struct flow *flow, const struct state *state) {
         TRY(reserve_at_wake(flow, n));
         return flow_rings_at_markers(flow, state);
     }
+
     if (flow_has_free_sheets(flow)) {
         TRY(flow_at_markers_place(flow, state));
         TRY(reserve_at_wake(flow, flow->n_markers));
         return flow_at_markers(flow, state);
     }
+
     TRY(flow_place_released(flow, state));
     memcpy(flow->wake_range, flow->released_range, (size_t)flow->school->n_fish * sizeof *flow->wake_range);
     TRY(reserve_at_wake(flow, flow->released.n));

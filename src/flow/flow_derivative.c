@@ -1,4 +1,4 @@
-/* flow_derivative.c: source by source, by its strength and by the nodes that it moves with. */
+/* flow_derivative.c: derivatives per source, by the strength and by the nodes that move the source. */
 #include "flow/flow_derivative.h"
 
 #include <string.h>
@@ -28,11 +28,11 @@ static struct part part_of(const struct influence_block *block, int c, int first
     return (struct part){block->u + at, block->v + at};
 }
 
-/* As many sources that move with the same nodes are taken together. */
+/* Maximum number of sources that move with the same nodes and are evaluated together. */
 enum { MOST_TOGETHER = 8 };
 
-// add factors times the derivatives with respect to the places of n_sources points that move with the same nodes of
-// fish other; sign: of their motion in y, -1 for those that are mirrored
+// add factors times the derivatives with respect to the positions of n_sources points that move with the same nodes of
+// fish other; sign of the motion in y: -1 for mirrored points
 static void add_motion(const struct influence_block *block, const struct fish *other, const struct stencil *point,
                        int n_sources, int first, int n, const struct kernel_values *slope, const double *factor,
                        double sign) {
@@ -45,8 +45,8 @@ static void add_motion(const struct influence_block *block, const struct fish *o
     }
 }
 
-// add a factor times the derivatives by one node of fish other of a source that moves by one vector per displacement of
-// the node along another one
+// add a factor times the derivatives by one node of fish other, for a source that moves by the vector `moves` per
+// displacement of the node along the vector `along`
 static void add_push(const struct influence_block *block, const struct fish *other, int node, const double moves[2],
                      const double along[2], int first, int n, const struct kernel_values *slope, double factor) {
     const struct part by_x = part_of(block, node, first), by_y = part_of(block, other->n_nodes + node, first);
@@ -60,7 +60,7 @@ static void add_push(const struct influence_block *block, const struct fish *oth
     }
 }
 
-// add the derivatives of a source that follows the end of a nascent stretch beside the tail: free_sheet.h
+// add the derivatives of a source that follows the older end of an overtaken nascent stretch: free_sheet.h
 static void add_overtaken(const struct influence_block *block, const struct fish *fish, const struct free_sheet *sheet,
                           int first, int n, const struct kernel_values *slope, double factor) {
     const struct stencil *const parts[2] = {&fish->tail_tangent.from, &fish->tail_tangent.to};
@@ -83,15 +83,15 @@ static void add_strength(const struct influence_block *block, int c, int first, 
     }
 }
 
-// what column a source has, and whether its place moves with the unknowns too
+// points of fish f, sources of fish g; with_places: derivatives by positions too
 struct target {
     const struct flow *flow;
     int f, g, with_places;
     const struct influence_block *block;
 };
 
-// one source of the nascent vortex, or stretch, of a fish: the part of its circulation, and the parts of the motion of
-// the tail and, where the older end of the stretch moves with the tail, of that end
+// one source of the nascent vortex or stretch: fraction of the circulation, and fractions of the motion of the tail and
+// of the older end of the stretch (if this end moves with the tail)
 struct nascent_source {
     double x, y, smoothing, part, follows, follows_end;
 };
@@ -102,6 +102,7 @@ static void derive_nascent_source(const struct target *at, struct range points, 
     const struct fish *other = &flow->school->fish[at->g];
     const struct stencil tail = {.n = 1, .node = (const int[]){other->n_nodes - 1}, .weight = (const double[]){1}};
     const int here = flow->points[at->f].first, end = points.first + points.n;
+
     for (int first = points.first; first < end; first += KERNEL_CHUNK) {
         const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
         struct kernel_values unit;
@@ -123,7 +124,9 @@ static void derive_nascent(const struct target *at) {
     const struct flow *flow = at->flow;
     const struct fish *other = &flow->school->fish[at->g];
     const int n_points = flow->points[at->f].n, is_sheet = flow_has_free_sheets(flow), is_own = at->f == at->g;
-    // the own control points see the stretch point by point, all others its middle, or leave it out
+
+    // sources: graded points at the own control points, the middle at all other points; omitted at the points of
+    // without_own
     const int n_own = is_sheet && is_own ? other->n_control : 0;
     const int n_unfelt = is_own ? flow->without_own[at->f].n : 0, behind = other->n_control + n_unfelt;
     const struct nascent_source whole = {
@@ -134,6 +137,7 @@ static void derive_nascent(const struct target *at) {
         derive_nascent_source(at, (struct range){n_own, other->n_control - n_own}, &whole);
         derive_nascent_source(at, (struct range){behind, n_points - behind}, &whole);
     }
+
     const struct free_sheet *const sheet = is_sheet ? &flow->free_sheet[at->g] : NULL;
     for (int i = 0; n_own > 0 && i < FREE_SHEET_PANEL; i++) {
         const int source = sheet->n - (FREE_SHEET_PANEL + 1) + i;
@@ -144,8 +148,8 @@ static void derive_nascent(const struct target *at) {
     }
 }
 
-// how many bound vortices from j on move with the same nodes
-static int together(const struct fish *fish, int j) {
+// number of bound vortices from j on that move with the same nodes
+static int n_moving_together(const struct fish *fish, int j) {
     const struct stencil *const point = &fish->sheet_point[j];
     int n = 1;
     while (n < MOST_TOGETHER && j + n < fish->n_sheet && point[n].node == point->node && point[n].n == point->n) n++;
@@ -158,12 +162,13 @@ static void derive_sheet(const struct target *at, struct range points, double sm
     const struct fish *other = &flow->school->fish[at->g];
     const int here = flow->points[at->f].first, sheet = flow->sheet_range[at->g].first;
     const int strength = at->block->n_columns - 1 - other->n_sheet, end = points.first + points.n;
+
     for (int first = points.first; first < end; first += KERNEL_CHUNK) {
         const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
         for (int j = 0, n_together; j < other->n_sheet; j += n_together) {
             struct kernel_values unit[MOST_TOGETHER];
             double factor[MOST_TOGETHER];
-            n_together = together(other, j);
+            n_together = n_moving_together(other, j);
             for (int i = 0; i < n_together; i++) {
                 const int source = sheet + j + i;
                 kernel_unit(n, flow->x + here + first, flow->y + here + first, flow->sheet.x[source],
@@ -177,13 +182,13 @@ static void derive_sheet(const struct target *at, struct range points, double sm
     }
 }
 
-// a source of fish g that everybody sees in the walls
+// a source of fish g whose images act at all points
 struct mirrored_source {
     double x, y, smoothing;
-    int column;                  // of its strength
-    double weight, circulation;  // per unit of that unknown, and in all: m or 1, m2 s-1
+    int column;                  // column of the strength
+    double weight, circulation;  // circulation per unit of the unknown, m or 1; circulation, m2 s-1
     const struct stencil *point;
-    double follows;  // the part of the motion of that point that it follows
+    double follows;  // fraction of the motion of the point
 };
 
 // the images of a source at all points of fish f
@@ -191,6 +196,7 @@ static void derive_images_of(const struct target *at, const struct mirrored_sour
     const struct flow *flow = at->flow;
     const struct fish *other = &flow->school->fish[at->g];
     const int here = flow->points[at->f].first, end = at->block->n_points;
+
     for (int first = 0; first < end; first += KERNEL_CHUNK) {
         const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
         struct images_values unit;
@@ -225,6 +231,7 @@ static void derive_sheet_images(const struct target *at) {
     const struct flow *flow = at->flow;
     const struct fish *other = &flow->school->fish[at->g];
     const int strength = at->block->n_columns - 1 - other->n_sheet;
+
     for (int j = 0; flow->school->walls.n > 0 && j < other->n_sheet; j++) {
         const int bound = flow->sheet_range[at->g].first + j;
         const struct mirrored_source source = {.x = flow->sheet.x[bound],
@@ -239,7 +246,7 @@ static void derive_sheet_images(const struct target *at) {
     }
 }
 
-static void clear(const struct influence_block *block) {
+static void influence_block_clear(const struct influence_block *block) {
     const size_t size = (size_t)block->n_points * (size_t)block->n_columns * sizeof *block->u;
     memset(block->u, 0, size);
     memset(block->v, 0, size);
@@ -247,15 +254,16 @@ static void clear(const struct influence_block *block) {
     if (block->edge) memset(block->edge, 0, 2 * size);
 }
 
-// all that moves with fish g, at the points of fish f that feel it
+// sources that move with fish g, at the points of fish f
 static void derive_sources(const struct target *at) {
     const struct flow *flow = at->flow;
     const struct fish *fish = &flow->school->fish[at->f];
-    clear(at->block);
+    influence_block_clear(at->block);
     if (flow->rings) {
         flow_ring_derivative(flow, at->f, at->g, at->with_places, 0, at->block);
         return;
     }
+
     derive_nascent(at);
     derive_nascent_images(at);
     derive_sheet_images(at);
@@ -280,11 +288,13 @@ void flow_derivative(const struct flow *flow, int f, int g, struct influence_blo
     block->n_columns = flow_n_columns(&flow->school->fish[g]);
     derive_sources(&(struct target){flow, f, g, 1, block});
     if (f != g) return;
-    // the points of a fish move with its own nodes, in the field of all sources
+
+    // the points of a fish move with the own nodes in the field of all sources
     if (flow->rings) {
         flow_ring_motion(flow, f, block);
         return;
     }
+
     for (int p = 0; p < block->n_points; p++) {
         const int at = flow->points[f].first + p;
         const struct stencil point = point_stencil(fish, p);
@@ -309,11 +319,12 @@ void flow_influence(const struct flow *flow, int f, int g, struct influence_bloc
 void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block) {
     block->n_points = flow->points[f].n;
     block->n_columns = 1;
-    clear(block);
+    influence_block_clear(block);
     if (flow->rings) {
         flow_ring_derivative(flow, f, f, 0, 1, block);
         return;
     }
+
     const struct target at = {flow, f, f, 0, block};
     derive_nascent(&at);
     derive_nascent_images(&at);

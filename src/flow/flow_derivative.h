@@ -1,21 +1,21 @@
-/* flow_derivative.h: how the velocity at the points of one fish changes with the unknowns of another, as a dense block
- * for each pair. doc/model.md, sections 6 to 9; doc/numerics.md, section 6. Tested by tests/flow/test_flow.c. */
+/* flow_derivative.h: derivatives of the velocity at the points of one fish by the unknowns of another fish, as a dense
+ * block for each pair. doc/model.md, sections 6 to 9; doc/numerics.md, section 6. Tested by tests/flow/test_flow.c. */
 #ifndef FLOW_DERIVATIVE_H
 #define FLOW_DERIVATIVE_H
 
 #include "flow/flow.h"
 
-/* Derivative of the equations of fish f that feel the fluid with respect to the same unknowns of fish g, column by
- * column: row r is the equation at.ax + r of fish f, so rows are ax, ay, gamma, circulation. */
+/* Derivative of the equations of fish f that contain the velocity of the fluid with respect to the same unknowns of
+ * fish g, column by column: row r is the equation at.ax + r of fish f, so the rows are ax, ay, gamma, circulation. */
 struct coupling_block {
     int n_rows, n_columns;
     double *value; /* (n_columns, n_rows) */
 };
 
-/* The unknown that column c of the block of fish other stands for. */
+/* The unknown of column c of the block of fish other. */
 int flow_column(const struct fish *other, int c);
 
-/* The number of rows of fish that feel the fluid, and of columns of the block of fish other. */
+/* Number of rows of a fish that contain the velocity of the fluid, and number of columns of the block of fish other. */
 int flow_n_rows(const struct fish *fish);
 int flow_n_columns(const struct fish *other);
 
@@ -23,12 +23,12 @@ int flow_n_columns(const struct fish *other);
  * flow_gradient. */
 void flow_derivative(const struct flow *flow, int f, int g, struct influence_block *block);
 
-/* Fill block with the velocity at the points of fish f that each bound vortex of unit strength, and a nascent vortex of
- * unit circulation, of fish g causes: columns gamma (M_g), circulation (1). With the places of the last velocity. */
+/* Fill block with the velocity at the points of fish f induced by each bound vortex of unit strength and by a nascent
+ * vortex of unit circulation of fish g: columns gamma (M_g), circulation (1). Positions: as at the last velocity. */
 void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block);
 
-/* Fill block, of one column, with the velocity at the points of fish f that its own nascent vortex or stretch of unit
- * circulation causes. With the places of the last velocity. */
+/* Fill a block of one column with the velocity at the points of fish f induced by the own nascent vortex or stretch of
+ * unit circulation. Positions: as at the last velocity. */
 void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block);
 
 #endif

@@ -1,5 +1,5 @@
-/* flow_external.h: the flow that is there without fish: a stream with shear and gusts. doc/model.md, sections 8 and 9.
- * Tested by tests/flow/test_flow.c. */
+/* flow_external.h: external flow: a stream with shear and gusts. doc/model.md, sections 8 and 9. Tested by
+ * tests/flow/test_flow.c. */
 #ifndef FLOW_EXTERNAL_H
 #define FLOW_EXTERNAL_H
 
@@ -8,7 +8,7 @@
 /* The external flow at height y at time t. */
 void flow_external(const struct school *school, double t, double y, double *u, double *v);
 
-/* The acceleration Du/Dt of a particle of the external flow at time t, the same everywhere, m s-2. */
+/* Acceleration Du/Dt of a particle of the external flow at time t, uniform in space, m s-2. */
 void flow_external_acceleration(const struct school *school, double t, double acceleration[2]);
 
 #endif

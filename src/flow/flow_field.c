@@ -1,4 +1,4 @@
-/* flow_field.c: all sources at any points, for pictures and readers of a run. */
+/* flow_field.c: velocity of all sources at any points, for pictures and evaluation of results. */
 #include "flow/flow_field.h"
 
 #include <math.h>
@@ -7,21 +7,21 @@
 #include "flow/flow_external.h"
 #include "flow/flow_rings.h"
 
-// the external flow, the nascent vortices and what is not summed by the tree, as another body would see them, at some
-// points
-static void induce_field(const struct flow *flow, const int *by_tree, const struct induced *at) {
+// external flow, nascent vortices, and sources that are not summed by the tree, at any points
+static void field_induce(const struct flow *flow, const int *by_tree, const struct induced *at) {
     for (int i = 0; i < at->n; i++) {
         flow_external(flow->school, flow->t, at->y[i], &at->u[i], &at->v[i]);
         at->u_y[i] = flow->school->shear;
     }
+
     vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, at);
     images_induce(&flow->school->walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
     if (!by_tree[0]) vortices_induce(&flow->released, (struct range){0, flow->released.n}, at);
     if (!by_tree[1]) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, at);
 }
 
-// beyond the walls there is no fluid
-static void leave_out_solid(const struct flow *flow, const struct induced *at) {
+// NaN beyond the walls
+static void field_mask_solid(const struct flow *flow, const struct induced *at) {
     double *const values[] = {at->u, at->v, at->u_x, at->u_y, at->v_x};
     for (int i = 0; flow->school->walls.n > 0 && i < at->n; i++) {
         if (images_distance(&flow->school->walls, at->y[i]) >= 0) continue;
@@ -44,9 +44,10 @@ enum status flow_field(struct flow *flow, const struct state *state, const struc
             }
             flow_rings_at(flow, &at);
         }
-        leave_out_solid(flow, all);
+        field_mask_solid(flow, all);
         return STATUS_OK;
     }
+
     TRY(flow_place_released(flow, state));
     const struct vortices *const many[2] = {&flow->released, &flow->sheet};
     const int n_chunks = parallel_n_chunks(all->n);
@@ -57,12 +58,14 @@ enum status flow_field(struct flow *flow, const struct state *state, const struc
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
         const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
-        induce_field(flow, by_tree, &at);
+        field_induce(flow, by_tree, &at);
     }
+
     for (int i = 0; i < 2; i++) {
         if (by_tree[i]) TRY(velocity_sum_induce(flow->velocity_sum, many[i], tolerance, threads, all));
         TRY(images_induce_many(&flow->school->walls, flow->velocity_sum, many[i], tolerance, threads, all));
     }
-    leave_out_solid(flow, all);
+
+    field_mask_solid(flow, all);
     return STATUS_OK;
 }

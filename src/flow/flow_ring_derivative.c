@@ -1,9 +1,9 @@
-/* flow_ring_derivative.c: source by source, by its strength, by its leg and by the nodes that it moves with. */
+/* flow_ring_derivative.c: derivatives per source, by the strength, by the leg and by the nodes that move the source. */
 #include "flow/flow_ring_derivative.h"
 
 #include <stddef.h>
 
-// the derivatives at n points from first on in one column; those that the block does not have are NULL
+// derivatives at n points from first on in one column; NULL: not in the block
 struct column {
     double *u, *v, *div, *edge[2];
 };
@@ -15,16 +15,16 @@ static struct column column_of(const struct influence_block *block, int c, int f
                            {block->edge ? block->edge + at : NULL, block->edge ? block->edge + size + at : NULL}};
 }
 
-// a source of fish g as the points of fish f see it
+// a source of fish g at the points of fish f
 struct source {
     struct ring_source ring;
     struct ring_pair pair;
     int is_image;
-    const struct stencil *place;  // moves with these nodes, by this part
+    const struct stencil *place;  // nodes that move the source; follows: fraction of the motion
     double follows;
-    const struct stencil *line;  // d is this times the vector along the body, or to the tail
+    const struct stencil *line;  // leg d = along times the vector along the body, or to the tail
     double along;
-    int has_edge;  // whether it is in the edge force
+    int has_edge;  // whether the source is part of the edge force
 };
 
 static void add_spanwise(const struct column *to, int n, const struct ring_values *values, double factor) {
@@ -34,32 +34,36 @@ static void add_spanwise(const struct column *to, int n, const struct ring_value
     }
 }
 
-// add what a leg causes, or a change of one
+// add the velocity of a leg, or of a change of a leg
 static void add_leg(const struct column *to, int n, const struct ring_values *values, double dx, double dy,
                     int has_edge) {
     for (int i = 0; i < n; i++) {
         to->u[i] -= values->leg[i] * dy;
         to->v[i] += values->leg[i] * dx;
     }
+
     for (int i = 0; i < n && to->div; i++) {
         to->div[i] += values->div_by_dx[i] * dx + values->div_by_dy[i] * dy;
     }
+
     for (int i = 0; i < n && to->edge[0] && has_edge; i++) {
         to->edge[0][i] += values->edge[i] * dx;
         to->edge[1][i] += values->edge[i] * dy;
     }
 }
 
-// add what a displacement of the source in x or y causes
+// add the change of velocity by a displacement of the source in x or y
 static void add_displacement(const struct column *to, int n, const struct ring_values *values,
                              const struct source *source, int in_y, double by) {
     const double *const u = in_y ? values->u_y : values->u_x, *const v = in_y ? values->v_y : values->v_x,
                         *const div = in_y ? values->div_y : values->div_x,
                         *const edge = in_y ? values->edge_y : values->edge_x;
+
     for (int i = 0; i < n; i++) {
         to->u[i] -= by * u[i];
         to->v[i] -= by * v[i];
     }
+
     for (int i = 0; i < n && to->div; i++) to->div[i] -= by * div[i];
     for (int i = 0; i < n && to->edge[0] && source->has_edge; i++) {
         to->edge[0][i] -= by * edge[i] * source->ring.dx;
@@ -69,7 +73,7 @@ static void add_displacement(const struct column *to, int n, const struct ring_v
 
 static void add_places(const struct influence_block *block, const struct fish *other, const struct source *source,
                        int first, int n, const struct ring_values *values) {
-    // an image moves against the source in y, and its leg in x
+    // the image moves opposite to the source in y, and the leg of the image moves opposite in x
     const double sign = source->is_image ? -1 : 1;
     for (int i = 0; source->place && i < source->place->n; i++) {
         const int k = source->place->node[i];
@@ -78,6 +82,7 @@ static void add_places(const struct influence_block *block, const struct fish *o
         add_displacement(&x, n, values, source, 0, by);
         add_displacement(&y, n, values, source, 1, sign * by);
     }
+
     for (int i = 0; source->line && i < source->line->n; i++) {
         const int k = source->line->node[i];
         const double by = source->along * source->line->weight[i];
@@ -87,7 +92,7 @@ static void add_places(const struct influence_block *block, const struct fish *o
     }
 }
 
-// what the sums below are about
+// context of the functions below
 struct pass {
     const struct flow *flow;
     int f, g, with_places;
@@ -109,11 +114,12 @@ static void mirror(const struct flow *flow, struct ring_source *ring) {
     ring->dx = -ring->dx;
 }
 
-// the bound vortices of a fish at its own control points
+// bound vortices of a fish at the own control points
 static void derive_vortices(const struct pass *pass) {
     const struct fish *const fish = &pass->flow->school->fish[pass->g];
     const struct rings *const own = &pass->flow->rings->fish[pass->g].own;
     const int strength = pass->block->n_columns - 1 - fish->n_sheet, end = fish->n_control;
+
     for (int first = 0; first < end; first += RING_CHUNK) {
         const int n = end - first < RING_CHUNK ? end - first : RING_CHUNK;
         for (int j = 0; j < fish->n_sheet; j++) {
@@ -131,12 +137,13 @@ static void derive_vortices(const struct pass *pass) {
     }
 }
 
-// the control points of fish g at a range of the points of fish f: legs alone in the own strip, else all of the ring
+// control points of fish g at a range of the points of fish f: only legs in the own strip, else the whole ring
 static void derive_body(const struct pass *pass, struct range points, const struct ring_pair *pair, int is_image) {
     const struct fish *const fish = &pass->flow->school->fish[pass->g];
     const struct fish_rings *const of = &pass->flow->rings->fish[pass->g];
     const int is_own = pass->f == pass->g && !is_image;
     const int strength = pass->block->n_columns - 1 - fish->n_sheet, end = points.first + points.n;
+
     for (int first = points.first; first < end; first += RING_CHUNK) {
         const int n = end - first < RING_CHUNK ? end - first : RING_CHUNK;
         for (int c = 0; c < fish->n_control; c++) {
@@ -182,13 +189,14 @@ static void derive_nascent(const struct pass *pass, const struct ring_sheet *she
     const int n_released = sheet->n_released, end = points.first + points.n;
     const int is_own = pass->f == pass->g && !is_image;
     const double shed = flow->nascent.circulation[pass->g] + flow->rings->fish[pass->g].newest[0];
+
     for (int first = points.first; first < end; first += RING_CHUNK) {
         const int n = end - first < RING_CHUNK ? end - first : RING_CHUNK;
         for (int k = 0; k < sheet->n_nascent; k++) {
             const struct rings *const rings = &sheet->rings;
             const int i = n_released + k;
             const double xi = ring_sheet_xi(sheet, k), part = ring_sheet_part(sheet, k);
-            // C part, where the circulation of the stretch is q over part
+            // C part; the circulation of the stretch is q/part
             const double along = -(shed - xi * rings->q[i] / part) * part;
             struct source source = {.ring = {.x = rings->x[i],
                                              .y = rings->y[i],
@@ -232,6 +240,7 @@ void flow_ring_derivative(const struct flow *flow, int f, int g, int with_places
         .square =
             (fish->sheet_smoothing * fish->sheet_smoothing + other->sheet_smoothing * other->sheet_smoothing) / 2};
     const struct range control = {0, n_control}, behind = {n_control, n_points - n_control}, all = {0, n_points};
+
     if (f == g) {
         if (!nascent) derive_vortices(&pass);
         if (!nascent) derive_body(&pass, control, &exact, 0);
@@ -241,6 +250,7 @@ void flow_ring_derivative(const struct flow *flow, int f, int g, int with_places
         derive_body(&pass, all, &body, 0);
         derive_nascent(&pass, &of->middles, all, &wake, 0);
     }
+
     if (flow->school->walls.n == 0) return;
     if (!nascent) derive_body(&pass, all, &body, 1);
     derive_nascent(&pass, &of->middles, all, &wake, 1);

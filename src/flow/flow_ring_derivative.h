@@ -5,8 +5,8 @@
 
 #include "flow/flow.h"
 
-/* Add to an empty block what all rings of fish g cause at the points of fish f: by strengths, and with_places by places
- * and lines too, the points of f at rest. Where nascent is not 0, those of the nascent stretch alone. */
+/* Add to an empty block the velocity of all rings of fish g at the points of fish f: by strengths, and with_places also
+ * by positions and lines, with the points of f fixed. nascent != 0: only the nascent stretch. */
 void flow_ring_derivative(const struct flow *flow, int f, int g, int with_places, int nascent,
                           const struct influence_block *block);
 

@@ -13,12 +13,12 @@ static const double two_pi = 6.28318530717958647692;
 
 // ---- pairs of fish
 
-// what all pairs within a fish have, and what a source of fish g and targets elsewhere
-static struct ring_pair own_pair(const struct fish *fish, double square) {
+// smoothing and span of the pairs within a fish, and of the pairs of a source and another target
+static struct ring_pair ring_own_pair(const struct fish *fish, double square) {
     return (struct ring_pair){.span = fish->strip_depth / 4, .factor = 1, .square = square};
 }
 
-static struct ring_pair other_pair(const struct fish *source, double square) {
+static struct ring_pair ring_other_pair(const struct fish *source, double square) {
     return (struct ring_pair){.span = source->strip_depth / 2, .factor = 4, .square = square};
 }
 
@@ -32,10 +32,11 @@ static void induce(const struct ring_pair *pair, const struct rings *rings, cons
 
 // ---- bodies
 
-static struct ring_targets targets(const struct flow *flow, int with_gradient) {
+static struct ring_targets ring_body_targets(const struct flow *flow, int with_gradient) {
     const struct flow_rings *const rings = flow->rings;
     struct ring_targets all = {
         .n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->u, .v = flow->v, .div = rings->div};
+
     if (with_gradient) {
         all.u_x = flow->u_x;
         all.u_y = flow->u_y;
@@ -43,6 +44,7 @@ static struct ring_targets targets(const struct flow *flow, int with_gradient) {
         all.div_x = rings->div_x;
         all.div_y = rings->div_y;
     }
+
     return all;
 }
 
@@ -57,33 +59,35 @@ void flow_rings_zero(const struct flow *flow, int with_gradient) {
     memset(rings->edge_gradient, 0, 4 * size);
 }
 
-static struct range overlap(struct range one, struct range other) {
+static struct range range_overlap(struct range one, struct range other) {
     const int first = one.first > other.first ? one.first : other.first;
     const int end = one.first + one.n < other.first + other.n ? one.first + one.n : other.first + other.n;
     return (struct range){first, end > first ? end - first : 0};
 }
 
-// the own body and wake
+// own body and own wake
 static void induce_own(const struct flow *flow, const struct chunk *chunk, const struct ring_targets *all,
                        const double *half, int with_gradient) {
     const struct fish *const fish = &flow->school->fish[chunk->fish];
     const struct fish_rings *const of = &flow->rings->fish[chunk->fish];
     const struct range points = flow->points[chunk->fish];
-    const struct range control = overlap(chunk->at, (struct range){points.first, fish->n_control});
+    const struct range control = range_overlap(chunk->at, (struct range){points.first, fish->n_control});
     const struct range others =
-        overlap(chunk->at, (struct range){points.first + fish->n_control, points.n - fish->n_control});
+        range_overlap(chunk->at, (struct range){points.first + fish->n_control, points.n - fish->n_control});
     struct ring_targets at = ring_targets_part(all, control);
+
     at.half = half + control.first - points.first;
     if (fish->depth_varies) {
         at.edge = flow->rings->edge + control.first;
         at.edge_gradient = with_gradient ? flow->rings->edge_gradient + control.first : NULL;
         at.edge_stride = flow->n_points;
     }
-    const struct ring_pair exact = own_pair(fish, 0);
+
+    const struct ring_pair exact = ring_own_pair(fish, 0);
     induce(&exact, &of->own, &at);
     induce(&exact, &of->graded.rings, &at);
     if (!fish_feels_own_wake(fish) || others.n == 0) return;
-    const struct ring_pair smooth = own_pair(fish, fish->smoothing * fish->smoothing);
+    const struct ring_pair smooth = ring_own_pair(fish, fish->smoothing * fish->smoothing);
     at = ring_targets_part(all, others);
     at.half = half + others.first - points.first;
     induce(&smooth, &of->middles.rings, &at);
@@ -96,8 +100,8 @@ static void induce_others(const struct flow *flow, int f, const struct ring_targ
         const struct fish *const other = &school->fish[g];
         const struct fish_rings *const of = &flow->rings->fish[g];
         const double sheets = mean_square(school->fish[f].sheet_smoothing, other->sheet_smoothing);
-        const struct ring_pair of_body = other_pair(other, sheets);
-        const struct ring_pair of_wake = other_pair(other, other->smoothing * other->smoothing);
+        const struct ring_pair of_body = ring_other_pair(other, sheets);
+        const struct ring_pair of_wake = ring_other_pair(other, other->smoothing * other->smoothing);
         if (g != f) induce(&of_body, &of->body, at);
         if (g != f) induce(&of_wake, &of->middles.rings, at);
         if (school->walls.n == 0) continue;
@@ -108,7 +112,7 @@ static void induce_others(const struct flow *flow, int f, const struct ring_targ
 
 void flow_rings_at_chunk(const struct flow *flow, const struct chunk *chunk, int with_gradient) {
     const struct fish *const fish = &flow->school->fish[chunk->fish];
-    const struct ring_targets all = targets(flow, with_gradient);
+    const struct ring_targets all = ring_body_targets(flow, with_gradient);
     induce_own(flow, chunk, &all, fish->point_half, with_gradient);
     struct ring_targets at = ring_targets_part(&all, chunk->at);
     at.half = fish->point_half + chunk->at.first - flow->points[chunk->fish].first;
@@ -116,13 +120,14 @@ void flow_rings_at_chunk(const struct flow *flow, const struct chunk *chunk, int
 }
 
 double flow_rings_work(const struct flow *flow) {
-    // one ring costs about six vortices
+    // a ring costs about as much as six vortices
     const double of_vortices = 6;
     double work = 0;
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct fish_rings *const of = &flow->rings->fish[f];
         work += of_vortices * flow->n_points * (of->body.n + of->middles.rings.n);
     }
+
     return work;
 }
 
@@ -136,6 +141,7 @@ void flow_rings_images(struct flow *flow) {
                                      .u = flow->image_u,
                                      .v = flow->image_v,
                                      .div = rings->image_div};
+
     memset(flow->image_u, 0, size);
     memset(flow->image_v, 0, size);
     memset(rings->image_div, 0, size);
@@ -145,8 +151,8 @@ void flow_rings_images(struct flow *flow) {
         for (int g = 0; g < school->n_fish; g++) {
             const struct fish *const other = &school->fish[g];
             const struct ring_pair of_body =
-                other_pair(other, mean_square(school->fish[f].sheet_smoothing, other->sheet_smoothing));
-            const struct ring_pair of_wake = other_pair(other, other->smoothing * other->smoothing);
+                ring_other_pair(other, mean_square(school->fish[f].sheet_smoothing, other->sheet_smoothing));
+            const struct ring_pair of_wake = ring_other_pair(other, other->smoothing * other->smoothing);
             induce(&of_body, &rings->fish[g].body_image, &at);
             induce(&of_wake, &rings->fish[g].middles_image, &at);
         }
@@ -157,11 +163,12 @@ void flow_rings_at(const struct flow *flow, const struct induced *at) {
     const struct school *const school = flow->school;
     const struct ring_targets to = {
         .n = at->n, .x = at->x, .y = at->y, .u = at->u, .v = at->v, .u_x = at->u_x, .u_y = at->u_y, .v_x = at->v_x};
+
     for (int g = 0; g < school->n_fish; g++) {
         const struct fish *const fish = &school->fish[g];
         const struct fish_rings *const of = &flow->rings->fish[g];
-        const struct ring_pair of_body = other_pair(fish, fish->sheet_smoothing * fish->sheet_smoothing);
-        const struct ring_pair of_wake = other_pair(fish, fish->smoothing * fish->smoothing);
+        const struct ring_pair of_body = ring_other_pair(fish, fish->sheet_smoothing * fish->sheet_smoothing);
+        const struct ring_pair of_wake = ring_other_pair(fish, fish->smoothing * fish->smoothing);
         induce(&of_body, &of->body, &to);
         induce(&of_wake, &of->middles.rings, &to);
         if (school->walls.n == 0) continue;
@@ -172,7 +179,7 @@ void flow_rings_at(const struct flow *flow, const struct induced *at) {
 
 // ---- markers
 
-static enum status reserve_at_markers(struct flow *flow, int n) {
+static enum status rings_reserve_at_markers(struct flow *flow, int n) {
     struct flow_rings *const rings = flow->rings;
     if (n <= rings->wake_capacity) return STATUS_OK;
     const int capacity = n + n / 2;
@@ -181,13 +188,14 @@ static enum status reserve_at_markers(struct flow *flow, int n) {
     rings->wake_capacity = 0;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(*all[i]);
-        TRY(array_doubles(all[i], capacity, "the velocities of markers"));
+        TRY(array_doubles(all[i], capacity, "velocities of markers"));
     }
+
     rings->wake_capacity = capacity;
     return STATUS_OK;
 }
 
-static enum status place_markers(struct flow *flow, const struct state *state) {
+static enum status rings_place_markers(struct flow *flow, const struct state *state) {
     const struct school *const school = flow->school;
     flow->n_markers = 0;
     for (int f = 0; f < school->n_fish; f++) {
@@ -199,18 +207,20 @@ static enum status place_markers(struct flow *flow, const struct state *state) {
         flow->n_markers += of->markers.n;
         if (school->walls.n > 0) TRY(ring_mirror(&of->markers, ring_sources_mirror(flow->school), &of->markers_image));
     }
+
     return STATUS_OK;
 }
 
-// the smoothing of markers and the own body, squared; the newborn marker feels the own body from h/(2 pi) behind the
-// tail
-static void taper(const struct flow *flow, const struct state *state, int f, struct range which, double *x, double *y,
-                  double *square) {
+// squares of the smoothing between markers and the own body; at the newborn marker the velocity of the own body is
+// evaluated h/(2 pi) behind the tail
+static void rings_taper(const struct flow *flow, const struct state *state, int f, struct range which, double *x,
+                        double *y, double *square) {
     const struct fish *const fish = &flow->school->fish[f];
     const struct rings *const markers = &flow->rings->fish[f].markers;
     const struct wake *const wake = &state->wake[f];
     const struct direction body = fish_direction(fish, &fish->tail_tangent, state->y);
     const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
+
     for (int i = 0; i < which.n; i++) {
         const int m = which.first + i;
         const double from_tail[2] = {markers->x[m] - tail[0], markers->y[m] - tail[1]};
@@ -227,7 +237,7 @@ static void taper(const struct flow *flow, const struct state *state, int f, str
     }
 }
 
-enum { MARKERS = 64 };  // of one fish that a thread takes at once
+enum { MARKERS = 64 };  // markers of one fish that a thread evaluates at once
 
 static void induce_at_markers(const struct flow *flow, const struct state *state, int f, struct range which) {
     const struct school *const school = flow->school;
@@ -246,20 +256,24 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
                               .leg_u = rings->wake_leg_u + first,
                               .leg_v = rings->wake_leg_v + first,
                               .div = rings->wake_div + first};
+
     for (int i = 0; i < which.n; i++) {
         flow_external(school, flow->t, at.y[i], &at.u[i], &at.v[i]);
         at.leg_u[i] = at.leg_v[i] = at.div[i] = 0;
     }
+
     // own sheet and body
     struct ring_targets near = at;
-    const struct ring_pair smooth = own_pair(fish, fish->smoothing * fish->smoothing), exact = own_pair(fish, 0);
+    const struct ring_pair smooth = ring_own_pair(fish, fish->smoothing * fish->smoothing),
+                           exact = ring_own_pair(fish, 0);
     induce(&smooth, markers, &at);
-    taper(flow, state, f, which, x, y, square);
+    rings_taper(flow, state, f, which, x, y, square);
     near.x = x;
     near.y = y;
     near.square = square;
     induce(&exact, &rings->fish[f].body, &near);
     memcpy(rings->wake_leg_div + first, at.div, (size_t)which.n * sizeof *at.div);
+
     // others; images
     at.leg_u = at.leg_v = NULL;
     struct ring_targets image = at;
@@ -273,8 +287,8 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
         for (int g = 0; g < school->n_fish; g++) {
             const struct fish *const other = &school->fish[g];
             const struct fish_rings *const of = &rings->fish[g];
-            const struct ring_pair of_body = other_pair(other, fish->smoothing * fish->smoothing);
-            const struct ring_pair of_wake = other_pair(other, mean_square(fish->smoothing, other->smoothing));
+            const struct ring_pair of_body = ring_other_pair(other, fish->smoothing * fish->smoothing);
+            const struct ring_pair of_wake = ring_other_pair(other, mean_square(fish->smoothing, other->smoothing));
             if (pass == 0 && g == f) continue;
             induce(&of_body, pass == 0 ? &of->body : &of->body_image, &image);
             induce(&of_wake, pass == 0 ? &of->markers : &of->markers_image, &image);
@@ -285,14 +299,15 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
             at.div[i] += image.div[i];
         }
     }
+
     // [p] = 0 on the wake
     const double *const label = state->wake[f].circulation + which.first;
     for (int i = 0; i < which.n; i++) rings->wake_rate[first + i] = -label[i] * at.div[i];
 }
 
 enum status flow_rings_at_markers(struct flow *flow, const struct state *state) {
-    TRY(place_markers(flow, state));
-    TRY(reserve_at_markers(flow, flow->n_markers));
+    TRY(rings_place_markers(flow, state));
+    TRY(rings_reserve_at_markers(flow, flow->n_markers));
     const struct school *const school = flow->school;
     int n_chunks = 0;
     for (int f = 0; f < school->n_fish; f++) n_chunks += (flow->wake_range[f].n + MARKERS - 1) / MARKERS;
@@ -309,13 +324,15 @@ enum status flow_rings_at_markers(struct flow *flow, const struct state *state) 
         const int first = (chunk - before) * MARKERS, left = flow->wake_range[f].n - first;
         induce_at_markers(flow, state, f, (struct range){first, left < MARKERS ? left : MARKERS});
     }
+
     return STATUS_OK;
 }
 
 // ---- momentum
 
-// add what velocities of legs do to the rings of a fish: sum of q E3 u + div E3 d, and its moment
-static void add_rate(const struct rings *rings, const double *u, const double *v, const double *div, double rate[3]) {
+// add the momentum rate of the rings of a fish in the velocity of legs: sum of q E3 u + div E3 d, and its moment
+static void rings_add_rate(const struct rings *rings, const double *u, const double *v, const double *div,
+                           double rate[3]) {
     for (int i = 0; i < rings->n; i++) {
         const double x = -rings->q[i] * v[i] - div[i] * rings->dy[i], y = rings->q[i] * u[i] + div[i] * rings->dx[i];
         rate[0] += x;
@@ -328,9 +345,10 @@ void flow_rings_leg_rate(const struct flow *flow, int f, double rate[3]) {
     const struct flow_rings *const rings = flow->rings;
     const struct fish *const fish = &flow->school->fish[f];
     const struct fish_rings *const of = &rings->fish[f];
-    const struct ring_pair exact = own_pair(fish, 0);
+    const struct ring_pair exact = ring_own_pair(fish, 0);
     const int wake = flow->wake_range[f].first, n = fish->n_control;
-    // u and v have all parts, of which those of the legs are kept
+
+    // u and v contain all parts; only the parts of the legs are used
     double *const *const sum = rings->legs;
     const struct ring_targets at = {.n = n,
                                     .x = of->body.x,
@@ -347,9 +365,10 @@ void flow_rings_leg_rate(const struct flow *flow, int f, double rate[3]) {
     induce(&exact, &of->body, &at);
     induce(&exact, &of->markers, &at);
     rate[0] = rate[1] = rate[2] = 0;
-    add_rate(&of->body, at.leg_u, at.leg_v, at.div, rate);
-    add_rate(&of->markers, rings->wake_leg_u + wake, rings->wake_leg_v + wake, rings->wake_leg_div + wake, rate);
-    // the force along the side edges is not lost
+    rings_add_rate(&of->body, at.leg_u, at.leg_v, at.div, rate);
+    rings_add_rate(&of->markers, rings->wake_leg_u + wake, rings->wake_leg_v + wake, rings->wake_leg_div + wake, rate);
+
+    // exclude the force along the side edges, which acts on the body
     for (int c = 0; c < n && fish->depth_varies; c++) {
         const double square = of->line[0][c] * of->line[0][c] + of->line[1][c] * of->line[1][c];
         const double along = (of->body.dx[c] * of->line[0][c] + of->body.dy[c] * of->line[1][c]) / square;

@@ -1,34 +1,34 @@
-/* flow_rings.h: sheets of finite depth: what the vortex rings of bodies and wakes cause at bodies, at markers and
- * anywhere. doc/model.md, section 18. Tested by tests/flow/test_flow_rings.c.
+/* flow_rings.h: sheets of finite depth: velocity of the vortex rings of bodies and wakes at bodies, at markers and at
+ * any point. doc/model.md, section 18. Tested by tests/flow/test_flow_rings.c.
  *
  *     own control points        own bound vortices and legs; own wake point by point, tapered      b = w/4
  *     own edge midpoints        own wake, a point for every stretch, unless force: reactive        b = w/4
  *     own markers               own markers; own control points, tapered                           b = w/4
  *     bodies, markers of others control points; a point for every stretch, or markers              b = w/2
- *     images in a wall          of all fish, the own one too                                       b = w/2
+ *     images in a wall          of all fish, including the own                                     b = w/2
  */
 #ifndef FLOW_RINGS_H
 #define FLOW_RINGS_H
 
 #include "flow/flow.h"
 
-/* Add what all rings cause at a chunk of points: velocity, div u, and where with_gradient their gradients. */
+/* Add velocity and div u of all rings at a chunk of points, with_gradient: and the gradients. */
 void flow_rings_at_chunk(const struct flow *flow, const struct chunk *chunk, int with_gradient);
 double flow_rings_work(const struct flow *flow);
 void flow_rings_zero(const struct flow *flow, int with_gradient);
 
-/* Set wake_range, wake_u, wake_v and all at markers for the event of the state, for which the flow has been placed.
- * Fails with STATUS_MEMORY. */
+/* Set wake_range, wake_u, wake_v and all arrays at markers for the event of the state, after flow_place. Fails with
+ * STATUS_MEMORY. */
 enum status flow_rings_at_markers(struct flow *flow, const struct state *state);
 
 /* Set image_u, image_v, image_div at the points of all bodies. */
 void flow_rings_images(struct flow *flow);
 
-/* At any points, with their gradients, as another body would see all rings. */
+/* Velocity, div u and gradients of all rings at any points, as for another body. */
 void flow_rings_at(const struct flow *flow, const struct induced *at);
 
-/* The rate of momentum that the legs of a fish have for one another where their lengths s differ, over density and
- * depth: x, y, about the origin; at the event of the state, after flow_rings_at_markers. */
+/* Rate of momentum from the interaction of the legs of a fish at different lengths s, over density and depth: x, y,
+ * about the origin; at the event of the state, after flow_rings_at_markers. */
 void flow_rings_leg_rate(const struct flow *flow, int f, double rate[3]);
 
 #endif

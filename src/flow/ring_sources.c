@@ -1,4 +1,4 @@
-/* ring_sources.c: bodies, and the points of their wakes. */
+/* ring_sources.c: rings of bodies, and points of wakes. */
 #include "flow/ring_sources.h"
 
 #include <stdlib.h>
@@ -29,6 +29,7 @@ enum status ring_sources_create(struct flow_rings **rings, const struct school *
         memcpy(of->own.half + fish->n_sheet, fish->point_half, (size_t)fish->n_control * sizeof *of->own.half);
         memcpy(of->body.half, fish->point_half, (size_t)fish->n_control * sizeof *of->own.half);
     }
+
     return STATUS_OK;
 }
 
@@ -43,6 +44,7 @@ void ring_sources_free(struct flow_rings *rings, int n_fish) {
         ring_sheet_free(&of->middles);
         for (int i = 0; i < 2; i++) free(of->line[i]);
     }
+
     double *const owned[] = {rings->div,           rings->div_x,      rings->div_y,      rings->image_div,
                              rings->edge,          rings->wake_div,   rings->wake_rate,  rings->wake_image_div,
                              rings->edge_gradient, rings->wake_leg_u, rings->wake_leg_v, rings->wake_leg_div,
@@ -56,7 +58,7 @@ double ring_sources_mirror(const struct school *school) {
     return 2 * school->walls.y[0];
 }
 
-// ---- places
+// ---- positions
 
 enum status ring_sources_place_wakes(struct flow_rings *rings, const struct school *school, const struct state *state,
                                      double tau, int is_new) {
@@ -79,9 +81,9 @@ enum status ring_sources_place_wakes(struct flow_rings *rings, const struct scho
             n_failed++;
         }
     }
-    // a message stays with the thread that wrote it
-    return n_failed == 0 ? STATUS_OK
-                         : status_fail(STATUS_MEMORY, "out of memory: the free sheets of %d fish", n_failed);
+
+    // messages are per thread: write the message on the calling thread
+    return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: free sheets of %d fish", n_failed);
 }
 
 // bound vortices, legs and control points of a body
@@ -113,6 +115,7 @@ enum status ring_sources_place(struct flow_rings *rings, const struct school *sc
     struct fish_rings *const of = &rings->fish[f];
     const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
     const double shed = y[fish->at.circulation];
+
     place_body(of, fish, body, y);
     ring_sheet_place_nascent(&of->graded, fish, school, wake, state->t, tau, tail, shed);
     *nascent = ring_sheet_place_nascent(&of->middles, fish, school, wake, state->t, tau, tail, shed);

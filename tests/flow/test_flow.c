@@ -1,4 +1,4 @@
-/* test_flow.c: which sources every point feels, and the derivatives of what it feels: doc/model.md, sections 6 to 9. */
+/* test_flow.c: sources at every point, and derivatives of the velocity. doc/model.md, sections 6 to 9. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,13 +20,14 @@
     "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 0.5], heading: 165}}\n"
 #define TWO TIME "fluid: {velocity: [0.1, 0.2], shear: 0.3, gust: {amplitude: 0.2, frequency: 1}}\n" TWO_FISH
 
-// velocity at (x, y) from the sources of fish g: free vortices, and the bound sheet with a smoothing (< 0: left out)
+// velocity at (x, y) from the sources of fish g: free vortices, and the bound sheet with a smoothing (< 0: omitted)
 static void add_fish(const struct setup *setup, int g, double x, double y, double smoothing, double *u, double *v) {
     const struct fish *fish = &setup->school->fish[g];
     const struct state *state = setup->state;
     const struct wake *wake = &state->wake[g];
     const double tau = setup->t - state->t;
     double px[16], py[16], strength[16];
+
     wake_at(wake, setup->school, state->t, tau, px, py, strength);
     const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
     double nascent[2];
@@ -40,6 +41,7 @@ static void add_fish(const struct setup *setup, int g, double x, double y, doubl
         *u += strength[i] * *unit.u;
         *v += strength[i] * *unit.v;
     }
+
     for (int j = 0; j < fish->n_sheet && smoothing >= 0; j++) {
         const double q = fish->sheet_weight[j] * state->y[fish->at.gamma + j];
         struct kernel_values unit;
@@ -66,11 +68,11 @@ static void every_point_feels_the_sources_that_the_model_says(void **state) {
             double u, v;
             flow_external(setup.school, setup.t, flow->y[at], &u, &v);
             const double own = p < fish->n_control ? 0 : p == flow_tail(fish) ? fish->sheet_smoothing : -1;
-            // with force: reactive the midpoints leave out the own wake
+            // with force: reactive the own wake is omitted at the midpoints
             const int feels_own = fish->force != FORCE_REACTIVE || own >= 0;
             if (feels_own) add_fish(&setup, f, flow->x[at], flow->y[at], own, &u, &v);
             add_fish(&setup, 1 - f, flow->x[at], flow->y[at], other->sheet_smoothing, &u, &v);
-            // rounding of sums of 40 terms, of at most 100 next to a bound vortex
+            // rounding of sums of 40 terms, each at most 100 next to a bound vortex
             NEAR(flow->u[at], u, 1e-13, 1e-13);
             NEAR(flow->v[at], v, 1e-13, 1e-13);
         }
@@ -83,6 +85,7 @@ static void every_point_feels_the_sources_that_the_model_says(void **state) {
         NEAR(slip[0], flow->u[tail] - setup.state->y[fish->at.vx + fish->n_nodes - 1], 0, 0);
         NEAR(slip[1], flow->v[tail] - setup.state->y[fish->at.vy + fish->n_nodes - 1], 0, 0);
     }
+
     school_clear(&setup);
 }
 
@@ -91,7 +94,8 @@ static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
     struct setup setup;
     school_build(&setup, TWO);
     school_stir(&setup);
-    // at an event: the vortices are where the wake says
+
+    // at an event: the positions of the vortices are stored in the wake
     setup.t = setup.state->t;
     school_flow(&setup, setup.state->y);
     struct flow *const flow = setup.residual->flow;
@@ -111,21 +115,24 @@ static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
             NEAR(v[i], want_v, 1e-13, 0);
         }
     }
+
     school_clear(&setup);
 }
 
 enum { MANY_FISH = 30, MANY_SHEET = 100, MANY_VORTICES = 70 };
 
-// a school whose sheets and wakes are so large that they are summed by the tree where the tolerance is not 0
+// a school with sheets and wakes large enough for the tree if the tolerance is not 0
 static void build_many(struct setup *setup, const char *fluid) {
     char text[4096];
     size_t used = (size_t)snprintf(
         text, sizeof text, TIME "%sdefaults: {fish: {sheet_points: %d, force: reactive}}\nfish:\n", fluid, MANY_SHEET);
+
     for (int f = 0; f < MANY_FISH; f++) {
         used += (size_t)snprintf(text + used, sizeof text - used, "  - {start: {position: [%g, %g]}}\n",
                                  1.4 * (f % 6) + 0.1 * (f / 6), 0.5 * (f / 6));
         assert_true(used < sizeof text);
     }
+
     school_build(setup, text);
     school_stir(setup);
     setup->t = setup->state->t;
@@ -139,7 +146,7 @@ static void build_many(struct setup *setup, const char *fluid) {
     }
 }
 
-// the largest difference of two fields of n velocities each
+// largest difference of two fields of n velocities each
 static double difference(int n, const double *u, const double *v, const double *other_u, const double *other_v) {
     double worst = 0;
     for (int i = 0; i < n; i++) worst = fmax(worst, hypot(u[i] - other_u[i], v[i] - other_v[i]));
@@ -158,11 +165,13 @@ static void compare_every_point(const char *fluid) {
     school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
     memcpy(u, flow->u, n * sizeof *u);
     memcpy(v, flow->v, n * sizeof *v);
-    // the sheets that a point does not feel, or feels with another smoothing, are subtracted from the sum of all
+
+    // sheets that do not act at a point, or act with another smoothing, are subtracted from the sum of all sheets
     setup.school->wake_tolerance = 1e-6;
     assert_true(velocity_sum_by_tree(&flow->sheet, flow->n_points, setup.school->wake_tolerance));
     school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
-    // a tenth of the tolerance times what the sheets would cause if nothing cancelled, some ten lengths per beat
+
+    // a tenth of the tolerance times the velocity of the sheets without cancellation, about ten lengths per beat
     const double error = difference(flow->n_points, u, v, flow->u, flow->v);
     assert_true(error > 0 && error < 1e-6);
     free(u);
@@ -203,7 +212,7 @@ static void by_tree_wake_vortices_feel_every_sheet_once(void **state) {
     compare_wake_vortices("fluid: {walls: [-1.5]}\n");
 }
 
-// unknowns of a school whose bodies have moved by a distance, each point its own way
+// unknowns of a school after a displacement of the bodies, with a different direction for each point
 static void move(const struct setup *setup, double far, double *y) {
     memcpy(y, setup->state->y, (size_t)setup->school->n_unknowns * sizeof *y);
     for (int f = 0; f < setup->school->n_fish; f++) {
@@ -212,8 +221,8 @@ static void move(const struct setup *setup, double far, double *y) {
     }
 }
 
-// Between two events the tree needs no memory, because it does not sort what has moved; without memory and without a
-// plan there is the direct sum.
+// Between two events the tree allocates no memory, because the tree does not sort the moved points again. Without
+// memory and without a plan the flow uses the direct sum.
 static void the_tree_is_planned_at_the_event(void **state) {
     (void)state;
     struct setup setup;
@@ -227,7 +236,7 @@ static void the_tree_is_planned_at_the_event(void **state) {
     school_ok(flow_interpolate(flow, setup.state));
     const double tolerance = setup.school->wake_tolerance;
     for (int k = 0; k < 3; k++) {
-        // every sheet directly; this makes room for the released vortices too
+        // every sheet directly; this call also allocates the released vortices
         move(&setup, far[k], y);
         setup.school->wake_tolerance = 0;
         school_ok(flow_velocity(flow, setup.state, setup.t, y));
@@ -246,7 +255,7 @@ static void the_tree_is_planned_at_the_event(void **state) {
             assert_memory_equal(flow->v, v, n * sizeof *v);
             setup.school->threads = 1;
         }
-        // the same after the bodies were elsewhere
+        // unchanged after an evaluation at other positions
         move(&setup, 1, y);
         school_ok(flow_velocity(flow, setup.state, setup.t, y));
         move(&setup, far[k], y);
@@ -256,6 +265,7 @@ static void the_tree_is_planned_at_the_event(void **state) {
         // see compare_every_point
         assert_true(error > 0 && error < tolerance);
     }
+
     free(u);
     free(y);
     school_clear(&setup);
@@ -281,13 +291,15 @@ static void external_acceleration_is_that_of_a_particle_of_the_fluid(void **stat
     double u[3], v[3], acceleration[2];
     for (int i = 0; i < 3; i++) flow_external(setup.school, t + (i - 1) * h, y, &u[i], &v[i]);
     flow_external_acceleration(setup.school, t, acceleration);
-    // the velocity changes with time, and as the particle moves across the shear; cut off: h^2 (2 pi)^3 0.2/6
+
+    // the velocity changes with time, and with the motion of the particle across the shear; truncation error: h^2 (2
+    // pi)^3 0.2/6
     NEAR(acceleration[0], (u[2] - u[0]) / (2 * h) + 0.3 * v[1], 1e-8, 0);
     NEAR(acceleration[1], (v[2] - v[0]) / (2 * h), 1e-8, 0);
     school_clear(&setup);
 }
 
-// the velocity at all points of fish f, u then v, when unknown i is moved by step
+// velocity at all points of fish f, u then v, with unknown i changed by step
 static void velocity_at(struct setup *setup, int i, double step, double *velocity) {
     struct flow *flow = setup->residual->flow;
     const double here = setup->state->y[i];
@@ -315,7 +327,8 @@ static void compare_derivatives(const char *text) {
             assert_int_equal(block->n_columns, 2 * other->n_nodes + other->n_sheet + 1);
             assert_int_equal(block->n_columns, flow_n_columns(other));
             for (int c = 0; c < block->n_columns; c++) {
-                // fourth order; bound vortices are 0.01 and more from control points: (1e-4/0.01)^4/30 of the largest
+                // fourth order; the distance of bound vortices to control points is at least 0.01: (1e-4/0.01)^4/30 of
+                // the largest
                 const double h = 1e-4;
                 for (int i = 0; i < 4; i++)
                     velocity_at(&setup, flow_column(other, c), h * (i < 2 ? i - 2 : i - 1), velocity[i]);
@@ -332,13 +345,14 @@ static void compare_derivatives(const char *text) {
             }
         }
     }
+
     school_clear(&setup);
 }
 
 static void derivative_by_every_unknown_agrees_with_differences(void **state) {
     (void)state;
     compare_derivatives(TWO);
-    // with free sheets two lengths have a smoothing of the pair, and so have images
+    // free sheets: fish of two lengths have a smoothing of the pair, and so do images
     compare_derivatives("wake: {shedding: sheet}\n" TWO);
     compare_derivatives(TIME "wake: {shedding: sheet}\nfluid: {walls: [-0.5]}\n" TWO_FISH);
 }
@@ -353,15 +367,17 @@ static void derivative_by_every_unknown_agrees_with_differences(void **state) {
     "  - {nodes: 5, sheet_points: 7, force: reactive, start: {position: [0, -0.5]}}\n" \
     "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, -1.1], heading: -165}}\n"
 
-// what causes velocities: fish and wake g are fish and wake f of another setup, seen in the mirror y = 0 or as they are
+// sources: fish and wake g are fish and wake f of another setup, mirrored in y = 0 or unchanged
 static void copy_fish(const struct setup *from, int f, struct setup *to, int g, double sign) {
     const struct fish *const a = &from->school->fish[f], *const b = &to->school->fish[g];
     const double *const y = from->state->y;
     double *const z = to->state->y;
+
     for (int k = 0; k < a->n_nodes; k++) {
         z[b->at.x + k] = y[a->at.x + k];
         z[b->at.y + k] = sign * y[a->at.y + k];
     }
+
     for (int j = 0; j <= a->n_sheet; j++) z[b->at.gamma + j] = sign * y[a->at.gamma + j];
     const struct wake *const wake = &from->state->wake[f];
     struct wake *const copy = &to->state->wake[g];
@@ -377,6 +393,7 @@ static void copy_fish(const struct setup *from, int f, struct setup *to, int g, 
         copy->circulation[i] = sign * wake->circulation[i];
         copy->birth[i] = wake->birth[i];
     }
+
     copy->shed_before = sign * wake->shed_before;
     for (int i = 0; i < 2; i++) {
         const double turn = i == 0 ? 1 : sign;
@@ -384,12 +401,13 @@ static void copy_fish(const struct setup *from, int f, struct setup *to, int g, 
         copy->tail_velocity[i] = turn * wake->tail_velocity[i];
         copy->tail_tangent[i] = turn * wake->tail_tangent[i];
     }
+
     copy->version++;
 }
 
 static void same_velocities(const struct flow *one, const struct flow *other, int f) {
     const int n = one->points[f].n, i = one->points[f].first, k = other->points[f].first;
-    // rounding of sums of a hundred terms, of at most 100 next to a bound vortex
+    // rounding of sums of a hundred terms, each at most 100 next to a bound vortex
     NEAR_ARRAY(n, one->u + i, other->u + k, 1e-12, 1e-12);
     NEAR_ARRAY(n, one->v + i, other->v + k, 1e-12, 1e-12);
 }
@@ -456,6 +474,7 @@ static void the_field_does_not_go_through_walls(void **state) {
         x[i] = 0.05 * i - 1;
         y[i] = i % 2 ? -0.4 : 1.9;
     }
+
     school_ok(flow_field(setup.residual->flow, setup.state, &at));
     double largest = 0;
     for (int i = 0; i < POINTS; i++) {
@@ -463,13 +482,16 @@ static void the_field_does_not_go_through_walls(void **state) {
         NEAR(v_x[i], 0, 1e-11, 0);
         largest = fmax(largest, fabs(u[i] - u[(i + 2) % POINTS]));
     }
+
     assert_true(largest > 0.01);
-    // beyond them there is no fluid
+
+    // no fluid beyond the walls
     for (int i = 0; i < POINTS; i++) y[i] = i % 3 == 0 ? -0.41 : i % 3 == 1 ? 1.91 : 0.2;
     school_ok(flow_field(setup.residual->flow, setup.state, &at));
     for (int i = 0; i < POINTS; i++) {
         assert_int_equal(isnan(u[i]) && isnan(v[i]) && isnan(u_x[i]) && isnan(u_y[i]) && isnan(v_x[i]), i % 3 != 2);
     }
+
     school_clear(&setup);
 }
 
@@ -484,17 +506,20 @@ static void the_field_at_many_points_is_that_at_few(void **state) {
         school_ok(wake_release(&setup.state->wake[0], 2 + school_random(&setup), school_random(&setup),
                                0.01 * school_random(&setup), setup.state->t));
     }
+
     static double x[POINTS], y[POINTS], many[5][POINTS], few[5][POINTS];
     for (int i = 0; i < POINTS; i++) {
         x[i] = 3 * school_random(&setup);
         y[i] = 2 * school_random(&setup);
     }
+
     const struct induced all = {POINTS, x, y, many[0], many[1], many[2], many[3], many[4]};
     school_ok(flow_field(setup.residual->flow, setup.state, &all));
     for (int i = 0; i < POINTS; i += FEW) {
         const struct induced some = {FEW, x + i, y + i, few[0] + i, few[1] + i, few[2] + i, few[3] + i, few[4] + i};
         school_ok(flow_field(setup.residual->flow, setup.state, &some));
     }
+
     for (int k = 0; k < 2; k++) NEAR_ARRAY(POINTS, many[k], few[k], 1e-5, 0);
     for (int k = 2; k < 5; k++) NEAR_ARRAY(POINTS, many[k], few[k], 1e-3, 0);
     school_clear(&setup);
@@ -525,6 +550,7 @@ static void gradient_pass_leaves_the_velocity_as_it_is(void **state) {
     double with[64];
     memcpy(with, flow->u, (size_t)flow->n_points * sizeof *with);
     school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
+
     // the loops differ in the order of a division and a product
     NEAR_ARRAY(flow->n_points, flow->u, with, 1e-13, 1e-13);
     school_clear(&setup);
@@ -545,7 +571,8 @@ static void threads_change_no_bit(void **state) {
         school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
         assert_memory_equal(flow->u, one, (size_t)flow->n_points * sizeof *one);
     }
-    // those that the residual has made room for
+
+    // the ones that the residual has allocated
     setup.school->threads = 1;
     school_clear(&setup);
 }

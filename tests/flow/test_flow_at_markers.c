@@ -1,5 +1,5 @@
-/* test_flow_at_markers.c: which smoothing markers and bodies have for each other, and that bodies and wakes conserve
- * their impulse pair by pair: doc/model.md, section 8. */
+/* test_flow_at_markers.c: smoothing between markers and bodies, and conservation of the impulse of bodies and wakes
+ * pair by pair. doc/model.md, section 8. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define SHEET "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
 
-/* Two lengths, not one after the other; bodies that act from their control points, and near each other. */
+/* Two lengths, not in consecutive order; bodies with control points as sources, close to each other. */
 #define SCHOOL                                                          \
     "defaults: {fish: {force: pressure, nodes: 5, sheet_points: 11}}\n" \
     "fish:\n"                                                           \
@@ -29,8 +29,8 @@ static double random_in(struct setup *setup, double low, double high) {
     return low + (high - low) * (1 + school_random(setup)) / 2;
 }
 
-/* Wakes whose stretches have no length, so that the points that bodies see are markers: two markers at every place, and
- * a newborn one of no strength on the tail. Some of them are near the own tail, behind and beside. */
+/* Wakes with stretches of length 0, so that the sources at bodies are markers: two markers at every position, and a
+ * newborn marker of strength 0 at the tail. Some markers are near the own tail, behind and beside. */
 static void make_wakes(struct setup *setup) {
     for (int f = 0; f < N_FISH; f++) {
         const struct fish *const fish = &setup->school->fish[f];
@@ -64,7 +64,7 @@ static void make_wakes(struct setup *setup) {
     }
 }
 
-/* What the bodies and the markers have: strengths, and velocities. Only body f and wake g act; -1: none. */
+/* Strengths and velocities of bodies and markers. Only body f and wake g are sources; -1: none. */
 struct felt {
     double body_u[N_FISH][10], body_v[N_FISH][10], body_q[N_FISH][10];
     double wake_u[N_FISH][N_MARKERS], wake_v[N_FISH][N_MARKERS], wake_q[N_FISH][N_MARKERS];
@@ -76,6 +76,7 @@ static void feel(struct setup *setup, int body, int wake, struct felt *felt) {
     struct state *const state = setup->state;
     struct flow *const flow = setup->residual->flow;
     double kept[N_FISH][16], labels[N_FISH][N_MARKERS];
+
     for (int f = 0; f < N_FISH; f++) {
         const struct fish *const fish = &school->fish[f];
         memcpy(kept[f], state->y + fish->at.gamma, sizeof(double) * (size_t)(fish->n_sheet + 1));
@@ -85,6 +86,7 @@ static void feel(struct setup *setup, int body, int wake, struct felt *felt) {
         state->wake[f].shed_before = state->y[fish->at.circulation] = f == wake ? labels[f][N_MARKERS - 1] : 0;
         state->wake[f].version++;
     }
+
     school_ok(flow_velocity(flow, state, state->t, state->y));
     for (int f = 0; f < N_FISH; f++) {
         for (int c = 0; c < school->fish[f].n_control; c++) {
@@ -92,6 +94,7 @@ static void feel(struct setup *setup, int body, int wake, struct felt *felt) {
             felt->body_v[f][c] = flow->v[flow->points[f].first + c];
         }
     }
+
     school_ok(flow_at_wake(flow, state));
     for (int f = 0; f < N_FISH; f++) {
         for (int i = 0; i < N_MARKERS; i++) {
@@ -112,7 +115,7 @@ static void feel(struct setup *setup, int body, int wake, struct felt *felt) {
     }
 }
 
-/* A sum of terms, and of their sizes. */
+/* A sum of terms, and the sum of the absolute values. */
 struct sum {
     double value, size;
 };
@@ -139,7 +142,7 @@ static void build(struct setup *setup, const char *fluid) {
 
 static const char *const fluids[] = {"", "fluid: {walls: [-1]}\n", "fluid: {walls: [-1, 2]}\n"};
 
-// beside walls the impulse along them: that across them is the walls' as well
+// with walls only the impulse along the walls is conserved: the walls exert a force across
 static void a_body_and_a_wake_have_opposite_forces_for_each_other(void **state) {
     (void)state;
     for (int w = 0; w < 3; w++) {
@@ -184,7 +187,7 @@ static void two_wakes_have_opposite_forces_for_each_other(void **state) {
                     add(&v, by_f.wake_q[f][i] * by_g.wake_v[f][i]);
                     add(&u, by_g.wake_q[g][i] * by_f.wake_u[g][i]);
                     add(&v, by_g.wake_q[g][i] * by_f.wake_v[g][i]);
-                    // x . u, which the angular impulse has
+                    // x . u, a term of the angular impulse
                     for (int k = 0; k < 2; k++) {
                         const struct felt *const of = k ? &by_g : &by_f, *const by = k ? &by_f : &by_g;
                         const int h = k ? g : f;
@@ -203,7 +206,7 @@ static void two_wakes_have_opposite_forces_for_each_other(void **state) {
     }
 }
 
-// the velocity of unit vortices at (x, y) where the pair has a smoothing
+// velocity of unit vortices at (x, y) with the smoothing of the pair
 static void add_unit(double strength, double x, double y, double from_x, double from_y, double smoothing, double *u,
                      double *v) {
     struct kernel_values unit;
@@ -212,13 +215,14 @@ static void add_unit(double strength, double x, double y, double from_x, double 
     *v += strength * *unit.v;
 }
 
-// what fish g causes at marker i of fish f, written out
+// velocity of fish g at marker i of fish f, written out
 static void add_fish(const struct setup *setup, int f, int i, int g, double *u, double *v) {
     const struct fish *const fish = &setup->school->fish[f], *const other = &setup->school->fish[g];
     const struct state *const state = setup->state;
     const struct wake *const own = &state->wake[f], *const wake = &state->wake[g];
     const double x = own->x[i], y = own->y[i];
     double strength[64];
+
     free_sheet_strengths(wake, setup->school, state->t, state->y[other->at.circulation] - wake->shed_before, strength);
     const double both = sqrt((fish->smoothing * fish->smoothing + other->smoothing * other->smoothing) / 2);
     for (int k = 0; k < wake->n_vortex; k++) add_unit(strength[k], x, y, wake->x[k], wake->y[k], both, u, v);
@@ -235,6 +239,7 @@ static void add_fish(const struct setup *setup, int f, int i, int g, double *u, 
     for (int j = 0; j < other->n_sheet; j++) {
         circulation[j] = other->sheet_weight[j] * state->y[other->at.gamma + j];
     }
+
     const int by_control = other->force == FORCE_PRESSURE, n = by_control ? other->n_control : other->n_sheet;
     for (int c = 0; c < n; c++) {
         const struct stencil *const point = by_control ? &other->control_point[c] : &other->sheet_point[c];
@@ -252,7 +257,7 @@ static void markers_feel_the_sources_that_the_model_says(void **state) {
     setup.t = setup.state->t;
     struct flow *const flow = setup.residual->flow;
     for (int f = 0; f < 4; f++) {
-        // the newest marker is born on the tail; its slip points backwards, of one fish forwards
+        // the newest marker starts at the tail; the slip points backwards, for one fish forwards
         const struct fish *const fish = &setup.school->fish[f];
         struct wake *const wake = &setup.state->wake[f];
         const struct direction body = fish_direction(fish, &fish->tail_tangent, setup.state->y);
@@ -261,6 +266,7 @@ static void markers_feel_the_sources_that_the_model_says(void **state) {
         for (int k = 0; k < 2; k++) wake->slip[k] = (f == 1 ? -1 : 1) * body.t[k] + 0.3 * body.n[k];
         wake->version++;
     }
+
     school_ok(flow_at_wake(flow, setup.state));
     for (int f = 0; f < 4; f++) {
         const struct wake *const wake = &setup.state->wake[f];
@@ -268,11 +274,12 @@ static void markers_feel_the_sources_that_the_model_says(void **state) {
             double u, v;
             flow_external(setup.school, setup.t, wake->y[i], &u, &v);
             for (int g = 0; g < 4; g++) add_fish(&setup, f, i, g, &u, &v);
-            // rounding of sums of 60 terms, of at most 100 next to the tail
+            // rounding of sums of 60 terms, each at most 100 next to the tail
             NEAR(flow->wake_u[flow->wake_range[f].first + i], u, 1e-13, 1e-12);
             NEAR(flow->wake_v[flow->wake_range[f].first + i], v, 1e-13, 1e-12);
         }
     }
+
     school_clear(&setup);
 }
 
@@ -303,6 +310,7 @@ static void bodies_feel_the_sheets_of_others_with_the_mean_of_squares(void **sta
             }
         }
     }
+
     school_clear(&setup);
 }
 
@@ -310,17 +318,19 @@ static void bodies_feel_the_sheets_of_others_with_the_mean_of_squares(void **sta
 
 enum { MANY_FISH = 30, MANY_SHEET = 100, MANY_MARKERS = 70 };
 
-/* A school whose sheets and wakes are so large that they are summed by the tree where the tolerance is not 0; of two
- * lengths, the tree is for the points and markers of one. */
+/* A school with sheets and wakes large enough for the tree if the tolerance is not 0; two lengths: the tree sums the
+ * points and markers of one length. */
 static void build_many(struct setup *setup, const char *fluid, double length) {
     char text[8192];
     size_t used = (size_t)snprintf(text, sizeof text, TIME SHEET "%sdefaults: {fish: {sheet_points: %d}}\nfish:\n",
                                    fluid, MANY_SHEET);
+
     for (int f = 0; f < MANY_FISH; f++) {
         used += (size_t)snprintf(text + used, sizeof text - used, "  - {length: %g, start: {position: [%g, %g]}}\n",
                                  f % 4 == 1 ? length : 1, 1.4 * (f % 6) + 0.1 * (f / 6), 0.5 * (f / 6));
         assert_true(used < sizeof text);
     }
+
     school_build(setup, text);
     school_stir(setup);
     setup->t = setup->state->t;
@@ -339,6 +349,7 @@ static double *feel_many(struct setup *setup) {
     struct flow *const flow = setup->residual->flow;
     const size_t n = (size_t)flow->n_points, m = MANY_FISH * MANY_MARKERS;
     double *const u = malloc(2 * (n + m) * sizeof *u), *const v = u + n + m;
+
     assert_non_null(u);
     school_ok(flow_velocity(flow, setup->state, setup->t, setup->state->y));
     memcpy(u, flow->u, n * sizeof *u);
@@ -374,7 +385,7 @@ static void by_tree_and_cells_it_is_the_direct_sum_to_the_tolerance(void **state
         for (int i = 0; i < n; i++) {
             worst = fmax(worst, hypot(by_tree[i] - direct[i], by_tree[n + i] - direct[n + i]));
         }
-        // a tenth of the tolerance times what all would cause if nothing cancelled, some ten lengths per beat
+        // a tenth of the tolerance times the velocity without cancellation, about ten lengths per beat
         assert_true(worst > 0 && worst < 1e-6);
         setup.school->threads = 3;
         double *const more = feel_many(&setup);

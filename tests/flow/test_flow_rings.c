@@ -1,4 +1,4 @@
-/* test_flow_rings.c: sheets of finite span: what points and markers feel, ring by ring: doc/model.md, section 18. */
+/* test_flow_rings.c: sheets of finite span: velocity at points and markers, ring by ring. doc/model.md, section 18. */
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_at_wake.h"
 #include "flow/flow_field.h"
@@ -15,7 +15,7 @@
 
 static const double two_pi = 6.28318530717958647692;
 
-/* A ring seen from somewhere. */
+/* A ring as a source at a target. */
 struct felt {
     double u, v, div;
 };
@@ -29,7 +29,8 @@ static void add_ring(struct felt *felt, const double at[2], const double from[2]
     felt->div += -3 * span / (two_pi * pow(t, 2.5)) * (-r[0] * d[1] + r[1] * d[0]);
 }
 
-// what a point with the half span b feels of the ends of a stretch with these labels, as one point at its middle
+// velocity at a point with the half span b, induced by the ends of a stretch with these labels, as one point at the
+// middle
 static void add_middle(struct felt *felt, const double at[2], const double newer[2], const double older[2], double gn,
                        double go, const struct fish *fish, double factor, double b2, double leg, double mirror) {
     double from[2], d[2], q = gn - go;
@@ -37,17 +38,19 @@ static void add_middle(struct felt *felt, const double at[2], const double newer
         from[i] = (newer[i] + older[i]) / 2;
         d[i] = -(gn + go) / 2 * (older[i] - newer[i]);
     }
+
     if (mirror < 0) {
         from[1] = mirror - from[1];
         q = -q;
         d[0] = -d[0];
     }
+
     const double w = fish->strip_depth, span = factor * w / 4;
     add_ring(felt, at, from, q, d, span, factor * factor * (b2 + w * w / 16) / 2, leg,
              fish->smoothing * fish->smoothing);
 }
 
-// all stretches of fish g, each by its middle, at a point
+// all stretches of fish g at a point, each as one point at the middle
 static void add_wake(struct felt *felt, const struct setup *setup, int g, const double at[2], double factor, double b2,
                      double mirror) {
     const struct fish *const fish = &setup->school->fish[g];
@@ -57,6 +60,7 @@ static void add_wake(struct felt *felt, const struct setup *setup, int g, const 
     const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
     const int n = wake->n_vortex;
     double older[2], newer[2];
+
     for (int i = 0; i < n; i++) {
         const int is_last = i == n - 1;
         wake_marker(wake, i, interval, tau, older);
@@ -125,17 +129,18 @@ static void points_of_others_feel_bodies_wakes_and_images_with_twice_the_span(vo
                 add_body(&felt, &setup, f, g, at, b * b, wall);
                 add_wake(&felt, &setup, g, at, 2, b * b, wall);
             }
-            // the own wake with its own span, unless the force has it already
+            // own wake with the own span, unless the force already contains the wake
             if (fish->force == FORCE_PRESSURE) add_wake(&felt, &setup, f, at, 1, b * b, 0);
             NEAR(flow->u[p], felt.u, 1e-12, 1e-11);
             NEAR(flow->v[p], felt.v, 1e-12, 1e-11);
             NEAR(flow->rings->div[p], felt.div, 1e-10, 1e-10);
         }
     }
+
     school_clear(&setup);
 }
 
-// the graded points of the newest stretches and the tapered smoothing change little where the wake is far from the body
+// graded points of the newest stretches and tapered smoothing have a small effect for a wake far from the body
 static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_strip(void **state) {
     (void)state;
     struct setup setup;
@@ -168,7 +173,7 @@ static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_str
                                  du * fish_mean(&fish->control_tangent[c].to, y + fish->at.y)};
             add_ring(&felt, at, from, 0, d, w / 4, w * w / 16, 0, 0);
         }
-        // the leg of the nascent stretch reaches from the tail to markers at a distance of 50
+        // the leg of the nascent stretch extends from the tail to markers at a distance of 50
         struct felt nascent = {0};
         const double tail[2] = {y[fish->at.x + 4], y[fish->at.y + 4]};
         double newest[2];
@@ -179,15 +184,16 @@ static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_str
             const double d[2] = {-label * part * (newest[0] - tail[0]), -label * part * (newest[1] - tail[1])};
             add_ring(&nascent, at, from, 0, d, w / 4, w * w / 16, 0, 0);
         }
-        // of the released wake, at 50 lengths, there is a dipole
+        // the released wake at 50 lengths acts as a dipole
         NEAR(flow->u[p], felt.u + nascent.u, 1e-6, 1e-12);
         NEAR(flow->v[p], felt.v + nascent.v, 1e-6, 1e-12);
         NEAR(flow->rings->div[p], felt.div + nascent.div, 1e-6, 1e-11);
     }
+
     school_clear(&setup);
 }
 
-// no fluid goes through the wall, and labels change with the divergence that markers feel
+// no flow through the wall; the labels change with the divergence at markers
 static void markers_are_stretched_and_a_wall_lets_nothing_through(void **state) {
     (void)state;
     struct setup setup;
@@ -205,12 +211,14 @@ static void markers_are_stretched_and_a_wall_lets_nothing_through(void **state) 
             NEAR(flow->rings->wake_rate[n], -wake->circulation[i] * flow->rings->wake_div[n], 0, 1e-15);
         }
     }
+
     enum { N = 9 };
     double x[N], y[N], u[N], v[N], u_x[N], u_y[N], v_x[N];
     for (int i = 0; i < N; i++) {
         x[i] = -1 + 0.4 * i;
         y[i] = -0.9;
     }
+
     const struct induced at = {N, x, y, u, v, u_x, u_y, v_x};
     school_ok(flow_field(flow, setup.state, &at));
     for (int i = 0; i < N; i++) NEAR(v[i], 0, 1e-15, 0);
