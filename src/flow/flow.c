@@ -41,20 +41,24 @@ static enum status flow_find_classes(struct flow *flow) {
     flow->class_of = calloc(n_fish, sizeof *flow->class_of);
     flow->class = calloc(n_fish, sizeof *flow->class);
     if (!flow->class_of || !flow->class) return status_fail(STATUS_MEMORY, "out of memory: classes of fish");
+
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
+
         int c = 0;
         while (flow_has_free_sheets(flow) && c < flow->n_classes &&
                (fabs(flow->class[c].smoothing - fish->smoothing) > 0 ||
                 fabs(flow->class[c].sheet_smoothing - fish->sheet_smoothing) > 0)) {
             c++;
         }
+
         flow->class_of[f] = c;
         if (c < flow->n_classes) continue;
         flow->class[c] = (struct flow_class){.smoothing = fish->smoothing, .sheet_smoothing = fish->sheet_smoothing};
         flow->n_classes++;
     }
 
+    // consecutive points for each class
     for (int c = 0; c < flow->n_classes; c++) {
         struct flow_class *const class = &flow->class[c];
         class->group = calloc(n_fish + (size_t)flow->n_classes + 1, sizeof *class->group);
@@ -69,6 +73,7 @@ static enum status flow_find_classes(struct flow *flow) {
             }
             flow->n_points += flow->points[f].n;
         }
+
         class->points.n = flow->n_points - class->points.first;
     }
 
@@ -139,6 +144,7 @@ enum status flow_create(struct flow **flow, const struct school *school) {
     struct flow *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: a flow");
     new->school = school;
+
     const enum status status = flow_fill(new);
     if (status != STATUS_OK) {
         flow_free(new);
@@ -160,6 +166,7 @@ void flow_free(struct flow *flow) {
     }
 
     for (int c = 0; flow->class && c < flow->n_classes; c++) free(flow->class[c].group);
+
     void *const owned[] = {flow->points,
                            flow->without_own,
                            flow->class,
@@ -191,6 +198,7 @@ void flow_free(struct flow *flow) {
                            flow->image_u,
                            flow->image_v};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+
     vortices_free(&flow->released);
     vortices_free(&flow->convecting);
     vortices_free(&flow->nascent);
@@ -270,6 +278,7 @@ static enum status flow_place_free_sheets(struct flow *flow, const struct state 
         if (is_new && status == STATUS_OK) {
             status = free_sheet_build(&flow->free_sheet[f], &school->fish[f], school, &state->wake[f]);
         }
+
         if (status == STATUS_OK) {
             free_sheet_place(&flow->free_sheet[f], school, &state->wake[f], &flow->middles[f], state->t,
                              flow->t - state->t);
@@ -291,10 +300,12 @@ static enum status flow_set_time(struct flow *flow, const struct state *state, d
     const int is_new = !flow->has_sources || flow->version != version;
 
     if (!is_new && flow->t == t) return STATUS_OK;
+
     flow->has_sources = 0;
     flow->has_released = 0;
     flow->version = version;
     flow->t = t;
+
     if (flow->rings) {
         TRY(ring_sources_place_wakes(flow->rings, school, state, t - state->t, is_new));
     } else if (flow_has_free_sheets(flow)) {
@@ -331,6 +342,7 @@ enum status flow_place(struct flow *flow, const struct state *state, double t, c
         flow_from_nodes(flow, f, y + fish->at.y, flow->y);
         flow_place_sheet(flow, f, y);
         flow_place_nascent(flow, state, f, y);
+
         const int first = flow->points[f].first;
         flow->by_interpolation[f] =
             flow->is_interpolated &&

@@ -61,10 +61,12 @@ enum status flow_interpolate(struct flow *flow, const struct state *state) {
     if (!flow->interpolation) return STATUS_OK;
     TRY(flow_place(flow, state, state->t, state->y));
     flow_sum_exactly(flow);
+
     const int threads = fish_threads(flow->school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct fish *const fish = &flow->school->fish[f];
+
         // with momenta as unknowns, the acceleration is the rate of the velocity
         const double *const acceleration = fish_has_momentum(fish) ? state->yp + fish->at.vx : state->y + fish->at.ax;
         for (int i = 0; i < 2; i++) {
@@ -78,6 +80,7 @@ enum status flow_interpolate(struct flow *flow, const struct state *state) {
     TRY(wake_interpolation_build(flow->interpolation, flow_seen_wakes(flow, state), state->t, &points));
     wake_interpolation_update(flow->interpolation, flow->t);
     TRY(flow_plan_sheets(flow));
+
     flow->is_interpolated = 1;
     flow->interpolated_version = flow->version;
     return STATUS_OK;
@@ -102,6 +105,7 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, struc
                                    .circulation = circulation,
                                    .n_groups = 1,
                                    .group = &(struct vortex_group){{0, flow->sheet.n}, smoothing}};
+
     const struct induced at = vortices_targets(all, which);
     vortices_induce(&sheet, flow->sheet_range[chunk->fish], &at);
 }
@@ -180,6 +184,8 @@ static void induce_images(const struct flow *flow, const struct chunk *chunk, co
 static void flow_evaluate_chunk(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
     const struct school *school = flow->school;
     const struct induced at = vortices_targets(all, chunk->at);
+
+    // external flow
     for (int p = 0; p < at.n; p++) {
         double u, v;
         flow_external(school, flow->t, at.y[p], &u, &v);
@@ -188,6 +194,7 @@ static void flow_evaluate_chunk(const struct flow *flow, const struct chunk *chu
     }
 
     for (int p = 0; at.u_x && p < at.n; p++) at.u_y[p] += school->shear;
+
     if (flow->rings) {
         flow_rings_at_chunk(flow, chunk, at.u_x != NULL);
         return;
@@ -221,6 +228,7 @@ static enum status flow_sum_many(struct flow *flow, int threads, const struct in
         struct flow_class *const class = &flow->class[c];
         const struct induced at = vortices_targets(all, class->points);
         const int by_cells = images_by_cells(&flow->school->walls, &class->sheet, tolerance, &at);
+
         class->sheet_by_tree = velocity_sum_by_tree(&class->sheet, at.n, tolerance);
         class->images_by_many = class->sheet_by_tree || by_cells;
         TRY(flow_sum_sheets(flow, class, threads, all));
@@ -245,6 +253,7 @@ static double flow_work(const struct flow *flow) {
 static void flow_evaluate(struct flow *flow, int with_gradient) {
     const struct induced all = flow_targets(flow, with_gradient);
     const int threads = parallel_threads(flow->school->threads, flow->n_chunks, flow_work(flow), PARALLEL_INTERACTIONS);
+
     vortices_zero(&all);
     if (flow->rings) flow_rings_zero(flow, with_gradient);
     if (!flow->rings && flow_sum_many(flow, threads, &all) != STATUS_OK) {

@@ -41,6 +41,7 @@ static enum status convecting_place_body(struct flow *flow, int f) {
     const size_t size = (size_t)n * sizeof *to->x;
     memcpy(to->x + first, has_control ? flow->x + flow->points[f].first : flow->sheet.x + bound, size);
     memcpy(to->y + first, has_control ? flow->y + flow->points[f].first : flow->sheet.y + bound, size);
+
     const double *const circulation = flow->sheet.circulation + bound;
     for (int c = 0; c < n; c++) {
         to->circulation[first + c] =
@@ -73,6 +74,7 @@ static struct vortices convecting_for_class(const struct flow *flow, const struc
     struct vortices felt = flow->convecting;
     felt.group = class->group + flow->school->n_fish;
     felt.n_groups = flow->n_classes + 1;
+
     for (int c = 0; c < flow->n_classes; c++) {
         const struct flow_class *const other = &flow->class[c];
         felt.group[c] =
@@ -140,6 +142,7 @@ static enum status markers_induce_all(const struct flow *flow, const struct indu
         const struct vortices felt = convecting_for_class(flow, &flow->class[c]);
         const struct induced part = vortices_targets(at, flow->class[c].markers);
         const int by_tree = velocity_sum_by_tree(&felt, part.n, tolerance);
+
         const struct range all = {0, felt.n}, none = {0, 0};
         markers_induce_directly(flow, &felt, by_tree ? none : n_by_tree > 0 ? all : bodies, &part);
         if (by_tree) TRY(velocity_sum_induce(flow->velocity_sum, &felt, tolerance, threads, &part));
@@ -165,6 +168,7 @@ static void induce_near_tail(const struct flow *flow, int f, const struct near_t
 
     kernel_add_velocity_change_at(near->n, near->x, near->y, near->square, flow->body_range[f].n, body->x + first,
                                   body->y + first, body->circulation + first, smoothing * smoothing, u, v);
+
     for (int i = 0; i < near->n; i++) {
         flow->wake_u[near->index[i]] += u[i];
         flow->wake_v[near->index[i]] += v[i];
@@ -182,6 +186,7 @@ static void induce_at_newborn(const struct flow *flow, const struct wake *wake, 
     const double along = wake->slip[0] * tangent[0] + wake->slip[1] * tangent[1];
     const double behind = fmax(0, along) * flow->school->interval / two_pi;
     const double x = tail[0] + behind * tangent[0], y = tail[1] + behind * tangent[1];
+
     double u[2] = {0}, v[2] = {0};
 
     kernel_add_velocity(1, &tail[0], &tail[1], n, body->x + first, body->y + first, body->circulation + first,
@@ -198,15 +203,18 @@ static void markers_taper_own(const struct flow *flow, const struct state *state
     const int at_tail = flow->points[f].first + flow_tail(fish);
     const double tail[2] = {flow->x[at_tail], flow->y[at_tail]};
     const struct direction body = fish_direction(fish, &fish->tail_tangent, state->y);
+
     struct near_tail near = {.n = 0};
     for (int i = wake->n_vortex - 2; i >= 0; i--) {
         const double from_tail[2] = {wake->x[i] - tail[0], wake->y[i] - tail[1]};
         if (free_sheet_is_far(fish, from_tail)) continue;
         const double smoothing = free_sheet_smoothing(fish, from_tail, body.t);
+
         near.index[near.n] = flow->wake_range[f].first + i;
         near.x[near.n] = wake->x[i];
         near.y[near.n] = wake->y[i];
         near.square[near.n++] = smoothing * smoothing;
+
         if (near.n < KERNEL_CHUNK) continue;
         induce_near_tail(flow, f, &near);
         near.n = 0;

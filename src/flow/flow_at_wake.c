@@ -32,6 +32,7 @@ static enum status reserve_at_wake(struct flow *flow, int n) {
     const int capacity = n + n / 2;
     double **const all[] = {&flow->wake_u, &flow->wake_v, &flow->wake_image_u, &flow->wake_image_v};
     const int has_images = flow->school->walls.n > 0 && flow_has_free_sheets(flow);
+
     flow->wake_capacity = 0;
     for (int i = 0; i < (has_images ? 4 : 2); i++) {
         free(*all[i]);
@@ -78,6 +79,7 @@ static enum status flow_at_vortices(struct flow *flow) {
 
 enum status flow_at_wake(struct flow *flow, const struct state *state) {
     TRY(flow_place(flow, state, state->t, state->y));
+
     if (flow->rings) {
         int n = 0;
         for (int f = 0; f < flow->school->n_fish; f++) n += state->wake[f].n_vortex;

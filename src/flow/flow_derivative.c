@@ -108,6 +108,7 @@ static void derive_nascent_source(const struct target *at, struct range points, 
         struct kernel_values unit;
         kernel_unit(n, flow->x + here + first, flow->y + here + first, source->x, source->y, source->smoothing, &unit);
         add_strength(at->block, at->block->n_columns - 1, first, n, &unit, source->part);
+
         if (at->with_places) {
             const double factor = -source->part * source->follows * flow->nascent.circulation[at->g];
             add_motion(at->block, other, &tail, 1, first, n, &unit, &factor, 1);
@@ -176,6 +177,7 @@ static void derive_sheet(const struct target *at, struct range points, double sm
                 add_strength(at->block, strength + j + i, first, n, &unit[i], other->sheet_weight[j + i]);
                 factor[i] = -flow->sheet.circulation[source];
             }
+
             if (at->with_places)
                 add_motion(at->block, other, &other->sheet_point[j], n_together, first, n, unit, factor, 1);
         }
@@ -202,8 +204,10 @@ static void derive_images_of(const struct target *at, const struct mirrored_sour
         struct images_values unit;
         images_unit(&flow->school->walls, n, flow->x + here + first, flow->y + here + first, source->x, source->y,
                     source->smoothing, &unit);
+
         add_strength(at->block, source->column, first, n, &unit.shifted, source->weight);
         add_strength(at->block, source->column, first, n, &unit.mirrored, source->weight);
+
         if (!at->with_places) continue;
         const double factor = -source->follows * source->circulation;
         add_motion(at->block, other, source->point, 1, first, n, &unit.shifted, &factor, 1);

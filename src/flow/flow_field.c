@@ -44,6 +44,7 @@ enum status flow_field(struct flow *flow, const struct state *state, const struc
             }
             flow_rings_at(flow, &at);
         }
+
         field_mask_solid(flow, all);
         return STATUS_OK;
     }

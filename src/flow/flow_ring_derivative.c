@@ -128,6 +128,7 @@ static void derive_vortices(const struct pass *pass) {
                 .pair = {.span = fish->strip_depth / 4, .factor = 1},
                 .place = &fish->sheet_point[j],
                 .follows = 1};
+
             struct ring_values values;
             unit_of(pass, &source, first, n, &values);
             const struct column to = column_of(pass->block, strength + j, first);
@@ -151,6 +152,7 @@ static void derive_body(const struct pass *pass, struct range points, const stru
             const double *const around = fish->integrals->strength + (long)c * fish->n_sheet;
             double along = 0;
             for (int j = 0; j < fish->n_sheet; j++) along += before[j] * of->own.q[j];
+
             struct source source = {.ring = {.x = of->body.x[c],
                                              .y = of->body.y[c],
                                              .q = is_own ? 0 : of->body.q[c],
@@ -164,9 +166,12 @@ static void derive_body(const struct pass *pass, struct range points, const stru
                                     .line = &fish->control_tangent[c].to,
                                     .along = along * fish->control_interval[c],
                                     .has_edge = is_own};
+
             if (is_image) mirror(pass->flow, &source.ring);
             struct ring_values values;
             unit_of(pass, &source, first, n, &values);
+
+            // by the strengths of the bound vortices
             const double sign = is_image ? -1 : 1;
             for (int j = 0; j < fish->n_sheet; j++) {
                 const struct column to = column_of(pass->block, strength + j, first);
@@ -198,6 +203,7 @@ static void derive_nascent(const struct pass *pass, const struct ring_sheet *she
             const double xi = ring_sheet_xi(sheet, k), part = ring_sheet_part(sheet, k);
             // C part; the circulation of the stretch is q/part
             const double along = -(shed - xi * rings->q[i] / part) * part;
+
             struct source source = {.ring = {.x = rings->x[i],
                                              .y = rings->y[i],
                                              .q = rings->q[i],

@@ -74,6 +74,8 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
     const struct range control = range_overlap(chunk->at, (struct range){points.first, fish->n_control});
     const struct range others =
         range_overlap(chunk->at, (struct range){points.first + fish->n_control, points.n - fish->n_control});
+
+    // control points: all sources of the own body and the graded wake, with legs
     struct ring_targets at = ring_targets_part(all, control);
 
     at.half = half + control.first - points.first;
@@ -86,6 +88,8 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
     const struct ring_pair exact = ring_own_pair(fish, 0);
     induce(&exact, &of->own, &at);
     induce(&exact, &of->graded.rings, &at);
+
+    // edge midpoints and tail: middles of the wake
     if (!fish_feels_own_wake(fish) || others.n == 0) return;
     const struct ring_pair smooth = ring_own_pair(fish, fish->smoothing * fish->smoothing);
     at = ring_targets_part(all, others);
@@ -102,8 +106,10 @@ static void induce_others(const struct flow *flow, int f, const struct ring_targ
         const double sheets = mean_square(school->fish[f].sheet_smoothing, other->sheet_smoothing);
         const struct ring_pair of_body = ring_other_pair(other, sheets);
         const struct ring_pair of_wake = ring_other_pair(other, other->smoothing * other->smoothing);
+
         if (g != f) induce(&of_body, &of->body, at);
         if (g != f) induce(&of_wake, &of->middles.rings, at);
+
         if (school->walls.n == 0) continue;
         induce(&of_body, &of->body_image, at);
         induce(&of_wake, &of->middles_image, at);
@@ -114,6 +120,7 @@ void flow_rings_at_chunk(const struct flow *flow, const struct chunk *chunk, int
     const struct fish *const fish = &flow->school->fish[chunk->fish];
     const struct ring_targets all = ring_body_targets(flow, with_gradient);
     induce_own(flow, chunk, &all, fish->point_half, with_gradient);
+
     struct ring_targets at = ring_targets_part(&all, chunk->at);
     at.half = fish->point_half + chunk->at.first - flow->points[chunk->fish].first;
     induce_others(flow, chunk->fish, &at);
@@ -145,6 +152,7 @@ void flow_rings_images(struct flow *flow) {
     memset(flow->image_u, 0, size);
     memset(flow->image_v, 0, size);
     memset(rings->image_div, 0, size);
+
     for (int f = 0; f < school->n_fish; f++) {
         struct ring_targets at = ring_targets_part(&all, flow->points[f]);
         at.half = school->fish[f].point_half;
@@ -198,6 +206,7 @@ static enum status rings_reserve_at_markers(struct flow *flow, int n) {
 static enum status rings_place_markers(struct flow *flow, const struct state *state) {
     const struct school *const school = flow->school;
     flow->n_markers = 0;
+
     for (int f = 0; f < school->n_fish; f++) {
         struct fish_rings *const of = &flow->rings->fish[f];
         of->markers.n = 0;
@@ -225,9 +234,12 @@ static void rings_taper(const struct flow *flow, const struct state *state, int 
         const int m = which.first + i;
         const double from_tail[2] = {markers->x[m] - tail[0], markers->y[m] - tail[1]};
         const double smoothing = free_sheet_smoothing(fish, from_tail, body.t);
+
         x[i] = markers->x[m];
         y[i] = markers->y[m];
         square[i] = smoothing * smoothing;
+
+        // newborn marker
         if (m < markers->n - 1 || fish->taper <= 0) continue;
         const double along = wake->slip[0] * body.t[0] + wake->slip[1] * body.t[1];
         const double behind = fmax(0, along) * flow->school->interval / two_pi;
@@ -284,6 +296,7 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
             image.div = rings->wake_image_div + first;
             for (int i = 0; i < which.n; i++) image.u[i] = image.v[i] = image.div[i] = 0;
         }
+
         for (int g = 0; g < school->n_fish; g++) {
             const struct fish *const other = &school->fish[g];
             const struct fish_rings *const of = &rings->fish[g];
@@ -293,6 +306,7 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
             induce(&of_body, pass == 0 ? &of->body : &of->body_image, &image);
             induce(&of_wake, pass == 0 ? &of->markers : &of->markers_image, &image);
         }
+
         for (int i = 0; i < which.n && pass == 1; i++) {
             at.u[i] += image.u[i];
             at.v[i] += image.v[i];
@@ -321,6 +335,7 @@ enum status flow_rings_at_markers(struct flow *flow, const struct state *state) 
             f++;
             n = (flow->wake_range[f].n + MARKERS - 1) / MARKERS;
         }
+
         const int first = (chunk - before) * MARKERS, left = flow->wake_range[f].n - first;
         induce_at_markers(flow, state, f, (struct range){first, left < MARKERS ? left : MARKERS});
     }
@@ -361,9 +376,11 @@ void flow_rings_leg_rate(const struct flow *flow, int f, double rate[3]) {
                                     .div = sum[4],
                                     .edge = fish->depth_varies ? sum[5] : NULL,
                                     .edge_stride = (int)(sum[6] - sum[5])};
+
     for (int i = 0; i < N_LEG_SUMS; i++) memset(sum[i], 0, (size_t)n * sizeof(double));
     induce(&exact, &of->body, &at);
     induce(&exact, &of->markers, &at);
+
     rate[0] = rate[1] = rate[2] = 0;
     rings_add_rate(&of->body, at.leg_u, at.leg_v, at.div, rate);
     rings_add_rate(&of->markers, rings->wake_leg_u + wake, rings->wake_leg_v + wake, rings->wake_leg_div + wake, rate);

@@ -46,6 +46,8 @@ double bound_sheet_end_correction(const struct fish *fish, int c, int j) {
 void bound_sheet_residual(const struct fish *fish, double removed, const double *u, const double *v, const double *y,
                           double *residual) {
     double *const row = residual + fish->at.gamma;
+
+    // impermeability
     for (int c = 0; c < fish->n_control; c++) {
         const struct direction body = fish_direction(fish, &fish->control_tangent[c], y);
         const double slip[2] = {u[c] - fish_mean(&fish->control_point[c], y + fish->at.vx),
@@ -56,6 +58,7 @@ void bound_sheet_residual(const struct fish *fish, double removed, const double 
         }
     }
 
+    // Kelvin's theorem
     row[fish->n_control] = bound_sheet_circulation(fish, y) + y[fish->at.circulation] - removed;
 }
 
@@ -66,13 +69,17 @@ void bound_sheet_jacobian(const struct fish *fish, const double *u, const double
         const struct stencil *point = &fish->control_point[c];
         const int row = fish->at.gamma + c;
         const double slip[2] = {u[c] - fish_mean(point, y + fish->at.vx), v[c] - fish_mean(point, y + fish->at.vy)};
+
+        // by the velocities of the nodes, and by the strengths next to the tail
         for (int i = 0; i < point->n; i++) {
             sparse_add(jacobian, row, fish->at.vx + point->node[i], -point->weight[i] * body.n[0]);
             sparse_add(jacobian, row, fish->at.vy + point->node[i], -point->weight[i] * body.n[1]);
         }
+
         for (int j = fish->n_sheet - 2; j < fish->n_sheet; j++) {
             sparse_add(jacobian, row, fish->at.gamma + j, bound_sheet_end_correction(fish, c, j));
         }
+
         // the normal turns with the tangent e: dn = -t (n.de)/|e|
         const double turn = -(slip[0] * body.t[0] + slip[1] * body.t[1]) / body.length;
         const double by_vector[2] = {turn * body.n[0], turn * body.n[1]};
@@ -95,6 +102,7 @@ void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_b
             normal_x[c] = body.n[0];
             normal_y[c] = body.n[1];
         }
+
         for (int i = 0; i < block->n_columns; i++) {
             const double *const u = block->u + (long)i * block->n_points + first;
             const double *const v = block->v + (long)i * block->n_points + first;
@@ -143,10 +151,12 @@ void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law la
 
     sparse_add(jacobian, row, fish->at.circulation, cj);
     if (law == BOUND_SHEET_FROZEN) return;
+
     const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
     double slip[2];
     const double along = tail_slip_along(fish, &body, u, v, y, slip);
     const double strength = chi * y[fish->at.gamma + last];
+
     sparse_add(jacobian, row, fish->at.gamma + last, -chi * along);
     sparse_add(jacobian, row, fish->at.vx + tail, strength * body.t[0]);
     sparse_add(jacobian, row, fish->at.vy + tail, strength * body.t[1]);

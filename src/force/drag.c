@@ -26,6 +26,8 @@ static struct boundary_layer boundary_layer(const struct fish *fish, int k, doub
     const double by_square = 2 * turbulent * laminar / square;
     const double factor = fish->form * (1 + (fish->waving - 1) * laminar);
     const double factor_slope = -fish->form * (fish->waving - 1) * by_square;
+
+    // laminar and turbulent friction, blended
     const double blasius = fish->drag_tangential[k] * sqrt(sqrt(square));
     const double power_law = fish->drag_turbulent[k] * pow(square, 0.4);
     const double sum = laminar * blasius + turbulent * power_law;
@@ -108,6 +110,7 @@ static void drag_centre_of_mass(const struct fish *fish, const double *y, double
 double drag_moment(const struct fish *fish, const double *u, const double *v, const double *y) {
     double com[2], moment = 0;
     drag_centre_of_mass(fish, y, com);
+
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge s = edge_at(fish, k, y);
         double force[2];

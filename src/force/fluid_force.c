@@ -34,6 +34,7 @@ void fluid_force_residual(const struct fish *fish, const struct flow_at_body *fl
             residual[fish->at.ax + k + end] -= on.drag[0] / 2 + on.reactive[end][0];
             residual[fish->at.ay + k + end] -= on.drag[1] / 2 + on.reactive[end][1];
         }
+
         if (k < last) continue;
         residual[fish->at.ax + k + 1] -= on.tail[0];
         residual[fish->at.ay + k + 1] -= on.tail[1];
@@ -59,6 +60,7 @@ struct fluid_forces fluid_force_of_edge(const struct fish *fish, const struct fl
             force[i] = on.reactive[end][i] + (end == 1 ? on.tail[i] : 0);
             forces.reactive[i] += force[i];
         }
+
         forces.reactive_moment += moment_about(node, about, force);
     }
 
@@ -75,6 +77,7 @@ struct fluid_forces fluid_force_sum(const struct fish *fish, const struct flow_a
             sum.friction[i] += of_edge.friction[i];
             sum.reactive[i] += of_edge.reactive[i];
         }
+
         sum.resistive_moment += of_edge.resistive_moment;
         sum.friction_moment += of_edge.friction_moment;
         sum.reactive_moment += of_edge.reactive_moment;
@@ -90,6 +93,7 @@ static void slope_of_edge(const struct fish *fish, const struct flow_at_body *fl
     flow_relative_velocity(fish, k, edge->velocity, flow->u, flow->v, w);
     drag_slope(fish, k, edge, w, by_velocity, by_turn);
     reactive_slope(fish, k, edge, w, flow->acceleration, slope);
+
     for (int end = 0; end < 2; end++) {
         for (int i = 0; i < 2; i++) {
             slope->by_turn[end][i] += by_turn[i] / 2;
@@ -104,6 +108,8 @@ void fluid_force_jacobian(const struct fish *fish, const struct flow_at_body *fl
         const struct edge edge = edge_at(fish, k, y);
         struct reactive_slope slope;
         slope_of_edge(fish, flow, k, &edge, &slope);
+
+        // rows: components of both nodes; columns: components of both nodes
         for (int row = 0; row < 4; row++) {
             const int end = row / 2, i = row % 2, equation = edge_acceleration(fish, i, k + end);
             const double mass = fish->mass[k + end];
@@ -130,6 +136,7 @@ void fluid_force_flow_jacobian(const struct fish *fish, const struct flow_at_bod
         const struct edge edge = edge_at(fish, k, y);
         struct reactive_slope slope;
         slope_of_edge(fish, flow, k, &edge, &slope);
+
         const double per_mass[2] = {1 / fish->mass[k], 1 / fish->mass[k + 1]};
         const double *const du = block->u + flow_midpoint(fish, k), *const dv = block->v + flow_midpoint(fish, k);
         for (long c = 0; c < block->n_columns; c++) {

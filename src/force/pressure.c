@@ -15,6 +15,7 @@ enum status pressure_create(struct pressure **pressure, const struct fish *fish)
     *pressure = NULL;
     struct pressure *const new = calloc(1, sizeof *new);
     if (!new) goto no_memory;
+
     const size_t n = (size_t)fish->n_nodes;
     new->fish = fish;
     new->circulation = calloc((size_t)fish->n_sheet, sizeof *new->circulation);
@@ -87,11 +88,15 @@ static void pressure_convect(struct pressure *p, const struct flow_at_body *flow
     for (int c = 0; c < fish->n_control; c++) {
         struct pressure_point *const point = &p->point[c];
         const struct stencil *const at = &fish->control_point[c];
+
+        // slip, and circulation of the interval
         point->body = fish_direction(fish, &fish->control_tangent[c], y);
         point->slip[0] = flow->u[c] - fish_mean(at, y + fish->at.vx);
         point->slip[1] = flow->v[c] - fish_mean(at, y + fish->at.vy);
         point->circulation = sheet_integrals_around(fish->integrals, c, p->circulation);
         point->strength = fish->control_density[c] * point->circulation;
+
+        // force -rho w gamma tau n, interpolated to the nodes
         const double size = -point->strength * slip_along(point);
         for (int k = 0; k < n; k++) {
             p->force[k] += at->weight[k] * size * point->body.n[0];
@@ -117,8 +122,10 @@ static void pressure_span(struct pressure *p, const struct flow_at_body *flow) {
         const double *const weight = fish->control_point[c].weight;
         const double length = point->body.length * fish->control_interval[c];
         const double widening = fish->control_widening[c] * fish->control_interval[c];
+
         point->before = fish->control_density[c] * circulation_before(fish, c, p->circulation);
         point->divergence = flow->div[c];
+
         for (int i = 0; i < 2; i++) {
             point->edge[i] = widening * flow->edge[i * flow->edge_stride + c];
             const double force = point->before * (point->edge[i] - point->divergence * length * point->body.n[i]);
@@ -151,6 +158,7 @@ static void pressure_suck(struct pressure *p, const double *y) {
     p->nose = fish_direction(fish, &fish->nose_tangent, y);
     p->by_strength = fish->suction * law.by_full * 2 * strength * fish->nose_factor;
     p->by_slip = fish->suction * law.by_bound * 2 * square * tau;
+
     for (int i = 0; i < 2; i++) {
         p->suction[i] = -fish->suction * law.value * p->nose.t[i];
         p->separation[i] = -fish->full_suction * full * p->nose.t[i] - p->suction[i];
@@ -221,6 +229,8 @@ void pressure_momentum_jacobian(const struct pressure *p, int at_start, const do
             const double sign = (i == 0 ? 1 : -1) / fish->mass[k];  // -E3 per mass
             sparse_add(jacobian, row, fish->at.px + node, 1);
             sparse_add(jacobian, row, fish->at.vx + node, -1);
+
+            // by the positions and strengths
             for (int m = 0; m < n; m++) {
                 sparse_add(jacobian, row, fish->at.x + other + m, sign * p->matrix[k * n + m]);
             }
@@ -286,6 +296,7 @@ static void convection_by_places(const struct pressure *p, struct coupling_block
         for (int i = 0; i < 2; i++) {
             by_turn[i] = point->strength / body->length * (across * body->n[i] - tau * body->t[i]);
         }
+
         for (int m = 0; m < 2 * fish->n_nodes; m++) {
             const double turn = body->n[m / fish->n_nodes] * slope[m % fish->n_nodes];
             spread_force(p, c, by_turn[0] * turn, by_turn[1] * turn, rows->value + (long)m * rows->n_rows);
@@ -333,6 +344,8 @@ void pressure_own_jacobian(const struct pressure *p, const double *y, struct cou
     convection_by_places(p, rows);
     span_by_places(p, rows);
     suction_jacobian(p, rows);
+
+    // by the strengths: convection and spanwise flow, then rotation of the momentum
     for (int j = 0; j < fish->n_sheet; j++) {
         double *const column = rows->value + (long)(2 * n + j) * rows->n_rows;
         for (int c = 0; c < fish->n_control; c++) {
@@ -347,6 +360,7 @@ void pressure_own_jacobian(const struct pressure *p, const double *y, struct cou
             spread_force(p, c, across * point->body.n[0] - before * point->edge[0],
                          across * point->body.n[1] - before * point->edge[1], column);
         }
+
         for (int k = 0; k < n; k++) {
             column[k] += momentum_by_strength(fish, k, j, y + fish->at.vy) / fish->mass[k];
             column[n + k] -= momentum_by_strength(fish, k, j, y + fish->at.vx) / fish->mass[k];
@@ -370,6 +384,7 @@ static void span_by_flow(const struct pressure *p, const struct influence_block 
             force[0] -= widening * edge[c];
             force[1] -= widening * edge[other + c];
         }
+
         spread_force(p, c, force[0], force[1], column);
     }
 }
@@ -385,7 +400,9 @@ void pressure_flow_jacobian(const struct pressure *p, const struct influence_blo
             const double size = p->point[c].strength * (body->t[0] * u[c] + body->t[1] * v[c]);
             spread_force(p, c, size * body->n[0], size * body->n[1], rows->value + m * rows->n_rows);
         }
+
         if (block->div) span_by_flow(p, block, m, rows->value + m * rows->n_rows);
+
         // suction: tau
         const double by_slip = p->by_slip * (first->t[0] * u[0] + first->t[1] * v[0]) / fish->mass[0];
         for (int i = 0; i < 2; i++) rows->value[m * rows->n_rows + i * fish->n_nodes] += by_slip * p->nose.t[i];
@@ -421,6 +438,7 @@ double pressure_jump(const struct pressure *p, int c, const double *y, const dou
     // length of the interval around the control point, which contains the circulation of the point
     const double length = point->body.length * fish->control_interval[c];
     double rate = fish->integrals->kink_circulation[c] * tail_kink(fish, yp);
+
     for (int j = 0; j < fish->n_sheet; j++) {
         rate += circulation[j] * fish->sheet_weight[j] * yp[fish->at.gamma + j];
     }
@@ -439,6 +457,7 @@ void pressure_of_edge(const struct pressure *p, int k, const double *y, const do
     for (int c = 0; c < fish->n_control; c++) {
         const double u = fish->n_edges * (1 - cos(pi * (c + 0.5) / fish->n_control)) / 2;
         if ((int)u != k) continue;
+
         const struct direction *const body = &p->point[c].body;
         const double length = body->length * fish->control_interval[c];
         const double depth = fish->strip_depth > 0 ? strip_depth_at(fish, c) : fish->depth[k];
@@ -462,10 +481,12 @@ struct pressure_forces pressure_sum(const struct pressure *p, const double about
         const double velocity[2] = {y[fish->at.vx + k], y[fish->at.vy + k]};
         const double momentum[2] = {p->momentum[k], p->momentum[n + k]};
         const double force[2] = {p->force[k] - p->momentum_rate[k], p->force[n + k] - p->momentum_rate[n + k]};
+
         for (int i = 0; i < 2; i++) {
             sum.pressure[i] += force[i];
             sum.momentum[i] += momentum[i];
         }
+
         sum.pressure_moment += moment_about(arm, force);
         sum.momentum_moment += moment_about(arm, momentum);
         sum.pressure_power += edge_dot(force, velocity);

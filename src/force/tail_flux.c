@@ -30,12 +30,14 @@ static struct tail tail_at(const struct fish *fish, const struct flow_at_body *f
     // extrapolate the direction: the weights sum to 1, so the turn depends only on the angles of the last two joints
     const double turn = (angle_weight[0] - 1) * angle_between(&tail.edge[1], &tail.edge[0]) -
                         angle_weight[2] * angle_between(&tail.edge[2], &tail.edge[1]);
+
     const double c = cos(turn), s = sin(turn);
     for (int i = 0; i < 2; i++) {
         tail.t[i] = c * tail.edge[0].t[i] + s * tail.edge[0].n[i];
         tail.n[i] = c * tail.edge[0].n[i] - s * tail.edge[0].t[i];
     }
 
+    // extrapolate the velocity of the fluid
     const double *const u[2] = {flow->u, flow->v};
     for (int i = 0; i < 2; i++) {
         tail.w[i] = y[edge_velocity(fish, i, last + 1)];
@@ -62,6 +64,7 @@ static void tail_force(const struct fish *fish, const struct tail *tail, double 
 static void tail_slope(const struct fish *fish, const struct tail *tail, double by_velocity[2][2], double by_turn[2]) {
     const double *const t = tail->t, *const n = tail->n, mass = fish->tail_added_mass;
     const double wt = tail->wt, wn = tail->wn, leaving = fmin(wt, 0), leaves = wt < 0;
+
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) {
             by_velocity[i][j] = mass * (leaves * wn * n[i] * t[j] + (leaving * n[i] - wn * t[i]) * n[j]);
@@ -84,6 +87,7 @@ void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow
     const int node = fish->n_nodes - 1;
     double by_velocity[2][2], by_turn[2];
     tail_slope(fish, &tail, by_velocity, by_turn);
+
     for (int i = 0; i < 2; i++) {
         const int row = edge_acceleration(fish, i, node);
         for (int j = 0; j < 2; j++) {
@@ -107,6 +111,7 @@ void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body 
     const int node = fish->n_nodes - 1, last = fish->n_edges - 1;
     double by_velocity[2][2], by_turn[2];
     tail_slope(fish, &tail, by_velocity, by_turn);
+
     for (int k = 0; k < N_MIDPOINTS; k++) {
         const double *const du = block->u + flow_midpoint(fish, last - k);
         const double *const dv = block->v + flow_midpoint(fish, last - k);

@@ -32,6 +32,7 @@ static enum status free_sheet_reserve(struct free_sheet *sheet, int n) {
     free_sheet_free(sheet);
     double **const all[] = {&sheet->xi, &sheet->part, &sheet->smoothing[0], &sheet->smoothing[1],
                             &sheet->x,  &sheet->y,    &sheet->circulation,  &sheet->square};
+
     sheet->stretch = calloc((size_t)capacity, sizeof *sheet->stretch);
     if (!sheet->stretch) return status_fail(STATUS_MEMORY, "out of memory: %d points of a free sheet", n);
     TRY(array_many_doubles(all, sizeof all / sizeof *all, capacity, "the points of a free sheet"));
@@ -75,10 +76,13 @@ double free_sheet_smoothing(const struct fish *fish, const double from_tail[2], 
     if (fish->taper <= 0) return fish->smoothing;
     const double square = from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1];
     if (square <= 0) return 0;
+
+    // taper length: behind the tail, or beside the body
     const double along = from_tail[0] * tangent[0] + from_tail[1] * tangent[1];
     const double behind = along >= 0 ? 1 : ramp_step(1 + 2 * along / sqrt(square));
     const double length = fish->taper * behind + fish->taper_beside * (1 - behind);
     if (length <= 0) return fish->smoothing;
+
     const double ratio = square / (length * length) * (square / (length * length));
 
     // without cancellation exp is as accurate as expm1, and faster
@@ -172,6 +176,8 @@ enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, 
     sheet->n = 0;
     const double interval = school->interval;
     struct ends at[2] = {{.stretch = -2}, {.stretch = -2}};
+
+    // middles of old stretches, with tapered smoothing
     for (int i = n_stretches - FREE_SHEET_PAIRED - 1; i >= 0; i--) {
         for (int end = 0; end < 2; end++) stretch_find_ends(&at[end], markers, i, interval, end * interval);
         if (stretch_is_far(fish, markers, interval, at)) continue;
@@ -180,12 +186,15 @@ enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, 
     }
 
     sheet->n_tapered = sheet->n;
+
+    // points of the newest stretches, in place of the middles
     for (int age = 1; age <= FREE_SHEET_PAIRED && age <= n_stretches; age++) {
         for (int end = 0; end < 2; end++)
             stretch_find_ends(&at[end], markers, n_stretches - age, interval, end * interval);
         for (int k = 0; age <= FREE_SHEET_GRADED && k < FREE_SHEET_PANEL; k++) {
             free_sheet_add(sheet, fish, markers, interval, at, free_sheet_xi[k], free_sheet_part[k]);
         }
+
         for (int k = 0; age > FREE_SHEET_GRADED && k < 2; k++)
             free_sheet_add(sheet, fish, markers, interval, at, free_sheet_pair_xi[k], 0.5);
         free_sheet_add(sheet, fish, markers, interval, at, 0.5, -1);
@@ -207,6 +216,7 @@ void free_sheet_place(struct free_sheet *sheet, const struct school *school, con
             stretch_find_ends(&ends, markers, stretch, school->interval, tau);
             strength = wake_strength_within(school, t - middles->birth[stretch], q);
         }
+
         double point[2];
         stretch_point(&ends, sheet->xi[i], point);
         const double smoothing = (1 - q) * sheet->smoothing[0][i] + q * sheet->smoothing[1][i];
@@ -247,6 +257,7 @@ void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish,
     double marker[2], end[2];
     free_sheet_nascent_point(markers, interval, tau, tail, 1, marker);
     free_sheet_end_nascent(sheet, marker, tail, tangent, end);
+
     for (int i = 0; i < FREE_SHEET_PANEL; i++) {
         const double xi = free_sheet_xi[i];
         sheet->x[first + i] = (1 - xi) * tail[0] + xi * end[0];

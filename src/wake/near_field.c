@@ -41,6 +41,7 @@ struct near_field_bounds near_field_bound_wake(const struct wake *wake, double i
             if (position[k] < b.low[k]) b.low[k] = position[k];
             if (position[k] > b.high[k]) b.high[k] = position[k];
         }
+
         const double du = wake->u[i] - wake->u_before[i], dv = wake->v[i] - wake->v_before[i];
         speed = max_of(speed, wake->u[i] * wake->u[i] + wake->v[i] * wake->v[i]);
         change = max_of(change, du * du + dv * dv);
@@ -99,6 +100,7 @@ static struct near_field_error estimate_error(double distance, double smoothing,
     // derivatives in time of K(r(t)): derivatives of K along a line, and terms of the curvature of the path
     const double w = speed * h * inverse, bend = acceleration * h * h * inverse;
     const double k = estimate_per_bound * pole_bound / two_pi * inverse;
+
     return (struct near_field_error){
         .error =
             cubic_error * k *
@@ -166,12 +168,14 @@ static enum status near_field_divide_wake(const struct near_field_input *input, 
         const double du = body->mean[0] - wake->u[i], dv = body->mean[1] - v;
         const double speed = sqrt(du * du + dv * dv) + body->deviation + h * acceleration;
         const double distance = distance_to_line(body, wake->x[i], y) - body->width - h * speed;
+
         const struct near_field_error error = estimate_error(max_of(distance, 0), smoothing, speed, acceleration, h,
                                                              fabs(start[i]), fabs(end[i] - start[i]));
         if (error.error <= max_error) {
             near_field_add_far(near_field, &error);
             continue;
         }
+
         const struct near_field_vortex near = {
             .error = error,
             .x = {wake->x[i], y},
@@ -206,8 +210,10 @@ static void near_field_move_far(struct near_field *near_field, double max_error)
         sum[exponent_bin(error / max_error, BINS)] += error;
     }
 
+    // largest bin up to which the sum of errors stays below max_error
     int last = 0;
     for (double total = sum[0]; last < BINS - 1 && total <= max_error; total += sum[last]) last++;
+
     int n_near = 0;
     for (int i = 0; i < near_field->n_near; i++) {
         const struct near_field_vortex near = near_field->near[i];
@@ -255,6 +261,7 @@ static enum status near_field_divide(struct near_field *near_field, const struct
     near_field->n_near = 0;
     near_field->far = (struct near_field_error){0};
     near_field->tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish);
+
     struct image image[1 + IMAGES_NEAREST] = {{1, 0}};
     const int n_images = 1 + images_nearest(&school->walls, image + 1);
     for (int g = 0; g < school->n_fish; g++) {

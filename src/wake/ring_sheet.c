@@ -44,6 +44,7 @@ static enum status ring_sheet_reserve(struct ring_sheet *sheet, int n) {
     ring_sheet_free(sheet);
     double **const all[] = {&sheet->xi,           &sheet->part,   &sheet->smoothing[0],
                             &sheet->smoothing[1], &sheet->leg[0], &sheet->leg[1]};
+
     sheet->stretch = calloc((size_t)capacity, sizeof *sheet->stretch);
     if (!sheet->stretch) return status_fail(STATUS_MEMORY, "out of memory: %d points of a free sheet", n);
     TRY(array_many_doubles(all, sizeof all / sizeof *all, capacity, "the points of a free sheet"));
@@ -58,12 +59,14 @@ static void ring_sheet_add(struct ring_sheet *sheet, enum ring_view view, const 
     sheet->stretch[i] = stretch;
     sheet->xi[i] = xi;
     sheet->part[i] = part;
+
     for (int end = 0; end < 2; end++) {
         const double tau = end * interval;
         double point[2];
         stretch_point(&at[end], xi, point);
         const double from_tail[2] = {point[0] - markers->x[newest] - tau * markers->tail_velocity[0],
                                      point[1] - markers->y[newest] - tau * markers->tail_velocity[1]};
+
         // middles are sources for other targets, with the full smoothing of the pair
         sheet->smoothing[end][i] =
             view == RING_GRADED ? free_sheet_smoothing(fish, from_tail, markers->tail_tangent) : 0;
@@ -78,6 +81,7 @@ enum status ring_sheet_build(struct ring_sheet *sheet, enum ring_view view, cons
               paired = view == RING_GRADED ? FREE_SHEET_PAIRED : 0;
 
     TRY(ring_sheet_reserve(sheet, n_stretches + 2 * FREE_SHEET_PAIRED + 4 * FREE_SHEET_PANEL));
+
     sheet->n_released = 0;
     sheet->n_nascent = view == RING_GRADED ? FREE_SHEET_PANEL : 1;
     for (int i = 0; i < n_stretches; i++) {
@@ -85,6 +89,7 @@ enum status ring_sheet_build(struct ring_sheet *sheet, enum ring_view view, cons
         const int n = age <= graded ? FREE_SHEET_PANEL : age <= paired ? 2 : 1;
         const struct ends at[2] = {stretch_ends(markers, i, school->interval, 0),
                                    stretch_ends(markers, i, school->interval, school->interval)};
+
         for (int k = 0; k < n; k++) {
             const double xi = n == 1 ? 0.5 : n == 2 ? free_sheet_pair_xi[k] : free_sheet_xi[k];
             const double part = n <= 2 ? 1.0 / n : free_sheet_part[k];
@@ -102,6 +107,7 @@ static void ring_set(struct rings *rings, int i, const struct ends *ends, double
     const double along = -(newer + xi * (older - newer)) * part;
     double point[2];
     stretch_point(ends, xi, point);
+
     rings->x[i] = point[0];
     rings->y[i] = point[1];
     rings->q[i] = part * (newer - older);
@@ -118,6 +124,7 @@ void ring_sheet_place(struct ring_sheet *sheet, const struct fish *fish, const s
     double newer = 0, older = 0;
 
     for (int i = 0; i < sheet->n_released; i++) {
+        // labels and ends of a new stretch
         const int stretch = sheet->stretch[i];
         if (stretch != placed) {
             older = stretch == placed + 1 ? newer : wake_ring(markers, school, stretch, t, tau);
@@ -125,6 +132,7 @@ void ring_sheet_place(struct ring_sheet *sheet, const struct fish *fish, const s
             ends = stretch_ends(markers, stretch, school->interval, tau);
             placed = stretch;
         }
+
         ring_set(rings, i, &ends, sheet->xi[i], sheet->part[i], newer, older);
         const double smoothing = (1 - q) * sheet->smoothing[0][i] + q * sheet->smoothing[1][i];
         rings->square[i] = smoothing * smoothing;
@@ -149,6 +157,7 @@ double ring_sheet_place_nascent(struct ring_sheet *sheet, const struct fish *fis
     struct ends ends = {.newer = {tail[0], tail[1]}, .older = {tail[0], tail[1]}};
 
     if (newest >= 0) wake_marker(markers, newest, school->interval, tau, ends.older);
+
     for (int k = 0; k < sheet->n_nascent; k++) {
         const int i = sheet->n_released + k;
         ring_set(rings, i, &ends, ring_sheet_xi(sheet, k), ring_sheet_part(sheet, k), shed, older);
@@ -167,6 +176,7 @@ enum status ring_sheet_markers(struct rings *rings, const struct fish *fish, con
         const double label = wake_ring(markers, school, i, t, 0);
         const int newer = i + 1 < n ? i + 1 : i, older = i > 0 ? i - 1 : 0;
         const double from_tail[2] = {x[i] - x[n - 1], y[i] - y[n - 1]};
+
         struct rings *const to = rings;
         to->x[first + i] = x[i];
         to->y[first + i] = y[i];
@@ -174,6 +184,7 @@ enum status ring_sheet_markers(struct rings *rings, const struct fish *fish, con
         to->dy[first + i] = -label * (y[older] - y[newer]) / 2;
         to->half[first + i] = fish->strip_depth * fish->strip_depth / 32;
         to->leg[first + i] = ring_sheet_leg(fish, from_tail);
+
         if (i == 0) continue;
         const double stretch = label - wake_ring(markers, school, i - 1, t, 0);
         to->q[first + i] += stretch / 2;

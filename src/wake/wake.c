@@ -60,6 +60,7 @@ enum status wake_release(struct wake *wake, double x, double y, double circulati
     if (wake->n_vortex == wake->capacity) TRY(wake_reserve(wake, 2 * wake->capacity));
     const int i = wake->n_vortex++;
     wake->version++;
+
     wake->x[i] = x;
     wake->y[i] = y;
     wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
@@ -134,6 +135,7 @@ double wake_ring(const struct wake *wake, const struct school *school, int i, do
 void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
              double *strength) {
     const double q = tau / school->interval;
+
     for (int i = 0; i < wake->n_vortex; i++) {
         x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], tau, school->interval);
         y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, school->interval);
@@ -149,6 +151,7 @@ void wake_at(const struct wake *wake, const struct school *school, double t, dou
 
 double wake_lost(const struct wake *wake, const struct school *school, double t, double tau) {
     double lost = wake->removed;
+
     for (int i = 0; i < wake_n_sources(wake); i++) {
         const double age = t - wake->birth[i + wake->has_markers];
         if (age + school->interval <= age_of_decay(school)) break;
@@ -163,6 +166,7 @@ void wake_advance(struct wake *wake, double interval) {
     for (int i = 0; i < wake->n_vortex; i++) {
         wake->x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], interval, interval);
         wake->y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], interval, interval);
+
         const double label = wake_label(wake, i, interval, interval);
         // the oldest label equals the removed circulation
         if (i == 0 && wake->has_markers) wake->removed += label - wake->circulation[i];
@@ -176,6 +180,7 @@ int wake_n_old(const struct wake *wake, const struct school *school, double t) {
 
     // the age of a stretch is the age of the newer marker
     const int newer = wake->has_markers;
+
     int n_old = 0;
     while (n_old + newer < wake->n_vortex && t - wake->birth[n_old + newer] > school->lifetime - rounding) {
         n_old++;
@@ -188,6 +193,7 @@ void wake_remove_old(struct wake *wake, const struct school *school, double t) {
     const int n_old = wake_n_old(wake, school, t);
     if (n_old == 0) return;
     for (int i = 0; i < n_old; i++) wake->removed += wake_source(wake, i);
+
     wake->version++;
     wake->n_vortex -= n_old;
     double **array[N_ARRAYS];

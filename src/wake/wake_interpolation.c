@@ -287,16 +287,19 @@ static enum status wake_interpolation_try_build(struct wake_interpolation *inter
     const double *const motion[6] = {points->x, points->y, points->u, points->v, points->a, points->b};
 
     for (int k = 0; k < 6; k++) memcpy(interpolation->motion[k], motion[k], (size_t)n_points * sizeof(double));
+
     interpolation->start = t;
     for (int i = 0; i < N_TIMES; i++) {
         TRY(reserve_released(school, wakes, &interpolation->released[i], interpolation->wake));
     }
 
     TRY(reserve_opposite(interpolation));
+
     const double work = (double)N_TIMES * n_points * released[0].n;
     const int threads = parallel_threads(school->threads, n_points, work, PARALLEL_INTERACTIONS);
     const int by_tree = velocity_sum_by_tree(&released[0], n_points, school->wake_tolerance);
     const int is_whole = !by_tree && school->walls.n == 0;
+
     int n_failed = 0;
 #pragma omp parallel num_threads(threads)
     {
@@ -309,6 +312,7 @@ static enum status wake_interpolation_try_build(struct wake_interpolation *inter
 
     // messages are per thread: write the message on the calling thread
     if (n_failed > 0) return status_fail(STATUS_MEMORY, "out of memory: near vortices of %d fish", n_failed);
+
     if (is_whole) return STATUS_OK;
     TRY(sum_by_tree(interpolation, by_tree, threads));
 #pragma omp parallel num_threads(threads)
@@ -362,14 +366,19 @@ void wake_interpolation_induce(const struct wake_interpolation *interpolation, i
     for (int i = 0; i < at->n; i++) {
         const int p = first + i;
         const double dx = at->x[i] - interpolation->predicted[0][p], dy = at->y[i] - interpolation->predicted[1][p];
+
+        // gradient, linear in time
         const double u_x = (1 - q) * interpolation->u_x[0][p] + q * interpolation->u_x[END][p];
         const double u_y = (1 - q) * interpolation->u_y[0][p] + q * interpolation->u_y[END][p];
         const double v_x = (1 - q) * interpolation->v_x[0][p] + q * interpolation->v_x[END][p];
+
+        // drift term, and cubic in time
         double u = u_x * dx + u_y * dy, v = v_x * dx - u_x * dy;
         for (int k = 0; k < N_TIMES; k++) {
             u += interpolation->weight[k] * interpolation->velocity_u[k][p];
             v += interpolation->weight[k] * interpolation->velocity_v[k][p];
         }
+
         at->u[i] += u;
         at->v[i] += v;
         if (at->u_x) {

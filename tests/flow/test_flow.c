@@ -76,6 +76,7 @@ static void every_point_feels_the_sources_that_the_model_says(void **state) {
             NEAR(flow->u[at], u, 1e-13, 1e-13);
             NEAR(flow->v[at], v, 1e-13, 1e-13);
         }
+
         const int k = 2, middle = flow->points[f].first + flow_midpoint(fish, k);
         NEAR(flow->x[middle], (setup.state->y[fish->at.x + k] + setup.state->y[fish->at.x + k + 1]) / 2, 1e-15, 0);
         const int tail = flow->points[f].first + flow_tail(fish);
@@ -255,6 +256,7 @@ static void the_tree_is_planned_at_the_event(void **state) {
             assert_memory_equal(flow->v, v, n * sizeof *v);
             setup.school->threads = 1;
         }
+
         // unchanged after an evaluation at other positions
         move(&setup, 1, y);
         school_ok(flow_velocity(flow, setup.state, setup.t, y));
@@ -262,6 +264,7 @@ static void the_tree_is_planned_at_the_event(void **state) {
         school_ok(flow_velocity(flow, setup.state, setup.t, y));
         assert_memory_equal(flow->u, u, n * sizeof *u);
         const double error = difference(flow->n_points, u, v, exact_u, exact_v);
+
         // see compare_every_point
         assert_true(error > 0 && error < tolerance);
     }
@@ -443,6 +446,7 @@ static void beside_a_wall_everything_feels_mirrored_fish(void **state) {
             copy_fish(&wall, f, &free, f, 1);
             copy_fish(&wall, f, &free, f + 2, -1);
         }
+
         free.t = wall.t;
         struct flow *const one = wall.residual->flow, *const other = free.residual->flow;
         school_ok(flow_velocity(one, wall.state, wall.t, wall.state->y));
@@ -454,6 +458,7 @@ static void beside_a_wall_everything_feels_mirrored_fish(void **state) {
             same_velocities(one, other, f);
             same_gradients(one, other, f);
         }
+
         school_ok(flow_at_wake(one, wall.state));
         school_ok(flow_at_wake(other, free.state));
         for (int f = 0; f < 2; f++) same_wake(one, other, f);

@@ -51,6 +51,7 @@ static void make_wakes(struct setup *setup) {
                 wake->circulation[2 * i + k] = label;
             }
         }
+
         wake->x[N_MARKERS - 1] = tail[0];
         wake->y[N_MARKERS - 1] = tail[1];
         wake->circulation[N_MARKERS - 1] = label;
@@ -58,6 +59,7 @@ static void make_wakes(struct setup *setup) {
             wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
             wake->birth[i] = setup->state->t - 0.01 * (N_MARKERS - 1 - i);
         }
+
         wake_set_tail(wake, (const double[]){0, 0}, body.t);
         wake->shed_before = label;
         y[fish->at.circulation] = label;
@@ -105,9 +107,11 @@ static void feel(struct setup *setup, int body, int wake, struct felt *felt) {
             felt->wake_y[f][i] = flow->convecting.y[at];
             felt->wake_q[f][i] = flow->convecting.circulation[at];
         }
+
         for (int c = 0; c < school->fish[f].n_control; c++) {
             felt->body_q[f][c] = flow->convecting.circulation[flow->body_range[f].first + c];
         }
+
         memcpy(state->y + school->fish[f].at.gamma, kept[f], sizeof(double) * (size_t)(school->fish[f].n_sheet + 1));
         memcpy(state->wake[f].circulation, labels[f], sizeof labels[f]);
         state->wake[f].shed_before = labels[f][N_MARKERS - 1];
@@ -167,6 +171,7 @@ static void a_body_and_a_wake_have_opposite_forces_for_each_other(void **state) 
                 vanishes(&v);
             }
         }
+
         school_clear(&setup);
     }
 }
@@ -202,6 +207,7 @@ static void two_wakes_have_opposite_forces_for_each_other(void **state) {
                 vanishes(&v);
             }
         }
+
         school_clear(&setup);
     }
 }
@@ -381,10 +387,12 @@ static void by_tree_and_cells_it_is_the_direct_sum_to_the_tolerance(void **state
                 velocity_sum_by_tree(&flow->convecting, flow->class[1].markers.n, setup.school->wake_tolerance));
             assert_false(flow->class[1].sheet_by_tree);
         }
+
         double worst = 0;
         for (int i = 0; i < n; i++) {
             worst = fmax(worst, hypot(by_tree[i] - direct[i], by_tree[n + i] - direct[n + i]));
         }
+
         // a tenth of the tolerance times the velocity without cancellation, about ten lengths per beat
         assert_true(worst > 0 && worst < 1e-6);
         setup.school->threads = 3;

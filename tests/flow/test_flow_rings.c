@@ -74,6 +74,7 @@ static void add_wake(struct felt *felt, const struct setup *setup, int g, const 
             const double w = fish->strip_depth, ratio = hypot(from_tail[0], from_tail[1]) / (3 * w);
             ends[end][0] = w * w / 8 * (1 - exp(-pow(ratio, 4)));
         }
+
         if (!is_last) leg = (1 - q) * ends[0][0] + q * ends[1][0];
         const double go = wake_ring(wake, setup->school, i, setup->state->t, tau);
         const double gn =
@@ -95,6 +96,7 @@ static void add_body(struct felt *felt, const struct setup *setup, int f, int g,
             around += fish->integrals->strength[c * fish->n_sheet + j] * q;
             before += fish->integrals->circulation[c * fish->n_sheet + j] * q;
         }
+
         const double du = fish->control_interval[c] * before;
         double from[2] = {fish_mean(&fish->control_point[c], y + fish->at.x),
                           fish_mean(&fish->control_point[c], y + fish->at.y)};
@@ -105,6 +107,7 @@ static void add_body(struct felt *felt, const struct setup *setup, int f, int g,
             around = -around;
             d[0] = -d[0];
         }
+
         const double w = fish->strip_depth;
         add_ring(felt, at, from, around, d, w / 2, 2 * (b2 + w * w / 16), 0, (e * e + other * other) / 2);
     }
@@ -163,6 +166,7 @@ static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_str
             const double from[2] = {flow->sheet.x[j], flow->sheet.y[j]};
             add_ring(&felt, at, from, flow->sheet.circulation[j], none, w / 4, w * w / 16, 0, 0);
         }
+
         for (int c = 0; c < fish->n_control; c++) {
             double before = 0;
             for (int j = 0; j < fish->n_sheet; j++) {
@@ -173,6 +177,7 @@ static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_str
                                  du * fish_mean(&fish->control_tangent[c].to, y + fish->at.y)};
             add_ring(&felt, at, from, 0, d, w / 4, w * w / 16, 0, 0);
         }
+
         // the leg of the nascent stretch extends from the tail to markers at a distance of 50
         struct felt nascent = {0};
         const double tail[2] = {y[fish->at.x + 4], y[fish->at.y + 4]};
@@ -184,6 +189,7 @@ static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_str
             const double d[2] = {-label * part * (newest[0] - tail[0]), -label * part * (newest[1] - tail[1])};
             add_ring(&nascent, at, from, 0, d, w / 4, w * w / 16, 0, 0);
         }
+
         // the released wake at 50 lengths acts as a dipole
         NEAR(flow->u[p], felt.u + nascent.u, 1e-6, 1e-12);
         NEAR(flow->v[p], felt.v + nascent.v, 1e-6, 1e-12);

@@ -247,6 +247,7 @@ static void beat(double s, double place[2]) {
             const double q = s * (i + k / 4.0) / N;
             turn[k] = s / N * 6 * 0.4 * (q + 0.2 * q * q) * sin(1 - 6 * q);
         }
+
         const double half = angle + (turn[0] + 4 * turn[1] + turn[2]) / 12;
         const double end = angle + (turn[0] + 4 * turn[1] + 2 * turn[2] + 4 * turn[3] + turn[4]) / 12;
         place[0] += s / N * (cos(angle) + 4 * cos(half) + cos(end)) / 6;
@@ -324,6 +325,7 @@ static void end_correction_makes_a_sheet_that_ends_with_a_step_exact(void **stat
             setup.value[fish->at.gamma + c] +=
                 (1 / strength - 1) * bound_sheet_end_correction(fish, c, m - 2) * strength;
         }
+
         NEAR_ARRAY(m - 1, setup.value + fish->at.gamma, with, 1e-13, 0);
         school_clear(&setup);
     }

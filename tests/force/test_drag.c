@@ -29,6 +29,7 @@ static void compare_slope(const struct fish *fish, int k, const double w[2], dou
             const double moved[2] = {w[0] + (j == 0 ? moved_by : 0), w[1] + (j == 1 ? moved_by : 0)};
             drag_force(fish, k, &other, moved, force[side]);
         }
+
         const double scale = hypot(by_turn[0], by_turn[1]) + size * (fabs(by_velocity[0][0]) + fabs(by_velocity[1][1]));
         for (int c = 0; c < 2; c++) {
             NEAR(j == 2 ? by_turn[c] : by_velocity[c][j], (force[1][c] - force[0][c]) / (2 * step),
@@ -111,6 +112,7 @@ static void transition_of_an_edge_is_that_of_its_middle(void **state) {
         const struct edge edge = {.t = {1, 0}, .n = {0, 1}};
         double force[2];
         drag_friction(fish, k, &edge, w, force);
+
         // u0 is 5e-5 m s-1
         const double half = fish->drag_tangential[k] * pow(speed, 1.5) + fish->drag_turbulent[k] * pow(speed, 1.8);
         NEAR(force[0], half / 2, 0, 1e-5);
@@ -177,6 +179,7 @@ static void boundary_layer_is_smooth_and_takes_energy(void **state) {
                 compare_slope(fish, k, w, 2e-9);
             }
         }
+
         // at rest: zero force, and the finite slope (u0)^(1/2)
         double force[2], by_velocity[2][2], by_turn[2];
         const struct edge edge = {.t = {1, 0}, .n = {0, 1}};

@@ -54,6 +54,7 @@ static void jacobian_agrees_with_differences(void **state) {
         TIME "fish: [{sheet_points: 9, force: reactive}]\n",
         TIME
         "fish: [{sheet_points: 9, force: reactive, drag: {normal: 0, tangential: 0}, added_mass: {extent: depth}}]\n",
+
         // swimming backwards: no flux along a leading tail
         TIME "fish: [{sheet_points: 9, force: reactive, start: {speed: -2}, added_mass: {extent: depth}}]\n",
         TIME

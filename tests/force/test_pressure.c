@@ -67,12 +67,14 @@ static void added_mass_of_a_plate_is_that_of_potential_flow(void **state) {
             velocity[0][k] = 1;
             velocity[1][k] = k / 16.0 - 0.5;
         }
+
         for (int motion = 0; motion < 2; motion++) {
             double mass = 0;
             added_momentum(&setup, velocity[motion], momentum);
             for (int k = 0; k < 17; k++) mass += momentum[k] * velocity[motion][k];
             NEAR(mass, want[motion], 0, tolerance[motion]);
         }
+
         school_clear(&setup);
     }
 }
@@ -129,8 +131,10 @@ static void added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep(v
         added_momentum(&setup, velocity, momentum);
         for (int k = 0; k < 17; k++) mass += momentum[k];
         for (int k = 0; k < 17; k++) moment += momentum[k] * (k / 16.0 - 0.5);
+
         // the last digit; half a per cent if the spacing of the points is not much smaller than the depth of the sheet
         NEAR(mass / (pi / 4 * cases[i].depth), cases[i].part, cases[i].depth < 0.2 ? 6e-4 : 6e-5, 0);
+
         // symmetry: heave causes no moment, and rotation causes no lift
         for (int k = 0; k < 17; k++) velocity[k] = k / 16.0 - 0.5;
         added_momentum(&setup, velocity, momentum);
@@ -169,14 +173,17 @@ static void added_mass_of_finite_span_is_symmetric_and_positive(void **state) {
             velocity[k] = 1;
             added_momentum(&setup, velocity, matrix + k * N);
         }
+
         for (int k = 0; k < N * N; k++) {
             largest = fmax(largest, fabs(matrix[k]));
             asymmetry = fmax(asymmetry, fabs(matrix[k] - matrix[k % N * N + k / N]));
         }
+
         assert_true(asymmetry < cases[i].asymmetry * largest);
         for (int k = 0; k < N * N; k++) {
             if (k % N >= k / N) matrix[k] = (matrix[k] + matrix[k % N * N + k / N]) / 2;
         }
+
         assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', N, matrix, N, value), 0);
         assert_true(value[0] > 1e-4 * largest);
         school_clear(&setup);
@@ -298,6 +305,7 @@ static void force_and_reaction_are_those_of_the_jump(void **state) {
 
     for (int i = 0; i < 2; i++) {
         NEAR(of_edges[i], sum[i], 0, 1e-12);
+
         // midpoint rule in theta, for a jump with a kink at the tail
         NEAR(sum[i], of->pressure.pressure[i], 1e-3 * fabs(of->pressure.pressure[1]), 0);
         NEAR(of->constraint_force[i], inertia[i] - of->pressure.pressure[i] - of->pressure.suction[i], 1e-9, 1e-9);
@@ -322,10 +330,12 @@ static void suction_law_has_its_limits_its_bound_and_its_derivatives(void **stat
         const double a = values[i / N], b = values[i % N], h = 1e-5;
         const struct suction_law law = pressure_suction_law(a, b);
         assert_true(law.value > 0 && law.value <= fmin(a, b) && law.by_full > 0 && law.by_bound > 0);
+
         // homogeneous of degree 1 (Euler): the derivatives determine the value
         NEAR(law.by_full * a + law.by_bound * b, law.value, 0, 1e-14);
         const double by_full = pressure_suction_law(a * (1 + h), b).value - pressure_suction_law(a * (1 - h), b).value;
         const double by_bound = pressure_suction_law(a, b * (1 + h)).value - pressure_suction_law(a, b * (1 - h)).value;
+
         // second difference of a function of degree 1, and rounding
         NEAR(law.by_full * a, by_full / (2 * h), 1e-10 * law.value, 1e-8);
         NEAR(law.by_bound * b, by_bound / (2 * h), 1e-10 * law.value, 1e-8);
@@ -383,15 +393,18 @@ static void suction_of_a_plate_ends_at_its_limit(void **state) {
     for (int i = 0; i < 4; i++) {
         const struct diagnostics_fish *const of = plate[i]->diagnostics->fish;
         const double ratio = i == 0 ? 0 : pow(a0 / limit[i], 2), part = pow(1 + pow(ratio, 4), -0.25);
+
         // prescribed motion: the suction limit does not change the circulation
         NEAR(of->pressure.leading_edge_a0, full->leading_edge_a0, 0, 1e-9);
         NEAR(of->leading_edge_most, a0, 0, 1e-9);
         NEAR(size_of(of->pressure.suction), part * size_of(full->suction), 0, 1e-9);
         NEAR(size_of(of->pressure.separation), (1 / 0.8 - part) * size_of(full->suction), 1e-9, 1e-9);
+
         // along the plate and forward, like the suction: 20 degrees to the direction of motion
         NEAR(of->pressure.separation[0], (1 / 0.8 - part) * full->suction[0], 1e-9, 1e-9);
         NEAR(of->pressure.separation[1], (1 / 0.8 - part) * full->suction[1], 1e-9, 1e-9);
         NEAR(of->pressure.separation_power, -3 * of->pressure.separation[0], 1e-9, 1e-9);
+
         // no period: instantaneous value
         NEAR(of->separation_share, limit[i] > 0 && a0 > limit[i], 0, 0);
     }
@@ -452,9 +465,11 @@ static void a_strength_that_is_singular_at_the_tail_has_no_kink(void **state) {
     pressure_update(pressure, &flow, y);
     for (int c = 0; c < fish->n_control; c++) {
         const double theta = h * (c + 0.5);
+
         // the interval around the control point is dtheta sin(theta)/2 long
         const double length = h * sin(theta) / 2;
         NEAR(pressure_jump(pressure, c, y, yp), speed * h / length, 0, 1e-12);
+
         // C(theta) = theta
         const double now = pressure_jump(pressure, c, y, yp);
         for (int j = 0; j < fish->n_sheet; j++) yp[fish->at.gamma + j] = y[fish->at.gamma + j];
@@ -483,6 +498,7 @@ static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
         for (int k = 0; k < fish->n_nodes; k++) {
             rate[i] += fish->mass[k] * simulation->state->yp[fish->at.vx + i * fish->n_nodes + k];
         }
+
         // the rates come from the integrator and have errors of the order of the tolerance over a step
         NEAR(rate[i], of->resistive_force[i] + of->pressure.pressure[i] + of->pressure.suction[i],
              0.02 * fabs(of->pressure.pressure[1]), 0);

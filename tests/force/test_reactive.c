@@ -73,6 +73,7 @@ static void force_follows_from_lagrange_s_equations_of_the_kinetic_energy(void *
                 y[edge_acceleration(fish, i, node)] = acceleration[2 * node + i];
             }
         }
+
         const struct edge edge = edge_at(fish, 0, y);
         double force[2][2];
         reactive_force(fish, 0, &edge, edge.velocity, still, force);
@@ -166,6 +167,7 @@ static void towed_plate_feels_a_couple_and_loses_at_its_tail(void **state) {
         if (k == 6) {
             for (int i = 0; i < 2; i++) force[k][i] -= mass_per_length * (wt * wn * n[i] - wn * wn / 2 * t[i]);
         }
+
         const double arm = k / 6.0;
         moment += arm * (t[0] * force[k][1] - t[1] * force[k][0]);
         for (int i = 0; i < 2; i++) sum[i] += force[k][i];
@@ -206,6 +208,7 @@ static void mean_thrust_of_a_plate_of_small_amplitude_is_lighthill_s(void **stat
         double force[7][2];
         forces_on_plate(motion, angle / omega, force);
         for (int k = 0; k < 7; k++) thrust -= force[k][0] / N;  // the heading is along -x
+
         // a positive pitch turns the nose to the left, and the tail behind the pivot to the right
         const double rate = omega * (heave * cos(angle) - pitch * cos(angle + phase));
         const double slope = pitch * sin(angle + phase);
@@ -246,12 +249,15 @@ static void energy_of_body_and_fluid_is_the_work_of_the_muscle(void **state) {
             const struct diagnostics_fish *const fish = measured(simulation);
             worst[i] = fmax(worst[i], fabs(whole_energy(fish) - before - fish->actuation_work));
         }
+
         const struct diagnostics_fish *const fish = measured(simulation);
         print_message("rtol %.0e: %.1e J of %.2f J, %.2f J of them in the fluid\n", rtol[i], worst[i],
                       whole_energy(fish), fish->added_mass_energy);
         assert_true(fish->added_mass_energy > 0.01);
+
         // a method of order 2 with steps proportional to rtol^(1/3)
         assert_true(worst[i] < pow(rtol[i], 2.0 / 3.0) * whole_energy(fish));
+
         // the energy balance of the body alone finds the same error
         assert_true(fabs(fish->energy_balance) < 2 * worst[i]);
         simulate_free(simulation);
@@ -284,6 +290,7 @@ static void no_fish_gains_energy_from_still_fluid(void **state) {
             fastest = fmax(fastest, hypot(fish->com_velocity[0], fish->com_velocity[1]));
             assert_true(fish->wake_power <= 0);
         }
+
         print_message("number %.1f: %.1e J gained of %.1f J, at most %.2f m/s\n", number, gained,
                       measured(simulation)->actuation_work, fastest);
         assert_true(gained <= 1e-4 * measured(simulation)->actuation_work);

@@ -44,6 +44,7 @@ static void derivatives_agree_with_differences(void **state) {
     const char *const texts[] = {
         TIME "fish: [{nodes: 4, sheet_points: 9, force: reactive, " WIDE "}]\n",
         TIME "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE ", start: {speed: 2}}]\n",
+
         // swimming backwards: no flux along a leading tail
         TIME "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE ", start: {speed: -2}}]\n",
         TIME
@@ -78,6 +79,7 @@ static void it_takes_from_the_body_what_it_leaves_in_the_wake(void **state) {
             y[fish->at.x + k + 1] = y[fish->at.x + k] + l * cos(theta);
             y[fish->at.y + k + 1] = y[fish->at.y + k] + l * sin(theta);
         }
+
         for (int i = fish->at.vx; i < fish->at.ax; i++) y[i] = 2 * school_random(&setup);
         const double vx = y[fish->at.vx + 5], vy = y[fish->at.vy + 5];
         const double wt = vx * cos(angle) + vy * sin(angle), wn = vy * cos(angle) - vx * sin(angle);
@@ -85,6 +87,7 @@ static void it_takes_from_the_body_what_it_leaves_in_the_wake(void **state) {
         tail_flux_force(fish, &flow, y, force);
         NEAR(force[0] * cos(angle) + force[1] * sin(angle), -mass_per_length * wn * wn / 2, 1e-12, 1e-12);
         NEAR(force[1] * cos(angle) - force[0] * sin(angle), mass_per_length * fmin(wt, 0) * wn, 1e-12, 1e-12);
+
         // the power is never positive, for a trailing and for a leading tail
         NEAR(tail_flux_power(fish, &flow, y), -mass_per_length * wn * wn * fabs(wt) / 2, 1e-12, 1e-12);
     }

@@ -35,6 +35,7 @@ static void a_marker_is_born_at_the_tail_at_every_event(void **state) {
         NEAR(wake->x[n], y[fish->at.x + fish->n_nodes - 1], 0, 0);
         NEAR(wake->y[n], y[fish->at.y + fish->n_nodes - 1], 0, 0);
         NEAR(wake->birth[n], 0.02 * n, 1e-15, 0);
+
         // the marker does not move forwards along the body
         const struct direction tail = fish_direction(fish, &fish->tail_tangent, y);
         const double relative[2] = {wake->u[n] - y[fish->at.vx + fish->n_nodes - 1],
@@ -101,6 +102,7 @@ static void the_smoothing_tapers_to_nothing_at_the_tail(void **state) {
         if (sheet->part[i] < 0) continue;
         const double dx = sheet->x[i] - y[fish->at.x + last], dy = sheet->y[i] - y[fish->at.y + last];
         const double want = 0.1 * (1 - exp(-pow(hypot(dx, dy) / 0.4, 4)));
+
         // a wake behind the body; tolerance: rounding of a difference near the tail
         NEAR(sqrt(sheet->square[i]), want, 1e-12, 1e-9);
         n++;
@@ -128,10 +130,12 @@ static void a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_be
             place[k] = marker[k] + (is_behind ? -0.03 : 0.03) * at.t[k] - 0.01 * at.n[k];
             shift[k] = place[k] - y[(k == 0 ? fish->at.x : fish->at.y) + tail];
         }
+
         for (int m = 0; m < fish->n_nodes; m++) {
             y[fish->at.x + m] += shift[0];
             y[fish->at.y + m] += shift[1];
         }
+
         school_flow(&setup, y);
         const struct free_sheet *const sheet = setup.residual->flow->free_sheet;
         const int first = sheet->n - (FREE_SHEET_PANEL + 1);
@@ -142,6 +146,7 @@ static void a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_be
             NEAR(sheet->x[first + i], place[0] + xi * (0.01 * at.n[0] + along * at.t[0]), 1e-15, 1e-14);
             NEAR(sheet->y[first + i], place[1] + xi * (0.01 * at.n[1] + along * at.t[1]), 1e-15, 1e-14);
         }
+
         // subtracted source: the middle between tail and marker
         NEAR(sheet->x[first + FREE_SHEET_PANEL], (place[0] + marker[0]) / 2, 1e-15, 1e-14);
         NEAR(sheet->y[first + FREE_SHEET_PANEL], (place[1] + marker[1]) / 2, 1e-15, 1e-14);

@@ -99,6 +99,7 @@ static struct near_field_error true_error(double smoothing) {
             for (int k = 0; k < 4; k++) weight *= k == i ? 1 : (q - time[k]) / (time[i] - time[k]);
             for (int k = 0; k < 2; k++) error[k] -= weight * at_time[i][k];
         }
+
         for (int k = 2; k < 5; k++) error[k] -= (1 - q) * at_time[0][k] + q * at_time[3][k];
         worst.error = fmax(worst.error, hypot(error[0], error[1]));
         for (int direction = 0; direction < 24; direction++) {
@@ -220,6 +221,7 @@ static void the_far_field_is_valid_up_to_half_of_the_tolerance(void **state) {
         struct near_field near_field = {.is_interpolated = 1, .tolerance = 2};
         near_field.far.by_drift = far[i].by_drift;
         near_field.far.by_drift_square = far[i].by_drift_square;
+
         // each term is 1 at a drift of a half
         assert_true(near_field_is_valid(&near_field, 0));
         assert_true(near_field_is_valid(&near_field, 0.499 * 0.499));

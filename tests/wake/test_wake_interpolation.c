@@ -103,6 +103,7 @@ static void the_error_stays_below_the_tolerance(void **state) {
             last_near = n_near;
             simulate_free(simulation);
         }
+
         assert_true(last_near > 0);
     }
 }
@@ -200,6 +201,7 @@ static void the_gradient_is_that_of_the_interpolated_velocity(void **state) {
             const struct induced there = {1, &x, &y, &moved[i][0], &moved[i][1], NULL, NULL, NULL};
             wake_interpolation_induce(flow->interpolation, f, p, &there);
         }
+
         // third derivatives of order 100 times h^2/6
         NEAR(got[2], (moved[0][0] - moved[1][0]) / (2 * h), 2e-7, 0);
         NEAR(got[4], (moved[0][1] - moved[1][1]) / (2 * h), 2e-7, 0);
