@@ -1,4 +1,4 @@
-/* handle.c: checks of a run, its row, and the new start of its integration. */
+/* handle.c: checks of a run, the row of an event, and the restart of the integrator. */
 #include "library/handle.h"
 
 #include <omp.h>
@@ -8,7 +8,7 @@
 
 pthread_mutex_t handle_netcdf_lock = PTHREAD_MUTEX_INITIALIZER;
 
-// ---- forks: no other thread holds the lock at a fork, and the child does not wait for threads that it does not have
+// ---- forks: the parent takes the lock before a fork; the child runs without OpenMP threads, which a fork loses
 
 static void lock_netcdf(void) {
     pthread_mutex_lock(&handle_netcdf_lock);
@@ -31,6 +31,7 @@ static pthread_once_t forks_once = PTHREAD_ONCE_INIT;
 
 enum status handle_create(struct shoal **run) {
     pthread_once(&forks_once, expect_forks);
+
     *run = calloc(1, sizeof **run);
     if (*run) (*run)->shared = calloc(1, sizeof *(*run)->shared);
     if (*run && (*run)->shared) {
@@ -38,6 +39,7 @@ enum status handle_create(struct shoal **run) {
         (*run)->lock.descriptor = -1;
         return STATUS_OK;
     }
+
     free(*run);
     *run = NULL;
     return status_fail(STATUS_MEMORY, "out of memory: a run");
@@ -49,9 +51,11 @@ enum status handle_need(const void *pointer, const char *function, const char *n
 
 enum status handle_check_fish(const struct shoal *run, int fish, const char *function) {
     TRY(handle_need(run, function, "run"));
+
     const int n = run->simulation->school->n_fish;
     if (fish >= 0 && fish < n) return STATUS_OK;
-    return status_fail(STATUS_CASE, "%s: there is no fish %d: this run has %d, numbered from 0", function, fish, n);
+    return status_fail(STATUS_CASE, "%s: there is no fish %d: this run has %d fish, numbered from 0", function, fish,
+                       n);
 }
 
 int handle_has_failed(const struct shoal *run, const char *function) {
@@ -85,8 +89,10 @@ enum status handle_evaluate(const struct simulation *simulation) {
 enum status handle_renew(struct shoal *run) {
     if (run->is_renewed) return STATUS_OK;
     run->has_row = 0;
-    // there is none after a renewal without memory
+
+    // a restart that ran out of memory leaves no solver
     if (run->simulation->solver) run->simulation->integrator->count(run->simulation->solver, &run->when_reached);
+
     enum status status = simulate_renew(run->simulation);
     if (status == STATUS_OK) status = handle_evaluate(run->simulation);
     if (status == STATUS_OK) {

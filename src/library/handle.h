@@ -1,6 +1,6 @@
-/* handle.h: a run of the public interface: what it holds, and what all of its functions check and do. The functions of
- * include/shoal.h are in shoal.c (the life of a run, its files), shoal_change.c, shoal_copy.c and shoal_read.c. Tested
- * by tests/library/test_shoal.c. */
+/* handle.h: struct shoal, a run of the public interface, and the checks common to the public functions. The functions of
+ * include/shoal.h are in shoal.c (the life of a run, result files), shoal_change.c, shoal_copy.c and shoal_read.c.
+ * Tested by tests/library/test_shoal.c. */
 #ifndef HANDLE_H
 #define HANDLE_H
 
@@ -15,60 +15,60 @@
 #include "run/simulate.h"
 #include "shoal.h"
 
-/* NetCDF keeps a list of open files that threads must not change together. */
+/* NetCDF has a global list of open files, which is not thread-safe. */
 extern pthread_mutex_t handle_netcdf_lock;
 
-/* A case, which all copies of a run share. */
+/* A case, shared by all copies of a run. */
 struct shared {
     atomic_int n_users;
     struct case_values values;
 };
 
-/* A run in memory: what include/shoal.h hands out. */
+/* A run in memory: the handle of include/shoal.h. */
 struct shoal {
     struct shared *shared;
     struct simulation *simulation;
-    int is_renewed;                        /* the integration has begun again at this event */
-    struct integrator_counts when_reached; /* if so: the counts with which the event was reached */
+    int is_renewed;                        /* the integrator has restarted at this event */
+    struct integrator_counts when_reached; /* if is_renewed: the counts before the restart */
     int has_failed;
     char failure[1024]; /* message of the step that failed */
     struct record record;
-    char *record_path;              /* where it is written */
-    struct checkpoints checkpoints; /* beside it */
+    char *record_path;              /* path of the result file */
+    struct checkpoints checkpoints; /* beside the result file */
     struct result_lock lock;
-    char *result_path; /* where the case wants it */
+    char *result_path; /* path of the result file by the case */
 
-    /* what has been read since the last step */
+    /* variables read since the last step */
     int has_row;
     struct integrator_counts counts;
     struct result_row row;
-    void *buffer[RESULT_TABLE_MAX]; /* of each variable read so far; stays where it is */
+    void *buffer[RESULT_TABLE_MAX]; /* (largest size of the variable); never moves */
     unsigned char is_filled[RESULT_TABLE_MAX];
 };
 
-/* A run without a case and without a simulation. Fails with STATUS_MEMORY; *run is then NULL. */
+/* Create a run without a case and without a simulation. Fails with STATUS_MEMORY; *run is then NULL. */
 enum status handle_create(struct shoal **run);
 
-/* Fail with STATUS_CASE unless a pointer, or a fish, is there. function: the public one, for the message. */
+/* Fail with STATUS_CASE for a NULL pointer, or for an unknown fish. function: name of the public function. */
 enum status handle_need(const void *pointer, const char *function, const char *name);
 enum status handle_check_fish(const struct shoal *run, int fish, const char *function);
 
-/* Whether a step of the run has failed; there is a message then. */
+/* Whether a step of the run has failed; sets the message. */
 int handle_has_failed(const struct shoal *run, const char *function);
 
-/* From now on the run has failed with the present message. */
+/* Mark the run as failed with the present message. */
 void handle_fail(struct shoal *run);
 
 /* The row of the present event. */
 const struct result_row *handle_row(struct shoal *run);
 
-/* What has been read is that of another event. */
+/* Invalidate the row and the variables read so far: the event has changed. */
 void handle_forget_row(struct shoal *run);
 
-/* Find the velocity of the fluid and the muscle at the event, which a row is made of. */
+/* Evaluate the residual at the event: velocities of the flow and actuation, input of handle_row. */
 enum status handle_evaluate(const struct simulation *simulation);
 
-/* Begin the integration again. A run for which that fails has failed. */
+/* Restart the integrator. On failure the run is marked as failed. */
 enum status handle_renew(struct shoal *run);
 
 #endif

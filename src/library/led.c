@@ -1,4 +1,4 @@
-/* led.c: what can be set, and for which fish. */
+/* led.c: the keys that can be set at an event, with the conditions of each key. */
 #include "library/led.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 #include "base/angle.h"
 #include "fish/fish_gait.h"
 
-/* What is changed: the memory is a copy that counts when all is checked. */
+/* A change of one fish; memory: a copy, which replaces the memory of the fish after all checks. */
 struct change {
     const struct fish *fish;
     const struct state *state;
@@ -19,8 +19,8 @@ struct change {
 static enum status set_amplitude(struct change *change) {
     const struct fish *const fish = change->fish;
     if (!(fabs(fish->amplitude) > 0)) {
-        return status_fail(STATUS_CASE, "wave.amplitude: %s has none in its case: give it one to start from",
-                           fish->name);
+        return status_fail(
+            STATUS_CASE, "wave.amplitude: the amplitude of %s in the case is 0: give an initial amplitude", fish->name);
     }
     control_set_amplitude(fish, &change->memory, change->state->t, change->values[0]);
     return STATUS_OK;
@@ -28,7 +28,7 @@ static enum status set_amplitude(struct change *change) {
 
 static enum status set_frequency(struct change *change) {
     if (change->values[0] < 0) {
-        return status_fail(STATUS_CASE, "wave.frequency: %g Hz: it cannot be negative", change->values[0]);
+        return status_fail(STATUS_CASE, "wave.frequency: %g Hz: a frequency cannot be negative", change->values[0]);
     }
     control_set_frequency(change->fish, &change->memory, change->state->t, change->values[0]);
     return STATUS_OK;
@@ -36,7 +36,7 @@ static enum status set_frequency(struct change *change) {
 
 static enum status set_bias(struct change *change) {
     if (change->fish->control.law != CONTROL_NONE) {
-        return status_fail(STATUS_CASE, "control.bias: the law of %s sets the bias itself: use 'law: none'",
+        return status_fail(STATUS_CASE, "control.bias: the control law of %s sets the bias: use 'law: none'",
                            change->fish->name);
     }
     control_set_bias(change->fish, &change->memory, change->state->t, change->values[0]);
@@ -46,11 +46,11 @@ static enum status set_bias(struct change *change) {
 static enum status set_heading(struct change *change) {
     const struct fish *const fish = change->fish;
     if (fish->control.law == CONTROL_NONE) {
-        return status_fail(STATUS_CASE, "control.desired_heading: %s has no law that takes it: choose a control.law",
+        return status_fail(STATUS_CASE, "control.desired_heading: %s has no control law: choose a control.law",
                            fish->name);
     }
     if (control_n_waypoints(fish, &change->memory) > 0) {
-        return status_fail(STATUS_CASE, "control.desired_heading: %s steers to waypoints", fish->name);
+        return status_fail(STATUS_CASE, "control.desired_heading: %s follows waypoints", fish->name);
     }
     control_set_heading(fish, &change->memory, change->state->t, angle_radians(change->values[0]));
     return STATUS_OK;
@@ -59,7 +59,7 @@ static enum status set_heading(struct change *change) {
 static enum status set_waypoints(struct change *change) {
     const struct fish *const fish = change->fish;
     if (fish->control.law != CONTROL_COURSE && fish->control.law != CONTROL_AVERAGED_HEADING) {
-        return status_fail(STATUS_CASE, "control.waypoints: %s needs 'law: course', whose bias does not jump",
+        return status_fail(STATUS_CASE, "control.waypoints: %s needs 'law: course', which has a continuous bias",
                            fish->name);
     }
     if (change->n % 2 != 0 || change->n > 2 * CONTROL_MAX_WAYPOINTS) {
@@ -80,7 +80,7 @@ static const struct led_key {
 };
 enum { N_KEYS = sizeof keys / sizeof *keys };
 
-static enum status find_key(const char *name, const struct led_key **key) {
+static enum status led_find_key(const char *name, const struct led_key **key) {
     for (int k = 0; k < N_KEYS; k++) {
         *key = &keys[k];
         if (strcmp(keys[k].key, name) == 0) return STATUS_OK;
@@ -91,8 +91,8 @@ static enum status find_key(const char *name, const struct led_key **key) {
                        name);
 }
 
-// the curvature of a joint is singular at half a turn
-static enum status check_turn(const struct change *change) {
+// the curvature of a joint is singular at a turn of pi
+static enum status led_check_turn(const struct change *change) {
     const double amplitude = 1 + change->memory.amplitude.target;
     const double bias = control_largest_bias(change->fish, &change->memory);
     const double turn = fish_largest_turn(change->fish, amplitude, bias);
@@ -103,17 +103,21 @@ static enum status check_turn(const struct change *change) {
 
 enum status led_set(const struct simulation *simulation, int fish, const char *key, int n, const double *values) {
     const struct led_key *found;
-    TRY(find_key(key, &found));
+    TRY(led_find_key(key, &found));
+
+    // check the values
     if (n < 1 || (found->is_number && n > 1)) {
         return status_fail(STATUS_CASE, "%s: %d numbers: give %s", key, n, found->is_number ? "one" : "pairs");
     }
     for (int i = 0; i < n; i++) {
         if (!isfinite(values[i])) return status_fail(STATUS_CASE, "%s: %g is not finite", key, values[i]);
     }
+
+    // change a copy of the memory, then replace the memory
     struct control_memory *const memory = &simulation->state->control[fish];
     struct change change = {&simulation->school->fish[fish], simulation->state, *memory, n, values};
     TRY(found->set(&change));
-    TRY(check_turn(&change));
+    TRY(led_check_turn(&change));
     *memory = change.memory;
     return STATUS_OK;
 }

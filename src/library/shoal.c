@@ -1,4 +1,4 @@
-/* shoal.c: the part of include/shoal.h that opens, steps, sets and closes runs, and writes their files. */
+/* shoal.c: functions of include/shoal.h that open, step and close runs, set keys, and write result files. */
 #include "shoal.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@
 
 _Static_assert((int)SHOAL_USAGE == STATUS_CASE && (int)SHOAL_FILE == STATUS_FILE &&
                    (int)SHOAL_MEMORY == STATUS_MEMORY && (int)SHOAL_SOLVER == STATUS_SOLVER,
-               "a status goes to the caller as it is");
+               "public and internal status numbers agree");
 
 // ---- checks
 
@@ -29,18 +29,18 @@ static enum status check_assignments(int n, const char *const *assignments, cons
     return STATUS_OK;
 }
 
-// fails where a run cannot make a step
+// fail if the run cannot step
 static enum status check_can_step(const struct shoal *run, const char *function) {
     TRY(handle_need(run, function, "run"));
     if (handle_has_failed(run, function)) return STATUS_SOLVER;
     if (run->simulation->state->event < run->simulation->n_events) return STATUS_OK;
-    return status_fail(STATUS_CASE, "%s: the run is at its end, t = %g s: a longer one needs a larger time.end",
-                       function, run->simulation->state->t);
+    return status_fail(STATUS_CASE, "%s: the run is at its end, t = %g s: increase time.end", function,
+                       run->simulation->state->t);
 }
 
 // ---- the life of a run
 
-static enum status start(struct shoal *run) {
+static enum status create_simulation(struct shoal *run) {
     const struct case_values *const values = &run->shared->values;
     TRY(sweep_refuse(values));
     run->result_path = record_path(values);
@@ -48,9 +48,9 @@ static enum status start(struct shoal *run) {
     return simulate_create(&run->simulation, values);
 }
 
-// hand out a run that has read its case with this status
+// create the simulation of a new run, unless reading the case failed; set *run, or release the new run
 static int finish_opening(struct shoal **run, struct shoal *new, enum status status) {
-    if (status == STATUS_OK) status = start(new);
+    if (status == STATUS_OK) status = create_simulation(new);
     if (status == STATUS_OK) {
         *run = new;
     } else {
@@ -64,6 +64,7 @@ int shoal_open(struct shoal **run, const char *case_path, int n_assignments, con
     *run = NULL;
     TRY(handle_need(case_path, __func__, "case_path"));
     TRY(check_assignments(n_assignments, assignments, __func__));
+
     struct shoal *new;
     TRY(handle_create(&new));
     return finish_opening(run, new, case_read(&new->shared->values, case_path, n_assignments, assignments));
@@ -75,6 +76,7 @@ int shoal_open_text(struct shoal **run, const char *text, const char *folder, in
     *run = NULL;
     TRY(handle_need(text, __func__, "text"));
     TRY(check_assignments(n_assignments, assignments, __func__));
+
     struct shoal *new;
     TRY(handle_create(&new));
     return finish_opening(
@@ -85,8 +87,8 @@ static int has_ended(const struct shoal *run) {
     return run->simulation->state->event >= run->simulation->n_events;
 }
 
-// what belongs to a result file that is closed
-static void forget_record(struct shoal *run) {
+// release path, checkpoints and lock of a closed result file
+static void release_record(struct shoal *run) {
     free(run->record_path);
     run->record_path = NULL;
     checkpoints_free(&run->checkpoints);
@@ -94,15 +96,16 @@ static void forget_record(struct shoal *run) {
     run->lock = (struct result_lock){.descriptor = -1};
 }
 
-/* Fail with STATUS_FILE in a fork of the process that writes the result: the file is no longer this run's. */
+/* Fail with STATUS_FILE in a fork of the process that writes the result file, and detach the run from the file. */
 static enum status check_process(struct shoal *run, const char *function) {
     if (!run->record.file || run->lock.owner == getpid()) return STATUS_OK;
     status_fail(STATUS_FILE,
-                "%s: %s is written by process %ld, of which this one is a fork: the run goes on without it", function,
+                "%s: %s is written by process %ld, not by this fork: the run continues without a result file", function,
                 run->record_path, (long)run->lock.owner);
+
     result_file_abandon(run->record.file);
     run->record = (struct record){0};
-    forget_record(run);
+    release_record(run);
     return STATUS_FILE;
 }
 
@@ -113,24 +116,30 @@ static enum status end_record(struct shoal *run) {
     } else if (!has_ended(run)) {
         status = STATUS_STOPPED;
     }
+
     pthread_mutex_lock(&handle_netcdf_lock);
     if (run->simulation->residual) record_notes_write(run->record.file, run->simulation, NULL, NULL);
     const enum status closed = record_close(&run->record, status);
     pthread_mutex_unlock(&handle_netcdf_lock);
-    forget_record(run);
-    // how the run ended is no failure of closing its file
+    release_record(run);
+
+    // record_close returns the status of the run if the file was closed without an error
     return closed == status ? STATUS_OK : closed;
 }
 
 void shoal_close(struct shoal *run) {
     if (!run) return;
     if (check_process(run, __func__) == STATUS_OK && run->record.file) end_record(run);
+
     for (int i = 0; i < RESULT_TABLE_MAX; i++) free(run->buffer[i]);
     simulate_free(run->simulation);
+
+    // the last copy of the run releases the case
     if (atomic_fetch_sub(&run->shared->n_users, 1) == 1) {
         case_free(&run->shared->values);
         free(run->shared);
     }
+
     free(run->result_path);
     free(run);
 }
@@ -141,24 +150,25 @@ static enum status write_row(struct shoal *run) {
     return record_row(&run->record, &row);
 }
 
-static enum status write_if_due(struct shoal *run) {
+static enum status write_due_row(struct shoal *run) {
     TRY(check_process(run, "shoal_step"));
+
     pthread_mutex_lock(&handle_netcdf_lock);
     enum status status = write_row(run);
     if (status != STATUS_OK) status = record_close(&run->record, status);
     pthread_mutex_unlock(&handle_netcdf_lock);
-    if (status != STATUS_OK) forget_record(run);
+    if (status != STATUS_OK) release_record(run);
     return status;
 }
 
-// every run, with a file or without, begins its integration again where the case has a checkpoint
+// the integrator restarts at every checkpoint of the case, with or without a result file: same bits in both runs
 static int is_checkpoint(const struct shoal *run) {
     const struct case_values *const values = &run->shared->values;
     const long interval = lround(values->time.checkpoint_interval / values->school.shedding_interval);
     return interval > 0 && run->simulation->state->event % interval == 0;
 }
 
-static enum status checkpoint(struct shoal *run) {
+static enum status write_checkpoint(struct shoal *run) {
     TRY(check_process(run, "shoal_checkpoint"));
     if (run->record.file) {
         pthread_mutex_lock(&handle_netcdf_lock);
@@ -166,17 +176,20 @@ static enum status checkpoint(struct shoal *run) {
         pthread_mutex_unlock(&handle_netcdf_lock);
         TRY(status);
     }
+
     return has_ended(run) ? STATUS_OK : handle_renew(run);
 }
 
 int shoal_step(struct shoal *run) {
     TRY(check_can_step(run, __func__));
     handle_forget_row(run);
+
     const enum status status = simulate_step(run->simulation);
     if (status == STATUS_OK) {
-        TRY(write_if_due(run));
-        return is_checkpoint(run) ? checkpoint(run) : STATUS_OK;
+        TRY(write_due_row(run));
+        return is_checkpoint(run) ? write_checkpoint(run) : STATUS_OK;
     }
+
     handle_fail(run);
     return status == STATUS_CONTACT ? STATUS_SOLVER : status;
 }
@@ -185,15 +198,17 @@ int shoal_advance(struct shoal *run, double t) {
     TRY(handle_need(run, __func__, "run"));
     if (!isfinite(t)) return status_fail(STATUS_CASE, "%s: the time %g is not finite", __func__, t);
     const struct simulation *const simulation = run->simulation;
-    // a time that an event has but for rounding is that event's
+
+    // number of events; the factor absorbs the rounding error of t
     const double events = ceil(t / simulation->school->interval * (1 - 1e-12));
     if (events > (double)simulation->n_events) {
         return status_fail(STATUS_CASE, "%s: t = %g s is after the end of the case, %g s", __func__, t, shoal_end(run));
     }
     if (events < (double)simulation->state->event) {
-        return status_fail(STATUS_CASE, "%s: t = %g s is before the last event, at %g s: shoal_restore goes back",
-                           __func__, t, simulation->state->t);
+        return status_fail(STATUS_CASE, "%s: t = %g s is before the last event, at %g s: use shoal_restore", __func__,
+                           t, simulation->state->t);
     }
+
     while ((double)simulation->state->event < events) TRY(shoal_step(run));
     return STATUS_OK;
 }
@@ -226,24 +241,27 @@ const char *shoal_result_path(const struct shoal *run) {
     return handle_need(run, __func__, "run") == STATUS_OK ? run->result_path : NULL;
 }
 
-// an earlier result stays until the first row of this one is safe
-static enum status create_file(struct shoal *run, int overwrite) {
+// keep an earlier result file until the first row of the new result is on disk
+static enum status create_result_file(struct shoal *run, int overwrite) {
     TRY(record_create(&run->record, &run->shared->values, run->simulation->school, run->simulation->n_events,
                       run->record_path, overwrite, "libshoal"));
+
     enum status status = write_row(run);
     if (status == STATUS_OK) status = record_publish(&run->record, 0);
     return status == STATUS_OK ? STATUS_OK : record_close(&run->record, status);
 }
 
-// the file, its lock, and the plan of its checkpoints
+// lock the path, create the result file, and remove the checkpoints of an earlier run
 static enum status start_record(struct shoal *run, const char *path, int overwrite) {
     run->record_path = strdup(path);
     if (!run->record_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
+
     TRY(target_check(path, TARGET_NETCDF, overwrite));
     TRY(result_lock_take(&run->lock, path));
     TRY(checkpoints_create(&run->checkpoints, &run->shared->values, path, NULL));
+
     pthread_mutex_lock(&handle_netcdf_lock);
-    const enum status status = create_file(run, overwrite);
+    const enum status status = create_result_file(run, overwrite);
     pthread_mutex_unlock(&handle_netcdf_lock);
     if (status == STATUS_OK) checkpoints_remove(&run->checkpoints);
     return status;
@@ -255,11 +273,12 @@ int shoal_write(struct shoal *run, const char *path, int overwrite) {
     if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
     TRY(check_process(run, __func__));
     if (run->record.file) {
-        return status_fail(STATUS_CASE, "%s: the run writes %s: end that with shoal_write_end", __func__,
+        return status_fail(STATUS_CASE, "%s: the run already writes %s: call shoal_write_end first", __func__,
                            run->record_path);
     }
+
     const enum status status = start_record(run, path, overwrite);
-    if (status != STATUS_OK) forget_record(run);
+    if (status != STATUS_OK) release_record(run);
     return status;
 }
 
@@ -267,10 +286,9 @@ int shoal_checkpoint(struct shoal *run) {
     TRY(handle_need(run, __func__, "run"));
     if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
     if (!run->record.file) {
-        return status_fail(STATUS_CASE, "%s: a checkpoint belongs to a result file: begin one with shoal_write",
-                           __func__);
+        return status_fail(STATUS_CASE, "%s: a checkpoint needs a result file: call shoal_write first", __func__);
     }
-    return checkpoint(run);
+    return write_checkpoint(run);
 }
 
 int shoal_write_end(struct shoal *run) {

@@ -1,4 +1,4 @@
-/* shoal_copy.c: the part of include/shoal.h that copies runs, in memory and as checkpoints. */
+/* shoal_copy.c: functions of include/shoal.h that copy runs, in memory and as checkpoints. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,6 +16,7 @@ static enum status copy_simulation(struct shoal *copy, const struct shoal *run) 
     struct school *school;
     struct state *state;
     TRY(fish_school_create(&school, &values->school));
+
     enum status status = state_create(&state, school);
     if (status == STATUS_OK) status = state_table_copy(state, from->state, school);
     if (status != STATUS_OK) {
@@ -23,6 +24,8 @@ static enum status copy_simulation(struct shoal *copy, const struct shoal *run) 
         fish_school_free(school);
         return status;
     }
+
+    // the simulation owns school and state
     TRY(simulate_take_up(&copy->simulation, values, school, state, &from->totals));
     return handle_evaluate(copy->simulation);
 }
@@ -33,6 +36,7 @@ int shoal_clone(struct shoal **copy, struct shoal *run) {
     TRY(handle_need(run, __func__, "run"));
     if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
     TRY(handle_renew(run));
+
     struct shoal *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: a run");
     new->shared = run->shared;
@@ -40,6 +44,7 @@ int shoal_clone(struct shoal **copy, struct shoal *run) {
     new->is_renewed = 1;
     new->lock.descriptor = -1;
     new->when_reached = run->when_reached;
+
     new->result_path = strdup(run->result_path);
     const enum status status =
         new->result_path ? copy_simulation(new, run) : status_fail(STATUS_MEMORY, "out of memory: a path");
@@ -54,16 +59,18 @@ int shoal_clone(struct shoal **copy, struct shoal *run) {
 int shoal_restore(struct shoal *run, struct shoal *from) {
     TRY(handle_need(run, __func__, "run"));
     TRY(handle_need(from, __func__, "from"));
+
     if (run == from) return STATUS_OK;
     if (run->shared != from->shared) {
         return status_fail(STATUS_CASE, "%s: the two runs are not copies of one another", __func__);
     }
     if (run->record.file) {
-        return status_fail(STATUS_CASE, "%s: the run writes %s: end that with shoal_write_end", __func__,
+        return status_fail(STATUS_CASE, "%s: the run already writes %s: call shoal_write_end first", __func__,
                            run->record_path);
     }
     if (handle_has_failed(from, __func__)) return STATUS_SOLVER;
     TRY(handle_renew(from));
+
     handle_forget_row(run);
     run->simulation->totals = from->simulation->totals;
     enum status status = state_table_copy(run->simulation->state, from->simulation->state, run->simulation->school);
@@ -76,7 +83,7 @@ int shoal_restore(struct shoal *run, struct shoal *from) {
 
 // ---- checkpoints without a result
 
-// the name of a result file that no run can have: `shoal resume` finds none
+// no run can have a result file of this name, so `shoal resume` refuses the checkpoint
 static char no_result[] = "(memory)";
 
 int shoal_save(struct shoal *run, const char *path) {
@@ -93,6 +100,7 @@ int shoal_save(struct shoal *run, const char *path) {
                                           .places = "",
                                           .totals = run->when_reached,
                                           .wall_time = simulate_wall_time(run->simulation)};
+
     const enum status status =
         checkpoint_write(path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
     free(effective);
@@ -104,6 +112,7 @@ static enum status load_simulation(struct shoal *run, const struct checkpoint *c
     struct school *school;
     struct state *state;
     TRY(fish_school_create(&school, &values->school));
+
     enum status status = state_create(&state, school);
     if (status == STATUS_OK) status = checkpoint_set_state(checkpoint, state, school);
     if (status != STATUS_OK) {
@@ -111,13 +120,14 @@ static enum status load_simulation(struct shoal *run, const struct checkpoint *c
         fish_school_free(school);
         return status;
     }
+
     TRY(simulate_take_up(&run->simulation, values, school, state, &checkpoint->totals));
     run->is_renewed = 1;
     run->when_reached = checkpoint->totals;
     return handle_evaluate(run->simulation);
 }
 
-static enum status load(struct shoal *run, const struct checkpoint *checkpoint) {
+static enum status load_checkpoint(struct shoal *run, const struct checkpoint *checkpoint) {
     TRY(checkpoint_check_program(checkpoint));
     const char *const text = checkpoint->effective;
     TRY(case_parse(&run->shared->values, text, strlen(text), "case", NULL, 0, NULL));
@@ -130,12 +140,14 @@ int shoal_load(struct shoal **run, const char *path) {
     TRY(handle_need(run, __func__, "run"));
     *run = NULL;
     TRY(handle_need(path, __func__, "path"));
+
     struct checkpoint checkpoint;
     TRY(checkpoint_read(&checkpoint, path));
     struct shoal *new;
     enum status status = handle_create(&new);
-    if (status == STATUS_OK) status = load(new, &checkpoint);
+    if (status == STATUS_OK) status = load_checkpoint(new, &checkpoint);
     checkpoint_free(&checkpoint);
+
     if (status == STATUS_OK) {
         *run = new;
         return STATUS_OK;

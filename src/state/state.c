@@ -1,4 +1,4 @@
-/* state.c: the state before the start, and the rings of samples. */
+/* state.c: the state before the start, and histories of samples. */
 #include "state/state.h"
 
 #include <math.h>
@@ -14,6 +14,7 @@ static enum status history_create(struct history *history, const struct fish *fi
     history->capacity = (int)fmin(floor(in_a_period + 0.5), 1e7) + 1;
     history->n = 0;
     history->last = -1;
+
     history->sample = calloc((size_t)history->capacity, sizeof *history->sample);
     if (!history->sample) return status_fail(STATUS_MEMORY, "out of memory: %d samples", history->capacity);
     return STATUS_OK;
@@ -24,8 +25,10 @@ static enum status balance_create(struct energy_balance *balance, const struct f
     return array_many_doubles(per_strain, sizeof per_strain / sizeof *per_strain, rod_n_strains(fish), "the strains");
 }
 
-static enum status fill(struct state *state, const struct school *school) {
+static enum status state_fill(struct state *state, const struct school *school) {
     const size_t n_fish = (size_t)school->n_fish, n_unknowns = (size_t)school->n_unknowns;
+
+    // allocate
     state->y = calloc(n_unknowns, sizeof *state->y);
     state->yp = calloc(n_unknowns, sizeof *state->yp);
     state->wake = calloc(n_fish, sizeof *state->wake);
@@ -39,6 +42,8 @@ static enum status fill(struct state *state, const struct school *school) {
         !state->momentum || !state->closest || !state->closest->before) {
         return status_fail(STATUS_MEMORY, "out of memory: the state of %d fish", school->n_fish);
     }
+
+    // set values that do not start at zero
     state->closest->distance = INFINITY;
     state->crossed = -1;
     for (int f = 0; f < school->n_fish; f++) {
@@ -49,6 +54,7 @@ static enum status fill(struct state *state, const struct school *school) {
         state->control[f].held_heading = school->fish[f].start_heading;
         fish_start(&school->fish[f], state->y);
     }
+
     memcpy(state->closest->before, state->y, n_unknowns * sizeof *state->y);
     return STATUS_OK;
 }
@@ -57,7 +63,8 @@ enum status state_create(struct state **state, const struct school *school) {
     *state = NULL;
     struct state *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: a state");
-    const enum status status = fill(new, school);
+
+    const enum status status = state_fill(new, school);
     if (status != STATUS_OK) {
         state_free(new, school);
         return status;
@@ -76,6 +83,7 @@ void state_free(struct state *state, const struct school *school) {
         free(state->balance[f].stress);
         free(state->balance[f].stress_before);
     }
+
     free(state->y);
     free(state->yp);
     free(state->wake);

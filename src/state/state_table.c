@@ -1,4 +1,4 @@
-/* state_table.c: the table, and what loops over it. */
+/* state_table.c: the table of fields, and loops over the table. */
 #include "state/state_table.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ static size_t of_wake(const struct state *state, const struct school *school, in
     return (size_t)state->wake[f].n_vortex;
 }
 
-// a sample is nothing but doubles
+// struct sample consists of doubles
 static size_t of_history(const struct state *state, const struct school *school, int f) {
     (void)school;
     return (size_t)state->history[f].capacity * (sizeof(struct sample) / sizeof(double));
@@ -138,7 +138,7 @@ size_t state_table_length(const struct state_row *row, const struct state *state
     return row->length ? row->length(state, school, f) : row->bytes / state_table_size(row);
 }
 
-static const void *owner_of(const struct state_row *row, const struct state *state, int f) {
+static const void *field_owner(const struct state_row *row, const struct state *state, int f) {
     switch (row->owner) {
         case STATE_WAKE: return &state->wake[f];
         case STATE_CONTROL: return &state->control[f];
@@ -152,8 +152,9 @@ static const void *owner_of(const struct state_row *row, const struct state *sta
 }
 
 void *state_table_values(const struct state_row *row, const struct state *state, int f) {
-    char *const field = (char *)owner_of(row, state, f) + row->offset;
+    char *const field = (char *)field_owner(row, state, f) + row->offset;
     if (!row->length) return field;
+
     void *array;
     memcpy(&array, field, sizeof array);
     return array;
@@ -171,6 +172,7 @@ enum status state_table_copy(struct state *to, const struct state *from, const s
         TRY(wake_resize(&to->wake[f], from->wake[f].n_vortex));
         to->wake[f].version++;
     }
+
     for (int i = 0; i < state_table_n; i++) {
         const struct state_row *const row = &state_table[i];
         for (int f = 0; f < state_table_n_owners(row, school) && row->type != STATE_UNKEPT; f++) {
@@ -181,26 +183,28 @@ enum status state_table_copy(struct state *to, const struct state *from, const s
     return STATUS_OK;
 }
 
-/* Whether a value of a field may be absent: the distance of one fish alone is infinite, a sample within the first
- * period has no speed, and only a fish with the pressure of its sheet has a leading-edge parameter. */
-static int may_lack(const struct state_row *row, size_t i) {
+/* Whether a value may be undefined: the distance of a single fish is infinite, a sample in the first period has no
+ * speed, and the leading-edge parameter exists only with force: pressure. */
+static int may_be_undefined(const struct state_row *row, size_t i) {
     const size_t n_sample = sizeof(struct sample) / sizeof(double),
                  speed = offsetof(struct sample, speed) / sizeof(double),
                  edge = offsetof(struct sample, leading_edge) / sizeof(double);
+
     if (row->owner == STATE_CLOSEST) return row->offset == offsetof(struct closest, distance);
     return row->owner == STATE_HISTORY && (i % n_sample == speed || i % n_sample == edge);
 }
 
-static enum status check_finite(const struct state *state, const struct school *school) {
+static enum status state_check_finite(const struct state *state, const struct school *school) {
     for (int i = 0; i < state_table_n; i++) {
         const struct state_row *const row = &state_table[i];
         if (row->type != STATE_REAL) continue;
         for (int f = 0; f < state_table_n_owners(row, school); f++) {
             const double *const values = state_table_values(row, state, f);
             const size_t n = state_table_length(row, state, school, f);
+
             for (size_t k = 0; k < n; k++) {
-                if (isfinite(values[k]) || may_lack(row, k)) continue;
-                return status_fail(STATUS_FILE, "its value %zu of '%s' is %g", k, row->name, values[k]);
+                if (isfinite(values[k]) || may_be_undefined(row, k)) continue;
+                return status_fail(STATUS_FILE, "value %zu of '%s' is %g", k, row->name, values[k]);
             }
         }
     }
@@ -208,16 +212,18 @@ static enum status check_finite(const struct state *state, const struct school *
 }
 
 enum status state_table_check(const struct state *state, const struct school *school) {
-    TRY(check_finite(state, school));
+    TRY(state_check_finite(state, school));
     int is_good = state->event >= 0 &&
                   fabs(state->t - (double)state->event * school->interval) <= school->interval / 2 &&
                   state->crossed >= -1 && state->crossed < school->n_fish;
+
     for (int i = 0; i < 2; i++) is_good &= state->closest->fish[i] >= 0 && state->closest->fish[i] < school->n_fish;
     for (int f = 0; f < school->n_fish; f++) {
         const struct history *const history = &state->history[f];
         const struct energy_balance *const balance = &state->balance[f];
         const struct control_memory *const control = &state->control[f];
         const int n_waypoints = control_n_waypoints(&school->fish[f], control);
+
         is_good &= history->n >= 1 && history->n <= history->capacity;
         is_good &= history->last >= 0 && history->last < history->capacity;
         is_good &= balance->n >= 0 && balance->n <= 2;
@@ -225,5 +231,6 @@ enum status state_table_check(const struct state *state, const struct school *sc
         is_good &= control->n_waypoints >= 0 && control->n_waypoints <= CONTROL_MAX_WAYPOINTS;
         is_good &= state->wake[f].has_markers == (school->shedding == SHEDDING_SHEET);
     }
-    return is_good ? STATUS_OK : status_fail(STATUS_FILE, "its state is none of this case");
+
+    return is_good ? STATUS_OK : status_fail(STATUS_FILE, "the state does not fit this case");
 }

@@ -1,4 +1,4 @@
-/* wake_merge.c: where the bodies are, what a pair would change there, and the queue with fewer vortices. */
+/* wake_merge.c: circles around bodies, velocity change by a merged pair, and compaction of the queue. */
 #include "state/wake_merge.h"
 
 #include <limits.h>
@@ -10,25 +10,26 @@
 
 static const double two_pi = 6.28318530717958647692;
 
-/* No pair is merged within so many lengths of a body: its own taper ends there too (free_sheet.h). */
+/* No pair is merged within this distance of a body, lengths; the taper of the wake of the body ends there too
+ * (free_sheet.h). */
 static const double nearest = 2;
 
-/* The newest of a queue are never merged. */
+/* The newest vortices of a queue are never merged. */
 enum { NEWEST = 16 };
 
-/* All that a body does to pairs: a circle that moves. */
+/* A moving circle around a body. */
 struct body {
     double at[2], velocity[2], radius;
-    double nearest;    /* m */
-    double per_moment; /* the cube of the distance over sum |Gamma| d^2 at which the change is as large as allowed */
+    double nearest;    /* no merging below this distance, m */
+    double per_moment; /* cube of the distance over sum |Gamma| d^2 at the largest allowed velocity change */
 };
 
-/* What a pair becomes. */
+/* The vortex, or marker, that replaces a pair. */
 struct merged {
     double x[2], u[2], u_before[2];
-    double circulation;   /* or label */
-    double rate[2];       /* of the label, now and before */
-    double second_moment; /* sum |Gamma| d^2, of before and after, m4 s-1 */
+    double circulation;   /* circulation, or label of a marker, m2 s-1 */
+    double rate[2];       /* rate of the label, now and at the event before */
+    double second_moment; /* sum |Gamma| d^2 before and after the merge, m4 s-1 */
     double span;          /* largest d, m */
 };
 
@@ -43,23 +44,27 @@ static struct body body_of(const struct school *school, const struct state *stat
         body.velocity[0] += part * y[fish->at.vx + k];
         body.velocity[1] += part * y[fish->at.vy + k];
     }
+
     for (int k = 0; k < fish->n_nodes; k++) {
         body.radius = fmax(body.radius, hypot(y[fish->at.x + k] - body.at[0], y[fish->at.y + k] - body.at[1]));
     }
+
     const double change = school->wake_merge * fish->length * fish_rate(school, fish) / wake_most(school, LONG_MAX - 1);
     body.per_moment = sqrt(2) / (two_pi * change);
     return body;
 }
 
-// whether no body is too near a pair that lives for some time, s
+// whether all bodies are far enough from a pair with a remaining lifetime of life, s
 static int is_far(const struct body *body, int n, const struct merged *pair, double life) {
     const double moment = pair->second_moment;
     if (!isfinite(moment)) return 0;
+
     for (int f = 0; f < n; f++) {
         const double r[2] = {pair->x[0] - body[f].at[0], pair->x[1] - body[f].at[1]};
         const double w[2] = {pair->u[0] - body[f].velocity[0], pair->u[1] - body[f].velocity[1]};
         const double approach = -(r[0] * w[0] + r[1] * w[1]), square = w[0] * w[0] + w[1] * w[1];
-        // the time at which they are closest
+
+        // time of the closest approach, for constant velocities
         const double t = approach <= 0 ? 0 : approach < life * square ? approach / square : life;
         const double gap = hypot(r[0] + t * w[0], r[1] + t * w[1]) - body[f].radius - pair->span;
         if (gap < body[f].nearest || gap * gap * gap < moment * body[f].per_moment) return 0;
@@ -67,14 +72,14 @@ static int is_far(const struct body *body, int n, const struct merged *pair, dou
     return 1;
 }
 
-// add one vortex of before or after to what a pair changes
-static void add_source(struct merged *pair, double circulation, double x, double y) {
+// add one vortex, before or after the merge, to the second moment of a pair
+static void add_moment(struct merged *pair, double circulation, double x, double y) {
     const double d = hypot(x - pair->x[0], y - pair->x[1]);
     pair->second_moment += fabs(circulation) * d * d;
     pair->span = fmax(pair->span, d);
 }
 
-// the mean of n vortices, whose numbers are in at, with weights that add up to 1
+// weighted mean of the n vortices with the numbers at; the weights have the sum 1
 static struct merged mean_of(const struct wake *wake, int n, const int *at, const double *weight) {
     struct merged mean = {.x = {0}};
     for (int k = 0; k < n; k++) {
@@ -92,42 +97,45 @@ static struct merged merge_vortices(const struct wake *wake, const int at[2]) {
     const double g[2] = {wake->circulation[at[0]], wake->circulation[at[1]]}, sum = g[0] + g[1];
     struct merged pair = mean_of(wake, 2, at, (const double[]){g[0] / sum, g[1] / sum});
     pair.circulation = sum;
-    for (int k = 0; k < 2; k++) add_source(&pair, g[k], wake->x[at[k]], wake->y[at[k]]);
+    for (int k = 0; k < 2; k++) add_moment(&pair, g[k], wake->x[at[k]], wake->y[at[k]]);
     return pair;
 }
 
-// the two in the middle of four markers
+// merge the two middle markers of four
 static struct merged merge_markers(const struct wake *wake, const int at[4]) {
     double g[3], sum = 0;
     for (int k = 0; k < 3; k++) {
         g[k] = wake->circulation[at[k + 1]] - wake->circulation[at[k]];
         sum += g[k];
     }
+
     const double half = g[1] / 2;
     struct merged pair =
         mean_of(wake, 4, at, (const double[]){-half / sum, (g[0] + g[1]) / sum, (g[1] + g[2]) / sum, -half / sum});
     pair.circulation = wake->circulation[at[1]] + half;
     pair.rate[0] = (wake->rate[at[1]] + wake->rate[at[2]]) / 2;
     pair.rate[1] = (wake->rate_before[at[1]] + wake->rate_before[at[2]]) / 2;
+
+    // second moment: the three stretches before, and the two stretches after
     for (int k = 0; k < 3; k++) {
-        add_source(&pair, g[k], (wake->x[at[k]] + wake->x[at[k + 1]]) / 2, (wake->y[at[k]] + wake->y[at[k + 1]]) / 2);
+        add_moment(&pair, g[k], (wake->x[at[k]] + wake->x[at[k + 1]]) / 2, (wake->y[at[k]] + wake->y[at[k + 1]]) / 2);
     }
     for (int k = 0; k < 2; k++) {
         const int end = at[3 * k];
-        add_source(&pair, g[2 * k] + half, (wake->x[end] + pair.x[0]) / 2, (wake->y[end] + pair.x[1]) / 2);
+        add_moment(&pair, g[2 * k] + half, (wake->x[end] + pair.x[0]) / 2, (wake->y[end] + pair.x[1]) / 2);
     }
     return pair;
 }
 
-// put vortex `from` of a wake to place `to`
-static void move(struct wake *wake, int from, int to) {
+// move vortex `from` of a wake to index `to`
+static void move_vortex(struct wake *wake, int from, int to) {
     double *const values[] = {wake->x,        wake->y,           wake->u,     wake->v,    wake->u_before,
                               wake->v_before, wake->circulation, wake->birth, wake->rate, wake->rate_before};
     for (size_t k = 0; k < sizeof values / sizeof *values; k++) values[k][to] = values[k][from];
 }
 
-// put a pair, whose newer one is vortex `newer`, to a place of the queue
-static void put(struct wake *wake, const struct merged *pair, int newer, int to) {
+// store a merged pair at index `to` of the queue; newer: the newer vortex of the pair
+static void store_pair(struct wake *wake, const struct merged *pair, int newer, int to) {
     wake->x[to] = pair->x[0];
     wake->y[to] = pair->x[1];
     wake->u[to] = pair->u[0];
@@ -140,29 +148,32 @@ static void put(struct wake *wake, const struct merged *pair, int newer, int to)
     wake->birth[to] = wake->birth[newer];
 }
 
-// from the oldest on: what was merged and the vortex after it rest until the next time
+// merge from the oldest vortex; a merged vortex and the next vortex are not merged again in this pass
 static void merge_wake(const struct school *school, const struct body *body, struct state *state, int f) {
     struct wake *const wake = &state->wake[f];
     const double t = state->t;
     const struct impulse_moments before = impulse_of_wake(wake, school, t, 0);
     const int n = wake->n_vortex, last = n - NEWEST - 1;
-    // a pair of markers lies between two others
+
+    // a pair of markers needs a marker on both sides
     int from = wake->has_markers, to = from;
     while (from < n) {
         if (from < last) {
             const int at[4] = {to - 1, from, from + 1, from + 2};
             const struct merged pair = wake->has_markers ? merge_markers(wake, at) : merge_vortices(wake, at + 1);
             if (is_far(body, school->n_fish, &pair, school->lifetime - (t - wake->birth[from + 1]))) {
-                put(wake, &pair, from + 1, to++);
+                store_pair(wake, &pair, from + 1, to++);
                 wake->n_merged++;
                 from += 2;
             }
         }
-        move(wake, from++, to++);
+        move_vortex(wake, from++, to++);
     }
     if (to == from) return;
+
     wake->n_vortex = to;
     wake->version++;
+
     const struct impulse_moments after = impulse_of_wake(wake, school, t, 0);
     impulse_book(&state->momentum[f], &before, &after);
 }
@@ -170,18 +181,21 @@ static void merge_wake(const struct school *school, const struct body *body, str
 enum status wake_merge(const struct school *school, struct state *state) {
     if (school->wake_merge <= 0) return STATUS_OK;
     struct body *const body = calloc((size_t)school->n_fish, sizeof *body);
-    if (!body) return status_fail(STATUS_MEMORY, "out of memory: the places of %d bodies", school->n_fish);
+    if (!body) return status_fail(STATUS_MEMORY, "out of memory: the positions of %d bodies", school->n_fish);
+
     int n_vortices = 0;
     for (int f = 0; f < school->n_fish; f++) {
         body[f] = body_of(school, state, f);
         n_vortices += state->wake[f].n_vortex / WAKE_MERGE_EVENTS;
     }
+
     const int threads =
         parallel_threads(school->threads, school->n_fish, (double)n_vortices * school->n_fish, PARALLEL_VORTICES);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         if ((state->event + f) % WAKE_MERGE_EVENTS == 0) merge_wake(school, body, state, f);
     }
+
     free(body);
     return STATUS_OK;
 }

@@ -147,9 +147,9 @@ static void what_has_no_use_is_refused(void **state) {
     refused(simulation, "control.waypoints", 2, 1, "needs 'law: course'");
     simulate_free(simulation);
     simulation = school_simulation(TIME "fish: [{wave: {amplitude: 0}, control: {waypoints: [[-3, 0]]}}]\n");
-    refused(simulation, "wave.amplitude", 1, 0.1, "has none in its case");
-    refused(simulation, "control.bias", 1, 0.1, "sets the bias itself");
-    refused(simulation, "control.desired_heading", 1, 90, "steers to waypoints");
+    refused(simulation, "wave.amplitude", 1, 0.1, "in the case is 0: give an initial amplitude");
+    refused(simulation, "control.bias", 1, 0.1, "sets the bias: use");
+    refused(simulation, "control.desired_heading", 1, 90, "follows waypoints");
     refused(simulation, "control.waypoints", 3, 1, "3 numbers: give 1 to 32 pairs");
     refused(simulation, "control.waypoints", 66, 1, "66 numbers: give 1 to 32 pairs");
     simulate_free(simulation);

@@ -310,7 +310,7 @@ static void a_fish_that_is_not_there_is_refused(void **state) {
     double x[7], y[7];
     const int wrong[] = {-1, 2, 99, INT_MAX, INT_MIN};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        refuses(shoal_n_nodes(run, wrong[i]), "this run has 2, numbered from 0");
+        refuses(shoal_n_nodes(run, wrong[i]), "this run has 2 fish, numbered from 0");
         refuses(shoal_n_vortices(run, wrong[i]), "shoal_n_vortices: there is no fish");
         refuses(shoal_nodes(run, wrong[i], x, y), "there is no fish");
         refuses(shoal_vortices(run, wrong[i], x, y, x), "there is no fish");
@@ -650,7 +650,7 @@ static void a_result_file_has_the_rows_that_are_due(void **state) {
     assert_int_equal(shoal_write_end(run), SHOAL_OK);
     assert_int_equal(shoal_write(run, path, 0), SHOAL_FILE);  // it exists
     assert_int_equal(shoal_write(run, path, 1), SHOAL_OK);
-    refuses(shoal_write(run, "/tmp/other.nc", 1), "end that with shoal_write_end");
+    refuses(shoal_write(run, "/tmp/other.nc", 1), "call shoal_write_end first");
     assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
     assert_int_equal(shoal_write_end(run), SHOAL_OK);
     shoal_close(run);
@@ -668,7 +668,7 @@ static void a_checkpoint_stands_beside_the_result(void **state) {
     char folder[] = "/tmp/test_shoal_folder_XXXXXX", path[64];
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/run.nc", folder);
-    refuses(shoal_checkpoint(run), "begin one with shoal_write");
+    refuses(shoal_checkpoint(run), "call shoal_write first");
     assert_int_equal(shoal_write(run, path, 0), SHOAL_OK);
     assert_int_equal(shoal_advance(run, 0.06), SHOAL_OK);
     assert_int_equal(shoal_checkpoint(run), SHOAL_OK);
@@ -743,7 +743,7 @@ static int use_in_a_fork(struct shoal *run, int how) {
     if (how == 3 && shoal_write_end(run) != SHOAL_FILE) return 3;
     if (how == 0) return 0;
     // from then on it is a run without a file
-    if (!strstr(shoal_message(), "of which this one is a fork")) return 4;
+    if (!strstr(shoal_message(), "not by this fork")) return 4;
     if (shoal_step(run) != SHOAL_OK || shoal_write_end(run) != SHOAL_OK) return 5;
     shoal_close(run);
     return 0;

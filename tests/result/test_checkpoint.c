@@ -179,8 +179,8 @@ static void what_no_run_has_written_is_refused(void **state) {
     crafted("wake.n_vortex", many, sizeof many, "section 'wake.n_vortex' is invalid");
     crafted("wake.n_vortex", negative, sizeof negative, "section 'wake.n_vortex' is invalid");
     crafted("wake.n_vortex", few, sizeof few, "section 'wake.x' is invalid");
-    crafted("history.last", (const int[]){large, large}, 8, "its state is none of this case");
-    crafted("balance.n", (const int[]){3, 3}, 8, "its state is none of this case");
+    crafted("history.last", (const int[]){large, large}, 8, "the state does not fit this case");
+    crafted("balance.n", (const int[]){3, 3}, 8, "the state does not fit this case");
     // a section that is missing
     crafted("wake.birth", NULL, 0, "section 'wake.birth' is invalid");
 }
@@ -201,7 +201,7 @@ static void values_that_are_not_finite_are_refused(void **state) {
             if (strcmp(row->name, "closest.distance") == 0) continue;  // infinite where a fish is alone
             memcpy(bytes, section.next, section.left);
             memcpy(bytes + places[k % 2], &wrong[k / 2], sizeof(double));
-            crafted(row->name, bytes, section.left, strcmp(row->name, "t") == 0 ? "its value 0 of 't' is" : row->name);
+            crafted(row->name, bytes, section.left, strcmp(row->name, "t") == 0 ? "value 0 of 't' is" : row->name);
             n_refused++;
         }
         free(bytes);
@@ -209,7 +209,7 @@ static void values_that_are_not_finite_are_refused(void **state) {
     assert_true(n_refused > 100);
     crafted("wall_time", &wrong[0], sizeof wrong[0], "section 'wall_time' is invalid");
     crafted("step_size", &wrong[1], sizeof wrong[1], "section 'step_size' is invalid");
-    crafted("t", &(double){0.62}, sizeof(double), "its state is none of this case");
+    crafted("t", &(double){0.62}, sizeof(double), "the state does not fit this case");
 }
 
 /* What a machine of the other order of bytes would write: all numbers the other way round. */

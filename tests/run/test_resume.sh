@@ -154,7 +154,7 @@ end
 for field in y wake.circulation balance.work closest.before; do
     restore
     /usr/bin/python3 nan.py run.ckpt $field
-    refused "a checkpoint with NaN in $field" 4 "the checkpoint of run.nc cannot be used: its value" resume run.ckpt -q
+    refused "a checkpoint with NaN in $field" 4 "the checkpoint of run.nc cannot be used: value" resume run.ckpt -q
     check "it says where: $field" has err "of '$field' is nan"
 done
 restore
