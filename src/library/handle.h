@@ -1,5 +1,5 @@
-/* handle.h: struct shoal, a run of the public interface, and the checks common to the public functions. The functions of
- * include/shoal.h are in shoal.c (the life of a run, result files), shoal_change.c, shoal_copy.c and shoal_read.c.
+/* handle.h: struct shoal, a run of the public interface, and the checks common to the public functions. The functions
+ * of include/shoal.h are in shoal.c (the life of a run, result files), shoal_change.c, shoal_copy.c and shoal_read.c.
  * Tested by tests/library/test_shoal.c. */
 #ifndef HANDLE_H
 #define HANDLE_H

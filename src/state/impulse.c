@@ -31,8 +31,8 @@ static double source_age(const struct wake *wake, int i, double t) {
     return t - wake->birth[i + wake->has_markers];
 }
 
-// add the stretches of a free sheet of rings at time t + tau, multiplied by factor; labels of markers include the decay;
-// decaying: only the fraction of each label that decays within the interval
+// add the stretches of a free sheet of rings at time t + tau, multiplied by factor; labels of markers include the
+// decay; decaying: only the fraction of each label that decays within the interval
 static void add_rings(struct impulse_moments *sum, const struct wake *wake, const struct school *school, double t,
                       double tau, int decaying, double factor) {
     const double interval = school->interval;

@@ -19,8 +19,8 @@ void impulse_add(struct impulse_moments *sum, double circulation, double x, doub
 /* Add a stretch of a vortex sheet: half of the circulation at each end. */
 void impulse_add_stretch(struct impulse_moments *sum, double circulation, const double one[2], const double other[2]);
 
-/* Sums over the released vortices of a wake, or over the stretches between markers, at time t + tau, t being the time of
- * the event; circulations include the decay, as in velocity sums. */
+/* Sums over the released vortices of a wake, or over the stretches between markers, at time t + tau, t being the time
+ * of the event; circulations include the decay, as in velocity sums. */
 struct impulse_moments impulse_of_wake(const struct wake *wake, const struct school *school, double t, double tau);
 
 /* Impulse in x and y, N s, and angular impulse, N m s, of vortices; factor: density times depth, kg m-2. */
@@ -30,8 +30,8 @@ void impulse_of(const struct impulse_moments *sum, double factor, double impulse
 double impulse_depth(const struct fish *fish);
 
 /* impulse_fade: book the moments that decay in the wake of fish f between the event of the state and the next event;
- * call before the wake moves. impulse_remove: book the remaining moments of the old vortices; call before the removal at
- * the event of the state. With wake.removed_circulation: dropped, the lost circulation returns to the body, and is
+ * call before the wake moves. impulse_remove: book the remaining moments of the old vortices; call before the removal
+ * at the event of the state. With wake.removed_circulation: dropped, the lost circulation returns to the body, and is
  * booked at the tail. */
 void impulse_fade(const struct school *school, struct state *state, int f);
 void impulse_remove(const struct school *school, struct state *state, int f);

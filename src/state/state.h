@@ -8,8 +8,8 @@
 #include "fish/fish.h"
 #include "wake/wake.h"
 
-/* Kinds of work: sum of all powers; actuation (muscle); forces of the fluid, in the frame of the water; internal damping;
- * prescribed motion and loads, and prescribed motion and loads in the frame of the water. */
+/* Kinds of work: sum of all powers; actuation (muscle); forces of the fluid, in the frame of the water; internal
+ * damping; prescribed motion and loads, and prescribed motion and loads in the frame of the water. */
 enum work { WORK_ALL, WORK_ACTUATION, WORK_FLUID, WORK_DAMPING, WORK_DRIVING, WORK_DRIVING_ON_WATER, N_WORKS };
 
 /* Values of one fish at the events of the last period, for means over the period: a ring of samples. */

@@ -56,8 +56,8 @@ enum status state_table_make_room(struct state *state, const struct school *scho
  * again. Fails with STATUS_MEMORY; the target can then only be freed. */
 enum status state_table_copy(struct state *to, const struct state *from, const struct school *school);
 
-/* Fail with STATUS_FILE if a number that serves as an index is out of range for the school, if the time differs from the
- * time of the event, or if a value that is always defined is not finite. */
+/* Fail with STATUS_FILE if a number that serves as an index is out of range for the school, if the time differs from
+ * the time of the event, or if a value that is always defined is not finite. */
 enum status state_table_check(const struct state *state, const struct school *school);
 
 #endif
