@@ -143,7 +143,7 @@ static void what_has_no_use_is_refused(void **state) {
     refused(simulation, "wave.amplitude", 2, 0.1, "2 numbers: give one");
     refused(simulation, "wave.frequency", 0, 0.1, "0 numbers: give one");
     refused(simulation, "wave.frequency", 1, -0.1, "cannot be negative");
-    refused(simulation, "control.desired_heading", 1, 90, "no law that takes it");
+    refused(simulation, "control.desired_heading", 1, 90, "has no control law");
     refused(simulation, "control.waypoints", 2, 1, "needs 'law: course'");
     simulate_free(simulation);
     simulation = school_simulation(TIME "fish: [{wave: {amplitude: 0}, control: {waypoints: [[-3, 0]]}}]\n");
