@@ -1,4 +1,4 @@
-/* diagnostics.c: fish by fish, then the school. */
+/* diagnostics.c: diagnostics of each fish, then of the school. */
 #include "school/diagnostics.h"
 
 #include <math.h>
@@ -45,7 +45,7 @@ static double shedding_rate(const struct residual *residual, const struct state 
     return residual_kutta_rate(residual, f, state->t, state->y);
 }
 
-// the free vortices, or markers, inside the outline of a body; its own newest marker is on its tail
+// number of free vortices, or markers, inside the outline of a body; the newest own marker lies at the tail: skip
 static double swept_vortices(const struct school *school, const struct state *state,
                              const struct diagnostics *diagnostics, int f) {
     const struct fish *const fish = &school->fish[f];
@@ -55,6 +55,7 @@ static double swept_vortices(const struct school *school, const struct state *st
         const struct wake *const wake = &state->wake[g];
         const int end = wake->n_vortex - (g == f && wake->n_vortex > 0);
         if (box_gap(body, &diagnostics->wake[g]) > 0) continue;
+
         for (int i = 0; i < end; i++) {
             const double p[2] = {wake->x[i], wake->y[i]};
             const int is_close =
@@ -65,28 +66,35 @@ static double swept_vortices(const struct school *school, const struct state *st
     return n;
 }
 
-static void diagnostics_one(struct residual *residual, const struct state *state, int f,
-                            struct diagnostics *diagnostics) {
+static void diagnostics_fill_fish(struct residual *residual, const struct state *state, int f,
+                                  struct diagnostics *diagnostics) {
     struct diagnostics_fish *const to = &diagnostics->fish[f];
     const struct fish *fish = &residual->school->fish[f];
     const struct history *history = &state->history[f];
     const double *const y = state->y;
+
     to->com[0] = fish_mass_mean(fish, y + fish->at.x);
     to->com[1] = fish_mass_mean(fish, y + fish->at.y);
     to->com_velocity[0] = fish_mass_mean(fish, y + fish->at.vx);
     to->com_velocity[1] = fish_mass_mean(fish, y + fish->at.vy);
+
+    // the desired heading is unwrapped next to the heading
     to->heading = angle_degrees(state_recall(history, 0)->heading);
     const double desired = control_desired_heading(fish, &state->control[f], state->t, y);
     to->desired_heading = to->heading - angle_degrees(angle_wrap(angle_radians(to->heading) - desired));
+
     diagnostics_period(fish, history, residual->school->interval, to);
     diagnostics_forces(residual, f, state->t, y, to);
     to->swept_vortices = swept_vortices(residual->school, state, diagnostics, f);
+
     to->phi0 = y[fish->at.phi0];
     const struct fish_gait gait = control_gait(fish, &state->control[f], state->t);
     to->wave_amplitude = gait.amplitude * fish->amplitude;
     to->wave_frequency = gait.omega / (2 * M_PI);
     to->shed_circulation = y[fish->at.circulation];
     to->shedding_rate = shedding_rate(residual, state, f);
+
+    // energies, powers, and the energy balance
     const struct diagnostics_energies energies = diagnostics_energies(residual, f, state->t, y);
     to->kinetic_energy = energies.kinetic;
     to->bending_energy = energies.bending;
@@ -94,6 +102,7 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->contact_energy = energies.contact;
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     to->added_mass_energy = fluid_force_added_mass_energy(fish, &flow, y);
+
     const struct diagnostics_power power = diagnostics_power(residual, f, state->t, y);
     to->actuation_power = power.actuation;
     to->damping_power = power.damping;
@@ -103,13 +112,14 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->wake_power = power.wake;
     to->constraint_power = power.driving;
     to->contact_power = power.contact;
+
     const struct energy_balance *balance = &state->balance[f];
     to->energy_balance = to->kinetic_energy + to->bending_energy + to->stretching_energy + to->contact_energy -
                          balance->initial_energy - balance->work[WORK_ALL];
     to->actuation_work = balance->work[WORK_ACTUATION];
 }
 
-// every vortex counted one by one: bound, nascent, free, removed
+// sum over every vortex: bound, nascent, free, removed
 static double total_circulation(const struct residual *residual, const struct state *state) {
     double total = 0;
     for (int f = 0; f < residual->school->n_fish; f++) {
@@ -117,7 +127,8 @@ static double total_circulation(const struct residual *residual, const struct st
         const struct wake *wake = &state->wake[f];
         total += bound_sheet_circulation(fish, state->y) + (state->y[fish->at.circulation] - wake->shed_before);
         for (int i = 0; i < wake_n_sources(wake); i++) total += wake_source(wake, i);
-        // what has been lost still counts, or has been given back to the body
+
+        // removed circulation is retained in the sum, or has returned to the body
         if (residual->school->removed == REMOVED_RETAINED) total += wake->removed;
         if (residual->school->removed == REMOVED_DROPPED) {
             total += wake->removed - residual_lost(residual, f, state->t);
@@ -126,7 +137,7 @@ static double total_circulation(const struct residual *residual, const struct st
     return total;
 }
 
-// between any two bodies
+// smallest distance between two bodies, m; NaN for one fish
 static double least_distance(const struct school *school, const double *y, const struct box *body) {
     double least = INFINITY;
     for (int f = 0; f < school->n_fish; f++) {
@@ -142,16 +153,20 @@ void diagnostics_event(struct residual *residual, const struct state *state, str
     const struct school *school = residual->school;
     double sum[2] = {0, 0};
     diagnostics->t = state->t;
+
+    // boxes around bodies and wakes
     for (int f = 0; f < school->n_fish; f++) {
         const struct wake *const wake = &state->wake[f];
         diagnostics->body[f] = clearance_box(&school->fish[f], 0, state->y, state->y);
         diagnostics->wake[f] = box_around(wake->n_vortex, wake->x, wake->y);
     }
+
     for (int f = 0; f < school->n_fish; f++) {
-        diagnostics_one(residual, state, f, diagnostics);
+        diagnostics_fill_fish(residual, state, f, diagnostics);
         sum[0] += cos(angle_radians(diagnostics->fish[f].heading));
         sum[1] += sin(angle_radians(diagnostics->fish[f].heading));
     }
+
     diagnostics_momentum(residual, state, diagnostics);
     diagnostics->least_distance = least_distance(school, state->y, diagnostics->body);
     diagnostics->polarisation = hypot(sum[0], sum[1]) / school->n_fish;

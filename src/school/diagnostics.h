@@ -1,4 +1,4 @@
-/* diagnostics.h: what is derived from a state for the user, all together. doc/model.md, section 13. Tested by
+/* diagnostics.h: all derived quantities of a state, for results. doc/model.md, section 13. Tested by
  * tests/school/test_diagnostics.c. */
 #ifndef DIAGNOSTICS_H
 #define DIAGNOSTICS_H
@@ -11,7 +11,7 @@
 enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school);
 void diagnostics_free(struct diagnostics *diagnostics);
 
-/* Fill *diagnostics from the state at its event; the residual must have been evaluated there. */
+/* Fill *diagnostics at the event of the state; the residual must have been evaluated at this event. */
 void diagnostics_event(struct residual *residual, const struct state *state, struct diagnostics *diagnostics);
 
 #endif

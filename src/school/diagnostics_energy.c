@@ -1,4 +1,4 @@
-/* diagnostics_energy.c: term by term, then over time. */
+/* diagnostics_energy.c: powers and energies by terms, then integrals over time. */
 #include "school/diagnostics_energy.h"
 
 #include <math.h>
@@ -18,13 +18,15 @@
 #include "school/diagnostics_forces.h"
 #include "school/diagnostics_momentum.h"
 
-// the forces that hold the prescribed nodes on their path, the moment that turns a clamped head, the load at the tip
+// power of the constraint forces of prescribed nodes, of the moment on a clamped head, and of the load at the tip;
+// *force: sum of these forces
 static double constraint_power(struct residual *residual, int f, double t, const double *y, double force[2]) {
     const struct fish *fish = &residual->school->fish[f];
     const int tail = fish->n_nodes - 1;
     double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
     memcpy(force, fish->load_tip, sizeof fish->load_tip);
     if (fish->motion.prescribed == PRESCRIBED_NONE) return power;
+
     power += clamp_driving_power(fish, t, y);
     double *const reaction = residual->scratch;
     residual_reaction(residual, f, y, residual->state->yp, reaction);
@@ -38,17 +40,20 @@ static double constraint_power(struct residual *residual, int f, double t, const
     return power;
 }
 
-// powers of the fluid's and of the driving forces in the frame of the external flow at the centre of mass
-static void see_from_water(struct residual *residual, int f, double t, const struct pressure_forces *pressure,
-                           const double driving_force[2], const double *y, struct diagnostics_power *power) {
+// powers of the forces of the fluid, and of the driving forces, in the frame of the external flow at the centre of mass
+static void powers_on_water(struct residual *residual, int f, double t, const struct pressure_forces *pressure,
+                            const double driving_force[2], const double *y, struct diagnostics_power *power) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const double com[2] = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)};
+
+    // without external flow both frames agree
     double stream[2];
     power->on_water = power->drag + power->added_mass + power->wake + power->pressure + power->suction;
     power->driving_on_water = power->driving;
     flow_external(residual->school, t, com[1], &stream[0], &stream[1]);
     if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return;
+
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
     double force[2];
     diagnostics_fluid_force(forces.resistive, forces.reactive, pressure, force);
@@ -56,10 +61,10 @@ static void see_from_water(struct residual *residual, int f, double t, const str
     for (int i = 0; i < 2; i++) power->driving_on_water -= driving_force[i] * stream[i];
 }
 
-// the strains of fish f, what damping takes of them, and what the muscle works against: by the places of the nodes, or,
-// with damping of the strain, as the stresses of the steps have made them
-static struct rod_strains strains_of(struct residual *residual, int f, const struct actuation *muscle,
-                                     const double *y) {
+// strains, strain rates for the damping, and stresses for the actuation of fish f: from the positions of the nodes, or,
+// with strain damping, from the strains and stresses integrated over the steps
+static struct rod_strains find_strains(struct residual *residual, int f, const struct actuation *muscle,
+                                       const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct energy_balance *const balance = &residual->state->balance[f];
     double *const scratch = residual->scratch;
@@ -72,7 +77,7 @@ static struct rod_strains strains_of(struct residual *residual, int f, const str
     return (struct rod_strains){balance->strain, by_places.rate, balance->stress};
 }
 
-// those of a consistent state, from which the steps go on
+// strains and stresses of a consistent state: initial values of advance_strains
 static void start_strains(struct residual *residual, struct state *state, int f) {
     const struct fish *fish = &residual->school->fish[f];
     struct energy_balance *const balance = &state->balance[f];
@@ -81,14 +86,14 @@ static void start_strains(struct residual *residual, struct state *state, int f)
     rod_strains(fish, &muscle, state->y, &strains);
 }
 
-// take those of fish f to the end of a step at time t
+// integrate strains and stresses of fish f to the end of a step at time t
 static void advance_strains(struct residual *residual, struct state *state, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     struct energy_balance *const balance = &state->balance[f];
     const double h = t - balance->t[0], g = balance->n > 1 ? balance->t[0] - balance->t[1] : 0;
     if (fish->damping == DAMPING_CURVATURE || h <= 0) return;
 
-    // stresses by the strains of the places, corrected by the balance of momentum
+    // stresses by the positions, corrected by the momentum balance
     double *const scratch = residual->scratch, *const stress = scratch + fish->at.vx;
     const struct rod_strains by_places = {scratch + fish->at.x, scratch + fish->at.ax, stress};
     const struct actuation muscle = residual_muscle(residual, f, t, y);
@@ -97,6 +102,7 @@ static void advance_strains(struct residual *residual, struct state *state, int 
     rod_stress_balance(fish, scratch, y, stress);
 
     rod_stress_creep(fish, h, g, balance->stress_before, balance->stress, stress, balance->strain);
+
     const size_t size = (size_t)rod_n_strains(fish) * sizeof *stress;
     memcpy(balance->stress_before, balance->stress, size);
     memcpy(balance->stress, stress, size);
@@ -108,11 +114,14 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
     const struct pressure_forces pressure = diagnostics_pressure(residual, f, (const double[2]){0, 0}, y);
     const struct actuation muscle = residual_muscle(residual, f, t, y);
-    const struct rod_strains strains = strains_of(residual, f, &muscle, y);
+    const struct rod_strains strains = find_strains(residual, f, &muscle, y);
+
+    // internal powers, constraints
     const double actuation = rod_actuation_power(fish, &muscle, strains.stress);
     const double damping = rod_damping_power(fish, strains.rate) + clamp_damping_power(fish, t, y);
     double driving_force[2];
     const double driving = constraint_power(residual, f, t, y, driving_force);
+
     struct diagnostics_power power = {.actuation = actuation,
                                       .damping = damping,
                                       .drag = fluid.drag,
@@ -123,7 +132,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
                                       .suction = pressure.suction_power,
                                       .contact = contact_power(residual->contact, f, y),
                                       .driving = driving};
-    see_from_water(residual, f, t, &pressure, driving_force, y, &power);
+    powers_on_water(residual, f, t, &pressure, driving_force, y, &power);
     return power;
 }
 
@@ -139,7 +148,7 @@ static double kinetic_energy(const struct fish *fish, const double *y) {
 struct diagnostics_energies diagnostics_energies(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct actuation muscle = residual_muscle(residual, f, t, y);
-    const struct rod_strains strains = strains_of(residual, f, &muscle, y);
+    const struct rod_strains strains = find_strains(residual, f, &muscle, y);
     return (struct diagnostics_energies){.kinetic = kinetic_energy(fish, y),
                                          .bending = rod_bending_energy(fish, strains.strain) + clamp_energy(fish, t, y),
                                          .stretching = rod_stretching_energy(fish, strains.strain),
@@ -151,7 +160,7 @@ double diagnostics_energy(struct residual *residual, int f, double t, const doub
     return of.kinetic + of.bending + of.stretching + of.contact;
 }
 
-// the powers whose work is kept
+// the powers for enum work
 static void gather_powers(const struct diagnostics_power *power, double *of) {
     of[WORK_ALL] = power->actuation + power->damping + power->drag + power->added_mass + power->wake + power->driving;
     of[WORK_ALL] += power->pressure + power->suction + power->contact;
@@ -175,16 +184,20 @@ static void add_works(void *data, int f) {
     const double t = step->t;
     struct energy_balance *const balance = &step->state->balance[f];
     advance_strains(step->residual, step->state, f, t, step->y);
+
     const struct diagnostics_power now = diagnostics_power(step->residual, f, t, step->y);
     const double times[3] = {t, balance->t[0], balance->t[1]};
     double newest[N_WORKS];
     gather_powers(&now, newest);
+
+    // integrate, and shift the powers by one step
     for (int i = 0; i < N_WORKS; i++) {
         const double power[3] = {newest[i], balance->power[0][i], balance->power[1][i]};
         if (t > times[1]) balance->work[i] += quadrature_newest(balance->n + 1, times, power);
         balance->power[1][i] = power[1];
         balance->power[0][i] = power[0];
     }
+
     const int has_area = t > times[1];
     diagnostics_momentum_step(step->residual, step->state, f, t, step->y, has_area ? balance->n + 1 : 0, times);
     for (int i = 0; i < 2; i++) balance->t[i] = times[i];
@@ -211,6 +224,7 @@ void diagnostics_begin(struct residual *residual, struct state *state, int f) {
     balance->n = 1;
     balance->t[0] = state->t;
     gather_powers(&now, balance->power[0]);
+
     diagnostics_momentum_step(residual, state, f, state->t, state->y, 0, NULL);
 }
 
@@ -230,6 +244,7 @@ void diagnostics_start(struct residual *residual, struct state *state) {
         state->balance[f].initial_energy = diagnostics_energy(residual, f, state->t, state->y);
         memset(state->balance[f].work, 0, sizeof state->balance[f].work);
     }
+
     diagnostics_momentum_start(residual, state);
     clearance_start(residual->school, state, residual->neighbours, residual->scratch);
 }
@@ -239,6 +254,7 @@ void diagnostics_restart(struct residual *residual, struct state *state) {
         struct energy_balance *const balance = &state->balance[f];
         balance->initial_energy = diagnostics_energy(residual, f, state->t, state->y) - balance->work[WORK_ALL];
     }
+
     diagnostics_momentum_start(residual, state);
     clearance_start(residual->school, state, residual->neighbours, residual->scratch);
     state->crossed = -1;

@@ -1,4 +1,4 @@
-/* diagnostics_forces.c: of the fluid, of contacts, of what holds prescribed nodes. */
+/* diagnostics_forces.c: forces of the fluid, of contacts, of constraints. */
 #include "school/diagnostics_forces.h"
 
 #include <math.h>
@@ -10,13 +10,14 @@
 #include "flow/flow_at_bodies.h"
 #include "force/fluid_force.h"
 
-// what a prescribed motion takes: the reactions of its nodes, and their moment with that of the clamp
+// constraint forces: reactions of prescribed nodes; moment of the reactions plus the moment of the clamp
 static void find_constraint(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to) {
     const struct fish *fish = &residual->school->fish[f];
     double *const reaction = residual->scratch;
     to->constraint_force[0] = to->constraint_force[1] = 0;
     to->constraint_moment = clamp_moment(fish, t, y);
     if (fish->motion.prescribed == PRESCRIBED_NONE) return;
+
     residual_reaction(residual, f, y, residual->state->yp, reaction);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
         const double along_x = fish_is_prescribed(fish, k, 0) ? reaction[fish->at.ax + k] : 0;
@@ -30,6 +31,7 @@ static void find_constraint(struct residual *residual, int f, double t, const do
 struct pressure_forces diagnostics_pressure(struct residual *residual, int f, const double about[2], const double *y) {
     struct pressure *const pressure = residual->pressure[f];
     if (!pressure) return (struct pressure_forces){.leading_edge_a0 = NAN};
+
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     pressure_update(pressure, &flow, y);
     pressure_update_rate(pressure, y, residual->state->yp);
@@ -46,9 +48,12 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, to->com, y);
     const double heading = control_heading(fish, y), ahead[2] = {cos(heading), sin(heading)};
+
+    // total force of the fluid, for the thrust
     to->pressure = diagnostics_pressure(residual, f, to->com, y);
     double force[2];
     diagnostics_fluid_force(forces.resistive, forces.reactive, &to->pressure, force);
+
     to->thrust = 0;
     for (int i = 0; i < 2; i++) {
         to->resistive_force[i] = forces.resistive[i];
@@ -59,6 +64,7 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     to->resistive_moment = forces.resistive_moment;
     to->friction_moment = forces.friction_moment;
     to->reactive_moment = forces.reactive_moment;
+
     const struct contact_forces contact = contact_forces(residual->contact, f, y);
     memcpy(to->contact_force, contact.force, sizeof to->contact_force);
     find_constraint(residual, f, t, y, to);

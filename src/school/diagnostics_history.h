@@ -1,4 +1,4 @@
-/* diagnostics_history.h: samples of every fish at the events of the last period, and what is stated over it: means,
+/* diagnostics_history.h: samples of every fish at the events of the last period, and quantities over the period: means,
  * course, amplitude of the tail. doc/model.md, section 13. Tested by tests/school/test_diagnostics.c. */
 #ifndef DIAGNOSTICS_HISTORY_H
 #define DIAGNOSTICS_HISTORY_H
@@ -7,18 +7,18 @@
 #include "school/residual.h"
 #include "state/state.h"
 
-/* Take a sample of every fish into its history; at every event, before diagnostics_event. */
+/* Add a sample to the history of every fish; call at every event, before diagnostics_event. */
 void diagnostics_remember(struct residual *residual, struct state *state);
 
-/* The direction in which the centre of mass has gone in the last period, rad, and the rate at which that direction
- * changes, rad s-1. Returns whether there is one: not before a whole period has passed, nor where it has not moved. */
+/* Course: direction of the displacement of the centre of mass over the last period, rad, and rate of the course, rad
+ * s-1. Returns 0 in the first period, or without displacement, else 1. */
 int diagnostics_course(const struct history *history, double *course, double *rate);
 
 /* Mean of the headings in a history, rad, unwrapped. */
 double diagnostics_mean_heading(const struct history *history);
 
-/* What *to, whose com_velocity and desired_heading are known, states over the last period, or since the start where
- * that is less. */
+/* Fill the quantities of *to over the last period, or since the start within the first period; com_velocity and
+ * desired_heading of *to are input. */
 void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
                         struct diagnostics_fish *to);
 

@@ -1,4 +1,4 @@
-/* diagnostics_momentum.c: impulses of bodies and fluid, forces from outside, and what is left of their balance. */
+/* diagnostics_momentum.c: impulses of bodies and fluid, external forces, and the residual of the momentum balance. */
 #include "school/diagnostics_momentum.h"
 
 #include <math.h>
@@ -20,8 +20,8 @@ int diagnostics_has_reaction(const struct school *school, const struct fish *fis
 
 // ---- momentum of a body, impulse of its vortices
 
-// add a momentum, or force, at a place, and its moment about the origin
-static void add_at(double sum[3], double x, double y, double along_x, double along_y) {
+// add a momentum, or force, at a point, and the moment about the origin
+static void add_with_moment(double sum[3], double x, double y, double along_x, double along_y) {
     sum[0] += along_x;
     sum[1] += along_y;
     sum[2] += x * along_y - y * along_x;
@@ -30,18 +30,18 @@ static void add_at(double sum[3], double x, double y, double along_x, double alo
 static void momentum_of_body(const struct fish *fish, const double *y, double momentum[3]) {
     memset(momentum, 0, 3 * sizeof *momentum);
     for (int k = 0; k < fish->n_nodes; k++) {
-        add_at(momentum, y[fish->at.x + k], y[fish->at.y + k], fish->mass[k] * y[fish->at.vx + k],
-               fish->mass[k] * y[fish->at.vy + k]);
+        add_with_moment(momentum, y[fish->at.x + k], y[fish->at.y + k], fish->mass[k] * y[fish->at.vx + k],
+                        fish->mass[k] * y[fish->at.vy + k]);
     }
 }
 
 // the added momentum of component i of node k
-static double added(const struct residual *residual, int f, int i, int k) {
+static double added_momentum(const struct residual *residual, int f, int i, int k) {
     const struct pressure *const pressure = residual->pressure[f];
     return pressure ? pressure->momentum[i * residual->school->fish[f].n_nodes + k] : 0;
 }
 
-// of the prescribed components of nodes, with that of the fluid that moves with them; after pressure_update
+// momentum of the prescribed components of nodes, with added momentum; call after pressure_update
 static void given_momentum(const struct residual *residual, int f, const double *y, double momentum[3]) {
     const struct fish *const fish = &residual->school->fish[f];
     memset(momentum, 0, 3 * sizeof *momentum);
@@ -49,9 +49,9 @@ static void given_momentum(const struct residual *residual, int f, const double 
         double of_node[2] = {0, 0};
         for (int i = 0; i < 2; i++) {
             if (!fish_is_prescribed(fish, k, i)) continue;
-            of_node[i] = fish->mass[k] * y[fish->at.vx + i * fish->n_nodes + k] + added(residual, f, i, k);
+            of_node[i] = fish->mass[k] * y[fish->at.vx + i * fish->n_nodes + k] + added_momentum(residual, f, i, k);
         }
-        add_at(momentum, y[fish->at.x + k], y[fish->at.y + k], of_node[0], of_node[1]);
+        add_with_moment(momentum, y[fish->at.x + k], y[fish->at.y + k], of_node[0], of_node[1]);
     }
 }
 
@@ -60,7 +60,7 @@ static void place_of_tail(const struct fish *fish, const double *y, double tail[
     tail[1] = y[fish->at.y + fish->n_nodes - 1];
 }
 
-// the nascent vortex, or stretch, of a fish
+// add the nascent vortex, or stretch, of a fish
 static void add_nascent(struct impulse_moments *sum, const struct flow *flow, const struct state *state, int f,
                         double tau, const double tail[2]) {
     const double circulation = flow->nascent.circulation[f];
@@ -68,13 +68,14 @@ static void add_nascent(struct impulse_moments *sum, const struct flow *flow, co
         impulse_add(sum, circulation, flow->nascent.x[f], flow->nascent.y[f]);
         return;
     }
+
     double newest[2];
     free_sheet_nascent_point(&state->wake[f], flow->school->interval, tau, tail, 1, newest);
     impulse_add_stretch(sum, circulation, tail, newest);
 }
 
-// the impulse of the bound sheet: with momenta the added momentum and the circulation at the tail, which together are
-// the sum over the control points; after pressure_update
+// add the impulse of the bound sheet; with momenta: added momentum plus bound circulation at the tail, which equals the
+// sum over the control points; call after pressure_update
 static void add_bound_impulse(const struct residual *residual, int f, const double *y, double factor,
                               double impulse[3]) {
     const struct flow *const flow = residual->flow;
@@ -82,28 +83,33 @@ static void add_bound_impulse(const struct residual *residual, int f, const doub
     const struct range bound = flow->sheet_range[f];
     struct impulse_moments sum = {0};
     double total = 0, of_sum[3];
+
     for (int j = bound.first; j < bound.first + bound.n; j++) {
         impulse_add(&sum, flow->sheet.circulation[j], flow->sheet.x[j], flow->sheet.y[j]);
         total += flow->sheet.circulation[j];
     }
+
     if (residual->pressure[f]) {
         double tail[2];
         place_of_tail(fish, y, tail);
         for (int k = 0; k < fish->n_nodes; k++) {
-            add_at(impulse, y[fish->at.x + k], y[fish->at.y + k], added(residual, f, 0, k), added(residual, f, 1, k));
+            add_with_moment(impulse, y[fish->at.x + k], y[fish->at.y + k], added_momentum(residual, f, 0, k),
+                            added_momentum(residual, f, 1, k));
         }
         sum = (struct impulse_moments){0};
         impulse_add(&sum, total, tail[0], tail[1]);
     }
+
     impulse_of(&sum, factor, of_sum);
     for (int i = 0; i < 3; i++) impulse[i] += of_sum[i];
 }
 
-// the impulse of all vortices of a fish at the event of the state; after pressure_update
+// impulse of all vortices of a fish at the event of the state; call after pressure_update
 static void impulse_of_fluid(const struct residual *residual, const struct state *state, int f, double impulse[3]) {
     const struct fish *const fish = &residual->school->fish[f];
     const double factor = residual->school->density * impulse_depth(fish);
     struct impulse_moments wake = impulse_of_wake(&state->wake[f], residual->school, state->t, 0);
+
     double tail[2];
     place_of_tail(fish, state->y, tail);
     add_nascent(&wake, residual->flow, state, f, 0, tail);
@@ -111,16 +117,16 @@ static void impulse_of_fluid(const struct residual *residual, const struct state
     add_bound_impulse(residual, f, state->y, factor, impulse);
 }
 
-// of the circulation that is lost
+// impulse of the lost circulation
 static void lost_impulse(const struct school *school, const struct state *state, int f, double impulse[3]) {
     const double *const lost = state->momentum[f].lost;
     const double factor = school->density * impulse_depth(&school->fish[f]);
     impulse_of(&(struct impulse_moments){.x = lost[0], .y = lost[1], .square = lost[2]}, factor, impulse);
 }
 
-// ---- forces from outside
+// ---- external forces
 
-// the external flow on all vortices of a fish: its velocity is linear in the place
+// force of the external flow on all vortices of a fish; the velocity is linear in the position, so moments suffice
 static void add_stream(const struct residual *residual, int f, double t, const double *y, double force[3]) {
     const struct school *const school = residual->school;
     const struct flow *const flow = residual->flow;
@@ -129,6 +135,8 @@ static void add_stream(const struct residual *residual, int f, double t, const d
     double u, v, tail[2];
     flow_external(school, t, 0, &u, &v);
     if (!(fabs(u) + fabs(v) + fabs(school->shear) > 0) || !residual->pressure[f]) return;
+
+    // moments of free, nascent and bound vortices
     struct impulse_moments sum = impulse_of_wake(&state->wake[f], school, state->t, t - state->t);
     place_of_tail(fish, y, tail);
     add_nascent(&sum, flow, state, f, t - state->t, tail);
@@ -136,17 +144,20 @@ static void add_stream(const struct residual *residual, int f, double t, const d
     for (int c = 0; c < fish->n_control; c++) {
         impulse_add(&sum, residual->pressure[f]->point[c].circulation, flow->x[first + c], flow->y[first + c]);
     }
+
     const double factor = school->density * impulse_depth(fish);
     force[0] += factor * v * sum.circulation;
     force[1] -= factor * (u * sum.circulation + school->shear * sum.y);
     force[2] -= factor * (u * sum.x + v * sum.y + school->shear * sum.product);
 }
 
-// What holds prescribed nodes, without the rate of their momentum, the integral of which is known: given_momentum.
+// Constraint forces of prescribed nodes without the rate of the momentum of these nodes: given_momentum is the integral
+// of this rate.
 static void add_constraint(struct residual *residual, int f, const double *y, double force[3]) {
     const struct fish *const fish = &residual->school->fish[f];
     if (fish_n_prescribed(fish) == 0) return;
-    // m a less all forces
+
+    // m a minus all forces
     double *const balance = residual->scratch;
     residual_balance(residual, f, y, balance);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
@@ -155,28 +166,31 @@ static void add_constraint(struct residual *residual, int f, const double *y, do
             const int node = i * fish->n_nodes + k;
             if (!fish_is_prescribed(fish, k, i)) continue;
             of_node[i] = balance[fish->at.ax + node] - fish->mass[k] * y[fish->at.ax + node];
-            momentum[i] = fish->mass[k] * y[fish->at.vx + node] + added(residual, f, i, k);
+            momentum[i] = fish->mass[k] * y[fish->at.vx + node] + added_momentum(residual, f, i, k);
         }
-        add_at(force, y[fish->at.x + k], y[fish->at.y + k], of_node[0], of_node[1]);
-        // the moment of the rate is the rate of the moment less this
+        add_with_moment(force, y[fish->at.x + k], y[fish->at.y + k], of_node[0], of_node[1]);
+
+        // moment of the momentum rate = rate of the moment minus velocity x momentum
         force[2] -= y[fish->at.vx + k] * momentum[1] - y[fish->at.vy + k] * momentum[0];
     }
 }
 
-// all of them but images; after pressure_update
+// all external forces except images; call after pressure_update
 static void external_force(struct residual *residual, int f, double t, const double *y, double force[3]) {
     const struct fish *const fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const struct fluid_forces fluid = fluid_force_sum(fish, &flow, (const double[2]){0, 0}, y);
     const struct contact_forces contact = contact_forces(residual->contact, f, y);
+
     double tail[2];
     place_of_tail(fish, y, tail);
     for (int i = 0; i < 2; i++) force[i] = fluid.resistive[i] + contact.force[i];
     force[2] = fluid.resistive_moment + contact.moment + clamp_moment(fish, t, y);
-    add_at(force, tail[0], tail[1], fish->load_tip[0], fish->load_tip[1]);
+    add_with_moment(force, tail[0], tail[1], fish->load_tip[0], fish->load_tip[1]);
+
     if (residual->pressure[f]) {
         const double *const separation = residual->pressure[f]->separation;
-        add_at(force, y[fish->at.x], y[fish->at.y], -separation[0], -separation[1]);
+        add_with_moment(force, y[fish->at.x], y[fish->at.y], -separation[0], -separation[1]);
     }
     add_constraint(residual, f, y, force);
     add_stream(residual, f, t, y, force);
@@ -184,7 +198,7 @@ static void external_force(struct residual *residual, int f, double t, const dou
 
 // ---- images
 
-// the force of velocities on circulations
+// add the force of velocities on n circulations
 static void add_force_of(const double *u, const double *v, int n, const double *x, const double *y,
                          const double *circulation, double factor, double force[3]) {
     for (int i = 0; i < n; i++) {
@@ -194,16 +208,17 @@ static void add_force_of(const double *u, const double *v, int n, const double *
     }
 }
 
-// of velocities, and what their divergence does to legs
+// add the force of velocities on rings, and of the divergence on the legs
 static void add_force_on_rings(const double *u, const double *v, const double *div, const struct rings *rings,
                                double factor, double force[3]) {
     add_force_of(u, v, rings->n, rings->x, rings->y, rings->q, factor, force);
     for (int i = 0; i < rings->n; i++) {
-        add_at(force, rings->x[i], rings->y[i], factor * div[i] * rings->dy[i], -factor * div[i] * rings->dx[i]);
+        add_with_moment(force, rings->x[i], rings->y[i], factor * div[i] * rings->dy[i],
+                        -factor * div[i] * rings->dx[i]);
     }
 }
 
-// of the images at the event, on the sheet and the wake of a fish
+// force of the images at the event on the sheet and the wake of a fish
 static void force_of_images(const struct flow *flow, int f, double force[3]) {
     const struct school *const school = flow->school;
     const double factor = school->density * impulse_depth(&school->fish[f]);
@@ -217,6 +232,7 @@ static void force_of_images(const struct flow *flow, int f, double force[3]) {
                            flow->rings->wake_image_div + marker, &rings->markers, factor, force);
         return;
     }
+
     const struct range body = flow->body_range[f], wake = flow->wake_range[f];
     const struct vortices *const all = &flow->convecting;
     const int control = flow->points[f].first;
@@ -233,12 +249,13 @@ static int any_has_reaction(const struct school *school) {
     return any;
 }
 
-// book what legs of different lengths s take from the momentum of a fish, by trapezoids
+// book the momentum of a fish lost by legs of different lengths s, by trapezoids
 static void book_legs(const struct flow *flow, struct state *state, int f) {
     struct momentum_balance *const momentum = &state->momentum[f];
     double rate[3];
     flow_rings_leg_rate(flow, f, rate);
-    // as sums of circulation times y, -x and -|x|^2/2
+
+    // from impulse to sums of circulation times x, y and |x|^2
     const double now[3] = {-rate[1], rate[0], -2 * rate[2]};
     for (int i = 0; i < 3; i++) {
         if (state->event > 0) momentum->lost[i] += flow->school->interval / 2 * (momentum->legs[i] + now[i]);
@@ -252,11 +269,14 @@ enum status diagnostics_momentum_event(struct residual *residual, struct state *
     for (int f = 0; f < school->n_fish && flow->rings; f++) {
         if (diagnostics_has_reaction(school, &school->fish[f])) book_legs(flow, state, f);
     }
+
     if (school->walls.n == 0 || !(school->density > 0) || !any_has_reaction(school)) return STATUS_OK;
     TRY(flow_images(flow, state));
+
     for (int f = 0; f < school->n_fish; f++) {
         struct momentum_balance *const momentum = &state->momentum[f];
         if (!diagnostics_has_reaction(school, &school->fish[f])) continue;
+
         double now[3];
         force_of_images(flow, f, now);
         for (int i = 0; i < 3; i++) {
@@ -273,6 +293,7 @@ void diagnostics_momentum_step(struct residual *residual, struct state *state, i
                                const double times[3]) {
     struct momentum_balance *const momentum = &state->momentum[f];
     if (!diagnostics_has_reaction(residual->school, &residual->school->fish[f])) return;
+
     double newest[3];
     external_force(residual, f, t, y, newest);
     for (int i = 0; i < 3; i++) {
@@ -289,6 +310,7 @@ void diagnostics_momentum_start(struct residual *residual, struct state *state) 
         memset(momentum->lost, 0, sizeof momentum->lost);
         memset(momentum->external, 0, sizeof momentum->external);
         if (!diagnostics_has_reaction(residual->school, &residual->school->fish[f])) continue;
+
         diagnostics_pressure(residual, f, (const double[2]){0, 0}, state->y);
         momentum_of_body(&residual->school->fish[f], state->y, momentum->first_body);
         impulse_of_fluid(residual, state, f, momentum->first_fluid);
@@ -296,11 +318,11 @@ void diagnostics_momentum_start(struct residual *residual, struct state *state) 
     }
 }
 
-static double size_of(const double vector[3]) {
+static double plane_norm(const double vector[3]) {
     return hypot(vector[0], vector[1]);
 }
 
-// the impulses of a fish; what it adds to the balance of the school, and to the terms of which that is to be small
+// fill the impulses of a fish; add the fish to the momentum balance, and to the size of the terms of the balance
 static void fill_fish(struct residual *residual, const struct state *state, int f, struct diagnostics_fish *to,
                       double balance[3], double size[3]) {
     const struct momentum_balance *const momentum = &state->momentum[f];
@@ -311,6 +333,7 @@ static void fill_fish(struct residual *residual, const struct state *state, int 
     impulse_of_fluid(residual, state, f, fluid);
     lost_impulse(residual->school, state, f, lost);
     given_momentum(residual, f, state->y, given);
+
     const int has_reaction = diagnostics_has_reaction(residual->school, fish);
     for (int i = 0; i < 3; i++) {
         to->fluid_impulse[i] = fluid[i] + lost[i];
@@ -319,14 +342,15 @@ static void fill_fish(struct residual *residual, const struct state *state, int 
         fluid[i] -= momentum->first_fluid[i];
         balance[i] += body[i] - momentum->first_body[i] + fluid[i] + lost[i] - to->external_impulse[i];
     }
-    size[0] += size_of(body);
-    size[1] += size_of(fluid);
-    size[2] += size_of(to->external_impulse);
+
+    size[0] += plane_norm(body);
+    size[1] += plane_norm(fluid);
+    size[2] += plane_norm(to->external_impulse);
 }
 
-// fish of several depths push water of several depths
+// whether all fish have the same depth: forces between strips of different depths do not cancel
 static int have_one_depth(const struct school *school) {
-    if (school->finite) return 1;  // what rings of two depths do to each other is equal and opposite
+    if (school->finite) return 1;  // forces between rings of different depths are equal and opposite
     const double depth = impulse_depth(&school->fish[0]);
     for (int f = 1; f < school->n_fish; f++) {
         if (fabs(impulse_depth(&school->fish[f]) - depth) > 1e-12 * depth) return 0;
@@ -334,7 +358,7 @@ static int have_one_depth(const struct school *school) {
     return 1;
 }
 
-// what a body gets by one length per beat, for all of them
+// sum of the momenta of all bodies at one length per beat
 static double usual_momentum(const struct school *school) {
     double sum = 0;
     for (int f = 0; f < school->n_fish; f++) {
@@ -351,6 +375,7 @@ void diagnostics_momentum(struct residual *residual, const struct state *state, 
     for (int f = 0; f < school->n_fish; f++) {
         fill_fish(residual, state, f, &diagnostics->fish[f], diagnostics->momentum_balance, size);
     }
+
     const double rounding = 1e-6;
     diagnostics->momentum_size = fmax(rounding * usual_momentum(school), fmax(size[0], fmax(size[1], size[2])));
     for (int i = 0; i < 3 && school->density > 0 && !have_one_depth(school); i++)

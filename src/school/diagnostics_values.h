@@ -1,4 +1,4 @@
-/* diagnostics_values.h: what is derived from a state for the user, as plain values. doc/model.md, section 13. */
+/* diagnostics_values.h: quantities derived from a state for results, as plain values. doc/model.md, section 13. */
 #ifndef DIAGNOSTICS_VALUES_H
 #define DIAGNOSTICS_VALUES_H
 
@@ -10,53 +10,53 @@ struct diagnostics_fish {
     double com[2], com_velocity[2]; /* centre of mass, m, m s-1 */
     double speed,
         ground_speed;       /* of the centre of mass over the last period, through the water and over ground, m s-1 */
-    double drift;           /* of the speed: change from one period to the next, over it; NaN before the second */
+    double drift;           /* change of speed from one period to the next / speed; NaN before the second period */
     double heading;         /* degree, unwrapped */
     double desired_heading; /* degree */
-    double heading_error;   /* of the way through the water over the last period, against it, degree */
+    double heading_error;   /* course through the water in the last period minus desired heading, degree */
     double phi0;
-    double wave_amplitude, wave_frequency;                    /* now: ramped, and as set from outside; rad, Hz */
-    double swept_vortices;                                    /* free vortices of any fish inside its outline */
+    double wave_amplitude, wave_frequency;                    /* present values: with ramp and shoal_set; rad, Hz */
+    double swept_vortices;                                    /* free vortices of any fish inside the outline */
     double shed_circulation;                                  /* m2 s-1 */
     double shedding_rate;                                     /* m2 s-2 */
     double kinetic_energy, bending_energy, stretching_energy; /* J */
-    double contact_energy;                                    /* half of what its contacts store, J */
-    double added_mass_energy;                                 /* of the fluid that the body accelerates, J */
+    double contact_energy;                                    /* half the energy of the contacts, J */
+    double added_mass_energy;                                 /* kinetic energy of the added mass, J */
     double actuation_power, damping_power, drag_power, added_mass_power, wake_power, constraint_power; /* W */
-    double friction_power; /* of the part of the drag along the body, W */
-    double contact_power;  /* what it is given for its half of the contacts, W */
+    double friction_power; /* power of the drag along the body, W */
+    double contact_power;  /* power received for this half of the contacts, W */
     double energy_balance; /* J */
-    double actuation_work; /* put in by the muscle since the start, J */
-    /* on the body, N, and about the centre of mass, N m; friction: the part of the resistive force along the body */
+    double actuation_work; /* work of the muscle since the start, J */
+    /* forces on the body, N, and moments about the centre of mass, N m; friction: resistive force along the body */
     double resistive_force[2], friction_force[2], reactive_force[2], constraint_force[2];
-    double contact_force[2]; /* of all bodies that it touches, N */
-    /* x, y, N s, and angular about the origin, N m s: of all vortices, with those that are lost; of these; of the
-     * external forces */
+    double contact_force[2]; /* force of all bodies in contact, N */
+    /* x, y, N s, and angular about the origin, N m s: impulse of all vortices including lost vortices; impulse of lost
+     * vortices; impulse of the external forces */
     double fluid_impulse[3], lost_impulse[3], external_impulse[3];
     double resistive_moment, friction_moment, reactive_moment, constraint_moment;
     struct pressure_forces pressure; /* force: pressure, else 0 */
-    double leading_edge_most;        /* the largest magnitude of A_0 over the last period; NaN with other forces */
-    double separation_share;         /* part of the last period in which A_0 is above its limit */
+    double leading_edge_most;        /* largest magnitude of A_0 over the last period; NaN unless force: pressure */
+    double separation_share;         /* fraction of the last period with A_0 above the suction limit */
     double thrust;                   /* forces of the fluid along the heading, N */
-    double mean_thrust;          /* all forces of the fluid along the way, N, over the last period: 0 when it swims */
-    double mean_power;           /* that the motion takes for thrust and wake, W, over the last period */
-    double thrust_efficiency;    /* mean thrust times speed over that power */
-    double mean_actuation_power; /* of the muscle, W, over the last period */
-    double cost_of_transport;    /* mean power of muscle, prescribed motion and loads over mass and speed, m s-2: */
-    double cost_of_transport_fluid; /* the part that goes into the fluid, */
-    double cost_of_transport_body;  /* and the part that damping takes */
-    double efficiency;              /* friction times speed over the power that goes into the fluid, over a period */
-    double strouhal;                /* frequency times peak-to-peak of the tail over speed */
+    double mean_thrust;              /* mean force of the fluid along the path, N, last period: 0 in steady swimming */
+    double mean_power;               /* mean power for thrust and wake, W, over the last period */
+    double thrust_efficiency;        /* mean thrust times speed over mean_power */
+    double mean_actuation_power;     /* mean power of the muscle, W, over the last period */
+    double cost_of_transport;        /* mean power of muscle, prescribed motion and loads / (mass speed), m s-2 */
+    double cost_of_transport_fluid;  /* part of the cost of transport transferred to the fluid, m s-2 */
+    double cost_of_transport_body;   /* part of the cost of transport dissipated by damping, m s-2 */
+    double efficiency;               /* friction times speed over the power transferred to the fluid, last period */
+    double strouhal;                 /* frequency times peak-to-peak amplitude of the tail over speed */
 };
 
 /* The school at one event. */
 struct diagnostics {
     double t;
     struct diagnostics_fish *fish; /*                                                       (n_fish) */
-    struct box *body, *wake;       /* scratch: around each body, around its free vortices   (n_fish) */
+    struct box *body, *wake;       /* scratch: boxes of each body and of the free vortices  (n_fish) */
     double total_circulation;      /* m2 s-1 */
     double momentum_balance[3];    /* balance of momentum, N s, and of angular momentum, N m s; NaN without reaction */
-    double momentum_size;          /* of the largest term of this balance, N s */
+    double momentum_size;          /* largest term of the momentum balance, N s */
     double least_distance;         /* between two bodies, m; NaN for one fish */
     double polarisation;           /* length of the mean unit vector of the headings */
 };

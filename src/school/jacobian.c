@@ -1,4 +1,4 @@
-/* jacobian.c: blocks and who has which. */
+/* jacobian.c: allocation of blocks, masks, and products with couplings. */
 #include "school/jacobian.h"
 
 #include <stdlib.h>
@@ -10,10 +10,12 @@ enum status jacobian_create(struct jacobian **jacobian, const struct school *sch
     *jacobian = NULL;
     struct jacobian *const new = calloc(1, sizeof *new);
     if (!new) goto no_memory;
+
     new->school = school;
     new->own = calloc((size_t)school->n_fish, sizeof *new->own);
     new->first = calloc((size_t)school->n_fish + 1, sizeof *new->first);
     if (!new->own || !new->first) goto no_memory;
+
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
         if (sparse_create(&new->own[f], at->x, at->end - at->x) != STATUS_OK) goto no_memory;
@@ -36,7 +38,7 @@ void jacobian_free(struct jacobian *jacobian) {
     free(jacobian);
 }
 
-static size_t size_of(const struct coupling_block *rows) {
+static size_t block_size(const struct coupling_block *rows) {
     return (size_t)rows->n_rows * (size_t)rows->n_columns;
 }
 
@@ -45,37 +47,46 @@ enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coup
     const int n_fish = school->n_fish;
     int n = 0;
     for (int i = 0; i < n_fish * n_fish; i++) n += coupled[i] && i / n_fish != i % n_fish;
+
+    // release the old blocks
     free(jacobian->coupling);
     free(jacobian->values);
     jacobian->values = NULL;
     jacobian->n_couplings = 0;
     memset(jacobian->first, 0, ((size_t)n_fish + 1) * sizeof *jacobian->first);
+
+    // list the couplings, fish by fish
     jacobian->coupling = calloc((size_t)n + 1, sizeof *jacobian->coupling);
     if (!jacobian->coupling) goto no_memory;
+
     size_t n_values = 1;
     for (int f = 0, next = 0; f < n_fish; f++) {
         for (int g = 0; g < n_fish; g++) {
             if (g == f || !coupled[f * n_fish + g]) continue;
             const struct coupling_block rows = {flow_n_rows(&school->fish[f]), flow_n_columns(&school->fish[g]), NULL};
             jacobian->coupling[next++] = (struct jacobian_coupling){g, rows};
-            n_values += size_of(&rows);
+            n_values += block_size(&rows);
         }
         jacobian->first[f + 1] = next;
     }
+
+    // place the blocks in one array
     jacobian->values = calloc(n_values, sizeof *jacobian->values);
     if (!jacobian->values) goto no_memory;
+
     double *value = jacobian->values;
     for (int i = 0; i < n; i++) {
         jacobian->coupling[i].rows.value = value;
-        value += size_of(&jacobian->coupling[i].rows);
+        value += block_size(&jacobian->coupling[i].rows);
     }
+
     jacobian->n_couplings = n;
     jacobian->pattern = pattern;
     return STATUS_OK;
 
 no_memory:
     memset(jacobian->first, 0, ((size_t)n_fish + 1) * sizeof *jacobian->first);
-    return status_fail(STATUS_MEMORY, "out of memory: the Jacobian's %d blocks between fish", n);
+    return status_fail(STATUS_MEMORY, "out of memory: %d coupling blocks of the Jacobian", n);
 }
 
 void jacobian_mask_couplings(struct jacobian *jacobian, int f) {
@@ -95,7 +106,8 @@ void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const d
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         const struct fish *other = &school->fish[jacobian->coupling[i].other];
         const struct coupling_block *rows = &jacobian->coupling[i].rows;
-        // the columns of x and y, then those of sheet and shed, follow each other among the unknowns too
+
+        // columns of x and y, then of gamma and circulation: each group is contiguous in the unknowns
         const int n_places = 2 * other->n_nodes;
         kernel_multiply(rows->n_rows, n_places, rows->value, unknowns + other->at.x, product);
         kernel_multiply(rows->n_rows, rows->n_columns - n_places, rows->value + (long)n_places * rows->n_rows,

@@ -1,5 +1,5 @@
-/* jacobian.h: the Jacobian of the whole school by blocks: a sparse one for every fish, and dense ones for the fish that
- * it couples to. doc/numerics.md, section 6. Tested by tests/school/test_jacobian.c.
+/* jacobian.h: the Jacobian of the whole school by blocks: one sparse block per fish, one dense block per coupled pair
+ * of fish. doc/numerics.md, section 6. Tested by tests/school/test_jacobian.c.
  *
  *            unknowns of    fish 0       fish 1       fish 2
  *     equations of fish 0 | own 0      | rows 0 by 1 |            |      fish 0 and 1 are coupled;
@@ -13,21 +13,21 @@
 #include "fish/fish.h"
 #include "flow/flow_derivative.h"
 
-/* How the equations of one fish change with the unknowns of another. */
+/* Derivatives of the equations of one fish by the unknowns of another fish. */
 struct jacobian_coupling {
     int other;
-    struct coupling_block rows; /* its values lie in jacobian->values */
+    struct coupling_block rows; /* rows.value points into jacobian->values */
 };
 
 struct jacobian {
     const struct school *school;
-    struct sparse **own; /* of each fish; rows and columns are added by their numbers in the school   (n_fish) */
+    struct sparse **own; /* of each fish; rows and columns are numbered as in the school           (n_fish) */
 
-    /* couplings, fish by fish: those of fish f are first[f] .. first[f + 1] - 1 */
-    unsigned pattern; /* of the residual that they were made for */
+    /* couplings, fish by fish: fish f has the couplings first[f] .. first[f + 1] - 1 */
+    unsigned pattern; /* couplings.pattern of the residual at jacobian_couple */
     int *first;       /* (n_fish + 1) */
     int n_couplings;
-    int has_contacts;                   /* whether forces between fish that touch are in it */
+    int has_contacts;                   /* whether the couplings contain contact forces */
     struct jacobian_coupling *coupling; /* (n_couplings) */
     double *values;
 };
@@ -36,14 +36,14 @@ struct jacobian {
 enum status jacobian_create(struct jacobian **jacobian, const struct school *school);
 void jacobian_free(struct jacobian *jacobian);
 
-/* Hold the blocks of the pairs (f, g), f != g, for which coupled[f n_fish + g] is not 0. Fails with STATUS_MEMORY;
- * there are no couplings then. */
+/* Allocate the blocks of the pairs (f, g), f != g, for which coupled[f n_fish + g] is not 0. Fails with
+ * STATUS_MEMORY; the Jacobian then has no couplings. */
 enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, unsigned pattern);
 
-/* Set the rows of the couplings of fish f to zero that are masked in its own block. */
+/* Zero the rows of the couplings of fish f that are masked in the own block of fish f. */
 void jacobian_mask_couplings(struct jacobian *jacobian, int f);
 
-/* product = what the couplings of fish f make of all unknowns: its equations from ax to the end. */
+/* product = couplings of fish f times unknowns (n_unknowns): the rows of fish f from ax to the end. */
 void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const double *unknowns, double *product);
 
 #endif

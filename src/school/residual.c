@@ -1,4 +1,4 @@
-/* residual.c: the equations in the order of doc/model.md, section 10; their derivatives: residual_jacobian.c. */
+/* residual.c: the equations in the order of doc/model.md, section 10; derivatives: residual_jacobian.c. */
 #include "school/residual.h"
 
 #include <math.h>
@@ -13,11 +13,12 @@
 #include "flow/flow_at_bodies.h"
 #include "force/fluid_force.h"
 
-// blocks of any pair of fish for every thread, and all unknowns once
+// for every thread a block that fits any pair of fish; one array of n_unknowns
 static enum status allocate_scratch(struct residual *residual, int most_points, int most_columns, int most_rows) {
     const int n_threads = residual->school->threads;
     int has_edges = 0;
     for (int f = 0; f < residual->school->n_fish; f++) has_edges |= residual->school->fish[f].depth_varies;
+
     residual->jacobian_scratch = calloc((size_t)n_threads, sizeof *residual->jacobian_scratch);
     if (!residual->jacobian_scratch) return status_fail(STATUS_MEMORY, "out of memory: %d threads", n_threads);
     for (int i = 0; i < n_threads; i++) {
@@ -31,10 +32,11 @@ static enum status allocate_scratch(struct residual *residual, int most_points, 
         }
         TRY(array_doubles(&scratch->rows.value, most_rows * most_columns, "a block of the Jacobian"));
     }
+
     return array_doubles(&residual->scratch, residual->school->n_unknowns, "the unknowns");
 }
 
-static enum status allocate(struct residual *residual) {
+static enum status residual_allocate(struct residual *residual) {
     const struct school *school = residual->school;
     const size_t n_fish = (size_t)school->n_fish;
     int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0;
@@ -43,6 +45,8 @@ static enum status allocate(struct residual *residual) {
     if (!residual->joints || !residual->pressure) {
         return status_fail(STATUS_MEMORY, "out of memory: the equations of %d fish", school->n_fish);
     }
+
+    // find the sizes of all fish
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         if (fish_has_momentum(fish)) TRY(pressure_create(&residual->pressure[f], fish));
@@ -53,10 +57,12 @@ static enum status allocate(struct residual *residual) {
         if (columns > most_columns) most_columns = columns;
         if (flow_n_rows(fish) > most_rows) most_rows = flow_n_rows(fish);
     }
+
     TRY(allocate_scratch(residual, most_points, most_columns, most_rows));
     struct actuation *const muscle = &residual->muscle;
     double **const per_joint[] = {&muscle->curvature, &muscle->rate, &muscle->curvature_by_phi0, &muscle->rate_by_phi0};
     TRY(array_many_doubles(per_joint, sizeof per_joint / sizeof *per_joint, n_joints, "the joints"));
+
     TRY(neighbours_create(&residual->neighbours, school->n_fish));
     TRY(residual_couplings_fill(&residual->couplings, school, residual->neighbours));
     TRY(contact_create(&residual->contact, school));
@@ -69,7 +75,8 @@ enum status residual_create(struct residual **residual, const struct school *sch
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: the equations");
     new->school = school;
     new->state = state;
-    enum status status = allocate(new);
+
+    enum status status = residual_allocate(new);
     if (status == STATUS_OK) status = residual_couple(&new->couplings, state->y);
     if (status != STATUS_OK) {
         residual_free(new);
@@ -148,8 +155,8 @@ struct actuation residual_muscle(struct residual *residual, int f, double t, con
     return muscle;
 }
 
-// the rows of a node whose motion is given: its place, velocity and acceleration are the given ones
-static void prescribe(const struct fish *fish, double t, const double *y, double *value) {
+// replace the rows of prescribed nodes: position, velocity and acceleration are given
+static void prescribe_nodes(const struct fish *fish, double t, const double *y, double *value) {
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
         double position[2], velocity[2], acceleration[2];
         fish_prescribed_node(fish, k, t, position, velocity, acceleration);
@@ -163,7 +170,7 @@ static void prescribe(const struct fish *fish, double t, const double *y, double
     }
 }
 
-// rows ax, ay: m a less all forces, N
+// rows ax, ay: m a minus all forces, N
 static void balance(const struct residual *residual, int f, const double *y, double *value) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
@@ -171,6 +178,8 @@ static void balance(const struct residual *residual, int f, const double *y, dou
         value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
         value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
     }
+
+    // forces of the body, contacts and the fluid
     const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
     rod_residual(fish, &muscle, y, value);
     clamp_residual(fish, residual->flow->t, y, value);
@@ -189,7 +198,7 @@ static void kinematics(const struct fish *fish, const double *y, const double *y
     const int second = fish_has_momentum(fish) ? fish->at.px : fish->at.vx;
     for (int i = 0; i < 2 * fish->n_nodes; i++) {
         value[fish->at.x + i] = yp[fish->at.x + i] - y[fish->at.vx + i];
-        // nothing is asked of velocities that are given
+        // given velocities have no equation; without momenta the next line overwrites this row
         value[fish->at.vx + i] = 0;
         value[second + i] = yp[second + i] - y[fish->at.ax + i];
     }
@@ -202,7 +211,7 @@ static int all_finite(const double *value, int first, int end) {
     return 1;
 }
 
-/* An evaluation; n_failed: of the fish with values that are not finite. */
+/* An evaluation; n_failed: number of fish with values that are not finite. */
 struct evaluation {
     struct residual *residual;
     double t;
@@ -223,7 +232,8 @@ static void evaluate_fish(void *data, int f) {
     const double *const v = residual->flow->v + residual->flow->points[f].first;
 
     kinematics(fish, y, yp, value);
-    // the law of motion, per mass
+
+    // equation of motion, divided by the node masses
     residual_muscle(residual, f, t, y);
     balance(residual, f, y, value);
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -231,20 +241,22 @@ static void evaluate_fish(void *data, int f) {
         value[fish->at.ay + k] /= fish->mass[k];
     }
     if (residual->pressure[f]) pressure_momentum_residual(residual->pressure[f], residual->at_start, y, value);
-    prescribe(fish, t, y, value);
+    prescribe_nodes(fish, t, y, value);
+
     // impermeability, Kelvin, Kutta
     bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, y, value);
     bound_sheet_kutta_residual(fish, residual_sheet_law(residual), ramp_value(t, school->kutta_ramp), u, v, y, yp,
                                value);
-    // the control law
+
     control_residual(fish, &state->control[f], t, t - state->t, y, value);
+
     if (all_finite(value, fish->at.x, fish->at.end)) return;
 #pragma omp atomic
     of->n_failed++;
 }
 
-// which of the equations has none
-static enum status not_finite(const struct school *school, double t, const double *value) {
+// fail with the name of the first equation without a finite value
+static enum status fail_not_finite(const struct school *school, double t, const double *value) {
     int i = 0;
     while (isfinite(value[i])) i++;
     const struct unknown_place place = residual_place(school, i);
@@ -255,10 +267,11 @@ static enum status not_finite(const struct school *school, double t, const doubl
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
     TRY(residual_contact(residual, t, y));
     TRY(flow_velocity(residual->flow, residual->state, t, y));
+
     const struct school *school = residual->school;
     struct evaluation evaluation = {residual, t, y, yp, value, 0};
     parallel_for(fish_threads(school), school->n_fish, evaluate_fish, &evaluation);
-    return evaluation.n_failed > 0 ? not_finite(school, t, value) : STATUS_OK;
+    return evaluation.n_failed > 0 ? fail_not_finite(school, t, value) : STATUS_OK;
 }
 
 void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
@@ -274,7 +287,7 @@ void residual_reaction(const struct residual *residual, int f, const double *y, 
     for (int i = 0; i < 2 * fish->n_nodes; i++) value[fish->at.ax + i] += pressure->momentum_rate[i];
 }
 
-// of a node that moves by its forces: places and velocities, or momenta in their place
+// of a free node: positions and velocities, or positions and momenta, are differential
 static int is_differential(const struct residual *residual, const struct unknown_place *place) {
     const int has_momentum = fish_has_momentum(&residual->school->fish[place->fish]);
     switch (place->kind) {
@@ -293,6 +306,7 @@ void residual_kinds(const struct residual *residual, double *kind) {
         const struct unknown_place place = residual_place(residual->school, i);
         const struct fish *fish = &residual->school->fish[place.fish];
         const int is_given = fish_is_prescribed(fish, place.index, residual_component(place.kind));
+
         kind[i] = 0;
         if (!is_given && is_differential(residual, &place)) kind[i] = 1;
         if (place.kind == UNKNOWN_CIRCULATION && !residual_shed_is_algebraic(residual)) kind[i] = 1;

@@ -14,27 +14,27 @@
 #include "school/residual_unknowns.h"
 #include "state/state.h"
 
-/* What determines the circulation that has been shed: the law of the case; Kutta's condition, while an impulsive event
- * is solved; nothing, it is given: before the first marker of a free sheet is born; Kutta's condition, while all of it
- * is infinitely far away (wake_leave_behind): in an equilibrium. */
+/* The equation for the circulation shed: the law of the case; the Kutta condition, during the solution of an impulsive
+ * event; a given circulation, before the first marker of a free sheet; the Kutta condition with all shed circulation
+ * infinitely far away (wake_leave_behind), in an equilibrium. */
 enum shed_now { SHED_BY_LAW, SHED_BY_IMPULSE, SHED_IS_GIVEN, SHED_IS_FAR };
 
-/* What the equations need besides the unknowns; workspace that holds nothing a restart would miss. */
+/* Input of the equations besides the unknowns, and workspace; the workspace is not part of the state. */
 struct residual {
     const struct school *school;
     const struct state *state; /* wakes, control memory, time of the last event */
     struct flow *flow;
     struct contact *contact;
-    enum shed_now shed_now;              /* what determines the circulation shed */
-    int at_start;                        /* whether the velocities are given, and momenta follow from them */
-    struct pressure **pressure;          /* of each fish; NULL where its force is another one   (n_fish) */
+    enum shed_now shed_now;              /* equation for the circulation shed */
+    int at_start;                        /* whether velocities are given, and momenta are solved for */
+    struct pressure **pressure;          /* of each fish; NULL unless force: pressure           (n_fish) */
     struct neighbours *neighbours;       /* workspace                                         (n_fish) */
-    struct residual_couplings couplings; /* which blocks of other fish the Jacobian has */
+    struct residual_couplings couplings; /* pairs of fish with a block in the Jacobian */
 
     struct range *joints;    /* of each fish                                     (n_fish) */
-    struct actuation muscle; /* what they are asked for, as last evaluated       (joints of all fish) */
+    struct actuation muscle; /* actuation at the last evaluation                 (joints of all fish) */
     struct jacobian_scratch *jacobian_scratch; /* scratch of each thread                          (threads) */
-    double *scratch; /* for those who read the results; of fish f: its own slices    (n_unknowns) */
+    double *scratch; /* scratch of diagnostics; fish f uses the slices of fish f     (n_unknowns) */
 };
 
 /* Scratch of the derivatives through the flow, large enough for any pair of fish. */
@@ -43,41 +43,41 @@ struct jacobian_scratch {
     struct coupling_block rows;
 };
 
-/* The state is read at every evaluation; it must outlive the residual. Fails with STATUS_MEMORY; residual_free accepts
+/* Every evaluation reads the state, which must outlive the residual. Fails with STATUS_MEMORY; residual_free accepts
  * NULL. */
 enum status residual_create(struct residual **residual, const struct school *school, const struct state *state);
 void residual_free(struct residual *residual);
 
-/* value = F(t, y, yp). Returns STATUS_RETRY where a value is not finite, or bodies touch that repel each other. */
+/* value = F(t, y, yp). Returns STATUS_RETRY if a value is not finite, or if repelling bodies touch. */
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);
 
-/* Parts of an evaluation, for who solves the equations one after another: the contacts, which can fail as
- * residual_evaluate does; and what the muscle of fish f asks of its joints for the phi0 in y, which is returned. */
+/* Individual stages of residual_evaluate, for segregated solvers. residual_contact: find the contacts; fails as
+ * residual_evaluate. residual_muscle: evaluate and return the actuation of the joints of fish f for the phi0 in y. */
 enum status residual_contact(struct residual *residual, double t, const double *y);
 struct actuation residual_muscle(struct residual *residual, int f, double t, const double *y);
 
-/* The rows ax, ay of fish f in N, before given motions replace them: m a less all forces. With the fluid's velocity and
- * the natural curvature and the contacts of the last evaluation. */
+/* The rows ax, ay of fish f in N, without prescribed motion: m a minus all forces. Uses flow velocity, natural
+ * curvature and contacts of the last evaluation. */
 void residual_balance(const struct residual *residual, int f, const double *y, double *value);
 
-/* The same rows with the whole force of the fluid: what else acts on the nodes, the reactions of prescribed ones. For
- * the rates yp. */
+/* The rows of residual_balance plus the rate of the added momentum, for the rates yp: the reactions of prescribed
+ * nodes, N. */
 void residual_reaction(const struct residual *residual, int f, const double *y, const double *yp, double *value);
 
-/* What Kutta's condition in its rate form gives for fish f, m2 s-2. With the fluid's velocity of the last
+/* The shedding rate of fish f by the rate form of the Kutta condition, m2 s-2. Uses the flow velocity of the last
  * evaluation. */
 double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y);
 
-/* The rate of the circulation shed by fish f where that is a differential unknown: as above, or 0 between impulses. */
+/* The rate of the circulation shed by fish f as a differential unknown: residual_kutta_rate, or 0 between impulses. */
 double residual_shed_rate(const struct residual *residual, int f, double t, const double *y);
 
-/* Circulation that no longer counts in Kelvin's equation of fish f, m2 s-1. */
+/* Removed circulation that is dropped from the Kelvin equation of fish f, m2 s-1. */
 double residual_lost(const struct residual *residual, int f, double t);
 
-/* kind[i] = 1 where unknown i is differential, 0 where it is algebraic                           (n_unknowns) */
+/* kind[i] = 1 if unknown i is differential, 0 if algebraic                                      (n_unknowns) */
 void residual_kinds(const struct residual *residual, double *kind);
 
-/* What determines the circulation shed by a fish now, and whether it is algebraic. */
+/* The present equation for the circulation shed, and whether this equation is algebraic. */
 enum bound_sheet_law residual_sheet_law(const struct residual *residual);
 int residual_shed_is_algebraic(const struct residual *residual);
 

@@ -1,4 +1,4 @@
-/* residual_couplings.c: by boxes, then by outlines. */
+/* residual_couplings.c: neighbours by boxes, then by the distance of outlines. */
 #include "school/residual_couplings.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ void residual_couplings_free(struct residual_couplings *couplings) {
     free(couplings->coupled);
 }
 
-// couple what is within a distance of each other, in place of what was coupled; returns whether that is a change
+// couple exactly the fish within a distance of each other; returns whether any pair has changed
 static int couple_neighbours(struct residual_couplings *couplings, const double *y, double distance) {
     const struct school *school = couplings->school;
     const struct neighbours *const neighbours = couplings->neighbours;
@@ -33,7 +33,8 @@ static int couple_neighbours(struct residual_couplings *couplings, const double 
         for (int g = 0; g < school->n_fish; g++) {
             const int overlaps = i < neighbours->first[f + 1] && neighbours->other[i] == g;
             i += overlaps;
-            // the distance is the same in either direction, to the bit
+
+            // ordered pair: the same bits for (f, g) and (g, f)
             const int a = f > g ? f : g, b = f > g ? g : f;
             const int couple =
                 f == g || (overlaps && fish_distance(&school->fish[a], &school->fish[b], y, distance) <= distance);
@@ -49,12 +50,13 @@ enum status residual_couple(struct residual_couplings *couplings, const double *
     for (int f = 0; f < school->n_fish; f++) {
         couplings->neighbours->box[f] = clearance_box(&school->fish[f], couplings->reach, y, y);
     }
+
     TRY(neighbours_find(couplings->neighbours));
     couplings->pattern += (unsigned)couple_neighbours(couplings, y, couplings->reach);
     return STATUS_OK;
 }
 
-// the distance beyond which no two bodies are apart
+// upper bound of all distances between bodies, m
 static double extent(const struct school *school, const double *y) {
     struct box all = clearance_box(&school->fish[0], 0, y, y);
     for (int f = 1; f < school->n_fish; f++) {
@@ -63,7 +65,7 @@ static double extent(const struct school *school, const double *y) {
     return hypot(all.high[0] - all.low[0], all.high[1] - all.low[1]);
 }
 
-// the numbers in the blocks of all pairs that couple
+// number of values in the blocks of all coupled pairs
 static double n_block_values(const struct residual_couplings *couplings) {
     const struct school *school = couplings->school;
     double n = 0;
@@ -82,6 +84,8 @@ int residual_couple_more(struct residual_couplings *couplings, const double *y) 
     while (!couplings->couples_most && couplings->pattern == pattern && couplings->reach < all) {
         couplings->reach = fmax(2 * couplings->reach, 0.5 * couplings->school->fish[0].length);
         if (residual_couple(couplings, y) == STATUS_OK && n_block_values(couplings) <= max_values) continue;
+
+        // back to the reach before
         couplings->reach = before;
         couplings->couples_most = 1;
         if (residual_couple(couplings, y) == STATUS_OK) return 0;
@@ -100,6 +104,7 @@ int residual_couple_contacts(struct residual_couplings *couplings, const struct 
             if (!*coupled) couplings->pattern++;
             *coupled = 1;
         }
+
         n_contacts += n;
     }
     return n_contacts > 0;

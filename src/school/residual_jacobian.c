@@ -13,14 +13,14 @@
 #include "force/fluid_force.h"
 #include "force/tail_flux.h"
 
-// of circulation that is infinitely far away nothing is felt: it is the last column
-static void forget_nascent(struct influence_block *block) {
+// zero the last column: circulation infinitely far away induces no velocity
+static void zero_nascent_column(struct influence_block *block) {
     const long n = block->n_points, first = (block->n_columns - 1) * n;
     memset(block->u + first, 0, (size_t)n * sizeof *block->u);
     memset(block->v + first, 0, (size_t)n * sizeof *block->v);
 }
 
-// the equations of fish f by what moves with fish g and comes through the velocity of the fluid
+// derivatives of the equations of fish f by the unknowns of fish g through the flow velocity
 static void flow_jacobian(const struct residual *residual, int f, int g, double t, const double *y,
                           struct influence_block *block, struct coupling_block *rows) {
     const struct fish *fish = &residual->school->fish[f];
@@ -28,8 +28,10 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
     rows->n_rows = flow_n_rows(fish);
     rows->n_columns = flow_n_columns(&residual->school->fish[g]);
     memset(rows->value, 0, (size_t)rows->n_rows * (size_t)rows->n_columns * sizeof *rows->value);
+
     flow_derivative(residual->flow, f, g, block);
-    if (residual->shed_now == SHED_IS_FAR) forget_nascent(block);
+    if (residual->shed_now == SHED_IS_FAR) zero_nascent_column(block);
+
     fluid_force_flow_jacobian(fish, &flow, block, y, rows);
     if (residual->pressure[f]) pressure_flow_jacobian(residual->pressure[f], block, rows);
     if (residual->pressure[f] && f == g) pressure_own_jacobian(residual->pressure[f], y, rows);
@@ -39,12 +41,12 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
     }
 }
 
-// add the rows of a fish by its own unknowns to its block: those entries that may differ from zero. The midpoint of an
-// edge feels the nodes of that edge and, where it feels its own wake, through the nascent vortex the tail and the
-// circulation shed; the flux at the tail the nodes of the last two edges; the pressure everything, and so does an edge
-// that has walls beside it, through the images of the body.
-static void add_own(const struct residual *residual, const struct fish *fish, const struct coupling_block *rows,
-                    struct sparse *own) {
+// add the rows of a fish to the own block of the fish: only entries that may differ from zero. The flow velocity at the
+// midpoint of an edge depends on the nodes of the edge and, with the own wake, on the tail node and the circulation
+// shed through the nascent vortex; the flux at the tail depends on the nodes of the last two edges; with pressure, or
+// with images in walls, every row depends on every column.
+static void add_own_rows(const struct residual *residual, const struct fish *fish, const struct coupling_block *rows,
+                         struct sparse *own) {
     const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
     const int rate = residual_sheet_law(residual) == BOUND_SHEET_RATE;
     const int felt_at_tail = n_nodes - (tail_flux_exists(fish) ? 3 : 2);
@@ -52,9 +54,11 @@ static void add_own(const struct residual *residual, const struct fish *fish, co
         const double *const value = rows->value + (long)c * rows->n_rows;
         const int column = flow_column(fish, c), node = c % n_nodes;
         const int is_place = c < n_places, is_shed = c == rows->n_columns - 1;
+
         const int is_nascent = fish_feels_own_wake(fish) && (is_shed || (is_place && node == n_nodes - 1));
         const int all = is_nascent || fish_has_momentum(fish) || residual->school->walls.n > 0;
         const int first = all || node == 0 ? 0 : node - 1, last = all || node >= felt_at_tail ? n_nodes - 1 : node + 1;
+
         for (int k = first; (is_place || all) && k <= last; k++) {
             sparse_add(own, fish->at.ax + k, column, value[k]);
             sparse_add(own, fish->at.ay + k, column, value[n_nodes + k]);
@@ -64,7 +68,7 @@ static void add_own(const struct residual *residual, const struct fish *fish, co
     }
 }
 
-// with momenta the rows of given ones are those of pressure_momentum_row
+// with momenta, the rows of prescribed components are the rows of pressure_momentum_row
 static void kinematics_jacobian(const struct residual *residual, const struct fish *fish, double cj,
                                 struct sparse *own) {
     const int has_momentum = fish_has_momentum(fish), n = fish->n_nodes;
@@ -80,7 +84,7 @@ static void kinematics_jacobian(const struct residual *residual, const struct fi
     }
 }
 
-// the derivatives of one fish's equations, in the order of evaluate_fish
+// the derivatives of the equations of one fish, in the order of evaluate_fish
 static enum status fish_jacobian(struct residual *residual, int f, double t, double cj, const double *y,
                                  struct jacobian_scratch *jacobian_scratch, struct jacobian *jacobian) {
     const struct school *school = residual->school;
@@ -89,6 +93,7 @@ static enum status fish_jacobian(struct residual *residual, int f, double t, dou
     const double *const u = residual->flow->u + residual->flow->points[f].first;
     const double *const v = residual->flow->v + residual->flow->points[f].first;
 
+    // own block: direct dependence on the unknowns
     sparse_begin(own);
     kinematics_jacobian(residual, fish, cj, own);
     const struct actuation muscle = residual_muscle(residual, f, t, y);
@@ -105,10 +110,10 @@ static enum status fish_jacobian(struct residual *residual, int f, double t, dou
     bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual), ramp_value(t, school->kutta_ramp), cj, u, v, y, own);
     control_jacobian(fish, &residual->state->control[f], t, t - residual->state->t, y, own);
 
-    // what comes through the velocity of the fluid: by the fish's own unknowns, and by those of the fish it couples to
+    // dependence through the flow velocity: on the own unknowns, then on the unknowns of coupled fish
     flow_jacobian(residual, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
     contact_jacobian(residual->contact, f, f, y, &jacobian_scratch->rows);
-    add_own(residual, fish, &jacobian_scratch->rows, own);
+    add_own_rows(residual, fish, &jacobian_scratch->rows, own);
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         struct jacobian_coupling *const coupling = &jacobian->coupling[i];
         flow_jacobian(residual, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
@@ -122,12 +127,14 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
                               struct jacobian *jacobian) {
     const struct school *school = residual->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
+
     TRY(residual_contact(residual, t, y));
     jacobian->has_contacts = residual_couple_contacts(&residual->couplings, residual->contact);
     TRY(flow_gradient(residual->flow, residual->state, t, y));
     if (jacobian->pattern != residual->couplings.pattern) {
         TRY(jacobian_couple(jacobian, residual->couplings.coupled, residual->couplings.pattern));
     }
+
     int n_failed = 0;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
@@ -137,7 +144,8 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
             n_failed++;
         }
     }
-    // the thread that failed had the message
+
+    // messages are per thread: repeat the message in this thread
     return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the Jacobian of %d fish", n_failed);
 }
 
@@ -149,16 +157,19 @@ void residual_by_shed(struct residual *residual, const double *y, double *value)
         const struct fish *fish = &school->fish[f];
         struct jacobian_scratch *const scratch = &residual->jacobian_scratch[omp_get_thread_num()];
         flow_nascent_influence(residual->flow, f, &scratch->block);
+
         scratch->rows.n_rows = flow_n_rows(fish);
         scratch->rows.n_columns = 1;
         memset(scratch->rows.value, 0, (size_t)scratch->rows.n_rows * sizeof *scratch->rows.value);
         bound_sheet_flow_jacobian(fish, &scratch->block, y, &scratch->rows);
+
         const int first = fish_has_momentum(fish) ? fish->at.ax : fish->at.gamma;
         if (residual->pressure[f]) {
             const struct flow_at_body flow = flow_at_body(residual->flow, f);
             fluid_force_flow_jacobian(fish, &flow, &scratch->block, y, &scratch->rows);
             pressure_flow_jacobian(residual->pressure[f], &scratch->block, &scratch->rows);
         }
+
         memcpy(value + first, scratch->rows.value + (first - fish->at.ax),
                (size_t)(fish->at.gamma + fish->n_control - first) * sizeof *value);
     }

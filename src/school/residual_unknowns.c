@@ -1,4 +1,4 @@
-/* residual_unknowns.c: slice by slice. */
+/* residual_unknowns.c: unknowns by slices of the layout. */
 #include "school/residual_unknowns.h"
 
 #include "force/pressure.h"
@@ -8,7 +8,7 @@ int residual_component(enum unknown kind) {
 }
 
 struct unknown_place residual_place(const struct school *school, int i) {
-    // the first fish that ends behind i
+    // bisection: the first fish with at.end above i
     int f = 0, last = school->n_fish - 1;
     while (f < last) {
         const int middle = (f + last) / 2;
@@ -18,6 +18,8 @@ struct unknown_place residual_place(const struct school *school, int i) {
             last = middle;
         }
     }
+
+    // the slice that contains i, from the last slice to the first
     const struct layout *at = &school->fish[f].at;
     const struct {
         int first;
@@ -34,6 +36,7 @@ struct unknown_place residual_place(const struct school *school, int i) {
                   {at->vx, UNKNOWN_VX, "vx"},
                   {at->y, UNKNOWN_Y, "y"},
                   {at->x, UNKNOWN_X, "x"}};
+
     int s = 0;
     while (i < slices[s].first) s++;
     return (struct unknown_place){
@@ -45,6 +48,7 @@ double residual_scale(const struct school *school, int i) {
     const struct fish *fish = &school->fish[place.fish];
     const double f = fish_rate(school, fish);
     const double length = fish->length;
+
     switch (place.kind) {
         case UNKNOWN_X:
         case UNKNOWN_Y: return 0.01 * length;

@@ -1,4 +1,4 @@
-/* rigid.c: see rigid.h. */
+/* rigid.c: rigid-body quantities of a fish, and changes at constant shape. */
 #include "school/rigid.h"
 
 #include <math.h>
@@ -9,10 +9,12 @@ struct rigid rigid_of(const struct fish *fish, const double *y) {
     const double *const x[2] = {y + fish->at.x, y + fish->at.y}, *const v[2] = {y + fish->at.vx, y + fish->at.vy};
     struct rigid rigid = {.place = {fish_mass_mean(fish, x[0]), fish_mass_mean(fish, x[1])},
                           .heading = control_heading(fish, y)};
+
     const double mean[2] = {fish_mass_mean(fish, v[0]), fish_mass_mean(fish, v[1])};
     const double c = cos(rigid.heading), s = sin(rigid.heading);
     rigid.velocity[0] = c * mean[0] + s * mean[1];
     rigid.velocity[1] = c * mean[1] - s * mean[0];
+
     double momentum = 0, inertia = 0;
     for (int k = 0; k < fish->n_nodes; k++) {
         const double arm[2] = {x[0][k] - rigid.place[0], x[1][k] - rigid.place[1]};
@@ -30,7 +32,7 @@ void rigid_relative_place(const struct rigid *seen_from, const struct rigid *oth
     place[1] = c * way[1] - s * way[0];
 }
 
-// turn the vector from a centre to (*x, *y)
+// rotate (*x, *y) about a centre
 static void rotate(const double centre[2], double angle, double *x, double *y) {
     const double c = cos(angle), s = sin(angle), dx = *x - centre[0], dy = *y - centre[1];
     *x = centre[0] + c * dx - s * dy;
@@ -45,7 +47,7 @@ static void change_velocity(const struct fish *fish, const struct rigid *before,
     }
 }
 
-// the wake of a fish that has always had the new velocity and turn; tail: place of the last node
+// displace the wake to the wake of a fish with constant new velocity and turn; tail: position of the last node
 static void change_wake(struct wake *wake, double t, const double centre[2], const double tail[2],
                         const double velocity[2], double turn) {
     const double of_tail[2] = {velocity[0] - turn * (tail[1] - centre[1]), velocity[1] + turn * (tail[0] - centre[0])};
@@ -55,7 +57,8 @@ static void change_wake(struct wake *wake, double t, const double centre[2], con
         wake->x[i] -= age * velocity[0];
         wake->y[i] -= age * velocity[1];
     }
-    // the slip is the velocity of the fluid less that of the tail
+
+    // slip: velocity of the flow minus velocity of the tail
     for (int i = 0; i < 2; i++) {
         wake->tail_velocity[i] += of_tail[i];
         wake->slip[i] -= of_tail[i];
@@ -88,7 +91,7 @@ static void move_wake(struct wake *wake, const double centre[2], double angle, c
     wake->version++;
 }
 
-// every vector of the samples of the last period turns with the fish, so that means over the period do not jump
+// rotate every vector of the samples of the last period with the fish: means over the period do not jump
 static void move_history(struct history *history, const double centre[2], double angle, const double way[2]) {
     for (int i = 0; i < history->n; i++) {
         struct sample *const sample = &history->sample[i];
@@ -107,7 +110,7 @@ static void move_history(struct history *history, const double centre[2], double
     }
 }
 
-// the newest sample, from which the drift of the stream goes on, has the stream at the new place
+// evaluate the stream of the newest sample at the new position: the next event integrates drifted from this value
 static void renew_stream(const struct school *school, double t, struct history *history) {
     struct sample *const newest = &history->sample[history->last];
     flow_external(school, t, newest->com[1], &newest->stream[0], &newest->stream[1]);
@@ -121,8 +124,10 @@ void rigid_change(const struct school *school, struct state *state, int f, const
     const double c = cos(before.heading), s = sin(before.heading);
     const double velocity[2] = {c * change->velocity[0] - s * change->velocity[1],
                                 s * change->velocity[0] + c * change->velocity[1]};
+
     change_velocity(fish, &before, velocity, change->turn, state->y);
     change_wake(&state->wake[f], state->t, before.place, tail, velocity, change->turn);
+
     move_body(fish, before.place, change->heading, change->place, state->y);
     move_wake(&state->wake[f], before.place, change->heading, change->place);
     move_history(&state->history[f], before.place, change->heading, change->place);

@@ -1,32 +1,31 @@
-/* rigid.h: a fish as a whole: where it is, how it goes and turns, and how to change that without touching its shape.
- * The search for a steady state (steady/steady.h) works with these few slow quantities. doc/steady.md. Tested
+/* rigid.h: position, heading, velocity and turning rate of a whole fish, and changes of these quantities at constant
+ * shape. The search for a steady state (steady/steady.h) uses these slow quantities as unknowns. doc/steady.md. Tested
  * by tests/school/test_rigid.c. */
 #ifndef RIGID_H
 #define RIGID_H
 
 #include "state/state.h"
 
-/* Of the whole body; or what is added to each. */
+/* Rigid-body quantities of a fish, or increments of these quantities. */
 struct rigid {
-    double place[2];    /* of the centre of mass, m */
+    double place[2];    /* centre of mass, m */
     double heading;     /* rad */
-    double velocity[2]; /* of the centre of mass: along the heading and to its left, m s-1 */
-    double turn;        /* angular momentum about the centre of mass over the moment of inertia, rad s-1 */
+    double velocity[2]; /* centre of mass: along the heading, and to the left, m s-1 */
+    double turn;        /* angular momentum about the centre of mass / moment of inertia, rad s-1 */
 };
 
-/* What the fish is at the unknowns y. place and velocity are those over ground. */
+/* The rigid-body quantities of a fish at the unknowns y; place and velocity are over ground. */
 struct rigid rigid_of(const struct fish *fish, const double *y);
 
-/* The place of another fish as one sees it: ahead of its centre of mass and to its left, m. */
+/* Place of another fish relative to the centre of mass of seen_from: ahead, and to the left, m. */
 void rigid_relative_place(const struct rigid *seen_from, const struct rigid *other, double place[2]);
 
-/* Add to what fish f is: velocity and turn first, along the heading as it was; then the body turns about its centre of
- * mass and is displaced, with its wake and what is remembered of the last period.
+/* Add *change to fish f: first velocity and turn, along the old heading; then rotate the body about the centre of mass
+ * and displace the body, the wake and the history of the last period.
  *
- * The wake becomes that of a fish which has always had the new velocity and turn: a vortex that is a seconds old is
- * where the tail would have left it, displaced by -a times the change of the velocity and turned by -a times that of
- * the turn. Of the unknowns only positions and velocities change: the others have to be made consistent
- * (initial_conditions_solve, as at a start). */
+ * The new wake is the wake of a fish that has always had the new velocity and turn: a vortex of age a is displaced by
+ * -a times the change of velocity, and rotated by -a times the change of turn. Only positions and velocities of the
+ * unknowns change; initial_conditions_solve then makes the other unknowns consistent, as at a start. */
 void rigid_change(const struct school *school, struct state *state, int f, const struct rigid *change);
 
 #endif

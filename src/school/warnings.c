@@ -1,4 +1,4 @@
-/* warnings.c: how bad a result is, each kind measured so that 1 is the limit, and what to do about it. */
+/* warnings.c: the size of every defect of a result, relative to the limit of the warning, and the message. */
 #include "school/warnings.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 
 #include "body/bending_mode.h"
 
-/* What a warning of a fish is made of. */
+/* Input of a warning about one fish. */
 struct subject {
     const struct school *school;
     const struct state *state;
@@ -14,13 +14,13 @@ struct subject {
     double *scratch;
     const struct fish *fish;
     int f;
-    double size; /* see kind */
+    double size; /* of struct kind */
 };
 
-/* The size of what is so or not. */
+/* The size of a defect without degrees. */
 static const double always = 2;
 
-/* A kind of warning that each fish has by itself: its size, at which more than 1 warns, and its sentence. */
+/* A kind of warning about a single fish: size of the defect, above 1 a warning, and message. */
 struct kind {
     double (*size)(const struct subject *subject);
     void (*say)(const struct subject *subject, const char *who, char line[WARNING_BYTES]);
@@ -28,8 +28,8 @@ struct kind {
 
 // ---- energy
 
-// the largest of the works that go in or out, J
-static double work_of(const struct subject *subject) {
+// the largest work, J
+static double largest_work(const struct subject *subject) {
     const double *const work = subject->state->balance[subject->f].work;
     double max = 0;
     for (int i = 0; i < N_WORKS; i++) max = fmax(max, fabs(work[i]));
@@ -40,8 +40,9 @@ static double energy_size(const struct subject *subject) {
     const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
     const double energy = now->kinetic_energy + now->bending_energy + now->stretching_energy;
     const double balance = fabs(now->energy_balance), rounding = 1e-12 * energy;
-    double work = work_of(subject);
-    // within the first beat there is little work: then the energy of one length per beat counts, and that of the body
+    double work = largest_work(subject);
+
+    // the works are small in the first beat: include the energy of the body, and of one length per beat
     if (subject->state->t < subject->fish->period) {
         const double speed = subject->fish->length / subject->fish->period;
         work = fmax(work, fmax(energy, subject->fish->total_mass * speed * speed));
@@ -52,15 +53,15 @@ static double energy_size(const struct subject *subject) {
 static void energy_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
     snprintf(
         line, WARNING_BYTES,
-        "the energy balance of %s is open by %.2g J, of %.2g J of work: a smaller solver.rtol or solver.step has to "
-        "close it, else the case asks for more than the model can give",
-        who, subject->diagnostics->fish[subject->f].energy_balance, work_of(subject));
+        "energy balance of %s: residual %.2g J for %.2g J of work: reduce solver.rtol or solver.step; if the residual "
+        "remains, the case is outside the range of the model",
+        who, subject->diagnostics->fish[subject->f].energy_balance, largest_work(subject));
 }
 
 // ---- divergence
 
-// the largest speed that the case gives to anything, m s-1: of beats, motions, starts, the external flow, and of loads
-// that nothing resists
+// upper bound of the speeds prescribed by the case, m s-1: sum for one fish of beat, motion, start, external flow, and
+// free acceleration by the load; the largest sum of all fish
 static double case_speed(const struct subject *subject) {
     const struct school *const school = subject->school;
     double most = 0;
@@ -85,7 +86,8 @@ static double largest_speed(const struct subject *subject) {
     return most;
 }
 
-// shed now, and in the wake: of markers up to their births
+// largest magnitude of the circulation shed, and of the wake; a marker holds the circulation shed until the birth, m2
+// s-1
 static double largest_circulation(const struct subject *subject) {
     const struct wake *const wake = &subject->state->wake[subject->f];
     double most = fabs(subject->state->y[subject->fish->at.circulation]);
@@ -93,7 +95,8 @@ static double largest_circulation(const struct subject *subject) {
     return most;
 }
 
-// a foil has a circulation of 3 lengths times its speed; a tail may go some times faster than the body
+// the circulation of a foil is about 3 L U, and a tail may be several times faster than the body: 100 is no physical
+// result
 static const double most_of_case = 100;
 
 static double divergence_size(const struct subject *subject) {
@@ -102,11 +105,11 @@ static double divergence_size(const struct subject *subject) {
 }
 
 static void divergence_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    snprintf(
-        line, WARNING_BYTES,
-        "%s has diverged: its nodes reach %.2g m/s and its circulation %.2g m2/s, more than %g times what the case "
-        "gives cause for: lower solver.rtol, solver.step or time.shedding_interval, or stiffen the body",
-        who, largest_speed(subject), largest_circulation(subject), most_of_case);
+    snprintf(line, WARNING_BYTES,
+             "%s has diverged: node speed %.2g m/s, circulation %.2g m2/s, more than %g times the speeds of the case: "
+             "reduce "
+             "solver.rtol, solver.step or time.shedding_interval, or stiffen the body",
+             who, largest_speed(subject), largest_circulation(subject), most_of_case);
 }
 
 // ---- drift of the speed
@@ -118,8 +121,9 @@ static double drift_size(const struct subject *subject) {
 
 static void drift_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
     snprintf(line, WARNING_BYTES,
-             "the speed of %s changes by %.1f %% from one beat to the next: means over the last beat are not those of "
-             "steady swimming, for which time.end has to be later",
+             "the speed of %s changes by %.1f %% from one beat to the next: the means are not steady; increase "
+             "time.end or use "
+             "`shoal steady`",
              who, 100 * subject->diagnostics->fish[subject->f].drift);
 }
 
@@ -129,18 +133,19 @@ enum { MIN_EVENTS = 20 /* in a beat */ };
 
 static double events_size(const struct subject *subject) {
     const double period = subject->fish->period;
-    // a little more, for a quotient that is exact but for rounding
+
+    // tolerate the rounding error of the quotient
     return period > 0 ? (1 - 1e-9) * MIN_EVENTS * subject->school->interval / period : 0;
 }
 
 static void events_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
     snprintf(line, WARNING_BYTES,
-             "a beat of %s has only %.3g events: a time.shedding_interval of at most %.3g s gives it %d", who,
+             "a beat of %s has only %.3g events: reduce time.shedding_interval to %.3g s for %d events", who,
              subject->fish->period / subject->school->interval, subject->fish->period / MIN_EVENTS, MIN_EVENTS);
 }
 
-// What the sheet needs is M - 1 >= 3.2/sqrt(U Dt/L); 0.9 of that warns, as the errors grow slowly (0.25 % of the
-// circulation at 0.63 of it), and only a speed that is nearly steady counts: every fish that starts from rest is slow.
+// The sheet needs M - 1 >= 3.2/sqrt(U Dt/L). The warning begins at 0.9 of this number, because the error grows slowly
+// (0.25 % of the circulation at 0.63), and only at nearly steady speed: every fish that starts from rest is slow.
 static double sheet_needs(const struct subject *subject) {
     const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
     return 3.2 / sqrt(now->speed * subject->school->interval / subject->fish->length);
@@ -149,22 +154,24 @@ static double sheet_needs(const struct subject *subject) {
 static double sheet_size(const struct subject *subject) {
     const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
     if (subject->school->shedding != SHEDDING_SHEET || !(now->speed > 0)) return 0;
-    // an equilibrium sheds nothing
+    // an equilibrium has no shedding
     if (subject->state->wake[subject->f].n_vortex == 0) return 0;
+
     const double nearly = 0.1;
     if (subject->fish->period > 0 && !(fabs(now->drift) < nearly)) return 0;
-    // what needs more does not swim
+
+    // a fish that needs more points does not swim
     const double most = 1000;
     return sheet_needs(subject) < most ? 0.9 * sheet_needs(subject) / (subject->fish->n_sheet - 1) : 0;
 }
 
 static void sheet_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    snprintf(
-        line, WARNING_BYTES,
-        "%s swims %.2g lengths in a shedding_interval, which is too little for %d sheet_points: take %.0f of them, "
-        "or a longer interval",
-        who, subject->diagnostics->fish[subject->f].speed * subject->school->interval / subject->fish->length,
-        subject->fish->n_sheet, ceil(sheet_needs(subject)) + 1);
+    snprintf(line, WARNING_BYTES,
+             "%s swims %.2g lengths in a shedding_interval, too short for %d sheet_points: use %.0f sheet_points or a "
+             "longer "
+             "time.shedding_interval",
+             who, subject->diagnostics->fish[subject->f].speed * subject->school->interval / subject->fish->length,
+             subject->fish->n_sheet, ceil(sheet_needs(subject)) + 1);
 }
 
 // ---- the slowest bending mode
@@ -176,14 +183,15 @@ static double modes_size(const struct subject *subject) {
 
 static void modes_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
     snprintf(line, WARNING_BYTES,
-             "the slowest bending mode of %s has %.2g Hz, less than its beat of %.3g Hz: its shape is not that of the "
-             "muscle, and all of its modes count: compare with twice the nodes",
+             "the slowest bending mode of %s has %.2g Hz, below the beat frequency %.3g Hz: the shape differs from the "
+             "natural "
+             "curvature and depends on many modes: compare with twice the nodes",
              who, bending_mode_frequency(subject->fish, subject->scratch), subject->fish->frequency);
 }
 
 // ---- the leading edge
 
-// once the speed is nearly steady, as for the sheet: a fish that starts from rest has little speed for its strengths
+// only at nearly steady speed, as for the sheet: at low speed after a start the circulations are large for the speed
 static double edge_size(const struct subject *subject) {
     const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
     const double most = 0.1, nearly = 0.1;
@@ -201,19 +209,20 @@ static void edge_say(const struct subject *subject, const char *who, char line[W
 
 // ---- the tail
 
-// whether the water bends the tail
-static int bends(const struct subject *subject) {
+// whether forces of the fluid bend the tail
+static int tail_bends(const struct subject *subject) {
     return subject->school->density > 0 && subject->fish->motion.prescribed != PRESCRIBED_ALL;
 }
 
 static double cusp_size(const struct subject *subject) {
-    return bends(subject) && subject->fish->has_cusp ? always : 0;
+    return tail_bends(subject) && subject->fish->has_cusp ? always : 0;
 }
 
 static void cusp_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
     (void)subject;
     snprintf(line, WARNING_BYTES,
-             "the tail of %s ends in a cusp: its results have no limit in nodes (doc/numerics.md, section 5); give "
+             "the tail of %s ends in a cusp: results do not converge with the number of nodes (doc/numerics.md, "
+             "section 5); set "
              "body.tail_thickness",
              who);
 }
@@ -226,17 +235,17 @@ double warnings_bending_length(const struct fish *fish) {
 static double tail_size(const struct subject *subject) {
     const struct fish *const fish = subject->fish;
     const int beats = fish_has_wave(fish) || (fish->motion.prescribed == PRESCRIBED_HEAD && fish->motion.omega > 0);
-    if (!bends(subject) || !beats || fish->has_cusp || !(fish->tail_added_mass > 0)) return 0;
+    if (!tail_bends(subject) || !beats || fish->has_cusp || !(fish->tail_added_mass > 0)) return 0;
     return 2 * fish->edge_length / warnings_bending_length(fish);
 }
 
 static void tail_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
     const struct fish *const fish = subject->fish;
-    snprintf(line, WARNING_BYTES,
-             "the edges of %s, %.2g m, are longer than half the length over which its tail bends, %.2g m: take %.0f "
-             "nodes or more",
-             who, fish->edge_length, warnings_bending_length(fish),
-             ceil(2 * fish->length / warnings_bending_length(fish)) + 1);
+    snprintf(
+        line, WARNING_BYTES,
+        "the edges of %s, %.2g m, are longer than half the bending length of the tail, %.2g m: use at least %.0f nodes",
+        who, fish->edge_length, warnings_bending_length(fish),
+        ceil(2 * fish->length / warnings_bending_length(fish)) + 1);
 }
 
 // ---- the published force
@@ -248,8 +257,8 @@ static double force_size(const struct subject *subject) {
 static void force_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
     (void)subject;
     snprintf(line, WARNING_BYTES,
-             "the published force on %s does not follow from an energy and can create energy: no other property of the "
-             "result is judged; compare with 'force: reactive'",
+             "the published force on %s does not follow from an energy and can create energy: accuracy warnings are "
+             "suppressed; compare with 'force: reactive'",
              who);
 }
 
@@ -268,45 +277,49 @@ static const struct kind kinds[N_WARNINGS] = {
     [WARNING_FORCE] = {force_size, force_say},
 };
 
-// a result with the published force is told that, and whether it is none at all, but not how accurate it is
-static int judges(enum warning warning, const struct fish *fish) {
+// accuracy warnings are suppressed for the published force
+static int applies_to_force(enum warning warning, const struct fish *fish) {
     return fish->force != FORCE_PUBLISHED || warning == WARNING_FORCE || warning == WARNING_DIVERGENCE;
 }
 
 const struct warning_words warnings_words[N_WARNINGS] = {
-    [WARNING_CONTACT] = {"bodies touch, cross or come near",
-                         "at any step of the integrator or between two; near: below contact.range without "
-                         "'contact.action: repel'; closest_approach says who came closest, and when"},
+    [WARNING_CONTACT] =
+        {"bodies touch, cross or come near",
+         "at or between steps of the integrator; near: gap below contact.range without 'contact.action: "
+         "repel'; closest_approach contains distance, fish and time"},
     [WARNING_CROSSING] = {"a body crosses itself",
-                          "its centre line or its outline, at an event; contact does not act within a body"},
-    [WARNING_DIVERGENCE] = {"a fish has diverged",
-                            "at the end its speed, or the circulation in its wake over its length, is above 100 times "
-                            "the speeds that the case gives"},
+                          "centre line or outline, at an event; contact forces do not act within a body"},
+    [WARNING_DIVERGENCE] =
+        {"a fish has diverged",
+         "at the end the speed of a node, or the circulation of the wake over the length, is above 100 times "
+         "the speeds of the case"},
     [WARNING_ENERGY] =
         {"the energy balance is open",
-         "energy_balance is more than 1 % of the largest of the works of muscle, fluid, damping, and all "
-         "forces; within the first beat, also of the energy of the body and of one length per beat"},
+         "energy_balance is more than 1 % of the largest work of muscle, fluid, damping, prescribed motion and all "
+         "forces; in the first beat, also more than 1 % of the energy of the body and of one length per beat"},
     [WARNING_MOMENTUM] =
         {"the momentum balance is open",
-         "momentum_balance is more than 1 % of the largest of the sums over all fish: of the momentum, of "
-         "the change of the impulse of the vortices, of external_impulse; not within the first beat, or length"},
-    [WARNING_DRIFT] = {"the speed changes",
-                       "drift is more than 1 %: means over the last beat are not those of steady swimming"},
+         "momentum_balance is more than 1 % of the largest sum over all fish of: momentum, change of the impulse of "
+         "the vortices, external_impulse; not in the first beat, or, without beat, in the first length"},
+    [WARNING_DRIFT] = {"the speed changes", "drift is more than 1 %: means over the last beat are not steady"},
     [WARNING_EVENTS] = {"few events", "fewer than 20 in a beat"},
-    [WARNING_SHEET] = {"few sheet points",
-                       "'shedding: sheet' where n_sheet - 1 < 0.9 x 3.2/sqrt(U Dt/L), once the speed changes by less "
-                       "than 10 % a beat"},
-    [WARNING_MODES] = {"slow modes", "the slowest bending mode of a body in its fluid is slower than its beat"},
+    [WARNING_SHEET] =
+        {"few sheet points",
+         "'shedding: sheet' and n_sheet - 1 < 0.9 x 3.2/sqrt(U Dt/L), with a change of speed below 10 % per "
+         "beat"},
+    [WARNING_MODES] = {"slow modes",
+                       "the frequency of the slowest bending mode of a body in the fluid is below the beat frequency"},
     [WARNING_EDGE] =
         {"separation at the nose",
-         "separation_share is above 0.1, once the speed changes by less than 10 % a beat: the limit of the "
-         "suction acts for more than 10 % of the last period"},
+         "separation_share is above 0.1, with a change of speed below 10 % per beat: the suction limit acts for more "
+         "than 10 % of the last period"},
     [WARNING_CUSP] = {"a cusp", "a Joukowski body that bends, with 'tail_thickness: 0'"},
     [WARNING_TAIL] = {"few nodes at the tail",
                       "twice the length of an edge is more than (EI/(m_L omega^2))^(1/4), with EI of the last edge and "
                       "omega of the beat"},
     [WARNING_FORCE] = {"the published force",
-                       "it can create energy; of such a fish only contact, crossing and divergence are told besides"},
+                       "the published force can create energy; the other warnings for this fish are contact, crossing "
+                       "and divergence"},
 };
 
 static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {
@@ -314,8 +327,8 @@ static int contact_line(const struct school *school, const struct closest *close
     const char *const a = school->fish[closest->fish[0]].name, *const b = school->fish[closest->fish[1]].name;
     if (closest->distance <= 0) {
         snprintf(line, WARNING_BYTES,
-                 "the bodies of %.40s and %.40s touch or cross at t = %.4g s: what follows is no solution%s", a, b,
-                 closest->t, repel ? "" : "; contact.action: repel keeps them apart");
+                 "the bodies of %.40s and %.40s touch or cross at t = %.4g s: later results are invalid%s", a, b,
+                 closest->t, repel ? "" : "; set contact.action: repel");
         return 1;
     }
     if (repel || closest->distance >= school->contact_range) return 0;
@@ -329,23 +342,26 @@ static int crossing_line(const struct school *school, const struct state *state,
     if (state->crossed < 0) return 0;
     snprintf(
         line, WARNING_BYTES,
-        "the body of %.40s crosses itself at t = %.4g s: what follows is no solution; a stiffer body, or a smaller "
-        "wave.amplitude, does not",
+        "the body of %.40s crosses itself at t = %.4g s: later results are invalid; use a stiffer body or a smaller "
+        "wave.amplitude",
         school->fish[state->crossed].name, state->crossed_t);
     return 1;
 }
 
-// of the whole school
+// the momentum balance of the school
 static int momentum_line(const struct school *school, const struct state *state, const struct diagnostics *diagnostics,
                          char line[WARNING_BYTES]) {
     const double balance = hypot(diagnostics->momentum_balance[0], diagnostics->momentum_balance[1]);
-    // a beat, or a length where nothing beats
+
+    // the longest beat; without beat, the time of one length
     double period = 0;
     for (int f = 0; f < school->n_fish; f++) period = fmax(period, 1 / fish_rate(school, &school->fish[f]));
+
     if (state->t < period || !(balance > 0.01 * diagnostics->momentum_size)) return 0;
     snprintf(line, WARNING_BYTES,
-             "the momentum balance is open by %.2g N s, of %.2g N s: a shorter time.shedding_interval and more "
-             "sheet_points close it, and so does a start without a jump of the velocity",
+             "momentum balance: residual %.2g N s for %.2g N s: reduce time.shedding_interval, increase sheet_points, "
+             "or start "
+             "without a jump of the velocity",
              balance, diagnostics->momentum_size);
     return 1;
 }
@@ -355,17 +371,21 @@ int warnings_line(enum warning warning, const struct school *school, const struc
     if (warning == WARNING_CONTACT) return contact_line(school, state->closest, line);
     if (warning == WARNING_CROSSING) return crossing_line(school, state, line);
     if (warning == WARNING_MOMENTUM) return momentum_line(school, state, diagnostics, line);
+
+    // the fish with the largest size
     struct subject worst = {.size = 1};
     int n = 0;
     for (int f = 0; f < school->n_fish; f++) {
         struct subject subject = {school, state, diagnostics, scratch, &school->fish[f], f, 0};
-        if (!judges(warning, subject.fish)) continue;
+        if (!applies_to_force(warning, subject.fish)) continue;
         subject.size = kinds[warning].size(&subject);
         if (!(subject.size > 1) || isinf(subject.size)) continue;
+
         n++;
         if (subject.size > worst.size) worst = subject;
     }
     if (n == 0) return 0;
+
     char who[96];
     snprintf(who, sizeof who, n > 1 ? "%.40s (the worst of %d fish)" : "%.40s", worst.fish->name, n);
     kinds[warning].say(&worst, who, line);

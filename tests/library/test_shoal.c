@@ -1,4 +1,4 @@
-/* test_shoal.c: the public interface: every function of shoal.h, and that it is the simulation underneath. */
+/* test_shoal.c: every function of shoal.h, with the same bits as the internal simulation. */
 #include <limits.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -17,7 +17,7 @@
 #include "school.h"
 #include "shoal.h"
 
-// two fish that differ in what a call could confuse
+// two fish with different sizes and positions
 static const char case_text[] =
     "format: 1\n"
     "name: two\n"
@@ -115,7 +115,7 @@ static void bodies_and_wakes_are_those_of_the_simulation(void **state) {
         NEAR_ARRAY(5, x, wake->x, 0, 0);
         NEAR_ARRAY(5, y, wake->y, 0, 0);
         NEAR_ARRAY(5, circulation, wake->circulation, 0, 0);
-        // no two of them are equal, so that an order or a fish taken for another shows
+        // all values differ: a wrong order or a wrong fish changes the result
         for (int i = 0; i < 4; i++) assert_true(wake->x[i] > wake->x[i + 1] && fabs(circulation[i]) > 0);
     }
     shoal_close(run);
@@ -185,13 +185,13 @@ static void each_thread_has_its_own_message(void **state) {
 
 enum { N_THREADS = 6, N_ROUNDS = 2 };
 
-/* What a thread does with runs of its own, and with a copy of a run that all threads copy in turn. */
+/* One thread: own runs, and a copy of a run that all threads copy in turn. */
 struct worker {
     int number;
     const char *path;
     struct shoal *origin;
     pthread_mutex_t *turn;
-    double nose; /* where all that comes to an end */
+    double nose; /* final position of the nose, m */
     int failed;
 };
 
@@ -355,7 +355,7 @@ static double of_fish(struct shoal *run, const char *name, int fish) {
     return ((const double *)array.values)[fish];
 }
 
-// both go half of their way within half of control.ramp
+// both values change by half within half of control.ramp
 static void the_gait_in_force_can_be_read(void **state) {
     const char *const more[] = {"time.end=0.6", "fish[*].wave.ramp=0.1", "fish[*].control.ramp=0.2"};
     struct shoal *const run = opened(*state, 3, more);
@@ -375,7 +375,7 @@ static void the_gait_in_force_can_be_read(void **state) {
     NEAR(of_fish(run, "wave_amplitude", 0), 0.3, 1e-12, 0);
     NEAR(of_fish(run, "wave_frequency", 0), 1.4, 1e-12, 0);
     NEAR(of_fish(run, "wave_frequency", 1), 1, 0, 0);
-    NEAR(of_fish(run, "frequency", 0), 1, 0, 0);  // that of the case, which means over a period refer to
+    NEAR(of_fish(run, "frequency", 0), 1, 0, 0);  // frequency of the case, for means over a period
     shoal_close(run);
 }
 
@@ -406,7 +406,7 @@ static void a_run_advances_to_the_event_at_or_after_a_time(void **state) {
     NEAR(shoal_time(run), 0.04, 0, 0);
     assert_int_equal(shoal_advance(run, 3 * 0.02), SHOAL_OK);  // a rounding error above 0.06
     NEAR(shoal_time(run), 0.06, 0, 0);
-    assert_int_equal(shoal_advance(run, 0.05), SHOAL_OK);  // its event is this one
+    assert_int_equal(shoal_advance(run, 0.05), SHOAL_OK);  // the present event
     NEAR(shoal_time(run), 0.06, 0, 0);
     refuses(shoal_advance(run, 0.04), "before the last event, at 0.06 s");
     refuses(shoal_advance(run, -1), "before the last event, at 0.06 s");
@@ -615,7 +615,7 @@ static void vorticity_is_the_curl_of_the_velocity(void **state) {
 }
 
 static void looking_does_not_change_a_run(void **state) {
-    // the interpolated wake is what looking at the flow could disturb
+    // shoal_flow must not change the wake interpolation
     const char *const assignments[] = {"time.end=0.4", "wake.tolerance=1e-4"};
     struct shoal *const seen = opened(*state, 2, assignments), *const alone = opened(*state, 2, assignments);
     double point[2] = {1.1, 0.1}, velocity[2], vorticity;
@@ -735,14 +735,14 @@ static void two_runs_of_one_process_do_not_write_the_same_result(void **state) {
     assert_int_equal(rmdir(result_folder), 0);
 }
 
-/* What a fork of the process does with a run whose result the process writes; its exit code. */
+/* Calls in a fork of the process that writes the result of a run; returns the exit code. */
 static int use_in_a_fork(struct shoal *run, int how) {
     if (how == 0) shoal_close(run);
     if (how == 1 && shoal_step(run) != SHOAL_FILE) return 1;
     if (how == 2 && shoal_checkpoint(run) != SHOAL_FILE) return 2;
     if (how == 3 && shoal_write_end(run) != SHOAL_FILE) return 3;
     if (how == 0) return 0;
-    // from then on it is a run without a file
+    // the run continues without a file
     if (!strstr(shoal_message(), "not by this fork")) return 4;
     if (shoal_step(run) != SHOAL_OK || shoal_write_end(run) != SHOAL_OK) return 5;
     shoal_close(run);
@@ -950,12 +950,12 @@ static void a_body_is_where_it_was_put_with_its_velocity(void **state) {
     }
     NEAR(one_of(run, "com", 0), com + 0.1, 1e-12, 0);
     NEAR(one_of(run, "com_velocity", 0), velocity - 0.3, 1e-12, 0);
-    // the wake stays, and goes on at the new tail
+    // the wake is unchanged and continues at the new tail
     assert_int_equal(shoal_n_vortices(run, 0), n_before + 1);
     double wake_x[64], wake_y[64], circulation[64];
     assert_int_equal(shoal_vortices(run, 0, wake_x, wake_y, circulation), SHOAL_OK);
     NEAR(wake_x[n_before], x[16], 0, 0);
-    // all circulation still adds up to 0, and no balance has moved
+    // the total circulation is 0, and the balances are unchanged
     NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
     for (size_t i = 0; i < 2; i++) NEAR(one_of(run, "momentum_balance", i), audit[i], 1e-9, 0);
     NEAR(one_of(run, "energy_balance", 0), audit[2], 1e-9, 0);
@@ -1045,7 +1045,7 @@ static void a_vortex_from_outside_keeps_momentum_and_circulation(void **state) {
         assert_int_equal(shoal_add_vortex(run, 0, x, y, circulation), SHOAL_OK);
         assert_int_equal(shoal_n_vortices(run, 0), n_before + (i == 0 ? 3 : 1));
         assert_int_equal(shoal_flow(run, 2, points, flow, NULL), SHOAL_OK);
-        // on both sides it moves the fluid by its circulation, but for its smoothing and the answer of the bodies
+        // the velocity on both sides of the vortex, except for smoothing and the response of the bodies
         NEAR(flow[1] - flow[3] - far[1] + far[3], circulation / (M_PI * r), 0, 0.2);
         NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
         for (size_t k = 0; k < 2 && i == 0; k++) NEAR(one_of(run, "momentum_balance", k), before[k], 1e-7, 0);
@@ -1053,7 +1053,7 @@ static void a_vortex_from_outside_keeps_momentum_and_circulation(void **state) {
         // rho w (y, -x) G, of the depth 0.2 of the default
         const double impulse = lost[0] - one_of(run, "lost_impulse", 0);
         NEAR(impulse / (lost[1] - one_of(run, "lost_impulse", 1)), -y / x, 0, 1e-9);
-        // from then on the balance errs as without the vortex
+        // later errors of the balance are the same as without the vortex
         assert_int_equal(shoal_advance(run, 0.5), SHOAL_OK);
         assert_int_equal(shoal_advance(copy, 0.5), SHOAL_OK);
         NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
@@ -1084,7 +1084,7 @@ static void a_changed_run_is_copied_and_saved_like_any_other(void **state) {
     for (int i = 0; i < 3; i++) assert_int_equal(shoal_advance(all[i], 0.6), SHOAL_OK);
     same_in_all(run, copy);
     same_in_all(run, loaded);
-    // with room in the file up to the end
+    // the file has room until the end
     assert_true(n_rows_of(result_path) > 2);
     for (int i = 0; i < 3; i++) shoal_close(all[i]);
     assert_int_equal(unlink(path), 0);

@@ -1,4 +1,4 @@
-/* test_measure.c: what a user reads off a state, and the balances: doc/model.md, section 13. */
+/* test_diagnostics.c: derived quantities of a state, and energy balances: doc/model.md, section 13. */
 #include <stdio.h>
 
 #include "school.h"
@@ -16,7 +16,7 @@ struct audit_result {
     double worst, put_in;
 };
 
-// the largest gap of the energy balance at any event up to t, and all energy that was there or was put in
+// the largest residual of the energy balance at any event up to t, and the energy at the start plus the work
 static struct audit_result audit_of(const char *text, double t) {
     struct simulation *const simulation = school_simulation(text);
     struct audit_result result = {0, 0};
@@ -35,7 +35,7 @@ static struct audit_result audit_of(const char *text, double t) {
 
 static void energy_audit_closes_within_ten_times_the_tolerance(void **state) {
     (void)state;
-    // issue 2; the energy is that of the start and what the muscle put in
+    // the energy is the energy at the start plus the work of the muscle
     const double moduli[] = {1e5, 1e6, 1e7};
     for (int i = 0; i < 3; i++) {
         char text[256];
@@ -43,7 +43,7 @@ static void energy_audit_closes_within_ten_times_the_tolerance(void **state) {
         const struct audit_result balance = audit_of(text, 2);
         print_message("E %.0e, rtol 1e-5: balance %.2e J of %.1f J\n", moduli[i], balance.worst, balance.put_in);
         assert_true(balance.worst <= 10 * 1e-5 * balance.put_in);
-        // the muscle did work: the energy balance is not of nothing
+        // the muscle did work: the terms of the energy balance are not zero
         assert_true(balance.put_in > 30);
     }
 }
@@ -63,7 +63,7 @@ static void energy_audit_falls_with_the_tolerance(void **state) {
 
 static void powers_are_integrated_with_third_order(void **state) {
     (void)state;
-    // with BDF of order 5 what the quadrature leaves shows: 1e-6 J measured; the trapezoidal rule leaves 3e-5 J
+    // with BDF of order 5 the error of the quadrature dominates: 1e-6 J measured, 3e-5 J with the trapezoidal rule
     const struct audit_result balance = audit_of(TIME "solver: {rtol: 1.0e-7, order: 5}\nfish: [{}]\n", 2);
     print_message("balance %.2e J at 1e-7 and order 5\n", balance.worst);
     assert_true(balance.worst < 4e-6);
@@ -78,10 +78,10 @@ static void energy_audit_closes_with_every_kind_of_power(void **state) {
         TIME
         "fish: [{body: {modulus: 1.0e+5}, load: {tip: [2, 3]}, wave: {amplitude: 0},\n"
         "  motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}}]\n",
-        // vortices that vanish at once; impulses
+        // vortices without decay before the removal; impulses
         TIME "wake: {decay: 0, lifetime: 0.5}\nfish: [{body: {modulus: 1.0e+5}}]\n",
         TIME "wake: {shedding: impulsive}\nfish: [{body: {modulus: 1.0e+5}}]\n",
-        // a bias whose rate jumps at every event; one that an explicit method moves
+        // a bias rate with a jump at every event; a bias moved by an explicit method
         TIME "fish: [{control: {law: averaged_heading, desired_heading: 150}}]\n",
         TIME
         "solver: {method: rk4, step: 2.5e-4}\n"
@@ -97,14 +97,14 @@ static void energy_audit_closes_with_every_kind_of_power(void **state) {
 
 static void a_bias_that_moves_across_impulses_keeps_the_balance(void **state) {
     (void)state;
-    // the state jumps at every event, the bias must not: it once fell back by an interval
+    // the state jumps at every event; the bias must be continuous: an earlier defect set the bias back by an interval
     const struct audit_result balance = audit_of(TIME
                                                  "wake: {shedding: impulsive}\nsolver: {rtol: 1.0e-6}\n"
                                                  "fish: [{control: {law: averaged_heading, desired_heading: 150}}]\n",
                                                  2);
     print_message("balance %.2e J of %.1f J\n", balance.worst, balance.put_in);
     assert_true(balance.worst <= 30 * 1e-6 * balance.put_in);
-    // a muscle that starts at once makes the body ring, which a small tolerance only resolves; the fault was 300 J
+    // a sudden start of the muscle excites vibrations, resolved only by a small tolerance; the defect was 300 J
     const struct audit_result published =
         audit_of(TIME "preset: published\nfish: [{control: {law: averaged_heading, desired_heading: 150}}]\n", 0.5);
     print_message("balance %.2e J of %.1f J\n", published.worst, published.put_in);
@@ -138,7 +138,7 @@ static void total_circulation_vanishes_at_every_event(void **state) {
         TIME "wake: {lifetime: 0.3}\nsheet: {kutta: rate, collocation: midpoint}\nfish: [{}]\n",
         TIME "wake: {lifetime: 0.3, shedding: impulsive, decay: 0}\nfish: [{}]\n",
         TIME "preset: published\nwake: {lifetime: 0.3, removed_circulation: retained}\nfish: [{}]\n",
-        // dropped: what vanishes counts neither before nor after
+        // dropped: removed circulation counts neither before nor after the removal
         TIME "wake: {lifetime: 0.3, removed_circulation: dropped}\nfish: [{}]\n",
         TIME "preset: published\nwake: {lifetime: 0.3}\nfish: [{}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
@@ -148,7 +148,7 @@ static void total_circulation_vanishes_at_every_event(void **state) {
             simulate_measure(simulation);
             NEAR(simulation->diagnostics->total_circulation, 0, 1e-10, 0);
         }
-        // something has been shed and has vanished
+        // circulation has been shed and removed
         assert_true(fabs(simulation->state->y[simulation->school->fish[0].at.circulation]) > 1e-4);
         assert_true(fabs(simulation->state->wake[0].removed) > 1e-6);
         simulate_free(simulation);
@@ -192,13 +192,13 @@ static void change_of_momentum(const char *rtol, double change[3]) {
 static void momentum_is_constant_without_fluid(void **state) {
     (void)state;
     double change[3];
-    // a linear invariant: every step of BDF keeps it but for what Newton's iteration leaves
+    // a linear invariant: every step of BDF conserves linear invariants up to the residual of the Newton iteration
     change_of_momentum("1.0e-5", change);
     print_message("rtol 1e-5: momentum %.1e %.1e m s-1, angular momentum %.1e m2 s-1\n", change[0], change[1],
                   change[2]);
     NEAR(change[0], 0, 1e-9, 0);
     NEAR(change[1], 0, 1e-9, 0);
-    // a quadratic one: kept to integration error, so to 1e-9 with a tolerance far below the default
+    // a quadratic invariant: conserved up to the integration error, 1e-9 with a tolerance far below the default
     NEAR(change[2], 0, 1e-5, 0);
     change_of_momentum("1.0e-10", change);
     print_message("rtol 1e-10: momentum %.1e %.1e m s-1, angular momentum %.1e m2 s-1\n", change[0], change[1],
@@ -225,7 +225,7 @@ static void course_is_the_direction_of_the_way_in_the_last_period(void **state) 
         {.com = {1, 0}, .velocity = {0.2, 0.1}}, {.com = {5, 5}}, {.com = {-1, 2}, .velocity = {0.5, 0}}};
     struct history history = {.capacity = 3, .n = 2, .last = 1, .sample = sample};
     double course, rate;
-    // not before a whole period has passed, nor where there is none
+    // no course in the first period, nor without a period
     assert_int_equal(diagnostics_course(&history, &course, &rate), 0);
     assert_int_equal(diagnostics_course(&(struct history){.capacity = 1, .n = 1, .sample = sample}, &course, &rate), 0);
     history.n = 3;
@@ -240,7 +240,7 @@ static void course_is_the_direction_of_the_way_in_the_last_period(void **state) 
 
 static void speed_and_strouhal_number_are_those_of_a_driven_plate(void **state) {
     (void)state;
-    // askew, so that both coordinates of the tail count
+    // an oblique heading: both coordinates of the tail count
     struct simulation *const simulation = school_simulation(
         TIME "fish: [{start: {heading: 60}, motion: {prescribed: all, speed: 1.5, heave: 0.1, frequency: 2}}]\n");
     school_run(simulation, 1);
@@ -268,7 +268,7 @@ static void means_are_those_of_the_way_through_the_water(void **state) {
     struct diagnostics_fish of[2];
     for (int i = 0; i < 2; i++) {
         char text[256];
-        // seen from the ground the nodes start with the velocity of the stream besides
+        // over ground the initial velocity of the nodes includes the stream
         snprintf(text, sizeof text,
                  TIME "fluid: {velocity: [%g, 0]}\nfish: [{body: {modulus: 1.0e+5}, start: {speed: %g}}]\n", 0.6 * i,
                  1 - 0.6 * i);
@@ -279,7 +279,7 @@ static void means_are_those_of_the_way_through_the_water(void **state) {
         simulate_free(simulation);
     }
     NEAR(of[0].ground_speed, of[0].speed, 0, 1e-15);
-    // on its way to the left: the stream takes 0.6 off
+    // swims to the left: the stream reduces the speed by 0.6
     assert_true(fabs(of[1].ground_speed - of[0].speed + 0.6) < 0.01);
     const double still[] = {of[0].speed, of[0].strouhal, of[0].cost_of_transport, of[0].cost_of_transport_fluid,
                             of[0].cost_of_transport_body};
@@ -291,7 +291,7 @@ static void means_are_those_of_the_way_through_the_water(void **state) {
 
 static void stream_at_the_fish_is_integrated_by_trapezoids(void **state) {
     (void)state;
-    // a plate across a gust that grows from nothing: at rest in the ground's frame
+    // a plate across a gust that grows from zero: at rest over ground
     struct simulation *const simulation = school_simulation(
         TIME
         "fluid: {velocity: [0.2, 0], shear: 0.5, gust: {amplitude: 0.3, frequency: 0.4}}\n"
@@ -304,7 +304,7 @@ static void stream_at_the_fish_is_integrated_by_trapezoids(void **state) {
     const double across = 0.3 * (cos(omega * 0.5) - cos(omega)) / omega / 0.5;
     NEAR(fish->ground_speed, 0, 1e-15, 0);
     NEAR(fish->speed, hypot(1.2, across), 0, 1e-5);
-    // through the water it goes against the stream
+    // the plate moves through the water against the stream
     NEAR(fish->heading_error, atan2(-across, -1.2) * 180 / acos(-1) + 180, 1e-3, 0);
     simulate_free(simulation);
 }
@@ -320,7 +320,7 @@ static void drift_is_the_change_of_the_speed_in_a_period(void **state) {
         if (i == 1) assert_true(isnan(fish->drift));
         if (i > 1) NEAR(fish->drift, (fish->speed - speed[0]) / fish->speed, 1e-13, 1e-12);
         speed[0] = fish->speed;
-        // not before the period before the last one is whole
+        // not before two complete periods
         school_run(simulation, 0.5 * i + 0.49);
         simulate_measure(simulation);
         if (i == 1) assert_true(isnan(fish->drift));
@@ -330,7 +330,7 @@ static void drift_is_the_change_of_the_speed_in_a_period(void **state) {
 
 static void cost_of_transport_is_what_fluid_and_damping_take(void **state) {
     (void)state;
-    // a muscle; a plate that is heaved and finds its speed; a plate that is pitched and towed; one that is loaded
+    // a muscle; a heaving plate at free speed; a pitching towed plate; a loaded plate
     const char *const fish[] = {"{force: reactive, added_mass: {extent: depth}, body: {modulus: 1.0e+5}}",
                                 "{force: pressure, wave: {amplitude: 0}, body: {profile: uniform},\n"
                                 "  motion: {prescribed: all, surge: free, heave: 0.05, frequency: 1}}",
@@ -442,7 +442,7 @@ static void forces_by_name_make_up_momentum_and_angular_momentum(void **state) {
             const double forces[] = {of->resistive_force[0] + of->reactive_force[0] + of->constraint_force[0],
                                      of->resistive_force[1] + of->reactive_force[1] + of->constraint_force[1],
                                      of->resistive_moment + of->reactive_moment + of->constraint_moment};
-            // as well as Newton's iteration solves the law of motion
+            // tolerance: residual of the equation of motion after the Newton iteration
             NEAR_ARRAY(3, forces, rate, 2e-3, 1e-4);
             assert_true(fabs(rate[2]) > 0.01);
             const double heading = of->heading * acos(-1) / 180;
@@ -476,7 +476,7 @@ static void vortices_inside_an_outline_are_counted(void **state) {
     school_ok(residual_evaluate(setup.residual, 0, setup.state->y, setup.state->yp, setup.value));
     diagnostics_event(setup.residual, setup.state, diagnostics);
     NEAR(diagnostics->fish[0].swept_vortices, 3, 0, 0);
-    // the newest one of its own is on its tail
+    // the newest own marker lies at the tail
     NEAR(diagnostics->fish[1].swept_vortices, 0, 0, 0);
     diagnostics_free(diagnostics);
     school_clear(&setup);
@@ -484,7 +484,7 @@ static void vortices_inside_an_outline_are_counted(void **state) {
 
 static void a_body_that_sweeps_over_a_wake_loses_no_circulation(void **state) {
     (void)state;
-    // a prescribed plate goes right through the wake of another one
+    // a prescribed plate crosses the wake of another plate
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.02}\nwake: {shedding: sheet}\n"
         "defaults: {fish: {wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"

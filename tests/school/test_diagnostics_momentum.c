@@ -16,7 +16,7 @@
     "force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, start: {speed: 0.5}, " \
     "pressure: {span: finite}, body: {depth: 0.25}"
 
-/* The balance after some time, over the largest of its terms; the largest of the angular one. */
+/* The momentum balance after some time over the largest term; the largest angular balance. */
 struct balance {
     double momentum, angular;
 };
@@ -40,7 +40,7 @@ static struct balance run(const char *text, double end) {
     return worst;
 }
 
-/* Every force and every way to lose circulation; the errors are those of the interval, and fall with it. */
+/* Every force and every loss of circulation; the error is the discretisation error in the interval. */
 static void the_balance_is_closed_with_every_external_force(void **state) {
     (void)state;
     static const struct {
@@ -103,7 +103,7 @@ static void the_balance_is_closed_with_every_external_force(void **state) {
     }
 }
 
-// bodies that meet in no fluid, one of them with a load: rounding, and the error of the integral of the load
+// bodies in contact without fluid, one body with a load: rounding, and the error of the integral of the load
 static void without_a_fluid_it_is_closed_too(void **state) {
     (void)state;
     const struct balance worst = run(SCHOOL_DEFAULTS TIME
@@ -127,7 +127,7 @@ static void forces_without_a_reaction_have_no_balance(void **state) {
         {"fish: [{force: pressure, nodes: 5, body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05], "
          "depth_table: [0.2, 0.3, 0.25, 0.1]}}]\n",
          0, 0, 0},
-        // a fish of one depth beside one of another
+        // two fish of different depth
         {"fish: [{" FISH "}, {force: pressure, start: {position: [0, 1]}}]\n", 1, 1, 0},
         {"fish: [{" FISH "}, {force: pressure, start: {position: [0, 1]}, body: {depth: 1}}]\n", 1, 1, 1},
     };
@@ -168,7 +168,7 @@ static void impulses_do_not_depend_on_the_origin(void **state) {
     double imbalance[2][3];
     fill("", "start: {speed: 0.5}", &here, imbalance[0]);
     fill("", "start: {speed: 0.5, position: [1000, -500]}", &there, imbalance[1]);
-    // what is lost alone depends on it
+    // the origin changes only the lost impulse
     assert_true(fabs(here.lost_impulse[1] - there.lost_impulse[1]) > 1);
     NEAR_ARRAY(2, there.fluid_impulse, here.fluid_impulse, 1e-6, 1e-6);
     NEAR_ARRAY(2, there.external_impulse, here.external_impulse, 1e-6, 1e-6);
@@ -182,10 +182,10 @@ static void a_stream_changes_no_balance(void **state) {
     struct diagnostics_fish still, moving;
     double imbalance[2][3];
     fill("", "start: {speed: 0.5}", &still, imbalance[0]);
-    // heading 180 degrees: over ground it goes back
+    // heading 180 degrees: the fish drifts backwards over ground
     fill("fluid: {velocity: [0.9, 0]}\n", "start: {speed: -0.4}", &moving, imbalance[1]);
     assert_true(fabs(moving.external_impulse[1] - still.external_impulse[1]) > 0.1);
-    // the error of the integral of what the stream does to the rest of the circulation
+    // error of the integral of the force of the stream on the residual circulation
     NEAR_ARRAY(2, imbalance[1], imbalance[0], 2e-5, 0);
     assert_true(hypot(imbalance[0][0], imbalance[0][1]) > 1e-4);
 }

@@ -1,4 +1,4 @@
-/* test_jacobian.c: the blocks of the Jacobian: who has which, what they do to a vector, threads. */
+/* test_jacobian.c: the blocks of the Jacobian: coupled pairs, products with a vector, threads. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -124,7 +124,7 @@ static void threads_change_no_bit(void **state) {
 static void allocations_that_fail_leave_something_whole(void **state) {
     (void)state;
     struct setup setup;
-    // one thread: the counters of the allocations are not for more; a first Jacobian, so that the flow has its room
+    // one thread, because the counters of allocations are not thread-safe; a first Jacobian allocates the flow
     build(&setup, FIVE(1));
     // creating, coupling, and recording five blocks: each allocation fails once
     int n_failed = 0;
@@ -143,7 +143,7 @@ static void allocations_that_fail_leave_something_whole(void **state) {
         if (status != STATUS_OK) {
             assert_int_equal(status, STATUS_MEMORY);
             assert_true(status_message()[0] != 0);
-            // with memory it goes on as if nothing had been
+            // with memory again, the Jacobian is the same
             if (jacobian) school_ok(residual_jacobian(setup.residual, setup.t, 37, setup.state->y, jacobian));
         }
         jacobian_free(jacobian);

@@ -14,7 +14,7 @@
          "defaults: {fish: {drag: {skin: laminar}}}\n"
 #define FISH "fish: [{sheet_points: 9, body: {modulus: 1.0e+5}}]\n"
 
-/* Every option of doc/model.md at least once, alone or with those that it meets. */
+/* Every option of doc/model.md at least once, alone or with the options that interact. */
 static const struct variant {
     const char *name, *text;
 } variants[] = {
@@ -439,7 +439,7 @@ static void more_fish_couple_when_asked_until_all_do(void **state) {
     assert_int_equal(n_coupled(residual), 3);
     assert_int_equal(residual_couple_more(&residual->couplings, y), 1);
     assert_int_equal(n_coupled(residual), 5);
-    // it stays so
+    // a second call changes nothing
     school_ok(residual_couple(&residual->couplings, y));
     assert_int_equal(n_coupled(residual), 5);
     assert_int_equal(residual_couple_more(&residual->couplings, y), 1);

@@ -1,4 +1,4 @@
-/* test_rigid.c: a fish as a whole: what is read is what has been added, and neither shape nor wake are harmed. */
+/* test_rigid.c: rigid_of returns the increments of rigid_change; shape and wake are conserved. */
 #include <string.h>
 
 #include "school.h"
@@ -112,7 +112,7 @@ static void means_over_the_last_period_do_not_notice_a_turn_in_a_stream(void **s
     rigid_change(simulation->school, simulation->state, 0, &(struct rigid){.place = {3, 1}, .heading = 0.7});
     simulate_measure(simulation);
     const struct diagnostics_fish *const now = simulation->diagnostics->fish;
-    // the way over ground is 0.3 to 0.5 of that through the water: a stream left as it was changes all of them
+    // the path over ground is 0.3 to 0.5 of the path through the water: an old stream would change all values
     const double rounding = 1e-12;
     NEAR(now->speed, before.speed, 0, rounding);
     NEAR(now->ground_speed, before.ground_speed, 0, rounding);
@@ -121,7 +121,7 @@ static void means_over_the_last_period_do_not_notice_a_turn_in_a_stream(void **s
     NEAR(now->efficiency, before.efficiency, 0, rounding);
     NEAR(now->thrust_efficiency, before.thrust_efficiency, 0, rounding);
     NEAR(now->strouhal, before.strouhal, 0, rounding);
-    // the way through the water turns with the desired heading where it was
+    // the path through the water turns, the desired heading does not
     NEAR(now->heading_error, before.heading_error + 0.7 * 180 / M_PI, 1e-10, 0);
     simulate_free(simulation);
 }
@@ -152,7 +152,7 @@ static void the_tail_of_a_fish_that_turns_faster_goes_faster(void **state) {
         wake->tail_velocity[i] = y[at[i]];
         fluid[i] = wake->slip[i] + y[at[i]];
     }
-    // without a turn of the body itself what is kept of the tail has to be what its node does
+    // without rotation of the body, the tail velocity of the wake must equal the velocity of the tail node
     rigid_change(setup.school, setup.state, 1, &(struct rigid){.velocity = {0.2, 0.1}, .turn = 3});
     for (int i = 0; i < 2; i++) {
         NEAR(wake->tail_velocity[i], y[at[i]], 1e-14, 0);

@@ -1,4 +1,4 @@
-/* test_warnings.c: each warning where its cause is, and nowhere else. */
+/* test_warnings.c: each warning appears for cases with the defect, and only for these. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,8 +10,8 @@
 
 // ---- which warnings a run has
 
-// those of a simulation, one character each: contact c, a body crosses itself x, divergence i, energy e, momentum o,
-// drift d, events v, sheet s, modes m, leading edge l, cusp u, few nodes at the tail t, published force p
+// the warnings of a simulation, one character each: contact c, a body crosses itself x, divergence i, energy e,
+// momentum o, drift d, events v, sheet s, modes m, leading edge l, cusp u, few nodes at the tail t, published force p
 static void expect_of(struct simulation *simulation, const char *expected) {
     simulate_measure(simulation);
     char line[WARNING_BYTES], found[N_WARNINGS + 1] = "";
@@ -26,7 +26,7 @@ static void expect_of(struct simulation *simulation, const char *expected) {
     assert_string_equal(found, expected);
 }
 
-// those of a run up to t
+// the warnings of a run up to t
 static void expect_warnings(const char *text, double t, const char *expected) {
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, t);
@@ -42,7 +42,7 @@ static void a_short_run_of_a_default_fish_has_none(void **state) {
 static void a_fish_that_gathers_speed_drifts(void **state) {
     (void)state;
     expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{}]\n", 2.5, "d");
-    // without a fluid nothing swims, and no mean speed is asked for
+    // without fluid no fish swims, so a changing speed is no defect
     expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{}]\n", 2.5, "");
 }
 
@@ -50,7 +50,7 @@ static void a_tail_without_a_limit_is_told(void **state) {
     (void)state;
 #define CUSP(keys) SCHOOL_DEFAULTS TIME "fish: [{body: {tail_thickness: 0}, " keys "}]\n"
     expect_warnings(CUSP("nodes: 25"), 0.1, "u");
-    // whatever the number of nodes; not where the water does not bend it
+    // for any number of nodes; not if the tail does not bend
     expect_warnings(CUSP("nodes: 61, sheet_points: 121"), 0.02, "u");
     expect_warnings(CUSP("motion: {prescribed: all}"), 0.1, "");
     expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{body: {tail_thickness: 0}}]\n", 0.1, "");
@@ -74,7 +74,7 @@ static void few_nodes_at_the_tail_are_told(void **state) {
 
 static void the_published_force_is_told_and_nothing_else(void **state) {
     (void)state;
-    // few events, an open balance, a drift, a cusp: none of it is worth a word there
+    // few events, energy balance, drift, cusp: all suppressed for the published force
     expect_warnings("time: {end: 3, shedding_interval: 0.0625}\npreset: published\nfish: [{}]\n", 2.5, "p");
     expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{force: published}, {start: {position: [0, 2]}}]\n", 0.1, "p");
 }
@@ -88,7 +88,7 @@ static void few_events_in_a_beat_are_told(void **state) {
 static void a_soft_body_is_slower_than_its_beat(void **state) {
     (void)state;
     expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{nodes: 33, body: {modulus: 1e5}}]\n", 0.1, "m");
-    // a passive body may be as soft as it likes
+    // any stiffness of a passive body is allowed
     expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{body: {modulus: 1e5}, wave: {amplitude: 0}}]\n", 0.1, "");
 }
 
@@ -129,7 +129,7 @@ static void few_sheet_points_for_a_short_stretch_are_told(void **state) {
 
 static void an_open_energy_balance_is_told(void **state) {
     (void)state;
-    // a plate that pitches once in two events: its power is not seen
+    // a plate that pitches once in two events: the events do not resolve the power
     expect_warnings(SCHOOL_DEFAULTS
                     "time: {end: 10, shedding_interval: 0.5, output_interval: 0.5}\nfish: [{wave: "
                     "{amplitude: 0}, motion: {prescribed: all, speed: 1, pitch: 10, frequency: 1}}]\n",
@@ -141,7 +141,7 @@ static void an_open_energy_balance_is_told_within_the_first_beat(void **state) {
     struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{start: {speed: 1}}]\n");
     school_run(simulation, 0.5);
     const struct fish *const fish = simulation->school->fish;
-    // of a fish at 1 m/s, one length per beat, the energy of one length per beat is m, that of the body m/2
+    // a fish at 1 m/s, one length per beat: energy of one length per beat m, energy of the body m/2
     double *const work = &simulation->state->balance[0].work[WORK_ALL];
     const double closed = *work;
     *work = closed + 0.008 * fish->total_mass;
@@ -151,7 +151,7 @@ static void an_open_energy_balance_is_told_within_the_first_beat(void **state) {
     simulate_free(simulation);
 }
 
-// in this case the first interval of a plate that starts at once across itself; not before a beat has passed
+// the first interval after a sudden transverse start of a plate; not in the first beat
 static void an_open_momentum_balance_is_told(void **state) {
     (void)state;
 #define HEAVE(phase)                                                                        \
@@ -179,7 +179,7 @@ static void a_run_that_diverges_in_its_first_beat_says_so(void **state) {
     y[at->circulation] = -1.01 * limit;
     expect_of(simulation, "i");
     y[at->circulation] = kept[0];
-    // it has passed, but the wake has it
+    // the circulation shed is small again, but the wake contains a large circulation
     simulation->state->wake[1].circulation[2] = 3e5;
     expect_of(simulation, "i");
     simulation->state->wake[1].circulation[2] = 0;
@@ -245,7 +245,7 @@ static void separation_at_the_nose_is_told(void **state) {
     expect_warnings(INCLINED("15", ""), 0.1, "");
     expect_warnings(INCLINED("30", ""), 0.1, "l");
     expect_warnings(INCLINED("30", ", pressure: {suction_limit: 0.35}"), 0.1, "");
-    // there is no limit, or nothing that it limits
+    // without limit, or without suction
     expect_warnings(INCLINED("30", ", pressure: {suction_limit: 0}"), 0.1, "");
     expect_warnings(INCLINED("30", ", pressure: {suction: 0}"), 0.1, "");
 }

@@ -1,4 +1,4 @@
-/* test_impulse.c: sums over vortices, and that what a wake loses is booked: doc/model.md, section 13. */
+/* test_impulse.c: moments of vortices, and booking of lost moments: doc/model.md, section 13. */
 #include <stdio.h>
 
 #include "school.h"
@@ -39,7 +39,7 @@ static void a_depth_that_varies_is_none(void **state) {
     school_clear(&setup);
 }
 
-// of all that a fish has shed: what acts, and what is booked
+// moments of all vortices shed by a fish: present moments plus booked losses
 static void all_of(const struct setup *setup, double sum[3]) {
     const struct impulse_moments wake = impulse_of_wake(&setup->state->wake[0], setup->school, setup->state->t, 0);
     const double *const lost = setup->state->momentum[0].lost;
@@ -48,8 +48,8 @@ static void all_of(const struct setup *setup, double sum[3]) {
     sum[2] = wake.square + lost[2];
 }
 
-// A wake at rest from its birth to its end: each event takes some of its strength, or a vortex. Returns how much is
-// lost in the end, in x.
+// A wake at rest from birth to removal: every event reduces the circulation, or removes a vortex. Returns the final
+// loss in x.
 static double wither(const char *text) {
     struct setup setup;
     school_build(&setup, text);
@@ -91,7 +91,7 @@ static void what_fades_or_is_removed_is_booked_where_it_is(void **state) {
     }
 }
 
-// the circulation that is dropped goes back to the body, at the tail: none of it is lost, only its way there
+// dropped circulation returns to the body at the tail: the loss contains only the displacement to the tail
 static void what_is_dropped_goes_to_the_tail(void **state) {
     (void)state;
     struct setup setup;

@@ -1,4 +1,4 @@
-/* test_state.c: the state before the start, and the rings of samples. */
+/* test_state.c: the state before the start, and histories of samples. */
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"

@@ -12,7 +12,7 @@
 
 // ---- fields, read from the headers
 
-// the text of a structure's definition without comments: what stands between the braces
+// the text between the braces of a struct definition, without comments
 static void read_definition(const char *path, const char *name, char *body, size_t size) {
     static char text[65536];
     FILE *const file = fopen(path, "r");
@@ -34,7 +34,7 @@ static void read_definition(const char *path, const char *name, char *body, size
     snprintf(body, size, "%.*s", (int)(to - from - (long)strlen(start)), from + strlen(start));
 }
 
-// the next name that is declared: the last word before "," or ";" or "["
+// the next declared name: the last word before "," or ";" or "["
 static int next_field(const char **body, char field[64]) {
     field[0] = '\0';
     for (const char *c = *body; *c;) {
@@ -108,7 +108,7 @@ static void the_rows_cover_every_byte(void **state) {
             const struct state_row *const row = &state_table[k];
             if (row->owner == owners[i].owner) memset(is_covered + row->offset, 1, row->bytes);
         }
-        // what is left is what aligns the next field, and the addresses of the owners
+        // the remaining bytes are padding, and pointers to the owners
         size_t left = 0;
         for (size_t b = 0; b < owners[i].bytes; b++) left += !is_covered[b];
         assert_true(left <= (owners[i].owner == STATE_ITSELF ? (N_OWNERS - 1) * sizeof(void *) : 7));
@@ -149,7 +149,7 @@ static void a_copy_has_every_value_and_knows_that_its_wakes_have_changed(void **
     struct setup one, other;
     school_build(&one, SCHOOL);
     school_build(&other, SCHOOL);
-    // more vortices than a new wake has room for, and fewer
+    // more vortices than the capacity of a new wake, and fewer
     for (int i = 0; i < 40; i++) school_ok(wake_release(&one.state->wake[1], i, 2, 3, 4));
     for (int i = 0; i < 9; i++) school_ok(wake_release(&other.state->wake[0], i, 2, 3, 4));
     fill_with(one.state, one.school, 1);

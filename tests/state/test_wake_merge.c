@@ -1,4 +1,4 @@
-/* test_wake_merge.c: pairs of neighbours in old wakes: what stays, and what the bodies see of it. */
+/* test_wake_merge.c: merging in old wakes: conserved moments, and velocity change at the bodies. */
 #include <stdio.h>
 #include <string.h>
 
@@ -12,8 +12,8 @@
 
 enum { N = 1600 };
 
-/* A wake of 16 lengths behind the first fish, which swims to the left with the speed 1; the sign of what it sheds
- * changes every quarter of a length. */
+/* A wake of 16 lengths behind the first fish, which swims to the left with the speed 1; the shed circulation changes
+ * sign every quarter of a length. */
 static void trail(struct setup *setup, const char *text) {
     school_build(setup, text);
     const struct school *const school = setup->school;
@@ -37,7 +37,7 @@ static void trail(struct setup *setup, const char *text) {
     }
 }
 
-/* The vortices of the first wake, or the middles between its markers. */
+/* The vortices of the first wake, or the midpoints between markers. */
 static const struct wake *sources(const struct setup *setup, struct wake *middles) {
     const struct wake *const wake = &setup->state->wake[0];
     if (!wake->has_markers) return wake;
@@ -45,8 +45,8 @@ static const struct wake *sources(const struct setup *setup, struct wake *middle
     return middles;
 }
 
-/* Circulation of a wake, its first moments now, and the rates of these with the velocities of now and before; and what
- * the vortices are in all. */
+/* Circulation and first moments of a wake, rates of the moments with the velocities now and before, and sum of the
+ * magnitudes of the circulations. */
 struct moments {
     double circulation, first[6], size;
 };
@@ -81,7 +81,7 @@ static void velocity_at(const struct setup *setup, int f, double *velocity) {
     wake_free(&middles);
 }
 
-/* Merge until nothing more is merged; returns how many are. */
+/* Merge until no pair merges; returns the number of merged pairs. */
 static int merge_all(struct setup *setup) {
     struct wake *const wake = &setup->state->wake[0];
     for (int before = -1; before != wake->n_merged; setup->state->event += WAKE_MERGE_EVENTS) {
@@ -138,14 +138,14 @@ static void nothing_is_merged_near_a_body_or_where_one_will_be(void **state) {
     struct setup setup;
     trail(&setup, TIME "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\n" TWO);
     struct wake *const wake = &setup.state->wake[0];
-    // the own body ends at 1, the other one lies 3 below 9 to 10
+    // the own body ends at 1, the other body lies 3 below 9 to 10
     assert_int_equal(count_between(wake, 1, 2.999), 199);
     const int n = merge_all(&setup);
     assert_int_equal(count_between(wake, 1, 2.999), 199);
     assert_true(count_between(wake, 8, 11) < 250);
     school_clear(&setup);
 
-    // the other one goes left below the wake: most of it is passed at a distance of 1
+    // the other fish swims left below the wake, and passes most of the wake at a distance of 1
     trail(&setup, TIME
           "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\n"
           "fish: [{}, {start: {position: [9, -1]}}]\n");
@@ -163,7 +163,7 @@ static void the_newest_vortices_are_never_merged(void **state) {
         char text[256];
         snprintf(text, sizeof text, TIME "wake: {lifetime: 16, shedding: %s, merge: 0.1}\nfish: [{}]\n", kinds[i]);
         trail(&setup, text);
-        // the body is far from all of them, and goes away
+        // the body is far from all vortices, and swims away
         double *const y = setup.state->y;
         const struct fish *const fish = setup.school->fish;
         for (int k = 0; k < fish->n_nodes; k++) {
@@ -194,7 +194,7 @@ static void a_pair_that_dies_before_a_body_comes_is_merged(void **state) {
     merge_all(&setup);
     const struct wake *const wake = &setup.state->wake[0];
     // a vortex at x is x - 1 seconds old, and the body is within two lengths of it after (98 - x)/8 s:
-    // it is gone by then where 17 - x < (98 - x)/8, for x above 5.4
+    // the vortex is removed earlier if 17 - x < (98 - x)/8, x above 5.4
     int n_near = 0, n_far = 0;
     for (int i = 0; i < wake->n_vortex; i++) {
         n_near += wake->x[i] < 5;
