@@ -1,4 +1,4 @@
-/* checkpoints.c: the plan of checkpoints, and their files. */
+/* checkpoints.c: plan and files of checkpoints. */
 #include "run/checkpoints.h"
 
 #include <math.h>
@@ -12,15 +12,15 @@
 
 // ---- names
 
-static char *with_ending(const char *path, size_t length, const char *ending) {
+static char *path_with_ending(const char *path, size_t length, const char *ending) {
     const size_t size = length + strlen(ending) + 1;
     char *const name = malloc(size);
     if (name) snprintf(name, size, "%.*s%s", (int)length, path, ending);
     return name;
 }
 
-// without its folders
-static const char *name_of(const char *path) {
+// file name without folders
+static const char *file_name_of(const char *path) {
     const char *const slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
 }
@@ -28,17 +28,17 @@ static const char *name_of(const char *path) {
 char *checkpoints_path(const char *result) {
     const size_t length = strlen(result), n = strlen(".nc");
     const int has_ending = length > n && strcmp(result + length - n, ".nc") == 0 && result[length - n - 1] != '/';
-    // of two results "a" and "a.nc" each has its own
-    return has_ending ? with_ending(result, length - n, ".ckpt") : with_ending(result, length, ".checkpoint");
+    // the results "a" and "a.nc" have different checkpoints
+    return has_ending ? path_with_ending(result, length - n, ".ckpt") : path_with_ending(result, length, ".checkpoint");
 }
 
 char *checkpoints_previous(const char *path) {
-    return with_ending(path, strlen(path), ".previous");
+    return path_with_ending(path, strlen(path), ".previous");
 }
 
 // ---- the plan
 
-static enum status refuse_time(const char *word, const struct case_values *values) {
+static enum status checkpoint_time_refuse(const char *word, const struct case_values *values) {
     return status_fail(STATUS_CASE,
                        "--checkpoint-at: '%s' is not the time of an event: an integer multiple of "
                        "time.shedding_interval, %.9g s, up to time.end, %.9g s",
@@ -46,22 +46,27 @@ static enum status refuse_time(const char *word, const struct case_values *value
 }
 
 // read "0.3,1.25"
-static enum status read_places(struct checkpoints *checkpoints, const struct case_values *values, const char *at) {
+static enum status checkpoint_places_read(struct checkpoints *checkpoints, const struct case_values *values,
+                                          const char *at) {
     const double interval = values->school.shedding_interval;
     checkpoints->at = calloc(strlen(at) / 2 + 1, sizeof *checkpoints->at);
     if (!checkpoints->at) return status_fail(STATUS_MEMORY, "out of memory: the times of checkpoints");
+
     while (*at) {
         char word[64];
         const size_t length = strcspn(at, ",");
         double time;
         snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), at);
-        if (!text_number(word, &time)) return refuse_time(word, values);
+        if (!text_number(word, &time)) return checkpoint_time_refuse(word, values);
+
         const double event = round(time / interval);
         const int is_event = fabs(time - event * interval) <= 1e-9 * time;
-        if (!is_event || time < 0 || time > values->time.end + interval / 2) return refuse_time(word, values);
+        if (!is_event || time < 0 || time > values->time.end + interval / 2)
+            return checkpoint_time_refuse(word, values);
         checkpoints->at[checkpoints->n_at++] = (long)event;
         at += length + (at[length] == ',');
     }
+
     return STATUS_OK;
 }
 
@@ -72,9 +77,10 @@ enum status checkpoints_create(struct checkpoints *checkpoints, const struct cas
     checkpoints->path = checkpoints_path(result);
     checkpoints->previous = checkpoints->path ? checkpoints_previous(checkpoints->path) : NULL;
     if (!checkpoints->previous) return status_fail(STATUS_MEMORY, "out of memory: a file name");
-    if (at) TRY(read_places(checkpoints, values, at));
-    TRY(checkpoint_check_target(checkpoints->path, name_of(result)));
-    TRY(checkpoint_check_target(checkpoints->previous, name_of(result)));
+
+    if (at) TRY(checkpoint_places_read(checkpoints, values, at));
+    TRY(checkpoint_check_target(checkpoints->path, file_name_of(result)));
+    TRY(checkpoint_check_target(checkpoints->previous, file_name_of(result)));
     durable_sweep(checkpoints->path);
     return case_show(values, &checkpoints->effective);
 }
@@ -103,7 +109,7 @@ enum status checkpoints_resume(struct checkpoints *checkpoints, const struct che
 }
 
 void checkpoints_fall_back(const struct checkpoints *checkpoints) {
-    // where this fails the newest one is refused once more
+    // after a failed rename, resume_open refuses the newest checkpoint again
     rename(checkpoints->previous, checkpoints->path);
 }
 
@@ -112,22 +118,22 @@ void checkpoints_remove(const struct checkpoints *checkpoints) {
     unlink(checkpoints->previous);
 }
 
-static int is_regular(const struct checkpoints *checkpoints, long event) {
+static int checkpoint_is_regular(const struct checkpoints *checkpoints, long event) {
     return event > 0 && checkpoints->interval > 0 && event % checkpoints->interval == 0;
 }
 
 int checkpoints_are_due(const struct checkpoints *checkpoints, long event) {
-    int is_due = is_regular(checkpoints, event);
+    int is_due = checkpoint_is_regular(checkpoints, event);
     for (int i = 0; i < checkpoints->n_at; i++) is_due |= checkpoints->at[i] == event;
     return is_due;
 }
 
 // ---- writing
 
-static enum status write_one(struct checkpoints *checkpoints, const struct simulation *simulation,
-                             const struct record *record) {
+static enum status checkpoint_write_marked(struct checkpoints *checkpoints, const struct simulation *simulation,
+                                           const struct record *record) {
     const struct checkpoint all = {.effective = checkpoints->effective,
-                                   .result = (char *)name_of(record->path),
+                                   .result = (char *)file_name_of(record->path),
                                    .places = checkpoints->places.text ? checkpoints->places.text : "",
                                    .totals = simulation->totals,
                                    .wall_time = simulate_wall_time(simulation)};
@@ -140,14 +146,15 @@ enum status checkpoints_write(struct checkpoints *checkpoints, const struct simu
                               const struct record *record) {
     const long event = simulation->state->event;
     if (event == checkpoints->last) return STATUS_OK;
-    if (!is_regular(checkpoints, event) && event != checkpoints->last_place) {
+    if (!checkpoint_is_regular(checkpoints, event) && event != checkpoints->last_place) {
         checkpoints->last_place = event;
         const char *const before = checkpoints->places.length > 0 ? "," : "";
         text_add(&checkpoints->places, "%s%.10g", before, simulation->state->t);
         if (checkpoints->places.failed) return status_fail(STATUS_MEMORY, "out of memory: the times of checkpoints");
         result_file_note(record->file, RESULT_CHECKPOINT_AT, checkpoints->places.text);
     }
-    TRY(write_one(checkpoints, simulation, record));
+
+    TRY(checkpoint_write_marked(checkpoints, simulation, record));
     checkpoints->last = event;
     return STATUS_OK;
 }

@@ -1,4 +1,4 @@
-/* estimate.c: a few events, wakes that are made up, and how their costs grow. */
+/* estimate.c: cost of the first events and of events with synthetic wakes; extrapolation to the whole run. */
 #include "run/estimate.h"
 
 #include <math.h>
@@ -8,52 +8,52 @@
 #include "run/event.h"
 #include "vortex/velocity_sum.h"
 
-/* A wake that is made up leaves the tail with this part of the speed of the beat, and is as wide as this part of the
- * body. */
+/* A synthetic wake drifts away from the tail by `drift` body lengths per beat; the lateral amplitude is `width` body
+ * lengths. */
 static const double drift = 0.5, width = 0.1;
 
-/* What NetCDF takes, and the state that a run keeps of its last event, if that is not large. */
+/* Memory of NetCDF, and of the copy of a small state at the last event [bytes]. */
 static const double bytes_of_file = 7e6;
 
-/* The evaluations of the equations in an event, where not one of them has been done to its end: doc/numerics.md,
- * section 4. */
+/* Residual evaluations per event, for an estimate without a completed event: doc/numerics.md, section 4. */
 static const double usual_evaluations = 12;
 
-/* Memory of a vortex, where the wakes that are made up are too short to show it. */
+/* Memory per vortex [bytes], for synthetic wakes too short for a measurement. */
 static const double usual_bytes = 600;
 
-/* Sizes of wakes that are made up: from this number of vortices of a fish on, each twice the one before. */
+/* Vortices per fish in the first synthetic wake, which doubles from wake to wake; maximum number of wakes. */
 enum { FIRST_WAKE = 64, MAX_WAKES = 24 };
 
-/* The costs of events by the number of vortices of one fish: the first one is that of the wakes as they are. Beyond the
- * last one the time that is added grows with this power of the number, and memory in proportion to it. */
+/* Costs of an event against the number of vortices per fish. Entry 0 is the cost with the actual wakes. Beyond the last
+ * entry, the added time grows with this power of the number of vortices, and memory grows linearly. */
 struct costs {
     int n;
     double vortices[MAX_WAKES + 1], seconds[MAX_WAKES + 1], bytes[MAX_WAKES + 1], power;
 };
 
-/* Of this thread, which has a part in all work and does not count what other programs do. */
+/* CPU time of this thread, s: the thread takes part in all parallel work, and other programs do not count. */
 static double processor_time(void) {
     struct timespec now;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// the most that the program has had so far
+// peak memory of the program so far
 static double bytes_so_far(void) {
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     return 1024.0 * (double)usage.ru_maxrss;
 }
 
-// replace the wake of a fish by one of n vortices, the newest at its tail
-static enum status make_up_wake(const struct school *school, struct state *state, int f, int n) {
+// replace the wake of a fish by a synthetic wake of n vortices, the newest vortex at the tail
+static enum status synthetic_wake(const struct school *school, struct state *state, int f, int n) {
     const struct fish *const fish = &school->fish[f];
     struct wake *const wake = &state->wake[f];
     const int last = fish->n_nodes - 1;
     const double *const x = state->y + fish->at.x, *const y = state->y + fish->at.y;
     const double along[2] = {(x[last] - x[0]) / fish->length, (y[last] - y[0]) / fish->length};
     const double rate = fish_rate(school, fish), spacing = drift * fish->length * rate * school->interval;
+
     TRY(wake_resize(wake, n));
     wake->version++;
     for (int i = 0; i < n; i++) {
@@ -66,33 +66,36 @@ static enum status make_up_wake(const struct school *school, struct state *state
         wake->circulation[i] = 0.01 * fish->length * fish->length * rate * cos(phase);
         wake->birth[i] = state->t - age;
     }
+
     return STATUS_OK;
 }
 
-// what one event, and the evaluation of the equations so many times, cost with the present wakes
-static enum status measure_event(struct simulation *simulation, double evaluations, double *seconds) {
+// cost of one event and of a number of residual evaluations with the present wakes
+static enum status event_cost(struct simulation *simulation, double evaluations, double *seconds) {
     struct state *const state = simulation->state;
     struct residual *const residual = simulation->residual;
     int jumped;
+
     double start = processor_time();
     TRY(event_next(state, residual, simulation->consistent, &jumped));
     *seconds = processor_time() - start;
+
     start = processor_time();
     TRY(residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch));
     *seconds += evaluations * (processor_time() - start);
     return STATUS_OK;
 }
 
-// what an event costs of which a part has been done
-static double whole_event(const struct simulation *simulation, double spent) {
+// cost of an event of which a part is completed
+static double event_whole_cost(const struct simulation *simulation, double spent) {
     struct integrator_counts now;
     simulation->integrator->count(simulation->solver, &now);
     return spent * fmax(1, usual_evaluations / fmax(1, (double)now.residual_evaluations));
 }
 
 // the first events of the run; what one costs, and how often it evaluates the equations
-static enum status measure_start(struct simulation *simulation, double patience, struct estimate *estimate,
-                                 double *seconds, double *evaluations) {
+static enum status measure_first_events(struct simulation *simulation, double patience, struct estimate *estimate,
+                                        double *seconds, double *evaluations) {
     const double start = processor_time();
     double first = 0, spent = 0;
     struct integrator_counts after_first = {0};
@@ -107,52 +110,60 @@ static enum status measure_start(struct simulation *simulation, double patience,
             after_first = simulation->totals;
         }
     }
+
     estimate->n_events = n;
     *evaluations = usual_evaluations;
-    *seconds = whole_event(simulation, processor_time() - start);
+    *seconds = event_whole_cost(simulation, processor_time() - start);
     if (n == 0) return STATUS_OK;
-    // the first one is dearer than those that follow
+
+    // the first event costs more than the following events
     *seconds = n > 1 ? (spent - first) / (double)(n - 1) : first;
     const long rest = simulation->totals.residual_evaluations - (n > 1 ? after_first.residual_evaluations : 0);
     *evaluations = (double)rest / (double)(n > 1 ? n - 1 : 1);
     return STATUS_OK;
 }
 
-// what is left of the time that an estimate may take
-static double time_left(const struct simulation *simulation, double end) {
+// remaining CPU time of the estimate, s
+static double estimate_time_left(const struct simulation *simulation, double end) {
     return simulation->stop && *simulation->stop ? 0 : end - processor_time();
 }
 
-// Events with wakes of more and more vortices, while there is time for the next one: twice as many vortices cost up to
-// four times as much.
-static enum status measure_wakes(struct simulation *simulation, double end, double evaluations, struct costs *costs) {
+// Measure events with synthetic wakes of doubling length while time remains for the next wake: doubling the number of
+// vortices raises the cost up to fourfold.
+static enum status measure_synthetic_wakes(struct simulation *simulation, double end, double evaluations,
+                                           struct costs *costs) {
     const struct school *const school = simulation->school;
     struct state *const state = simulation->state;
     const int most = wake_most(school, simulation->n_events);
+
+    // entry 0: the actual wakes
     int n = state->wake[0].n_vortex;
     costs->vortices[0] = fmax(1, n);
-    TRY(measure_event(simulation, evaluations, &costs->seconds[0]));
+    TRY(event_cost(simulation, evaluations, &costs->seconds[0]));
     costs->bytes[0] = bytes_so_far();
-    while (n < most && costs->n <= MAX_WAKES && time_left(simulation, end) > 4 * costs->seconds[costs->n - 1]) {
+
+    while (n < most && costs->n <= MAX_WAKES &&
+           estimate_time_left(simulation, end) > 4 * costs->seconds[costs->n - 1]) {
         n = (int)fmin(most, fmax(FIRST_WAKE, 2.0 * n));
-        for (int f = 0; f < school->n_fish; f++) TRY(make_up_wake(school, state, f, n));
+        for (int f = 0; f < school->n_fish; f++) TRY(synthetic_wake(school, state, f, n));
         costs->vortices[costs->n] = n;
-        TRY(measure_event(simulation, evaluations, &costs->seconds[costs->n]));
+        TRY(event_cost(simulation, evaluations, &costs->seconds[costs->n]));
         costs->bytes[costs->n] = bytes_so_far();
         costs->n++;
     }
+
     return STATUS_OK;
 }
 
-// by tree the work grows like n log n, else with the square of the number
-static double power_of(const struct school *school, const struct costs *costs) {
+// the cost of the velocity sum grows as n log n by tree, else as n^2
+static double velocity_sum_power(const struct school *school, const struct costs *costs) {
     const double all = costs->vortices[costs->n - 1] * school->n_fish;
     const struct vortices wakes = {.n = (int)fmin(all, 1e9)};
     return velocity_sum_by_tree(&wakes, wakes.n, school->wake_tolerance) ? 1.1 : 2;
 }
 
-// by how much an event with so many vortices of each fish costs more than the first one
-static double added(const struct costs *costs, double vortices) {
+// added cost of an event with so many vortices per fish, relative to entry 0
+static double event_added_cost(const struct costs *costs, double vortices) {
     int i = 0;
     while (i < costs->n - 1 && vortices > costs->vortices[i + 1]) i++;
     const double from = costs->seconds[i] - costs->seconds[0];
@@ -161,18 +172,18 @@ static double added(const struct costs *costs, double vortices) {
     return fmax(0, from + part * (costs->seconds[i + 1] - costs->seconds[i]));
 }
 
-// the sum over all events: while the wakes grow, in panels of many events, and after that
-static double sum_up(const struct simulation *simulation, const struct costs *costs, double each) {
+// sum over all events: panels of many events while the wakes grow, then events with constant wakes
+static double run_seconds(const struct simulation *simulation, const struct costs *costs, double each) {
     enum { PANELS = 2000 };
     const double n_events = (double)simulation->n_events;
     const double most = wake_most(simulation->school, simulation->n_events), growing = fmin(most, n_events);
     double sum = 0;
-    for (int i = 0; i < PANELS; i++) sum += added(costs, (i + 0.5) * growing / PANELS) * growing / PANELS;
-    return n_events * each + sum + (n_events - growing) * added(costs, most);
+    for (int i = 0; i < PANELS; i++) sum += event_added_cost(costs, (i + 0.5) * growing / PANELS) * growing / PANELS;
+    return n_events * each + sum + (n_events - growing) * event_added_cost(costs, most);
 }
 
-// memory with the longest wakes: the last doubling of the wakes says what a vortex takes
-static double sum_up_bytes(const struct simulation *simulation, const struct costs *costs) {
+// memory with the longest wakes: the last doubling of the wakes measures the memory per vortex
+static double run_bytes(const struct simulation *simulation, const struct costs *costs) {
     const int last = costs->n - 1, n_fish = simulation->school->n_fish, enough = 4000;
     const double missing = wake_most(simulation->school, simulation->n_events) - costs->vortices[last];
     const double more = last > 0 ? (costs->vortices[last] - costs->vortices[last - 1]) * n_fish : 0;
@@ -184,11 +195,11 @@ enum status estimate_run(struct simulation *simulation, double patience, struct 
     const double end = processor_time() + patience;
     double each, evaluations;
     struct costs costs = {.n = 1, .vortices = {1}};
-    TRY(measure_start(simulation, patience / 2, estimate, &each, &evaluations));
-    // wakes that are made up fit no body: what fails with them says nothing of the run
-    if (measure_wakes(simulation, end, evaluations, &costs) == STATUS_MEMORY) return STATUS_MEMORY;
-    costs.power = power_of(simulation->school, &costs);
-    estimate->seconds = sum_up(simulation, &costs, each);
-    estimate->bytes = sum_up_bytes(simulation, &costs);
+    TRY(measure_first_events(simulation, patience / 2, estimate, &each, &evaluations));
+    // a synthetic wake does not match the body: a solver failure with this wake predicts no failure of the run
+    if (measure_synthetic_wakes(simulation, end, evaluations, &costs) == STATUS_MEMORY) return STATUS_MEMORY;
+    costs.power = velocity_sum_power(simulation->school, &costs);
+    estimate->seconds = run_seconds(simulation, &costs, each);
+    estimate->bytes = run_bytes(simulation, &costs);
     return STATUS_OK;
 }

@@ -1,6 +1,7 @@
-/* estimate.h: what a run will take: a few of its events are done, then single events with wakes that are made up, each
- * twice as long as the one before; from these the cost of the longest wakes is extrapolated. A run that changes later,
- * because fish come near each other or stop, is not known from that. Tested by tests/run/test_estimate.c. */
+/* estimate.h: estimate of CPU time and memory of a run. The estimate measures the first events of the run, then single
+ * events with synthetic wakes of doubling length, and extrapolates the cost to the longest wakes. The estimate does not
+ * account for later changes of the motion, such as fish that approach each other or stop. Tested by
+ * tests/run/test_estimate.c. */
 #ifndef ESTIMATE_H
 #define ESTIMATE_H
 
@@ -8,15 +9,15 @@
 #include "run/simulate.h"
 
 struct estimate {
-    double seconds; /* of a processor that has nothing else to do, for the whole run */
+    double seconds; /* CPU time of the whole run */
     double bytes;   /* of memory */
-    long n_events;  /* that were done for it */
+    long n_events;  /* events of the run that the estimate measured */
 };
 
-/* Estimate what the run of a simulation takes that is at its start; it can only be freed afterwards. The estimate takes
- * no more than this time [s] of the processor, except that the first event is done to its end; where simulation->stop
- * ends that, the estimate has no event, and follows from a part of one. Fails as simulate_step where the first events
- * fail, as they will in the run. */
+/* Estimate the cost of a run from a simulation at the start; the simulation can only be freed afterwards. The estimate
+ * takes at most `patience` [s] of CPU time, but always completes the first event. If simulation->stop interrupts the
+ * first event, the estimate has no event and extrapolates from the completed part. Fails as simulate_step if one of
+ * the first events fails; the run then fails at the same event. */
 enum status estimate_run(struct simulation *simulation, double patience, struct estimate *estimate);
 
 #endif

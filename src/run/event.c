@@ -1,4 +1,4 @@
-/* event.c: from the end of one interval to the start of the next. */
+/* event.c: steps of the event between two intervals. */
 #include "run/event.h"
 
 #include <math.h>
@@ -15,20 +15,20 @@
 #include "state/impulse.h"
 #include "state/wake_merge.h"
 
-// evaluate the equations; at an event there is no smaller step to try
-static enum status evaluate(struct residual *residual, const struct state *state) {
+// evaluate the equations; STATUS_RETRY is final, because an event has no step size
+static enum status event_evaluate(struct residual *residual, const struct state *state) {
     const enum status status = residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch);
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
-static void place_of_tail(const struct state *state, const struct fish *fish, double place[2]) {
+static void tail_position(const struct state *state, const struct fish *fish, double place[2]) {
     const int last = fish->n_nodes - 1;
     place[0] = state->y[fish->at.x + last];
     place[1] = state->y[fish->at.y + last];
 }
 
-// a vortex of all that has been shed since the last one
-static enum status release(struct state *state, const struct school *school, int f, const double place[2]) {
+// release a vortex with the circulation shed since the last release
+static enum status event_release(struct state *state, const struct school *school, int f, const double place[2]) {
     struct wake *const wake = &state->wake[f];
     const double circulation = state->y[school->fish[f].at.circulation];
     TRY(wake_release(wake, place[0], place[1], circulation - wake->shed_before, state->t));
@@ -36,58 +36,61 @@ static enum status release(struct state *state, const struct school *school, int
     return STATUS_OK;
 }
 
-// continuous shedding: the nascent vortex is set free where it is, with the strength it has
-static enum status release_nascent(struct state *state, const struct school *school) {
+// continuous shedding: release the nascent vortex with its position and circulation
+static enum status event_release_nascent(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         double tail[2], position[2];
-        place_of_tail(state, &school->fish[f], tail);
+        tail_position(state, &school->fish[f], tail);
         wake_nascent(&state->wake[f], school->interval, tail, position);
-        TRY(release(state, school, f, position));
+        TRY(event_release(state, school, f, position));
     }
     return STATUS_OK;
 }
 
 // impulsive shedding: a vortex appears at the tail
-static enum status release_impulse(struct state *state, struct residual *residual, struct initial_conditions *initial) {
+static enum status event_release_impulse(struct state *state, struct residual *residual,
+                                         struct initial_conditions *initial) {
     const struct school *school = residual->school;
     if (school->kutta == KUTTA_EDGE) {
-        // with the strength that makes the bound vortex at the tail vanish
+        // circulation for a vanishing bound vortex at the tail
         residual->shed_now = SHED_BY_IMPULSE;
         const enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
         residual->shed_now = SHED_BY_LAW;
         TRY(status);
     } else {
-        // with what the rate gives over one interval
+        // shedding rate times the interval
         flow_sum_exactly(residual->flow);
-        TRY(evaluate(residual, state));
+        TRY(event_evaluate(residual, state));
         for (int f = 0; f < school->n_fish; f++) {
             state->y[school->fish[f].at.circulation] +=
                 school->interval * residual_kutta_rate(residual, f, state->t, state->y);
         }
     }
+
     for (int f = 0; f < school->n_fish; f++) {
         double tail[2];
-        place_of_tail(state, &school->fish[f], tail);
-        TRY(release(state, school, f, tail));
+        tail_position(state, &school->fish[f], tail);
+        TRY(event_release(state, school, f, tail));
     }
+
     return STATUS_OK;
 }
 
 // a free sheet: a marker is born at the tail
-static enum status release_markers(struct state *state, const struct school *school) {
+static enum status event_release_markers(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         struct wake *const wake = &state->wake[f];
         double tail[2];
-        place_of_tail(state, &school->fish[f], tail);
+        tail_position(state, &school->fish[f], tail);
         wake->shed_before = state->y[school->fish[f].at.circulation];
         TRY(wake_release(wake, tail[0], tail[1], wake->shed_before, state->t));
     }
     return STATUS_OK;
 }
 
-// A newborn marker starts with the velocity of the fluid at the tail. Of the slip, the part along the body that points
-// forwards is left out: a tail that goes backwards would lay the sheet on the body.
-static void start_marker(const struct fish *fish, struct state *state, int f, double *u, double *v) {
+// A new marker starts with the velocity of the fluid at the tail, without the forward component of the slip along the
+// body: with this component, a tail that moves backwards would place the sheet on the body.
+static void event_start_marker(const struct fish *fish, struct state *state, int f, double *u, double *v) {
     const int last = fish->n_nodes - 1;
     struct wake *const wake = &state->wake[f];
     const double *const y = state->y;
@@ -103,18 +106,19 @@ static void start_marker(const struct fish *fish, struct state *state, int f, do
 
 enum { ALL = -1 };
 
-// the velocities of all free vortices from the state as it is now; n_new: the vortices of each fish that have none yet,
-// or ALL
-static enum status take_velocities(struct state *state, struct residual *residual, int n_new) {
+// evaluate the velocities of all free vortices at the present state; n_new: number of vortices per fish without a
+// previous velocity, or ALL
+static enum status event_wake_velocities(struct state *state, struct residual *residual, int n_new) {
     const struct school *school = residual->school;
     struct flow *const flow = residual->flow;
     TRY(flow_at_wake(flow, state));
     const int threads = fish_threads(school);
+
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const int first = flow->wake_range[f].first, newest = first + state->wake[f].n_vortex - 1;
         if (state->wake[f].has_markers) {
-            start_marker(&school->fish[f], state, f, &flow->wake_u[newest], &flow->wake_v[newest]);
+            event_start_marker(&school->fish[f], state, f, &flow->wake_u[newest], &flow->wake_v[newest]);
         }
         if (state->wake[f].n_vortex > 0) {
             const int n = n_new == ALL ? state->wake[f].n_vortex : n_new;
@@ -122,21 +126,22 @@ static enum status take_velocities(struct state *state, struct residual *residua
             wake_set_velocity(&state->wake[f], flow->wake_u + first, flow->wake_v + first, rate, n);
         }
     }
+
     return STATUS_OK;
 }
 
-// the flow as it will be during the next interval, and the slip at every tail
-static enum status take_flow(struct state *state, struct residual *residual) {
+// interpolate the flow for the next interval, and evaluate the slip at every tail
+static enum status event_flow(struct state *state, struct residual *residual) {
     TRY(flow_interpolate(residual->flow, state));
-    TRY(evaluate(residual, state));
+    TRY(event_evaluate(residual, state));
     for (int f = 0; f < residual->school->n_fish; f++) {
         if (!state->wake[f].has_markers) flow_slip(residual->flow, f, state->y, state->wake[f].slip);
     }
     return STATUS_OK;
 }
 
-// what the law of fish f sees
-static struct control_view view_of(const struct state *state, const struct residual *residual, int f) {
+// observations of the control law of fish f
+static struct control_view event_control_view(const struct state *state, const struct residual *residual, int f) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     struct control_view view = {.t = state->t,
@@ -147,16 +152,17 @@ static struct control_view view_of(const struct state *state, const struct resid
     return view;
 }
 
-// the control of every fish takes its decision; returns whether a bias jumps
-static int steer(struct state *state, struct residual *residual) {
+// update the control of every fish; returns whether a bias jumps
+static int event_control(struct state *state, struct residual *residual) {
     const struct school *school = residual->school;
     const int threads = fish_threads(school);
     int jumps = 0;
+
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         struct control_memory *const memory = &state->control[f];
-        const struct control_view view = view_of(state, residual, f);
+        const struct control_view view = event_control_view(state, residual, f);
         const double before = control_rate(fish, memory, state->t, 0, state->y);
         if (control_event(fish, memory, &view, state->y)) {
 #pragma omp atomic write
@@ -165,35 +171,39 @@ static int steer(struct state *state, struct residual *residual) {
         const double change = control_rate(fish, memory, state->t, 0, state->y) - before;
         if (fabs(change) > 0) diagnostics_begin(residual, state, f);
     }
+
     return jumps;
 }
 
-// what follows once every free vortex has its velocity: jumps tells whether the unknowns have jumped, *jumped whether
-// they have, or a control law makes them
-static enum status finish_event(struct state *state, struct residual *residual, struct initial_conditions *initial,
+// remaining steps of an event after the velocities of the free vortices. jumps: the unknowns have jumped; *jumped: the
+// unknowns have jumped, or a control law makes the unknowns jump
+static enum status event_finish(struct state *state, struct residual *residual, struct initial_conditions *initial,
                                 int jumps, int *jumped) {
-    TRY(take_flow(state, residual));
+    TRY(event_flow(state, residual));
     TRY(diagnostics_momentum_event(residual, state));
     diagnostics_remember(residual, state);
     self_crossing_remember(residual->school, state, residual->scratch);
-    const int steered = steer(state, residual);
+
+    const int steered = event_control(state, residual);
     if (steered) {
         if (!jumps) diagnostics_before_jump(residual, state);
         TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
         TRY(flow_interpolate(residual->flow, state));
     }
+
     TRY(residual_couple(&residual->couplings, state->y));
     *jumped = jumps || steered;
     if (*jumped) diagnostics_after_jump(residual, state);
     return STATUS_OK;
 }
 
-// the first markers, from the flow before anything has been shed
-static enum status start_sheets(struct state *state, struct residual *residual, struct initial_conditions *initial) {
+// release the first markers, in the flow without shed circulation
+static enum status event_start_sheets(struct state *state, struct residual *residual,
+                                      struct initial_conditions *initial) {
     residual->shed_now = SHED_IS_GIVEN;
     enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
-    if (status == STATUS_OK) status = release_markers(state, residual->school);
-    if (status == STATUS_OK) status = take_velocities(state, residual, 1);
+    if (status == STATUS_OK) status = event_release_markers(state, residual->school);
+    if (status == STATUS_OK) status = event_wake_velocities(state, residual, 1);
     residual->shed_now = SHED_BY_LAW;
     return status;
 }
@@ -201,15 +211,17 @@ static enum status start_sheets(struct state *state, struct residual *residual, 
 enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
     int jumped;
     residual->at_start = 1;
-    if (residual->school->shedding == SHEDDING_SHEET) TRY(start_sheets(state, residual, initial));
+    if (residual->school->shedding == SHEDDING_SHEET) TRY(event_start_sheets(state, residual, initial));
     TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
     residual->at_start = 0;
+
     if (residual->school->shedding == SHEDDING_IMPULSIVE) {
-        TRY(release_impulse(state, residual, initial));
+        TRY(event_release_impulse(state, residual, initial));
         TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-        TRY(take_velocities(state, residual, 1));
+        TRY(event_wake_velocities(state, residual, 1));
     }
-    TRY(finish_event(state, residual, initial, 1, &jumped));
+
+    TRY(event_finish(state, residual, initial, 1, &jumped));
     diagnostics_start(residual, state);
     return STATUS_OK;
 }
@@ -218,32 +230,39 @@ enum status event_next(struct state *state, struct residual *residual, struct in
                        int *jumped) {
     const struct school *school = residual->school;
     const int threads = fish_threads(school);
+
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         impulse_fade(school, state, f);
         wake_advance(&state->wake[f], school->interval);
         control_advance(&state->control[f], school->interval);
     }
+
     state->event++;
     state->t = (double)state->event * school->interval;
+
+    // shed
     const int jumps = school->shedding == SHEDDING_IMPULSIVE;
     if (jumps) diagnostics_before_jump(residual, state);
     if (jumps) {
-        TRY(release_impulse(state, residual, initial));
+        TRY(event_release_impulse(state, residual, initial));
     } else if (school->shedding == SHEDDING_SHEET) {
-        TRY(release_markers(state, school));
+        TRY(event_release_markers(state, school));
     } else {
-        TRY(release_nascent(state, school));
+        TRY(event_release_nascent(state, school));
     }
+
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         impulse_remove(school, state, f);
         wake_remove_old(&state->wake[f], school, state->t);
     }
+
     TRY(wake_merge(school, state));
+
     if (jumps) TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-    TRY(take_velocities(state, residual, 1));
-    return finish_event(state, residual, initial, jumps, jumped);
+    TRY(event_wake_velocities(state, residual, 1));
+    return event_finish(state, residual, initial, jumps, jumped);
 }
 
 enum status event_change(struct state *state, struct residual *residual, struct initial_conditions *initial,
@@ -252,7 +271,7 @@ enum status event_change(struct state *state, struct residual *residual, struct 
     const enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
     residual->at_start = 0;
     TRY(status);
-    TRY(take_velocities(state, residual, ALL));
-    TRY(take_flow(state, residual));
+    TRY(event_wake_velocities(state, residual, ALL));
+    TRY(event_flow(state, residual));
     return residual_couple(&residual->couplings, state->y);
 }

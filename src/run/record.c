@@ -1,4 +1,4 @@
-/* record.c: rows that are due, and the last words of a result file. */
+/* record.c: rows that are due, and the final status of a result file. */
 #include "run/record.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@ char *record_path(const struct case_values *values) {
     return path;
 }
 
-static void begin(struct record *record, const struct case_values *values, long n_events, const char *path) {
+static void record_begin(struct record *record, const struct case_values *values, long n_events, const char *path) {
     *record = (struct record){.path = path, .n_events = n_events};
     record->events_per_row = lround(values->time.output_interval / values->school.shedding_interval);
     record->events_per_wake = lround(values->output.wake_interval / values->school.shedding_interval);
@@ -27,10 +27,10 @@ typedef enum status maker(struct result_file **result, const char *path, int ove
                           const struct case_values *values, const char *effective, const char *command,
                           const struct school *school, long n_events);
 
-static enum status create(maker *make, struct record *record, const struct case_values *values,
-                          const struct school *school, long n_events, const char *path, int overwrite,
-                          const char *command) {
-    begin(record, values, n_events, path);
+static enum status record_make(maker *make, struct record *record, const struct case_values *values,
+                               const struct school *school, long n_events, const char *path, int overwrite,
+                               const char *command) {
+    record_begin(record, values, n_events, path);
     char *effective = NULL;
     TRY(case_show(values, &effective));
     const enum status status = make(&record->file, path, overwrite, values, effective, command, school, n_events);
@@ -40,24 +40,24 @@ static enum status create(maker *make, struct record *record, const struct case_
 
 enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
                           long n_events, const char *path, int overwrite, const char *command) {
-    return create(result_file_create, record, values, school, n_events, path, overwrite, command);
+    return record_make(result_file_create, record, values, school, n_events, path, overwrite, command);
 }
 
 enum status record_create_steady(struct record *record, const struct case_values *values, const struct school *school,
                                  long n_events, const char *path, int overwrite, const char *command) {
-    return create(result_file_create_steady, record, values, school, n_events, path, overwrite, command);
+    return record_make(result_file_create_steady, record, values, school, n_events, path, overwrite, command);
 }
 
 enum status record_continue(struct record *record, const struct case_values *values, const struct school *school,
                             long n_events, const char *path, const struct result_mark *mark,
                             const struct result_checksum *checksum) {
-    begin(record, values, n_events, path);
+    record_begin(record, values, n_events, path);
     return result_file_continue(&record->file, path, mark, checksum, values, school, n_events);
 }
 
 enum status record_extend(struct record *record, const struct case_values *values, const struct school *school,
                           long n_events, const struct result_source *source, const char *command) {
-    begin(record, values, n_events, source->path);
+    record_begin(record, values, n_events, source->path);
     char *effective = NULL;
     TRY(case_show(values, &effective));
     const enum status status = result_file_extend(&record->file, source, values, effective, command, school, n_events);
@@ -69,25 +69,26 @@ enum status record_publish(const struct record *record, int is_complete) {
     return result_file_publish(record->file, is_complete ? "complete" : "running");
 }
 
-// the end is a row of its own where it is no multiple of an interval
-static int is_last(const struct record *record, long event) {
+// the end is a row even if the end is not a multiple of the output interval
+static int record_is_last(const struct record *record, long event) {
     return event == record->n_events;
 }
 
 int record_is_due(const struct record *record, long event) {
-    return record->file && ((event - record->first) % record->events_per_row == 0 || is_last(record, event));
+    return record->file && ((event - record->first) % record->events_per_row == 0 || record_is_last(record, event));
 }
 
 enum status record_row(const struct record *record, struct result_row *row) {
     const long event = row->state->event;
-    row->with_wake = (event - record->first) % record->events_per_wake == 0 || is_last(record, event);
+    row->with_wake = (event - record->first) % record->events_per_wake == 0 || record_is_last(record, event);
     return result_file_row(record->file, row);
 }
 
 enum status record_close(struct record *record, enum status status) {
-    // the reason of a failure is the message; closing must not lose it
+    // closing the file can overwrite the message, which is the reason of a failure
     char reason[4096];
     snprintf(reason, sizeof reason, "%s", status_message());
+
     char run_status[4096 + 16];
     if (status == STATUS_OK) {
         snprintf(run_status, sizeof run_status, "complete");
@@ -96,6 +97,7 @@ enum status record_close(struct record *record, enum status status) {
     } else {
         snprintf(run_status, sizeof run_status, "failed: %s", reason);
     }
+
     const enum status closed = result_file_close(record->file, run_status);
     *record = (struct record){0};
     if (status == STATUS_OK) return closed;

@@ -1,4 +1,4 @@
-/* record.h: the result file of a run while the run goes on: which events are rows of it, and how it ends. Tested by
+/* record.h: result file during a run: the events that are rows, and the status at the end. Tested by
  * tests/run/test_simulate.c and tests/library/test_shoal.c. */
 #ifndef RECORD_H
 #define RECORD_H
@@ -7,7 +7,7 @@
 #include "case/case.h"
 #include "result/result_file.h"
 
-/* Zero it to begin; there is then no file. */
+/* A zeroed record has no file. */
 struct record {
     struct result_file *file;
     const char *path;
@@ -15,12 +15,12 @@ struct record {
     long first, n_events; /* the events of the first row and of the end */
 };
 
-/* The path that a case names for its result: output.file, or the name of the case with .nc. The caller frees it; NULL:
- * out of memory. */
+/* Path of the result of a case: output.file, or the name of the case with .nc. The caller frees the path; NULL: out of
+ * memory. */
 char *record_path(const struct case_values *values);
 
-/* Begin the file for path (kept until record_close), without a row. overwrite, command: as in result_file_create.
- * n_events: of the whole run. Fails with STATUS_FILE or STATUS_MEMORY; nothing is then left. */
+/* Create the file for path, without a row; the record refers to path until record_close. overwrite, command: as in
+ * result_file_create. n_events: of the whole run. Fails with STATUS_FILE or STATUS_MEMORY; no file remains then. */
 enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
                           long n_events, const char *path, int overwrite, const char *command);
 
@@ -28,25 +28,26 @@ enum status record_create(struct record *record, const struct case_values *value
 enum status record_create_steady(struct record *record, const struct case_values *values, const struct school *school,
                                  long n_events, const char *path, int overwrite, const char *command);
 
-/* The same for a file that is there: go on behind the rows of a mark, or make it again for another end with the rows
- * of a source, to be published (result_file_continue, result_file_extend). */
+/* The same for an existing file: record_continue appends after the rows of a mark (result_file_continue), record_extend
+ * writes a new file for another end with the rows of a source, to be published (result_file_extend). */
 enum status record_continue(struct record *record, const struct case_values *values, const struct school *school,
                             long n_events, const char *path, const struct result_mark *mark,
                             const struct result_checksum *checksum);
 enum status record_extend(struct record *record, const struct case_values *values, const struct school *school,
                           long n_events, const struct result_source *source, const char *command);
 
-/* Give the file its name, as "running" or, where that was the last row, as "complete": result_file_publish. */
+/* Give the file the final name, with status "complete" after the last row, else "running": result_file_publish. */
 enum status record_publish(const struct record *record, int is_complete);
 
-/* Whether an event is a row: every output interval, and the end. Not without a file. */
+/* Whether an event is a row: every output interval, and the end. A record without a file has no rows. */
 int record_is_due(const struct record *record, long event);
 
-/* Append a row; the wake is in those that are due for it. Fails with STATUS_FILE. */
+/* Append a row; rows at multiples of output.wake_interval and the last row contain the wake. Fails with STATUS_FILE. */
 enum status record_row(const struct record *record, struct result_row *row);
 
-/* Close the file and say how the run ended: STATUS_OK "complete", STATUS_STOPPED "stopped", else "failed: " and the
- * message. Returns that status with its message; where it is STATUS_OK, whether closing failed, with STATUS_FILE. */
+/* Close the file with the status of the run: STATUS_OK "complete", STATUS_STOPPED "stopped", else "failed: " and the
+ * message. Returns the given status with the given message; if the given status is STATUS_OK, fails with STATUS_FILE
+ * when closing fails. */
 enum status record_close(struct record *record, enum status status);
 
 #endif

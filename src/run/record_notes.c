@@ -1,4 +1,4 @@
-/* record_notes.c: attributes of a result that are written at its end. */
+/* record_notes.c: attributes of a result that are written at the end of the run. */
 #include "run/record_notes.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 
 #include "school/warnings.h"
 
-static void note_closest(struct result_file *file, const struct simulation *simulation) {
+static void record_note_closest(struct result_file *file, const struct simulation *simulation) {
     const struct school *const school = simulation->school;
     const struct closest *const closest = simulation->state->closest;
     if (isinf(closest->distance)) return;
@@ -16,7 +16,7 @@ static void note_closest(struct result_file *file, const struct simulation *simu
     result_file_note(file, RESULT_CLOSEST_APPROACH, text);
 }
 
-static void note_merged(struct result_file *file, const struct simulation *simulation) {
+static void record_note_merged(struct result_file *file, const struct simulation *simulation) {
     const struct school *const school = simulation->school;
     if (school->wake_merge <= 0) return;
     long n_merged = 0, n_vortices = 0;
@@ -24,8 +24,9 @@ static void note_merged(struct result_file *file, const struct simulation *simul
         n_merged += simulation->state->wake[f].n_merged;
         n_vortices += simulation->state->wake[f].n_vortex;
     }
+
     char text[128];
-    snprintf(text, sizeof text, "%ld have become one with a neighbour; the wakes have %ld at the end", n_merged,
+    snprintf(text, sizeof text, "%ld merged with a neighbour; %ld vortices in the wakes at the end", n_merged,
              n_vortices);
     result_file_note(file, RESULT_MERGED, text);
 }
@@ -41,7 +42,8 @@ void record_notes_write(struct result_file *file, const struct simulation *simul
         length += (size_t)snprintf(lines + length, sizeof lines - length, "%s%s", length > 0 ? "\n" : "", line);
         if (warn) warn(line, data);
     }
+
     if (length > 0) result_file_note(file, RESULT_WARNINGS, lines);
-    note_closest(file, simulation);
-    note_merged(file, simulation);
+    record_note_closest(file, simulation);
+    record_note_merged(file, simulation);
 }

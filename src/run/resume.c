@@ -1,4 +1,4 @@
-/* resume.c: see resume.h. */
+/* resume.c: checks of a checkpoint and its result before a run is resumed. */
 #include "run/resume.h"
 
 #include <stdio.h>
@@ -12,7 +12,7 @@
 // ---- the checkpoint
 
 // the result is in the folder of the checkpoint
-static enum status find_result(struct resume *resume, const char *path) {
+static enum status resume_find_result(struct resume *resume, const char *path) {
     const char *const slash = strrchr(path, '/');
     const size_t length = slash ? (size_t)(slash + 1 - path) : 0, size = length + strlen(resume->checkpoint.result) + 1;
     resume->result = malloc(size);
@@ -21,36 +21,39 @@ static enum status find_result(struct resume *resume, const char *path) {
     return STATUS_OK;
 }
 
-static enum status check(struct resume *resume, const char *path) {
+static enum status resume_check(struct resume *resume, const char *path) {
     const struct checkpoint *const checkpoint = &resume->checkpoint;
     const enum status status = checkpoint_check_program(checkpoint);
     if (status != STATUS_OK) return status_fail(status, "%s: cannot be used: %s", path, status_message());
-    if (!resume->result) TRY(find_result(resume, path));
+    if (!resume->result) TRY(resume_find_result(resume, path));
     if (!resume->lock.path) TRY(result_lock_take(&resume->lock, resume->result));
     return result_mark_check(resume->result, &checkpoint->rows, checkpoint->effective, &resume->checksum,
                              &resume->is_complete);
 }
 
-static enum status try_one(struct resume *resume, const char *path) {
+static enum status resume_try(struct resume *resume, const char *path) {
     TRY(checkpoint_read(&resume->checkpoint, path));
-    const enum status status = check(resume, path);
+    const enum status status = resume_check(resume, path);
     if (status != STATUS_OK) checkpoint_free(&resume->checkpoint);
     return status;
 }
 
 enum status resume_open(struct resume *resume, const char *path) {
     *resume = (struct resume){.lock = {.descriptor = -1}};
-    const enum status status = try_one(resume, path);
+    const enum status status = resume_try(resume, path);
     if (status != STATUS_FILE) return status;
     char reason[4096];
     snprintf(reason, sizeof reason, "%s", status_message());
+
+    // fall back to the previous checkpoint
     char *const previous = checkpoints_previous(path);
     if (!previous) return status_fail(STATUS_MEMORY, "out of memory: a file name");
-    if (access(previous, F_OK) == 0 && try_one(resume, previous) == STATUS_OK) {
+    if (access(previous, F_OK) == 0 && resume_try(resume, previous) == STATUS_OK) {
         const size_t size = strlen(reason) + strlen(previous) + 32;
         resume->note = malloc(size);
-        if (resume->note) snprintf(resume->note, size, "%s; going on from %s", reason, previous);
+        if (resume->note) snprintf(resume->note, size, "%s; resuming from %s", reason, previous);
     }
+
     free(previous);
     return resume->note ? STATUS_OK : status_fail(STATUS_FILE, "%s", reason);
 }
@@ -65,22 +68,25 @@ void resume_close(struct resume *resume) {
 
 // ---- the case
 
-// the text of the case's file and the study that it is of, which the complete case does not hold
-static enum status take_origin(const struct resume *resume, struct case_values *values) {
+// the text of the case file and the study of the case, which the complete case does not contain
+static enum status resume_read_origin(const struct resume *resume, struct case_values *values) {
     struct netcdf_reader reader;
     char *study = NULL;
     TRY(netcdf_open(&reader, resume->result));
+
     free(values->text);
     values->text = NULL;
     enum status status = netcdf_read_string(&reader, "case_text", &values->text);
     if (status == STATUS_OK) status = netcdf_read_string(&reader, "study_case", &study);
     if (status == STATUS_OK) status = netcdf_read_integer(&reader, "study_member", 0, &values->member);
     netcdf_close(&reader);
+
     if (study && *study) {
         values->study = study;
     } else {
         free(study);
     }
+
     return status;
 }
 
@@ -88,14 +94,14 @@ enum status resume_case(const struct resume *resume, int n_assignments, const ch
                         struct case_values *values) {
     const char *const text = resume->checkpoint.effective;
     TRY(case_parse(values, text, strlen(text), resume->checkpoint.result, NULL, n_assignments, assignments));
-    const enum status status = take_origin(resume, values);
+    const enum status status = resume_read_origin(resume, values);
     if (status != STATUS_OK) case_free(values);
     return status;
 }
 
 // ---- a result that a new run would replace
 
-static int is_unfinished(const char *result, const char *path, const char *effective, double *t) {
+static int result_is_unfinished(const char *result, const char *path, const char *effective, double *t) {
     struct checkpoint checkpoint;
     struct result_checksum checksum;
     int is_complete = 1;
@@ -110,8 +116,8 @@ static int is_unfinished(const char *result, const char *path, const char *effec
 
 int resume_is_possible(const char *result, const char *checkpoint, const char *effective, double *t) {
     char *const previous = checkpoints_previous(checkpoint);
-    const int is_possible =
-        is_unfinished(result, checkpoint, effective, t) || (previous && is_unfinished(result, previous, effective, t));
+    const int is_possible = result_is_unfinished(result, checkpoint, effective, t) ||
+                            (previous && result_is_unfinished(result, previous, effective, t));
     free(previous);
     return is_possible;
 }

@@ -1,4 +1,4 @@
-/* simulate.c: all that a run has in memory, made from a case or from a state. */
+/* simulate.c: creation of a simulation from a case or from a state, and the step from event to event. */
 #include "run/simulate.h"
 
 #include <math.h>
@@ -20,10 +20,11 @@ static double wall_clock(void) {
 }
 
 // an empty simulation of a case
-static enum status begin(struct simulation **simulation, const struct case_values *values) {
+static enum status simulation_begin(struct simulation **simulation, const struct case_values *values) {
     struct simulation *const new = calloc(1, sizeof *new);
     *simulation = new;
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: a simulation");
+
     new->started = wall_clock();
     new->n_events = lround(values->time.end / values->school.shedding_interval);
     new->integrator = integrator_of(values->solver.method);
@@ -35,24 +36,24 @@ static enum status begin(struct simulation **simulation, const struct case_value
 }
 
 // discard a simulation that could not be built
-static enum status give_up(struct simulation **simulation, enum status status) {
+static enum status simulation_discard_failed(struct simulation **simulation, enum status status) {
     if (status == STATUS_OK) return STATUS_OK;
     simulate_free(*simulation);
     *simulation = NULL;
     return status;
 }
 
-static enum status create_equations(struct simulation *simulation) {
+static enum status simulation_create_equations(struct simulation *simulation) {
     TRY(residual_create(&simulation->residual, simulation->school, simulation->state));
     return initial_conditions_create(&simulation->consistent, simulation->residual);
 }
 
-static enum status create_integrator(struct simulation *simulation) {
+static enum status simulation_create_integrator(struct simulation *simulation) {
     return simulation->integrator->create(&simulation->solver, simulation->residual, simulation->state,
                                           &simulation->options);
 }
 
-static void free_solvers(struct simulation *simulation) {
+static void simulation_free_solvers(struct simulation *simulation) {
     if (simulation->integrator) simulation->integrator->free(simulation->solver);
     initial_conditions_free(simulation->consistent);
     residual_free(simulation->residual);
@@ -61,22 +62,22 @@ static void free_solvers(struct simulation *simulation) {
     simulation->residual = NULL;
 }
 
-static enum status start(struct simulation *simulation, const struct case_values *values,
-                         const volatile sig_atomic_t *stop) {
+static enum status simulation_start(struct simulation *simulation, const struct case_values *values,
+                                    const volatile sig_atomic_t *stop) {
     simulation->stop = stop;
     TRY(fish_school_create(&simulation->school, &values->school));
     TRY(state_create(&simulation->state, simulation->school));
-    TRY(create_equations(simulation));
+    TRY(simulation_create_equations(simulation));
     TRY(diagnostics_create(&simulation->diagnostics, simulation->school));
     initial_conditions_listen(simulation->consistent, stop);
     TRY(event_start(simulation->state, simulation->residual, simulation->consistent));
-    return create_integrator(simulation);
+    return simulation_create_integrator(simulation);
 }
 
 enum status simulate_start(struct simulation **simulation, const struct case_values *values,
                            const volatile sig_atomic_t *stop) {
-    TRY(begin(simulation, values));
-    return give_up(simulation, start(*simulation, values, stop));
+    TRY(simulation_begin(simulation, values));
+    return simulation_discard_failed(simulation, simulation_start(*simulation, values, stop));
 }
 
 enum status simulate_create(struct simulation **simulation, const struct case_values *values) {
@@ -88,53 +89,55 @@ const char *simulate_stopped_by(const volatile sig_atomic_t *stop) {
 }
 
 enum status simulate_renew(struct simulation *simulation) {
-    free_solvers(simulation);
+    simulation_free_solvers(simulation);
     simulation->options.before = simulation->totals;
-    TRY(create_equations(simulation));
+    TRY(simulation_create_equations(simulation));
     TRY(flow_interpolate(simulation->residual->flow, simulation->state));
-    return create_integrator(simulation);
+    return simulation_create_integrator(simulation);
 }
 
 enum status simulate_take_up(struct simulation **simulation, const struct case_values *values, struct school *school,
                              struct state *state, const struct integrator_counts *totals) {
-    const enum status begun = begin(simulation, values);
+    const enum status begun = simulation_begin(simulation, values);
     if (begun != STATUS_OK) {
         state_free(state, school);
         fish_school_free(school);
         return begun;
     }
+
     struct simulation *const new = *simulation;
     new->school = school;
     new->state = state;
     new->totals = *totals;
     enum status status = diagnostics_create(&new->diagnostics, school);
     if (status == STATUS_OK) status = simulate_renew(new);
-    return give_up(simulation, status);
+    return simulation_discard_failed(simulation, status);
 }
 
 void simulate_free(struct simulation *simulation) {
     if (!simulation) return;
-    free_solvers(simulation);
+    simulation_free_solvers(simulation);
     diagnostics_free(simulation->diagnostics);
     state_free(simulation->state, simulation->school);
     fish_school_free(simulation->school);
     free(simulation);
 }
 
-// bodies that are in contact where the case asks to stop then: what the integrator made of it is of no interest
-static enum status refuse_contact(const struct simulation *simulation) {
+// contact.action: stop takes precedence over the status of the integrator
+static enum status simulation_refuse_contact(const struct simulation *simulation) {
     const struct school *const school = simulation->school;
     const struct closest *const closest = simulation->state->closest;
     if (school->contact != CONTACT_STOP || closest->distance >= school->contact_range) return STATUS_OK;
     return status_fail(STATUS_CONTACT,
                        "contact of %s and %s at t = %.10g s: %.4g m between their outlines, less than contact.range, "
-                       "%.4g m; the case says contact.action: stop",
+                       "%.4g m; contact.action is stop",
                        school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t,
                        closest->distance, school->contact_range);
 }
 
-// name a body that is folded at a joint at the end of the last step: the curve through its nodes does not describe it
-static enum status tell_folded(const struct simulation *simulation, enum status status) {
+// name a body that is folded at a joint at the end of the last step: the curve through the nodes does not describe a
+// folded body
+static enum status simulation_name_folded(const struct simulation *simulation, enum status status) {
     const double right_angle = 1.57079632679489662, sharp = right_angle / 2;
     const struct school *const school = simulation->school;
     for (int f = 0; f < school->n_fish; f++) {
@@ -145,12 +148,13 @@ static enum status tell_folded(const struct simulation *simulation, enum status 
             status, "%s; the body of %s folds: it turns by %.0f degrees at node %d: raise body.modulus, or nodes",
             status_message(), school->fish[f].name, turn / right_angle * 90, joint);
     }
+
     return status;
 }
 
-// name the two bodies, or the body and the wall, with the least gap at the end of the last step, where it is below the
-// range of contact
-static enum status tell_contact(const struct simulation *simulation, enum status status) {
+// name the two bodies, or the body and the wall, with the least gap at the end of the last step, if the gap is below
+// contact.range
+static enum status simulation_name_contact(const struct simulation *simulation, enum status status) {
     const struct school *const school = simulation->school;
     const double *const y = simulation->state->closest->before;
     double least = school->contact_range;
@@ -169,6 +173,7 @@ static enum status tell_contact(const struct simulation *simulation, enum status
             other = f;
         }
     }
+
     if (one < 0) return status;
     const char *const name = school->fish[one].name;
     if (one == other) return status_fail(status, "%s; %s was %.3g m from a wall", status_message(), name, least);
@@ -176,17 +181,20 @@ static enum status tell_contact(const struct simulation *simulation, enum status
                        school->fish[other].name, least);
 }
 
-static enum status step(struct simulation *simulation) {
+static enum status simulation_step(struct simulation *simulation) {
     struct state *const state = simulation->state;
     const double next = (double)(state->event + 1) * simulation->school->interval;
     const enum status advanced = simulation->integrator->advance(simulation->solver, next, simulation->stop);
-    TRY(refuse_contact(simulation));
-    if (advanced == STATUS_SOLVER) return tell_contact(simulation, tell_folded(simulation, advanced));
+    TRY(simulation_refuse_contact(simulation));
+    if (advanced == STATUS_SOLVER)
+        return simulation_name_contact(simulation, simulation_name_folded(simulation, advanced));
     TRY(advanced);
+
     int jumped = 0;
     initial_conditions_listen(simulation->consistent, simulation->stop);
     TRY(event_next(state, simulation->residual, simulation->consistent, &jumped));
-    // a restart has no last step
+
+    // count before the restart, which discards the last step
     simulation->integrator->count(simulation->solver, &simulation->totals);
     return jumped ? simulation->integrator->restart(simulation->solver) : STATUS_OK;
 }
@@ -194,7 +202,7 @@ static enum status step(struct simulation *simulation) {
 enum status simulate_step(struct simulation *simulation) {
     const int threads = simulation->school->threads;
     parallel_choice_begin(&simulation->choice, threads);
-    const enum status status = step(simulation);
+    const enum status status = simulation_step(simulation);
     parallel_choice_end(&simulation->choice, threads);
     return status;
 }

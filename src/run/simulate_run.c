@@ -1,4 +1,4 @@
-/* simulate_run.c: the loop of events, and what is written at some of them. */
+/* simulate_run.c: the loop over events, with rows and checkpoints. */
 #include "run/simulate_run.h"
 
 #include <math.h>
@@ -16,19 +16,19 @@
 #include "run/simulate.h"
 #include "state/state_table.h"
 
-// a run and its files
+// a run with result and checkpoints
 struct run {
     const struct case_values *values;
     const struct simulate_options *options;
     struct simulation *simulation;
     struct record record;
     struct checkpoints checkpoints;
-    struct state *before; /* the state at the last event, where the run may be stopped behind it */
+    struct state *before; /* state at the last event, if the run can be stopped between events */
 };
 
 // ---- from event to event
 
-static enum status write_if_due(struct run *run) {
+static enum status run_write_if_due(struct run *run) {
     if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
     struct integrator_counts counts;
     struct result_row row;
@@ -36,7 +36,7 @@ static enum status write_if_due(struct run *run) {
     return record_row(&run->record, &row);
 }
 
-static void tell(const struct run *run) {
+static void run_report_progress(const struct run *run) {
     if (!run->options->progress) return;
     const struct simulation *const simulation = run->simulation;
     struct integrator_counts counts;
@@ -50,56 +50,56 @@ static void tell(const struct run *run) {
     run->options->progress(&progress, run->options->data);
 }
 
-static enum status checkpoint_if_due(struct run *run) {
+static enum status run_checkpoint_if_due(struct run *run) {
     struct simulation *const simulation = run->simulation;
     if (!checkpoints_are_due(&run->checkpoints, simulation->state->event)) return STATUS_OK;
     TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
     return simulation->state->event < simulation->n_events ? simulate_renew(simulation) : STATUS_OK;
 }
 
-// at an event
-static enum status stop(struct run *run) {
+// stop at an event, with a checkpoint
+static enum status run_stop(struct run *run) {
     const double t = run->simulation->state->t;
     TRY(checkpoints_write(&run->checkpoints, run->simulation, &run->record));
-    return status_fail(STATUS_STOPPED, "stopped %s at t = %.10g s: go on with 'shoal resume %s'",
+    return status_fail(STATUS_STOPPED, "stopped %s at t = %.10g s: continue with 'shoal resume %s'",
                        simulate_stopped_by(run->options->stop), t, run->checkpoints.path);
 }
 
-// go on to the next event, or stay at this one and stop
-static enum status step(struct run *run) {
+// advance to the next event, or restore the state at the last event and stop
+static enum status run_step(struct run *run) {
     struct simulation *const simulation = run->simulation;
-    if (run->options->stop && *run->options->stop) return stop(run);
+    if (run->options->stop && *run->options->stop) return run_stop(run);
     if (run->before) TRY(state_table_copy(run->before, simulation->state, simulation->school));
     const enum status status = simulate_step(simulation);
     if (status != STATUS_STOPPED) return status;
     TRY(state_table_copy(simulation->state, run->before, simulation->school));
-    return stop(run);
+    return run_stop(run);
 }
 
-static enum status loop(struct run *run) {
+static enum status run_loop(struct run *run) {
     struct simulation *const simulation = run->simulation;
     simulation->stop = run->options->stop;
     if (simulation->stop) TRY(state_create(&run->before, simulation->school));
     while (simulation->state->event < simulation->n_events) {
-        TRY(step(run));
-        TRY(write_if_due(run));
-        TRY(checkpoint_if_due(run));
-        tell(run);
+        TRY(run_step(run));
+        TRY(run_write_if_due(run));
+        TRY(run_checkpoint_if_due(run));
+        run_report_progress(run);
     }
     return STATUS_OK;
 }
 
 /* Run to the end and close the record. */
-static enum status finish(struct run *run, enum status status) {
-    if (status == STATUS_OK) status = loop(run);
-    // what stops or cannot be renewed is not the end
+static enum status run_finish(struct run *run, enum status status) {
+    if (status == STATUS_OK) status = run_loop(run);
+    // no notes for a run that was stopped or could not be renewed
     if (status != STATUS_STOPPED && run->simulation->residual) {
         record_notes_write(run->record.file, run->simulation, run->options->warn, run->options->data);
     }
     return record_close(&run->record, status);
 }
 
-static void release(struct run *run) {
+static void run_release(struct run *run) {
     if (run->simulation) state_free(run->before, run->simulation->school);
     simulate_free(run->simulation);
     checkpoints_free(&run->checkpoints);
@@ -107,45 +107,49 @@ static void release(struct run *run) {
 
 // ---- a new run
 
-static enum status refuse_unfinished(const char *path, const struct checkpoints *checkpoints) {
+static enum status run_refuse_unfinished(const char *path, const struct checkpoints *checkpoints) {
     double t;
     if (!resume_is_possible(path, checkpoints->path, checkpoints->effective, &t)) return STATUS_OK;
     return status_fail(STATUS_FILE,
-                       "%s is an unfinished result of this case: go on from t = %.6g s with 'shoal resume %s', or "
-                       "begin again with --force",
+                       "%s is an unfinished result of this case: continue from t = %.6g s with 'shoal resume %s', or "
+                       "start again with --force",
                        path, t, checkpoints->path);
 }
 
-static enum status start(struct run *run) {
+static enum status run_start(struct run *run) {
     const struct simulate_options *const options = run->options;
     struct checkpoints *const checkpoints = &run->checkpoints;
     TRY(checkpoints_create(checkpoints, run->values, options->path, options->checkpoint_at));
     if (!options->overwrite) {
-        TRY(refuse_unfinished(options->path, checkpoints));
+        TRY(run_refuse_unfinished(options->path, checkpoints));
         TRY(target_check(options->path, TARGET_NETCDF, false));
     }
+
     if (options->begin) TRY(options->begin(run->values, options->path, options->data));
+
     const enum status started = simulate_start(&run->simulation, run->values, options->stop);
     if (started == STATUS_STOPPED)
-        return status_fail(started, "stopped %s before its start was done: run it again",
+        return status_fail(started, "stopped %s during the event at t = 0: start the run again",
                            simulate_stopped_by(run->options->stop));
     TRY(started);
     TRY(record_create(&run->record, run->values, run->simulation->school, run->simulation->n_events, options->path,
                       options->overwrite, options->command));
-    // an earlier result stays until the first row of this one is safe
-    enum status status = write_if_due(run);
+
+    // an earlier result stays in place until the first row of the new result is safe
+    enum status status = run_write_if_due(run);
     if (status == STATUS_OK) status = record_publish(&run->record, 0);
     if (status == STATUS_OK) {
         checkpoints_remove(checkpoints);
-        status = checkpoint_if_due(run);
+        status = run_checkpoint_if_due(run);
     }
-    return finish(run, status);
+
+    return run_finish(run, status);
 }
 
 static enum status run_all(void *data) {
     struct run *const run = data;
-    const enum status status = start(run);
-    release(run);
+    const enum status status = run_start(run);
+    run_release(run);
     return status;
 }
 
@@ -156,7 +160,7 @@ enum status simulate_run(const struct case_values *values, const struct simulate
 
 // ---- a run that is resumed
 
-static enum status take_up(struct run *run, const struct resume *resume) {
+static enum status run_take_up(struct run *run, const struct resume *resume) {
     struct school *school = NULL;
     struct state *state = NULL;
     TRY(fish_school_create(&school, &run->values->school));
@@ -167,18 +171,20 @@ static enum status take_up(struct run *run, const struct resume *resume) {
             status_fail(status, "the checkpoint of %s cannot be used: %s", resume->result, status_message());
         }
     }
+
     if (status != STATUS_OK) {
         state_free(state, school);
         fish_school_free(school);
         return status;
     }
+
     TRY(simulate_take_up(&run->simulation, run->values, school, state, &resume->checkpoint.totals));
     run->simulation->started -= resume->checkpoint.wall_time;
     return STATUS_OK;
 }
 
-// the result with another end: its last row, where that was due only as the last one, is none any more
-static enum status extend(struct run *run, const struct resume *resume) {
+// the result with another end: drop the final row if it was written only because it was final
+static enum status run_extend_record(struct run *run, const struct resume *resume) {
     const struct simulation *const simulation = run->simulation;
     const struct case_time *const time = &run->values->time;
     const double interval = simulation->school->interval;
@@ -186,60 +192,66 @@ static enum status extend(struct run *run, const struct resume *resume) {
                per_wake = lround(run->values->output.wake_interval / interval);
     const struct result_source source = {resume->result, event / per_row + 1,
                                          event % per_row == 0 && event % per_wake != 0};
+
     TRY(record_extend(&run->record, run->values, simulation->school, simulation->n_events, &source,
                       run->options->command));
     result_file_note(run->record.file, RESULT_CHECKPOINT_AT, resume->checkpoint.places);
-    // in this order one of the two last checkpoints always has its result
+
+    // in this order one of the last two checkpoints always matches the result
     TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
     return record_publish(&run->record, 0);
 }
 
-// the file as it is, without the rows that the checkpoint does not count
-static enum status take_record(struct run *run, const struct resume *resume) {
+// the existing result, without the rows after the checkpoint
+static enum status run_continue_record(struct run *run, const struct resume *resume) {
     const struct simulation *const simulation = run->simulation;
     return record_continue(&run->record, run->values, simulation->school, simulation->n_events, resume->result,
                            &resume->checkpoint.rows, &resume->checksum);
 }
 
-static enum status go_on(struct run *run, const struct resume *resume, int with_other_end) {
+static enum status run_resume_at(struct run *run, const struct resume *resume, int with_other_end) {
     const struct simulate_options *const options = run->options;
     TRY(checkpoints_create(&run->checkpoints, run->values, resume->result, options->checkpoint_at));
     if (options->begin) TRY(options->begin(run->values, resume->result, options->data));
-    TRY(take_up(run, resume));
+    TRY(run_take_up(run, resume));
+
     const struct simulation *const simulation = run->simulation;
     TRY(checkpoints_resume(&run->checkpoints, &resume->checkpoint, simulation->state->event, with_other_end));
     if (with_other_end && simulation->state->event >= simulation->n_events) {
         return status_fail(STATUS_CASE, "--end %.10g: the checkpoint is at t = %.10g s already", run->values->time.end,
                            simulation->state->t);
     }
+
     if (resume->note) checkpoints_fall_back(&run->checkpoints);
-    const enum status status = with_other_end ? extend(run, resume) : take_record(run, resume);
-    return run->record.file ? finish(run, status) : status;
+    const enum status status = with_other_end ? run_extend_record(run, resume) : run_continue_record(run, resume);
+    return run->record.file ? run_finish(run, status) : status;
 }
 
-// what a user should know before a run goes on
-static void tell_notes(const struct resume *resume, const struct simulate_options *options) {
+// notes for the user before a run is resumed
+static void run_report_notes(const struct resume *resume, const struct simulate_options *options) {
     char here[VERSION_LENGTH], line[4 * VERSION_LENGTH];
     version_processor(here);
     if (!options->note) return;
     if (resume->note) options->note(resume->note, options->data);
     if (strcmp(here, resume->checkpoint.processor) == 0) return;
-    snprintf(line, sizeof line, "this processor, %s, is another one than before, %s: last bits may differ", here,
+    snprintf(line, sizeof line,
+             "this processor, %s, differs from the processor of the checkpoint, %s: last bits may differ", here,
              resume->checkpoint.processor);
     options->note(line, options->data);
 }
 
 static enum status resume_run(const struct resume *resume, const struct simulate_changes *changes,
                               const struct simulate_options *options) {
-    tell_notes(resume, options);
+    run_report_notes(resume, options);
     if (resume->is_complete && !changes->has_other_end) {
-        return status_fail(STATUS_CASE, "%s is complete: give a later --end to extend it", resume->result);
+        return status_fail(STATUS_CASE, "%s is complete: give a later --end to extend the result", resume->result);
     }
+
     struct case_values values;
     TRY(resume_case(resume, changes->n_assignments, changes->assignments, &values));
     struct run run = {.values = &values, .options = options};
-    const enum status status = go_on(&run, resume, changes->has_other_end);
-    release(&run);
+    const enum status status = run_resume_at(&run, resume, changes->has_other_end);
+    run_release(&run);
     case_free(&values);
     return status;
 }

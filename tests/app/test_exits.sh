@@ -26,7 +26,7 @@ code=0
 (ulimit -St 1 && exec "$program" run small.yaml -q --set time.end=100000 --set time.output_interval=10) >out 2>err \
     </dev/null || code=$?
 check the_soft_limit_of_CPU_time_stops_a_run ended 75
-check it_says_how_to_go_on has err "go on with 'shoal resume small.ckpt'"
+check it_says_how_to_go_on has err "continue with 'shoal resume small.ckpt'"
 run info small.ckpt
 check there_is_a_checkpoint ended 0
 

@@ -42,7 +42,7 @@ check a_page_has_the_whole_rows has x.html "\"rows\":$((n - 1)),"
 check vtk_has_the_whole_rows test "$(find vtk -name '*bodies*' | wc -l)" = $((n - 1))
 run field x.nc -q --grid 3,3
 check field_takes_the_last_whole_row test "$code" = 0
-refused a_run_that_can_go_on_says_so 4 "go on from t = " run case.yaml -q
+refused a_run_that_can_go_on_says_so 4 "continue from t = " run case.yaml -q
 run resume x.ckpt -q
 check it_is_resumed_to_the_same_bits eval '((code == 0)) && same x.nc whole.nc'
 
@@ -53,7 +53,7 @@ rows=$(sed -n 's/.*with \([0-9]*\) rows up to this time/\1/p' out)
 per_row=$((($(stat -c %s whole.nc) - $(stat -c %s kept/x.nc) - 100) / (121 - n)))
 truncate -s "-$((per_row * (n - rows)))" x.nc
 run resume x.ckpt -q
-check the_one_before_it_serves eval '((code == 0)) && has err "; going on from x.ckpt.previous" && same x.nc whole.nc'
+check the_one_before_it_serves eval '((code == 0)) && has err "; resuming from x.ckpt.previous" && same x.nc whole.nc'
 cp kept/* .
 truncate -s $(($(stat -c %s x.nc) - per_row * (n - 1))) x.nc
 refused rows_that_both_count_are_missing 4 "the checkpoint requires $rows" resume x.ckpt

@@ -1,4 +1,4 @@
-/* test_checkpoints.c: the names of checkpoints, and the events that have one. */
+/* test_checkpoints.c: names of checkpoints, and events with a checkpoint. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,7 +58,7 @@ static void times_that_no_event_has_are_refused(void **state) {
 
 static void times_may_be_rounded_but_not_wrong(void **state) {
     (void)state;
-    // an event at 0.06 s; rounding of a time in decimals is far below a billionth of it
+    // an event at 0.06 s; the rounding error of a decimal time is far below 1e-9 of the time
     const char *const right[] = {"0.06", "0.06000000000001", "0.05999999999999"};
     const char *const wrong[] = {"0.0600001", "0.0599999", "0.0606"};
     struct case_values values;

@@ -1,4 +1,4 @@
-/* test_counts.c: what a shedding interval costs, whatever the stiffness of the body: doc/numerics.md. */
+/* test_counts.c: cost of a shedding interval over a wide range of body stiffness: doc/numerics.md. */
 #include <math.h>
 #include <stdio.h>
 
@@ -8,7 +8,7 @@ struct cost {
     double steps, iterations, jacobians, failures; /* the last: convergence failures */
 };
 
-// means per event of a case up to its end, s
+// means per event of a case up to time.end, s
 static struct cost cost_per_event(const char *text, double end) {
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, end);
@@ -27,7 +27,7 @@ static void print_cost(const char *name, double modulus, const struct cost *cost
                   modulus, cost->steps, cost->iterations, cost->jacobians, cost->failures);
 }
 
-// one fish of the article's model at the default tolerances, from rest of its wave
+// one fish of the published model at the default tolerances; the wave starts from rest
 static struct cost cost_of_article(int nodes, int sheet_points, const char *second_moment, double modulus) {
     char text[512], name[64];
     snprintf(text, sizeof text,
@@ -76,7 +76,7 @@ static void a_default_fish_costs_as_little(void **state) {
         assert_true(cost.steps <= 2.5);
         assert_true(cost.iterations <= 6);
         assert_true(cost.jacobians <= 0.4);
-        // on stiff bodies some of the old Jacobians fail that would have been evaluated again for their age
+        // stiff bodies: some convergence failures with old Jacobians that an age limit would have replaced
         assert_true(cost.failures <= 0.04);
     }
 }
@@ -92,8 +92,8 @@ static void two_fish_beside_each_other_cost_as_little(void **state) {
     assert_true(cost.failures <= 0.01);
 }
 
-/* Nine fish 1.3 lengths from nose to nose and 0.4 beside each other: without any blocks of pairs Newton's iteration
- * takes 17 iterations an event, and mostly fails once. It finds out that it needs them. */
+/* Nine fish 1.3 lengths from nose to nose and 0.4 beside each other: without coupling blocks, Newton's method takes
+ * 17 iterations per event, mostly with one failure. The solver must detect the need for coupling blocks. */
 static void a_dense_school_couples_what_it_needs(void **state) {
     (void)state;
     char text[1024];
@@ -111,8 +111,8 @@ static void a_dense_school_couples_what_it_needs(void **state) {
     assert_true(cost.failures <= 0.1);
 }
 
-// the corners of E I/(rho f^2 L^5) = 0.05 to 1e6 and added mass over mass of 1 to 100, without damping; between them:
-// cases/studies/added_mass.yaml
+// the corners of E I/(rho f^2 L^5) = 0.05 to 1e6 and added mass over mass of 1 to 100, without damping. Interior
+// points: cases/studies/added_mass.yaml
 static void a_light_or_stiff_body_under_pressure_costs_as_little(void **state) {
     (void)state;
     const double densities[] = {5.59017, 0.0559017}, moduli[] = {177.94, 3.5588e9};

@@ -1,4 +1,4 @@
-/* test_event.c: what is done at the times t_n = n Dt: doc/model.md, sections 7, 8 and 11. */
+/* test_event.c: events at the times t_n = n Dt: doc/model.md, sections 7, 8 and 11. */
 #include <stdio.h>
 #include <string.h>
 
@@ -15,7 +15,7 @@ static void events_are_at_exact_multiples_of_the_interval(void **state) {
     for (long n = 1; n <= 100; n++) {
         school_ok(simulate_step(simulation));
         assert_int_equal(simulation->state->event, n);
-        // no sum of rounded intervals
+        // the time is a product, not a sum of rounded intervals
         NEAR(simulation->state->t, (double)n * 0.01, 0, 0);
     }
     simulate_free(simulation);
@@ -29,7 +29,7 @@ static void an_event_without_finite_velocities_is_final(void **state) {
         struct simulation *const simulation = school_simulation(texts[i]);
         struct state *const s = simulation->state;
         school_run(simulation, 0.1);
-        // the nascent vortex of continuous shedding, the tail of impulsive shedding
+        // continuous shedding releases at the nascent vortex, impulsive shedding at the tail
         s->wake[0].slip[0] = NAN;
         if (i == 1) s->y[simulation->school->fish[0].at.x + 6] = NAN;
         int jumped;
@@ -54,7 +54,7 @@ static void one_vortex_is_released_at_every_event_with_what_was_shed(void **stat
         NEAR(wake->circulation[n - 1], y[fish->at.circulation] - shed, 1e-15, 0);
         NEAR(wake->birth[n - 1], 0.02 * n, 1e-15, 0);
         NEAR(wake->shed_before, y[fish->at.circulation], 0, 0);
-        // where the nascent one was: half of the slip behind the tail
+        // position of the nascent vortex: half of the slip distance behind the tail
         NEAR(wake->x[n - 1], y[fish->at.x + 6] + 0.01 * slip[0], 1e-15, 0);
         NEAR(wake->y[n - 1], y[fish->at.y + 6] + 0.01 * slip[1], 1e-15, 0);
         shed = y[fish->at.circulation];
@@ -62,7 +62,7 @@ static void one_vortex_is_released_at_every_event_with_what_was_shed(void **stat
     simulate_free(simulation);
 }
 
-// at an event with release and removal both
+// at an event with both release and removal
 static void fields_are_continuous(const char *wake) {
     char text[400];
     snprintf(text, sizeof text, TIME "wake: {%s}\nfish: [{}, {start: {position: [0.2, 0.5]}}]\n", wake);
@@ -84,7 +84,7 @@ static void fields_are_continuous(const char *wake) {
     double after[400];
     flow_sum_exactly(residual->flow);
     school_ok(residual_evaluate(residual, next, simulation->state->y, simulation->state->yp, after));
-    // rounding only, in sums over sources in another order
+    // only rounding errors, from sums over sources in another order
     NEAR_ARRAY(n_points, residual->flow->u, u, 1e-12, 1e-12);
     NEAR_ARRAY(n_points, residual->flow->v, v, 1e-12, 1e-12);
     for (int f = 0; f < 2; f++) {
@@ -98,7 +98,7 @@ static void fields_are_continuous_across_a_continuous_event(void **state) {
     (void)state;
     fields_are_continuous("lifetime: 0.2");
     fields_are_continuous("lifetime: 0.2, removed_circulation: dropped");
-    // a decay shorter than an interval, none, and a lifetime that is no multiple of the interval
+    // a decay shorter than an interval, no decay, and a lifetime that is not a multiple of the interval
     fields_are_continuous("lifetime: 0.2003, decay: 0.0004");
     fields_are_continuous("lifetime: 0.2, decay: 0");
     fields_are_continuous("lifetime: 0.213, decay: 0, removed_circulation: dropped");
@@ -109,7 +109,7 @@ static void wake_holds_one_lifetime(void **state) {
     struct simulation *const simulation = school_simulation(TIME "wake: {lifetime: 0.2}\nfish: [{}]\n");
     for (int n = 1; n <= 30; n++) {
         school_ok(simulate_step(simulation));
-        // ten intervals long: the one released at 0.02 goes at 0.22
+        // lifetime of ten intervals: the vortex released at 0.02 is removed at 0.22
         assert_int_equal(simulation->state->wake[0].n_vortex, n <= 10 ? n : 10);
     }
     simulate_free(simulation);
@@ -121,12 +121,12 @@ static void impulses_conserve_circulation_and_meet_kutta(void **state) {
         school_simulation(TIME "wake: {shedding: impulsive}\nfish: [{sheet_points: 11}]\n");
     const struct fish *fish = simulation->school->fish;
     const struct state *s = simulation->state;
-    // the event at t = 0 sheds one too
+    // the event at t = 0 sheds a vortex too
     assert_int_equal(s->wake[0].n_vortex, 1);
     for (int n = 1; n <= 20; n++) {
         const double shed = s->y[fish->at.circulation];
         school_ok(simulation->integrator->advance(simulation->solver, 0.02 * n, NULL));
-        // nothing is shed between events
+        // no shedding between events
         NEAR(s->y[fish->at.circulation], shed, 1e-12, 0);
         int jumped = 0;
         school_ok(event_next(simulation->state, simulation->residual, simulation->consistent, &jumped));
@@ -134,7 +134,7 @@ static void impulses_conserve_circulation_and_meet_kutta(void **state) {
         assert_int_equal(s->wake[0].n_vortex, n + 1);
         NEAR(s->wake[0].circulation[n], s->y[fish->at.circulation] - shed, 1e-15, 0);
         NEAR(bound_sheet_circulation(fish, s->y) + s->y[fish->at.circulation], 0, 1e-12, 0);
-        // the bound vortex on the edge vanishes with the new vortex there
+        // the new vortex at the edge makes the bound vortex at the edge vanish
         NEAR(s->y[fish->at.gamma + 10] * fish->sheet_weight[10], 0, 1e-12, 0);
         school_ok(simulation->integrator->restart(simulation->solver));
     }
@@ -176,7 +176,7 @@ static void waypoints_advance_during_a_run(void **state) {
         assert_true(now == before || now == before + 1 || now == before + 2);
         before = now;
     }
-    // the fish goes at about 1 m s-1
+    // the fish swims at about 1 m s-1
     assert_true(before >= 1 && before < 3);
     simulate_free(simulation);
 }
@@ -196,7 +196,7 @@ static void averaged_heading_changes_the_bias_at_a_bounded_rate(void **state) {
         before = simulation->state->y[phi0];
     }
     NEAR(largest, 1.5, 0, 1e-9);
-    // too far left: it turns right
+    // heading too far left: the fish turns right
     assert_true(before > 0.3);
     simulate_free(simulation);
 }
@@ -214,7 +214,7 @@ static void turn_with_feedforward(const char *modulus, const char *solver, doubl
     const struct fish *fish = simulation->school->fish;
     memcpy(place, simulation->state->y + fish->at.x, 14 * sizeof *place);
     *phi0 = simulation->state->y[fish->at.phi0];
-    // the mean of the moment is part of what the law sees
+    // the control law observes the mean moment
     assert_true(200 * fabs(simulation->state->control[0].moment) > 0.01);
     simulate_free(simulation);
 }

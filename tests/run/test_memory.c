@@ -1,4 +1,4 @@
-/* test_memory.c: every create fails cleanly at every one of its allocations. */
+/* test_memory.c: every x_create fails cleanly at each allocation. */
 #include "failing_malloc.h"
 #include "fish/fish_school.h"
 #include "school.h"
@@ -15,7 +15,7 @@ static const char *const text = TIME
     "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, control: {law: heading, desired_heading: [[0, 180], "
     "[1, 90]]}}\n";
 
-/* Something that is created from a setup, and released. */
+/* An object that is created from a setup, and released. */
 typedef enum status create(struct setup *setup, void **made);
 typedef void release(struct setup *setup, void *made);
 
@@ -130,14 +130,14 @@ static void release_simulation(struct setup *setup, void *made) {
     simulate_free(made);
 }
 
-// let the first, second, ... allocation fail until all succeed; returns how many failed
+// let the first, second, ... allocation fail until all succeed; returns the number of failed allocations
 static int fail_one_by_one(create *make, release *drop, const char *name) {
     struct setup setup;
     school_build(&setup, text);
     int n_failed = 0;
     enum status status = STATUS_MEMORY;
     for (; status != STATUS_OK; n_failed += status != STATUS_OK) {
-        // the sources may keep the room that an earlier failure left them; what a failed create made must be gone
+        // the sources may keep memory from an earlier failure; all memory of a failed create must be released
         wake_free(&setup.state->wake[0]);
         void *made = &setup;
         const int n_before = n_live;
@@ -247,7 +247,7 @@ static void a_run_without_memory_for_a_step_fails_with_a_message(void **state) {
     int n_failed = 0;
     for (int n = 0; n < 60; n += 3) {
         struct simulation *const simulation = school_simulation(text);
-        // the wake of sixteen grows at the seventeenth event
+        // the wake, with a capacity of sixteen, grows at the seventeenth event
         for (int i = 0; i < 16; i++) school_ok(simulate_step(simulation));
         n_until_failure = n;
         enum status status = STATUS_OK;

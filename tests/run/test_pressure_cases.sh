@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# 36 random schools with the force of the pressure, each for a fifth of a beat; 500 are in `make soak`.
+# 36 random schools with the pressure force, each for a fifth of a beat; `make soak` runs 500 schools.
 #
 #   tests/run/test_pressure_cases.sh PROGRAM
 set -euo pipefail

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Whole runs against the results of an independent program (RK4, written by others from the same equations), for one fish
-# and for two: single1 and pair1 have the article's model, single3 and pair3 the default force and free sheets. Each
+# and for two: single1 and pair1 use the published model, single3 and pair3 use the default force and free sheets. Each
 # tests/data/NAME.yaml runs at a tight tolerance and is compared with tests/data/NAME.json; at the default tolerance the
 # positions agree to a tenth of a millimetre. Forces, energies and powers are compared at the end; reactive_force includes
 # the tail flux.
@@ -74,12 +74,12 @@ for case in ["single1", "pair1", "single3", "pair3"]:
             check(f"{case} fish {f} {name} at the default tolerance [m]", place, fish[name], 1e-4)
     result.close()
 
-# the forces of the edges add up to those of the body, and those to the momentum of a free fish
+# the edge forces add up to the body force; the body force equals the rate of the momentum of a free fish
 result = run("pair3", "output.forces=edges", "solver.rtol=1e-7")
 mass = np.nan_to_num(result["node_mass"][:])
 for name in ["resistive_force", "reactive_force"]:
     check(f"{name} of the edges, added up [N]", np.nansum(result["edge_" + name][:], axis=2), result[name][:], 1e-12)
-    check(f"{name} of an edge that there is not", np.isnan(result["edge_" + name][:, 1, 8:]), True, 0)
+    check(f"{name} of a missing edge", np.isnan(result["edge_" + name][:, 1, 8:]), True, 0)
 momentum = np.nansum(mass[None, :, :, None] * result["a"][:], axis=2)
 forces = result["resistive_force"][:] + result["reactive_force"][:]
 check("rate of the momentum [N], over the largest", (forces - momentum) / np.abs(momentum).max(), 0, 1e-6)

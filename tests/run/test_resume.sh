@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# test_resume.sh PROGRAM: runs that are stopped or killed, and go on: to the bits of the run that was not.
+# test_resume.sh PROGRAM: runs that are stopped or killed and resumed have the bits of the uninterrupted run.
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
@@ -25,7 +25,7 @@ start() {  # arguments of the program
     wait_for eval '(($(stat -c %s run.nc) > before + 6000)) || ! kill -0 "$pid"'
 }
 
-# Send a signal to it, wait for its end and set $code.
+# Send a signal to the run, wait for the end and set $code.
 end() {  # signal
     kill "-$1" "$pid"
     code=0
@@ -33,7 +33,7 @@ end() {  # signal
     pid=
 }
 
-# Start a run and send a signal to it while it goes on; where it has been faster than the signal, begin again.
+# Start a run and send a signal during the run; start again if the run ends before the signal.
 attempt() {  # signal, arguments of the program
     local try
     rm -rf before
@@ -48,7 +48,7 @@ attempt() {  # signal, arguments of the program
     done
 }
 
-# ---- stopped, and stopped again; the reference renews itself at the same places
+# ---- stopped repeatedly; the reference has checkpoints at the same times
 
 stopped() {  # name, signals, arguments of run...
     local name=$1 signals=$2 signal command round codes
@@ -68,11 +68,11 @@ stopped() {  # name, signals, arguments of run...
     done
     # shellcheck disable=SC2086 # one word for each signal
     check "$name: $signals: exit code 75" test "$codes" = "$(printf ' 75%.0s' $signals)"
-    check "$name: it says what to do" has err "go on with 'shoal resume run.ckpt'"
+    check "$name: it says what to do" has err "continue with 'shoal resume run.ckpt'"
     run resume run.ckpt -q
     check "$name: resumed to the end" test "$code" = 0
     run run "$@" -q -o reference.nc --checkpoint-at "$(places run.nc)"
-    check "$name: the bits of the run that renewed itself there" same run.nc reference.nc
+    check "$name: the bits of the run with the same checkpoints" same run.nc reference.nc
 }
 stopped sheet 'TERM HUP' small.yaml
 stopped two_threads USR1 small.yaml --threads 2 --set output.precision=single
@@ -80,13 +80,13 @@ stopped impulsive INT small.yaml --set wake.shedding=impulsive --set time.sheddi
 stopped finite_span TERM small.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=finite' --set wake.merge=0.1
 stopped pressure TERM small.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.suction_limit=0.01'
 stopped merged TERM small.yaml --set 'fish[*].start.speed=3' --set wake.merge=0.1 --set time.end=1.6
-check "merged: how many are told" test "$("$program" info run.nc | sed -n 's/^ *merged vortices *\([0-9]*\) have.*/\1/p')" -gt 20
+check "merged: number of merged vortices" test "$("$program" info run.nc | sed -n 's/^ *merged vortices *\([0-9]*\) merged with.*/\1/p')" -gt 20
 check "merged: the total circulation stays" test "$("$program" info run.nc | awk '/total circulation/ { print ($3 * $3 < 1e-26) }')" = 1
 stopped explicit TERM small.yaml --set solver.method=dormand_prince --set time.checkpoint_interval=0.25
 
-# ---- what is complete, and what is not
+# ---- complete and incomplete results
 
-refused complete 2 'run.nc is complete: give a later --end to extend it' resume run.ckpt
+refused complete 2 'run.nc is complete: give a later --end to extend the result' resume run.ckpt
 refused end_before_the_checkpoint 2 '--end 0.5: the checkpoint is at t = 1 s already' resume run.ckpt --end 0.5
 refused no_end 2 'time.end: 2.003 s is not an integer multiple' resume run.ckpt --end 2.003
 run resume run.ckpt -q --end 1.2
@@ -111,7 +111,7 @@ check the_case_of_a_checkpoint_is_a_case "$program" check case.yaml -q
 rm -f ./*.nc ./*.ckpt*
 regular=(small.yaml --set time.checkpoint_interval=0.1)
 run run "${regular[@]}" -q -o reference.nc
-# one that is faster than the signal begins again
+# a run that ends before the signal starts again
 for ((try = 0; try < 20; try++)); do
     rm -f run.nc run.ckpt*
     start run "${regular[@]}" -o run.nc
@@ -120,12 +120,12 @@ for ((try = 0; try < 20; try++)); do
     ((code != 0)) && break
 done
 check killed test "$code" = 137
-# killed between the two renames it leaves the older one only; both are wanted here
+# a run killed between the two renames leaves only the previous checkpoint; this test needs both
 [[ -e run.ckpt ]] || cp run.ckpt.previous run.ckpt
 mkdir kept
 cp run.nc run.ckpt run.ckpt.previous kept
-refused unfinished 4 "run.nc is an unfinished result of this case: go on from t = " run "${regular[@]}" -o run.nc
-check unfinished_says_the_command has err "'shoal resume run.ckpt', or begin again with --force"
+refused unfinished 4 "run.nc is an unfinished result of this case: continue from t = " run "${regular[@]}" -o run.nc
+check unfinished_says_the_command has err "'shoal resume run.ckpt', or start again with --force"
 refused of_another_case 4 'run.nc exists: choose another name' run "${regular[@]}" -o run.nc --set fish[0].wave.frequency=2
 run resume run.ckpt -q --threads 2
 check a_killed_run_goes_on same run.nc reference.nc
@@ -135,7 +135,7 @@ restore
 printf 'x' | dd of=run.ckpt bs=1 seek=3000 conv=notrunc status=none
 run resume run.ckpt -q
 check a_damaged_checkpoint_falls_back eval 'has err "run.ckpt: cannot be used: damaged behind byte" &&
-    has err "; going on from run.ckpt.previous" && same run.nc reference.nc'
+    has err "; resuming from run.ckpt.previous" && same run.nc reference.nc'
 cat >nan.py <<'end'
 """nan.py CHECKPOINT SECTION: put a value that is not a number into a section, with checksums that fit."""
 import struct, sys, zlib
@@ -211,7 +211,7 @@ for method in "ida --set solver.rtol=1e-12 --set solver.max_steps=1000000000" "r
     check "a_long_event_is_left: ${method%% *}" eval '((code == 75)) && has err "stopped by a signal at t = 0 s"'
 done
 
-# a start of seconds: it has no event to go back to
+# an event at t = 0 that takes seconds: there is no earlier event to return to
 rm -f ./*.nc ./*.ckpt*
 sed 's/nodes: [79], sheet_points: 21/nodes: 600, sheet_points: 600/' small.yaml >large.yaml
 env --default-signal=TERM "$program" run large.yaml -q -o run.nc >out 2>err </dev/null &
@@ -219,7 +219,7 @@ pid=$!
 wait_for handles "$pid" TERM
 sleep 0.5
 end TERM
-check a_long_start_is_left eval '((code == 75)) && has err "stopped by a signal before its start was done" &&
+check a_long_start_is_left eval '((code == 75)) && has err "stopped by a signal during the event at t = 0" &&
     test ! -e run.nc -a ! -e run.ckpt'
 
 # ---- members of a study
@@ -242,7 +242,7 @@ place=$(places parts/member-0000.nc)
 check a_stopped_member_is_resumed test -n "$place"
 "$program" show study.yaml | sed '/^sweep:/,$d' >member.yaml
 run run member.yaml -q --set "fish[0].wave.amplitude=0.2" --checkpoint-at "$place" -o member.nc
-check its_bits_are_those_of_the_run_that_renewed_itself_there same parts/member-0000.nc member.nc
+check its_bits_are_the_bits_of_the_run_with_the_same_checkpoint same parts/member-0000.nc member.nc
 check the_other_member_has_the_same_bits same parts/member-0001.nc whole/member-0001.nc
 
 finish

@@ -42,7 +42,7 @@ static void same(const struct outcome *got, const struct outcome *want) {
     NEAR_ARRAY(2, got->tail, want->tail, 1e-6, 0);
     NEAR_ARRAY(2, got->vortex, want->vortex, 1e-6, 0);
     NEAR(got->shed, want->shed, 1e-5, 0);
-    // there is something to compare
+    // the compared values are not zero
     assert_true(fabs(want->shed) > 1e-4);
 }
 
@@ -163,7 +163,7 @@ static void places_are_second_order_in_the_shedding_interval(void **state) {
         at[i].tail[0] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
         simulate_free(simulation);
     }
-    // 2.0 to 2.1 for smaller intervals; the tolerance keeps the integrator's own error far below the differences
+    // 2.0 to 2.1 for smaller intervals; the tolerance keeps the error of the integrator far below the differences
     const double tail = log2(fabs((at[1].tail[0] - at[0].tail[0]) / (at[2].tail[0] - at[1].tail[0])));
     const double shed = log2(fabs((at[1].shed - at[0].shed) / (at[2].shed - at[1].shed)));
     print_message("observed order: tail %.2f, shed %.2f\n", tail, shed);
@@ -183,7 +183,7 @@ static void positive_bias_turns_right(void **state) {
         heading[i] = simulation->diagnostics->fish[0].heading;
         simulate_free(simulation);
     }
-    // three beats in; a beat moves the heading by some degrees
+    // after three beats; within a beat the heading oscillates by some degrees
     assert_true(heading[0] < 170);
     assert_true(heading[1] > 190);
 }
@@ -216,7 +216,7 @@ static void a_run_tells_its_progress_at_every_event(void **state) {
     assert_int_equal(access(path, R_OK), 0);
 }
 
-/* In *n_vortices the wake_count of the rows 0 to 4, and in *holds_wake whether they hold the vortices too. */
+/* Read wake_count of the rows 0 to 4 into n_vortices, and into holds_wake whether these rows contain the vortices. */
 static void read_wake(const char *path, int n_vortices[5], int holds_wake[5]) {
     int file, count, x;
     assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
@@ -260,7 +260,7 @@ static void a_signal_stops_a_run_at_the_next_event(void **state) {
     assert_non_null(strstr(status_message(), "t = 0.1"));
 }
 
-// a signal comes as KINSOL begins for this time, from 0; -1: none comes
+// number of the KINSOL call, from 0, at which a signal arrives; -1: no signal
 static int n_until_signal = -1;
 
 int __real_KINSol(void *kinsol, N_Vector solution, int strategy, N_Vector solution_scale, N_Vector value_scale);
@@ -303,7 +303,7 @@ static void a_signal_during_the_start_leaves_nothing(void **state) {
     n_until_signal = 1;
     run_into(TIME "wake: {shedding: sheet}\nfish: [{}]\n", &options, STATUS_STOPPED);
     n_until_signal = -1;
-    assert_non_null(strstr(status_message(), "stopped by a signal before its start was done"));
+    assert_non_null(strstr(status_message(), "stopped by a signal during the event at t = 0"));
     assert_int_equal(access(path, F_OK), -1);
     free(path);
 }
@@ -361,7 +361,7 @@ static void a_result_that_cannot_be_written_is_told_before_the_start(void **stat
 
 static void a_limp_fish_swims_on(void **state) {
     (void)state;
-    // its body is bent back and forth: the tail overtakes its markers
+    // the body bends back and forth: the tail overtakes the markers
     static const char *const forces[] = {"reactive", "pressure"};
     for (int i = 0; i < 2; i++) {
         char text[512];

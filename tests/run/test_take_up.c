@@ -1,5 +1,5 @@
-/* test_take_up.c: a run that is taken up from its state and totals alone goes on with the bits of the run that renewed
- * itself there, for every method and every kind of memory that a run has. */
+/* test_take_up.c: a run created from state and totals alone continues with the bits of the run that was renewed at the
+ * same event, for every method and every part of the state. */
 #include <stdio.h>
 
 #include "fish/fish_school.h"
@@ -33,12 +33,12 @@ static const char *const cases[] = {
     TIME "wake: {shedding: sheet}\nsolver: {method: dormand_prince}\n" BOTH,
     TIME "wake: {decay: 0.05, lifetime: 0.1, removed_circulation: dropped}\nsheet: {kutta: rate}\n" BOTH,
     TIME "preset: published\n" BOTH,
-    // sums of the wake, coupling that changes, threads
+    // wake sums, variable coupling, threads
     TIME "wake: {tolerance: 0}\n" BOTH,
     TIME "wake: {tolerance: 1e-3}\nsolver: {threads: 2}\n" BOTH,
     TIME
     "solver: {coupling_distance: 0.2}\nfish: [{start: {speed: 2}}, {start: {position: [-0.6, 0.2], heading: 0}}]\n",
-    // control, given motions, other forces and fluids
+    // control, prescribed motion, other forces and fluids
     TIME STEERED("heading, feedforward: 1"),
     TIME STEERED("averaged_heading"),
     TIME STEERED("course"),
@@ -53,7 +53,7 @@ static void steps(struct simulation *simulation, int n) {
     for (int i = 0; i < n; i++) school_ok(simulate_step(simulation));
 }
 
-// another simulation of the case, made from what a checkpoint holds
+// another simulation of the case, created from the contents of a checkpoint
 static struct simulation *taken_up(const struct simulation *from, const char *text) {
     struct case_values values;
     struct school *school;
@@ -95,7 +95,7 @@ static void a_run_may_be_taken_up_at_its_first_event(void **state) {
     simulate_free(other);
 }
 
-// Sheets and wakes that the tree sums, as it was planned at the event: also on another number of threads.
+// Sheets and wakes summed by the tree of the event, also with another number of threads.
 static void a_large_school_goes_on_with_the_same_bits_on_other_threads(void **state) {
     (void)state;
     enum { MANY = 20 };

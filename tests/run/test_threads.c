@@ -1,19 +1,20 @@
-/* test_threads.c: runs with several threads have the bits of those with one: all of the state, and the totals. */
+/* test_threads.c: runs with several threads have the bits of a run with one thread, in the whole state and the
+ * totals. */
 #include <stdio.h>
 #include <string.h>
 
 #include "base/parallel.h"
 #include "school.h"
 
-/* Pairs of fish that meet head on between two walls; every third fish has another force, some steer. Enough unknowns
- * for loops over fish to be shared. */
+/* Pairs of fish that meet head on between two walls; every third fish has another force model, some fish have a
+ * control law. The number of unknowns is large enough for parallel loops over fish. */
 enum { N_PAIRS = 9 };
 #define MEETING                                                           \
     "time: {end: 1, shedding_interval: 0.01}\nfluid: {walls: [-0.3%s]}\n" \
     "contact: {range: 0.05}\ndefaults: {fish: {nodes: 7, sheet_points: 15, start: {speed: 0.5}}}\n"
 
 static void meeting_text(size_t size, char *text, const char *settings, const char *force, int threads) {
-    // rings have one wall at most
+    // the ring model allows at most one wall
     const char *const wall = strstr(force, "finite") ? "" : ", 4";
     static const char *const law[] = {"none", "heading", "course, desired_heading: 170"};
     size_t used = (size_t)snprintf(text, size, "%s" MEETING "solver: {threads: %d}\nfish:\n", settings, wall, threads);
