@@ -3,12 +3,12 @@
 
 #include <math.h>
 
-/* Bounds of the rule: the slack of an order below the design order, the change from p' to p, and the distance above the
- * design order from which the change does not matter, as the design order is used then. */
+/* Bounds of the rule: slack of an order below the design order; change from p' to p; distance above the design order
+ * from which the change is irrelevant, because the rule then uses the design order. */
 static const double slack = 1, most_change = 0.8, far_above = 1.5;
 
-/* Roache's safety factor; those of the largest difference of fewer than four levels, where the base is the finest one
- * and where it is not; the part of the noise below which differences say nothing. */
+/* Roache's safety factor; safety factors of the largest difference of fewer than four levels, if the base is the finest
+ * level and otherwise; multiple of the noise below which differences have no meaning. */
 static const double safety = 1.25, without_finer = 1.5, with_finer = 2, of_noise = 3;
 
 /* Values that differ by less than this part of their size are equal: rounding hides the order. */
@@ -16,7 +16,7 @@ static const double rounding = 1e-12;
 
 // ---- order
 
-// the ratio of differences that an order gives
+// the ratio of differences for an order
 static double ratio_of_order(double p, double r, double s) {
     if (fabs(p) < 1e-9) return log(s) / log(r);
     return pow(r, p) * (pow(s, p) - 1) / (pow(r, p) - 1);
@@ -82,12 +82,12 @@ static enum error_budget_verdict judge_one(const struct error_budget_levels *lev
     for (int i = 0; i + 2 < n; i++) {
         if (product(f + i) < 0) return ERROR_BUDGET_TURNS;
     }
-    // by the order, as spacings are not halved; equal values have none, and that is no fault
+    // compare orders, because spacings are not halved; equal values have no order and are acceptable
     const double least = 1e-6;
     if (result->order < least || result->coarse_order < least) return ERROR_BUDGET_GROWS;
     if (isnan(design)) return ERROR_BUDGET_NO_ORDER;
     if (result->order < design - slack || result->coarse_order < design - slack) return ERROR_BUDGET_LOW;
-    // the design order is used, so that an order that rises above the design order does not matter
+    // the rule uses the design order, so an order that rises above the design order is acceptable
     const int is_far_above = !(result->order <= design + far_above);
     const int is_rising = result->coarse_order >= design && result->order >= result->coarse_order;
     if (fabs(result->order - result->coarse_order) > most_change && !is_far_above && !is_rising) {
@@ -98,10 +98,10 @@ static enum error_budget_verdict judge_one(const struct error_budget_levels *lev
 
 // ---- all sequences
 
-// the error where the key is accepted
+// the error of an accepted key
 static void extrapolate(const struct error_budget_levels *levels, const double (*f)[2],
                         struct error_budget_result *result) {
-    const double p = fmin(result->order, levels->design_order);  // fmin passes over NaN
+    const double p = fmin(result->order, levels->design_order);  // fmin ignores NaN
     const double part = 1 / (pow(levels->size[1] / levels->size[0], p) - 1);
     result->finest_error = safety * distance(f[0], f[1]) * part;
     result->error = result->finest_error + distance(f[0], f[levels->base]);
@@ -118,7 +118,7 @@ enum error_budget_verdict error_budget_judge(const struct error_budget_levels *l
         const enum error_budget_verdict one = judge_one(&judged, &sequences[q], &results[q]);
         results[q].verdict = one;
         if (one == ERROR_BUDGET_ACCEPTED && all == ERROR_BUDGET_NONE) all = one;
-        // a missing level weighs more than any flag
+        // a missing level takes precedence over any flag
         const int is_first = error_budget_is_flagged(one) && !error_budget_is_flagged(all);
         if (!is_first && !(one == ERROR_BUDGET_UNKNOWN && all != ERROR_BUDGET_UNKNOWN)) continue;
         all = one;
@@ -160,5 +160,6 @@ const char *error_budget_words(enum error_budget_verdict verdict) {
         [ERROR_BUDGET_CHANGES] = "the order changes from level to level",
         [ERROR_BUDGET_UNKNOWN] = "a level is missing",
     };
+
     return words[verdict];
 }

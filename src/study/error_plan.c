@@ -15,7 +15,7 @@
 #include "school/warnings.h"
 #include "steady/steady_static.h"
 
-/* Finer levels in place of coarser ones that are no valid cases. */
+/* Largest number of finer levels that replace invalid coarser levels. */
 enum { MOST_FINER = 2 };
 
 static enum status out_of_memory(void) {
@@ -51,13 +51,13 @@ static const void *field_of(const struct case_values *values, const char *path, 
     return case_table_field(case_table_row(path), (struct case_values *)(uintptr_t)values, &values->school.fish[fish]);
 }
 
-/* Whether the value of a key is a duration that the case gives in beats. */
+/* Whether the case gives the value of a key as a duration in beats. */
 static int is_in_beats(const struct case_values *values, const char *path) {
     if (case_table_row(path)->type != DURATION) return 0;
     return !isnan(((const struct duration *)field_of(values, path, 0))->beats);
 }
 
-/* The value of a key, in beats where the case gives it in beats. */
+/* The value of a key, in beats if the case gives a duration in beats. */
 static double number_of(const struct case_values *values, const char *path, int fish) {
     const struct key *const key = case_table_row(path);
     const void *const field = field_of(values, path, fish);
@@ -73,7 +73,7 @@ static int are_fish_alike(const struct case_values *values, const char *path) {
     return 1;
 }
 
-/* "fish[*].nodes", or "fish[2].nodes" where the fish differ. */
+/* "fish[*].nodes", or "fish[2].nodes" if the fish differ. */
 static char *path_of(const struct case_values *values, const char *path, int fish) {
     struct text text = {0};
     if (!case_table_is_of_fish(case_table_row(path))) {
@@ -98,26 +98,29 @@ static char *text_of(const struct case_values *values, const struct key *key, do
     return text.text;
 }
 
-/* Add a key to the axis, for each fish where they differ, with the value that the case has in row 0. */
+/* Add a key to the axis, per fish if the fish differ, with the value of the case in row 0. */
 static enum status add_columns(struct error_study *study, const struct case_values *values, const char *path) {
     struct sweep_axis *const axis = axis_of(study);
     const struct key *const key = case_table_row(path);
     const int n = are_fish_alike(values, path) ? 1 : n_owners(values, path);
     struct sweep_key *const keys = realloc(axis->key, (size_t)(axis->n_keys + n) * sizeof *keys);
+
     if (keys) axis->key = keys;
     char **const row = keys ? realloc(axis->value, (size_t)(axis->n_keys + n) * sizeof *row) : NULL;
     if (!row) return out_of_memory();
     axis->value = row;
+
     for (int f = 0; f < n; f++) {
         row[axis->n_keys] = text_of(values, key, number_of(values, path, f));
         axis->key[axis->n_keys++] = (struct sweep_key){
             .path = path_of(values, path, f), .row = key->path, .unit = key->unit, .is_number = key->type != CHOICE};
         if (!row[axis->n_keys - 1] || !axis->key[axis->n_keys - 1].path) return out_of_memory();
     }
+
     return STATUS_OK;
 }
 
-/* The first column of a key; -1: it is not varied. Those of other fish follow. */
+/* The first column of a key; -1: not varied. The columns of further fish follow. */
 int error_plan_column(const struct error_study *study, const char *path) {
     const struct sweep_axis *const axis = axis_of(study);
     for (int c = 0; c < axis->n_keys; c++) {
@@ -128,7 +131,7 @@ int error_plan_column(const struct error_study *study, const char *path) {
 
 // ---- rows: the members
 
-/* A row of the axis that is being made. */
+/* A new row of the axis. */
 struct row {
     const struct error_study *study;
     char **value;    /* (n_keys of the axis) */
@@ -136,11 +139,11 @@ struct row {
     int failed;
 };
 
-static void set(struct row *row, const char *path, int fish, double value) {
+static void row_set(struct row *row, const char *path, int fish, double value) {
     const int column = error_plan_column(row->study, path);
     if (column < 0) return;
     const int c = are_fish_alike(&row->study->study, path) ? column : column + fish;
-    // of two refined keys that set the same points the finer one counts
+    // if two refined keys set the same points, the finer value counts
     double now;
     const int are_points = strcmp(path, "fish.sheet_points") == 0;
     if (row->is_combined && are_points && text_number(row->value[c], &now) && now > value) return;
@@ -149,7 +152,7 @@ static void set(struct row *row, const char *path, int fish, double value) {
     if (!row->value[c]) row->failed = 1;
 }
 
-/* The sheet points that a fish needs at the finest level of the nodes, so that one sheet serves all of them. */
+/* The sheet points of a fish for the finest level of the nodes; all levels of the nodes use the same sheet. */
 static double sheet_for(const struct error_study *study, double finest, int f) {
     const struct case_values *const values = &study->study;
     const double part = fmax(1, finest / number_of(values, "fish.nodes", 0));
@@ -157,44 +160,46 @@ static double sheet_for(const struct error_study *study, double finest, int f) {
     return fmax(number_of(values, "fish.sheet_points", f), 2 * nodes - 1);
 }
 
-/* The times that must fit an interval; of a steady state the end plays no part. */
+/* Set the times that must be multiples of the interval; the end time has no effect on a steady state. */
 static void set_times(struct row *row, double interval) {
     const struct case_values *const values = &row->study->study;
     const double beat = row->study->beat;
-    if (row->study->is_steady && beat > 0) set(row, "time.end", 0, beat * ceil(values->time.end / beat - 1e-9));
-    set(row, "time.checkpoint_interval", 0, 0);
+    if (row->study->is_steady && beat > 0) row_set(row, "time.end", 0, beat * ceil(values->time.end / beat - 1e-9));
+    row_set(row, "time.checkpoint_interval", 0, 0);
     const double output = interval * fmax(1, round(values->time.output_interval / interval));
-    set(row, "time.output_interval", 0, output);
-    set(row, "output.wake_interval", 0, output * fmax(1, round(values->output.wake_interval / output)));
-    if (values->solver.step > 0) set(row, "solver.step", 0, interval / ceil(interval / values->solver.step - 1e-9));
+    row_set(row, "time.output_interval", 0, output);
+    row_set(row, "output.wake_interval", 0, output * fmax(1, round(values->output.wake_interval / output)));
+    if (values->solver.step > 0) row_set(row, "solver.step", 0, interval / ceil(interval / values->solver.step - 1e-9));
 }
 
-static void apply(struct row *row, const struct error_plan_change *change) {
+static void row_apply(struct row *row, const struct error_plan_change *change) {
     const struct error_study *const study = row->study;
     const struct case_values *const values = &study->study;
     const struct error_study_key *const key = &study->key[change->key];
     const char *const path = key->row->path, *const companion = key->row->companion;
     const double part = change->value / number_of(values, path, 0);
     const int are_nodes = strcmp(path, "fish.nodes") == 0;
+
     if (!are_nodes && !(fabs(part - 1) > 1e-12)) return;
     for (int f = 0; f < n_owners(values, path); f++) {
         const double value = f == 0 ? change->value : part * number_of(values, path, f);
-        set(row, path, f, key->row->kind == SWEEP_POINTS ? round(value) : value);
+        row_set(row, path, f, key->row->kind == SWEEP_POINTS ? round(value) : value);
         if (!are_nodes) continue;
         const double finest = fmax(change->value, key->n_levels > 0 ? key->value[0] : 0);
-        set(row, "fish.sheet_points", f, sheet_for(study, finest, f));
+        row_set(row, "fish.sheet_points", f, sheet_for(study, finest, f));
     }
-    if (companion) set(row, companion, 0, part * number_of(values, companion, 0));
+
+    if (companion) row_set(row, companion, 0, part * number_of(values, companion, 0));
     if (strcmp(path, "time.shedding_interval") == 0) set_times(row, change->value);
 }
 
-/* Free a row that is not in the axis. */
-static void drop(struct row *row) {
+/* Free a row outside the axis. */
+static void row_free(struct row *row) {
     for (int c = 0; row->value && c < axis_of(row->study)->n_keys; c++) free(row->value[c]);
     free(row->value);
 }
 
-/* Whether a quantity of the modes of small disturbances is asked for. */
+/* Whether a quantity of the modes of small disturbances is requested. */
 static int asks_for_modes(const struct error_study *study) {
     for (int q = 0; q < study->n_asked; q++) {
         if (strncmp(member_file_quantity(study->quantity[q])->name, "steady_growth", 13) == 0) return 1;
@@ -212,15 +217,17 @@ static enum status make_row(const struct error_study *study, int n, const struct
         row->value[c] = strdup(axis->value[c]);
         if (!row->value[c]) row->failed = 1;
     }
-    // only the case itself has multipliers, unless all members need them
-    if (!asks_for_modes(study)) set(row, "steady.multipliers", 0, NO);
-    for (int i = 0; i < n; i++) apply(row, &changes[i]);
+
+    // only the case itself has multipliers, unless all members need multipliers
+    if (!asks_for_modes(study)) row_set(row, "steady.multipliers", 0, NO);
+    for (int i = 0; i < n; i++) row_apply(row, &changes[i]);
     if (!row->failed) return STATUS_OK;
-    drop(row);
+    row_free(row);
+
     return out_of_memory();
 }
 
-/* The member with the values of a row, but for multipliers; -1: there is none. */
+/* The member with the values of a row, except for multipliers; -1: none. */
 static int find_row(const struct error_study *study, const struct row *row) {
     const struct sweep_axis *const axis = axis_of(study);
     const int ignored = error_plan_column(study, "steady.multipliers");
@@ -234,34 +241,37 @@ static int find_row(const struct error_study *study, const struct row *row) {
     return -1;
 }
 
-/* Add a row to the axis, which owns its values from now on; it is looked for from a member before. */
-static enum status append(struct error_study *study, struct row *row, int before, int *member) {
+/* Append a row to the axis, which takes over the values; the search of the member starts from the member before. */
+static enum status row_append(struct error_study *study, struct row *row, int before, int *member) {
     struct sweep_axis *const axis = axis_of(study);
     const size_t n = (size_t)axis->n_keys, n_values = (size_t)axis->n_values + 1;
     char **const values = realloc(axis->value, n * n_values * sizeof *values);
+
     if (values) axis->value = values;
     int *const befores = values ? realloc(axis->before, n_values * sizeof *befores) : NULL;
     if (!befores) {
-        drop(row);
+        row_free(row);
         return out_of_memory();
     }
+
     axis->before = befores;
     memcpy(values + n * (n_values - 1), row->value, n * sizeof *values);
     axis->before[n_values - 1] = before;
     free(row->value);
     *member = axis->n_values++;
+
     return STATUS_OK;
 }
 
-/* The member with some changes, which is added where there is none; *is_new. */
+/* Find the member with some changes, or add a new member (*is_new). */
 enum status error_plan_member(struct error_study *study, int n, const struct error_plan_change *changes, int before,
                               int *member, int *is_new) {
     struct row row;
     TRY(make_row(study, n, changes, &row));
     *member = find_row(study, &row);
     *is_new = *member < 0;
-    if (*is_new) return append(study, &row, before, member);
-    drop(&row);
+    if (*is_new) return row_append(study, &row, before, member);
+    row_free(&row);
     return STATUS_OK;
 }
 
@@ -279,7 +289,7 @@ static enum status test_level(struct error_study *study, int k, double value, in
     struct case_values member;
     int number;
     TRY(make_row(study, 1, &(struct error_plan_change){k, value}, &row));
-    TRY(append(study, &row, -1, &number));
+    TRY(row_append(study, &row, -1, &number));
     const enum status status = case_member(&member, &study->study, number);
     *is_valid = status == STATUS_OK;
     if (status == STATUS_OK) case_free(&member);
@@ -298,16 +308,18 @@ double error_plan_size(const struct sweep_error_key *row, double value) {
     return row->kind == SWEEP_POINTS ? 1 / (value - 1) : row->kind == SWEEP_DURATION ? 1 / value : value;
 }
 
-/* Put a value among the levels of a key, from fine to coarse; nothing is done where it is one. */
+/* Insert a value into the levels of a key, from fine to coarse, unless the value is a level already. */
 void error_plan_insert(struct error_study_key *key, double value) {
     if (key->n_levels == ERROR_STUDY_LEVELS) return;
     int i = 0;
     while (i < key->n_levels && is_finer(key->row, key->value[i], value)) i++;
     if (i < key->n_levels && !(fabs(key->value[i] - value) > 1e-12 * value)) return;
+
     for (int j = key->n_levels; j > i; j--) {
         key->value[j] = key->value[j - 1];
         key->member[j] = key->member[j - 1];
     }
+
     key->value[i] = value;
     key->member[i] = -1;
     key->n_levels++;
@@ -315,8 +327,7 @@ void error_plan_insert(struct error_study_key *key, double value) {
     if (i <= key->first_stated && key->n_levels > 1) key->first_stated++;
 }
 
-/* The next value of a key at about a factor from one, that is a valid case: points are rounded; an interval divides the
- * beat of a steady state, or the end of a run; a step divides the interval. NaN: there is none. */
+/* Find a level of a key near from*factor that is a valid case. */
 enum status error_plan_find_level(struct error_study *study, int k, double from, double factor, double *level) {
     const struct case_values *const values = &study->study;
     const struct error_study_key *const key = &study->key[k];
@@ -325,6 +336,7 @@ enum status error_plan_find_level(struct error_study *study, int k, double from,
     const double run = study->is_steady && study->beat > 0 ? study->beat : values->time.end;
     const double whole = is_step ? values->school.shedding_interval : run;
     const double target = is_interval || is_step ? whole / (from * factor) : from * factor;
+
     *level = NAN;
     int is_valid;
     if (key->row->kind != SWEEP_POINTS && !is_interval && !is_step) {
@@ -332,6 +344,7 @@ enum status error_plan_find_level(struct error_study *study, int k, double from,
         if (is_valid) *level = target;
         return STATUS_OK;
     }
+
     // integers around the target
     for (int j = 0; j <= target / 4; j++) {
         for (int sign = -1; sign <= 1; sign += 2) {
@@ -344,13 +357,14 @@ enum status error_plan_find_level(struct error_study *study, int k, double from,
             *level = value;
             return STATUS_OK;
         }
-        // points and steps that are refused are refused for what they are
+        // other numbers of points or steps would be refused, too
         if (!is_interval) return STATUS_OK;
     }
+
     return STATUS_OK;
 }
 
-/* Add a level at a factor from another one; whether there is one. */
+/* Add a level near from*factor; *is_there: such a level exists. */
 static enum status add_level(struct error_study *study, int k, double from, double factor, int *is_there) {
     double level;
     *is_there = 0;
@@ -361,26 +375,28 @@ static enum status add_level(struct error_study *study, int k, double from, doub
     return STATUS_OK;
 }
 
-/* The levels of the table: coarser ones, and a finer one with confirm; where coarser ones are no valid cases, up to two
- * finer ones in their place. */
+/* Add the levels of the table: coarser levels, and a finer level with confirm. Up to two finer levels replace invalid
+ * coarser levels. */
 static enum status add_default_levels(struct error_study *study, int k) {
     struct error_study_key *const key = &study->key[k];
     const struct sweep_error_key *const row = key->row;
     const double base = key->value[0];
     int is_there, n_missing = 0, n_finer = row->kind == SWEEP_MODEL || study->study.error->confirm;
-    // the spacing must be halved twice before the far wake has its order
+
+    // the far wake converges with the design order only after two halvings of the spacing
     if (row->kind == SWEEP_DURATION) n_finer *= 2;
     for (int i = 0; i < 2; i++) {
         if (!(row->coarser[i] > 0)) continue;
         TRY(add_level(study, k, base, row->coarser[i], &is_there));
         n_missing += !is_there;
     }
+
     if (n_missing > n_finer && n_missing <= MOST_FINER) n_finer = n_missing;
     for (int i = 0; i < n_finer; i++) TRY(add_level(study, k, key->value[0], row->finer, &is_there));
     return STATUS_OK;
 }
 
-/* The levels that the case gives. */
+/* Add the levels given in the case. */
 static enum status add_given_levels(struct error_study *study, int k, const struct sweep_error_levels *given) {
     for (int i = 0; i < given->n; i++) {
         int is_valid;
@@ -393,12 +409,13 @@ static enum status add_given_levels(struct error_study *study, int k, const stru
 
 // ---- which keys
 
-/* Whether a key changes anything in this case. */
+/* Whether a key affects the results of this case. */
 static int is_used(const struct error_study *study, const struct sweep_error_key *row) {
     const struct case_values *const values = &study->study;
     const double value = number_of(values, row->path, 0);
     const int is_wake = strncmp(row->path, "wake.", 5) == 0, has_fluid = values->school.fluid.density > 0;
-    // an equilibrium has no events, but its modes have shed a wake at events
+
+    // an equilibrium has no events, but the wake of the modes is shed at events
     const int is_interval = strcmp(row->path, "time.shedding_interval") == 0;
     if (study->is_static) return row->kind == SWEEP_POINTS || (is_interval && asks_for_modes(study));
     if (strcmp(row->path, "solver.rtol") == 0) return !(values->solver.step > 0);
@@ -407,6 +424,7 @@ static int is_used(const struct error_study *study, const struct sweep_error_key
     if (row->kind == SWEEP_DURATION && !study->is_steady) {
         return row->coarser[0] * values->school.wake.lifetime.seconds < values->time.end;
     }
+
     return !is_wake || value > 0;
 }
 
@@ -419,7 +437,7 @@ static enum status add_key(struct error_study *study, const struct sweep_error_k
     return key->part ? STATUS_OK : out_of_memory();
 }
 
-/* All keys that are varied, without levels. */
+/* Add all varied keys, without levels. */
 static enum status choose_keys(struct error_study *study) {
     const struct sweep_error *const error = study->study.error;
     for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
@@ -432,7 +450,7 @@ static enum status choose_keys(struct error_study *study) {
     return status_fail(STATUS_CASE, "error.keys: none of these keys changes anything in this case");
 }
 
-/* The columns of the axis: the keys, what changes with them, and what must fit. */
+/* Add the columns of the axis: varied keys, companions of the varied keys, and times that must fit the interval. */
 static enum status add_all_columns(struct error_study *study) {
     const struct case_values *const values = &study->study;
     for (int k = 0; k < study->n_keys; k++) {
@@ -447,15 +465,17 @@ static enum status add_all_columns(struct error_study *study) {
         TRY(add_columns(study, values, "time.output_interval"));
         TRY(add_columns(study, values, "output.wake_interval"));
     }
+
     if (error_plan_column(study, "time.shedding_interval") >= 0 && values->solver.step > 0 &&
         error_plan_column(study, "solver.step") < 0) {
         TRY(add_columns(study, values, "solver.step"));
     }
+
     return study->is_steady ? add_columns(study, values, "steady.multipliers") : STATUS_OK;
 }
 
-/* What is known of a case before any level is. */
-static void object(struct error_study *study, const struct school *school) {
+/* Fill the objections that follow from the case alone. */
+static void list_objections(struct error_study *study, const struct school *school) {
     for (int k = 0; k < study->n_keys; k++) {
         struct error_study_key *const key = &study->key[k];
         for (int f = 0; f < school->n_fish && !*key->objection; f++) {
@@ -479,7 +499,7 @@ static void object(struct error_study *study, const struct school *school) {
 
 // ---- quantities
 
-/* The number of a quantity; -1: it is not known. */
+/* The number of a quantity; -1: unknown. */
 int error_plan_quantity(const char *name) {
     for (int q = 0; member_file_quantity(q); q++) {
         if (strcmp(member_file_quantity(q)->name, name) == 0) return q;
@@ -511,6 +531,7 @@ static enum status choose_quantities(struct error_study *study) {
         study->is_steady = quantity->of_steady;
         study->quantity[study->n_asked++] = q;
     }
+
     // the judges
     study->n_quantities = study->n_asked;
     for (int s = 0; s < SWEEP_N_QUANTITIES; s++) {
@@ -521,13 +542,14 @@ static enum status choose_quantities(struct error_study *study) {
         for (int i = 0; i < study->n_quantities; i++) is_new &= study->quantity[i] != q;
         if (is_new) study->quantity[study->n_quantities++] = q;
     }
+
     return STATUS_OK;
 }
 
 // ---- the plan
 
-/* The member of each level of a key that has none. The neighbour towards the stated value comes first, as a search
- * begins with its result. */
+/* Plan a member for the levels at this distance from the stated level. The neighbour towards the stated level already
+ * has a member, which supplies the initial state of the search. */
 static enum status plan_levels(struct error_study *study, int k, int distance, int *n_new) {
     struct error_study_key *const key = &study->key[k];
     const int order[] = {key->stated - distance, key->stated + distance};
@@ -540,6 +562,7 @@ static enum status plan_levels(struct error_study *study, int k, int distance, i
                               &is_new));
         *n_new += is_new;
     }
+
     return STATUS_OK;
 }
 
@@ -553,7 +576,7 @@ enum status error_plan_members(struct error_study *study, int *n_new) {
     return STATUS_OK;
 }
 
-/* An axis of no keys with one value, which is the case. */
+/* Create an axis without keys and with one value, which is the case. */
 static enum status begin_axis(struct error_study *study) {
     struct case_values *const values = &study->study;
     values->sweep = calloc(1, sizeof *values->sweep);
@@ -566,6 +589,7 @@ static enum status begin_axis(struct error_study *study) {
     if (!axis->before) return out_of_memory();
     axis->before[0] = -1;
     axis->n_values = 1;
+
     return STATUS_OK;
 }
 
@@ -580,6 +604,7 @@ static enum status choose_levels(struct error_study *study) {
         if (study->key[k].n_levels > 1) continue;
         snprintf(study->key[k].objection, ERROR_STUDY_BYTES, "no other level is a valid case");
     }
+
     return STATUS_OK;
 }
 
@@ -596,6 +621,7 @@ static enum status make_plan(struct error_study *study) {
     TRY(begin_axis(study));
     TRY(add_all_columns(study));
     TRY(choose_levels(study));
+
     return error_plan_members(study, &n_new);
 }
 
@@ -609,12 +635,15 @@ enum status error_plan_create(struct error_study *study, const struct case_value
     study->n_fish = values->school.n_fish;
     struct school *school;
     TRY(fish_school_create(&school, &study->study.school));
+
     for (int f = study->n_fish - 1; f >= 0; f--) {
         if (school->fish[f].period > 0) study->beat = school->fish[f].period;
     }
+
     study->is_static = steady_static_applies(school);
     const enum status status = make_plan(study);
-    if (status == STATUS_OK) object(study, school);
+    if (status == STATUS_OK) list_objections(study, school);
     fish_school_free(school);
+
     return status;
 }

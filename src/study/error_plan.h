@@ -17,9 +17,9 @@
 
 enum { ERROR_STUDY_LEVELS = 10, ERROR_STUDY_QUANTITIES = 16, ERROR_STUDY_BYTES = 256 };
 
-/* What a key does to one quantity of one fish. */
+/* The effect of a key on one quantity of one fish. */
 struct error_study_part {
-    double error; /* of the stated value, in the unit of the quantity; of a choice of the model: what it changes */
+    double error; /* of the stated value, in the unit of the quantity; for a choice of the model: the change */
     double finest_error, order;
     enum error_budget_verdict verdict; /* on this sequence alone */
 };
@@ -27,16 +27,16 @@ struct error_study_part {
 /* A numerical key, or a choice of the model, and its levels from fine to coarse. */
 struct error_study_key {
     const struct sweep_error_key *row;
-    const char *unit;                 /* " beats" where the case gives a duration in beats, else "" */
-    int n_levels, stated;             /* levels; the one of the stated value */
+    const char *unit;                 /* " beats" if the case gives a duration in beats, otherwise "" */
+    int n_levels, stated;             /* number of levels; level of the stated value */
     double value[ERROR_STUDY_LEVELS]; /* of the first fish that has the key */
     int member[ERROR_STUDY_LEVELS];
     int first_stated;                  /* level of the case, before any refinement */
-    int n_added;                       /* levels that `within` has added */
-    char objection[ERROR_STUDY_BYTES]; /* why no order can be trusted, or ""; n_levels 1: why it is not varied */
+    int n_added;                       /* levels added for `within` */
+    char objection[ERROR_STUDY_BYTES]; /* reason to distrust any order, or ""; n_levels 1: reason for not varying */
     enum error_budget_verdict verdict; /* on all quantities */
-    char reason[ERROR_STUDY_BYTES];    /* why it is flagged, or "" */
-    double cost_exponent;              /* of the resolution in the wall time */
+    char reason[ERROR_STUDY_BYTES];    /* reason of a flag, or "" */
+    double cost_exponent;              /* exponent of the resolution in the wall time */
     struct error_study_part *part;     /* (n_asked, n_fish) */
 };
 
@@ -44,50 +44,51 @@ struct error_study {
     struct case_values study;             /* the case, with the axis of members */
     int is_steady, is_static, n_fish;     /* steady states; equilibria, without a beat */
     double beat;                          /* s; 0: none */
-    int n_asked, n_quantities;            /* quantities that are asked for; and those that only judge */
+    int n_asked, n_quantities;            /* requested quantities; requested quantities and judges */
     int quantity[ERROR_STUDY_QUANTITIES]; /* numbers of member_file.h */
     int n_keys;
     struct error_study_key key[SWEEP_N_ERROR_KEYS];
-    int stated;                       /* the member of the stated value */
-    double *value, *error, *together; /* stated values, their errors, and what keys that were refined together do beyond
-                                         their sum, a part of the error; NaN: unknown          (n_asked, n_fish) */
-    double noise;                     /* relative error of the integrator and of the search */
-    double cost;                      /* of the stated value over that of the case, in CPU time */
-    int is_reached;                   /* the error is within the bound of the case, or there is none */
+    int stated; /* the member of the stated value */
+    double *value, *error,
+        *together;  /* stated values; errors of the stated values; interaction of keys refined together,
+                                         which is a part of the error; NaN: unknown            (n_asked, n_fish) */
+    double noise;   /* relative error of the integrator and of the search */
+    double cost;    /* CPU time of the stated value over the CPU time of the case */
+    int is_reached; /* the error is within the bound of the case, or the case has no bound */
 };
 
-/* Plan the members of a case with `error`. Fails with STATUS_CASE (a quantity is not known, or no key can be varied) or
- * STATUS_MEMORY; error_plan_free releases what is there, also then. */
+/* Plan the members of a case with `error`. Fails with STATUS_CASE (unknown quantity, or no key can be varied) or
+ * STATUS_MEMORY; call error_plan_free also after a failure. */
 enum status error_plan_create(struct error_study *study, const struct case_values *values);
 void error_plan_free(struct error_study *study);
 
-/* The place of a quantity of a fish in part, value and error. */
+/* The index of a quantity of a fish in part, value and error. */
 int error_plan_place(const struct error_study *study, int quantity, int fish);
 
-/* The number of a quantity of member_file.h; -1: it is not known. */
+/* The number of a quantity of member_file.h; -1: unknown. */
 int error_plan_quantity(const char *name);
 
-/* The column of the axis that sets a key, for the first fish; -1: it is not varied. */
+/* The column of the axis that sets a key, for the first fish; -1: not varied. */
 int error_plan_column(const struct error_study *study, const char *path);
 
 /* The grid spacing of a level. */
 double error_plan_size(const struct sweep_error_key *row, double value);
 
-/* The next value of a key at about a factor from one, that is a valid case: points are rounded; an interval divides the
- * beat of a steady state, or the end of a run; a step divides the interval. NaN: there is none. Fails with
+/* Find a level of a key near from*factor that is a valid case: points are rounded; an interval divides the beat of a
+ * steady state or the end of a run; a step divides the interval. *level NaN: no such level. Fails with
  * STATUS_MEMORY. */
 enum status error_plan_find_level(struct error_study *study, int key, double from, double factor, double *level);
 
-/* Put a value among the levels of a key; error_plan_members then adds members for all levels that have none, *n_new of
- * them. Fails with STATUS_MEMORY. */
+/* Insert a value into the levels of a key. error_plan_members then adds *n_new members for all levels without a member.
+ * Fails with STATUS_MEMORY. */
 void error_plan_insert(struct error_study_key *key, double value);
 enum status error_plan_members(struct error_study *study, int *n_new);
 
-/* The member with some changes of the case, which is added where there is none (*is_new), to be looked for from the
- * state of a member before; and the last members removed. */
+/* Find the member with some changes of the case. If no such member exists (*is_new), add a member whose search starts
+ * from the state of the member before. error_plan_shorten removes the last members. */
 struct error_plan_change {
     int key;
-    double value; /* of the first fish; the others change in proportion */
+    double value; /* of the first fish; the values of the other fish change in proportion */
 };
 enum status error_plan_member(struct error_study *study, int n, const struct error_plan_change *changes, int before,
                               int *member, int *is_new);

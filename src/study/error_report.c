@@ -14,8 +14,8 @@
 
 enum { MOST_FISH = 4, LEVEL_BYTES = 160, NAME_BYTES = 80, MEANING_BYTES = 200 };
 
-/* Beats that a search takes from the start of a case, from a neighbour's state, and for the multipliers of a fish; and
- * the seconds in which events are done for an estimate. */
+/* Beats of a search from the initial state of a case, from the state of a neighbour, and for the multipliers of a fish;
+ * wall time of the events simulated for an estimate, s. */
 static const double beats_from_start = 14, beats_from_neighbour = 11, beats_of_multipliers = 32, patience = 2;
 
 static const char *name_of(const struct error_study *study, int q) {
@@ -44,22 +44,25 @@ static void write_levels(const struct error_study_key *key, char text[LEVEL_BYTE
 
 // ---- the plan
 
-/* The seconds that a member takes. */
+/* The estimated CPU time of a member, s. */
 static enum status estimate_member(const struct error_study *study, int m, double seconds, double *duration) {
     struct case_values values;
     struct simulation *simulation = NULL;
     struct estimate estimate;
+
     TRY(case_member(&values, &study->study, m));
     if (study->is_steady && study->beat > 0) {
         double beats = m == 0 ? beats_from_start : beats_from_neighbour;
         if (m == 0 && values.steady.multipliers != NO) beats += beats_of_multipliers * study->n_fish;
         values.time.end = beats * study->beat;
     }
+
     enum status status = simulate_create(&simulation, &values);
     if (status == STATUS_OK) status = estimate_run(simulation, seconds, &estimate);
     simulate_free(simulation);
     case_free(&values);
     *duration = status == STATUS_OK ? estimate.seconds : NAN;
+
     return status == STATUS_SOLVER ? STATUS_OK : status;
 }
 
@@ -72,6 +75,7 @@ static void print_duration(double seconds, FILE *stream) {
         fprintf(stream, "0.1 s");
         return;
     }
+
     int i = 0;
     while (seconds < 1.5 * units[i].seconds) i++;
     fprintf(stream, "%.2g %s", seconds / fmax(units[i].seconds, 1), units[i].name);
@@ -83,17 +87,19 @@ enum status error_report_plan(const struct error_study *study, int n_processes, 
     if (!duration) return status_fail(STATUS_MEMORY, "out of memory: the plan of a study");
     enum status status = STATUS_OK;
     for (int m = 0; m < n && status == STATUS_OK; m++) {
-        // an equilibrium takes hardly any time
+        // the time of an equilibrium is negligible
         if (!study->is_static) status = estimate_member(study, m, patience / n, &duration[m]);
         sum += duration[m];
         longest = fmax(longest, duration[m]);
     }
+
     struct study_table table;
     if (status == STATUS_OK) status = study_table_create(&table, 1 + study->n_keys, 4);
     if (status != STATUS_OK) {
         free(duration);
         return status;
     }
+
     table.n_left = 3;
     const char *const heads[] = {"key", "levels", "members", "time of each, s"};
     for (int c = 0; c < 4; c++) study_table_set(&table, 0, c, "%s", heads[c]);
@@ -113,6 +119,7 @@ enum status error_report_plan(const struct error_study *study, int n_processes, 
         text_free(&members);
         text_free(&times);
     }
+
     study_table_print(&table, stream);
     study_table_free(&table);
     free(duration);
@@ -127,12 +134,13 @@ enum status error_report_plan(const struct error_study *study, int n_processes, 
                 "case\n",
                 100 * study->study.error->within, study->study.error->most);
     }
+
     return STATUS_OK;
 }
 
 // ---- numbers
 
-/* Decimals with which a number has two digits. */
+/* The number of decimals for two significant digits. */
 static int decimals_for(double number) {
     if (!(fabs(number) > 0) || !isfinite(number)) return 5;
     const int decimals = 1 - (int)floor(log10(fabs(number)));
@@ -144,6 +152,7 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
     const int place = error_plan_place(study, q, f);
     const double value = study->value[place], error = study->error[place];
     const char *const unit = member_file_quantity(study->quantity[q])->unit;
+
     fprintf(stream, "%s", name_of(study, q));
     if (of_fish(study, q)) fprintf(stream, " of %s", study->study.school.fish[f].name);
     if (isnan(value)) {
@@ -162,7 +171,7 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
 
 // ---- the table
 
-/* Whether the levels of a key change no quantity that is asked for by more than the noise. */
+/* Whether the levels of a key change all requested quantities by at most the noise. */
 static int is_below_noise(const struct error_study *study, const struct error_study_key *key) {
     for (int place = 0; place < study->n_asked * study->n_fish; place++) {
         const int is_there = place % study->n_fish == 0 || of_fish(study, place / study->n_fish);
@@ -171,7 +180,7 @@ static int is_below_noise(const struct error_study *study, const struct error_st
     return 1;
 }
 
-/* "5.0*": the observed order of the first quantity that has one, and what to say of it. */
+/* "5.0*": the observed order of the first quantity with an order, and a mark. */
 static void write_order(const struct error_study *study, const struct error_study_key *key, int f, int *is_above,
                         char text[16]) {
     const double design = sweep_error_order(&study->study, key->row);
@@ -192,7 +201,7 @@ static void write_order(const struct error_study *study, const struct error_stud
         }
         const int is_high = order > design;
         *is_above |= is_high;
-        // the levels of quantities that only judge may have one
+        // the sequence of a judge may have an order
         snprintf(text, 16, isnan(order) ? "none" : "%.1f%s", order, is_high ? "*" : "");
     }
 }
@@ -204,7 +213,7 @@ static const char *basis_of(const struct error_study_key *key) {
     return words[key->n_levels > 4 ? 4 : key->n_levels == 1 ? 0 : key->n_levels];
 }
 
-/* What the next level of the key with the largest share would bring. */
+/* Describe the effect of the next level of the key with the largest share. */
 static void write_next(const struct error_study *study, const struct error_study_next *next,
                        char text[STUDY_CELL_BYTES]) {
     const struct error_study_key *const key = &study->key[next->key];
@@ -219,7 +228,7 @@ static void write_next(const struct error_study *study, const struct error_study
     }
 }
 
-/* Two digits of a part of the sum, or as many decimals as that has and one more, or five. */
+/* Print two digits of a part of the sum, at most one decimal more than the sum and at most five decimals. */
 static void set_part(const struct study_table *table, int row, int column, double part, double sum) {
     const int most = decimals_for(sum) < 4 ? 5 : decimals_for(sum) + 1, own = decimals_for(part);
     study_table_set(table, row, column, isnan(part) ? "unknown" : "%.*f", own < most ? own : most, part);
@@ -243,10 +252,11 @@ static void fill_row(const struct error_study *study, const struct study_table *
         study_table_number(table, row, c + 1, "%.2f", 100 * error / fabs(study->value[place]));
         study_table_number(table, row, c + 2, "%.0f", study->error[place] > 0 ? 100 * error / study->error[place] : 0);
     }
+
     study_table_set(table, row, c, "%s", key->n_levels > 1 ? basis_of(key) : "");
 }
 
-/* The share of each key, of one fish. */
+/* Print the share of each key for one fish. */
 static enum status print_table(const struct error_study *study, const struct error_study_next *next, int f,
                                FILE *stream) {
     int n_keys = 0, is_above = 0, n_moved = 0;
@@ -254,18 +264,21 @@ static enum status print_table(const struct error_study *study, const struct err
         n_keys += is_error(&study->key[k]);
         n_moved += study->key[k].stated != study->key[k].first_stated;
     }
+
     const int n_columns = 5 + 3 * study->n_asked;
     struct study_table table;
     TRY(study_table_create(&table, 3 + n_keys, n_columns));
     table.n_left = 3;
     const char *const heads[] = {"key", "levels", "order"};
     for (int c = 0; c < 3; c++) study_table_set(&table, 0, c, "%s", heads[c]);
+
     for (int q = 0; q < study->n_asked; q++) {
         const int is_short = strncmp(name_of(study, q), "steady_", 7) == 0;
         study_table_set(&table, 0, 3 + 3 * q, "%s", name_of(study, q) + (is_short ? 7 : 0));
         study_table_set(&table, 0, 4 + 3 * q, "%%");
         study_table_set(&table, 0, 5 + 3 * q, "share");
     }
+
     study_table_set(&table, 0, n_columns - 2, "by");
     study_table_set(&table, 0, n_columns - 1, "next");
     int row = 1;
@@ -276,6 +289,7 @@ static enum status print_table(const struct error_study *study, const struct err
         fill_row(study, &table, row, k, f, &is_above);
         study_table_set(&table, row++, n_columns - 1, "%s", words);
     }
+
     if (n_moved > 1) {
         study_table_set(&table, row, 0, "together");
         for (int q = 0; q < study->n_asked; q++) {
@@ -286,6 +300,7 @@ static enum status print_table(const struct error_study *study, const struct err
         }
         row++;
     }
+
     study_table_set(&table, row, 0, "sum");
     for (int q = 0; q < study->n_asked; q++) {
         const int place = error_plan_place(study, q, f);
@@ -293,14 +308,16 @@ static enum status print_table(const struct error_study *study, const struct err
         set_part(&table, row, 3 + 3 * q, study->error[place], study->error[place]);
         study_table_number(&table, row, 4 + 3 * q, "%.2f", 100 * study->error[place] / fabs(study->value[place]));
     }
+
     table.n_rows = row + 1;
     study_table_print(&table, stream);
     study_table_free(&table);
     if (is_above) fprintf(stream, "* above the design order, which is used: the error may be smaller\n");
+
     return STATUS_OK;
 }
 
-/* What the lengths of the model change: of the quantities that are asked for, the largest. */
+/* Print the largest change of a requested quantity by each choice of the model. */
 static void print_choices(const struct error_study *study, FILE *stream) {
     int n = 0;
     for (int k = 0; k < study->n_keys; k++) {
@@ -321,10 +338,11 @@ static void print_choices(const struct error_study *study, FILE *stream) {
             fprintf(stream, "%.2g %%", 100 * most);
         }
     }
+
     if (n > 0) fprintf(stream, "\n");
 }
 
-/* Whether a key has a hundredth of the error of any quantity, or its error is unknown. */
+/* Whether a key has at least 1 % of the error of some quantity, or an unknown error. */
 static int has_share(const struct error_study *study, const struct error_study_key *key) {
     for (int place = 0; place < study->n_asked * study->n_fish; place++) {
         if (!(key->part[place].error < 0.01 * study->error[place])) return 1;
@@ -332,7 +350,7 @@ static int has_share(const struct error_study *study, const struct error_study_k
     return 0;
 }
 
-/* Why keys are flagged or not varied, and members that have failed. */
+/* Print the reasons of flagged and fixed keys, and the failed members. */
 static void print_reasons(const struct error_study *study, const struct member_file *members, FILE *stream) {
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
@@ -357,9 +375,11 @@ enum status error_report_print(struct error_study *study, const struct member_fi
         TRY(print_table(study, &next, f, stream));
         if (f + 1 < n_shown) fprintf(stream, "\n");
     }
+
     if (n_shown < study->n_fish) {
         fprintf(stream, "The first %d of %d fish; error.csv and study.nc have all.\n", n_shown, study->n_fish);
     }
+
     fprintf(stream, "noise of a value, of integrator and search: %.1e\n", study->noise);
     print_choices(study, stream);
     print_reasons(study, members, stream);
@@ -367,6 +387,7 @@ enum status error_report_print(struct error_study *study, const struct member_fi
     if (study->is_reached) return STATUS_OK;
     char words[ERROR_STUDY_BYTES];
     error_study_say_cost(study, words);
+
     return status_fail(STATUS_MISSED, "the errors are not within %.3g %% of the values; %s",
                        100 * study->study.error->within, words);
 }
@@ -378,6 +399,7 @@ enum status error_report_write_csv(const struct error_study *study, const char *
     TRY(plain_file_open(&table, path, TARGET_TABLE, true, 0666));
     FILE *const file = table.stream;
     fputs(TARGET_TABLE_MARK "\n", file);
+
     for (int f = 0; f < study->n_fish; f++) {
         for (int q = 0; q < study->n_asked; q++) {
             const int place = error_plan_place(study, q, f);
@@ -400,12 +422,13 @@ enum status error_report_write_csv(const struct error_study *study, const char *
             }
         }
     }
+
     return plain_file_close(&table, STATUS_OK);
 }
 
 // ---- study.nc
 
-/* What there is once for each key. */
+/* Variables of each key. */
 enum { KEY_NAME, KEY_REASON, KEY_LEVELS, KEY_STATED, KEY_IS_CHOICE, KEY_DESIGN_ORDER, KEY_VALUE, KEY_MEMBER, N_OF_KEY };
 static const struct of_key {
     const char *name, *meaning;
@@ -422,7 +445,7 @@ static const struct of_key {
     {"key_member", "member of each level; -1: none", NETCDF_INT, 1},
 };
 
-/* What there is for each quantity: name and meaning take its name. */
+/* Variables of each quantity: name and meaning include the name of the quantity. */
 enum { STATED, BAR, PART, KEY_ORDER, N_OF_QUANTITY };
 static const struct of_quantity {
     const char *name, *meaning;
@@ -434,7 +457,7 @@ static const struct of_quantity {
     {"key_order_%s", "observed order of %s in each key", 1, 0},
 };
 
-// name or meaning with that of a quantity in it
+// insert the name of a quantity into a name or meaning
 static void fill_name(char *text, size_t size, const char *format, const char *quantity) {
     const int before = (int)(strstr(format, "%s") - format);
     snprintf(text, size, "%.*s%s%s", before, format, quantity, format + before + 2);
@@ -456,6 +479,7 @@ int error_report_listed(int i, struct result_listed *listed) {
                  row->type == NETCDF_TEXT ? ", text" : "");
         return 1;
     }
+
     const int k = i - N_OF_KEY;
     if (k >= N_OF_QUANTITY) return 0;
     fill_name(name[k], NAME_BYTES, of_quantity[k].name, "Q");
@@ -463,6 +487,7 @@ int error_report_listed(int i, struct result_listed *listed) {
     *listed = (struct result_listed){
         .name = name[k], .type = "double", .unit = of_quantity[k].has_unit ? "of Q" : "1", .meaning = meaning[k]};
     snprintf(listed->dimensions, sizeof listed->dimensions, "%sfish", of_quantity[k].by_key ? "key, " : "");
+
     return 1;
 }
 
@@ -481,6 +506,7 @@ void error_report_define(struct netcdf_writer *writer, const struct error_study 
                                                          .dimension = {key, row->by_level ? level : dimensions[1]},
                                                          .has_gaps = row->type == NETCDF_DOUBLE});
     }
+
     for (int q = 0; q < study->n_asked; q++) {
         for (int i = 0; i < N_OF_QUANTITY; i++) {
             char name[NAME_BYTES], meaning[MEANING_BYTES];
@@ -508,14 +534,17 @@ static void write_key(struct netcdf_writer *writer, const struct error_study *st
         [KEY_NAME] = key->row->path, [KEY_REASON] = key->n_levels == 1 ? key->objection : key->reason};
     const int *const ints[] = {
         [KEY_LEVELS] = &key->n_levels, [KEY_STATED] = &key->stated, [KEY_IS_CHOICE] = &is_choice};
+
     for (int i = KEY_NAME; i <= KEY_REASON; i++) {
         memset(text, 0, n_text);
         snprintf(text, n_text, "%s", texts[i]);
         netcdf_write_text(writer, netcdf_number(writer, of_key[i].name), start, all_text, text);
     }
+
     for (int i = KEY_LEVELS; i <= KEY_IS_CHOICE; i++) {
         netcdf_write_ints(writer, netcdf_number(writer, of_key[i].name), start, one, ints[i]);
     }
+
     const double design_order = sweep_error_order(&study->study, key->row);
     netcdf_write_doubles(writer, netcdf_number(writer, of_key[KEY_DESIGN_ORDER].name), start, one, &design_order);
     for (int i = 0; i < ERROR_STUDY_LEVELS; i++) {

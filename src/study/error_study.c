@@ -9,21 +9,21 @@
 #include "base/text.h"
 #include "case/sweep_members.h"
 
-/* A search without multipliers is this many times its change in a beat away from the steady state, unless that of the
- * case is known. */
+/* Error of a steady state without multipliers over the residual change per beat, unless this ratio is known for the
+ * case. */
 static const double of_residual = 10;
 
 /* A fixed step has no tolerance; rounding remains. */
 static const double rounding = 1e-12;
 
-/* Levels that are added to a key at most. */
+/* Largest number of added levels per key. */
 enum { MOST_ADDED = 3 };
 
 static enum status out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: the errors of a study");
 }
 
-// ---- what the members say
+// ---- values of the members
 
 static double value_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
     if (m < 0 || strcmp(members[m].status, "complete") != 0) return NAN;
@@ -35,8 +35,8 @@ static double steady_number(const struct member_file *member, const char *name) 
     return member_file_value(member, error_plan_quantity(name), 0, 0);
 }
 
-/* The lengths of which the error of a search, in lengths per beat, is a part: the way of a beat for a speed and what is
- * made from it, the extent of the tail's path for a Strouhal number. */
+/* The reference length of the error of a search, in body lengths: distance travelled per beat for the speed and derived
+ * quantities, tail excursion for a Strouhal number. */
 static double lengths_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
     const double speed = member_file_value(&members[m], error_plan_quantity("steady_speed"), f, 0);
     const double strouhal = member_file_value(&members[m], error_plan_quantity("steady_strouhal"), f, 0);
@@ -46,12 +46,13 @@ static double lengths_of(const struct error_study *study, const struct member_fi
     return fmin(1, is_tail && strouhal > 0 ? strouhal * way : way);
 }
 
-/* The relative error of a value of a member that no level shows: of the integrator, and of the search, whose residual
- * has the same part in the distance from the steady state as in the case. */
+/* The relative error of a value of a member independent of the levels: error of the integrator and of the search. The
+ * ratio of search error to residual equals the ratio in the case. */
 static double noise_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
     const struct sweep_axis *const axis = &study->study.sweep[0];
     const int column = error_plan_column(study, "solver.rtol");
     double rtol = study->study.school.rtol;
+
     if (column >= 0) text_number(axis->value[m * axis->n_keys + column], &rtol);
     if (study->study.solver.step > 0) rtol = rounding;
     if (!study->is_steady) return rtol;
@@ -59,18 +60,19 @@ static double noise_of(const struct error_study *study, const struct member_file
     const double part = error / steady_number(&members[0], "steady_residual");
     const double distance =
         steady_number(&members[m], "steady_residual") * (isfinite(part) ? fmax(1, part) : of_residual);
+
     return rtol + distance / lengths_of(study, members, m, q, f);
 }
 
-/* CPU time of a member for as much simulated time as that of any other one, and a little, s: what takes less is
- * not worth a thought. */
+/* CPU time of a member for a simulated time common to all members, s, plus a constant, below which the cost is
+ * irrelevant. */
 static double cost_of(const struct error_study *study, const struct member_file *members, int m) {
     const int is_by_beats = study->is_steady && !study->is_static;
     const double least_beat = 1e-3, least_run = 0.1;
     return steady_number(&members[m], is_by_beats ? "beat_time" : "wall_time") + (is_by_beats ? least_beat : least_run);
 }
 
-/* The slope of the wall time over the resolution, in logarithms, from the coarsest level to the finest. */
+/* The logarithmic slope of the wall time over the resolution, from the coarsest to the finest level. */
 static double cost_exponent_of(const struct error_study *study, const struct member_file *members,
                                const struct error_study_key *key) {
     const int last = key->n_levels - 1;
@@ -90,20 +92,21 @@ static void object_to_interval(const struct error_study *study, const struct mem
         const struct fish_parameters *const fish = &values->school.fish[f];
         const double speed = member_file_value(&members[0], error_plan_quantity("speed"), f, 0);
         const double needed = 1 + 3.2 / sqrt(fabs(speed) * values->school.shedding_interval / fish->length);
-        const double most = 1000;  // what needs more does not swim
+        const double most = 1000;  // a fish that needs more sheet points does not swim
         if (!(fish->sheet_points < needed) || needed > most) continue;
         snprintf(key->objection, ERROR_STUDY_BYTES, "%.60s needs %.0f sheet_points for this interval", fish->name,
                  ceil(needed));
     }
 }
 
-/* All quantities of all fish at the levels of a key that are judged: at most four, with the stated one, and the finest
- * three of a duration: a wake that is cut within two lengths is not yet a far one. */
+/* Judge all quantities of all fish at the finest levels of a key: at most four levels, including the stated level, and
+ * three levels of a duration, because a wake truncated within two body lengths is not yet a far wake. */
 static enum status judge_key(struct error_study *study, const struct member_file *members,
                              struct error_study_key *key) {
     enum { MOST = ERROR_BUDGET_LEVELS };
     const int n_fish = study->n_fish, n_most = study->n_quantities * n_fish;
     int n_levels = key->row->kind == SWEEP_DURATION ? 3 : MOST;
+
     if (n_levels > key->n_levels) n_levels = key->n_levels;
     double size[MOST], (*value)[MOST][2] = calloc((size_t)n_most, sizeof *value);
     struct error_budget_sequence *const sequence = calloc((size_t)n_most, sizeof *sequence);
@@ -120,13 +123,14 @@ static enum status judge_key(struct error_study *study, const struct member_file
                 value[n][i][0] = value_of(study, members, key->member[i], q, f);
                 is_known |= !isnan(value[n][i][0]);
             }
-            // speed, cost and Strouhal number judge where there are any
+            // speed, cost and Strouhal number judge if known
             if (!is_known) continue;
             const double noise = noise_of(study, members, key->member[key->stated], q, f);
             sequence[n] = (struct error_budget_sequence){(const double(*)[2])value[n], noise};
             origin[n++] = q * n_fish + f;
         }
     }
+
     const struct error_budget_levels levels = {n_levels, key->stated, size, sweep_error_order(&study->study, key->row),
                                                *key->objection ? key->objection : NULL};
     key->verdict = error_budget_judge(&levels, n, sequence, result, &culprit);
@@ -139,6 +143,7 @@ static enum status judge_key(struct error_study *study, const struct member_file
                  culprit < 0 ? "" : " (", culprit < 0 ? "" : member_file_quantity(q)->name, culprit < 0 ? "" : " of ",
                  fish, culprit < 0 ? "" : ")");
     }
+
     for (int i = 0; i < n; i++) {
         if (origin[i] / n_fish >= study->n_asked) continue;
         key->part[origin[i]] = (struct error_study_part){.error = result[i].error,
@@ -146,6 +151,7 @@ static enum status judge_key(struct error_study *study, const struct member_file
                                                          .order = result[i].order,
                                                          .verdict = result[i].verdict};
     }
+
     key->cost_exponent = cost_exponent_of(study, members, key);
 
 end:
@@ -153,10 +159,11 @@ end:
     free(sequence);
     free(result);
     free(origin);
+
     return status;
 }
 
-/* Whether a key is a part of the sum. */
+/* Whether the error of a key contributes to the sum. */
 static int is_error(const struct error_study_key *key) {
     return key->row->kind != SWEEP_MODEL && key->n_levels > 1;
 }
@@ -178,8 +185,8 @@ static void judge_choice(struct error_study *study, const struct member_file *me
     }
 }
 
-/* The stated value, its error, and what keys do together that were refined together. */
-static void add_up(struct error_study *study, const struct member_file *members) {
+/* Compute the stated value, the error, and the interaction of keys refined together. */
+static void sum_errors(struct error_study *study, const struct member_file *members) {
     int n_moved = 0;
     for (int k = 0; k < study->n_keys; k++) n_moved += study->key[k].stated != study->key[k].first_stated;
     for (int q = 0; q < study->n_asked; q++) {
@@ -198,11 +205,12 @@ static void add_up(struct error_study *study, const struct member_file *members)
             study->error[place] = sum + study->together[place];
         }
     }
+
     study->noise = noise_of(study, members, study->stated, 0, 0);
     study->cost = cost_of(study, members, study->stated) / cost_of(study, members, 0);
 }
 
-/* The largest error of a quantity over its value; NaN: one is unknown. */
+/* The largest error of a quantity over the value of the quantity; NaN: an error is unknown. */
 static double relative_error(const struct error_study *study, const double *error) {
     double most = 0;
     for (int q = 0; q < study->n_asked; q++) {
@@ -214,6 +222,7 @@ static double relative_error(const struct error_study *study, const double *erro
             most = fmax(most, relative);
         }
     }
+
     return most;
 }
 
@@ -228,15 +237,17 @@ enum status error_study_judge(struct error_study *study, const struct member_fil
             judge_choice(study, members, key);
         }
     }
-    add_up(study, members);
+
+    sum_errors(study, members);
     const double within = study->study.error->within;
     study->is_reached = isnan(within) || relative_error(study, study->error) <= within;
+
     return STATUS_OK;
 }
 
 // ---- refinement
 
-/* Whether the error falls where the stated value moves to a finer level. */
+/* Whether the error decreases if the stated value moves to a finer level. */
 static int is_movable(const struct error_study_key *key) {
     return !error_budget_is_flagged(key->verdict);
 }
@@ -251,7 +262,7 @@ static double relative_part(const struct error_study *study, const struct error_
     return most;
 }
 
-/* The same with the stated value at another level: 1 finer than now, known or not. */
+/* The predicted relative_part with the stated value at the next finer level, with or without a member. */
 static double next_part(const struct error_study *study, const struct member_file *members,
                         const struct error_study_key *key, double next) {
     const double design = sweep_error_order(&study->study, key->row);
@@ -265,7 +276,7 @@ static double next_part(const struct error_study *study, const struct member_fil
             if (part->verdict == ERROR_BUDGET_NONE) {
                 error = part->error;
             } else if (key->stated == 0) {
-                const double order = fmin(design, part->order);  // fmin passes over NaN
+                const double order = fmin(design, part->order);  // fmin ignores NaN
                 error *= pow(error_plan_size(key->row, next) / error_plan_size(key->row, key->value[0]), order);
             } else {
                 error += fabs(value_of(study, members, key->member[key->stated - 1], q, f) -
@@ -275,6 +286,7 @@ static double next_part(const struct error_study *study, const struct member_fil
             most = fmax(most, error / fabs(study->value[place]));
         }
     }
+
     return most;
 }
 
@@ -288,6 +300,7 @@ enum status error_study_find_next(struct error_study *study, const struct member
         most = relative_part(study, key);
         next->key = k;
     }
+
     if (next->key < 0) return STATUS_OK;
     struct error_study_key *const key = &study->key[next->key];
     const int has_room = key->n_levels < ERROR_STUDY_LEVELS && key->n_added < MOST_ADDED;
@@ -302,13 +315,15 @@ enum status error_study_find_next(struct error_study *study, const struct member
             error_plan_size(key->row, key->value[key->stated]) / error_plan_size(key->row, next->value);
         next->cost = pow(ratio, key->cost_exponent);
     }
+
     if (isnan(next->value)) return STATUS_OK;
     next->part = is_movable(key) ? next_part(study, members, key, next->value) : NAN;
     next->sum = relative_error(study, study->error) - most + next->part;
+
     return STATUS_OK;
 }
 
-/* The member with all keys that were refined at their levels. */
+/* Find or add the member with all refined keys at the stated levels. */
 static enum status find_stated(struct error_study *study, int *n_new) {
     struct error_plan_change changes[SWEEP_N_ERROR_KEYS];
     int n = 0, is_new;
@@ -322,18 +337,21 @@ static enum status find_stated(struct error_study *study, int *n_new) {
     return STATUS_OK;
 }
 
-/* One step: to a finer level that is known, or to another one. */
+/* Move to the next finer level, or insert a finer level. */
 static enum status take_step(struct error_study *study, const struct error_study_next *next, int *n_new) {
     struct error_study_key *const key = &study->key[next->key];
     if (next->is_member) {
         key->stated--;
         return find_stated(study, n_new);
     }
+
     error_plan_insert(key, next->value);
     key->n_added++;
-    // more nodes need more points of the sheet, on all levels
+
+    // more nodes need more sheet points at all levels
     for (int i = 0; i < key->n_levels && strcmp(key->row->path, "fish.nodes") == 0; i++) key->member[i] = -1;
     TRY(error_plan_members(study, n_new));
+
     return find_stated(study, n_new);
 }
 
@@ -358,6 +376,7 @@ enum status error_study_refine(struct error_study *study, const struct member_fi
         if (*n_new > 0) return STATUS_OK;
         TRY(error_study_judge(study, members));
     }
+
     return STATUS_OK;
 }
 
@@ -365,6 +384,7 @@ void error_study_say_cost(const struct error_study *study, char words[ERROR_STUD
     const double within = study->study.error->within;
     double part[SWEEP_N_ERROR_KEYS], ratio[SWEEP_N_ERROR_KEYS], order[SWEEP_N_ERROR_KEYS], sum = 0, fixed = 0, cost = 1;
     const char *worst = "";
+
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
         const int is_fixed = !is_error(key) || key->verdict != ERROR_BUDGET_ACCEPTED;
@@ -375,12 +395,14 @@ void error_study_say_cost(const struct error_study *study, char words[ERROR_STUD
         if (is_fixed && part[k] > within / 2) worst = key->row->path;
         fixed += is_fixed ? part[k] : 0;
     }
+
     if (fixed > 0.9 * within || isnan(relative_error(study, study->error))) {
         snprintf(words, ERROR_STUDY_BYTES, "the errors of keys that are flagged or unknown cannot be predicted%s%s",
                  *worst ? ": " : "", worst);
         return;
     }
-    // the largest part first, in steps of a tenth
+
+    // refine the largest part first, in steps of 10 %
     const double step = 1.1;
     while (sum > within) {
         int k = -1;
@@ -393,6 +415,7 @@ void error_study_say_cost(const struct error_study *study, char words[ERROR_STUD
         ratio[k] *= step;
         cost *= pow(step, study->key[k].cost_exponent);
     }
+
     int length = 0;
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
@@ -403,5 +426,6 @@ void error_study_say_cost(const struct error_study *study, char words[ERROR_STUD
                            key->row->kind == SWEEP_POINTS ? 1 + round((value - 1) * ratio[k]) : value / ratio[k]);
         if (length >= ERROR_STUDY_BYTES) return;
     }
+
     snprintf(words + length, (size_t)(ERROR_STUDY_BYTES - length), ": about %.2g times the CPU time", cost);
 }

@@ -1,4 +1,4 @@
-/* member_file.c: reading the end of a member of a study. */
+/* member_file.c: reading status and final values of a member of a study. */
 #include "study/member_file.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 
 enum { MAX_FISH = 1000000 };
 
-// ---- the table of quantities: first what is in the last row of a result, then what is computed
+// ---- the table of quantities: first the last rows of variables, then computed quantities
 
 static const char *const computed[] = {"nose",       "tail",       "lateral_drift", "mean_heading",
                                        "nose_error", "tail_error", "power_error",   "beat_time"};
@@ -59,6 +59,7 @@ const struct member_file_quantity *member_file_quantity(int i) {
                                                      .of_steady = c == BEAT_TIME};
         }
     }
+
     return i < n ? &all[i] : NULL;
 }
 
@@ -104,7 +105,7 @@ struct reading {
     struct member_file *member;
 };
 
-/* The last row of a variable that gives a quantity, or the value of a steady state. */
+/* Read the last row of the variable of a quantity, or the value of a steady state. */
 static enum status read_quantity(const struct reading *reading, int q) {
     const struct member_file_quantity *const quantity = member_file_quantity(q);
     if (!netcdf_has(&reading->reader, quantity->name)) return STATUS_OK;
@@ -117,10 +118,11 @@ static enum status read_quantity(const struct reading *reading, int q) {
     for (int f = 0; f < (quantity->of_fish ? reading->member->n_fish : 1); f++) {
         for (int k = 0; k < 1 + quantity->of_xy; k++) *member_file_place(reading->member, q, f, k) = *from++;
     }
+
     return STATUS_OK;
 }
 
-/* A value of a fish that does not change with time; or n values of a row of a variable over (time, fish, ...). */
+/* Read a time-independent value of a fish, or values of one row of a variable over (time, fish, ...). */
 static enum status read_constant(const struct reading *reading, const char *name, size_t f, double *value) {
     return netcdf_read_doubles(&reading->reader, name, (struct netcdf_slice[]){{"fish", f, 1}, {NULL}}, value);
 }
@@ -163,11 +165,12 @@ static enum status compute_drift(const struct reading *reading, size_t f, double
     return STATUS_OK;
 }
 
-/* The mean heading over the last period, or over the whole run where that is shorter: trapezoids. */
+/* The mean heading over the last period, or over a shorter run: trapezoidal rule. */
 static enum status compute_mean_heading(const struct reading *reading, size_t f, double *mean) {
     const double *const time = reading->time, *const heading = reading->heading;
     const size_t last = reading->n_rows - 1;
     double frequency;
+
     TRY(read_constant(reading, "frequency", f, &frequency));
     const struct netcdf_slice slice[] = {{"time", 0, reading->n_rows}, {"fish", f, 1}, {NULL}};
     TRY(netcdf_read_doubles(&reading->reader, "heading", slice, reading->heading));
@@ -178,27 +181,31 @@ static enum status compute_mean_heading(const struct reading *reading, size_t f,
     double sum = 0;
     for (; row < last; row++) sum += (heading[row] + heading[row + 1]) / 2 * (time[row + 1] - time[row]);
     *mean = duration > 0 ? sum / duration : NAN;
+
     return STATUS_OK;
 }
 
-/* The wall time over the beats of the search, of its multipliers and of the rows; none without a beat. */
+/* The wall time per beat of a steady search, including multipliers and rows; NaN without a beat. */
 static enum status compute_beat_time(const struct reading *reading, double *time) {
     static const char *const names[] = {"steady_beats", "steady_multiplier_beats"};
     const struct netcdf_slice last[] = {{"time", reading->n_rows - 1, 1}, {NULL}};
     double count, beats = 0, wall_time, frequency;
+
     if (!netcdf_has(&reading->reader, names[0])) return STATUS_OK;
     for (int i = 0; i < 2; i++) {
         TRY(netcdf_read_doubles(&reading->reader, names[i], (struct netcdf_slice[]){{NULL}}, &count));
         beats += count;
     }
+
     TRY(read_constant(reading, "frequency", 0, &frequency));
     TRY(netcdf_read_doubles(&reading->reader, "wall_time", last, &wall_time));
     beats += frequency > 0 ? (reading->time[reading->n_rows - 1] - reading->time[0]) * frequency : 0;
     *time = beats > 0 ? wall_time / beats : NAN;
+
     return STATUS_OK;
 }
 
-/* The quantities that are computed, of one fish. */
+/* Compute the computed quantities of one fish. */
 static enum status compute(const struct reading *reading, int f) {
     const int first = member_file_n_quantities() - N_COMPUTED;
     const struct member_file *const member = reading->member;
@@ -213,14 +220,17 @@ static enum status read_attributes(struct reading *reading) {
     struct member_file *const member = reading->member;
     const struct netcdf_reader *const reader = &reading->reader;
     int schema;
+
     TRY(netcdf_read_integer(reader, "shoal_schema", -1, &schema));
     if (schema != RESULT_SCHEMA) {
         return status_fail(STATUS_FILE, "%s: not a result of this version of shoal", reader->path);
     }
+
     TRY(netcdf_read_integer(reader, "study_member", -1, &member->number));
     TRY(netcdf_read_string(reader, "run_status", &member->status));
     TRY(netcdf_read_string(reader, "warnings", &member->warnings));
     TRY(netcdf_read_string(reader, "study_case", &member->study));
+
     return netcdf_read_string(reader, "case_effective", &member->effective);
 }
 
@@ -237,10 +247,12 @@ static enum status read_values(struct reading *reading) {
     if (!reading->time || !reading->heading || !reading->values) {
         return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reader->path);
     }
+
     const struct netcdf_slice all_rows[] = {{"time", 0, reading->n_rows}, {NULL}};
     TRY(netcdf_read_doubles(reader, "time", all_rows, reading->time));
     for (int q = 0; q < member_file_n_quantities() - N_COMPUTED; q++) TRY(read_quantity(reading, q));
     for (int f = 0; f < reading->member->n_fish; f++) TRY(compute(reading, f));
+
     return STATUS_OK;
 }
 
@@ -252,6 +264,7 @@ enum status member_file_read(struct member_file *member, const char *path) {
     if (reading.reader.n_missing > 0) {
         status = status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
     }
+
     if (status == STATUS_OK) status = read_attributes(&reading);
     if (status == STATUS_OK) status = read_values(&reading);
     netcdf_close(&reading.reader);
@@ -259,6 +272,7 @@ enum status member_file_read(struct member_file *member, const char *path) {
     free(reading.heading);
     free(reading.values);
     if (status != STATUS_OK) member_file_free(member);
+
     return status;
 }
 

@@ -1,4 +1,4 @@
-/* study.c: run the members of a study, some at a time. */
+/* study.c: run the members of a study in parallel processes. */
 #define _DEFAULT_SOURCE  // MAP_ANONYMOUS
 #include "study/study.h"
 
@@ -28,26 +28,26 @@
 
 enum { REASON_BYTES = 2048 };
 
-/* What a process reports to the study, in shared memory. */
+/* Report of a process to the study, in shared memory. */
 struct report {
-    double part; /* of its run */
+    double part; /* completed part of the run, 0 to 1 */
     double t;    /* s */
     char reason[REASON_BYTES];
 };
 
-/* One process at a time. */
+/* A slot for one process at a time. */
 struct job {
     pid_t process; /* 0: none */
     int member;
     struct timespec started;
-    int is_late; /* it has been asked to stop: see study_options.limit */
+    int is_late; /* stopped after study_options.limit */
     struct report *report;
 };
 
 struct study {
     const struct case_values *values;
     const struct study_options *options;
-    struct result_lock lock; /* on its members */
+    struct result_lock lock; /* on the members */
     int n_jobs;
     struct job *job;       /* (n_jobs) */
     struct report *report; /* shared memory                                        (n_jobs) */
@@ -56,7 +56,7 @@ struct study {
     struct study_progress progress;
     struct timespec started;
     int is_stopping;
-    const struct job *required; /* a required member that has failed; NULL: none has */
+    const struct job *required; /* failed required member; NULL: none */
 };
 
 static int is_stopped(const struct study *study) {
@@ -69,15 +69,15 @@ static double seconds_since(const struct timespec *start) {
     return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
 }
 
-// ---- one member, in its own process
+// ---- one member, in a separate process
 
-static void report_progress(const struct simulate_progress *now, void *data) {
+static void member_report_progress(const struct simulate_progress *now, void *data) {
     struct report *const report = data;
     report->part = now->t / now->end;
     report->t = now->t;
 }
 
-/* Run a member, or go on with it where it was stopped. */
+/* Run a member, or resume the member from a checkpoint. */
 static enum status run_or_resume(const struct case_values *values, const struct simulate_options *options) {
     char *effective;
     TRY(case_show(values, &effective));
@@ -91,18 +91,19 @@ static enum status run_or_resume(const struct case_values *values, const struct 
     } else {
         status = simulate_run(values, options);
     }
+
     free(checkpoint);
     free(effective);
     return status;
 }
 
-static void report_beats(const struct steady_progress *now, void *data) {
+static void member_report_beats(const struct steady_progress *now, void *data) {
     struct report *const report = data;
     report->part = (double)now->n_beats / now->max_beats;
     report->t = now->t;
 }
 
-/* Find the steady state of a member, from that of the one before it where there is one. */
+/* Find the steady state of a member; start from the steady state of the preceding member, if any. */
 static enum status find_steady(const struct study *study, const struct job *job, const struct case_values *values,
                                const struct simulate_options *options) {
     const int before = sweep_member_before(study->values, job->member);
@@ -112,15 +113,16 @@ static enum status find_steady(const struct study *study, const struct job *job,
                                     .from = from,
                                     .overwrite = options->overwrite,
                                     .command = options->command,
-                                    .progress = report_beats,
+                                    .progress = member_report_beats,
                                     .data = options->data,
                                     .stop = options->stop};
     enum status status = steady_run(values, &search);
     if (status == STATUS_FILE && from) {
-        // that one has failed, or has not been run: the start of the case
+        // the preceding member failed or has not run: start from the initial values of the case
         search.from = NULL;
         status = steady_run(values, &search);
     }
+
     free(from);
     return status;
 }
@@ -133,7 +135,7 @@ static enum status run_member(const struct study *study, const struct job *job) 
     const struct simulate_options options = {.path = path,
                                              .overwrite = 1,
                                              .command = study->options->command,
-                                             .progress = report_progress,
+                                             .progress = member_report_progress,
                                              .data = job->report,
                                              .stop = study->options->stop};
     if (!path) status = STATUS_MEMORY;
@@ -141,12 +143,13 @@ static enum status run_member(const struct study *study, const struct job *job) 
         const int is_steady = sweep_is_steady(study->values);
         status = is_steady ? find_steady(study, job, &values, &options) : run_or_resume(&values, &options);
     }
+
     free(path);
     case_free(&values);
     return status;
 }
 
-/* Let every SIGINT ask to stop here, not only the first: a second one to the whole process group is for the study. */
+/* Keep the SIGINT handler after the first signal: a second SIGINT to the process group is meant for the study. */
 static void keep_handler(void) {
     struct sigaction action;
     sigaction(SIGINT, NULL, &action);
@@ -156,9 +159,9 @@ static void keep_handler(void) {
 
 /* Never returns. mask: the signals that a member blocks. */
 static void be_member(const struct study *study, const struct job *job, pid_t parent, const sigset_t *mask) {
-    // a killed study stops its members
+    // the members stop if the study is killed
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    // once the study has been asked to stop its handlers are gone
+    // a study that is stopping has no signal handlers any more
     if (is_stopped(study) || getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
     keep_handler();
     sigprocmask(SIG_SETMASK, mask, NULL);
@@ -167,14 +170,15 @@ static void be_member(const struct study *study, const struct job *job, pid_t pa
     _exit(status_exit_code(status));
 }
 
-static enum status start(struct study *study, struct job *job, const sigset_t *mask) {
+static enum status member_start(struct study *study, struct job *job, const sigset_t *mask) {
     job->member = study->plan.member[study->n_next++];
     job->is_late = 0;
     clock_gettime(CLOCK_MONOTONIC, &job->started);
     *job->report = (struct report){0};
     const pid_t parent = getpid();
     fflush(NULL);
-    // no signal comes before the member is ready for it
+
+    // block all signals until the member is ready
     sigset_t all, before;
     sigfillset(&all);
     sigprocmask(SIG_BLOCK, &all, &before);
@@ -183,13 +187,14 @@ static enum status start(struct study *study, struct job *job, const sigset_t *m
     sigprocmask(SIG_SETMASK, &before, NULL);
     if (process < 0) return status_fail(STATUS_FILE, "cannot start a process: %s: use fewer with -j", strerror(errno));
     job->process = process;
+
     return STATUS_OK;
 }
 
 // ---- all members
 
-/* Record how a member ended. */
-static enum status finish(struct study *study, struct job *job, int outcome) {
+/* Record the outcome of a member. */
+static enum status member_finish(struct study *study, struct job *job, int outcome) {
     job->process = 0;
     const int code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : -1;
     if (code == status_exit_code(STATUS_STOPPED) && !job->is_late) return STATUS_OK;
@@ -197,6 +202,7 @@ static enum status finish(struct study *study, struct job *job, int outcome) {
         study->progress.n_done++;
         return study_folder_set_reason(study->options->folder, job->member, NULL);
     }
+
     study->progress.n_failed++;
     if (job->member < study->options->n_required) study->required = job;
     if (job->is_late) {
@@ -206,11 +212,12 @@ static enum status finish(struct study *study, struct job *job, int outcome) {
         snprintf(job->report->reason, REASON_BYTES, "killed by signal %d (%s)", WTERMSIG(outcome),
                  strsignal(WTERMSIG(outcome)));
     }
+
     if (*job->report->reason == '\0') {
         snprintf(job->report->reason, REASON_BYTES,
-                 "ended with exit code %d by a library: there is too little memory, or there are too many threads",
-                 code);
+                 "a library ended the process with exit code %d: use more memory or fewer threads", code);
     }
+
     return study_folder_set_reason(study->options->folder, job->member, job->report->reason);
 }
 
@@ -225,14 +232,14 @@ static void show_progress(struct study *study) {
     struct study_progress *const progress = &study->progress;
     progress->wall_time = seconds_since(&study->started);
     progress->n_running = n_running(study);
-    const double almost = 0.99;  // a member is done when its process is
+    const double almost = 0.99;  // a member is done after the end of the process
     double work = study->n_next - progress->n_running;
     for (int j = 0; j < study->n_jobs; j++) work += study->job[j].process ? almost * study->job[j].report->part : 0;
     progress->part = study->plan.n > 0 ? work / study->plan.n : 1;
     study->options->progress(progress, study->options->data);
 }
 
-/* Whether the next member begins with the result of one that is still running. */
+/* Whether the next member starts from the result of a running member. */
 static int has_to_wait(const struct study *study) {
     const int before = sweep_member_before(study->values, study->plan.member[study->n_next]);
     for (int j = 0; j < study->n_jobs; j++) {
@@ -241,7 +248,7 @@ static int has_to_wait(const struct study *study) {
     return 0;
 }
 
-/* Ask all processes to stop at their next event, once. */
+/* Ask all processes once to stop at the next event. */
 static void stop_all(struct study *study) {
     if (study->is_stopping) return;
     study->is_stopping = 1;
@@ -250,7 +257,7 @@ static void stop_all(struct study *study) {
     }
 }
 
-/* Ask those to stop, once, that take longer than they may. */
+/* Ask processes beyond the time limit once to stop. */
 static void stop_late(struct study *study) {
     for (int j = 0; j < study->n_jobs && study->options->limit > 0; j++) {
         struct job *const job = &study->job[j];
@@ -260,18 +267,19 @@ static void stop_late(struct study *study) {
     }
 }
 
-/* Collect the processes that have ended. */
-static enum status collect(struct study *study) {
+/* Collect ended processes. */
+static enum status collect_ended(struct study *study) {
     for (int j = 0; j < study->n_jobs; j++) {
         int outcome;
         const pid_t process = study->job[j].process;
-        if (process && waitpid(process, &outcome, WNOHANG) == process) TRY(finish(study, &study->job[j], outcome));
+        if (process && waitpid(process, &outcome, WNOHANG) == process)
+            TRY(member_finish(study, &study->job[j], outcome));
     }
     return STATUS_OK;
 }
 
-/* Start members while there are any, until all have ended. mask: the signals that a member blocks. */
-static enum status loop(struct study *study, const sigset_t *mask) {
+/* Start members until all members have ended. mask: the signals that a member blocks. */
+static enum status run_until_all_end(struct study *study, const sigset_t *mask) {
     sigset_t ended;
     sigemptyset(&ended);
     sigaddset(&ended, SIGCHLD);
@@ -282,17 +290,17 @@ static enum status loop(struct study *study, const sigset_t *mask) {
         stop_late(study);
         for (int j = 0; j < study->n_jobs && !study->is_stopping && status == STATUS_OK; j++) {
             if (study->job[j].process == 0 && study->n_next < study->plan.n && !has_to_wait(study))
-                status = start(study, &study->job[j], mask);
+                status = member_start(study, &study->job[j], mask);
         }
         show_progress(study);
         if (n_running(study) == 0) return status;
         sigtimedwait(&ended, NULL, &patience);
-        const enum status collected = collect(study);
+        const enum status collected = collect_ended(study);
         if (status == STATUS_OK) status = collected;
     }
 }
 
-static enum status run_all(struct study *study) {
+static enum status run_jobs(struct study *study) {
     study->job = calloc((size_t)study->n_jobs, sizeof *study->job);
     study->report = mmap(NULL, (size_t)study->n_jobs * sizeof *study->report, PROT_READ | PROT_WRITE,
                          MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -300,24 +308,26 @@ static enum status run_all(struct study *study) {
     if (!study->job || !study->report) return status_fail(STATUS_MEMORY, "out of memory: %d processes", study->n_jobs);
     for (int j = 0; j < study->n_jobs; j++) study->job[j].report = &study->report[j];
 
-    // a blocked signal stays pending, so that the end of a process is never missed
+    // a blocked signal stays pending, so the end of a process is never missed
     sigset_t ended, before;
     sigemptyset(&ended);
     sigaddset(&ended, SIGCHLD);
     sigprocmask(SIG_BLOCK, &ended, &before);
-    const enum status status = loop(study, &before);
+    const enum status status = run_until_all_end(study, &before);
     sigprocmask(SIG_SETMASK, &before, NULL);
     TRY(status);
     if (study->required) {
         return status_fail(STATUS_SOLVER, "member %d failed: %s", study->required->member,
                            study->required->report->reason);
     }
+
     if (!is_stopped(study)) return STATUS_OK;
-    return status_fail(STATUS_STOPPED, "stopped by a signal: %d of %d members are finished; the same command goes on",
+    return status_fail(STATUS_STOPPED,
+                       "stopped by a signal: %d of %d members are finished; repeat the command to continue",
                        study->progress.n_done, study->progress.n_members);
 }
 
-/* How many members run at once: as many as there are processors for their threads, of those that we may use. */
+/* The number of simultaneous members: usable processors over threads per member. */
 static int n_at_once(const struct study *study) {
     int n = study->options->n_processes;
     if (n == 0) n = omp_get_num_procs() / study->plan.max_threads;
@@ -325,7 +335,7 @@ static int n_at_once(const struct study *study) {
     return n < study->plan.n ? n : study->plan.n;
 }
 
-/* No other study may run members of this one in the folder. */
+/* Lock the members, so that no other study runs the same members in the folder. */
 static enum status lock_members(struct study *study) {
     const struct study_options *const options = study->options;
     TRY(study_folder_create(options->folder));
@@ -335,7 +345,7 @@ static enum status lock_members(struct study *study) {
 
 static enum status plan_and_run(struct study *study) {
     const struct study_options *const options = study->options;
-    // a plan that is refused makes no folder
+    // a refused plan creates no folder
     const int exists = access(options->folder, F_OK) == 0;
     if (exists) TRY(lock_members(study));
     TRY(study_plan_create(&study->plan, study->values, options->folder, options->first, options->last, options->force));
@@ -343,7 +353,7 @@ static enum status plan_and_run(struct study *study) {
     study->progress.n_done = study->plan.n_done;
     if (!exists) TRY(lock_members(study));
     study->n_jobs = n_at_once(study);
-    return study->n_jobs > 0 ? run_all(study) : STATUS_OK;
+    return study->n_jobs > 0 ? run_jobs(study) : STATUS_OK;
 }
 
 enum status study_run(const struct case_values *values, const struct study_options *options, int *n_failed) {

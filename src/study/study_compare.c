@@ -1,4 +1,4 @@
-/* study_compare.c: write the sweep of a comparison, and run it. */
+/* study_compare.c: write the sweep of a comparison and run the study. */
 #define _DEFAULT_SOURCE  // mkdtemp
 #include "study/study_compare.h"
 
@@ -20,8 +20,8 @@ static const char standard_rtols[] = "1e-3,1e-4,1e-5,1e-6,1e-7";
 
 // ---- lists with commas
 
-/* Take the next word of a list; 0 at its end. */
-static int next_word(const char **list, char word[WORD_BYTES]) {
+/* Take the next word of a list; 0 at the end. */
+static int list_next_word(const char **list, char word[WORD_BYTES]) {
     if (**list == '\0') return 0;
     const size_t length = strcspn(*list, ",");
     snprintf(word, WORD_BYTES, "%.*s", (int)(length < WORD_BYTES ? length : WORD_BYTES - 1), *list);
@@ -29,7 +29,7 @@ static int next_word(const char **list, char word[WORD_BYTES]) {
     return 1;
 }
 
-/* Add all methods that choose their steps. */
+/* Add all methods with adaptive steps. */
 static void add_standard_methods(struct text *text) {
     text_add(text, "ida2,ida%d", methods_table[METHOD_IDA].order);
     for (int i = 0; i < methods_n; i++) {
@@ -50,7 +50,7 @@ void study_compare_words(struct text *text) {
     }
 }
 
-/* The row of the table of methods that a word names, and the order of that method; -1: none. */
+/* Find the method with this word: row of the table of methods, or -1, and order. */
 static int find_method(const char *word, int *order) {
     const struct method_properties *const ida = &methods_table[METHOD_IDA];
     const size_t n = strlen(ida->word);
@@ -58,18 +58,20 @@ static int find_method(const char *word, int *order) {
         *order = word[n] - '0';
         return *order >= 1 && *order <= ida->order ? METHOD_IDA : -1;
     }
+
     for (int i = 0; i < methods_n; i++) {
         if (i == METHOD_IDA || strcmp(methods_table[i].word, word) != 0) continue;
         *order = methods_table[i].order;
         return i;
     }
+
     return -1;
 }
 
 // ---- the sweep
 
 /* Add one member: a value for each of the four keys. */
-static void add_member(struct text *sweep, int method, int order, const char *rtol, const char *step) {
+static void sweep_add_member(struct text *sweep, int method, int order, const char *rtol, const char *step) {
     const int is_first = sweep->text && sweep->text[sweep->length - 1] == '[';
     text_add(sweep, "%s[%s, %d, %s, %s]", is_first ? "" : ", ", methods_table[method].word, order, rtol, step);
 }
@@ -82,37 +84,38 @@ static enum status refuse_method(const char *word) {
     return STATUS_CASE;
 }
 
-/* Add a method with each tolerance or step. rtol: where there are steps. */
-static enum status add_method(struct text *sweep, const char *word, const struct study_compare_options *options,
-                              const char *rtol) {
+/* Add a method with each tolerance or step. rtol: tolerance of members with fixed steps. */
+static enum status sweep_add_method(struct text *sweep, const char *word, const struct study_compare_options *options,
+                                    const char *rtol) {
     int order;
     const int method = find_method(word, &order);
     if (method < 0) return refuse_method(word);
     const int by_step = options->steps && method != METHOD_IDA;
     const char *list = by_step ? options->steps : options->rtols ? options->rtols : standard_rtols;
     char value[WORD_BYTES];
-    while (next_word(&list, value)) {
+    while (list_next_word(&list, value)) {
         double number;
         if (!text_number(value, &number)) {
             return status_fail(STATUS_CASE, "%s: '%s' is not a number", by_step ? "--steps" : "--rtol", value);
         }
-        add_member(sweep, method, order, by_step ? rtol : value, by_step ? value : "0");
+        sweep_add_member(sweep, method, order, by_step ? rtol : value, by_step ? value : "0");
     }
+
     return STATUS_OK;
 }
 
-/* Add the reference, and the same with ten times its tolerance. */
-static void add_references(struct text *sweep, double rtol) {
+/* Add the reference, and a second reference with ten times the tolerance. */
+static void sweep_add_references(struct text *sweep, double rtol) {
     for (int i = 0; i < STUDY_COMPARISON_N_REFERENCES; i++) {
         struct text number = {0};
         text_add_number(&number, i == 0 ? rtol : 10 * rtol);
-        add_member(sweep, METHOD_IDA, methods_table[METHOD_IDA].order, number.text ? number.text : "", "0");
+        sweep_add_member(sweep, METHOD_IDA, methods_table[METHOD_IDA].order, number.text ? number.text : "", "0");
         sweep->failed = sweep->failed || number.failed;
         text_free(&number);
     }
 }
 
-/* Write the assignment of the sweep: the references, and every round of the repeats. */
+/* Write the assignment of the sweep: the references and all rounds of repeats. */
 static enum status add_sweep(struct text *sweep, const struct case_values *values,
                              const struct study_compare_options *options) {
     struct text standard = {0}, rtol = {0};
@@ -121,19 +124,23 @@ static enum status add_sweep(struct text *sweep, const struct case_values *value
     enum status status = STATUS_OK;
     if (standard.failed || rtol.failed) status = status_fail(STATUS_MEMORY, "out of memory: a comparison");
     text_add(sweep, "sweep=[{keys: [solver.method, solver.order, solver.rtol, solver.step], values: [");
-    add_references(sweep, options->reference_rtol);
+    sweep_add_references(sweep, options->reference_rtol);
+
     for (int repeat = 0; repeat < options->repeats; repeat++) {
         char word[WORD_BYTES];
         const char *methods = options->methods ? options->methods : standard.text;
-        while (status == STATUS_OK && next_word(&methods, word)) status = add_method(sweep, word, options, rtol.text);
+        while (status == STATUS_OK && list_next_word(&methods, word))
+            status = sweep_add_method(sweep, word, options, rtol.text);
     }
+
     text_add(sweep, "]}]");
     text_free(&standard);
     text_free(&rtol);
+
     return status;
 }
 
-/* Make the study: the case with the sweep. Only its end is of interest, so only that is written. */
+/* Create the study: the case with the sweep. Only the last row is written. */
 static enum status create_study(struct case_values *study, const struct case_values *values,
                                 const struct study_compare_options *options) {
     struct text sweep = {0}, row = {0}, wake = {0};
@@ -145,23 +152,27 @@ static enum status create_study(struct case_values *study, const struct case_val
     if (status == STATUS_OK && (sweep.failed || row.failed || wake.failed)) {
         status = status_fail(STATUS_MEMORY, "out of memory: a comparison");
     }
+
     if (status == STATUS_OK) {
         const char *const assignments[] = {sweep.text, row.text, wake.text};
         status = case_parse(study, values->merged, strlen(values->merged), values->name, NULL, 3, assignments);
     }
+
     text_free(&sweep);
     text_free(&row);
     text_free(&wake);
     if (status != STATUS_OK || study_comparison_is(study)) return status;
     case_free(study);
+
     return status_fail(STATUS_CASE, "nothing to compare: --methods, --rtol and --steps are lists");
 }
 
 // ---- the run
 
-/* Run all members in a folder and report. */
-static enum status run_in(const char *folder, const struct case_values *study,
-                          const struct study_compare_options *options, const struct study_options *run, FILE *stream) {
+/* Run all members in a folder, then report. */
+static enum status run_in_folder(const char *folder, const struct case_values *study,
+                                 const struct study_compare_options *options, const struct study_options *run,
+                                 FILE *stream) {
     const struct study_options all = {.folder = folder,
                                       .command = run->command,
                                       .n_processes = 1,
@@ -173,13 +184,16 @@ static enum status run_in(const char *folder, const struct case_values *study,
                                       .stop = run->stop};
     int n_failed;
     const enum status status = study_run(study, &all, &n_failed);
+
     if (status == STATUS_SOLVER) {
         return status_fail(STATUS_SOLVER, "the reference, %s; see --reference-rtol and --limit", status_message());
     }
+
     if (status == STATUS_STOPPED) return status_fail(STATUS_STOPPED, "stopped by a signal");
     TRY(status);
     const enum status reported = study_report(study, folder, options->path, run->command, 0, stream);
-    // that a method fails on a case is a result
+
+    // a method that fails on a case is a valid result
     return reported == STATUS_SOLVER ? STATUS_OK : reported;
 }
 
@@ -188,6 +202,7 @@ enum status study_compare(const struct case_values *values, const struct study_c
     if (options->repeats < 1 || options->repeats > MAX_REPEATS) {
         return status_fail(STATUS_CASE, "--repeats: expects 1 to %d", MAX_REPEATS);
     }
+
     TRY(sweep_refuse(values));
     const char *const place = getenv("TMPDIR");
     char folder[PATH_MAX];
@@ -196,12 +211,13 @@ enum status study_compare(const struct case_values *values, const struct study_c
     TRY(create_study(&study, values, options));
     enum status status = STATUS_OK;
     if (mkdtemp(folder)) {
-        status = run_in(folder, &study, options, run, stream);
+        status = run_in_folder(folder, &study, options, run, stream);
         study_folder_remove(folder);
     } else {
-        status = status_fail(STATUS_FILE, "%s: cannot make this folder (%s): set TMPDIR to another place", folder,
+        status = status_fail(STATUS_FILE, "%s: cannot create this folder (%s): set TMPDIR to another folder", folder,
                              strerror(errno));
     }
+
     case_free(&study);
     return status;
 }

@@ -26,9 +26,9 @@ static int is_complete(const struct member_file *member) {
 
 // ---- errors
 
-/* The distance of a point of a fish from that of the reference, in body lengths; NaN where one of them has none. */
-static double distance(const struct case_values *study, const struct member_file *members, int m, const char *point,
-                       int f) {
+/* The distance of a point of a fish from the same point in the reference, in body lengths; NaN: unknown. */
+static double point_error(const struct case_values *study, const struct member_file *members, int m, const char *point,
+                          int f) {
     if (!is_complete(&members[m]) || !is_complete(&members[0])) return NAN;
     const int q = member_file_quantity_number(point);
     const double x = member_file_value(&members[m], q, f, 0) - member_file_value(&members[0], q, f, 0);
@@ -36,7 +36,7 @@ static double distance(const struct case_values *study, const struct member_file
     return hypot(x, y) / study->school.fish[f].length;
 }
 
-/* The relative error of the work of a fish's muscle; of a fish without one, of its mean power into the water. */
+/* The relative error of the muscle work of a fish, or without a muscle of the mean power into the water. */
 static double power_error(const struct member_file *members, int m, int f) {
     if (!is_complete(&members[m]) || !is_complete(&members[0])) return NAN;
     static const char *const powers[] = {"actuation_work", "mean_power"};
@@ -55,14 +55,14 @@ void study_comparison_fill_errors(const struct case_values *study, const struct 
               power = member_file_quantity_number("power_error");
     for (int m = 0; m < sweep_n_members(study); m++) {
         for (int f = 0; f < members[m].n_fish; f++) {
-            *member_file_place(&members[m], nose, f, 0) = distance(study, members, m, "nose", f);
-            *member_file_place(&members[m], tail, f, 0) = distance(study, members, m, "tail", f);
+            *member_file_place(&members[m], nose, f, 0) = point_error(study, members, m, "nose", f);
+            *member_file_place(&members[m], tail, f, 0) = point_error(study, members, m, "tail", f);
             *member_file_place(&members[m], power, f, 0) = power_error(members, m, f);
         }
     }
 }
 
-/* The largest error of a fish. */
+/* The largest error over the fish. */
 static double largest_error(const struct case_values *study, const struct member_file *member, const char *error) {
     double max = NAN;
     for (int f = 0; f < study->school.n_fish; f++) {
@@ -73,7 +73,7 @@ static double largest_error(const struct case_values *study, const struct member
 
 // ---- repeats
 
-/* What member m sets a key to. */
+/* The value of a key in member m. */
 static const char *set_to(const struct case_values *study, int m, int key) {
     return study->sweep[0].value[m * N_KEYS + key];
 }
@@ -86,18 +86,18 @@ static int are_repeats(const struct case_values *study, int m, int other) {
 }
 
 /* The first of the repeats of member m. */
-static int first_of(const struct case_values *study, int m) {
+static int first_repeat(const struct case_values *study, int m) {
     int first = STUDY_COMPARISON_N_REFERENCES;
     while (!are_repeats(study, m, first)) first++;
     return first;
 }
 
-static int ascending(const void *a, const void *b) {
+static int compare_numbers(const void *a, const void *b) {
     const double *const one = a, *const other = b;
     return (*one > *other) - (*one < *other);
 }
 
-/* Wall time of a setting, s: the median of its complete repeats, and half of their range; NaN: too few are complete. */
+/* Wall time of a setting, s: median and half range of the complete repeats; NaN: too few complete repeats. */
 struct wall_time {
     double median, spread;
 };
@@ -112,13 +112,13 @@ static struct wall_time wall_time_of(const struct case_values *study, const stru
         buffer[n++] = member_file_value(&members[i], wall_time, 0, 0);
     }
     if (n == 0) return (struct wall_time){NAN, NAN};
-    qsort(buffer, (size_t)n, sizeof *buffer, ascending);
+    qsort(buffer, (size_t)n, sizeof *buffer, compare_numbers);
     return (struct wall_time){(buffer[(n - 1) / 2] + buffer[n / 2]) / 2, n > 1 ? (buffer[n - 1] - buffer[0]) / 2 : NAN};
 }
 
 // ---- the table
 
-/* "ida2" for ida of order 2, else the word of the method. */
+/* "ida2" for ida of order 2, otherwise the word of the method. */
 static void name_method(const struct case_values *study, int m, char name[STUDY_CELL_BYTES]) {
     const char *const word = set_to(study, m, METHOD);
     snprintf(name, STUDY_CELL_BYTES, "%s%s", word, strcmp(word, "ida") == 0 ? set_to(study, m, ORDER) : "");
@@ -129,7 +129,7 @@ static int has_step(const struct case_values *study, int m) {
     return text_number(set_to(study, m, STEP), &step) && step > 0;
 }
 
-/* The counts and their columns. */
+/* The counts and the columns of the table. */
 static const struct count {
     const char *quantity, *head;
 } counts[] = {
@@ -140,7 +140,7 @@ static const struct count {
 };
 enum { N_COUNTS = sizeof counts / sizeof *counts, N_BEFORE = 8, N_COLUMNS = N_BEFORE + N_COUNTS + 2 };
 
-static void fill_head(const struct study_table *table) {
+static void comparison_fill_head(const struct study_table *table) {
     static const char *const heads[N_BEFORE][2] = {{"method", ""},      {"rtol", ""},        {"step", "s"},
                                                    {"nose", "lengths"}, {"tail", "lengths"}, {"power", "part"},
                                                    {"wall", "s"},       {"+-", "s"}};
@@ -152,8 +152,8 @@ static void fill_head(const struct study_table *table) {
     study_table_set(table, 0, N_COLUMNS - 1, "status");
 }
 
-static void fill_row(const struct study_table *table, int row, const struct case_values *study,
-                     const struct member_file *members, int m, struct wall_time wall_time) {
+static void comparison_fill_row(const struct study_table *table, int row, const struct case_values *study,
+                                const struct member_file *members, int m, struct wall_time wall_time) {
     const struct member_file *const member = &members[m];
     char method[STUDY_CELL_BYTES];
     name_method(study, m, method);
@@ -165,14 +165,17 @@ static void fill_row(const struct study_table *table, int row, const struct case
     study_table_number(table, row, 5, "%.1e", largest_error(study, member, "power_error"));
     study_table_number(table, row, 6, "%.3f", wall_time.median);
     study_table_number(table, row, 7, "%.3f", wall_time.spread);
+
     for (int c = 0; c < N_COUNTS; c++) {
         const int quantity = member_file_quantity_number(counts[c].quantity);
         study_table_number(table, row, N_BEFORE + c, "%.0f", member_file_value(member, quantity, 0, 0));
     }
+
     const int evaluations = member_file_quantity_number("residual_evaluations");
     study_table_number(table, row, N_COLUMNS - 2, "%.1f",
                        1e6 * wall_time.median / member_file_value(member, evaluations, 0, 0));
-    // "failed: why": the reasons follow the table
+
+    // "failed: reason": the reasons follow the table
     study_table_set(table, row, N_COLUMNS - 1, "%.*s", (int)strcspn(member->status, ":"), member->status);
 }
 
@@ -181,11 +184,11 @@ static void print_reference(const struct case_values *study, const struct member
     char method[STUDY_CELL_BYTES], other[STUDY_CELL_BYTES];
     name_method(study, 0, method);
     name_method(study, 1, other);
-    fprintf(stream, "Reference: %s, rtol %s; %s, rtol %s is off by %.1e (nose) and %.1e (tail) lengths", method,
+    fprintf(stream, "Reference: %s, rtol %s; difference of %s, rtol %s: %.1e (nose) and %.1e (tail) lengths", method,
             set_to(study, 0, RTOL), other, set_to(study, 1, RTOL), largest_error(study, &members[1], "nose_error"),
             largest_error(study, &members[1], "tail_error"));
     const double power = largest_error(study, &members[1], "power_error");
-    if (!isnan(power)) fprintf(stream, ", and by a part of %.1e in the power", power);
+    if (!isnan(power)) fprintf(stream, ", relative difference of the power %.1e", power);
     fprintf(stream, ".\n");
 }
 
@@ -198,7 +201,7 @@ struct point {
     struct wall_time wall_time;
 };
 
-/* A cost at the common error, with its bar. */
+/* A cost at the common error, with an error bar. */
 struct cost {
     double value, bar;
 };
@@ -222,34 +225,34 @@ static int is_first_of_method(const struct case_values *study, int m) {
     return 1;
 }
 
-static int by_error(const void *a, const void *b) {
+static int compare_errors(const void *a, const void *b) {
     const struct point *const one = a, *const other = b;
     return (one->error > other->error) - (one->error < other->error);
 }
 
-/* The settings of the method of member m that are complete, from the smallest error to the largest. */
+/* The complete settings of the method of member m, by increasing error. */
 static int collect_points(const struct case_values *study, const struct member_file *members, int m, double *buffer,
                           struct point *point) {
     int n = 0;
     for (int i = m; i < sweep_n_members(study); i++) {
-        if (!is_same_method(study, i, m) || first_of(study, i) != i || !is_complete(&members[i])) continue;
+        if (!is_same_method(study, i, m) || first_repeat(study, i) != i || !is_complete(&members[i])) continue;
         const int evaluations = member_file_quantity_number("residual_evaluations");
         point[n] = (struct point){i, error_of(study, &members[i]), member_file_value(&members[i], evaluations, 0, 0),
                                   wall_time_of(study, members, i, buffer)};
         n += point[n].error > 0;
     }
-    qsort(point, (size_t)n, sizeof *point, by_error);
+    qsort(point, (size_t)n, sizeof *point, compare_errors);
     return n;
 }
 
-/* The setting i of which the error is below a bound and that of i + 1 is not; n - 1: all are below, -1: none is. */
-static int below(int n, const struct point *point, double error) {
+/* The last setting with an error below a bound; n - 1: all settings, -1: no setting. */
+static int last_below(int n, const struct point *point, double error) {
     int i = n - 1;
     while (i >= 0 && point[i].error > error) i--;
     return i;
 }
 
-static int cheapest(int n, const struct point *point) {
+static int cheapest_point(int n, const struct point *point) {
     int least = 0;
     for (int i = 1; i < n; i++) {
         if (point[i].evaluations <= point[least].evaluations) least = i;
@@ -258,22 +261,22 @@ static int cheapest(int n, const struct point *point) {
 }
 
 /* The cost at an error, by a power law between two settings. */
-static double interpolate(const struct point *fine, const struct point *coarse, double error, double of_fine,
-                          double of_coarse) {
+static double interpolate_cost(const struct point *fine, const struct point *coarse, double error, double of_fine,
+                               double of_coarse) {
     const double part = log(error / fine->error) / log(coarse->error / fine->error);
     return of_fine * pow(of_coarse / of_fine, fmin(1, fmax(0, part)));
 }
 
-/* The same with the error of the reference, by which both errors can be wrong, and the spread of the costs. */
+/* The cost at an error, with an error bar from the error of the reference (unsure) and the spread of the costs. */
 static struct cost cost_at(const struct point *fine, const struct point *coarse, double error, double unsure,
                            double of_fine, double of_coarse, double spread) {
-    const double value = interpolate(fine, coarse, error, of_fine, of_coarse);
-    const double dearer = interpolate(fine, coarse, fmax(error - unsure, fine->error), of_fine, of_coarse);
-    const double cheaper = interpolate(fine, coarse, error + unsure, of_fine, of_coarse);
+    const double value = interpolate_cost(fine, coarse, error, of_fine, of_coarse);
+    const double dearer = interpolate_cost(fine, coarse, fmax(error - unsure, fine->error), of_fine, of_coarse);
+    const double cheaper = interpolate_cost(fine, coarse, error + unsure, of_fine, of_coarse);
     return (struct cost){value, fmax(fabs(dearer - value), fabs(cheaper - value)) + (isnan(spread) ? 0 : spread)};
 }
 
-/* The smallest power of ten, not below ten times the error of the reference, that all methods reach. */
+/* The smallest power of ten that all methods reach, at least ten times the error of the reference. */
 static double common_error(const struct case_values *study, const struct member_file *members, double *buffer,
                            struct point *point) {
     double worst = 10 * error_of(study, &members[1]);
@@ -294,19 +297,20 @@ static void fill_cost(const struct study_table *table, int row, const struct cas
     char name[STUDY_CELL_BYTES], fine[STUDY_CELL_BYTES], coarse[STUDY_CELL_BYTES];
     name_method(study, point[0].member, name);
     study_table_set(table, row, 0, "%s", name);
-    const int i = below(n, point, error);
+    const int i = last_below(n, point, error);
     if (i < 0) {
         name_setting(study, point[0].member, fine);
         study_table_set(table, row, 5, "not reached: error %.1e with %s", point[0].error, fine);
         return;
     }
-    // where all settings are below, the cheapest one is an upper bound
+
+    // if the errors of all settings are below, the cheapest setting gives an upper bound
     const int is_bound = i == n - 1;
-    const struct point *const a = &point[is_bound ? cheapest(n, point) : i], *const b = is_bound ? a : a + 1;
+    const struct point *const a = &point[is_bound ? cheapest_point(n, point) : i], *const b = is_bound ? a : a + 1;
     name_setting(study, a->member, fine);
     const struct cost evaluations =
         is_bound ? (struct cost){a->evaluations, 0} : cost_at(a, b, error, unsure, a->evaluations, b->evaluations, 0);
-    const double spread = fmax(a->wall_time.spread, b->wall_time.spread);  // fmax passes over NaN
+    const double spread = fmax(a->wall_time.spread, b->wall_time.spread);  // fmax ignores NaN
     const struct cost wall = is_bound ? (struct cost){a->wall_time.median, a->wall_time.spread}
                                       : cost_at(a, b, error, unsure, a->wall_time.median, b->wall_time.median, spread);
     study_table_number(table, row, 1, "%.0f", evaluations.value);
@@ -321,16 +325,18 @@ static void fill_cost(const struct study_table *table, int row, const struct cas
     }
 }
 
-/* The cost of each method at one error that all of them reach, by power laws between its settings. */
+/* Print the cost of each method at a common error, by power laws between the settings. */
 static enum status print_costs(const struct case_values *study, const struct member_file *members, FILE *stream) {
     const int n = sweep_n_members(study);
     struct study_table table = {0};
     double *const buffer = calloc((size_t)n, sizeof *buffer);
     struct point *const point = calloc((size_t)n, sizeof *point);
     enum status status = STATUS_OK;
+
     if (!buffer || !point) status = status_fail(STATUS_MEMORY, "out of memory: a comparison of %d members", n);
     if (status == STATUS_OK) status = study_table_create(&table, 1 + n, 6);
     if (status != STATUS_OK) goto end;
+
     const double error = common_error(study, members, buffer, point), unsure = error_of(study, &members[1]);
     const char *const heads[] = {"method", "evaluat.", "+-", "wall, s", "+-", "settings"};
     for (int c = 0; c < 6; c++) study_table_set(&table, 0, c, "%s", heads[c]);
@@ -339,6 +345,7 @@ static enum status print_costs(const struct case_values *study, const struct mem
         const int n_points = is_first_of_method(study, m) ? collect_points(study, members, m, buffer, point) : 0;
         if (n_points > 0) fill_cost(&table, row++, study, n_points, point, error, unsure);
     }
+
     table.n_rows = row;
     if (row > 1 && isfinite(error)) {
         fprintf(stream, "Cost at an error of %.0e in nose, tail (lengths) and power (part), known to %.1e:\n", error,
@@ -349,16 +356,17 @@ end:
     study_table_free(&table);
     free(buffer);
     free(point);
+
     return status;
 }
 
 // ---- printing
 
-/* Why rows are not complete. */
-static void print_reasons(const struct case_values *study, const struct member_file *members, FILE *stream) {
+/* Print the reasons of incomplete rows. */
+static void comparison_print_reasons(const struct case_values *study, const struct member_file *members, FILE *stream) {
     for (int m = 0; m < sweep_n_members(study); m++) {
         if (!strchr(members[m].status, ':')) continue;
-        if (m >= STUDY_COMPARISON_N_REFERENCES && first_of(study, m) != m) continue;
+        if (m >= STUDY_COMPARISON_N_REFERENCES && first_repeat(study, m) != m) continue;
         char method[STUDY_CELL_BYTES];
         name_method(study, m, method);
         const int by_step = has_step(study, m);
@@ -370,23 +378,24 @@ static void print_reasons(const struct case_values *study, const struct member_f
 enum status study_comparison_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
     const int n = sweep_n_members(study);
     int n_rows = 0;
-    for (int m = STUDY_COMPARISON_N_REFERENCES; m < n; m++) n_rows += first_of(study, m) == m;
+    for (int m = STUDY_COMPARISON_N_REFERENCES; m < n; m++) n_rows += first_repeat(study, m) == m;
     double *const buffer = calloc((size_t)n, sizeof *buffer);
     if (!buffer) return status_fail(STATUS_MEMORY, "out of memory: a comparison of %d members", n);
     struct study_table table;
     enum status status = study_table_create(&table, 2 + n_rows, N_COLUMNS);
     if (status == STATUS_OK) {
-        fill_head(&table);
+        comparison_fill_head(&table);
         for (int m = STUDY_COMPARISON_N_REFERENCES, row = 2; m < n; m++) {
-            if (first_of(study, m) != m) continue;
-            fill_row(&table, row++, study, members, m, wall_time_of(study, members, m, buffer));
+            if (first_repeat(study, m) != m) continue;
+            comparison_fill_row(&table, row++, study, members, m, wall_time_of(study, members, m, buffer));
         }
         print_reference(study, members, stream);
         study_table_print(&table, stream);
         study_table_free(&table);
         status = print_costs(study, members, stream);
-        print_reasons(study, members, stream);
+        comparison_print_reasons(study, members, stream);
     }
+
     free(buffer);
     return status;
 }

@@ -1,8 +1,8 @@
-/* study_comparison.h: a study that compares methods of integration. Tested by tests/study/test_study_comparison.c and
+/* study_comparison.h: a study that compares integration methods. Tested by tests/study/test_study_comparison.c and
  * tests/study/test_compare.sh.
  *
- * Its one axis sets solver.method, solver.order, solver.rtol and solver.step, in this order. The first member is the
- * reference; the second tells how good that is; of all others those with the same values are repeats. */
+ * The single axis sets solver.method, solver.order, solver.rtol and solver.step, in this order. Member 0 is the
+ * reference; member 1 gives the error of the reference; further members with equal values are repeats. */
 #ifndef STUDY_COMPARISON_H
 #define STUDY_COMPARISON_H
 
@@ -17,13 +17,12 @@ enum { STUDY_COMPARISON_N_REFERENCES = 2 };
 /* Whether a study is a comparison. */
 int study_comparison_is(const struct case_values *study);
 
-/* Set nose_error, tail_error and power_error of each member of a comparison: the distance of nose and tail, at the end,
- * from those of the reference, in body lengths, and the relative error of the work of the muscle. In other studies
- * nothing happens. */
+/* Set nose_error, tail_error and power_error of each member of a comparison: final distance of nose and tail from the
+ * reference, in body lengths, and relative error of the muscle work. Other studies are unchanged. */
 void study_comparison_fill_errors(const struct case_values *study, const struct member_file *members);
 
-/* Print a row for each setting: the largest errors of a fish, the median of the wall times of the repeats and half of
- * their range, the counts of the solver; the cost of each method at one error; and why members failed. Fails with
+/* Print a row for each setting: largest errors over the fish, median and half range of the wall times of the repeats,
+ * solver counts. Print the cost of each method at a common error, and the reasons of failed members. Fails with
  * STATUS_MEMORY. */
 enum status study_comparison_print(const struct case_values *study, const struct member_file *members, FILE *stream);
 

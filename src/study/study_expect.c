@@ -1,4 +1,4 @@
-/* study_expect.c: test what the case expects of its members. */
+/* study_expect.c: test the expectations of a case on the members. */
 #include "study/study_expect.h"
 
 #include <math.h>
@@ -8,11 +8,11 @@
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
 
-/* The smallest and the largest of the values of a quantity that an expectation is about. */
+/* Smallest and largest value of a quantity over the members and fish of an expectation. */
 struct extrema {
     int n;
     double min[2], max[2]; /* x and y of points */
-    int missing;           /* a member that has no value; -1: none */
+    int missing;           /* a member without a value; -1: none */
 };
 
 static struct extrema extrema_of(const struct case_values *study, const struct member_file *members,
@@ -20,6 +20,7 @@ static struct extrema extrema_of(const struct case_values *study, const struct m
     const struct sweep_quantity *const what = &sweep_quantities[q];
     const int quantity = member_file_quantity_number(what->name);
     struct extrema extrema = {.min = {INFINITY, INFINITY}, .max = {-INFINITY, -INFINITY}, .missing = -1};
+
     for (int m = 0; m < sweep_n_members(study); m++) {
         if (!sweep_expects_of(study, one, m)) continue;
         for (int f = 0; f < (what->of_fish ? study->school.n_fish : 1); f++) {
@@ -33,16 +34,17 @@ static struct extrema extrema_of(const struct case_values *study, const struct m
             }
         }
     }
+
     return extrema;
 }
 
-/* The ratio of the largest to the smallest absolute value; infinite where the signs differ or a value is 0. */
+/* The ratio of the largest to the smallest absolute value; infinite if the signs differ or a value is 0. */
 static double ratio_of(double min, double max) {
     if (min > 0) return max / min;
     return max < 0 ? min / max : INFINITY;
 }
 
-/* Print a value and its bound; whether the bound is met. NaN is no bound. */
+/* Print a value and the bound; 1 if the bound is met or NaN (no bound). */
 static int test_bound(const char *what, double value, const char *word, double bound, FILE *stream) {
     if (isnan(bound)) return 1;
     const int is_lower = strcmp(word, "least") == 0;
@@ -51,12 +53,13 @@ static int test_bound(const char *what, double value, const char *word, double b
     return is_met;
 }
 
-/* Whether an expectation of a quantity is met. */
+/* Test the bounds of an expectation on one quantity. */
 static int test_quantity(const struct case_values *study, const struct member_file *members, int number, int q,
                          FILE *stream) {
     const struct sweep_expectation *const one = &study->expect[number];
     const struct extrema extrema = extrema_of(study, members, one, q);
     const char *const name = sweep_quantities[q].name;
+
     fprintf(stream, "%s%s%s, %d value%s\n", name, one->fish >= 0 ? " of " : "",
             one->fish >= 0 ? study->school.fish[one->fish].name : "", extrema.n, extrema.n == 1 ? "" : "s");
     if (extrema.missing >= 0) {
@@ -65,15 +68,17 @@ static int test_quantity(const struct case_values *study, const struct member_fi
                 is_complete ? "has no such value" : "is not complete");
         return 0;
     }
-    // a number has no second direction
+
+    // a scalar has no second direction
     const double width = extrema.max[0] - extrema.min[0];
     const double height = sweep_quantities[q].of_xy ? extrema.max[1] - extrema.min[1] : 0;
-    // each is printed
-    const int n_met =
-        test_bound("the smallest is", extrema.min[0], "least", one->min, stream) +
-        test_bound("the largest is", extrema.max[0], "most", one->max, stream) +
-        test_bound("they differ by", hypot(width, height), "most", one->spread, stream) +
-        test_bound("their ratio is", ratio_of(extrema.min[0], extrema.max[0]), "most", one->ratio, stream);
+
+    // no short circuit: print every bound
+    const int n_met = test_bound("the smallest is", extrema.min[0], "least", one->min, stream) +
+                      test_bound("the largest is", extrema.max[0], "most", one->max, stream) +
+                      test_bound("the spread is", hypot(width, height), "most", one->spread, stream) +
+                      test_bound("the ratio is", ratio_of(extrema.min[0], extrema.max[0]), "most", one->ratio, stream);
+
     return n_met == 4;
 }
 
@@ -91,7 +96,7 @@ int study_expects_failure(const struct case_values *study, const struct member_f
     return 0;
 }
 
-/* Whether all members that an expectation is about have failed as it says. */
+/* Whether all members of an expectation have failed with the expected message. */
 static int test_failures(const struct case_values *study, const struct member_file *members,
                          const struct sweep_expectation *one, FILE *stream) {
     int n = 0, wrong = -1;
@@ -100,18 +105,20 @@ static int test_failures(const struct case_values *study, const struct member_fi
         n++;
         if (!has_failed(&members[m], one->fails)) wrong = m;
     }
+
     fprintf(stream, "failures, %d member%s\n", n, n == 1 ? "" : "s");
     if (wrong < 0) {
         fprintf(stream, "  met      failed with '%s'\n", one->fails);
     } else {
         fprintf(stream, "  MISSED   member %d has not failed with '%s'\n", wrong, one->fails);
     }
+
     return wrong < 0;
 }
 
 // ---- all expectations
 
-/* Whether an expectation is met; if not, *what is the first quantity that misses it. */
+/* Whether an expectation is met; if not, *what is the first quantity that does not meet the expectation. */
 static int test_expectation(const struct case_values *study, const struct member_file *members, int number,
                             const char **what, FILE *stream) {
     const struct sweep_expectation *const one = &study->expect[number];
@@ -135,7 +142,8 @@ enum status study_expect(const struct case_values *study, const struct member_fi
         first = i;
         first_what = what;
     }
+
     if (n_missed == 0) return STATUS_OK;
-    return status_fail(STATUS_MISSED, "expect[%d]: %s: not what the case expects%s: see the output", first, first_what,
-                       n_missed > 1 ? ", nor are others" : "");
+    return status_fail(STATUS_MISSED, "expect[%d]: %s: expectation not met%s: see the output", first, first_what,
+                       n_missed > 1 ? ", and others" : "");
 }

@@ -14,18 +14,18 @@
 
 enum { MIN_TEXT = 128 /* bytes of the flag of an order */, NAME_BYTES = 256 };
 
-/* The variables of its own; those of the swept keys and the quantities follow. */
+/* The variables of study.nc that precede the swept keys and the quantities. */
 enum { MEMBER, STATUS, WARNINGS, FISH_NAME, N_OWN };
 static const struct own {
     const char *name, *dimension, *meaning;
 } own[N_OWN] = {
     {"member", "member", "number of the member"},
-    {"status", "member", "how the member ended"},
-    {"warnings", "member", "what is wrong with its result: a line each"},
+    {"status", "member", "status of the member at the end"},
+    {"warnings", "member", "warnings about the result of the member, one per line"},
     {"fish_name", "fish", "name of the fish"},
 };
 
-/* A study.nc that is being written. */
+/* An open study.nc. */
 struct writing {
     struct netcdf_writer writer;
     const struct case_values *study;
@@ -50,7 +50,7 @@ static void variable_name(const char *path, char name[NAME_BYTES]) {
     name[n] = '\0';
 }
 
-/* What member m sets a key to. */
+/* The value of a key in member m. */
 static const char *set_text(const struct writing *writing, int m, int axis, int key) {
     const struct sweep_axis *const swept = &writing->study->sweep[axis];
     return swept->value[sweep_member_value(writing->study, m, axis) * swept->n_keys + key];
@@ -60,7 +60,7 @@ static const char *warnings_of(const struct writing *writing, int m) {
     return writing->member[m].warnings ? writing->member[m].warnings : "";
 }
 
-/* The length of the longest string that the file has to hold. */
+/* The length of the longest string in the file. */
 static size_t longest_text(const struct writing *writing) {
     size_t max = writing->errors ? ERROR_STUDY_BYTES : MIN_TEXT;
     const struct case_values *const study = writing->study;
@@ -68,22 +68,25 @@ static size_t longest_text(const struct writing *writing) {
         if (strlen(writing->member[m].status) > max) max = strlen(writing->member[m].status);
         if (strlen(warnings_of(writing, m)) > max) max = strlen(warnings_of(writing, m));
     }
+
     for (int a = 0; a < study->n_axes; a++) {
         for (int i = 0; i < study->sweep[a].n_values * study->sweep[a].n_keys; i++) {
             if (strlen(study->sweep[a].value[i]) > max) max = strlen(study->sweep[a].value[i]);
         }
     }
+
     for (int f = 0; f < writing->n_fish; f++) {
         if (strlen(study->school.fish[f].name) > max) max = strlen(study->school.fish[f].name);
     }
+
     return max;
 }
 
 // ---- definition
 
-/* One variable of strings (n, text), or of numbers over the members; its number. */
-static int define(struct writing *writing, const char *name, enum netcdf_type type, int first_dimension,
-                  const char *long_name, const char *units) {
+/* Define a variable of strings (n, text) or of numbers (n); returns the number of the variable. */
+static int define_variable(struct writing *writing, const char *name, enum netcdf_type type, int first_dimension,
+                           const char *long_name, const char *units) {
     const struct netcdf_variable variable = {.name = name,
                                              .long_name = long_name,
                                              .units = units,
@@ -106,7 +109,7 @@ static void define_quantity(struct writing *writing, const struct member_file_qu
     netcdf_define_variable(&writing->writer, &variable);
 }
 
-/* Whether the file of a study has a quantity. */
+/* Whether study.nc contains a quantity. */
 static bool has_quantity(const struct case_values *study, const struct member_file_quantity *quantity) {
     if (quantity->of_steady) return sweep_is_steady(study);
     return !quantity->of_comparison || study_comparison_is(study);
@@ -116,8 +119,8 @@ static void define_key(struct writing *writing, int a, int k) {
     const struct sweep_axis *const axis = &writing->study->sweep[a];
     char name[NAME_BYTES];
     variable_name(axis->key[k].path, name);
-    const int number = define(writing, name, axis->key[k].is_number ? NETCDF_DOUBLE : NETCDF_TEXT,
-                              writing->member_dimension, axis->key[k].path, axis->key[k].unit);
+    const int number = define_variable(writing, name, axis->key[k].is_number ? NETCDF_DOUBLE : NETCDF_TEXT,
+                                       writing->member_dimension, axis->key[k].path, axis->key[k].unit);
     netcdf_write_integer(&writing->writer, number, "axis", a);
     if (k == 0 && axis->refine) netcdf_write_integer(&writing->writer, number, "refine", 1);
 }
@@ -131,16 +134,20 @@ static void define_all(struct writing *writing) {
     writing->text_dimension = netcdf_define_dimension(writer, "text", writing->n_text);
     netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_study", STUDY_FILE_SCHEMA);
     netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", study->merged);
+
     for (int i = 0; i < N_OWN; i++) {
-        define(writing, own[i].name, i == MEMBER ? NETCDF_INT : NETCDF_TEXT,
-               i == FISH_NAME ? writing->fish_dimension : writing->member_dimension, own[i].meaning, "1");
+        define_variable(writing, own[i].name, i == MEMBER ? NETCDF_INT : NETCDF_TEXT,
+                        i == FISH_NAME ? writing->fish_dimension : writing->member_dimension, own[i].meaning, "1");
     }
+
     for (int a = 0; a < study->n_axes; a++) {
         for (int k = 0; k < study->sweep[a].n_keys; k++) define_key(writing, a, k);
     }
+
     for (int q = 0; member_file_quantity(q); q++) {
         if (has_quantity(study, member_file_quantity(q))) define_quantity(writing, member_file_quantity(q));
     }
+
     const int of_orders[] = {writing->fish_dimension, writing->xy_dimension, writing->text_dimension};
     study_orders_define(writer, study, writing->orders, of_orders);
     const int of_errors[] = {writing->fish_dimension, writing->text_dimension};
@@ -157,7 +164,7 @@ static void write_text(struct writing *writing, const char *name, int row, const
                       (size_t[]){1, writing->n_text}, writing->text);
 }
 
-/* Write the buffer into the whole of a variable. */
+/* Write the buffer to a whole variable. */
 static void write_buffer(struct writing *writing, const char *name) {
     netcdf_write_doubles(&writing->writer, netcdf_number(&writing->writer, name), NULL, NULL, writing->buffer);
 }
@@ -192,18 +199,21 @@ static void write_all(struct writing *writing) {
         write_text(writing, own[STATUS].name, m, writing->member[m].status);
         write_text(writing, own[WARNINGS].name, m, warnings_of(writing, m));
     }
+
     for (int f = 0; f < writing->n_fish; f++) write_text(writing, own[FISH_NAME].name, f, study->school.fish[f].name);
     for (int a = 0; a < study->n_axes; a++) {
         for (int k = 0; k < study->sweep[a].n_keys; k++) write_key(writing, a, k);
     }
+
     for (int q = 0; member_file_quantity(q); q++) {
         if (has_quantity(study, member_file_quantity(q))) write_quantity(writing, q);
     }
+
     study_orders_write(&writing->writer, study, writing->orders, writing->n_text, writing->text);
     if (writing->errors) error_report_write(&writing->writer, writing->errors, writing->n_text, writing->text);
 }
 
-/* Write under a temporary name, and give it its own. */
+/* Write a temporary file, then rename the file to path. */
 static enum status write_file(struct writing *writing, const char *path, const char *command) {
     TRY(target_check(path, TARGET_NETCDF, true));
     TRY(netcdf_create(&writing->writer, path, writing->study->name, command));
@@ -222,6 +232,7 @@ enum status study_file_write(const char *path, const struct case_values *study, 
                               .errors = errors,
                               .n_members = sweep_n_members(study),
                               .n_fish = study->school.n_fish};
+
     writing.n_text = longest_text(&writing);
     writing.buffer = calloc((size_t)writing.n_members * (size_t)writing.n_fish * 2, sizeof *writing.buffer);
     writing.text = calloc(writing.n_text, 1);
@@ -230,6 +241,7 @@ enum status study_file_write(const char *path, const struct case_values *study, 
                                    : status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
     free(writing.buffer);
     free(writing.text);
+
     return status;
 }
 
@@ -244,6 +256,7 @@ int study_file_listed(int i, struct result_listed *listed) {
         snprintf(listed->dimensions, sizeof listed->dimensions, "%s%s", own[i].dimension, i == MEMBER ? "" : ", text");
         return 1;
     }
+
     int k = i - N_OWN;
     for (int q = 0; member_file_quantity(q); q++) {
         const struct member_file_quantity *const quantity = member_file_quantity(q);
@@ -254,6 +267,7 @@ int study_file_listed(int i, struct result_listed *listed) {
                  quantity->of_xy ? ", xy" : "");
         return 1;
     }
+
     int n_orders = 0;
     for (struct result_listed other; study_orders_listed(n_orders, &other);) n_orders++;
     return k < n_orders ? study_orders_listed(k, listed) : error_report_listed(k - n_orders, listed);

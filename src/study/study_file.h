@@ -1,4 +1,4 @@
-/* study_file.h: the file study.nc, which a study makes from the files of its members. Tested by
+/* study_file.h: the file study.nc, which is gathered from the member files of a study. Tested by
  * tests/study/test_study_file.c. */
 #ifndef STUDY_FILE_H
 #define STUDY_FILE_H
@@ -12,18 +12,16 @@
 
 enum { STUDY_FILE_SCHEMA = 1 /* attribute shoal_study */ };
 
-/* Write study.nc: the members (as many as the study has), what each of them set, all quantities, and the orders, or
- * where errors is not NULL the error budget. A file that is there is replaced when the new one is complete. Fails with
- * STATUS_FILE or STATUS_MEMORY. */
+/* Write study.nc: all members of the study, values of the swept keys, all quantities, the orders and, unless errors is
+ * NULL, the error budget. The complete new file replaces an existing file. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status study_file_write(const char *path, const struct case_values *study, const struct member_file *member,
                              const struct study_orders *orders, const struct error_study *errors, const char *command);
 
-/* Read it back: the study, and its *n_members members as far as the file has them (effective is empty). The caller
- * frees them with case_free and, each, member_file_free. Fails with STATUS_FILE or STATUS_MEMORY; nothing is then
- * owned. */
+/* Read study.nc: the study and the *n_members members, without the effective cases. The caller frees the study with
+ * case_free and the members with study_folder_free_members. On STATUS_FILE or STATUS_MEMORY the caller owns nothing. */
 enum status study_file_read(const char *path, struct case_values *study, struct member_file **members, int *n_members);
 
-/* Row i, from 0, of the list of its variables; 0 beyond the last. */
+/* Row i, from 0, of the list of variables; 0 beyond the last row. */
 int study_file_listed(int i, struct result_listed *listed);
 
 #endif

@@ -1,4 +1,4 @@
-/* study_file_read.c: reading study.nc back. Declared in study_file.h. */
+/* study_file_read.c: reading study.nc. Declared in study_file.h. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +31,7 @@ static enum status read_study(const struct netcdf_reader *reader, struct case_va
     return status;
 }
 
-/* One quantity of all members; a file of an earlier version may lack it. */
+/* Read one quantity of all members; files of earlier versions may lack the quantity. */
 static enum status read_quantity(const struct reading *reading, int q) {
     const struct member_file_quantity *const quantity = member_file_quantity(q);
     if (!netcdf_has(&reading->reader, quantity->name)) return STATUS_OK;
@@ -49,10 +49,11 @@ static enum status read_quantity(const struct reading *reading, int q) {
             }
         }
     }
+
     return STATUS_OK;
 }
 
-/* A string of a member; the caller frees it. */
+/* Read a string of a member; the caller frees the string. */
 static enum status read_string(const struct reading *reading, const char *name, size_t m, char **string) {
     *string = calloc(reading->n_text + 1, 1);
     if (!*string) return out_of_memory(reading->reader.path);
@@ -60,7 +61,7 @@ static enum status read_string(const struct reading *reading, const char *name, 
     return netcdf_read_text(&reading->reader, name, slice, *string);
 }
 
-/* Make room for a member, and read how it ended; a file of an earlier version has no warnings. */
+/* Allocate a member and read status and warnings; files of earlier versions have no warnings. */
 static enum status read_member(const struct reading *reading, size_t m) {
     struct member_file *const member = &reading->member[m];
     member->number = (int)m;
@@ -74,12 +75,14 @@ static enum status read_members(struct reading *reading) {
     const size_t n_fish = (size_t)reading->study->school.n_fish;
     const struct netcdf_reader *const reader = &reading->reader;
     size_t length;
+
     if (reading->study->error) {
-        // as many as it took
+        // an error study with refinement has a variable number of members
         TRY(netcdf_read_length(reader, "member", 1, MAX_MEMBERS, &reading->n_members));
     } else {
         TRY(netcdf_read_length(reader, "member", reading->n_members, reading->n_members, &length));
     }
+
     TRY(netcdf_read_length(reader, "fish", n_fish, n_fish, &length));
     TRY(netcdf_read_length(reader, "text", 1, INT_MAX, &reading->n_text));
     reading->member = calloc(reading->n_members, sizeof *reading->member);
@@ -87,6 +90,7 @@ static enum status read_members(struct reading *reading) {
     if (!reading->member || !reading->buffer) return out_of_memory(reader->path);
     for (size_t m = 0; m < reading->n_members; m++) TRY(read_member(reading, m));
     for (int q = 0; member_file_quantity(q); q++) TRY(read_quantity(reading, q));
+
     return STATUS_OK;
 }
 
@@ -112,5 +116,5 @@ enum status study_file_read(const char *path, struct case_values *study, struct 
         *n_members = (int)reading.n_members;
     }
     if (status == STATUS_OK || status == STATUS_MEMORY) return status;
-    return status_fail(STATUS_FILE, "%s; make the study's file again with `shoal gather`", status_message());
+    return status_fail(STATUS_FILE, "%s; write study.nc again with `shoal gather`", status_message());
 }

@@ -1,4 +1,4 @@
-/* study_folder.c: the files of the members, by their names. */
+/* study_folder.c: names, reasons and final values of member files. */
 #include "study/study_folder.h"
 
 #include <dirent.h>
@@ -19,7 +19,7 @@ enum status study_folder_create(const char *folder) {
     struct stat facts;
     if (mkdir(folder, 0777) == 0) return STATUS_OK;
     if (errno == EEXIST && stat(folder, &facts) == 0 && S_ISDIR(facts.st_mode)) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: cannot make this folder (%s): choose another one with -o", folder,
+    return status_fail(STATUS_FILE, "%s: cannot create this folder (%s): choose another folder with -o", folder,
                        strerror(errno));
 }
 
@@ -32,7 +32,7 @@ void study_folder_remove(const char *folder) {
 }
 
 char *study_folder_path(const char *folder, const char *name) {
-    // "./" keeps NetCDF from taking the name for an address
+    // NetCDF takes a name without "./" for a URL
     const size_t size = strlen(folder) + strlen(name) + 8;
     char *const path = malloc(size);
     if (path) {
@@ -67,19 +67,21 @@ enum status study_folder_set_reason(const char *folder, int member, const char *
     char *const path = study_folder_member(folder, member, ".failed");
     if (!path) return STATUS_MEMORY;
     struct durable_part part = {.descriptor = -1};
-    // nothing can be done about a full disk here: the result file says "running" or "failed" itself
+
+    // ignore a full disk: the result file itself contains the status "running" or "failed"
     if (!reason) {
         unlink(path);
     } else if (durable_begin(&part, path, 0666) == 0 && durable_write(part.descriptor, reason, strlen(reason)) == 0 &&
                durable_write(part.descriptor, "\n", 1) == 0) {
         durable_publish(&part, true);
     }
+
     durable_end(&part);
     free(path);
     return STATUS_OK;
 }
 
-/* Read why a member failed; 0 if there is no reason. */
+/* Read the reason of a failed member; 0: no reason. */
 static int read_reason(const char *folder, int number, char reason[REASON_BYTES]) {
     char *const path = study_folder_member(folder, number, ".failed");
     const int file = path ? open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC) : -1;
@@ -93,7 +95,7 @@ static int read_reason(const char *folder, int number, char reason[REASON_BYTES]
     return 1;
 }
 
-/* Read one member and how it ended. */
+/* Read the final values and the status of one member. */
 static enum status read_member(struct member_file *member, const struct case_values *study, const char *folder,
                                int number) {
     char *const path = study_folder_member(folder, number, ".nc");
@@ -107,13 +109,16 @@ static enum status read_member(struct member_file *member, const struct case_val
             status = replace_status(member, "failed: %s", status_message());
         } else if (status == STATUS_OK && (strcmp(member->study, study->merged) != 0 || member->number != number ||
                                            member->n_fish != study->school.n_fish)) {
-            status = status_fail(STATUS_FILE, "%s is a result of another study than the first file there", path);
+            status =
+                status_fail(STATUS_FILE, "%s is a result of another study than the first file in the folder", path);
         }
     }
+
     free(path);
     TRY(status);
     char reason[REASON_BYTES];
     if (strcmp(member->status, "complete") == 0 || !read_reason(folder, number, reason)) return STATUS_OK;
+
     return replace_status(member, "failed: %s", reason);
 }
 
@@ -129,6 +134,7 @@ enum status study_folder_read_members(struct member_file **members, const struct
         *members = NULL;
         return status;
     }
+
     return STATUS_OK;
 }
 
@@ -151,8 +157,10 @@ enum status study_folder_find_study(const char *folder, char **text) {
         }
         free(path);
     }
+
     closedir(entries);
     if (status == STATUS_MEMORY) return status;
     if (*text) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: holds no member of a study that can be read", folder);
+
+    return status_fail(STATUS_FILE, "%s contains no readable member of a study", folder);
 }

@@ -1,4 +1,4 @@
-/* study_gather.c: read the files, write study.nc, print. */
+/* study_gather.c: read the member files, write study.nc, print the tables. */
 #include "study/study_gather.h"
 
 #include <limits.h>
@@ -17,7 +17,7 @@
 #include "study/study_orders.h"
 #include "study/study_print.h"
 
-/* Fail if members are not complete that the case does not expect to fail. */
+/* Fail if a member is incomplete and the case does not expect the failure. */
 static enum status test_completeness(const struct case_values *study, const struct member_file *members,
                                      const char *folder) {
     const int n = sweep_n_members(study);
@@ -26,7 +26,7 @@ static enum status test_completeness(const struct case_values *study, const stru
         n_failed += strcmp(members[m].status, "complete") != 0 && !study_expects_failure(study, members, m);
     }
     if (n_failed == 0) return STATUS_OK;
-    return status_fail(STATUS_SOLVER, "%d of %d members in %s are not complete; `shoal study` on it runs them again",
+    return status_fail(STATUS_SOLVER, "%d of %d members in %s are not complete; run `shoal study` on this folder again",
                        n_failed, n, folder);
 }
 
@@ -35,7 +35,7 @@ static enum status print_members(const struct case_values *study, const struct m
                                       : study_print(study, members, stream);
 }
 
-/* Print orders and expectations; the first that is missed counts. */
+/* Print orders and expectations; the first failure counts. */
 static enum status print_expected(const struct case_values *study, const struct member_file *members,
                                   const struct study_orders *orders, FILE *stream) {
     const enum status of_orders = study_orders_print(study, orders, stream);
@@ -44,7 +44,7 @@ static enum status print_expected(const struct case_values *study, const struct 
     return of_orders == STATUS_OK ? of_members : of_orders;
 }
 
-/* Print the warnings; methods are compared on short runs, whose warnings would be those of the case. */
+/* Print the warnings, except for a comparison of methods: the warnings of short runs concern the case. */
 static enum status print_warnings(const struct case_values *study, const struct member_file *members, int strict,
                                   FILE *stream) {
     if (study_comparison_is(study)) return STATUS_OK;
@@ -53,9 +53,9 @@ static enum status print_warnings(const struct case_values *study, const struct 
     return status_fail(STATUS_MISSED, "%d warning%s about the members, with --strict", n, n > 1 ? "s" : "");
 }
 
-/* Print all and write the file, before anything that is missed ends the report. */
-static enum status report(const struct case_values *study, const struct member_file *members, const char *path,
-                          const char *command, int strict, FILE *stream) {
+/* Print all tables and write study.nc before a missed expectation ends the report. */
+static enum status report_study(const struct case_values *study, const struct member_file *members, const char *path,
+                                const char *command, int strict, FILE *stream) {
     struct study_orders orders;
     enum status status = study_orders_create(&orders, study, members);
     if (status == STATUS_OK) status = print_members(study, members, stream);
@@ -65,6 +65,7 @@ static enum status report(const struct case_values *study, const struct member_f
         const enum status warned = print_warnings(study, members, strict && status == STATUS_OK, stream);
         if (status == STATUS_OK) status = warned;
     }
+
     study_orders_free(&orders);
     return status;
 }
@@ -77,18 +78,19 @@ enum status study_report(const struct case_values *study, const char *folder, co
     enum status status = study_folder_read_members(&members, study, folder);
     if (status == STATUS_OK) {
         study_comparison_fill_errors(study, members);
-        status = report(study, members, path ? path : standard, command, strict, stream);
+        status = report_study(study, members, path ? path : standard, command, strict, stream);
         if (status == STATUS_OK) status = test_completeness(study, members, folder);
         study_folder_free_members(members, sweep_n_members(study));
     }
+
     free(standard);
     return status;
 }
 
 // ---- errors
 
-/* The members of a study in a folder up to the first one that is missing. */
-static int n_there(const char *folder) {
+/* The number of members in a folder before the first missing member. */
+static int count_members(const char *folder) {
     for (int m = 0;; m++) {
         char *const path = study_folder_member(folder, m, ".nc");
         const int exists = path && access(path, F_OK) == 0;
@@ -97,11 +99,11 @@ static int n_there(const char *folder) {
     }
 }
 
-/* Read and judge the members in a folder, and those that they ask for in turn, which are run first unless options is
- * NULL. The caller frees *members. */
-static enum status follow(struct error_study *study, const char *folder, const struct study_options *options,
-                          struct member_file **members) {
-    const int most_members = options ? INT_MAX : n_there(folder);
+/* Read and judge the members in a folder, add the members required by the error bound, and repeat. Unless options is
+ * NULL, run new members first. The caller frees *members. */
+static enum status run_and_refine(struct error_study *study, const char *folder, const struct study_options *options,
+                                  struct member_file **members) {
+    const int most_members = options ? INT_MAX : count_members(folder);
     for (;;) {
         int n_failed, n_new;
         if (options) TRY(study_run(&study->study, options, &n_failed));
@@ -116,33 +118,36 @@ static enum status follow(struct error_study *study, const char *folder, const s
     }
 }
 
-/* Print the budget and write its files, before anything that is missed ends the report. */
+/* Print the budget and write study.nc and error.csv before a missed bound ends the report. */
 static enum status report_errors(struct error_study *study, const struct member_file *members, const char *folder,
                                  const char *command, int strict, FILE *stream) {
     char *const path = study_folder_path(folder, "study.nc"), *const csv = study_folder_path(folder, "error.csv");
     const struct study_orders none = {0};
     enum status status = path && csv ? STATUS_OK : STATUS_MEMORY;
+
     if (status == STATUS_OK) status = study_file_write(path, &study->study, members, &none, study, command);
     if (status == STATUS_OK) status = error_report_write_csv(study, csv);
     if (status == STATUS_OK) {
         status = error_report_print(study, members, stream);
-        // levels that are coarser on purpose have warnings of their own
+        // deliberately coarse levels have separate warnings, which are not printed
         const int n = study_print_warnings(&members[study->stated], 1, stream);
         if (status == STATUS_OK && strict && n > 0) {
             status =
                 status_fail(STATUS_MISSED, "%d warning%s about the stated value, with --strict", n, n > 1 ? "s" : "");
         }
     }
+
     if (status == STATUS_OK) status = test_completeness(&study->study, members, folder);
     free(path);
     free(csv);
+
     return status;
 }
 
-static enum status follow_and_report(struct error_study *study, const char *folder, const struct study_options *options,
+static enum status refine_and_report(struct error_study *study, const char *folder, const struct study_options *options,
                                      const char *command, int strict, FILE *stream) {
     struct member_file *members = NULL;
-    enum status status = follow(study, folder, options, &members);
+    enum status status = run_and_refine(study, folder, options, &members);
     if (status == STATUS_OK) status = report_errors(study, members, folder, command, strict, stream);
     study_folder_free_members(members, sweep_n_members(&study->study));
     return status;
@@ -157,10 +162,12 @@ enum status study_errors(const struct case_values *values, const struct study_op
             options->n_processes > 0 ? options->n_processes : omp_get_num_procs() / values->school.threads;
         status = error_report_plan(&study, n_processes < 1 ? 1 : n_processes, stream);
     }
+
     if (status == STATUS_OK && plan < 2) {
         fflush(stream);
-        status = follow_and_report(&study, options->folder, options, options->command, strict, stream);
+        status = refine_and_report(&study, options->folder, options, options->command, strict, stream);
     }
+
     error_plan_free(&study);
     return status;
 }
@@ -169,7 +176,7 @@ static enum status gather_errors(const struct case_values *values, const char *f
                                  FILE *stream) {
     struct error_study study;
     enum status status = error_plan_create(&study, values);
-    if (status == STATUS_OK) status = follow_and_report(&study, folder, NULL, command, strict, stream);
+    if (status == STATUS_OK) status = refine_and_report(&study, folder, NULL, command, strict, stream);
     error_plan_free(&study);
     return status;
 }
@@ -187,7 +194,7 @@ enum status study_gather(const char *folder, const char *command, int strict, FI
     return status;
 }
 
-/* How many members ended how, and the axes. */
+/* Print the number of members, the number of complete members and the axes. */
 static void print_head(const struct case_values *study, const struct member_file *members, int n, FILE *stream) {
     int n_complete = 0;
     for (int m = 0; m < n; m++) n_complete += strcmp(members[m].status, "complete") == 0;
@@ -215,14 +222,17 @@ static enum status print_errors(const struct case_values *values, const struct m
     struct error_study study;
     enum status status = error_plan_create(&study, values);
     if (status == STATUS_OK && sweep_n_members(&study.study) > n) {
-        status = status_fail(STATUS_FILE, "the file has %d members and not %d: make it again with `shoal gather`", n,
-                             sweep_n_members(&study.study));
+        status =
+            status_fail(STATUS_FILE, "the file has %d members, expected %d: write study.nc again with `shoal gather`",
+                        n, sweep_n_members(&study.study));
     }
+
     int n_new = 1;
     while (status == STATUS_OK && n_new > 0) {
         status = error_study_judge(&study, members);
         if (status == STATUS_OK) status = error_study_refine(&study, members, n, &n_new);
     }
+
     if (status == STATUS_OK) status = error_report_print(&study, members, stream);
     error_plan_free(&study);
     return status;
@@ -232,14 +242,17 @@ enum status study_info(const char *path, FILE *stream) {
     struct case_values study;
     struct member_file *members;
     int n;
+
     TRY(study_file_read(path, &study, &members, &n));
     print_head(&study, members, n, stream);
     const enum status status =
         study.error ? print_errors(&study, members, n, stream) : print_study(&study, members, stream);
-    // that an expectation is missed is a part of what the file holds
+
+    // a missed expectation belongs to the contents of the file
     if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());
     if (!study.error && !study_comparison_is(&study)) study_print_warnings(members, n, stream);
     study_folder_free_members(members, n);
     case_free(&study);
+
     return status == STATUS_MISSED ? STATUS_OK : status;
 }

@@ -14,7 +14,7 @@
 
 enum { NAME_BYTES = 64, MEANING_BYTES = 160, WORDS_BYTES = 128 };
 
-/* A search without multipliers does not estimate how far the steady state is: this many times its change in a beat. */
+/* Error of a steady state without multipliers, over the residual change per beat (an estimate). */
 static const double of_residual = 10;
 
 static int is_observed(const struct case_values *study, int q) {
@@ -23,7 +23,7 @@ static int is_observed(const struct case_values *study, int q) {
 
 // ---- against a given value
 
-// NaN where one of the levels is exact to rounding
+// NaN if a level is exact to rounding
 static double order_of_two(const double *size, const double (*f)[2], const double *exact) {
     const double fine = hypot(f[0][0] - exact[0], f[0][1] - exact[1]);
     const double coarse = hypot(f[1][0] - exact[0], f[1][1] - exact[1]);
@@ -37,17 +37,19 @@ struct study_order study_order_of_errors(int n, const double *size, const double
                                  .error = hypot(f[0][0] - exact[0], f[0][1] - exact[1]),
                                  .verdict = ERROR_BUDGET_ACCEPTED,
                                  .culprit = -1};
+
     for (int i = 0; i < n; i++) {
         const int is_missing = isnan(f[i][0] + f[i][1]);
         if (is_missing) result.verdict = ERROR_BUDGET_UNKNOWN;
         result.is_known |= !is_missing;
     }
+
     return result;
 }
 
 // ---- all groups
 
-static enum status allocate(struct study_orders *orders, int n_groups, int n_levels) {
+static enum status orders_allocate(struct study_orders *orders, int n_groups, int n_levels) {
     const size_t n = (size_t)n_groups * SWEEP_N_ORDERS * (size_t)orders->n_fish;
     orders->level = calloc((size_t)n_levels, sizeof *orders->level);
     orders->grid_spacing = calloc((size_t)n_levels, sizeof *orders->grid_spacing);
@@ -57,9 +59,11 @@ static enum status allocate(struct study_orders *orders, int n_groups, int n_lev
     if (!orders->level || !orders->grid_spacing || !orders->first || !orders->order || !orders->error) {
         return status_fail(STATUS_MEMORY, "out of memory: the orders of %d levels", n_levels);
     }
+
     orders->n_groups = n_groups;
     orders->n_levels = n_levels;
     orders->n_judged = n_levels < ERROR_BUDGET_LEVELS ? n_levels : ERROR_BUDGET_LEVELS;
+
     return STATUS_OK;
 }
 
@@ -77,12 +81,12 @@ static int place_of(const struct study_orders *orders, int group, int quantity, 
     return (group * SWEEP_N_ORDERS + quantity) * orders->n_fish + fish;
 }
 
-/* What is needed to fill the orders of a study. */
+/* Arguments of the functions that fill the orders of a study. */
 struct refinement {
     const struct case_values *study;
     const struct member_file *members;
     struct study_orders *orders;
-    const struct sweep_error_key *key; /* that is refined */
+    const struct sweep_error_key *key; /* refined key */
 };
 
 /* The grid spacing of a value. */
@@ -95,7 +99,7 @@ static double size_of(const struct refinement *refinement, int value) {
                                                      : number;
 }
 
-/* Sort the levels from coarse to fine: insertion, as there are few. */
+/* Sort the levels from coarse to fine: insertion sort of few levels. */
 static void sort_levels(const struct refinement *refinement) {
     struct study_orders *const orders = refinement->orders;
     for (int i = 0; i < orders->n_levels; i++) {
@@ -110,7 +114,7 @@ static void sort_levels(const struct refinement *refinement) {
     }
 }
 
-/* Each member with the first value of the refined axis begins a group. */
+/* A group starts at each member with the first value of the refined axis. */
 static void find_groups(const struct refinement *refinement) {
     int n = 0;
     for (int m = 0; m < sweep_n_members(refinement->study); m++) {
@@ -127,7 +131,7 @@ static const struct member_file *member_at(const struct refinement *refinement, 
     return &refinement->members[orders->first[group] + orders->level[level] * stride];
 }
 
-/* A quantity of a fish at a level of a group; NaN where the member is not complete. */
+/* Read a quantity of a fish at a level of a group; NaN if the member is not complete. */
 static void read_value(const struct refinement *refinement, int group, int level, int q, int f, double value[2]) {
     const struct member_file *const member = member_at(refinement, group, level);
     const int quantity = member_file_quantity_number(sweep_quantities[q].name);
@@ -136,7 +140,7 @@ static void read_value(const struct refinement *refinement, int group, int level
     value[1] = sweep_quantities[q].of_xy ? member_file_value(member, quantity, f, 1) : 0;
 }
 
-/* The error of the values of a member that no level shows: of the integrator, and of the search for a steady state. */
+/* The error of the values of a member independent of the levels: error of the integrator and of the steady search. */
 static double noise_of(const struct refinement *refinement, const struct member_file *member) {
     const struct case_values *const study = refinement->study;
     double rtol = study->solver.step > 0 ? 0 : study->school.rtol;
@@ -148,16 +152,18 @@ static double noise_of(const struct refinement *refinement, const struct member_
             text_number(axis->value[value * axis->n_keys + k], &rtol);
         }
     }
+
     if (!sweep_is_steady(study)) return rtol;
     const double error = member_file_value(member, member_file_quantity_number("steady_error"), 0, 0);
     const double residual = member_file_value(member, member_file_quantity_number("steady_residual"), 0, 0);
+
     return rtol + (isnan(error) ? of_residual * residual : error);
 }
 
-/* The levels of a quantity that are judged, from the finest on, and their noise. */
+/* The judged levels of a quantity, from fine to coarse, and the noise of the values. */
 struct sequence {
     double value[ERROR_BUDGET_LEVELS][2], noise;
-    int is_known; /* whether any level has a value */
+    int is_known; /* some level has a value */
 };
 
 static void read_sequence(const struct refinement *refinement, int group, int q, int f, struct sequence *sequence) {
@@ -170,12 +176,15 @@ static void read_sequence(const struct refinement *refinement, int group, int q,
     sequence->noise = noise_of(refinement, member_at(refinement, group, finest));
 }
 
-/* Judge a quantity of a fish together with its speed, cost and Strouhal number. */
-static struct study_order judge(const struct refinement *refinement, int group, int q, int f, const double *size) {
+/* Judge a quantity of a fish together with speed, cost and Strouhal number of the fish. */
+static struct study_order judge_quantity(const struct refinement *refinement, int group, int q, int f,
+                                         const double *size) {
     struct sequence sequence[SWEEP_N_QUANTITIES];
     struct error_budget_sequence judged[SWEEP_N_QUANTITIES];
     struct error_budget_result results[SWEEP_N_QUANTITIES];
     int number[SWEEP_N_QUANTITIES] = {q}, n = 1, culprit;
+
+    // collect the sequences of the quantity and of the judges
     read_sequence(refinement, group, q, f, &sequence[0]);
     for (int other = 0; other < SWEEP_N_QUANTITIES; other++) {
         const unsigned traits = sweep_quantities[other].traits;
@@ -184,9 +193,11 @@ static struct study_order judge(const struct refinement *refinement, int group, 
         read_sequence(refinement, group, other, f, &sequence[n]);
         if (sequence[n].is_known) number[n++] = other;
     }
+
     for (int i = 0; i < n; i++) {
         judged[i] = (struct error_budget_sequence){(const double(*)[2])sequence[i].value, sequence[i].noise};
     }
+
     const double design = sweep_error_order(refinement->study, refinement->key);
     const struct error_budget_levels levels = {refinement->orders->n_judged, 0, size, design, NULL};
     const enum error_budget_verdict verdict = error_budget_judge(&levels, n, judged, results, &culprit);
@@ -198,7 +209,7 @@ static struct study_order judge(const struct refinement *refinement, int group, 
                                 .culprit = culprit < 0 ? -1 : number[culprit]};
 }
 
-/* One quantity of one fish of a group. */
+/* Fill the order of one quantity of one fish of a group. */
 static void fill_order(const struct refinement *refinement, int group, int q, int f) {
     struct study_orders *const orders = refinement->orders;
     const int n = orders->n_levels, of_xy = sweep_quantities[q].of_xy, place = place_of(orders, group, q, f);
@@ -206,15 +217,16 @@ static void fill_order(const struct refinement *refinement, int group, int q, in
                              of_xy ? sweep_reference(refinement->study, orders->axis, q, f, 1) : 0};
     const int is_given = !isnan(given[0]);
 
-    // from the finest level on
+    // from fine to coarse
     double size[ERROR_BUDGET_LEVELS], value[ERROR_BUDGET_LEVELS][2];
     for (int i = 0; i < orders->n_judged; i++) {
         size[i] = orders->grid_spacing[n - 1 - i];
         read_value(refinement, group, n - 1 - i, q, f, value[i]);
     }
+
     struct study_order *const order = &orders->order[place];
     *order = is_given ? study_order_of_errors(orders->n_judged, size, (const double(*)[2])value, given)
-                      : judge(refinement, group, q, f, size);
+                      : judge_quantity(refinement, group, q, f, size);
     const double part = 1 / (pow(size[1] / size[0], order->order) - 1);
     for (int k = 0; k < 2; k++) {
         const double limit = value[0][k] + (value[0][k] - value[1][k]) * part;
@@ -236,19 +248,21 @@ enum status study_orders_create(struct study_orders *orders, const struct case_v
     if (orders->axis == study->n_axes) return STATUS_OK;
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
     const int n = axis->n_values, n_groups = sweep_n_members(study) / n;
-    TRY(allocate(orders, n_groups, n));
+    TRY(orders_allocate(orders, n_groups, n));
     const struct refinement refinement = {study, members, orders, sweep_error_find(axis->key[0].row)};
     sort_levels(&refinement);
     find_groups(&refinement);
+
     for (int g = 0; g < n_groups; g++) {
         for (int q = 0; q < SWEEP_N_ORDERS; q++) {
             for (int f = 0; f < study->school.n_fish && is_observed(study, q); f++) fill_order(&refinement, g, q, f);
         }
     }
+
     return STATUS_OK;
 }
 
-/* Why the levels of a quantity are flagged: "differences change sign (cost_of_transport)"; "" where they are not. */
+/* The reason of a flag: "differences change sign (cost_of_transport)"; "" without a flag. */
 static void write_flag(const struct study_order *order, int q, size_t size, char *text) {
     *text = '\0';
     if (!error_budget_is_flagged(order->verdict)) return;
@@ -260,8 +274,8 @@ static void write_flag(const struct study_order *order, int q, size_t size, char
 // ---- the table
 
 /* Head: the values of the axis over the columns of errors. */
-static void fill_head(const struct study_table *table, const struct case_values *study,
-                      const struct study_orders *orders) {
+static void orders_fill_head(const struct study_table *table, const struct case_values *study,
+                             const struct study_orders *orders) {
     static const char *const heads[] = {"coarse order", "order", "extrapolated", "", "error", "by"};
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
     study_table_set(table, 0, 0, "difference of");
@@ -273,19 +287,20 @@ static void fill_head(const struct study_table *table, const struct case_values 
     for (int i = 0; i < 6; i++) study_table_set(table, 0, 3 + orders->n_levels + i, "%s", heads[i]);
 }
 
-/* What an error comes from. */
-static const char *basis_of(const struct study_orders *orders, const struct study_order *order, int is_given) {
+/* The basis of an error. */
+static const char *error_basis(const struct study_orders *orders, const struct study_order *order, int is_given) {
     if (is_given) return "reference";
     if (order->verdict == ERROR_BUDGET_NONE) return "noise";
     return orders->n_judged < ERROR_BUDGET_LEVELS ? "3 levels (wider bounds)" : "4 levels";
 }
 
-/* One quantity of one fish. */
-static void fill_row(const struct study_table *table, int row, const struct case_values *study,
-                     const struct study_orders *orders, int group, int q, int f) {
+/* Fill the row of one quantity of one fish. */
+static void orders_fill_row(const struct study_table *table, int row, const struct case_values *study,
+                            const struct study_orders *orders, int group, int q, int f) {
     const int n = orders->n_levels, place = place_of(orders, group, q, f);
     const int is_given = !isnan(sweep_reference(study, orders->axis, q, f, 0));
     const struct study_order *const order = &orders->order[place];
+
     study_table_set(table, row, 0, "%s%s", sweep_quantities[q].name, is_given ? "*" : "");
     study_table_set(table, row, 1, "%s", study->school.fish[f].name);
     study_table_set(table, row, 2, "%s",
@@ -296,16 +311,17 @@ static void fill_row(const struct study_table *table, int row, const struct case
     study_table_number(table, row, n + 5, "%.9g", order->limit[0]);
     if (sweep_quantities[q].of_xy) study_table_number(table, row, n + 6, "%.9g", order->limit[1]);
     study_table_number(table, row, n + 7, "%.1e", order->error);
-    study_table_set(table, row, n + 8, "%s", basis_of(orders, order, is_given));
+    study_table_set(table, row, n + 8, "%s", error_basis(orders, order, is_given));
 }
 
-/* Print the flag of an order, and whether the order is as expected: STATUS_MISSED if it is not. */
+/* Print the flag of an order and the test of the expected order; STATUS_MISSED for another order. */
 static enum status test_order(const struct case_values *study, const struct study_orders *orders, int group, int q,
                               int f, FILE *stream) {
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
     const struct study_order *const order = &orders->order[place_of(orders, group, q, f)];
     const char *const fish = study->school.fish[f].name, *const quantity = sweep_quantities[q].name;
     char flag[WORDS_BYTES];
+
     write_flag(order, q, sizeof flag, flag);
     if (order->is_known && *flag) fprintf(stream, "warning: %s of %s: %s\n", quantity, fish, flag);
     if (!(axis->order_of >> q & 1) || !(axis->order > 0)) return STATUS_OK;
@@ -313,23 +329,25 @@ static enum status test_order(const struct case_values *study, const struct stud
     fprintf(stream, "%s: order of %s of %s is %.2f, expected %g +- %g\n", is_met ? "met" : "MISSED", quantity, fish,
             order->order, axis->order, axis->within);
     if (is_met) return STATUS_OK;
+
     return status_fail(STATUS_MISSED, "%s of %s: observed order %.2f in %s, expected %g +- %g", quantity, fish,
                        order->order, axis->key[0].path, axis->order, axis->within);
 }
 
-/* Errors and orders of one group: the members that differ in the refined axis only. */
+/* Print errors and orders of one group: members that differ in the refined axis only. */
 static enum status print_group(const struct case_values *study, const struct study_orders *orders, int group,
                                FILE *stream) {
     struct study_table table;
     TRY(study_table_create(&table, 1 + SWEEP_N_ORDERS * orders->n_fish, orders->n_levels + 9));
-    fill_head(&table, study, orders);
+    orders_fill_head(&table, study, orders);
     int n_rows = 1;
     for (int q = 0; q < SWEEP_N_ORDERS; q++) {
         for (int f = 0; f < orders->n_fish; f++) {
             if (!orders->order[place_of(orders, group, q, f)].is_known) continue;
-            fill_row(&table, n_rows++, study, orders, group, q, f);
+            orders_fill_row(&table, n_rows++, study, orders, group, q, f);
         }
     }
+
     table.n_rows = n_rows;
     study_table_print(&table, stream);
     study_table_free(&table);
@@ -340,6 +358,7 @@ static enum status print_group(const struct case_values *study, const struct stu
             if (status == STATUS_OK) status = tested;
         }
     }
+
     return status;
 }
 
@@ -360,6 +379,7 @@ enum status study_orders_print(const struct case_values *study, const struct stu
         const enum status printed = print_group(study, orders, g, stream);
         if (status == STATUS_OK) status = printed;
     }
+
     return status;
 }
 
@@ -369,7 +389,7 @@ enum orders_dimension { GROUP, LEVEL, ORDERS_FISH, ORDERS_XY, ORDERS_TEXT, N_ORD
 
 static const char *const dimension_names[] = {"group", "level", "fish", "xy", "text"};
 
-/* What there is once. */
+/* Variables that exist once. */
 enum { LEVEL_VALUE, LEVEL_SIZE, GROUP_MEMBER, DESIGN_ORDER, N_SINGLE };
 static const struct single {
     const char *name, *meaning;
@@ -381,10 +401,11 @@ static const struct single {
     {"group_design_order", "order that the refined key has by design; NaN: none", GROUP},
 };
 
-/* What there is for each quantity: name and meaning take its name. The dimensions begin with group, fish. */
+/* Variables of each quantity: name and meaning include the name of the quantity. The dimensions begin with group,
+ * fish. */
 enum { DIFFERENCE, COARSE_ORDER, ORDER, LIMIT, ERROR, FLAG, N_KINDS };
 static const struct kind {
-    const char *name, *unit, *meaning; /* unit NULL: that of the quantity */
+    const char *name, *unit, *meaning; /* unit NULL: unit of the quantity */
     enum orders_dimension last;        /* a third dimension; GROUP: none */
 } kinds[N_KINDS] = {
     {"difference_%s", NULL, "distance of %s from the finest level, or from the reference that the case gives", LEVEL},
@@ -395,7 +416,7 @@ static const struct kind {
     {"objection_%s", "", "why the levels of %s state no order, so that the error is a largest difference", ORDERS_TEXT},
 };
 
-// the third dimension of a quantity's variable: an extrapolated value has directions only where the quantity has
+// the third dimension of a variable of a quantity: an extrapolated value has directions only where the quantity has
 static enum orders_dimension last_of(int kind, int of_xy) {
     return kinds[kind].last == ORDERS_XY && !of_xy ? GROUP : kinds[kind].last;
 }
@@ -415,6 +436,7 @@ int study_orders_listed(int i, struct result_listed *listed) {
         snprintf(listed->dimensions, sizeof listed->dimensions, "%s", dimension_names[singles[i].dimension]);
         return 1;
     }
+
     static char name[N_KINDS][NAME_BYTES], meaning[N_KINDS][MEANING_BYTES];
     const int k = i - N_SINGLE;
     if (k >= N_KINDS) return 0;
@@ -426,6 +448,7 @@ int study_orders_listed(int i, struct result_listed *listed) {
                                      .meaning = meaning[k]};
     const char *const last = kinds[k].last == GROUP ? "" : dimension_names[kinds[k].last];
     snprintf(listed->dimensions, sizeof listed->dimensions, "group, fish%s%s", *last ? ", " : "", last);
+
     return 1;
 }
 
@@ -468,6 +491,7 @@ void study_orders_define(struct netcdf_writer *writer, const struct case_values 
         define(writer, singles[i].name, i == GROUP_MEMBER ? NETCDF_INT : NETCDF_DOUBLE, 1, &all[singles[i].dimension],
                singles[i].dimension == GROUP ? "1" : key_unit, singles[i].meaning);
     }
+
     for (int q = 0; q < SWEEP_N_ORDERS; q++) {
         if (is_observed(study, q)) define_quantity(writer, q, all);
     }
@@ -475,7 +499,7 @@ void study_orders_define(struct netcdf_writer *writer, const struct case_values 
 
 // ---- writing
 
-/* One quantity of one fish of a group. */
+/* Write one quantity of one fish of a group. */
 static void write_order(struct netcdf_writer *writer, const struct study_orders *orders, int group, int q, int f,
                         size_t n_text, char *text) {
     const int place = place_of(orders, group, q, f);
@@ -488,11 +512,13 @@ static void write_order(struct netcdf_writer *writer, const struct study_orders 
     const size_t start[] = {(size_t)group, (size_t)f, 0};
     const struct sweep_quantity *const quantity = &sweep_quantities[q];
     char name[NAME_BYTES];
+
     for (int k = 0; k < FLAG; k++) {
         const size_t n_last = k == DIFFERENCE ? (size_t)orders->n_levels : k == LIMIT && quantity->of_xy ? 2 : 1;
         fill_name(name, sizeof name, kinds[k].name, quantity->name);
         netcdf_write_doubles(writer, netcdf_number(writer, name), start, (size_t[]){1, 1, n_last}, values[k]);
     }
+
     fill_name(name, sizeof name, kinds[FLAG].name, quantity->name);
     memset(text, 0, n_text);
     write_flag(order, q, n_text, text);
@@ -509,6 +535,7 @@ void study_orders_write(struct netcdf_writer *writer, const struct case_values *
         text_number(axis->value[orders->level[i] * axis->n_keys], &value);
         netcdf_write_doubles(writer, value_number, (size_t[]){(size_t)i}, (size_t[]){1}, &value);
     }
+
     netcdf_write_doubles(writer, netcdf_number(writer, singles[LEVEL_SIZE].name), NULL, NULL, orders->grid_spacing);
     netcdf_write_ints(writer, netcdf_number(writer, singles[GROUP_MEMBER].name), NULL, NULL, orders->first);
     const double design_order = sweep_error_order(study, sweep_error_find(axis->key[0].row));
@@ -516,6 +543,7 @@ void study_orders_write(struct netcdf_writer *writer, const struct case_values *
     for (int g = 0; g < orders->n_groups; g++) {
         netcdf_write_doubles(writer, design_number, (size_t[]){(size_t)g}, (size_t[]){1}, &design_order);
     }
+
     for (int g = 0; g < orders->n_groups; g++) {
         for (int q = 0; q < SWEEP_N_ORDERS; q++) {
             for (int f = 0; f < orders->n_fish && is_observed(study, q); f++) {

@@ -1,5 +1,5 @@
-/* study_orders.h: a study of convergence: orders, limits and errors along the axis that is refined, and their part of
- * study.nc. Tested by tests/study/test_study_file.c. */
+/* study_orders.h: convergence study: orders, limits and errors along the refined axis, and the corresponding variables
+ * of study.nc. Tested by tests/study/test_study_file.c. */
 #ifndef STUDY_ORDERS_H
 #define STUDY_ORDERS_H
 
@@ -12,51 +12,51 @@
 #include "study/error_budget.h"
 #include "study/member_file.h"
 
-/* What the levels of a refinement say of a quantity of a fish (a number, or a point in the plane). */
+/* Convergence of a quantity of a fish (a number, or a point in the plane) over the levels of a refinement. */
 struct study_order {
-    double order;        /* observed with the finest levels; NaN: they are equal */
-    double coarse_order; /* with the next coarser levels; NaN: there are none */
-    double limit[2];     /* Richardson's extrapolation with that order; NaN where the levels are flagged */
-    double error;        /* of the finest level, in the unit of the quantity: error_budget.h, or given */
-    int is_known;        /* whether any level has a value */
+    double order;        /* observed order of the finest levels; NaN: equal levels */
+    double coarse_order; /* observed order of the next coarser levels; NaN: too few levels */
+    double limit[2];     /* Richardson extrapolation with this order; NaN: flagged levels */
+    double error;        /* of the finest level, in the unit of the quantity: error_budget.h, or from a given value */
+    int is_known;        /* some level has a value */
     enum error_budget_verdict verdict; /* on the quantity together with speed, cost and Strouhal number */
-    int culprit;                       /* the quantity that flags it (sweep_quantity.h); -1: none */
+    int culprit;                       /* quantity that causes the flag (sweep_quantity.h); -1: none */
 };
 
-/* All along the refined axis of a study. A group: members that differ in that axis only. */
+/* Convergence along the refined axis of a study. A group: members that differ in the refined axis only. */
 struct study_orders {
-    int axis, n_groups, n_levels, n_fish; /* no groups: no axis is refined, and nothing below */
-    int n_judged;                         /* levels that state the error: the finest ones */
+    int axis, n_groups, n_levels, n_fish; /* n_groups 0: no refined axis, all fields below are empty */
+    int n_judged;                         /* the finest levels, which determine the error */
     int *level;                           /* number of a value of the axis, from coarse to fine  (n_levels) */
     double *grid_spacing;                 /* the value of the axis, or 1/(n - 1) of n points      (n_levels) */
     int *first;                           /* the first member of each group                      (n_groups) */
     struct study_order *order;            /* (n_groups, SWEEP_N_ORDERS, n_fish) */
     double
-        *error; /* distance from the finest level, or from the given value; NaN: that is itself (as order, n_levels) */
+        *error; /* distance from the finest level or from the given value; NaN: the finest level (as order, n_levels) */
 };
 
-/* What levels say where the exact value is given: sizes and values from fine to coarse; each order is that of two
- * levels, log(e_2/e_1)/log(h_2/h_1). */
+/* Convergence to a given exact value: sizes and values from fine to coarse; each order follows from two levels,
+ * log(e_2/e_1)/log(h_2/h_1). */
 struct study_order study_order_of_errors(int n, const double *size, const double (*value)[2], const double *exact);
 
-/* Errors and orders along the axis that is refined; without such an axis there are no groups. study_orders_free
- * releases and zeroes them, also after a failure. Fails with STATUS_MEMORY. */
+/* Compute errors and orders along the refined axis; without a refined axis there are no groups. study_orders_free
+ * releases and zeroes *orders, also after a failure. Fails with STATUS_MEMORY. */
 enum status study_orders_create(struct study_orders *orders, const struct case_values *study,
                                 const struct member_file *members);
 void study_orders_free(struct study_orders *orders);
 
-/* Print them. Fails with STATUS_MISSED when a quantity of a fish has another order than the axis expects, or with
- * STATUS_MEMORY. */
+/* Print errors and orders. Fails with STATUS_MISSED if the order of a quantity differs from the order that the axis
+ * expects, or with STATUS_MEMORY. */
 enum status study_orders_print(const struct case_values *study, const struct study_orders *orders, FILE *stream);
 
-/* Define and write the variables in a file that is being written. dimensions: those of fish, xy and text, of which the
- * last has the length n_text; text: room for so much. */
+/* Define and write the variables in an open file. dimensions: numbers of the dimensions fish, xy and text; n_text:
+ * length of the dimension text; text: scratch of n_text bytes. */
 void study_orders_define(struct netcdf_writer *writer, const struct case_values *study,
                          const struct study_orders *orders, const int dimensions[3]);
 void study_orders_write(struct netcdf_writer *writer, const struct case_values *study,
                         const struct study_orders *orders, size_t n_text, char *text);
 
-/* Row i, from 0, of the list of its variables; 0 beyond the last. */
+/* Row i, from 0, of the list of variables; 0 beyond the last row. */
 int study_orders_listed(int i, struct result_listed *listed);
 
 #endif

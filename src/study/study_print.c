@@ -8,7 +8,7 @@
 
 enum { MAX_FISH_SHOWN = 4, MAX_WARNINGS_SHOWN = 20 };
 
-/* The quantities that are shown; all others are in study.nc. */
+/* The printed quantities; study.nc contains all quantities. */
 static const struct shown {
     const char *quantity, *head, *format;
 } shown[] = {
@@ -35,7 +35,7 @@ static void set_short_name(const struct study_table *table, int row, int column,
 }
 
 /* Head and unit of each column. */
-static void fill_head(const struct study_table *table, const struct case_values *study, int with_fish) {
+static void members_fill_head(const struct study_table *table, const struct case_values *study, int with_fish) {
     int c = 0;
     study_table_set(table, 0, c++, "member");
     for (int a = 0; a < study->n_axes; a++) {
@@ -44,18 +44,20 @@ static void fill_head(const struct study_table *table, const struct case_values 
             study_table_set(table, 1, c, "%s", study->sweep[a].key[k].unit);
         }
     }
+
     if (with_fish) study_table_set(table, 0, c++, "fish");
     for (int s = 0; s < N_SHOWN; s++, c++) {
         const char *const unit = member_file_quantity(member_file_quantity_number(shown[s].quantity))->unit;
         study_table_set(table, 0, c, "%s", shown[s].head);
         study_table_set(table, 1, c, "%s", strcmp(unit, "1") == 0 ? "" : unit);
     }
+
     study_table_set(table, 0, c, "status");
 }
 
-/* One fish of one member. */
-static void fill_row(const struct study_table *table, int row, const struct case_values *study,
-                     const struct member_file *member, int number, int f, int with_fish) {
+/* Fill the row of one fish of one member. */
+static void members_fill_row(const struct study_table *table, int row, const struct case_values *study,
+                             const struct member_file *member, int number, int f, int with_fish) {
     int c = 0;
     study_table_set(table, row, c++, "%d", number);
     for (int a = 0; a < study->n_axes; a++) {
@@ -65,18 +67,20 @@ static void fill_row(const struct study_table *table, int row, const struct case
             study_table_set(table, row, c++, "%s", axis->value[value * axis->n_keys + k]);
         }
     }
+
     if (with_fish) study_table_set(table, row, c++, "%s", study->school.fish[f].name);
     for (int s = 0; s < N_SHOWN; s++) {
         const int quantity = member_file_quantity_number(shown[s].quantity);
         const double value = member_file_value(member, quantity, member_file_quantity(quantity)->of_fish ? f : 0, 0);
         study_table_number(table, row, c++, shown[s].format, value);
     }
-    // "failed: why": the reasons follow the table
+
+    // "failed: reason": the reasons follow the table
     study_table_set(table, row, c, "%.*s", (int)strcspn(member->status, ":"), member->status);
 }
 
-/* Why members are not complete. */
-static void print_reasons(const struct member_file *members, int n, FILE *stream) {
+/* Print the reasons of incomplete members. */
+static void members_print_reasons(const struct member_file *members, int n, FILE *stream) {
     for (int m = 0; m < n; m++) {
         if (strchr(members[m].status, ':')) fprintf(stream, "member %d %s\n", m, members[m].status);
     }
@@ -86,20 +90,24 @@ enum status study_print(const struct case_values *study, const struct member_fil
     const int n = sweep_n_members(study),
               n_fish = study->school.n_fish < MAX_FISH_SHOWN ? study->school.n_fish : MAX_FISH_SHOWN;
     int n_columns = 2 + (n_fish > 1) + N_SHOWN;
+
     for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;
     struct study_table table;
     TRY(study_table_create(&table, 2 + n * n_fish, n_columns));
-    fill_head(&table, study, n_fish > 1);
+    members_fill_head(&table, study, n_fish > 1);
+
     for (int m = 0; m < n; m++) {
         for (int f = 0; f < n_fish; f++) {
-            fill_row(&table, 2 + m * n_fish + f, study, &members[m], m, f, n_fish > 1);
+            members_fill_row(&table, 2 + m * n_fish + f, study, &members[m], m, f, n_fish > 1);
         }
     }
+
     study_table_print(&table, stream);
     study_table_free(&table);
     if (n_fish < study->school.n_fish)
         fprintf(stream, "The first %d of %d fish; study.nc has all.\n", n_fish, study->school.n_fish);
-    print_reasons(members, n, stream);
+    members_print_reasons(members, n, stream);
+
     return STATUS_OK;
 }
 
@@ -112,6 +120,7 @@ int study_print_warnings(const struct member_file *members, int n, FILE *stream)
             line += length;
         }
     }
+
     if (n_warnings > MAX_WARNINGS_SHOWN)
         fprintf(stream, "The first %d of %d warnings; study.nc has all.\n", MAX_WARNINGS_SHOWN, n_warnings);
     return n_warnings;

@@ -8,10 +8,10 @@
 #include "case/case_values.h"
 #include "study/member_file.h"
 
-/* Print the members with what they set and how they ended, in columns. Fails with STATUS_MEMORY. */
+/* Print swept values, final values and status of the members, in columns. Fails with STATUS_MEMORY. */
 enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream);
 
-/* Print the first warnings about the results of n members, at the end; the number of all. */
+/* Print the first warnings about the results of n members; returns the number of all warnings. */
 int study_print_warnings(const struct member_file *members, int n, FILE *stream);
 
 #endif

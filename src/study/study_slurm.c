@@ -15,23 +15,25 @@
 
 enum { MAX_TASKS = 1000 /* Slurm's own default is 1001 */ };
 
-/* A file of the folder, and its path. */
+/* A file of the folder and the path of the file. */
 struct script {
     struct plain_file file;
     char path[PATH_MAX];
 };
 
-/* Open a file of the folder for writing; it begins with its mark. */
-static enum status open_file(struct script *script, const char *folder, const char *name, int is_script) {
+/* Open a file of the folder for writing and write the mark of the program. */
+static enum status script_open(struct script *script, const char *folder, const char *name, int is_script) {
     if (snprintf(script->path, sizeof script->path, "%s/%s", folder, name) >= (int)sizeof script->path) {
-        return status_fail(STATUS_FILE, "%s: too long a name", folder);
+        return status_fail(STATUS_FILE, "%s: name too long", folder);
     }
+
     if (access(script->path, F_OK) == 0 && !target_is(script->path, TARGET_SCRIPT)) {
         return status_fail(STATUS_FILE,
                            "%s exists and was not written by shoal study --slurm: remove it, or choose another folder "
                            "with -o",
                            script->path);
     }
+
     TRY(plain_file_open(&script->file, script->path, TARGET_SCRIPT, true, is_script ? 0777 : 0666));
     fputs(is_script ? "#!/bin/sh\n" TARGET_SCRIPT_MARK "\n" : TARGET_SCRIPT_MARK "\n", script->file.stream);
     return STATUS_OK;
@@ -40,39 +42,40 @@ static enum status open_file(struct script *script, const char *folder, const ch
 static enum status write_array(const struct case_values *study, const char *folder, const char *program, int n_tasks,
                                int bundle) {
     struct script script;
-    TRY(open_file(&script, folder, "array.sbatch", 1));
-    fprintf(script.file.stream,
-            "#SBATCH --job-name='%s'\n"
-            "#SBATCH --array=0-%d\n"
-            "#SBATCH --ntasks=1\n"
-            "#SBATCH --cpus-per-task=%d\n"
-            "#SBATCH --signal=B:TERM@60\n"
-            "#SBATCH --requeue\n"
-            "#SBATCH --open-mode=append\n"
-            "#SBATCH --output='%s/task-%%a.log'\n"
-            "# Each task runs %d of the %d members. A minute before the time limit its members stop with checkpoints, "
-            "and it\n"
-            "# goes back into the queue, from which it goes on.\n"
-            "first=$((SLURM_ARRAY_TASK_ID * %d))\n"
-            "last=$((first + %d))\n"
-            "[ $last -lt %d ] || last=%d\n"
-            "'%s' study '%s/study.yaml' -o '%s' --members $first-$last -j 1 &\n"
-            "process=$!\n"
-            "trap 'kill -TERM $process' TERM\n"
-            "code=0\n"
-            "wait $process || code=$?\n"
-            "# a signal ends the wait, not yet the process\n"
-            "while kill -0 $process 2>/dev/null; do code=0; wait $process || code=$?; done\n"
-            "[ $code -ne 75 ] || scontrol requeue $SLURM_JOB_ID\n"
-            "exit $code\n",
-            study->name, n_tasks - 1, study->school.threads, folder, bundle, sweep_n_members(study), bundle, bundle - 1,
-            sweep_n_members(study), sweep_n_members(study) - 1, program, folder, folder);
+    TRY(script_open(&script, folder, "array.sbatch", 1));
+    fprintf(
+        script.file.stream,
+        "#SBATCH --job-name='%s'\n"
+        "#SBATCH --array=0-%d\n"
+        "#SBATCH --ntasks=1\n"
+        "#SBATCH --cpus-per-task=%d\n"
+        "#SBATCH --signal=B:TERM@60\n"
+        "#SBATCH --requeue\n"
+        "#SBATCH --open-mode=append\n"
+        "#SBATCH --output='%s/task-%%a.log'\n"
+        "# Each task runs %d of the %d members. One minute before the time limit the members stop with checkpoints,\n"
+        "# and the task is requeued and resumes.\n"
+        "first=$((SLURM_ARRAY_TASK_ID * %d))\n"
+        "last=$((first + %d))\n"
+        "[ $last -lt %d ] || last=%d\n"
+        "'%s' study '%s/study.yaml' -o '%s' --members $first-$last -j 1 &\n"
+        "process=$!\n"
+        "trap 'kill -TERM $process' TERM\n"
+        "code=0\n"
+        "wait $process || code=$?\n"
+        "# a signal interrupts wait before the process ends\n"
+        "while kill -0 $process 2>/dev/null; do code=0; wait $process || code=$?; done\n"
+        "[ $code -ne 75 ] || scontrol requeue $SLURM_JOB_ID\n"
+        "exit $code\n",
+        study->name, n_tasks - 1, study->school.threads, folder, bundle, sweep_n_members(study), bundle, bundle - 1,
+        sweep_n_members(study), sweep_n_members(study) - 1, program, folder, folder);
+
     return plain_file_close(&script.file, STATUS_OK);
 }
 
 static enum status write_gather(const struct case_values *study, const char *folder, const char *program) {
     struct script script;
-    TRY(open_file(&script, folder, "gather.sbatch", 1));
+    TRY(script_open(&script, folder, "gather.sbatch", 1));
     fprintf(script.file.stream,
             "#SBATCH --job-name='%s-gather'\n"
             "#SBATCH --ntasks=1\n"
@@ -80,22 +83,22 @@ static enum status write_gather(const struct case_values *study, const char *fol
             "exec '%s' gather '%s'\n",
             study->name, folder, program, folder);
     TRY(plain_file_close(&script.file, STATUS_OK));
-    TRY(open_file(&script, folder, "submit.sh", 1));
-    fprintf(
-        script.file.stream,
-        "# Submit the members as an array job, and after the last of them the job that gathers what they end with.\n"
-        "set -eu\n"
-        "folder='%s'\n"
-        "array=$(sbatch --parsable \"$@\" \"$folder/array.sbatch\")\n"
-        "gather=$(sbatch --parsable --dependency=\"afterany:$array\" \"$folder/gather.sbatch\")\n"
-        "printf '%%s\\n' \"members: job $array; results: job $gather, $folder/study.txt and study.nc\"\n",
-        folder);
+    TRY(script_open(&script, folder, "submit.sh", 1));
+    fprintf(script.file.stream,
+            "# Submit the members as an array job, then the job that gathers the results after the last member.\n"
+            "set -eu\n"
+            "folder='%s'\n"
+            "array=$(sbatch --parsable \"$@\" \"$folder/array.sbatch\")\n"
+            "gather=$(sbatch --parsable --dependency=\"afterany:$array\" \"$folder/gather.sbatch\")\n"
+            "printf '%%s\\n' \"members: job $array; results: job $gather, $folder/study.txt and study.nc\"\n",
+            folder);
+
     return plain_file_close(&script.file, STATUS_OK);
 }
 
 static enum status write_case(const struct case_values *study, const char *folder) {
     struct script script;
-    TRY(open_file(&script, folder, "study.yaml", 0));
+    TRY(script_open(&script, folder, "study.yaml", 0));
     fputs(study->merged, script.file.stream);
     return plain_file_close(&script.file, STATUS_OK);
 }
@@ -109,21 +112,25 @@ enum status study_slurm(const struct case_values *study, const char *folder, int
         TRY(case_member(&member, study, m));
         case_free(&member);
     }
+
     char place[PATH_MAX], program[PATH_MAX];
     TRY(study_folder_create(folder));
     if (!realpath(folder, place) || !realpath("/proc/self/exe", program)) {
-        return status_fail(STATUS_FILE, "%s: its full path cannot be found: %s", folder, strerror(errno));
+        return status_fail(STATUS_FILE, "%s: cannot resolve the full path: %s", folder, strerror(errno));
     }
+
     if (strpbrk(place, "'\n\"") || strpbrk(program, "'\n\"") || strpbrk(study->name, "'\n\"")) {
         return status_fail(
             STATUS_CASE,
-            "%s: the scripts cannot have quotes or line breaks in the path of the folder or of the program, or in "
-            "the name of the case",
+            "%s: the path of the folder, the path of the program and the name of the case must not contain quotes or "
+            "line breaks",
             place);
     }
+
     TRY(write_case(study, place));
     TRY(write_array(study, place, program, n_tasks, bundle));
     TRY(write_gather(study, place, program));
     fprintf(stream, "%d members in %d tasks; start them with %s/submit.sh\n", n, n_tasks, folder);
+
     return STATUS_OK;
 }

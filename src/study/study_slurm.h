@@ -8,9 +8,9 @@
 #include "base/status.h"
 #include "case/case_values.h"
 
-/* Write what a cluster needs into the folder: study.yaml (the whole study in one file), array.sbatch (its members,
- * bundle of them a task; 0: one, or so many that there are no more than 1000 tasks), gather.sbatch, and submit.sh that
- * submits both. Fails with STATUS_CASE or STATUS_FILE. */
+/* Write the files for a cluster into the folder: study.yaml (the whole study in one file), array.sbatch (the members,
+ * bundle members per task; bundle 0: the fewest members per task with at most 1000 tasks), gather.sbatch, and
+ * submit.sh, which submits both jobs. Fails with STATUS_CASE or STATUS_FILE. */
 enum status study_slurm(const struct case_values *study, const char *folder, int bundle, FILE *stream);
 
 #endif

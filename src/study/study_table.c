@@ -29,7 +29,7 @@ void study_table_number(const struct study_table *table, int row, int column, co
     study_table_set(table, row, column, "%s", isnan(number) ? "-" : text);
 }
 
-static int width(const struct study_table *table, int column) {
+static int column_width(const struct study_table *table, int column) {
     int max = 0;
     for (int row = 0; row < table->n_rows; row++) {
         const int length = (int)strlen(table->cell[row * table->n_columns + column]);
@@ -38,12 +38,13 @@ static int width(const struct study_table *table, int column) {
     return max;
 }
 
-static void print_row(const struct study_table *table, int row, FILE *stream) {
+static void table_print_row(const struct study_table *table, int row, FILE *stream) {
     int n_blanks = 0;  // no blanks at the end of a line
     for (int column = 0; column < table->n_columns; column++) {
         const char *const text = table->cell[row * table->n_columns + column];
         const int is_last = column == table->n_columns - 1;
-        const int rest = is_last ? 0 : width(table, column) - (int)strlen(text), is_left = column < table->n_left;
+        const int rest = is_last ? 0 : column_width(table, column) - (int)strlen(text),
+                  is_left = column < table->n_left;
         n_blanks += (column > 0 ? 2 : 0) + (is_left ? 0 : rest);
         if (*text) fprintf(stream, "%*s%s", n_blanks, "", text);
         n_blanks = (*text ? 0 : n_blanks) + (is_left ? rest : 0);
@@ -52,5 +53,5 @@ static void print_row(const struct study_table *table, int row, FILE *stream) {
 }
 
 void study_table_print(const struct study_table *table, FILE *stream) {
-    for (int row = 0; row < table->n_rows; row++) print_row(table, row, stream);
+    for (int row = 0; row < table->n_rows; row++) table_print_row(table, row, stream);
 }

@@ -28,7 +28,7 @@ end
 
 run compare case.yaml --methods ida2,ida5,euler,rk4,dormand_prince --rtol 1e-3,1e-6 --repeats 2 -o compare.nc
 check all_methods_run test "$code" = 0 -a "$(grep -c ' complete$' out)" = 10
-check the_error_of_the_reference_is_printed has out 'Reference: ida5, rtol 1e-09; ida5, rtol 1e-08 is off by '
+check the_error_of_the_reference_is_printed has out 'Reference: ida5, rtol 1e-09; difference of ida5, rtol 1e-08: '
 # dormand_prince is as exact as the reference with either tolerance
 for method in ida2 ida5 euler rk4; do
     check "${method}_is_more_exact_with_less_tolerance" below "$(value $method 1e-6 5)" "$(value $method 1e-3 5)"

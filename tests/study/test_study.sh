@@ -89,7 +89,7 @@ check the_tasks_run_all_members test -e cluster/member-0003.nc \
     -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
 run gather cluster
 check their_results_are_those_of_the_study has err '2 of 6 members in cluster'
-refused no_quotes_in_scripts 2 'the scripts cannot have quotes' study small.yaml --slurm -o "it's"
+refused no_quotes_in_scripts 2 'must not contain quotes' study small.yaml --slurm -o "it's"
 refused bundles_of_words 2 '--bundle few: expects an integer' study small.yaml --slurm --bundle few -o cluster
 
 # ---- folders with something else
@@ -110,10 +110,10 @@ refused the_table_of_another_study_is_refused 4 './gathered/study.nc was gathere
 run study shorter.yaml -o gathered -q --force
 check force_replaces_it_too test -e gathered/member-0000.nc
 mkdir empty
-refused gather_of_nothing 4 'empty: holds no member of a study that can be read' gather empty
+refused gather_of_nothing 4 'empty contains no readable member of a study' gather empty
 refused gather_of_no_folder 4 'nowhere: cannot be read: No such file or directory' gather nowhere
-refused folder_is_a_file 4 'small.yaml: cannot make this folder' study small.yaml -o small.yaml
-refused folder_in_no_folder 4 'no/where: cannot make this folder' study small.yaml -o no/where
+refused folder_is_a_file 4 'small.yaml: cannot create this folder' study small.yaml -o small.yaml
+refused folder_in_no_folder 4 'no/where: cannot create this folder' study small.yaml -o no/where
 
 # ---- wrong input
 
@@ -213,16 +213,16 @@ check each_is_printed grep -qx 'nose of two, 2 values' out
 check with_what_is_and_what_should_be grep -qE '^  met      the smallest is 0\.9[0-9]*, expected at least 0\.9$' out
 check values_of_all_members_and_fish_count grep -qx 'speed, 8 values' out
 check the_same_number_is_the_same_value grep -qx 'tail of two, 2 values' out
-refused a_statement_that_does_not_hold_gives_exit_code_3 3 'expect[0]: speed: not what the case expects' \
+refused a_statement_that_does_not_hold_gives_exit_code_3 3 'expect[0]: speed: expectation not met' \
     study stated.yaml -q -o unstated --set 'expect=[{of: speed, most: 0.5}, {of: nose, fish: one, spread: 0}]'
 check what_is_missed_is_printed grep -qE '^  MISSED   the largest is [01]\.[0-9]*, expected at most 0\.5$' out
-check all_expectations_are_tested grep -qE '^  MISSED   they differ by [0-9.e-]+, expected at most 0$' out
-refused a_quantity_that_is_missing_misses 3 'expect[0]: tail_error: not what the case expects' \
+check all_expectations_are_tested grep -qE '^  MISSED   the spread is [0-9.e-]+, expected at most 0$' out
+refused a_quantity_that_is_missing_misses 3 'expect[0]: tail_error: expectation not met' \
     study stated.yaml -q -o unstated --force --set 'expect=[{of: tail_error, most: 1}]'
 check that_it_is_missing_is_printed has out '  MISSED   member 3 has no such value'
 run info unstated/study.nc
 check info_reports_it_too eval 'test "$code" = 0 && has out "missed: expect[0]"'
-refused a_member_that_is_not_complete_misses 3 'expect[0]: speed: not what the case expects: see the output' \
+refused a_member_that_is_not_complete_misses 3 'expect[0]: speed: expectation not met: see the output' \
     study small.yaml -q -o failing --set 'sweep=[{key: solver.max_steps, values: [1000, 2]}]' \
     --set solver.method=euler \
     --set 'expect=[{of: speed, least: 0}]'
@@ -232,10 +232,10 @@ run study small.yaml -q -o doomed --set 'expect=[{fails: unstable at, where: [so
 check failures_that_are_expected_give_exit_code_0 eval 'test "$code" = 0 && grep -q "^member 2 failed" out'
 check they_are_counted grep -qx 'failures, 2 members' out
 check several_values_of_a_key_are_alternatives grep -qx 'speed, 4 values' out
-refused a_failure_that_does_not_come_misses 3 'expect[0]: failures: not what' study small.yaml -q -o doomed --force \
+refused a_failure_that_does_not_come_misses 3 'expect[0]: failures: expectation not met' study small.yaml -q -o doomed --force \
     --set 'expect=[{fails: unstable, where: [solver.method=euler, solver.method=rk4]}]'
 check which_member_does_not_fail_is_printed has out "  MISSED   member 4 has not failed with 'unstable'"
-refused other_words_of_the_reason_miss_too 3 'expect[0]: failures: not what' study small.yaml -q -o doomed --force \
+refused other_words_of_the_reason_miss_too 3 'expect[0]: failures: expectation not met' study small.yaml -q -o doomed --force \
     --set 'expect=[{fails: out of memory, where: [solver.method=euler]}]'
 run study stated.yaml -q -o plain --set 'sweep=[]'
 check without_a_sweep_nothing_is_expected eval 'test "$code" = 0 && ! grep -q Expected out'
@@ -331,7 +331,7 @@ kill -INT "$study"
 code=0
 wait "$study" || code=$?
 check a_signal_stops_a_study test "$code" = 75
-check it_says_what_is_finished has err 'stopped by a signal: 1 of 4 members are finished; the same command goes on'
+check it_says_what_is_finished has err 'stopped by a signal: 1 of 4 members are finished; repeat the command to continue'
 run info stopped/member-0001.nc
 check its_members_stop_cleanly has out 'stopped'
 

@@ -79,22 +79,22 @@ static void a_statement_may_be_about_one_fish_and_some_members(void **state) {
 
 static void a_spread_of_points_is_the_diagonal_of_the_box_around_them(void **state) {
     (void)state;
-    check("{of: nose, fish: b, spread: 5}", "complete", STATUS_OK, "met      they differ by 5, expected at most 5");
-    check("{of: nose, fish: b, spread: 4.99}", "complete", STATUS_MISSED, "MISSED   they differ by 5");
-    check("{of: speed, spread: 2}", "complete", STATUS_OK, "met      they differ by 2");
+    check("{of: nose, fish: b, spread: 5}", "complete", STATUS_OK, "met      the spread is 5, expected at most 5");
+    check("{of: nose, fish: b, spread: 4.99}", "complete", STATUS_MISSED, "MISSED   the spread is 5");
+    check("{of: speed, spread: 2}", "complete", STATUS_OK, "met      the spread is 2");
 }
 
 static void a_ratio_is_one_of_absolute_values(void **state) {
     (void)state;
-    check("{of: speed, ratio: 2}", "complete", STATUS_OK, "met      their ratio is 2");
-    check("{of: speed, ratio: 1.99}", "complete", STATUS_MISSED, "MISSED   their ratio is 2");
-    check("{of: lateral_drift, fish: a, ratio: 2}", "complete", STATUS_OK, "met      their ratio is 2");
-    check("{of: lateral_drift, fish: a, ratio: 1.99}", "complete", STATUS_MISSED, "MISSED   their ratio is 2");
+    check("{of: speed, ratio: 2}", "complete", STATUS_OK, "met      the ratio is 2");
+    check("{of: speed, ratio: 1.99}", "complete", STATUS_MISSED, "MISSED   the ratio is 2");
+    check("{of: lateral_drift, fish: a, ratio: 2}", "complete", STATUS_OK, "met      the ratio is 2");
+    check("{of: lateral_drift, fish: a, ratio: 1.99}", "complete", STATUS_MISSED, "MISSED   the ratio is 2");
 }
 
 static void values_of_both_signs_or_zero_miss_every_ratio(void **state) {
     (void)state;
-    static const char missed[] = "MISSED   their ratio is inf";
+    static const char missed[] = "MISSED   the ratio is inf";
     check("{of: lateral_drift, ratio: 1e9, fish: b, where: [solver.order=1, solver.order=3]}", "complete",
           STATUS_MISSED, missed);
     check("{of: lateral_drift, ratio: 1e9, fish: b, where: [solver.order=1, solver.order=2]}", "complete",

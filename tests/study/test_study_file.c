@@ -127,7 +127,7 @@ static void orders_are_kept_in_study_nc(void **state) {
     struct case_values none;
     struct member_file *nobody;
     assert_int_equal(study_file_read(path, &none, &nobody, &(int){0}), STATUS_FILE);
-    assert_non_null(strstr(status_message(), "make the study's file again"));
+    assert_non_null(strstr(status_message(), "write study.nc again"));
     unlink(path);
     study_folder_free_members(read, 6);
     study_orders_free(&orders);
