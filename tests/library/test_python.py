@@ -438,7 +438,7 @@ class Programs(unittest.TestCase):
     def test_a_case_is_checked(self):
         good = shoal.check(PAIR)
         self.assertIn("2 fish", good.summary)
-        self.assertTrue(any("take 14 nodes" in text for text in good.warnings), good.warnings)
+        self.assertTrue(any("use at least 14 nodes" in text for text in good.warnings), good.warnings)
         with self.assertRaisesRegex(shoal.CaseError, "(?s)did you mean 'amplitude'.*nodes"):
             shoal.check({**PAIR, "fish": [{"wave": {"amplitud": 1}, "nodes": 2}]})
         with self.assertRaisesRegex(shoal.FileError, "none.yaml"):
@@ -519,7 +519,7 @@ class Results(unittest.TestCase):
 
     def test_the_program_goes_on_from_a_checkpoint(self):
         run, whole = shoal.Run(PAIR), shoal.Run(PAIR)
-        with self.assertRaisesRegex(shoal.CaseError, "belongs to a result file"):
+        with self.assertRaisesRegex(shoal.CaseError, "needs a result file"):
             run.checkpoint()
         for one, path in (run, "stopped.nc"), (whole, "whole.nc"):
             one.write(path, overwrite=True)
