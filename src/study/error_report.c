@@ -383,7 +383,7 @@ enum status error_report_print(struct error_study *study, const struct member_fi
     fprintf(stream, "noise of a value, of integrator and search: %.1e\n", study->noise);
     print_choices(study, stream);
     print_reasons(study, members, stream);
-    if (study->cost > 1.005) fprintf(stream, "the stated value takes %.2g times the time of the case\n", study->cost);
+    if (study->stated > 0) fprintf(stream, "the stated value takes %.2g times the time of the case\n", study->cost);
     if (study->is_reached) return STATUS_OK;
     char words[ERROR_STUDY_BYTES];
     error_study_say_cost(study, words);

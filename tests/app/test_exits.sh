@@ -76,7 +76,7 @@ end
     { cat many.yaml && echo 'solver: {threads: 4}' && echo 'sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.3]}]'; } \
         >study.yaml
     with_threads 4 study study.yaml -q -j 1 -o study
-    check a_member_that_a_library_ends_has_a_reason eval 'ended 1 && has study/member-0000.failed "too many threads"'
+    check a_member_that_a_library_ends_has_a_reason eval 'ended 1 && has study/member-0000.failed "fewer threads"'
 fi
 
 # ---- names with control characters
