@@ -1,6 +1,7 @@
 /* study_print.c: the table of members. */
 #include "study/study_print.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "case/sweep_members.h"
@@ -8,7 +9,7 @@
 
 enum { MAX_FISH_SHOWN = 4, MAX_WARNINGS_SHOWN = 20 };
 
-/* The printed quantities; study.nc contains all quantities. */
+/* The printed quantities, those of steady states only where a member has a value; study.nc contains all quantities. */
 static const struct shown {
     const char *quantity, *head, *format;
 } shown[] = {
@@ -17,6 +18,7 @@ static const struct shown {
     {"mean_heading", "heading", "%.3f"},
     {"cost_of_transport", "cost", "%.4g"},
     {"strouhal", "Strouhal", "%.4f"},
+    {"steady_growth", "growth", "%+.4f"},
     {"lateral_drift", "drift", "%.5f"},
     {"shed_circulation", "shed", "%.5f"},
     {"energy_balance", "balance", "%.1e"},
@@ -25,6 +27,24 @@ static const struct shown {
     {"wall_time", "wall", "%.2f"},
 };
 enum { N_SHOWN = sizeof shown / sizeof *shown };
+
+/* The printed quantities of the members of a study. */
+struct columns {
+    const struct shown *shown[N_SHOWN];
+    int n;
+};
+
+/* Leave out the quantities of steady states that no member has. */
+static struct columns columns_of(const struct member_file *members, int n) {
+    struct columns columns = {.n = 0};
+    for (int s = 0; s < N_SHOWN; s++) {
+        const int quantity = member_file_quantity_number(shown[s].quantity);
+        int is_known = !member_file_quantity(quantity)->of_steady;
+        for (int m = 0; m < n && !is_known; m++) is_known = !isnan(member_file_value(&members[m], quantity, 0, 0));
+        if (is_known) columns.shown[columns.n++] = &shown[s];
+    }
+    return columns;
+}
 
 /* "modulus" for fish[*].body.modulus, "[1]phase" for fish[1].wave.phase. */
 static void set_short_name(const struct study_table *table, int row, int column, const char *path) {
@@ -35,7 +55,8 @@ static void set_short_name(const struct study_table *table, int row, int column,
 }
 
 /* Head and unit of each column. */
-static void members_fill_head(const struct study_table *table, const struct case_values *study, int with_fish) {
+static void members_fill_head(const struct study_table *table, const struct case_values *study,
+                              const struct columns *columns, int with_fish) {
     int c = 0;
     study_table_set(table, 0, c++, "member");
     for (int a = 0; a < study->n_axes; a++) {
@@ -46,9 +67,9 @@ static void members_fill_head(const struct study_table *table, const struct case
     }
 
     if (with_fish) study_table_set(table, 0, c++, "fish");
-    for (int s = 0; s < N_SHOWN; s++, c++) {
-        const char *const unit = member_file_quantity(member_file_quantity_number(shown[s].quantity))->unit;
-        study_table_set(table, 0, c, "%s", shown[s].head);
+    for (int s = 0; s < columns->n; s++, c++) {
+        const char *const unit = member_file_quantity(member_file_quantity_number(columns->shown[s]->quantity))->unit;
+        study_table_set(table, 0, c, "%s", columns->shown[s]->head);
         study_table_set(table, 1, c, "%s", strcmp(unit, "1") == 0 ? "" : unit);
     }
 
@@ -57,7 +78,8 @@ static void members_fill_head(const struct study_table *table, const struct case
 
 /* Fill the row of one fish of one member. */
 static void members_fill_row(const struct study_table *table, int row, const struct case_values *study,
-                             const struct member_file *member, int number, int f, int with_fish) {
+                             const struct columns *columns, const struct member_file *member, int number, int f,
+                             int with_fish) {
     int c = 0;
     study_table_set(table, row, c++, "%d", number);
     for (int a = 0; a < study->n_axes; a++) {
@@ -69,10 +91,10 @@ static void members_fill_row(const struct study_table *table, int row, const str
     }
 
     if (with_fish) study_table_set(table, row, c++, "%s", study->school.fish[f].name);
-    for (int s = 0; s < N_SHOWN; s++) {
-        const int quantity = member_file_quantity_number(shown[s].quantity);
+    for (int s = 0; s < columns->n; s++) {
+        const int quantity = member_file_quantity_number(columns->shown[s]->quantity);
         const double value = member_file_value(member, quantity, member_file_quantity(quantity)->of_fish ? f : 0, 0);
-        study_table_number(table, row, c++, shown[s].format, value);
+        study_table_number(table, row, c++, columns->shown[s]->format, value);
     }
 
     // "failed: reason": the reasons follow the table
@@ -89,16 +111,17 @@ static void members_print_reasons(const struct member_file *members, int n, FILE
 enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
     const int n = sweep_n_members(study),
               n_fish = study->school.n_fish < MAX_FISH_SHOWN ? study->school.n_fish : MAX_FISH_SHOWN;
-    int n_columns = 2 + (n_fish > 1) + N_SHOWN;
+    const struct columns columns = columns_of(members, n);
+    int n_columns = 2 + (n_fish > 1) + columns.n;
 
     for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;
     struct study_table table;
     TRY(study_table_create(&table, 2 + n * n_fish, n_columns));
-    members_fill_head(&table, study, n_fish > 1);
+    members_fill_head(&table, study, &columns, n_fish > 1);
 
     for (int m = 0; m < n; m++) {
         for (int f = 0; f < n_fish; f++) {
-            members_fill_row(&table, 2 + m * n_fish + f, study, &members[m], m, f, n_fish > 1);
+            members_fill_row(&table, 2 + m * n_fish + f, study, &columns, &members[m], m, f, n_fish > 1);
         }
     }
 

@@ -31,6 +31,7 @@ check the_reason_is_kept has small-study/member-0002.failed 'unstable at t = '
 check members_are_numbered_from_0 test -e small-study/member-0000.nc -a -e small-study/member-0005.nc -a \
     ! -e small-study/member-0006.nc
 check progress_counts_members has err '4 of 6 members done, 2 failed, 0 running  100 %'
+check quantities_of_steady_states_are_not_in_the_table_of_runs eval '! grep -q growth out'
 check a_line_per_member test "$(grep -cE '^ +[0-5] +0\.[23] ' out)" = 6
 check results_are_gathered test -s small-study/study.nc
 run info --case small-study/member-0004.nc
@@ -191,6 +192,15 @@ check steady_states_are_refined eval 'test "$code" = 0 && grep -qE "^ +steady_sp
 check several_keys_are_refined_together has out 'of time.shedding_interval with wake.smoothing with fish[*].sheet_points'
 check quantities_without_values_are_left_out eval '! grep -qE "^ +(nose|steady_drag)" out'
 check the_order_of_the_steady_speed_is_expected grep -qE '^met: order of steady_speed of fish1 is ' out
+
+cat >flag.yaml <<end
+format: 1
+include: ["$root/cases/flag.yaml"]
+sweep: [{key: "fish[*].body.modulus", values: [5e4, 1e5], steady: true}]
+end
+run study flag.yaml -q -o flag --set 'fish[*].nodes=13' --set 'fish[*].sheet_points=33'
+check the_growth_rate_of_equilibria_is_in_the_table eval 'grep -qE "^member +modulus .* growth +drift " out &&
+    grep -qE "^ +0 +5e4 .* \+0\.[0-9]{4} " out && grep -qE "^ +1 +1e5 .* -0\.[0-9]{4} " out'
 
 # ---- what is expected of members
 
