@@ -62,6 +62,21 @@ int durable_lock(int descriptor, uint64_t first, uint64_t n) {
 #endif
 }
 
+void durable_narrow(int descriptor, uint64_t first, uint64_t n) {
+#ifdef F_OFD_SETLK
+    const off_t begin = (off_t)first, end = begin + (off_t)n;
+    struct flock before = {.l_type = F_UNLCK, .l_whence = SEEK_SET, .l_len = begin}, after = before;
+    after.l_start = end;
+    after.l_len = 0;
+    if (begin > 0) fcntl(descriptor, F_OFD_SETLK, &before);
+    if (n > 0) fcntl(descriptor, F_OFD_SETLK, &after);
+#else
+
+    // flock has no ranges
+    if (first > 0 || n > 0) flock(descriptor, LOCK_UN);
+#endif
+}
+
 bool durable_has_name(int descriptor, const char *path) {
     struct stat open_file, named;
     return fstat(descriptor, &open_file) == 0 && lstat(path, &named) == 0 && open_file.st_ino == named.st_ino &&

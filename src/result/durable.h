@@ -36,6 +36,10 @@ int durable_write(int descriptor, const void *bytes, size_t n);
  * the system or the file system has no such locks. */
 int durable_lock(int descriptor, uint64_t first, uint64_t n);
 
+/* Unlock all but n bytes from first on, 0: all from there on, of a file that is locked as a whole. Where locks have no
+ * ranges, unlock the file. */
+void durable_narrow(int descriptor, uint64_t first, uint64_t n);
+
 /* Whether the file of a descriptor is the one at this path. */
 bool durable_has_name(int descriptor, const char *path);
 

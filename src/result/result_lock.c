@@ -13,7 +13,7 @@
 #include "result/durable.h"
 #include "result/target.h"
 
-enum { OWNER_BYTES = 256 };
+enum { OWNER_BYTES = 256, OWNER_WIDTH = 160 /* letters of every owner, so that one replaces another in place */ };
 
 /* A range of bytes to lock, and the message for a range held by another process. */
 struct claim {
@@ -32,7 +32,7 @@ static size_t read_owner(int descriptor, char owner[OWNER_BYTES]) {
 
 /* True for bytes of write_owner, or for the remains after a power cut: a part, or zeros. */
 static bool is_owner(const char *owner, size_t n) {
-    static const char form[] = "process # on ";
+    static const char form[] = TARGET_LOCK_MARK "# on ";
     size_t n_zeros = 0, at = 0;
     while (n_zeros < n && owner[n_zeros] == '\0') n_zeros++;
     if (n_zeros == n || n == OWNER_BYTES - 1) return n_zeros == n;
@@ -47,46 +47,58 @@ static bool is_owner(const char *owner, size_t n) {
     return !end || end == owner + n - 1;
 }
 
-// write the owner; the lock is valid even if writing fails
+// write the owner over the previous one, never emptying the file; the lock is valid even if writing fails
 static void write_owner(int descriptor) {
-    char host[128] = "an unknown host", owner[OWNER_BYTES];
+    char host[128] = "an unknown host", owner[OWNER_WIDTH], line[OWNER_BYTES];
     gethostname(host, sizeof host - 1);
-    const int n = snprintf(owner, sizeof owner, "process %ld on %s\n", (long)getpid(), host);
-    if (ftruncate(descriptor, 0) != 0 || pwrite(descriptor, owner, (size_t)n, 0) != n) return;
+    snprintf(owner, sizeof owner, TARGET_LOCK_MARK "%ld on %s", (long)getpid(), host);
+    const int n = snprintf(line, sizeof line, "%-*s\n", OWNER_WIDTH, owner);
+    if (pwrite(descriptor, line, (size_t)n, 0) != n) return;
 }
 
 static enum status refuse_lock(const struct claim *claim, int descriptor) {
     char owner[OWNER_BYTES];
     read_owner(descriptor, owner);
-    owner[strcspn(owner, "\n")] = '\0';
+    size_t n = strcspn(owner, "\n");
+    while (n > 0 && owner[n - 1] == ' ') n--;
+    owner[n] = '\0';
     return status_fail(STATUS_FILE, "%s: %s (%s): wait until it has ended, or choose another name with -o", claim->path,
                        claim->message, *owner ? owner : "an unknown process");
 }
 
 // ---- the file
 
-/* Open or create the file. An existing file must be a lock of shoal, complete or truncated by a power cut. */
-static enum status open_file(struct result_lock *lock, const struct claim *claim) {
-    const int flags = O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
-    lock->is_my_own = false;
-    lock->descriptor = open(lock->path, flags);
+/* Create the file under a part's name, lock the part, write the owner, and link the part to the lock's name: no process
+ * ever opens a lock file that is new, unlocked or empty. Errno or 0. */
+static int create_locked(struct result_lock *lock, const struct claim *claim) {
+    struct durable_part part;
+    int code = durable_begin(&part, lock->path, 0666);
 
-    if (lock->descriptor < 0 && errno == ENOENT) {
+    if (code == 0) {
+        durable_narrow(part.descriptor, claim->first, claim->n);
+        write_owner(part.descriptor);
+        code = link(part.name, lock->path) == 0 ? 0 : errno;
+    }
+
+    if (code == 0) {
         lock->is_my_own = true;
-        lock->descriptor = open(lock->path, flags | O_CREAT | O_EXCL, 0666);
-        if (lock->descriptor < 0 && errno == EEXIST) return open_file(lock, claim);
+        lock->descriptor = part.descriptor;
+        part.descriptor = -1;
     }
 
+    durable_end(&part);
+    return code;
+}
+
+// Fail unless the open file is a lock of shoal, complete or truncated by a power cut.
+static enum status check_file(struct result_lock *lock) {
     struct stat facts;
-    if (lock->descriptor < 0 && errno == ENOENT)  // the folder is there: that has been checked
-        return status_fail(STATUS_FILE, "%s: the folder takes no new files: choose another place with -o", claim->path);
-
-    if (lock->descriptor < 0 || fstat(lock->descriptor, &facts) != 0 || !S_ISREG(facts.st_mode)) {
-        return status_fail(STATUS_FILE, "%s: cannot be made (%s): choose another name with -o", lock->path,
-                           lock->descriptor < 0 ? strerror(errno) : "it is not an ordinary file");
+    char owner[OWNER_BYTES];
+    if (fstat(lock->descriptor, &facts) != 0 || !S_ISREG(facts.st_mode)) {
+        return status_fail(STATUS_FILE, "%s: cannot be made (it is not an ordinary file): choose another name with -o",
+                           lock->path);
     }
 
-    char owner[OWNER_BYTES];
     if (!is_owner(owner, read_owner(lock->descriptor, owner))) {
         return status_fail(STATUS_FILE, "%s exists and is no lock of shoal: remove it, or choose another name with -o",
                            lock->path);
@@ -97,10 +109,34 @@ static enum status open_file(struct result_lock *lock, const struct claim *claim
     return STATUS_OK;
 }
 
-/* Open and lock the file once; *is_gone: the previous owner has removed the name meanwhile. */
+/* Open or create the file, and lock the file once; *is_gone: try again, because another owner has removed or created
+ * the file meanwhile. */
 static enum status try_claim(struct result_lock *lock, const struct claim *claim, bool *is_gone) {
+    const int flags = O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
     *is_gone = false;
-    TRY(open_file(lock, claim));
+    lock->is_my_own = false;
+    lock->descriptor = open(lock->path, flags);
+
+    if (lock->descriptor < 0 && errno == ENOENT) {
+        const int code = create_locked(lock, claim);
+        *is_gone = code == EEXIST;
+        if (code == 0 || code == EEXIST) return STATUS_OK;
+
+        // a file system without hard links: a rival can open the file while it is still empty
+        lock->is_my_own = true;
+        lock->descriptor = open(lock->path, flags | O_CREAT | O_EXCL, 0666);
+        *is_gone = lock->descriptor < 0 && errno == EEXIST;
+        if (*is_gone) return STATUS_OK;
+    }
+
+    if (lock->descriptor < 0 && errno == ENOENT)  // the folder is there: that has been checked
+        return status_fail(STATUS_FILE, "%s: the folder takes no new files: choose another place with -o", claim->path);
+    if (lock->descriptor < 0) {
+        return status_fail(STATUS_FILE, "%s: cannot be made (%s): choose another name with -o", lock->path,
+                           strerror(errno));
+    }
+
+    TRY(check_file(lock));
     if (durable_lock(lock->descriptor, claim->first, claim->n) == EAGAIN) return refuse_lock(claim, lock->descriptor);
     *is_gone = !durable_has_name(lock->descriptor, lock->path);
     if (!*is_gone) write_owner(lock->descriptor);
@@ -125,7 +161,7 @@ static enum status take_lock(struct result_lock *lock, const struct claim *claim
         const enum status status = try_claim(lock, claim, &is_gone);
         if (status != STATUS_OK) forget(lock);
         if (status != STATUS_OK || !is_gone) return status;
-        close(lock->descriptor);
+        if (lock->descriptor >= 0) close(lock->descriptor);
     }
 }
 
@@ -149,6 +185,11 @@ void result_lock_release(struct result_lock *lock) {
     if (lock->path && lock->owner == getpid() && durable_lock(lock->descriptor, 0, 0) != EAGAIN) {
         const int code = lock->is_my_own ? unlink(lock->path) : ftruncate(lock->descriptor, 0);
         (void)code;  // a lock without an owner locks nothing
+
+        // remove the parts of runs that died while they made this lock; one may be linked to the file closed here
+        close(lock->descriptor);
+        lock->descriptor = -1;
+        durable_sweep(lock->path);
     }
     forget(lock);
 }

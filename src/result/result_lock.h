@@ -1,6 +1,7 @@
 /* result_lock.h: no two runs write the same result, and no two studies run the same members. A run locks the file
  * RESULT.lock, a study a part of FOLDER/study.lock; the kernel frees the lock at the end of the run, even after a
- * crash. Two runs of one process exclude each other too. Tested by tests/result/test_result_lock.c. */
+ * crash. Two runs of one process exclude each other too. Of runs that race for one result, one gets the lock; an empty
+ * lock file can stay behind only on a file system without hard links. Tested by tests/result/test_result_lock.c. */
 #ifndef RESULT_LOCK_H
 #define RESULT_LOCK_H
 

@@ -26,6 +26,7 @@ static const struct {
     [TARGET_PICTURE] = {"picture", "\x89PNG", {"shoal plot.py"}},
     [TARGET_SCRIPT] = {"script", "#", {TARGET_SCRIPT_MARK}},
     [TARGET_TABLE] = {"table of errors", TARGET_TABLE_MARK, {TARGET_TABLE_MARK}},
+    [TARGET_LOCK] = {"lock", TARGET_LOCK_MARK, {" on "}},
 };
 enum { N_KINDS = sizeof kinds / sizeof *kinds };
 

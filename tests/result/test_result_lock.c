@@ -1,4 +1,5 @@
 /* test_result_lock.c: of two processes one gets the lock, and the other hears who has it. */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,6 +8,7 @@
 #include <unistd.h>
 
 #include "near.h"
+#include "result/durable.h"
 #include "result/result_lock.h"
 
 static char folder[] = "/tmp/test_result_lock_XXXXXX", result[64], lock_file[64];
@@ -150,6 +152,119 @@ static void what_a_power_cut_leaves_of_a_lock_is_removed_and_an_empty_file_stays
     unlink(lock_file);
 }
 
+// ---- two runs that race: a rival acts in the middle of the first one's result_lock_take
+
+static enum { NOBODY, HOLDS, RELEASES } rival;
+static enum { AT_LINK, AT_LOCK } rival_acts;
+static struct result_lock rival_lock;
+static enum status rival_status;
+static bool without_links;
+
+static void let_rival_act(void) {
+    const bool releases = rival == RELEASES;
+    rival = NOBODY;
+    rival_status = result_lock_take(&rival_lock, result);
+    if (releases) result_lock_release(&rival_lock);
+}
+
+int __real_link(const char *from, const char *to);
+int __wrap_link(const char *from, const char *to);
+int __wrap_link(const char *from, const char *to) {
+    if (rival != NOBODY && rival_acts == AT_LINK) let_rival_act();
+    if (!without_links) return __real_link(from, to);
+    errno = EPERM;
+    return -1;
+}
+
+int __real_durable_lock(int descriptor, uint64_t first, uint64_t n);
+int __wrap_durable_lock(int descriptor, uint64_t first, uint64_t n);
+int __wrap_durable_lock(int descriptor, uint64_t first, uint64_t n) {
+    if (rival != NOBODY && rival_acts == AT_LOCK) let_rival_act();
+    return __real_durable_lock(descriptor, first, n);
+}
+
+static void of_runs_that_race_one_has_the_lock_and_no_file_stays(void **state) {
+    (void)state;
+    char process[64];
+    snprintf(process, sizeof process, "process %ld on ", (long)getpid());
+    for (int i = 0; i < 8; i++) {
+        const bool is_stale = i / 4, holds = i % 2;
+        struct result_lock lock;
+        if (is_stale) put("process 99999999 on a host\n", 27);
+        rival_acts = i / 2 % 2 ? AT_LOCK : AT_LINK;
+        rival = holds ? HOLDS : RELEASES;
+        const enum status status = result_lock_take(&lock, result);
+        const bool has_acted = rival == NOBODY;
+        rival = NOBODY;
+
+        // a file that exists is locked without a link, and a new file before anybody else can see it
+        assert_int_equal(has_acted, is_stale == (rival_acts == AT_LOCK));
+        if (has_acted) assert_int_equal(rival_status, STATUS_OK);
+        assert_int_equal(status, has_acted && holds ? STATUS_FILE : STATUS_OK);
+        if (status != STATUS_OK && !strstr(status_message(), process)) fail_msg("%s", status_message());
+
+        result_lock_release(status == STATUS_OK ? &lock : &rival_lock);
+        assert_int_not_equal(access(lock_file, F_OK), 0);
+    }
+}
+
+static bool has_third;
+
+ssize_t __real_pwrite(int descriptor, const void *bytes, size_t n, off_t at);
+ssize_t __wrap_pwrite(int descriptor, const void *bytes, size_t n, off_t at);
+ssize_t __wrap_pwrite(int descriptor, const void *bytes, size_t n, off_t at) {
+    if (has_third) {
+        has_third = false;
+        rival_status = result_lock_members(&rival_lock, folder, 8, 2);
+    }
+    return __real_pwrite(descriptor, bytes, n, at);
+}
+
+static void a_study_that_joins_while_another_writes_its_name_sees_a_lock(void **state) {
+    (void)state;
+    struct result_lock one, other;
+    char file[64];
+    snprintf(file, sizeof file, "%s/study.lock", folder);
+    assert_int_equal(result_lock_members(&one, folder, 0, 4), STATUS_OK);
+    has_third = true;
+    assert_int_equal(result_lock_members(&other, folder, 4, 4), STATUS_OK);
+    assert_false(has_third);
+    assert_int_equal(rival_status, STATUS_OK);
+
+    // the last one removes the file
+    result_lock_release(&one);
+    result_lock_release(&other);
+    assert_int_equal(access(file, F_OK), 0);
+    result_lock_release(&rival_lock);
+    assert_int_not_equal(access(file, F_OK), 0);
+}
+
+static void a_file_system_without_links_has_locks_too(void **state) {
+    (void)state;
+    struct result_lock lock, other;
+    without_links = true;
+    assert_int_equal(result_lock_take(&lock, result), STATUS_OK);
+    assert_int_equal(result_lock_take(&other, result), STATUS_FILE);
+    result_lock_release(&lock);
+    without_links = false;
+    assert_int_not_equal(access(lock_file, F_OK), 0);
+}
+
+static void the_remains_of_a_run_that_died_while_it_made_its_lock_are_removed(void **state) {
+    (void)state;
+    struct result_lock lock;
+    char part[128];
+    snprintf(part, sizeof part, "%s.99999999-0.part", lock_file);
+    for (int has_linked = 0; has_linked < 2; has_linked++) {
+        put("process 99999999 on a host\n", 27);
+        assert_int_equal(has_linked ? link(lock_file, part) : rename(lock_file, part), 0);
+        assert_int_equal(result_lock_take(&lock, result), STATUS_OK);
+        result_lock_release(&lock);
+        assert_int_not_equal(access(lock_file, F_OK), 0);
+        assert_int_not_equal(access(part, F_OK), 0);
+    }
+}
+
 static void studies_share_a_folder_but_not_its_members(void **state) {
     (void)state;
     struct result_lock one, other, all;
@@ -209,6 +324,10 @@ int main(void) {
         cmocka_unit_test(a_fork_does_not_release_the_lock),
         cmocka_unit_test(a_file_that_is_no_lock_is_not_touched),
         cmocka_unit_test(what_a_power_cut_leaves_of_a_lock_is_removed_and_an_empty_file_stays),
+        cmocka_unit_test(of_runs_that_race_one_has_the_lock_and_no_file_stays),
+        cmocka_unit_test(a_study_that_joins_while_another_writes_its_name_sees_a_lock),
+        cmocka_unit_test(a_file_system_without_links_has_locks_too),
+        cmocka_unit_test(the_remains_of_a_run_that_died_while_it_made_its_lock_are_removed),
         cmocka_unit_test(studies_share_a_folder_but_not_its_members),
         cmocka_unit_test(links_are_not_followed),
         cmocka_unit_test(work_is_done_under_the_lock_and_only_then),
