@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
 #include "wake/free_sheet.h"
@@ -23,10 +24,13 @@ static void stretch_point(const struct ends *ends, double xi, double point[2]) {
     for (int i = 0; i < 2; i++) point[i] = (1 - xi) * ends->newer[i] + xi * ends->older[i];
 }
 
-double ring_sheet_leg(const struct fish *fish, const double from_tail[2]) {
-    const double depth = fish->strip_depth, length = 3 * depth;
-    const double ratio = (from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1]) / (length * length);
-    return depth * depth / 8 * -expm1(-ratio * ratio);
+double ring_sheet_leg(const struct fish *fish, double distance) {
+    const double depth = fish->strip_depth, ratio = distance / (3 * depth);
+    return depth * depth / 8 * -expm1(-ratio * ratio * ratio * ratio);
+}
+
+static double stretch_length(const struct ends *ends) {
+    return hypot(ends->newer[0] - ends->older[0], ends->newer[1] - ends->older[1]);
 }
 
 void ring_sheet_free(struct ring_sheet *sheet) {
@@ -53,8 +57,8 @@ static enum status ring_sheet_reserve(struct ring_sheet *sheet, int n) {
 }
 
 static void ring_sheet_add(struct ring_sheet *sheet, enum ring_view view, const struct fish *fish,
-                           const struct wake *markers, double interval, int stretch, const struct ends at[2], double xi,
-                           double part) {
+                           const struct wake *markers, double interval, int stretch, const struct ends at[2],
+                           const double distance[2], double xi, double part) {
     const int i = sheet->n_released++, newest = markers->n_vortex - 1;
     sheet->stretch[i] = stretch;
     sheet->xi[i] = xi;
@@ -70,8 +74,24 @@ static void ring_sheet_add(struct ring_sheet *sheet, enum ring_view view, const 
         // middles are sources for other targets, with the full smoothing of the pair
         sheet->smoothing[end][i] =
             view == RING_GRADED ? free_sheet_smoothing(fish, from_tail, markers->tail_tangent) : 0;
-        sheet->leg[end][i] = ring_sheet_leg(fish, from_tail);
+        sheet->leg[end][i] = ring_sheet_leg(fish, distance[end] + xi * stretch_length(&at[end]));
     }
+}
+
+// length of the sheet from the tail to the oldest marker, tau after the event; the tail keeps its velocity
+static double ring_sheet_length(const struct wake *markers, double interval, double tau) {
+    const int newest = markers->n_vortex - 1;
+    if (newest < 0) return 0;
+    struct ends ends = {.newer = {markers->x[newest] + tau * markers->tail_velocity[0],
+                                  markers->y[newest] + tau * markers->tail_velocity[1]}};
+    double length = 0;
+    for (int i = newest; i >= 0; i--) {
+        wake_marker(markers, i, interval, tau, ends.older);
+        length += stretch_length(&ends);
+        memcpy(ends.newer, ends.older, sizeof ends.newer);
+    }
+
+    return length;
 }
 
 enum status ring_sheet_build(struct ring_sheet *sheet, enum ring_view view, const struct fish *fish,
@@ -84,16 +104,21 @@ enum status ring_sheet_build(struct ring_sheet *sheet, enum ring_view view, cons
 
     sheet->n_released = 0;
     sheet->n_nascent = view == RING_GRADED ? FREE_SHEET_PANEL : 1;
+
+    // distances of the stretches from the tail along the sheet
+    double distance[2] = {ring_sheet_length(markers, school->interval, 0),
+                          ring_sheet_length(markers, school->interval, school->interval)};
     for (int i = 0; i < n_stretches; i++) {
         const int age = n_stretches - i;
         const int n = age <= graded ? FREE_SHEET_PANEL : age <= paired ? 2 : 1;
         const struct ends at[2] = {stretch_ends(markers, i, school->interval, 0),
                                    stretch_ends(markers, i, school->interval, school->interval)};
+        for (int end = 0; end < 2; end++) distance[end] -= stretch_length(&at[end]);
 
         for (int k = 0; k < n; k++) {
             const double xi = n == 1 ? 0.5 : n == 2 ? free_sheet_pair_xi[k] : free_sheet_xi[k];
             const double part = n <= 2 ? 1.0 / n : free_sheet_part[k];
-            ring_sheet_add(sheet, view, fish, markers, school->interval, i, at, xi, part);
+            ring_sheet_add(sheet, view, fish, markers, school->interval, i, at, distance, xi, part);
         }
     }
 
@@ -172,10 +197,10 @@ enum status ring_sheet_markers(struct rings *rings, const struct fish *fish, con
     const int n = markers->n_vortex, first = rings->n;
     TRY(ring_append(rings, n));
     const double *const x = markers->x, *const y = markers->y;
+    double distance = ring_sheet_length(markers, school->interval, 0);
     for (int i = 0; i < n; i++) {
         const double label = wake_ring(markers, school, i, t, 0);
         const int newer = i + 1 < n ? i + 1 : i, older = i > 0 ? i - 1 : 0;
-        const double from_tail[2] = {x[i] - x[n - 1], y[i] - y[n - 1]};
 
         struct rings *const to = rings;
         to->x[first + i] = x[i];
@@ -183,7 +208,8 @@ enum status ring_sheet_markers(struct rings *rings, const struct fish *fish, con
         to->dx[first + i] = -label * (x[older] - x[newer]) / 2;
         to->dy[first + i] = -label * (y[older] - y[newer]) / 2;
         to->half[first + i] = fish->strip_depth * fish->strip_depth / 32;
-        to->leg[first + i] = ring_sheet_leg(fish, from_tail);
+        to->leg[first + i] = ring_sheet_leg(fish, distance);
+        if (i + 1 < n) distance -= hypot(x[i] - x[i + 1], y[i] - y[i + 1]);
 
         if (i == 0) continue;
         const double stretch = label - wake_ring(markers, school, i - 1, t, 0);

@@ -45,7 +45,7 @@ double ring_sheet_part(const struct ring_sheet *sheet, int i);
 enum status ring_sheet_markers(struct rings *rings, const struct fish *fish, const struct school *school,
                                const struct wake *markers, double t, double nascent);
 
-/* s of a point of the wake at this position relative to the own tail, m2. */
-double ring_sheet_leg(const struct fish *fish, const double from_tail[2]);
+/* s of a point of the wake at this distance from the own tail along the sheet, m2. */
+double ring_sheet_leg(const struct fish *fish, double distance);
 
 #endif

@@ -50,6 +50,22 @@ static void add_middle(struct felt *felt, const double at[2], const double newer
              fish->smoothing * fish->smoothing);
 }
 
+// s of the middle of stretch i, from the length of the sheet between tail and middle, tau after the event
+static double middle_leg(const struct fish *fish, const struct wake *wake, int i, double interval, double tau) {
+    const int newest = wake->n_vortex - 1;
+    const double w = fish->strip_depth;
+    double before[2] = {wake->x[newest] + tau * wake->tail_velocity[0], wake->y[newest] + tau * wake->tail_velocity[1]};
+    double distance = 0;
+    for (int k = newest; k >= i; k--) {
+        double marker[2];
+        wake_marker(wake, k, interval, tau, marker);
+        distance += (k == i ? 0.5 : 1) * hypot(marker[0] - before[0], marker[1] - before[1]);
+        for (int j = 0; j < 2; j++) before[j] = marker[j];
+    }
+
+    return w * w / 8 * (1 - exp(-pow(distance / (3 * w), 4)));
+}
+
 // all stretches of fish g at a point, each as one point at the middle
 static void add_wake(struct felt *felt, const struct setup *setup, int g, const double at[2], double factor, double b2,
                      double mirror) {
@@ -64,18 +80,9 @@ static void add_wake(struct felt *felt, const struct setup *setup, int g, const 
     for (int i = 0; i < n; i++) {
         const int is_last = i == n - 1;
         wake_marker(wake, i, interval, tau, older);
-        double ends[2][2], leg = 0;
-        for (int end = 0; end < 2 && !is_last; end++) {
-            double a[2], b[2], from_tail[2];
-            wake_marker(wake, i, interval, end * interval, a);
-            wake_marker(wake, i + 1, interval, end * interval, b);
-            from_tail[0] = (a[0] + b[0]) / 2 - wake->x[n - 1] - end * interval * wake->tail_velocity[0];
-            from_tail[1] = (a[1] + b[1]) / 2 - wake->y[n - 1] - end * interval * wake->tail_velocity[1];
-            const double w = fish->strip_depth, ratio = hypot(from_tail[0], from_tail[1]) / (3 * w);
-            ends[end][0] = w * w / 8 * (1 - exp(-pow(ratio, 4)));
-        }
-
-        if (!is_last) leg = (1 - q) * ends[0][0] + q * ends[1][0];
+        const double leg = is_last ? 0
+                                   : (1 - q) * middle_leg(fish, wake, i, interval, 0) +
+                                         q * middle_leg(fish, wake, i, interval, interval);
         const double go = wake_ring(wake, setup->school, i, setup->state->t, tau);
         const double gn =
             is_last ? y[fish->at.circulation] : wake_ring(wake, setup->school, i + 1, setup->state->t, tau);
