@@ -10,7 +10,10 @@ shoal check /usr/share/shoal/cases/diamond.yaml
 shoal run /usr/share/shoal/cases/demo.yaml --set time.end=0.2 -q --force -o /tmp/demo.nc
 shoal info /tmp/demo.nc
 for page in man1/shoal.1 man5/shoal-case.5 man5/shoal-output.5; do [[ -s /usr/share/man/$page.gz ]]; done
-[[ -s /usr/share/doc/shoal-doc/tutorial.md.gz ]]
+cd /usr/share/doc/shoal-doc
+grep -oh '](\(figures/\)\?[a-z_]*\.\(md\|png\|svg\))' ./*.md | tr -d ']()' | sort -u | while read -r link; do
+    [[ -s $link ]] || { echo "shoal-doc lacks $link" >&2; exit 1; }
+done
 
 # the module
 cd /tmp
