@@ -20,7 +20,7 @@ complete() { [[ $(ncdump -h "$1" | sed -n 's/.*:run_status = "\(.*\)" ;/\1/p') =
 
 # ---- failing calls
 
-sample=$(/usr/bin/python3 "$root/tests/faults/faults.py" "$program" "$shim" 61)
+sample=$(/usr/bin/python3 "$root/tests/faults/faults.py" "$program" "$shim" 89)
 check "a sample of failing calls: whole rows, one message, exit code 0 or 4" \
     grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
 ((n_failed == 0)) || cat sample.out
@@ -59,7 +59,7 @@ check "signals that are ignored stay so" complete ignored.nc
 if grep -q __asan_init "$program"; then
     skip "little memory" "the address sanitizer needs all of it"
 else
-    sample=$(/usr/bin/python3 "$root/tests/faults/memory.py" "$program" "$(dirname "$program")/memory.so" 211)
+    sample=$(/usr/bin/python3 "$root/tests/faults/memory.py" "$program" "$(dirname "$program")/memory.so" 401)
     check "a sample of failing allocations of all commands: exit code 0, or 4 and one message" \
         grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
     ((n_failed == 0)) || cat sample.out
