@@ -77,9 +77,12 @@ endif
 shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include $(file <$(B)/cppflags) $(CPPFLAGS)
 # One set of objects serves the program and the shared library, which shares what include/shoal.h makes visible.
 shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -fPIC -fvisibility=hidden \
-                 -Wall -Wextra -Wconversion -Wshadow $(if $(WERROR),-Werror) $(warnings) $(sanitize) $(CFLAGS)
+                 -Wall -Wextra -Wconversion -Wshadow $(if $(WERROR),-Werror) $(warnings) $(sanitize) $(CFLAGS) \
+                 $(if $(gcc_12_arm64),-fvect-cost-model=very-cheap)
 # clang warns of fields left out of an initialiser with a name too, gcc does not
 warnings = $(if $(is_clang),-Wno-missing-field-initializers)
+# gcc 12 for arm64 stops with an internal error (vect_transform_reduction) at loops that the cost model of -O3 vectorises
+gcc_12_arm64 := $(if $(is_clang),,$(filter aarch64%-12,$(shell $(CC) -dumpmachine)-$(firstword $(subst ., ,$(shell $(CC) -dumpversion)))))
 # what scripts/find-libraries.sh has found
 libraries      = $(file <$(B)/libraries) -lm
 

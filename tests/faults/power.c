@@ -130,19 +130,19 @@ int fsync(int file) {
 }
 
 int rename(const char *from, const char *to) {
-    const int code = (int)syscall(SYS_rename, from, to);
+    const int code = (int)syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0);
     if (code == 0 && matches(to)) put((struct entry){.kind = RENAME}, from, to, NULL);
     return code;
 }
 
 int link(const char *from, const char *to) {
-    const int code = (int)syscall(SYS_link, from, to);
+    const int code = (int)syscall(SYS_linkat, AT_FDCWD, from, AT_FDCWD, to, 0);
     if (code == 0 && matches(to)) put((struct entry){.kind = LINK}, from, to, NULL);
     return code;
 }
 
 int unlink(const char *path) {
-    const int code = (int)syscall(SYS_unlink, path);
+    const int code = (int)syscall(SYS_unlinkat, AT_FDCWD, path, 0);
     if (code == 0 && matches(path)) put((struct entry){.kind = UNLINK}, path, "", NULL);
     return code;
 }

@@ -123,8 +123,9 @@ PLAIN(off64_t, lseek64, LSEEK, counts(file), SYS_lseek, (int file, off64_t to, i
 PLAIN(int, fsync, FSYNC, counts(file), SYS_fsync, (int file), file)
 PLAIN(int, ftruncate, FTRUNCATE, counts(file), SYS_ftruncate, (int file, off_t size), file, size)
 PLAIN(int, ftruncate64, FTRUNCATE, counts(file), SYS_ftruncate, (int file, off64_t size), file, size)
-PLAIN(int, rename, RENAME, matches(to), SYS_rename, (const char *from, const char *to), from, to)
-PLAIN(int, link, LINK, matches(to), SYS_link, (const char *from, const char *to), from, to)
+PLAIN(int, rename, RENAME, matches(to), SYS_renameat2, (const char *from, const char *to), AT_FDCWD, from, AT_FDCWD, to,
+      0)
+PLAIN(int, link, LINK, matches(to), SYS_linkat, (const char *from, const char *to), AT_FDCWD, from, AT_FDCWD, to, 0)
 
 int close(int file) {
     const enum fate fate = counts(file) ? fate_of(CLOSE) : PASS;
