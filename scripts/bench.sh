@@ -14,7 +14,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
-# Run a program of tests/bench with threads like those of shoal (src/base/parallel_choice.h).
+# Run a program of tests/bench with threads like those of shoal (src/base/parallel.h).
 bench() {
     local name=$1
     shift

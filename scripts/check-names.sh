@@ -3,7 +3,7 @@
 #
 #   scripts/check-names.sh [BUILD]      BUILD: the folder with the objects, build by default
 #
-# - what src/*/x.c and src/*/x_more.c share begins with x_ (main.c shares main, too);
+# - what src/*/x.c and src/*/x_more.c share begins with x_, or with a beginning that is listed for the module;
 # - libshoal.a has no global name without shoal_;
 # - tests do not use cmocka's assert_float_equal, which compares in single precision: NEAR of tests/near.h does not;
 # - lines of C have at most 120 characters, and no words that doc/style.md replaces;
@@ -19,6 +19,9 @@ complain() {
     n_errors=$((n_errors + 1))
 }
 
+# Modules of several subjects, and the beginnings of their names
+declare -A beginnings=([mathematics]='angle_|ramp_|quadrature_|box_')
+
 # Names with a dot or two leading underscores are the compiler's own.
 for source in src/*/*.c; do
     stem=$(basename "$source" .c)
@@ -31,7 +34,7 @@ for source in src/*/*.c; do
     prefix=${stem%%_*}_
     [[ $stem != main ]] || prefix=main
     while read -r name; do
-        [[ $name == "$prefix"* ]] ||
+        [[ $name =~ ^(${beginnings[$stem]-$prefix}) ]] ||
             complain "$source: error: '$name' is shared and does not begin with '$prefix': rename it or make it static"
     done < <(nm --defined-only --extern-only --format=posix "$object" | awk '$1 !~ /\.|^__/ { print $1 }')
 done

@@ -12,7 +12,6 @@
 #include "app/progress.h"
 #include "app/say.h"
 #include "base/parallel.h"
-#include "base/parallel_choice.h"
 #include "result/target.h"
 #include "run/simulate_run.h"
 #include "view/page.h"

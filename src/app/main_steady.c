@@ -6,7 +6,6 @@
 #include "app/main_teller.h"
 #include "app/say.h"
 #include "base/parallel.h"
-#include "base/parallel_choice.h"
 #include "result/steady_info.h"
 #include "result/steady_json.h"
 #include "steady/steady.h"

@@ -4,24 +4,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 enum status sparse_create(struct sparse **matrix, int first, int n) {
-    struct sparse *new = calloc(1, sizeof *new);
+    struct sparse *new;
     *matrix = NULL;
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a sparse matrix");
+    TRY(MEMORY_NEW(new, 1, "a sparse matrix"));
     new->first = first;
     new->n = n;
     new->recording = 1;
-    new->masked = calloc((size_t)n, sizeof *new->masked);
-    new->column_start = calloc((size_t)n + 1, sizeof *new->column_start);
-    new->value = calloc(1, sizeof *new->value);
 
-    if (!new->masked || !new->column_start || !new->value) {
+    enum status status = MEMORY_NEW(new->masked, n, "a sparse matrix");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->column_start, n + 1, "a sparse matrix");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->value, 1, "a sparse matrix");
+    if (status == STATUS_OK) {
+        *matrix = new;
+    } else {
         sparse_free(new);
-        return status_fail(STATUS_MEMORY, "out of memory: a sparse matrix of order %d", n);
     }
-
-    *matrix = new;
-    return STATUS_OK;
+    return status;
 }
 
 void sparse_free(struct sparse *matrix) {
@@ -50,29 +51,23 @@ int sparse_is_masked(const struct sparse *matrix, int row) {
     return matrix->masked[row - matrix->first];
 }
 
-static int record_grow(struct sparse *matrix) {
+static enum status record_grow(struct sparse *matrix) {
     const int64_t capacity = matrix->capacity > 0 ? 2 * matrix->capacity : 1024;
-    int *row = realloc(matrix->entry_row, (size_t)capacity * sizeof *row);
-    if (row) matrix->entry_row = row;
-    int *column = realloc(matrix->entry_column, (size_t)capacity * sizeof *column);
-    if (column) matrix->entry_column = column;
-
-    // while recording, the array of slots holds the values
-    int64_t *slot = realloc(matrix->slot, (size_t)capacity * sizeof *slot);
-    if (slot) matrix->slot = slot;
-    if (!row || !column || !slot) return 0;
+    TRY(MEMORY_RESIZE(matrix->entry_row, capacity, "recording a Jacobian"));
+    TRY(MEMORY_RESIZE(matrix->entry_column, capacity, "recording a Jacobian"));
+    TRY(MEMORY_RESIZE(matrix->slot, capacity, "recording a Jacobian"));
     matrix->capacity = capacity;
-
-    return 1;
+    return STATUS_OK;
 }
 
 void sparse_record(struct sparse *matrix, int row, int column, double value) {
     if (matrix->out_of_memory) return;
-    if (matrix->n_entries == matrix->capacity && !record_grow(matrix)) {
+    if (matrix->n_entries == matrix->capacity && record_grow(matrix) != STATUS_OK) {
         matrix->out_of_memory = 1;
         return;
     }
 
+    // while recording, the array of slots holds the values
     const int64_t i = matrix->n_entries++;
     matrix->entry_row[i] = row;
     matrix->entry_column[i] = column;

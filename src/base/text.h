@@ -34,4 +34,8 @@ void text_free(struct text *text);
  * string is not a number; nan, inf and hexadecimal digits are no numbers. */
 bool text_number(const char *text, double *number);
 
+/* Write n bytes to a stream in base 64 (RFC 4648, with padding), for files that hold numbers in the middle of text. A
+ * failure sets the error indicator of the stream (ferror). */
+void text_print_base64(FILE *stream, size_t n, const void *bytes);
+
 #endif

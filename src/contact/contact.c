@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "contact/clearance.h"
 #include "contact/neighbours.h"
 #include "fish/fish_distance.h"
@@ -31,8 +32,8 @@ static enum status contact_allocate(struct contact *contact) {
 
 enum status contact_create(struct contact **contact, const struct school *school) {
     *contact = NULL;
-    struct contact *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: contacts");
+    struct contact *new;
+    TRY(MEMORY_NEW(new, 1, "contacts"));
     new->school = school;
     const enum status status = contact_allocate(new);
 

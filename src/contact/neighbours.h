@@ -4,7 +4,7 @@
 #ifndef NEIGHBOURS_H
 #define NEIGHBOURS_H
 
-#include "base/box.h"
+#include "base/mathematics.h"
 #include "base/status.h"
 
 struct neighbours {

@@ -5,7 +5,7 @@
 #define LEAD_H
 
 /* A polynomial in the time since the last change over the ramp, and the constant value after the ramp. All zeros: value
- * 0 at all times. The struct holds doubles only: state/state_table.c. */
+ * 0 at all times. The struct holds doubles only: state/state.c. */
 enum { LEAD_TERMS = 8 };
 struct lead {
     double start, ramp;        /* of the last change, s */
@@ -20,7 +20,7 @@ double lead_rate(const struct lead *lead, double t);
 double lead_integral(const struct lead *lead, double t);
 
 /* Start a change to target at time t, within ramp seconds. From rest the change is value + (target - value) S(q) with S
- * of base/ramp.h. No-op for the present target. */
+ * of base/mathematics.h. No-op for the present target. */
 void lead_change(struct lead *lead, double t, double ramp, double target);
 
 /* The same from a given value and rate, for a quantity that the lead did not describe before time t. */

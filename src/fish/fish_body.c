@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "base/array.h"
+#include "base/memory.h"
 #include "fish/profile.h"
 
 static enum status body_allocate(struct fish *fish) {
@@ -14,10 +14,10 @@ static enum status body_allocate(struct fish *fish) {
         &fish->added_mass,      &fish->displaced_mass, &fish->drag_turbulent,  &fish->past_transition};
 
     double **const per_joint[] = {&fish->bending_stiffness, &fish->bending_damping};
-    TRY(array_many_doubles(per_node, sizeof per_node / sizeof *per_node, fish->n_nodes, "the nodes of a fish"));
-    TRY(array_many_doubles(per_edge, sizeof per_edge / sizeof *per_edge, fish->n_edges, "the edges of a fish"));
+    TRY(MEMORY_ARRAYS(per_node, fish->n_nodes, "the nodes of a fish"));
+    TRY(MEMORY_ARRAYS(per_edge, fish->n_edges, "the edges of a fish"));
 
-    return array_many_doubles(per_joint, sizeof per_joint / sizeof *per_joint, fish->n_joints, "the joints of a fish");
+    return MEMORY_ARRAYS(per_joint, fish->n_joints, "the joints of a fish");
 }
 
 static void edges_shape(struct fish *fish, const struct fish_parameters *from) {

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "base/box.h"
+#include "base/mathematics.h"
 
 // distance of the point p from the segment a b
 static double point_to_segment(const double p[2], const double a[2], const double b[2]) {

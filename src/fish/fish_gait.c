@@ -3,9 +3,8 @@
 
 #include <math.h>
 
-#include "base/angle.h"
-#include "base/array.h"
-#include "base/ramp.h"
+#include "base/mathematics.h"
+#include "base/memory.h"
 
 // Fourier coefficients, over the phase, of the table's curvature at a joint, as a turning angle
 static void harmonics_set(const struct fish *fish, const struct number_list *table, int joint) {
@@ -28,7 +27,7 @@ static void harmonics_set(const struct fish *fish, const struct number_list *tab
 static enum status table_set(struct fish *fish, const struct number_list *table) {
     if (table->n == 0) return STATUS_OK;
     fish->n_harmonics = table->width / 2 + 1;
-    TRY(array_doubles(&fish->harmonic, 2 * fish->n_joints * fish->n_harmonics, "the gait of a fish"));
+    TRY(MEMORY_NEW(fish->harmonic, 2 * fish->n_joints * fish->n_harmonics, "the gait of a fish"));
     for (int joint = 0; joint < fish->n_joints; joint++) harmonics_set(fish, table, joint);
     return STATUS_OK;
 }
@@ -50,8 +49,8 @@ static void wave_set(struct fish *fish, const struct fish_parameters *from) {
 }
 
 enum status fish_gait_set(struct fish *fish, const struct fish_parameters *from) {
-    TRY(array_doubles(&fish->wave_amplitude, fish->n_joints, "the wave of a fish"));
-    TRY(array_doubles(&fish->wave_phase, fish->n_joints, "the wave of a fish"));
+    TRY(MEMORY_NEW(fish->wave_amplitude, fish->n_joints, "the wave of a fish"));
+    TRY(MEMORY_NEW(fish->wave_phase, fish->n_joints, "the wave of a fish"));
     wave_set(fish, from);
     return table_set(fish, &from->wave.table);
 }

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/angle.h"
-#include "base/array.h"
+#include "base/mathematics.h"
+#include "base/memory.h"
 #include "fish/fish_body.h"
 #include "fish/fish_distance.h"
 #include "fish/fish_gait.h"
@@ -51,8 +51,8 @@ static enum status control_set(struct fish *fish, const struct fish_parameters *
     to->ramp = control->ramp;
     to->acceptance_radius = control->acceptance_radius * fish->length;
     to->n_headings = control->desired_heading.n;
-    TRY(array_doubles(&to->heading_time, to->n_headings, "the desired headings"));
-    TRY(array_doubles(&to->heading, to->n_headings, "the desired headings"));
+    TRY(MEMORY_NEW(to->heading_time, to->n_headings, "the desired headings"));
+    TRY(MEMORY_NEW(to->heading, to->n_headings, "the desired headings"));
 
     for (int i = 0; i < to->n_headings; i++) {
         to->heading_time[i] = control->desired_heading.value[2 * i];
@@ -60,8 +60,8 @@ static enum status control_set(struct fish *fish, const struct fish_parameters *
     }
 
     to->n_waypoints = control->waypoints.n;
-    TRY(array_doubles(&to->waypoint_x, to->n_waypoints, "the waypoints"));
-    TRY(array_doubles(&to->waypoint_y, to->n_waypoints, "the waypoints"));
+    TRY(MEMORY_NEW(to->waypoint_x, to->n_waypoints, "the waypoints"));
+    TRY(MEMORY_NEW(to->waypoint_y, to->n_waypoints, "the waypoints"));
 
     for (int i = 0; i < to->n_waypoints; i++) {
         to->waypoint_x[i] = control->waypoints.value[2 * i];
@@ -164,7 +164,7 @@ static void fluid_set(struct school *school, const struct school_parameters *par
 
 static enum status refuse_overlap(const struct school *school) {
     double *y;
-    TRY(array_doubles(&y, school->n_unknowns, "the unknowns"));
+    TRY(MEMORY_NEW(y, school->n_unknowns, "the unknowns"));
     enum status status = STATUS_OK;
 
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {

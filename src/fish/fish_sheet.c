@@ -4,13 +4,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/array.h"
+#include "base/memory.h"
 
 static enum status sheet_allocate(struct fish *fish) {
     double **const per_control[] = {&fish->end_correction, &fish->control_density, &fish->control_interval};
-    TRY(array_doubles(&fish->sheet_weight, fish->n_sheet, "the sheet of a fish"));
-    TRY(array_many_doubles(per_control, sizeof per_control / sizeof *per_control, fish->n_control,
-                           "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->sheet_weight, fish->n_sheet, "the sheet of a fish"));
+    TRY(MEMORY_ARRAYS(per_control, fish->n_control, "the sheet of a fish"));
     fish->sheet_point = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_point);
     fish->sheet_slope = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_slope);
     fish->control_point = calloc((size_t)fish->n_control, sizeof *fish->control_point);
@@ -140,9 +139,9 @@ static double strip_half(const struct fish *fish, double u) {
 // the strip of the sheets of the body: doc/model.md, section 18
 static enum status strip_set(struct fish *fish) {
     const int n_points = fish->n_control + fish->n_edges + 1;
-    TRY(array_doubles(&fish->sheet_half, fish->n_sheet, "the sheet of a fish"));
-    TRY(array_doubles(&fish->point_half, n_points, "the sheet of a fish"));
-    TRY(array_doubles(&fish->control_widening, fish->n_control, "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->sheet_half, fish->n_sheet, "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->point_half, n_points, "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->control_widening, fish->n_control, "the sheet of a fish"));
     fish->strip_depth = fish->depth[fish->n_edges - 1];
     for (int k = 0; k < fish->n_edges; k++) fish->depth_varies |= fabs(fish->depth[k] - fish->strip_depth) > 0;
     for (int j = 0; j < fish->n_sheet; j++)
@@ -166,7 +165,7 @@ static enum status pressure_set(struct fish *fish, const struct fish_parameters 
     const double h = M_PI / fish->n_control;
     double *per_edge;
     if (is_strip) TRY(strip_set(fish));
-    TRY(array_doubles(&per_edge, fish->n_edges, "the pressure of a fish"));
+    TRY(MEMORY_NEW(per_edge, fish->n_edges, "the pressure of a fish"));
     for (int k = 0; k < fish->n_edges; k++) per_edge[k] = density * (is_strip ? fish->strip_depth : fish->depth[k]);
 
     for (int c = 0; c < fish->n_control; c++) {

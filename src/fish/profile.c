@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "base/quadrature.h"
+#include "base/mathematics.h"
 
 static const double pi = 3.14159265358979323846;
 

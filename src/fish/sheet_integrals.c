@@ -4,7 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/quadrature.h"
+#include "base/mathematics.h"
+#include "base/memory.h"
 #include "fish/curve.h"
 
 static const double pi = 3.14159265358979323846;
@@ -130,8 +131,8 @@ static enum status integrals_fill(struct sheet_integrals *to, const double *dens
 enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet,
                                    const double *density) {
     *integrals = NULL;
-    struct sheet_integrals *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the integrals over a sheet");
+    struct sheet_integrals *new;
+    TRY(MEMORY_NEW(new, 1, "the integrals over a sheet"));
     new->n_nodes = n_nodes;
     new->n_sheet = n_sheet;
     new->n_control = n_sheet - 1;

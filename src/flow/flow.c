@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/array.h"
+#include "base/memory.h"
 
 int flow_midpoint(const struct fish *fish, int edge) {
     return fish->n_control + edge;
@@ -21,8 +21,7 @@ int flow_n_points(const struct fish *fish) {
 static enum status flow_make_chunks(struct flow *flow) {
     int n = 0;
     for (int f = 0; f < flow->school->n_fish; f++) n += parallel_n_chunks(flow->points[f].n);
-    flow->chunk = calloc((size_t)n, sizeof *flow->chunk);
-    if (!flow->chunk) return status_fail(STATUS_MEMORY, "out of memory: %d chunks of the flow", n);
+    TRY(MEMORY_NEW(flow->chunk, n, "chunks of the flow"));
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct range points = flow->points[f];
         for (int i = 0; i < parallel_n_chunks(points.n); i++) {
@@ -61,8 +60,7 @@ static enum status flow_find_classes(struct flow *flow) {
     // consecutive points for each class
     for (int c = 0; c < flow->n_classes; c++) {
         struct flow_class *const class = &flow->class[c];
-        class->group = calloc(n_fish + (size_t)flow->n_classes + 1, sizeof *class->group);
-        if (!class->group) return status_fail(STATUS_MEMORY, "out of memory: classes of fish");
+        TRY(MEMORY_NEW(class->group, n_fish + (size_t)flow->n_classes + 1, "classes of fish"));
         class->points.first = flow->n_points;
         for (int f = 0; f < school->n_fish; f++) {
             const struct fish *const fish = &school->fish[f];
@@ -124,14 +122,14 @@ static enum status flow_fill(struct flow *flow) {
     double **const at_points[] = {&flow->x,         &flow->y,         &flow->u,        &flow->v,
                                   &flow->u_x,       &flow->u_y,       &flow->v_x,      &flow->motion[0],
                                   &flow->motion[1], &flow->motion[2], &flow->motion[3]};
-    TRY(array_many_doubles(at_points, sizeof at_points / sizeof *at_points, flow->n_points, "the points of the flow"));
+    TRY(MEMORY_ARRAYS(at_points, flow->n_points, "the points of the flow"));
     TRY(flow_make_chunks(flow));
     if (school->walls.n > 0) {
-        TRY(array_doubles(&flow->image_u, flow->n_points, "the points of the flow"));
-        TRY(array_doubles(&flow->image_v, flow->n_points, "the points of the flow"));
+        TRY(MEMORY_NEW(flow->image_u, flow->n_points, "the points of the flow"));
+        TRY(MEMORY_NEW(flow->image_v, flow->n_points, "the points of the flow"));
     }
 
-    TRY(array_doubles(&flow->opposite, flow->sheet.n, "the bound vortices"));
+    TRY(MEMORY_NEW(flow->opposite, flow->sheet.n, "the bound vortices"));
     flow_view_sheets(flow);
     TRY(velocity_sum_create(&flow->velocity_sum));
     if (school->finite) return ring_sources_create(&flow->rings, school, flow->n_points);
@@ -141,8 +139,8 @@ static enum status flow_fill(struct flow *flow) {
 
 enum status flow_create(struct flow **flow, const struct school *school) {
     *flow = NULL;
-    struct flow *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a flow");
+    struct flow *new;
+    TRY(MEMORY_NEW(new, 1, "a flow"));
     new->school = school;
 
     const enum status status = flow_fill(new);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/array.h"
+#include "base/memory.h"
 #include "flow/flow_external.h"
 #include "wake/free_sheet.h"
 
@@ -196,7 +196,7 @@ static enum status rings_reserve_at_markers(struct flow *flow, int n) {
     rings->wake_capacity = 0;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(*all[i]);
-        TRY(array_doubles(all[i], capacity, "velocities of markers"));
+        TRY(MEMORY_NEW(*all[i], capacity, "velocities of markers"));
     }
 
     rings->wake_capacity = capacity;

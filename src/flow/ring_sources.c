@@ -4,27 +4,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/array.h"
+#include "base/memory.h"
 
 enum status ring_sources_create(struct flow_rings **rings, const struct school *school, int n_points) {
     *rings = NULL;
-    struct flow_rings *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the rings of %d fish", school->n_fish);
+    struct flow_rings *new;
+    TRY(MEMORY_NEW(new, 1, "the rings of fish"));
     *rings = new;
-    new->fish = calloc((size_t)school->n_fish, sizeof *new->fish);
-    if (!new->fish) return status_fail(STATUS_MEMORY, "out of memory: the rings of %d fish", school->n_fish);
+    TRY(MEMORY_NEW(new->fish, school->n_fish, "the rings of fish"));
     double **const at_points[] = {&new->div, &new->div_x, &new->div_y, &new->image_div};
-    TRY(array_many_doubles(at_points, 4, n_points, "the points of the flow"));
-    TRY(array_doubles(&new->legs[0], N_LEG_SUMS * n_points, "the points of the flow"));
+    TRY(MEMORY_ARRAYS(at_points, n_points, "the points of the flow"));
+    TRY(MEMORY_NEW(new->legs[0], N_LEG_SUMS * n_points, "the points of the flow"));
     for (int i = 1; i < N_LEG_SUMS; i++) new->legs[i] = new->legs[0] + (long)i *n_points;
-    TRY(array_doubles(&new->edge, 2 * n_points, "the points of the flow"));
-    TRY(array_doubles(&new->edge_gradient, 4 * n_points, "the points of the flow"));
+    TRY(MEMORY_NEW(new->edge, 2 * n_points, "the points of the flow"));
+    TRY(MEMORY_NEW(new->edge_gradient, 4 * n_points, "the points of the flow"));
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         struct fish_rings *const of = &new->fish[f];
         TRY(ring_append(&of->own, fish->n_sheet + fish->n_control));
         TRY(ring_append(&of->body, fish->n_control));
-        for (int i = 0; i < 2; i++) TRY(array_doubles(&of->line[i], fish->n_control, "the rings of a fish"));
+        for (int i = 0; i < 2; i++) TRY(MEMORY_NEW(of->line[i], fish->n_control, "the rings of a fish"));
         memcpy(of->own.half, fish->sheet_half, (size_t)fish->n_sheet * sizeof *of->own.half);
         memcpy(of->own.half + fish->n_sheet, fish->point_half, (size_t)fish->n_control * sizeof *of->own.half);
         memcpy(of->body.half, fish->point_half, (size_t)fish->n_control * sizeof *of->own.half);

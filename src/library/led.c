@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/angle.h"
+#include "base/mathematics.h"
 #include "fish/fish_gait.h"
 
 /* A change of one fish; memory: a copy, which replaces the memory of the fish after all checks. */

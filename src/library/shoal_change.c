@@ -11,7 +11,7 @@
 #include "school/diagnostics_history.h"
 #include "school/diagnostics_momentum.h"
 #include "state/impulse.h"
-#include "state/state_table.h"
+#include "state/state.h"
 
 int shoal_state(struct shoal *run, int fish, double *position, double *velocity) {
     TRY(handle_check_fish(run, fish, __func__));

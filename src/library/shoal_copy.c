@@ -8,7 +8,7 @@
 #include "result/checkpoint.h"
 #include "result/target.h"
 #include "run/record.h"
-#include "state/state_table.h"
+#include "state/state.h"
 
 static enum status copy_simulation(struct shoal *copy, const struct shoal *run) {
     const struct simulation *const from = run->simulation;

@@ -10,7 +10,7 @@
 #include "result/durable.h"
 #include "result/sections.h"
 #include "result/target.h"
-#include "state/state_table.h"
+#include "state/state.h"
 
 // ---- data besides the state: strings and numbers, each a section
 

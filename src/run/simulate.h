@@ -5,7 +5,7 @@
 
 #include <signal.h>
 
-#include "base/parallel_choice.h"
+#include "base/parallel.h"
 #include "base/status.h"
 #include "case/case.h"
 #include "school/diagnostics.h"

@@ -14,7 +14,7 @@
 #include "run/record_notes.h"
 #include "run/resume.h"
 #include "run/simulate.h"
-#include "state/state_table.h"
+#include "state/state.h"
 
 // a run with result and checkpoints
 struct run {

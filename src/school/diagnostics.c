@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/angle.h"
+#include "base/mathematics.h"
 #include "contact/clearance.h"
 #include "control/control.h"
 #include "fish/fish_distance.h"

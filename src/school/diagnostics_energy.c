@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "base/parallel.h"
-#include "base/quadrature.h"
 #include "body/clamp.h"
 #include "body/rod.h"
 #include "body/rod_stress.h"

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "base/angle.h"
+#include "base/mathematics.h"
 #include "control/control.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_external.h"

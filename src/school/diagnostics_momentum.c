@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/quadrature.h"
+#include "base/mathematics.h"
 #include "body/clamp.h"
 #include "fish/fish_prescribed.h"
 #include "flow/flow_at_bodies.h"

@@ -2,7 +2,7 @@
 #ifndef DIAGNOSTICS_VALUES_H
 #define DIAGNOSTICS_VALUES_H
 
-#include "base/box.h"
+#include "base/mathematics.h"
 #include "force/pressure.h"
 
 /* One fish at one event. */

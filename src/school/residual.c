@@ -4,9 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/array.h"
+#include "base/mathematics.h"
+#include "base/memory.h"
 #include "base/parallel.h"
-#include "base/ramp.h"
 #include "body/clamp.h"
 #include "body/rod.h"
 #include "fish/fish_prescribed.h"
@@ -19,21 +19,20 @@ static enum status allocate_scratch(struct residual *residual, int most_points, 
     int has_edges = 0;
     for (int f = 0; f < residual->school->n_fish; f++) has_edges |= residual->school->fish[f].depth_varies;
 
-    residual->jacobian_scratch = calloc((size_t)n_threads, sizeof *residual->jacobian_scratch);
-    if (!residual->jacobian_scratch) return status_fail(STATUS_MEMORY, "out of memory: %d threads", n_threads);
+    TRY(MEMORY_NEW(residual->jacobian_scratch, n_threads, "threads"));
     for (int i = 0; i < n_threads; i++) {
         struct jacobian_scratch *const scratch = &residual->jacobian_scratch[i];
-        TRY(array_doubles(&scratch->block.u, most_points * most_columns, "a block of the Jacobian"));
-        TRY(array_doubles(&scratch->block.v, most_points * most_columns, "a block of the Jacobian"));
+        TRY(MEMORY_NEW(scratch->block.u, most_points * most_columns, "a block of the Jacobian"));
+        TRY(MEMORY_NEW(scratch->block.v, most_points * most_columns, "a block of the Jacobian"));
         if (residual->school->finite) {
-            TRY(array_doubles(&scratch->block.div, most_points * most_columns, "a block of the Jacobian"));
+            TRY(MEMORY_NEW(scratch->block.div, most_points * most_columns, "a block of the Jacobian"));
             if (has_edges)
-                TRY(array_doubles(&scratch->block.edge, 2 * most_points * most_columns, "a block of the Jacobian"));
+                TRY(MEMORY_NEW(scratch->block.edge, 2 * most_points * most_columns, "a block of the Jacobian"));
         }
-        TRY(array_doubles(&scratch->rows.value, most_rows * most_columns, "a block of the Jacobian"));
+        TRY(MEMORY_NEW(scratch->rows.value, most_rows * most_columns, "a block of the Jacobian"));
     }
 
-    return array_doubles(&residual->scratch, residual->school->n_unknowns, "the unknowns");
+    return MEMORY_NEW(residual->scratch, residual->school->n_unknowns, "the unknowns");
 }
 
 static enum status residual_allocate(struct residual *residual) {
@@ -61,7 +60,7 @@ static enum status residual_allocate(struct residual *residual) {
     TRY(allocate_scratch(residual, most_points, most_columns, most_rows));
     struct actuation *const muscle = &residual->muscle;
     double **const per_joint[] = {&muscle->curvature, &muscle->rate, &muscle->curvature_by_phi0, &muscle->rate_by_phi0};
-    TRY(array_many_doubles(per_joint, sizeof per_joint / sizeof *per_joint, n_joints, "the joints"));
+    TRY(MEMORY_ARRAYS(per_joint, n_joints, "the joints"));
 
     TRY(neighbours_create(&residual->neighbours, school->n_fish));
     TRY(residual_couplings_fill(&residual->couplings, school, residual->neighbours));
@@ -71,8 +70,8 @@ static enum status residual_allocate(struct residual *residual) {
 
 enum status residual_create(struct residual **residual, const struct school *school, const struct state *state) {
     *residual = NULL;
-    struct residual *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the equations");
+    struct residual *new;
+    TRY(MEMORY_NEW(new, 1, "the equations"));
     new->school = school;
     new->state = state;
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "contact/clearance.h"
 #include "fish/fish_distance.h"
 #include "flow/flow_derivative.h"
@@ -13,9 +14,7 @@ enum status residual_couplings_fill(struct residual_couplings *couplings, const 
     const size_t n_fish = (size_t)school->n_fish;
     *couplings =
         (struct residual_couplings){.school = school, .neighbours = neighbours, .reach = school->coupling_distance};
-    couplings->coupled = calloc(n_fish * n_fish, sizeof *couplings->coupled);
-    return couplings->coupled ? STATUS_OK
-                              : status_fail(STATUS_MEMORY, "out of memory: the couplings of %d fish", school->n_fish);
+    return MEMORY_NEW(couplings->coupled, n_fish * n_fish, "the couplings of fish");
 }
 
 void residual_couplings_free(struct residual_couplings *couplings) {

@@ -4,8 +4,8 @@
 #include <omp.h>
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "base/parallel.h"
-#include "base/ramp.h"
 #include "body/clamp.h"
 #include "body/rod.h"
 #include "fish/fish_prescribed.h"

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fish/fish_prescribed.h"
 #include "school/jacobian.h"
 #include "school/residual_couplings.h"
@@ -108,8 +109,8 @@ static void list(struct equilibrium *e) {
 
 enum status equilibrium_create(struct equilibrium **equilibrium, struct residual *residual, struct state *state) {
     *equilibrium = NULL;
-    struct equilibrium *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: an equilibrium");
+    struct equilibrium *new;
+    TRY(MEMORY_NEW(new, 1, "an equilibrium"));
     *new = (struct equilibrium){.residual = residual, .state = state, .reach = residual->couplings.reach};
     // all bodies couple, however far they are from each other
     residual->couplings.reach = 1e6 * residual->school->fish[0].length;

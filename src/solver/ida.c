@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "body/rod.h"
 #include "school/diagnostics_energy.h"
 #include "school/residual_jacobian.h"
@@ -194,8 +195,8 @@ static enum status fill(struct ida *solver) {
 static enum status ida_create(void **solver, struct residual *residual, struct state *state,
                               const struct integrator_options *options) {
     *solver = NULL;
-    struct ida *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: IDA's solver");
+    struct ida *new;
+    TRY(MEMORY_NEW(new, 1, "IDA's solver"));
     new->residual = residual;
     new->state = state;
     new->options = *options;

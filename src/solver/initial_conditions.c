@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/array.h"
+#include "base/memory.h"
 #include "flow/flow_at_bodies.h"
 #include "school/residual_jacobian.h"
 #include "solver/integrator.h"
@@ -130,7 +130,7 @@ static enum status fill(struct initial_conditions *c) {
     const int n = c->n;
     double **const arrays[] = {&c->y,     &c->zero,           &c->kind,        &c->scale,
                                &c->value, &c->solution_scale, &c->value_scale, &c->start};
-    TRY(array_many_doubles(arrays, sizeof arrays / sizeof *arrays, n, "initial conditions"));
+    TRY(MEMORY_ARRAYS(arrays, n, "initial conditions"));
     for (int i = 0; i < n; i++) {
         c->scale[i] = residual_scale(c->residual->school, i);
         const double factor = is_loose(c->residual, i) ? loose : 1;
@@ -149,8 +149,8 @@ static enum status fill(struct initial_conditions *c) {
 
 enum status initial_conditions_create(struct initial_conditions **solver, struct residual *residual) {
     *solver = NULL;
-    struct initial_conditions *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the initial conditions");
+    struct initial_conditions *new;
+    TRY(MEMORY_NEW(new, 1, "the initial conditions"));
     new->residual = residual;
     new->n = residual->school->n_unknowns;
     const enum status status = fill(new);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ramp.h"
+#include "base/mathematics.h"
 #include "fish/fish_prescribed.h"
 #include "flow/flow_at_bodies.h"
 #include "school/jacobian.h"

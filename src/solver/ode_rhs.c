@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "body/rod.h"
 #include "fish/fish_prescribed.h"
 #include "flow/flow_at_bodies.h"
@@ -82,8 +83,8 @@ no_memory:
 
 enum status ode_rhs_create(struct ode_rhs **rhs, struct residual *residual) {
     *rhs = NULL;
-    struct ode_rhs *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the right-hand side");
+    struct ode_rhs *new;
+    TRY(MEMORY_NEW(new, 1, "the right-hand side"));
     new->residual = residual;
     const enum status status = allocate(new);
     if (status != STATUS_OK) {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/array.h"
+#include "base/memory.h"
 #include "school/diagnostics_energy.h"
 #include "school/residual_jacobian.h"
 #include "solver/algebraic_rates.h"
@@ -55,7 +55,7 @@ static enum status fill(struct one_step *solver) {
     const int n = solver->residual->school->n_unknowns;
     double **const arrays[] = {&solver->kind,  &solver->tolerance,  &solver->before,
                                &solver->rates, &solver->correction, &solver->right_hand};
-    TRY(array_many_doubles(arrays, sizeof arrays / sizeof *arrays, n, "the unknowns"));
+    TRY(MEMORY_ARRAYS(arrays, n, "the unknowns"));
     residual_kinds(solver->residual, solver->kind);
     for (int i = 0; i < n; i++) {
         // the errors of Newton's iteration in the velocities of a stiff body add up to a spurious momentum
@@ -73,8 +73,8 @@ static enum status fill(struct one_step *solver) {
 static enum status one_step_create(void **solver, struct residual *residual, struct state *state,
                                    const struct integrator_options *options) {
     *solver = NULL;
-    struct one_step *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the implicit solver");
+    struct one_step *new;
+    TRY(MEMORY_NEW(new, 1, "the implicit solver"));
     new->residual = residual;
     new->state = state;
     new->options = *options;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "school/diagnostics_energy.h"
 #include "solver/algebraic_rates.h"
 #include "solver/ode_rhs.h"
@@ -156,8 +157,8 @@ static enum status fill(struct runge_kutta *solver) {
 static enum status runge_kutta_create(void **solver, struct residual *residual, struct state *state,
                                       const struct integrator_options *options) {
     *solver = NULL;
-    struct runge_kutta *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: ARKODE's solver");
+    struct runge_kutta *new;
+    TRY(MEMORY_NEW(new, 1, "ARKODE's solver"));
     new->residual = residual;
     new->state = state;
     new->options = *options;

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "state/impulse.h"
 
@@ -180,8 +181,8 @@ static void merge_wake(const struct school *school, const struct body *body, str
 
 enum status wake_merge(const struct school *school, struct state *state) {
     if (school->wake_merge <= 0) return STATUS_OK;
-    struct body *const body = calloc((size_t)school->n_fish, sizeof *body);
-    if (!body) return status_fail(STATUS_MEMORY, "out of memory: the positions of %d bodies", school->n_fish);
+    struct body *body;
+    TRY(MEMORY_NEW(body, school->n_fish, "the positions of bodies"));
 
     int n_vortices = 0;
     for (int f = 0; f < school->n_fish; f++) {

@@ -9,7 +9,7 @@
 #include "flow/flow_external.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_forces.h"
-#include "state/state_table.h"
+#include "state/state.h"
 
 enum steady_freedom steady_map_freedom(const struct fish *fish) {
     if (fish->motion.prescribed == PRESCRIBED_NONE) return STEADY_SWIMS;

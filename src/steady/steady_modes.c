@@ -9,7 +9,7 @@
 #include "flow/flow_external.h"
 #include "run/event.h"
 #include "solver/modes.h"
-#include "state/state_table.h"
+#include "state/state.h"
 
 /* Wake length, in body lengths: the growth rates agree with an infinite wake to 1e-4 of speed over length. */
 static const double wake_lengths = 12;

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/angle.h"
+#include "base/mathematics.h"
 #include "fish/fish_prescribed.h"
 #include "result/netcdf.h"
 

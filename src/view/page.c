@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/base64.h"
+#include "base/text.h"
 #include "base/version.h"
 #include "result/plain_file.h"
 #include "result/result_reader.h"
@@ -56,7 +56,7 @@ static void write_string(FILE *stream, const char *name, const char *string) {
 
 static void write_array(FILE *stream, const char *name, size_t bytes, const void *values) {
     fprintf(stream, "\"%s\":\"", name);
-    base64_write(stream, bytes, values);
+    text_print_base64(stream, bytes, values);
     fputc('"', stream);
 }
 

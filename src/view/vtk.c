@@ -8,7 +8,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/base64.h"
 #include "base/text.h"
 #include "result/plain_file.h"
 #include "result/result_reader.h"
@@ -45,8 +44,8 @@ static void write_array(FILE *stream, const char *type, const char *name, int co
     const size_t in_head = bytes < sizeof head - sizeof n ? bytes : sizeof head - sizeof n;
     memcpy(head, &n, sizeof n);
     if (in_head > 0) memcpy(head + sizeof n, values, in_head);
-    base64_write(stream, sizeof n + in_head, head);
-    base64_write(stream, bytes - in_head, (const char *)values + in_head);
+    text_print_base64(stream, sizeof n + in_head, head);
+    text_print_base64(stream, bytes - in_head, (const char *)values + in_head);
     fputs("</DataArray>\n", stream);
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 
 static const double pi = 3.14159265358979323846;
@@ -452,8 +453,8 @@ enum status far_images_induce(struct far_images *far, const struct walls *channe
     struct table *const table = table_find(far, channel, &squares, tolerance);
     TRY(table_fill(table, cells.n, threads));
     const size_t n_nodes_of_all = (size_t)cells.n * (size_t)n_of_cell(table);
-    double *const memory = calloc(n_nodes_of_all * (size_t)(table->square.n + 2), sizeof *memory);
-    if (!memory) return status_fail(STATUS_MEMORY, "out of memory: images in a channel");
+    double *memory;
+    TRY(MEMORY_NEW(memory, n_nodes_of_all * (size_t)(table->square.n + 2), "images in a channel"));
     cells.weight = memory;
     cells.velocity = memory + n_nodes_of_all * (size_t)table->square.n;
     cells_gather(table, &cells, vortices);

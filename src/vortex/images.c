@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 static const double pi = 3.14159265358979323846;
 
 double images_distance(const struct walls *walls, double y) {
@@ -140,8 +142,8 @@ static void induce_all_directly(const struct walls *walls, const struct vortices
 static enum status induce_by_tree(double wall, struct velocity_sum *sum, const struct vortices *vortices,
                                   double tolerance, int threads, const struct induced *at) {
     const size_t n = (size_t)at->n;
-    double *const memory = calloc(6 * n, sizeof *memory);
-    if (!memory) return status_fail(STATUS_MEMORY, "out of memory: images at %d points", at->n);
+    double *memory;
+    TRY(MEMORY_NEW(memory, 6 * n, "images at points"));
 
     const struct induced there = {.n = at->n,
                                   .x = at->x,

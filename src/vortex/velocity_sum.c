@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "vortex/treecode.h"
 
 /* The tree is faster than the direct sum above these numbers of vortices and interactions. Measured by `make bench`;
@@ -19,8 +20,8 @@ struct velocity_sum {
 
 enum status velocity_sum_create(struct velocity_sum **sum) {
     *sum = NULL;
-    struct velocity_sum *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a velocity sum");
+    struct velocity_sum *new;
+    TRY(MEMORY_NEW(new, 1, "a velocity sum"));
     enum status status = treecode_create(&new->tree);
     if (status == STATUS_OK) status = treecode_create(&new->planned);
     if (status == STATUS_OK) status = far_images_create(&new->far_images);

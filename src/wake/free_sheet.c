@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/array.h"
-#include "base/ramp.h"
+#include "base/mathematics.h"
+#include "base/memory.h"
 #include "body/edge.h"
 
 /* Gauss-Legendre on [0, 1]: eta = 0.0694318, 0.3300095, 0.6699905, 0.9305682 with weights w; xi = eta^2, part = 2 eta
@@ -33,9 +33,8 @@ static enum status free_sheet_reserve(struct free_sheet *sheet, int n) {
     double **const all[] = {&sheet->xi, &sheet->part, &sheet->smoothing[0], &sheet->smoothing[1],
                             &sheet->x,  &sheet->y,    &sheet->circulation,  &sheet->square};
 
-    sheet->stretch = calloc((size_t)capacity, sizeof *sheet->stretch);
-    if (!sheet->stretch) return status_fail(STATUS_MEMORY, "out of memory: %d points of a free sheet", n);
-    TRY(array_many_doubles(all, sizeof all / sizeof *all, capacity, "the points of a free sheet"));
+    TRY(MEMORY_NEW(sheet->stretch, capacity, "points of a free sheet"));
+    TRY(MEMORY_ARRAYS(all, capacity, "the points of a free sheet"));
     sheet->capacity = capacity;
     return STATUS_OK;
 }

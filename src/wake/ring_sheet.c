@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/array.h"
+#include "base/memory.h"
 #include "wake/free_sheet.h"
 
 // both ends of a stretch at one time
@@ -49,9 +49,8 @@ static enum status ring_sheet_reserve(struct ring_sheet *sheet, int n) {
     double **const all[] = {&sheet->xi,           &sheet->part,   &sheet->smoothing[0],
                             &sheet->smoothing[1], &sheet->leg[0], &sheet->leg[1]};
 
-    sheet->stretch = calloc((size_t)capacity, sizeof *sheet->stretch);
-    if (!sheet->stretch) return status_fail(STATUS_MEMORY, "out of memory: %d points of a free sheet", n);
-    TRY(array_many_doubles(all, sizeof all / sizeof *all, capacity, "the points of a free sheet"));
+    TRY(MEMORY_NEW(sheet->stretch, capacity, "points of a free sheet"));
+    TRY(MEMORY_ARRAYS(all, capacity, "the points of a free sheet"));
     sheet->capacity = capacity;
     return STATUS_OK;
 }

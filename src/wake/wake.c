@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ramp.h"
+#include "base/mathematics.h"
 
 enum { N_ARRAYS = 10 };
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/array.h"
+#include "base/memory.h"
 #include "vortex/velocity_sum.h"
 #include "wake/near_field.h"
 
@@ -40,7 +40,7 @@ struct wake_interpolation {
 };
 
 static enum status allocate_at_points(double **values, int n) {
-    return array_doubles(values, n, "velocity of the wakes at points");
+    return MEMORY_NEW(*values, n, "velocity of the wakes at points");
 }
 
 static enum status wake_interpolation_allocate(struct wake_interpolation *interpolation) {
@@ -73,8 +73,8 @@ static enum status wake_interpolation_allocate(struct wake_interpolation *interp
 enum status wake_interpolation_create(struct wake_interpolation **interpolation, const struct school *school,
                                       const struct range *points, const struct range *without_own) {
     *interpolation = NULL;
-    struct wake_interpolation *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: interpolation of wakes");
+    struct wake_interpolation *new;
+    TRY(MEMORY_NEW(new, 1, "interpolation of wakes"));
     new->school = school;
     for (int f = 0; f < school->n_fish; f++) new->n_points += points[f].n;
     new->points = points;
@@ -139,7 +139,7 @@ static enum status reserve_opposite(struct wake_interpolation *interpolation) {
     if (n <= interpolation->n_opposite) return STATUS_OK;
     free(interpolation->opposite);
     interpolation->n_opposite = 0;
-    TRY(array_doubles(&interpolation->opposite, n + n / 2, "the vortices of all wakes"));
+    TRY(MEMORY_NEW(interpolation->opposite, n + n / 2, "the vortices of all wakes"));
     interpolation->n_opposite = n + n / 2;
     return STATUS_OK;
 }

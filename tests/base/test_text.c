@@ -1,5 +1,6 @@
 /* test_text.c: numbers as strings and back. */
 #include <locale.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -110,6 +111,31 @@ static void a_string_of_json_has_no_bare_quote_or_control_character(void **state
     assert_string_equal(written, "\"a \\\"fish\\\" \\\\ \\u000a\\u0001\xc3\xa9\"null");
 }
 
+// ---- the examples of RFC 4648, section 10
+
+static void is_written_as(const char *bytes, const char *want) {
+    char *text = NULL;
+    size_t length;
+    FILE *const stream = open_memstream(&text, &length);
+    assert_non_null(stream);
+    text_print_base64(stream, strlen(bytes), bytes);
+    assert_int_equal(fclose(stream), 0);
+    assert_string_equal(text, want);
+    free(text);
+}
+
+static void the_examples_of_the_standard(void **state) {
+    (void)state;
+    is_written_as("", "");
+    is_written_as("f", "Zg==");
+    is_written_as("fo", "Zm8=");
+    is_written_as("foo", "Zm9v");
+    is_written_as("foob", "Zm9vYg==");
+    is_written_as("fooba", "Zm9vYmE=");
+    is_written_as("foobar", "Zm9vYmFy");
+    is_written_as("\xff\xfe\xfd", "//79");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers_are_decimal_and_whole_strings),
@@ -119,6 +145,7 @@ int main(void) {
         cmocka_unit_test(a_text_that_lacks_memory_says_so_and_stays_as_it_was),
         cmocka_unit_test(the_locale_does_not_matter),
         cmocka_unit_test(a_string_of_json_has_no_bare_quote_or_control_character),
+        cmocka_unit_test(the_examples_of_the_standard),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 /* test_actuation.c: the wave of natural curvature: doc/model.md, section 4. */
 #include <stdio.h>
 
-#include "base/ramp.h"
+#include "base/mathematics.h"
 #include "body/actuation.h"
 #include "fish/fish_gait.h"
 #include "school.h"

@@ -1,5 +1,5 @@
 /* test_lead.c: values set from outside during a run. */
-#include "base/ramp.h"
+#include "base/mathematics.h"
 #include "control/lead.h"
 #include "near.h"
 

@@ -10,7 +10,7 @@
 #include "result/durable.h"
 #include "result/sections.h"
 #include "school.h"
-#include "state/state_table.h"
+#include "state/state.h"
 
 #define SCHOOL                                                                                                \
     "time: {end: 1, shedding_interval: 0.02}\nfish: [{name: a}, {nodes: 5, start: {position: [1, 2]}, wave: " \

@@ -4,7 +4,7 @@
 
 #include "fish/fish_school.h"
 #include "school.h"
-#include "state/state_table.h"
+#include "state/state.h"
 
 /* A short lifetime, so that vortices decay and are removed too. */
 #define TIME "time: {end: 1, shedding_interval: 0.02}\n"

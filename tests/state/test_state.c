@@ -1,5 +1,11 @@
 /* test_state.c: the state before the start, and histories of samples. */
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
 #include "school.h"
+#include "state/state.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
@@ -49,11 +55,212 @@ static void history_recalls_the_newest_ones_in_order(void **state) {
     }
 }
 
+// ---- every field has a row, and a copy has all values
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SCHOOL TIME "fish: [{}, {nodes: 5, start: {position: [1, 2]}, control: {law: heading, desired_heading: 90}}]\n"
+
+// ---- fields, read from the headers
+
+// the text between the braces of a struct definition, without comments
+static void read_definition(const char *path, const char *name, char *body, size_t size) {
+    static char text[65536];
+    FILE *const file = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    for (char *comment; (comment = strstr(text, "/*"));) {
+        char *const end = strstr(comment, "*/");
+        assert_non_null(end);
+        memset(comment, ' ', (size_t)(end + 2 - comment));
+    }
+    char start[64];
+    snprintf(start, sizeof start, "\nstruct %s {", name);
+    const char *const from = strstr(text, start);
+    if (!from) fail_msg("%s does not define struct %s", path, name);
+    const char *const to = strstr(from, "\n};");
+    assert_non_null(to);
+    assert_true((size_t)(to - from) < size);
+    snprintf(body, size, "%.*s", (int)(to - from - (long)strlen(start)), from + strlen(start));
+}
+
+// the next declared name: the last word before "," or ";" or "["
+static int next_field(const char **body, char field[64]) {
+    field[0] = '\0';
+    for (const char *c = *body; *c;) {
+        const size_t length = strcspn(c, " \n*,;[");
+        const char end = c[length];
+        if (length > 0) snprintf(field, 64, "%.*s", (int)length, c);
+        c += length + (end != '\0');
+        if (end == '[') c += strcspn(c, ",;") + 1;
+        // "x[2][3]" and "x [2]" end alike
+        if (end == ',' || end == ';' || end == '[') {
+            *body = c;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static int has_row(const char *name) {
+    for (int i = 0; i < state_table_n; i++) {
+        if (strcmp(state_table[i].name, name) == 0) return 1;
+    }
+    return 0;
+}
+
+static const struct {
+    const char *path, *structure, *prefix;
+    enum state_owner owner;
+    size_t bytes;
+} owners[] = {
+    {"src/state/state.h", "state", "", STATE_ITSELF, sizeof(struct state)},
+    {"src/wake/wake.h", "wake", "wake.", STATE_WAKE, sizeof(struct wake)},
+    {"src/control/control.h", "control_memory", "control.", STATE_CONTROL, sizeof(struct control_memory)},
+    {"src/state/state.h", "history", "history.", STATE_HISTORY, sizeof(struct history)},
+    {"src/state/state.h", "energy_balance", "balance.", STATE_BALANCE, sizeof(struct energy_balance)},
+    {"src/state/state.h", "momentum_balance", "momentum.", STATE_MOMENTUM, sizeof(struct momentum_balance)},
+    {"src/state/state.h", "closest", "closest.", STATE_CLOSEST, sizeof(struct closest)},
+};
+enum { N_OWNERS = sizeof owners / sizeof *owners };
+
+static int is_owner(const char *field) {
+    for (int i = 0; i < N_OWNERS; i++) {
+        const size_t length = strlen(owners[i].prefix);
+        if (length > 0 && strlen(field) + 1 == length && strncmp(field, owners[i].prefix, length - 1) == 0) return 1;
+    }
+    return 0;
+}
+
+static void every_field_has_a_row(void **state) {
+    (void)state;
+    int n_fields = 0;
+    for (int i = 0; i < N_OWNERS; i++) {
+        char body[4096], field[64], name[128];
+        read_definition(owners[i].path, owners[i].structure, body, sizeof body);
+        for (const char *rest = body; next_field(&rest, field);) {
+            snprintf(name, sizeof name, "%s%s", owners[i].prefix, field);
+            if (owners[i].owner == STATE_ITSELF && is_owner(field)) continue;
+            if (!has_row(name)) fail_msg("struct %s: %s has no row in state.c", owners[i].structure, field);
+            n_fields++;
+        }
+    }
+    // each row is a field, too
+    assert_int_equal(n_fields, state_table_n);
+}
+
+static void the_rows_cover_every_byte(void **state) {
+    (void)state;
+    for (int i = 0; i < N_OWNERS; i++) {
+        unsigned char is_covered[sizeof(struct state) + sizeof(struct wake) + sizeof(struct control_memory)] = {0};
+        assert_true(owners[i].bytes <= sizeof is_covered);
+        for (int k = 0; k < state_table_n; k++) {
+            const struct state_row *const row = &state_table[k];
+            if (row->owner == owners[i].owner) memset(is_covered + row->offset, 1, row->bytes);
+        }
+        // the remaining bytes are padding, and pointers to the owners
+        size_t left = 0;
+        for (size_t b = 0; b < owners[i].bytes; b++) left += !is_covered[b];
+        assert_true(left <= (owners[i].owner == STATE_ITSELF ? (N_OWNERS - 1) * sizeof(void *) : 7));
+    }
+}
+
+static void a_sample_is_nothing_but_doubles(void **state) {
+    (void)state;
+    char body[4096];
+    read_definition("src/state/state.h", "sample", body, sizeof body);
+    int n = 0;
+    for (const char *line = strtok(body, ";"); line; line = strtok(NULL, ";")) {
+        line += strspn(line, " \n");
+        if (*line == '\0') continue;
+        assert_int_equal(strncmp(line, "double ", 7), 0);
+        n++;
+    }
+    assert_true(n > 5);
+}
+
+// ---- copies
+
+static void fill_with(struct state *to, const struct school *school, double first) {
+    double number = first;
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        if (row->type != STATE_REAL) continue;
+        for (int f = 0; f < state_table_n_owners(row, school); f++) {
+            double *const values = state_table_values(row, to, f);
+            const size_t n = state_table_length(row, to, school, f);
+            for (size_t k = 0; k < n; k++) values[k] = number++;
+        }
+    }
+}
+
+static void a_copy_has_every_value_and_knows_that_its_wakes_have_changed(void **state) {
+    (void)state;
+    struct setup one, other;
+    school_build(&one, SCHOOL);
+    school_build(&other, SCHOOL);
+    // more vortices than the capacity of a new wake, and fewer
+    for (int i = 0; i < 40; i++) school_ok(wake_release(&one.state->wake[1], i, 2, 3, 4));
+    for (int i = 0; i < 9; i++) school_ok(wake_release(&other.state->wake[0], i, 2, 3, 4));
+    fill_with(one.state, one.school, 1);
+    one.state->event = 77;
+    one.state->control[1].waypoint = 3;
+    one.state->history[0].n = one.state->history[0].last = 5;
+    const unsigned long before = state_wake_version(other.state, other.school);
+    school_ok(state_table_copy(other.state, one.state, one.school));
+    assert_int_not_equal(state_wake_version(other.state, other.school), before);
+    assert_int_equal(other.state->wake[0].n_vortex, 0);
+    assert_int_equal(other.state->wake[1].n_vortex, 40);
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        if (row->type == STATE_UNKEPT) continue;
+        for (int f = 0; f < state_table_n_owners(row, one.school); f++) {
+            const size_t n = state_table_length(row, one.state, one.school, f);
+            assert_int_equal(state_table_length(row, other.state, one.school, f), n);
+            const void *const from = state_table_values(row, one.state, f);
+            const void *const to = state_table_values(row, other.state, f);
+            if (n == 0) continue;
+            assert_ptr_not_equal(from, to);
+            assert_memory_equal(to, from, n * state_table_size(row));
+        }
+    }
+    school_clear(&one);
+    school_clear(&other);
+}
+
+static void indices_that_no_run_has_are_refused(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, SCHOOL);
+    struct state *const s = setup.state;
+    for (int f = 0; f < 2; f++) state_remember(&s->history[f], &(struct sample){.heading = 1});
+    school_ok(state_table_check(s, setup.school));
+    int *const fields[] = {&s->history[1].n,        &s->history[1].n,        &s->history[0].last,
+                           &s->history[0].last,     &s->balance[1].n,        &s->balance[1].n,
+                           &s->control[1].waypoint, &s->control[0].waypoint, &s->wake[1].has_markers,
+                           &s->closest->fish[0],    &s->closest->fish[1]};
+    const int wrong[] = {0, s->history[1].capacity + 1, -1, s->history[0].capacity, -1, 3, -1, 1, 1, -1, 2};
+    for (int i = 0; i < 11; i++) {
+        const int right = *fields[i];
+        *fields[i] = wrong[i];
+        assert_int_equal(state_table_check(s, setup.school), STATUS_FILE);
+        *fields[i] = right;
+    }
+    s->event = -1;
+    assert_int_equal(state_table_check(s, setup.school), STATUS_FILE);
+    school_clear(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(state_before_the_start_is_placed_and_empty),
         cmocka_unit_test(a_fish_without_a_beat_remembers_one_sample),
         cmocka_unit_test(history_recalls_the_newest_ones_in_order),
+        cmocka_unit_test(every_field_has_a_row),
+        cmocka_unit_test(the_rows_cover_every_byte),
+        cmocka_unit_test(a_sample_is_nothing_but_doubles),
+        cmocka_unit_test(a_copy_has_every_value_and_knows_that_its_wakes_have_changed),
+        cmocka_unit_test(indices_that_no_run_has_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

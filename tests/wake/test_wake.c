@@ -1,5 +1,5 @@
 /* test_wake.c: queue of free vortices. doc/model.md, sections 7 and 8. */
-#include "base/ramp.h"
+#include "base/mathematics.h"
 #include "school.h"
 #include "wake/wake.h"
 

@@ -1,4 +1,4 @@
-/* test_memory.c: every x_create fails cleanly at each allocation. */
+/* test_lacking_memory.c: every x_create fails cleanly at each allocation. */
 #include "failing_malloc.h"
 #include "fish/fish_school.h"
 #include "school.h"

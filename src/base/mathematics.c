@@ -1,0 +1,111 @@
+/* mathematics.c: angles, smooth ramps, quadrature, boxes. */
+#include "base/mathematics.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+double angle_wrap(double angle) {
+    return remainder(angle, 2 * pi);
+}
+
+double angle_radians(double degrees) {
+    return degrees * (pi / 180);
+}
+
+double angle_degrees(double radians) {
+    return radians * (180 / pi);
+}
+
+// ---- the smooth step, and ramps in time
+
+double ramp_step(double q) {
+    if (q <= 0) return 0;
+    if (q >= 1) return 1;
+    return q * q * q * q * (35 + q * (-84 + q * (70 - 20 * q)));
+}
+
+double ramp_step_rate(double q) {
+    if (q <= 0 || q >= 1) return 0;
+    const double p = q * (1 - q);
+    return 140 * p * p * p;
+}
+
+double ramp_value(double t, double duration) {
+    return duration > 0 ? ramp_step(t / duration) : 1;
+}
+
+double ramp_rate(double t, double duration) {
+    return duration > 0 ? ramp_step_rate(t / duration) / duration : 0;
+}
+
+// ---- the zeros of Legendre polynomials by Newton's method
+
+// P_n and derivative of P_n at x, by the recurrence (i + 1) P_(i+1) = (2 i + 1) x P_i - i P_(i-1)
+static double legendre(int n, double x, double *slope) {
+    double before = 1, value = x;
+    for (int i = 1; i < n; i++) {
+        const double next = ((2 * i + 1) * x * value - i * before) / (i + 1);
+        before = value;
+        value = next;
+    }
+
+    *slope = n * (x * value - before) / (x * x - 1);
+    return value;
+}
+
+void quadrature_legendre(int n, double *node, double *weight) {
+    for (int i = 0; i < n; i++) {
+        // Tricomi's estimate has at least three correct digits: five iterations converge to rounding
+        double x = -cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
+        for (int iteration = 0; iteration < 5; iteration++) x -= legendre(n, x, &slope) / slope;
+        legendre(n, x, &slope);
+        node[i] = (1 + x) / 2;
+        weight[i] = 1 / ((1 - x * x) * slope * slope);
+    }
+}
+
+double quadrature_newest(int n, const double t[3], const double value[3]) {
+    const double h = t[0] - t[1], slope = (value[0] - value[1]) / h;
+    double area = h * (value[0] + value[1]) / 2;
+    if (n == 3) area -= h * h * h / 6 * (slope - (value[1] - value[2]) / (t[1] - t[2])) / (t[0] - t[2]);
+    return area;
+}
+
+// ---- smallest and largest coordinates
+
+// fmin and fmax are function calls, too slow here
+static double box_smaller(double a, double b) {
+    return b < a ? b : a;
+}
+
+static double box_larger(double a, double b) {
+    return b > a ? b : a;
+}
+
+struct box box_around(int n, const double *x, const double *y) {
+    struct box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    for (int i = 0; i < n; i++) {
+        box.low[0] = box_smaller(box.low[0], x[i]);
+        box.low[1] = box_smaller(box.low[1], y[i]);
+        box.high[0] = box_larger(box.high[0], x[i]);
+        box.high[1] = box_larger(box.high[1], y[i]);
+    }
+
+    return box;
+}
+
+struct box box_union(struct box a, struct box b) {
+    return (struct box){{box_smaller(a.low[0], b.low[0]), box_smaller(a.low[1], b.low[1])},
+                        {box_larger(a.high[0], b.high[0]), box_larger(a.high[1], b.high[1])}};
+}
+
+struct box box_widen(struct box box, double margin) {
+    return (struct box){{box.low[0] - margin, box.low[1] - margin}, {box.high[0] + margin, box.high[1] + margin}};
+}
+
+double box_gap(const struct box *a, const struct box *b) {
+    double gap = -INFINITY;
+    for (int i = 0; i < 2; i++) gap = box_larger(gap, box_larger(a->low[i] - b->high[i], b->low[i] - a->high[i]));
+    return gap;
+}

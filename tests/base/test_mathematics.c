@@ -1,0 +1,173 @@
+/* test_mathematics.c: angles, smooth ramps, quadrature, boxes. */
+#include <math.h>
+
+#include "base/mathematics.h"
+#include "near.h"
+
+static void wrap_removes_full_turns(void **state) {
+    (void)state;
+    const double pi = acos(-1);
+    for (int turns = -3; turns <= 3; turns++) {
+        for (double angle = -3; angle <= 3; angle += 0.5) {
+            // rounding of up to three turns
+            NEAR(angle_wrap(angle + 2 * pi * turns), angle, 1e-14, 0);
+        }
+    }
+    NEAR(fabs(angle_wrap(pi)), pi, 0, 1e-15);
+}
+
+static void degrees_and_radians_are_inverse(void **state) {
+    (void)state;
+    NEAR(angle_radians(180), acos(-1), 0, 1e-15);
+    NEAR(angle_degrees(angle_radians(37.5)), 37.5, 0, 1e-15);
+}
+
+// ---- the ramp of doc/model.md, section 4
+
+static void step_goes_from_zero_to_one_symmetrically(void **state) {
+    (void)state;
+    NEAR(ramp_step(-1), 0, 0, 0);
+    NEAR(ramp_step(0), 0, 0, 0);
+    NEAR(ramp_step(1), 1, 0, 0);
+    NEAR(ramp_step(7), 1, 0, 0);
+    // S(q) + S(1-q) = 1 up to rounding of coefficients of up to 84
+    for (double q = 0; q <= 1; q += 0.0625) NEAR(ramp_step(q) + ramp_step(1 - q), 1, 1e-14, 0);
+    // 0.25^4 (35 - 84/4 + 70/16 - 20/64) by hand
+    NEAR(ramp_step(0.25), 18.0625 / 256, 1e-16, 0);
+}
+
+static void rate_is_the_derivative(void **state) {
+    (void)state;
+    const double h = 1e-4;
+    for (double q = -0.15; q < 1.2; q += 0.1) {
+        // truncation h^2/6 |S'''| with |S'''| <= 53; rounding 1e-16/h is less
+        NEAR(ramp_step_rate(q), (ramp_step(q + h) - ramp_step(q - h)) / (2 * h), 1e-7, 0);
+        NEAR(ramp_rate(3 * q, 3), (ramp_value(3 * q + h, 3) - ramp_value(3 * q - h, 3)) / (2 * h), 1e-8, 0);
+    }
+}
+
+static void three_derivatives_vanish_at_both_ends(void **state) {
+    (void)state;
+    // S = 35 q^4 + ... at the start, 1 - 35 (1-q)^4 + ... at the end
+    const double q = 1e-3;
+    NEAR(ramp_step(q), 35 * q * q * q * q, 0, 3e-3);
+    NEAR(1 - ramp_step(1 - q), 35 * q * q * q * q, 1e-15, 3e-3);
+}
+
+static void ramp_of_no_duration_is_one_at_all_times(void **state) {
+    (void)state;
+    NEAR(ramp_value(0, 0), 1, 0, 0);
+    NEAR(ramp_rate(0, 0), 0, 0, 0);
+    NEAR(ramp_value(1, 2), 0.5, 1e-15, 0);
+}
+
+// ---- Gauss-Legendre quadrature
+
+static void polynomials_of_degree_2n_less_1_are_integrated_exactly(void **state) {
+    (void)state;
+    for (int n = 1; n <= 24; n++) {
+        double node[24], weight[24];
+        quadrature_legendre(n, node, weight);
+        for (int degree = 0; degree < 2 * n; degree++) {
+            double sum = 0;
+            for (int i = 0; i < n; i++) sum += weight[i] * pow(node[i], degree);
+            NEAR(sum, 1.0 / (degree + 1), 0, 1e-13);
+        }
+    }
+}
+
+static void nodes_ascend_and_are_symmetric(void **state) {
+    (void)state;
+    double node[16], weight[16];
+    quadrature_legendre(16, node, weight);
+    for (int i = 0; i < 16; i++) {
+        NEAR(node[i], 1 - node[15 - i], 1e-15, 0);
+        NEAR(weight[i], weight[15 - i], 1e-15, 0);
+        assert_true(i == 0 || node[i] > node[i - 1]);
+    }
+}
+
+static void four_nodes_are_those_of_the_tables(void **state) {
+    (void)state;
+    // Abramowitz and Stegun, table 25.4
+    const double x[] = {0.339981043584856, 0.861136311594053}, w[] = {0.652145154862546, 0.347854845137454};
+    double node[4], weight[4];
+    quadrature_legendre(4, node, weight);
+    for (int i = 0; i < 2; i++) {
+        NEAR(node[2 + i], (1 + x[i]) / 2, 1e-15, 0);
+        NEAR(weight[2 + i], w[i] / 2, 1e-15, 0);
+    }
+}
+
+static void the_newest_interval_of_a_parabola_is_exact(void **state) {
+    (void)state;
+    const double t[3] = {0.9, 0.4, 0.1};
+    double line[3], parabola[3];
+    for (int i = 0; i < 3; i++) {
+        line[i] = 2 - 3 * t[i];
+        parabola[i] = 2 - 3 * t[i] + 6 * t[i] * t[i];
+    }
+    NEAR(quadrature_newest(2, t, line), 2 * 0.5 - 1.5 * (0.81 - 0.16), 1e-15, 0);
+    NEAR(quadrature_newest(3, t, parabola), 2 * 0.5 - 1.5 * (0.81 - 0.16) + 2 * (0.729 - 0.064), 1e-15, 0);
+    NEAR(quadrature_newest(2, t, parabola), 0.25 * (parabola[0] + parabola[1]), 1e-15, 0);
+}
+
+// ---- boxes around points, and the gap between two
+
+static void a_box_has_all_points_and_is_not_larger(void **state) {
+    (void)state;
+    const double x[] = {1, -2, 0.5}, y[] = {3, 4, -1};
+    const struct box box = box_around(3, x, y), wide = box_widen(box, 0.25);
+    NEAR_ARRAY(2, box.low, ((const double[]){-2, -1}), 0, 0);
+    NEAR_ARRAY(2, box.high, ((const double[]){1, 4}), 0, 0);
+    NEAR_ARRAY(2, wide.low, ((const double[]){-2.25, -1.25}), 0, 0);
+    NEAR_ARRAY(2, wide.high, ((const double[]){1.25, 4.25}), 0, 0);
+}
+
+static void the_union_with_the_box_of_no_points_is_the_other(void **state) {
+    (void)state;
+    const double x[] = {1, 2}, y[] = {3, 5};
+    const struct box none = box_around(0, x, y), one = box_around(2, x, y), both = box_union(none, one);
+    NEAR_ARRAY(2, both.low, one.low, 0, 0);
+    NEAR_ARRAY(2, both.high, one.high, 0, 0);
+    const struct box far = box_around(1, (const double[]){-7}, (const double[]){4}), all = box_union(one, far);
+    NEAR_ARRAY(2, all.low, ((const double[]){-7, 3}), 0, 0);
+    NEAR_ARRAY(2, all.high, ((const double[]){2, 5}), 0, 0);
+    NEAR(box_gap(&none, &one), INFINITY, 0, 0);
+    NEAR(box_gap(&none, &none), INFINITY, 0, 0);
+}
+
+static void the_gap_is_that_of_the_axis_along_which_they_are_apart(void **state) {
+    (void)state;
+    const struct box a = {{0, 0}, {1, 1}};
+    const struct {
+        struct box other;
+        double gap;
+    } cases[] = {{{{3, 0}, {4, 1}}, 2},          {{{-4, 0.5}, {-3, 3}}, 3},
+                 {{{0, 1.5}, {1, 2}}, 0.5},      {{{0.25, -8}, {0.5, -5}}, 5},
+                 {{{2, 4}, {3, 5}}, 3},          {{{1, 0}, {2, 1}}, 0},
+                 {{{0.5, 0.75}, {2, 2}}, -0.25}, {{{0.5, 0.5}, {0.75, 0.75}}, -0.5}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        NEAR(box_gap(&a, &cases[i].other), cases[i].gap, 0, 0);
+        NEAR(box_gap(&cases[i].other, &a), cases[i].gap, 0, 0);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(wrap_removes_full_turns),
+        cmocka_unit_test(degrees_and_radians_are_inverse),
+        cmocka_unit_test(step_goes_from_zero_to_one_symmetrically),
+        cmocka_unit_test(rate_is_the_derivative),
+        cmocka_unit_test(three_derivatives_vanish_at_both_ends),
+        cmocka_unit_test(ramp_of_no_duration_is_one_at_all_times),
+        cmocka_unit_test(polynomials_of_degree_2n_less_1_are_integrated_exactly),
+        cmocka_unit_test(nodes_ascend_and_are_symmetric),
+        cmocka_unit_test(four_nodes_are_those_of_the_tables),
+        cmocka_unit_test(the_newest_interval_of_a_parabola_is_exact),
+        cmocka_unit_test(a_box_has_all_points_and_is_not_larger),
+        cmocka_unit_test(the_union_with_the_box_of_no_points_is_the_other),
+        cmocka_unit_test(the_gap_is_that_of_the_axis_along_which_they_are_apart),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
