@@ -121,7 +121,7 @@ static enum status partners_reserve(struct contact *contact, int capacity) {
 static enum status walls_check(const struct contact *contact, double t, const double *y) {
     const struct school *const school = contact->school;
     for (int f = 0; school->walls.n > 0 && f < school->n_fish; f++) {
-        if (fish_wall_distance(school, &school->fish[f], y) > 0) continue;
+        if (fish_wall_distance(school, &school->fish[f], y, NULL) > 0) continue;
         return status_fail(STATUS_RETRY, "the body of %s touches a wall before t = %.10g s", school->fish[f].name, t);
     }
     return STATUS_OK;

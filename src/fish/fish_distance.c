@@ -25,12 +25,18 @@ double fish_point_distance(const struct fish *fish, const double *y, const doubl
     return min;
 }
 
-double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y) {
+double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y, int *wall) {
+    const struct walls *const walls = &school->walls;
     double min = INFINITY;
     for (int k = 0; k < fish->n_nodes; k++) {
         // the thicker edge at the node
         const double before = k > 0 ? fish->thickness[k - 1] : 0, after = k < fish->n_edges ? fish->thickness[k] : 0;
-        min = fmin(min, images_distance(&school->walls, y[fish->at.y + k]) - fmax(before, after) / 2);
+        for (int w = 0; w < walls->n; w++) {
+            const double gap = walls->inward[w] * (y[fish->at.y + k] - walls->y[w]) - fmax(before, after) / 2;
+            if (!(gap < min)) continue;
+            min = gap;
+            if (wall) *wall = w;
+        }
     }
 
     return min;

@@ -9,8 +9,8 @@
 double fish_point_distance(const struct fish *fish, const double *y, const double p[2]);
 
 /* Distance of the outline of a body at the node positions in y from the nearest wall, negative beyond the wall, m;
- * INFINITY without walls. */
-double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y);
+ * INFINITY without walls. wall: index of the wall, or NULL. */
+double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y, int *wall);
 
 /* Distance between the outlines of two bodies at the node positions in y, 0 at contact, m. A distance above the limit
  * may be returned as INFINITY: edges are compared only if the gap of the boxes of both bodies is below the limit. */

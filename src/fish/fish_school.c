@@ -169,7 +169,7 @@ static enum status refuse_overlap(const struct school *school) {
 
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         fish_start(&school->fish[f], y);
-        if (fish_wall_distance(school, &school->fish[f], y) <= 0) {
+        if (fish_wall_distance(school, &school->fish[f], y, NULL) <= 0) {
             status = status_fail(STATUS_CASE,
                                  "error: fish[%d] (%s) touches a wall or is outside the fluid at the start: change "
                                  "start.position or fluid.walls",

@@ -158,12 +158,14 @@ static enum status simulation_name_contact(const struct simulation *simulation, 
     const struct school *const school = simulation->school;
     const double *const y = simulation->state->closest->before;
     double least = school->contact_range;
-    int one = -1, other = -1;
+    int one = -1, other = -1, wall = -1;
     for (int f = 0; f < school->n_fish; f++) {
-        const double from_wall = fish_wall_distance(school, &school->fish[f], y);
+        int nearest;
+        const double from_wall = fish_wall_distance(school, &school->fish[f], y, &nearest);
         if (from_wall < least) {
             least = from_wall;
-            one = other = f;
+            one = f;
+            wall = nearest;
         }
         for (int g = 0; g < f; g++) {
             const double gap = fish_distance(&school->fish[g], &school->fish[f], y, least);
@@ -171,23 +173,26 @@ static enum status simulation_name_contact(const struct simulation *simulation, 
             least = gap;
             one = g;
             other = f;
+            wall = -1;
         }
     }
 
     if (one < 0) return status;
     const char *const name = school->fish[one].name;
-    if (one == other) return status_fail(status, "%s; %s was %.3g m from a wall", status_message(), name, least);
-    return status_fail(status, "%s; %s and %s were in contact, with a gap of %.3g m", status_message(), name,
-                       school->fish[other].name, least);
+    if (wall < 0) {
+        return status_fail(status, "%s; %s and %s were in contact, with a gap of %.3g m", status_message(), name,
+                           school->fish[other].name, least);
+    }
+    const char *const which = school->walls.n == 1 ? "" : wall == 0 ? "lower " : "upper ";
+    return status_fail(status, "%s; %s was in contact with the %swall at y = %g, with a gap of %.3g m",
+                       status_message(), name, which, school->walls.y[wall], least);
 }
 
-static enum status simulation_step(struct simulation *simulation) {
+static enum status simulation_advance(struct simulation *simulation) {
     struct state *const state = simulation->state;
     const double next = (double)(state->event + 1) * simulation->school->interval;
     const enum status advanced = simulation->integrator->advance(simulation->solver, next, simulation->stop);
     TRY(simulation_refuse_contact(simulation));
-    if (advanced == STATUS_SOLVER)
-        return simulation_name_contact(simulation, simulation_name_folded(simulation, advanced));
     TRY(advanced);
 
     int jumped = 0;
@@ -202,9 +207,13 @@ static enum status simulation_step(struct simulation *simulation) {
 enum status simulate_step(struct simulation *simulation) {
     const int threads = simulation->school->threads;
     parallel_choice_begin(&simulation->choice, threads);
-    const enum status status = simulation_step(simulation);
+    enum status status = simulation_advance(simulation);
     parallel_choice_end(&simulation->choice, threads);
-    return status;
+    if (status != STATUS_SOLVER) return status;
+
+    // what the bodies do at a failure of the integrator or of the event
+    status = simulation_name_folded(simulation, status);
+    return simulation_name_contact(simulation, status);
 }
 
 void simulate_measure(struct simulation *simulation) {

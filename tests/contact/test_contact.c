@@ -158,7 +158,7 @@ static void who_is_beyond_a_wall_asks_for_a_smaller_step(void **state) {
     for (int i = 0; i < 3; i++) {
         y[fish->at.y + 3] = places[i];
         assert_int_equal(contact_find(setup.residual->contact, setup.state, 0.1, y), i == 0 ? STATUS_OK : STATUS_RETRY);
-        NEAR(fish_wall_distance(setup.school, fish, y), places[i] + 0.15, 1e-15, 0);
+        NEAR(fish_wall_distance(setup.school, fish, y, NULL), places[i] + 0.15, 1e-15, 0);
     }
     assert_non_null(strstr(status_message(), "touches a wall"));
     school_clear(&setup);
@@ -414,17 +414,25 @@ static void a_fixed_step_that_is_too_long_fails_and_says_so(void **state) {
     simulate_free(simulation);
 }
 
-static void a_failure_in_contact_names_both_bodies_and_the_gap(void **state) {
+// a body that is sent at an angle into a wall, which it reaches in 0.05 s
+#define INTO_WALL(walls, y, heading)                                                                                 \
+    TIME "solver: {max_steps: 20}\nfluid: {density: 0, walls: " walls                                                \
+         "}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\nfish: [{" PASSIVE ", start: {position: [0, " y \
+         "], heading: " heading ", speed: 5}}]\n"
+
+static void a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap(void **state) {
     (void)state;
     static const struct {
-        const char *text, *message;
+        const char *text, *message, *unit;
     } cases[] = {
-        {"solver: {max_steps: 20}\n" HEAD_ON("5"), "; fish1 and fish2 were in contact, with a gap of "},
-        {TIME "solver: {max_steps: 20}\nfluid: {density: 0, walls: [0]}\nwake: {shedding: continuous, taper: 0, "
-              "taper_beside: 0}\nfish: [{" PASSIVE ", start: {position: [0, 0.15], heading: 280, speed: 5}}]\n",
-         "; fish1 was "},
+        {"solver: {max_steps: 20}\n" HEAD_ON("5"), "; fish1 and fish2 were in contact, with a gap of ", " m"},
+        {INTO_WALL("[0]", "0.15", "280"), "; fish1 was in contact with the wall at y = 0, with a gap of ", " m"},
+        {INTO_WALL("[-0.5, 2]", "-0.35", "280"),
+         "; fish1 was in contact with the lower wall at y = -0.5, with a gap of ", " m"},
+        {INTO_WALL("[-2, 0.5]", "0.35", "80"), "; fish1 was in contact with the upper wall at y = 0.5, with a gap of ",
+         " m"},
         // bodies apart: no contact in the message
-        {"solver: {max_steps: 1}\n" TIME "fish: [{}, {start: {position: [0, 1]}}]\n", NULL}};
+        {"solver: {max_steps: 1}\n" TIME "fish: [{}, {start: {position: [0, 1]}}]\n", NULL, NULL}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct simulation *const simulation = school_simulation(cases[i].text);
         enum status status = STATUS_OK;
@@ -432,9 +440,11 @@ static void a_failure_in_contact_names_both_bodies_and_the_gap(void **state) {
         assert_int_equal(status, STATUS_SOLVER);
         const char *const said = strstr(status_message(), cases[i].message ? cases[i].message : "contact");
         if (cases[i].message) {
-            assert_non_null(said);
-            const double gap = strtod(said + strlen(cases[i].message), NULL);
+            if (!said) fail_msg("%s", status_message());
+            char *end;
+            const double gap = strtod(said + strlen(cases[i].message), &end);
             assert_true(gap > 0 && gap < simulation->school->contact_range);
+            assert_string_equal(end, cases[i].unit);
         } else {
             assert_null(said);
         }
@@ -600,7 +610,7 @@ int main(void) {
         cmocka_unit_test(plates_that_swim_in_line_do_not_cross),
         cmocka_unit_test(bodies_under_pressure_throw_each_other_back),
         cmocka_unit_test(bodies_that_are_thrown_back_go_on_tail_first),
-        cmocka_unit_test(a_failure_in_contact_names_both_bodies_and_the_gap),
+        cmocka_unit_test(a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap),
         cmocka_unit_test(every_integrator_keeps_bodies_apart),
         cmocka_unit_test(a_fixed_step_that_is_too_long_fails_and_says_so),
         cmocka_unit_test(of_256_fish_no_two_get_through_each_other),

@@ -119,7 +119,7 @@ static void distance_from_a_wall_counts_the_thicker_edge_of_a_node(void **state)
     const double thickest[] = {0.1, 0.2, 0.2, 0.3, 0.3};
     for (int k = 0; k < 5; k++) {
         y[fish->at.y + k] -= 0.5;
-        NEAR(fish_wall_distance(setup.school, fish, y), 0.5 - thickest[k] / 2, 1e-14, 0);
+        NEAR(fish_wall_distance(setup.school, fish, y, NULL), 0.5 - thickest[k] / 2, 1e-14, 0);
         y[fish->at.y + k] += 0.5;
     }
     school_clear(&setup);
