@@ -89,6 +89,27 @@ static void an_outline_crosses_itself_where_it_is_thicker_than_the_gap(void **st
     assert_true(crosses(0.11, hairpin));
 }
 
+static void a_tail_that_enters_the_right_side_of_the_nose_crosses_the_outline(void **state) {
+    (void)state;
+    // once around, then from below to the middle of the first edge, where the outline is 0.0034 m below the line;
+    // only the closing segment of the outline, from the last point to the nose, is crossed
+    const double x[] = {0, 0.2, 0.2, -0.1, -0.1, 0.1, 0.1}, y_of_tail[] = {-0.005, -0.002, 0.002};
+    double y[] = {0, 0, 0.2, 0.2, -0.2, -0.2, 0};
+    struct setup setup;
+    school_build(&setup, SCHOOL_DEFAULTS TIME "fish: [{nodes: 7, body: {profile: uniform, thickness: 0.02}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    double *const to = setup.state->y;
+    for (int i = 0; i < 3; i++) {
+        y[6] = y_of_tail[i];
+        for (int k = 0; k < 7; k++) {
+            to[fish->at.x + k] = x[k];
+            to[fish->at.y + k] = y[k];
+        }
+        assert_int_equal(self_crossing(fish, to, setup.residual->scratch), i > 0);
+    }
+    school_clear(&setup);
+}
+
 static void a_bend_sharper_than_half_the_thickness_is_folded(void **state) {
     (void)state;
     // one joint turns by 1 rad: edges of 0.025 m have the radius 0.025/(2 tan(1/2)) = 0.0229 m
@@ -124,6 +145,7 @@ int main(void) {
         cmocka_unit_test(bent_bodies_do_not_cross_themselves),
         cmocka_unit_test(a_line_crosses_itself_beyond_a_circle),
         cmocka_unit_test(an_outline_crosses_itself_where_it_is_thicker_than_the_gap),
+        cmocka_unit_test(a_tail_that_enters_the_right_side_of_the_nose_crosses_the_outline),
         cmocka_unit_test(a_bend_sharper_than_half_the_thickness_is_folded),
         cmocka_unit_test(a_run_remembers_the_first_fish_and_when),
     };
