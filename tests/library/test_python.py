@@ -326,7 +326,7 @@ def in_fork(call):
 
 class Misuse(unittest.TestCase):
     def outcome(self, code):
-        """What a piece of code raises, in a child process; its end, where that is none of Python's."""
+        """The exception of a piece of code in a child process, or the signal that ended the child."""
         reading, writing = os.pipe()
         child = os.fork()
         if child == 0:
@@ -355,6 +355,7 @@ class Misuse(unittest.TestCase):
             with self.subTest(code):
                 self.assertRegex(self.outcome(code), f"^({want})")
 
+    @unittest.skipIf("libasan" in os.environ.get("LD_PRELOAD", ""), "a fork leaves the allocator of gcc 12's sanitizer locked")
     def test_a_run_that_a_thread_steps_during_a_fork_is_refused_in_the_child(self):
         run = shoal.Run({**PAIR, "time": {**PAIR["time"], "end": 20}})
         thread = threading.Thread(target=lambda: run.advance(run.end))
