@@ -6,9 +6,8 @@
 
 #include "case/case.h"
 #include "case/case_table.h"
-#include "case/case_value.h"
+#include "case/sweep.h"
 #include "case/sweep_expect.h"
-#include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
 #include "near.h"
 

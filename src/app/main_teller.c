@@ -8,7 +8,7 @@
 #include "app/main_commands.h"
 #include "app/say.h"
 #include "case/case.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "run/record.h"
 
 void main_tell_warning(const char *line, void *data) {

@@ -7,6 +7,7 @@
 #define CASE_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 #include "base/status.h"
 #include "case/case_values.h"
@@ -23,5 +24,19 @@ enum status case_parse(struct case_values *values, const char *text, size_t leng
 
 /* Release the values and zero *values. Accepts zeroed values. */
 void case_free(struct case_values *values);
+
+/* Fill *values with the case of one member of a study: the case of the study with the values of the member assigned as
+ * by --set, without a sweep. Fails with STATUS_CASE, naming the member, or with STATUS_MEMORY. Free with case_free. */
+enum status case_member(struct case_values *values, const struct case_values *study, int member);
+
+/* case_show.c: the complete case with the values of all keys, as a case file from which case_read reads the same bits.
+ * The caller frees *text. Fails with STATUS_MEMORY. */
+enum status case_show(const struct case_values *values, char **text);
+
+/* case_keys.c: print path, type, default, range, unit and meaning of every key, as text or as JSON (doc/cases.md); or
+ * the table of keys as a JSON schema (draft 7), with which editors check and complete case files. Tested by
+ * tests/app/test_command.sh and tests/app/test_manual.sh. */
+void case_keys(FILE *stream, int as_json);
+void case_schema(FILE *stream);
 
 #endif

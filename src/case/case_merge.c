@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "case/case_path.h"
 #include "case/case_table.h"
 
@@ -22,24 +23,17 @@ struct open_file {
     const struct open_file *by;
 };
 
-static enum status merge_out_of_memory(void) {
-    return status_fail(STATUS_MEMORY, "out of memory: reading the case file");
-}
+static const char what[] = "reading the case file"; /* in messages on memory */
 
 // ---- sources
 
-/* Add an empty source, owned by the tree; NULL if out of memory. */
-static struct yaml_source *add_source(struct case_tree *tree, const char *name) {
-    const size_t size = (size_t)(tree->n_sources + 1) * sizeof(struct yaml_source *);
-    struct yaml_source **const grown = realloc(tree->source, size);
-    if (!grown) return NULL;
-    tree->source = grown;
-    struct yaml_source *const source = calloc(1, sizeof *source);
-    if (!source) return NULL;
-    source->rank = tree->n_sources;
-    tree->source[tree->n_sources++] = source;
-    source->name = strdup(name);
-    return source->name ? source : NULL;
+/* Add an empty source, owned by the tree. */
+static enum status add_source(struct case_tree *tree, const char *name, struct yaml_source **source) {
+    TRY(MEMORY_RESIZE(tree->source, tree->n_sources + 1, what));
+    TRY(MEMORY_NEW(*source, 1, what));
+    (*source)->rank = tree->n_sources;
+    tree->source[tree->n_sources++] = *source;
+    return memory_copy_string(&(*source)->name, name, what);
 }
 
 void case_merge_free(struct case_tree *tree) {
@@ -53,41 +47,41 @@ void case_merge_free(struct case_tree *tree) {
     *tree = (struct case_tree){0};
 }
 
-/* Read at most one byte more than the limit for a case file. */
-static enum status read_bytes(int file, struct yaml_source *source) {
-    const size_t capacity = YAML_TREE_BYTES + 1;
-    source->text = malloc(capacity);
-    if (!source->text) return merge_out_of_memory();
-    ssize_t n;
-
-    do {
-        n = read(file, source->text + source->length, capacity - source->length);
-        if (n > 0) source->length += (size_t)n;
-    } while ((n > 0 && source->length < capacity) || (n < 0 && errno == EINTR));
-    if (n < 0) return status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
-    char *const fitting = realloc(source->text, source->length + 1);
-    if (fitting) source->text = fitting;
-    return STATUS_OK;
-}
-
-/* Read the file at path into a source. Fails with STATUS_FILE and the reason as message, or with STATUS_MEMORY. */
+/* Read the file at path into a source, at most one byte more than the limit for a case file. Fails with STATUS_FILE and
+ * the reason as message, or with STATUS_MEMORY. */
 static enum status read_file(const char *path, struct yaml_source *source, struct open_file *self) {
-    struct stat facts;
     // a FIFO that nobody writes to is empty, and not waited for
     const int file = open(path, O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-
+    const size_t capacity = YAML_TREE_BYTES + 1;
+    struct stat facts;
+    enum status status = STATUS_OK;
     if (file < 0 || fstat(file, &facts) != 0) {
-        const enum status status = status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
-        if (file >= 0) close(file);
-        return status;
+        status = status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
+        goto close_file;
     }
 
     fcntl(file, F_SETFL, 0);
     self->device = facts.st_dev;
     self->inode = facts.st_ino;
-    const enum status status =
-        S_ISDIR(facts.st_mode) ? status_fail(STATUS_FILE, "is a folder, not a case file") : read_bytes(file, source);
-    close(file);
+    if (S_ISDIR(facts.st_mode)) {
+        status = status_fail(STATUS_FILE, "is a folder, not a case file");
+        goto close_file;
+    }
+
+    status = MEMORY_NEW(source->text, capacity, what);
+    if (status != STATUS_OK) goto close_file;
+    ssize_t n;
+    do {
+        n = read(file, source->text + source->length, capacity - source->length);
+        if (n > 0) source->length += (size_t)n;
+    } while ((n > 0 && source->length < capacity) || (n < 0 && errno == EINTR));
+    if (n < 0) status = status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
+
+    // a failure leaves the text as it is
+    char *const fitting = n < 0 ? NULL : realloc(source->text, source->length + 1);
+    if (fitting) source->text = fitting;
+close_file:
+    if (file >= 0) close(file);
     return status;
 }
 
@@ -96,47 +90,10 @@ static enum status read_file(const char *path, struct yaml_source *source, struc
 static enum status read_source(struct case_tree *tree, const struct yaml_source *source, const char *folder,
                                const struct open_file *self, struct yaml_errors *errors, struct yaml_node **root);
 
-/* The length of the folder part of a path, with the slash; 0 if there is none. */
-static int folder_length(const char *path) {
-    const char *const slash = strrchr(path, '/');
-    return slash ? (int)(slash - path) + 1 : 0;
-}
-
-/* True if a file is being read already, that is, includes itself. */
-static bool is_open(const struct open_file *file, const struct open_file *by) {
-    for (; by; by = by->by) {
-        if (by->device == file->device && by->inode == file->inode) return true;
-    }
-    return false;
-}
-
-/* Read the included file at a path and merge it over *base. */
-static enum status include_path(struct case_tree *tree, const struct yaml_node *node, const char *path,
+/* Read the file of an entry of an include list, relative to the folder, which ends at the last slash; merge the file
+ * over *base. */
+static enum status include_file(struct case_tree *tree, const struct yaml_node *node, const char *folder,
                                 const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
-    struct yaml_source *const source = add_source(tree, path);
-    if (!source) return merge_out_of_memory();
-    struct open_file self = {.depth = by->depth + 1, .by = by};
-    const enum status status = read_file(path, source, &self);
-
-    if (status == STATUS_FILE) {
-        yaml_errors_add(errors, node->mark, "include: %.200s: %s", path, status_message());
-        return STATUS_OK;
-    }
-
-    TRY(status);
-    if (is_open(&self, by)) {
-        yaml_errors_add(errors, node->mark, "include: %.200s includes itself", path);
-        return STATUS_OK;
-    }
-
-    struct yaml_node *root = NULL;
-    TRY(read_source(tree, source, path, &self, errors, &root));
-    return root ? yaml_tree_merge(base, root) : STATUS_OK;
-}
-
-/* Read the file of an entry of an include list, relative to the folder, which ends at the last slash. */
-static enum status include_entry(struct case_tree *tree, const struct yaml_node *node, const char *folder,
-                                 const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
     if (node->kind != YAML_SCALAR || node->text[0] == '\0') {
         yaml_errors_add(errors, node->mark, "include: expects a list of file names, as in [water.yaml]");
         return STATUS_OK;
@@ -149,12 +106,31 @@ static enum status include_entry(struct case_tree *tree, const struct yaml_node 
     }
 
     struct text path = {0};
-    if (node->text[0] != '/') text_add(&path, "%.*s", folder_length(folder), folder);
-    text_add(&path, "%s", node->text);
-    const enum status status =
-        path.failed ? merge_out_of_memory() : include_path(tree, node, path.text, by, errors, base);
+    const char *const slash = node->text[0] == '/' ? NULL : strrchr(folder, '/');
+    text_add(&path, "%.*s%s", slash ? (int)(slash - folder) + 1 : 0, folder, node->text);
+    struct yaml_source *source = NULL;
+    const enum status added =
+        path.failed ? status_fail(STATUS_MEMORY, "out of memory: %s", what) : add_source(tree, path.text, &source);
     text_free(&path);
-    return status;
+    TRY(added);
+
+    struct open_file self = {.depth = by->depth + 1, .by = by};
+    const enum status status = read_file(source->name, source, &self);
+    if (status == STATUS_FILE) {
+        yaml_errors_add(errors, node->mark, "include: %.200s: %s", source->name, status_message());
+        return STATUS_OK;
+    }
+
+    TRY(status);
+    for (const struct open_file *file = by; file; file = file->by) {
+        if (file->device != self.device || file->inode != self.inode) continue;
+        yaml_errors_add(errors, node->mark, "include: %.200s includes itself", source->name);
+        return STATUS_OK;
+    }
+
+    struct yaml_node *root = NULL;
+    TRY(read_source(tree, source, source->name, &self, errors, &root));
+    return root ? yaml_tree_merge(base, root) : STATUS_OK;
 }
 
 /* Remove the include list from *root, read the files and merge *root over them. */
@@ -171,10 +147,10 @@ static enum status read_includes(struct case_tree *tree, const char *folder, con
 
     if (list->kind == YAML_LIST) {
         for (int i = 0; i < list->n && status == STATUS_OK; i++) {
-            status = include_entry(tree, list->entry[i].value, folder, self, errors, &base);
+            status = include_file(tree, list->entry[i].value, folder, self, errors, &base);
         }
     } else {
-        status = include_entry(tree, list, folder, self, errors, &base);
+        status = include_file(tree, list, folder, self, errors, &base);
     }
     yaml_tree_free(list);
 
@@ -225,8 +201,8 @@ static enum status read_case(struct case_tree *tree, const char *folder, const s
 }
 
 enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors) {
-    struct yaml_source *const source = add_source(tree, path);
-    if (!source) return merge_out_of_memory();
+    struct yaml_source *source;
+    TRY(add_source(tree, path, &source));
     struct open_file self = {0};
     const enum status status = read_file(path, source, &self);
     if (status == STATUS_FILE) return status_fail(STATUS_FILE, "%s: error: the case file %s", path, status_message());
@@ -236,15 +212,16 @@ enum status case_merge_read_file(struct case_tree *tree, const char *path, struc
 
 enum status case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
                                  const char *folder, struct yaml_errors *errors) {
-    struct yaml_source *const source = add_source(tree, origin);
-    if (!source || !(source->text = malloc(length + 1))) return merge_out_of_memory();
+    struct yaml_source *source;
+    TRY(add_source(tree, origin, &source));
+    TRY(MEMORY_NEW(source->text, length + 1, what));
     memcpy(source->text, text, length);
     source->length = length;
     struct text place = {0};
-    if (folder && *folder) text_add(&place, "%s/", folder);
+    text_add(&place, "%s%s", folder ? folder : "", folder && *folder ? "/" : "");
     const struct open_file self = {0};
-    const enum status status =
-        place.failed ? merge_out_of_memory() : read_case(tree, place.text ? place.text : "", &self, errors);
+    const enum status status = place.failed ? status_fail(STATUS_MEMORY, "out of memory: %s", what)
+                                            : read_case(tree, place.text, &self, errors);
     text_free(&place);
     return status;
 }
@@ -265,7 +242,8 @@ static enum status put_at(struct yaml_node **node, const char *path, struct yaml
 
     if (!yaml_tree_entry(*node, key, length)) {
         struct yaml_node *const map = yaml_tree_map(mark);
-        const enum status status = map ? yaml_tree_put(*node, key, mark, map) : merge_out_of_memory();
+        const enum status status =
+            map ? yaml_tree_put(*node, key, mark, map) : status_fail(STATUS_MEMORY, "out of memory: %s", what);
         if (status != STATUS_OK) {
             yaml_tree_free(value);
             return status;
@@ -275,22 +253,18 @@ static enum status put_at(struct yaml_node **node, const char *path, struct yaml
     return put_at(&yaml_tree_entry(*node, key, length)->value, path + length + 1, mark, value);
 }
 
-/* Put copies of a value into one fish or into every fish. */
-static enum status put_in_fish(struct case_tree *tree, const struct case_path *path, const struct yaml_node *value) {
-    struct yaml_entry *const school = yaml_tree_entry(tree->root, "fish", 4);
-    for (int i = 0; i < case_merge_n_fish(tree); i++) {
-        if (path->fish != i && path->fish != CASE_EVERY_FISH) continue;
-        struct yaml_node *const copy = yaml_tree_copy(value);
-        if (!copy) return merge_out_of_memory();
-        TRY(put_at(&school->value->entry[i].value, path->below, value->mark, copy));
-    }
-    return STATUS_OK;
-}
-
-/* Put a value at a path. Takes ownership of the value. */
+/* Put a value at a path, in one fish or in every fish. Takes ownership of the value. */
 static enum status put_node(struct case_tree *tree, const struct case_path *path, struct yaml_node *value) {
     if (path->fish == CASE_NO_FISH) return put_at(&tree->root, path->below, value->mark, value);
-    const enum status status = put_in_fish(tree, path, value);
+    struct yaml_entry *const school = yaml_tree_entry(tree->root, "fish", 4);
+    enum status status = STATUS_OK;
+    for (int i = 0; i < case_merge_n_fish(tree) && status == STATUS_OK; i++) {
+        if (path->fish != i && path->fish != CASE_EVERY_FISH) continue;
+        struct yaml_node *const copy = yaml_tree_copy(value);
+        status = copy ? put_at(&school->value->entry[i].value, path->below, value->mark, copy)
+                      : status_fail(STATUS_MEMORY, "out of memory: %s", what);
+    }
+
     yaml_tree_free(value);
     return status;
 }
@@ -309,8 +283,7 @@ static enum status assign(struct case_tree *tree, char *name, const char *text, 
     }
 
     // nothing after the equals sign is the empty string
-    source->text = strdup(text[strspn(text, " ")] ? text : "\"\"");
-    if (!source->text) return merge_out_of_memory();
+    TRY(memory_copy_string(&source->text, text[strspn(text, " ")] ? text : "\"\"", what));
     source->length = strlen(source->text);
     struct yaml_node *value = NULL;
     const enum status status = yaml_tree_read(&value, source, errors);
@@ -322,21 +295,18 @@ static enum status assign(struct case_tree *tree, char *name, const char *text, 
 }
 
 enum status case_merge_assign(struct case_tree *tree, const char *assignment, struct yaml_errors *errors) {
+    char *name;
+    TRY(memory_copy_string(&name, assignment, what));
     struct text title = {0};
     text_add(&title, "--set %s", assignment);
-    struct yaml_source *const source = title.failed ? NULL : add_source(tree, title.text);
+    struct yaml_source *source = NULL;
+    enum status status =
+        title.failed ? status_fail(STATUS_MEMORY, "out of memory: %s", what) : add_source(tree, title.text, &source);
     text_free(&title);
-    char *const name = strdup(assignment);
-
-    if (!source || !name) {
-        free(name);
-        return merge_out_of_memory();
-    }
+    if (status != STATUS_OK) goto free_name;
 
     source->one_line = true;
-    enum status status = STATUS_OK;
     char *const equals = strchr(name, '=');
-
     if (equals) {
         *equals = '\0';
         status = assign(tree, name, equals + 1, source, errors);
@@ -344,7 +314,7 @@ enum status case_merge_assign(struct case_tree *tree, const char *assignment, st
         const struct yaml_mark mark = {source, 1, 1};
         yaml_errors_add(errors, mark, "expects PATH=VALUE, as in --set time.end=3");
     }
-
+free_name:
     free(name);
     return status;
 }

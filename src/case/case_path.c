@@ -1,17 +1,221 @@
-/* case_path.c: a path word by word along the table of keys. */
+/* case_path.c: suggestions for an unknown word; a path word by word along the table of keys. */
 #include "case/case_path.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/case_suggest.h"
 #include "case/case_table.h"
+
+// ---- suggestions: the key of the table with the smallest edit distance
+
+enum { WORD = 40 /* no key has a longer word */ };
+
+/* One word of a path of the table: "body" or "modulus" of "fish.body.modulus". */
+struct candidate {
+    char word[WORD + 1];
+    char section[80]; /* "fish.body"; "" at the top */
+    int distance;     /* edits from the word of the user */
+    int remoteness;   /* 0: same section, 1: subsection, 2: both in a fish, 3: elsewhere */
+};
+
+/* Words for quantities that are no keys, and the keys to use instead. */
+static const struct {
+    const char *words, *instead;
+} missing[] = {
+    {"kinematic_viscosity dynamic_viscosity mu reynolds reynolds_number",
+     "; the friction is set by drag.tangential of a fish, or by fluid.viscosity with 'drag.skin: boundary_layer' or "
+     "'laminar'"},
+};
+
+static char lower_case(char c) {
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+static int smaller(int a, int b) {
+    return a < b ? a : b;
+}
+
+/* Number of insertions, deletions, changes and swaps of neighbours between a word of n and one of m characters. */
+static int edit_distance(const char *a, size_t n, const char *b, size_t m) {
+    if (n > WORD || m > WORD) return INT_MAX;
+    int d[WORD + 1][WORD + 1];
+    for (size_t i = 0; i <= n; i++) d[i][0] = (int)i;
+    for (size_t j = 0; j <= m; j++) d[0][j] = (int)j;
+
+    for (size_t i = 1; i <= n; i++) {
+        for (size_t j = 1; j <= m; j++) {
+            const int change = d[i - 1][j - 1] + (lower_case(a[i - 1]) != lower_case(b[j - 1]));
+            d[i][j] = smaller(change, smaller(d[i - 1][j], d[i][j - 1]) + 1);
+            const bool is_swap = i > 1 && j > 1 && lower_case(a[i - 1]) == lower_case(b[j - 2]) &&
+                                 lower_case(a[i - 2]) == lower_case(b[j - 1]);
+            if (is_swap) d[i][j] = smaller(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    }
+
+    return d[n][m];
+}
+
+/* The smallest distance of a word to any of some words separated by blanks. */
+static int distance_to_any(const char *word, const char *words) {
+    int distance = INT_MAX;
+    while (words && *words) {
+        const size_t length = strcspn(words, " ");
+        distance = smaller(distance, edit_distance(word, strlen(word), words, length));
+        words += length + strspn(words + length, " ");
+    }
+    return distance;
+}
+
+/* True if a section is "fish" or a subsection of "fish". */
+static bool is_in_fish(const char *section) {
+    return strncmp(section, "fish", 4) == 0 && (section[4] == '\0' || section[4] == '.');
+}
+
+/* The remoteness of one section from another: see struct candidate. */
+static int remoteness_of(const char *section, const char *from) {
+    const size_t here = strlen(from);
+    if (strcmp(section, from) == 0) return 0;
+    if (strncmp(section, from, here) == 0 && (here == 0 || section[here] == '.')) return 1;
+    return is_in_fish(section) && is_in_fish(from) ? 2 : 3;
+}
+
+/* Compare the word of a path that ends at end with the best candidate; keep the nearer one. */
+static void keep_nearer(struct candidate *best, const struct key *key, size_t end, const char *section,
+                        const char *word) {
+    size_t begin = end;
+    while (begin > 0 && key->path[begin - 1] != '.') begin--;
+    struct candidate one = {{0}, {0}, INT_MAX, 0};
+    if (end - begin > WORD || begin > sizeof one.section) return;
+    memcpy(one.word, key->path + begin, end - begin);
+    if (begin > 0) memcpy(one.section, key->path, begin - 1);
+
+    one.distance = edit_distance(word, strlen(word), one.word, strlen(one.word));
+    const bool is_leaf = key->path[end] == '\0';
+    if (is_leaf) one.distance = smaller(one.distance, distance_to_any(word, key->synonyms));
+    one.remoteness = remoteness_of(one.section, section);
+    const bool is_nearer = one.distance < best->distance;
+    if (is_nearer || (one.distance == best->distance && one.remoteness < best->remoteness)) *best = one;
+}
+
+/* Add a section as users write it: "fish[2].body" or "time". */
+static void add_section(struct text *hint, const char *section, const char *owner) {
+    if (section[0] == '\0') {
+        text_add(hint, "the top of the file");
+    } else if (is_in_fish(section)) {
+        const char *const rest = section + strlen("fish");
+        if (owner) {
+            text_add(hint, "%s%s", owner, rest);
+        } else {
+            text_add(hint, "a fish, as fish[0]%s, or to defaults.fish%s for every fish", rest, rest);
+        }
+    } else {
+        text_add(hint, "%s", section);
+    }
+}
+
+/* List the words of a section. */
+static void add_words(struct text *hint, const char *section) {
+    const size_t here = section[0] ? strlen(section) + 1 : 0;
+    size_t last_length = 0;
+    const char *last = "";
+    text_add(hint, "; known keys:");
+
+    for (int i = 0; i < case_table_n; i++) {
+        const char *const path = case_table[i].path;
+        if (here > 0 && (strncmp(path, section, here - 1) != 0 || path[here - 1] != '.')) continue;
+        const size_t length = strcspn(path + here, ".");
+        const bool is_same = length == last_length && strncmp(path + here, last, length) == 0;
+        if (!is_same) text_add(hint, "%s %.*s", last_length ? "," : "", (int)length, path + here);
+        last = path + here;
+        last_length = length;
+    }
+}
+
+/* Copy the section of row i of the table if the row has the word and the section this remoteness; returns the length,
+ * else 0. */
+static size_t section_with(char *section, size_t size, int i, const char *word, const char *from, int remoteness) {
+    const char *const dot = strrchr(case_table[i].path, '.');
+    if (!dot || strcmp(dot + 1, word) != 0) return 0;
+    snprintf(section, size, "%.*s", (int)(dot - case_table[i].path), case_table[i].path);
+    return remoteness_of(section, from) == remoteness ? strlen(section) : 0;
+}
+
+/* Add all sections with the word and the remoteness of the best candidate: "fish[0].wave or fish[0].motion". */
+static void add_sections(struct text *hint, const struct candidate *best, const char *from, const char *owner) {
+    char section[sizeof best->section];
+    int n = 0;
+    for (int i = 0; i < case_table_n; i++) {
+        n += section_with(section, sizeof section, i, best->word, from, best->remoteness) > 0;
+    }
+    if (n < 2) {
+        add_section(hint, best->section, owner);
+        return;
+    }
+
+    for (int i = 0, k = 0; i < case_table_n; i++) {
+        if (section_with(section, sizeof section, i, best->word, from, best->remoteness) == 0) continue;
+        if (k++ > 0) text_add(hint, " or ");
+        add_section(hint, section, owner ? owner : "fish[0]");
+    }
+}
+
+/* Add the present path of a key that had another path in former versions; false if the word is no such key. */
+static bool add_renamed(struct text *hint, const char *section, const char *word) {
+    const size_t length = strlen(section);
+    for (int i = 0; i < case_table_n; i++) {
+        const char *const former = case_table[i].former, *const path = case_table[i].path;
+        if (!former || strncmp(former, section, length) != 0) continue;
+        if (strcmp(former + length + (length > 0 && former[length] == '.'), word) != 0) continue;
+        text_add(hint, "; renamed to '%s'", is_in_fish(path) ? path + strlen("fish.") : path);
+        return true;
+    }
+
+    return false;
+}
+
+/* Add a suggestion such as "; did you mean 'modulus'?". Arguments as of case_path_unknown. */
+static void suggest_key(struct text *hint, const char *section, const char *word, const char *owner) {
+    if (add_renamed(hint, section, word)) return;
+    for (size_t i = 0; i < sizeof missing / sizeof *missing; i++) {
+        if (distance_to_any(word, missing[i].words) > 0) continue;
+        text_add(hint, "%s", missing[i].instead);
+        return;
+    }
+
+    struct candidate best = {{0}, {0}, INT_MAX, INT_MAX};
+
+    for (int i = 0; i < case_table_n; i++) {
+        const char *const path = case_table[i].path;
+        for (size_t end = 1; end <= strlen(path); end++) {
+            if (path[end] == '.' || path[end] == '\0') keep_nearer(&best, &case_table[i], end, section, word);
+        }
+    }
+
+    const int length = (int)strnlen(word, WORD);
+    const int allowed = length < 4 ? length / 2 : smaller(3, length / 3);
+
+    if (best.distance > allowed) {
+        add_words(hint, section);
+        return;
+    }
+
+    const bool is_known = strcmp(best.word, word) == 0, is_elsewhere = best.remoteness > 0;
+    if (is_known) {
+        text_add(hint, " here; the key belongs to ");
+    } else {
+        text_add(hint, "; did you mean '%s'?%s", best.word, is_elsewhere ? " The key belongs to " : "");
+    }
+    if (is_elsewhere) add_sections(hint, &best, section, owner);
+}
+
+// ---- paths
 
 void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const char *path, const char *section,
                        const char *word, const char *owner) {
     struct text hint = {0};
-    if (errors->n < YAML_ERRORS_KEPT) case_suggest(&hint, section, word, owner);
+    if (errors->n < YAML_ERRORS_KEPT) suggest_key(&hint, section, word, owner);
     yaml_errors_add(errors, mark, "%.150s: unknown key%s", path, hint.text ? hint.text : "");
     if (hint.failed) errors->out_of_memory = true;
     text_free(&hint);
@@ -43,8 +247,7 @@ static const char *parse_index(struct case_path *path, const char *text, int n_f
     return text + 2 + length;
 }
 
-/* Check the words of a path below a section of the table one by one. text: the whole path, for messages; owner: as in
- * case_suggest.h. */
+/* Check the words of a path below a section of the table one by one. text: the whole path, for messages. */
 static bool check_words(struct case_path *path, const char *words, const char *text, const char *owner,
                         struct yaml_mark mark, struct yaml_errors *errors) {
     for (;;) {
@@ -68,23 +271,19 @@ static bool check_words(struct case_path *path, const char *words, const char *t
     }
 }
 
-/* Refuse a path "fish." without the number of a fish in brackets. */
-static void complain_of_fish(const char *words, const char *text, struct yaml_mark mark, struct yaml_errors *errors) {
-    const size_t digits = strspn(words, "0123456789*");
-    if (digits > 0 && (words[digits] == '.' || words[digits] == '\0')) {
-        yaml_errors_add(errors, mark, "%.150s: write fish[%.*s]%.80s", text, (int)(digits < 20 ? digits : 20), words,
-                        words + digits);
-    } else {
-        yaml_errors_add(errors, mark, "%.150s: write fish[0].%.80s for one fish, or fish[*].%.80s for every fish", text,
-                        words, words);
-    }
-}
-
 bool case_path_parse(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
                      struct yaml_errors *errors) {
     *path = (struct case_path){{0}, CASE_NO_FISH, text};
     if (strncmp(text, "fish.", 5) == 0) {
-        complain_of_fish(text + 5, text, mark, errors);
+        const char *const words = text + 5;
+        const size_t digits = strspn(words, "0123456789*");
+        if (digits > 0 && (words[digits] == '.' || words[digits] == '\0')) {
+            yaml_errors_add(errors, mark, "%.150s: write fish[%.*s]%.80s", text, (int)(digits < 20 ? digits : 20),
+                            words, words + digits);
+        } else {
+            yaml_errors_add(errors, mark, "%.150s: write fish[0].%.80s for one fish, or fish[*].%.80s for every fish",
+                            text, words, words);
+        }
         return false;
     }
 

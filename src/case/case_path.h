@@ -1,10 +1,11 @@
-/* case_path.h: paths of --set and sweep, such as fish[2].wave.frequency. Tested by tests/case/test_case.c. */
+/* case_path.h: paths of --set and sweep, such as fish[2].wave.frequency, and suggestions for unknown keys. Tested by
+ * tests/case/test_case.c. */
 #ifndef CASE_PATH_H
 #define CASE_PATH_H
 
 #include <stdbool.h>
 
-#include "case/yaml_errors.h"
+#include "case/yaml_tree.h"
 
 enum { CASE_NO_FISH = -1, CASE_EVERY_FISH = -2 };
 
@@ -18,8 +19,8 @@ struct case_path {
 bool case_path_parse(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
                      struct yaml_errors *errors);
 
-/* Add the error "path: unknown key; did you mean ...?" for a word under a section of the table. section and owner: as
- * in case_suggest.h. */
+/* Add the error "path: unknown key; did you mean 'modulus'?" for a word in a section of the table ("": the top;
+ * "fish.body": the body of a fish). owner: the fish with the word, as named in messages ("fish[2]"), or NULL. */
 void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const char *path, const char *section,
                        const char *word, const char *owner);
 

@@ -1,17 +1,14 @@
 /* case_show.c: the rows of the table one by one, then the sweep. */
-#include "case/case_show.h"
-
 #include <math.h>
 #include <string.h>
 
+#include "case/case.h"
 #include "case/case_table.h"
-#include "case/case_value.h"
+#include "case/sweep.h"
 #include "case/sweep_error.h"
 #include "case/sweep_expect.h"
-#include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
-#include "case/sweep_refine.h"
-#include "case/yaml_write.h"
+#include "case/yaml_tree.h"
 
 enum { COMMENT_COLUMN = 40 };
 
@@ -66,6 +63,7 @@ static bool is_hidden(const struct key *key, const void *field) {
     if (strcmp(key->path, "preset") == 0) return true;
     if (key->type == STRING) return !*(char *const *)field;
     if (key->type == REAL) return isnan(*(const double *)field);
+    if (key->type == INTEGER) return *(const int *)field < key->bounds.min;
     return (key->type == NUMBERS || key->type == ROWS) && ((const struct number_list *)field)->n == 0;
 }
 

@@ -2,7 +2,11 @@
 #include "case/case_table.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+#include "base/memory.h"
+#include "fish/fish_sheet.h"
 
 #define AT(field) offsetof(struct case_values, field)
 #define IN_FISH(field) offsetof(struct fish_parameters, field)
@@ -27,10 +31,188 @@
 
 enum { NAME_BYTES = 200, FILE_BYTES = 4000, MAX_NODES = 10000, MAX_THREADS = 1024, MAX_STEPS = 1000000000 };
 
+// ---- derived defaults, in the order of the table
+
+static enum status set_default(double *value, double standard) {
+    if (isnan(*value)) *value = standard;
+    return STATUS_OK;
+}
+
+/* The frequency of the beat of a fish, or of the prescribed motion [Hz]; 0 without a beat. */
+static double beat_frequency(const struct fish_parameters *fish) {
+    const bool is_prescribed = (int)fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
+    return is_prescribed ? fish->motion.frequency : fish->wave.frequency;
+}
+
+/* The period of the slowest beat of the school [s]; 0 without a beat. */
+static double longest_period(const struct school_parameters *school) {
+    double longest = 0;
+    for (int i = 0; i < school->n_fish; i++) {
+        const double frequency = beat_frequency(&school->fish[i]);
+        if (frequency > 0) longest = fmax(longest, 1 / frequency);
+    }
+    return longest;
+}
+
+/* The period of the wave [s]; 0 without a wave. */
+static double wave_period(const struct fish_parameters *fish) {
+    return fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
+}
+
+static enum status derive_case_name(const struct key_place *at) {
+    if (at->values->name) return STATUS_OK;
+    const char *const slash = strrchr(at->origin, '/'), *const from = slash ? slash + 1 : at->origin;
+    const char *const dot = strrchr(from, '.');
+    const size_t length = dot && dot > from ? (size_t)(dot - from) : strlen(from);
+    at->values->name = length > 0 ? strndup(from, length) : strdup("case");
+    return at->values->name ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the name of the case");
+}
+
+/* Round a time to a multiple of a unit, up or to the nearest; false if the time is a multiple already. */
+static bool round_to_multiple(double *time, double unit, bool up) {
+    const double n = *time / unit, nearest = fmax(round(n), 1);
+    if (!(*time > 0) || fabs(n - nearest) <= 1e-9 * n) return false;
+    *time = (up ? ceil(n) : nearest) * unit;
+    return true;
+}
+
+/* Round also the end of the run up to an event, and the output and checkpoint intervals to the nearest multiples of the
+ * shedding interval; times that were not read are left unset. doc/model.md, section 7. */
+static enum status derive_shedding_interval(const struct key_place *at) {
+    struct case_values *const values = at->values;
+    double *const interval = &values->school.shedding_interval, *const rows = &values->time.output_interval,
+                  fastest = 0;
+    if (!isnan(*interval)) return STATUS_OK;
+
+    for (int i = 0; i < values->school.n_fish; i++) fastest = fmax(fastest, beat_frequency(&values->school.fish[i]));
+    *interval = fastest > 0 ? 1 / (100 * fastest) : 0.01;
+    round_to_multiple(&values->time.end, *interval, true);
+    round_to_multiple(&values->time.checkpoint_interval, *interval, false);
+
+    // round the wake interval too if the output interval is rounded or not read
+    const bool are_free = isnan(*rows) || round_to_multiple(rows, *interval, false);
+    if (are_free) round_to_multiple(&values->output.wake_interval, isnan(*rows) ? 10 * *interval : *rows, false);
+    return STATUS_OK;
+}
+
+static enum status derive_output_interval(const struct key_place *at) {
+    return set_default(&at->values->time.output_interval, 10 * at->values->school.shedding_interval);
+}
+
+static enum status derive_taper(const struct key_place *at) {
+    struct wake_parameters *const wake = &at->values->school.wake;
+    return set_default(&wake->taper, wake->shedding == SHEDDING_SHEET ? 0.6 : 0);
+}
+
+static enum status derive_taper_beside(const struct key_place *at) {
+    struct wake_parameters *const wake = &at->values->school.wake;
+    return set_default(&wake->taper_beside, wake->shedding == SHEDDING_SHEET ? 0.07 : 0);
+}
+
+static enum status derive_lifetime(const struct key_place *at) {
+    struct duration *const lifetime = &at->values->school.wake.lifetime;
+    const double period = longest_period(&at->values->school);
+    if (isnan(lifetime->seconds) && period > 0) set_default(&lifetime->beats, 3);
+    set_default(&lifetime->seconds, lifetime->beats * period);
+    return set_default(&lifetime->seconds, 2);
+}
+
+static enum status derive_decay(const struct key_place *at) {
+    struct duration *const decay = &at->values->school.wake.decay;
+    const struct duration lifetime = at->values->school.wake.lifetime;
+    const double period = longest_period(&at->values->school);
+    if (isnan(decay->seconds) && period > 0) set_default(&decay->beats, 0.75 * lifetime.beats);
+    set_default(&decay->seconds, decay->beats * period);
+    return set_default(&decay->seconds, 0.75 * lifetime.seconds);
+}
+
+static enum status derive_wake_tolerance(const struct key_place *at) {
+    return set_default(&at->values->school.wake.tolerance, at->values->school.rtol / 100);
+}
+
+static enum status derive_wake_interval(const struct key_place *at) {
+    return set_default(&at->values->output.wake_interval, at->values->time.output_interval);
+}
+
+static enum status derive_fish_name(const struct key_place *at) {
+    if (at->fish->name) return STATUS_OK;
+    char name[32];
+    snprintf(name, sizeof name, "fish%d", (int)(at->fish - at->values->school.fish) + 1);
+    return memory_copy_string(&at->fish->name, name, "the name of a fish");
+}
+
+static enum status derive_sheet_points(const struct key_place *at) {
+    if (at->fish->sheet_points > 0) return STATUS_OK;
+    const int usual = at->fish->nodes > 17 ? 2 * at->fish->nodes - 1 : 33, of_depth = fish_sheet_least(at->fish);
+    at->fish->sheet_points = usual > of_depth ? usual : of_depth;
+    return STATUS_OK;
+}
+
+static enum status derive_tail_thickness(const struct key_place *at) {
+    return set_default(&at->fish->body.tail_thickness, at->fish->body.profile == PROFILE_JOUKOWSKI ? 0.04 : 0);
+}
+
+static enum status derive_relaxation_time(const struct key_place *at) {
+    const double beat = beat_frequency(at->fish);
+    return set_default(&at->fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
+}
+
+/* The wavelength is another form of wave.number, whose default is in the table. */
+static enum status derive_wavelength(const struct key_place *at) {
+    struct wave_parameters *const wave = &at->fish->wave;
+    if (!isnan(wave->wavelength)) wave->number = -2 * 3.14159265358979323846 / wave->wavelength;
+    wave->wavelength = NAN;
+    return STATUS_OK;
+}
+
+static enum status derive_wave_ramp(const struct key_place *at) {
+    return set_default(&at->fish->wave.ramp, wave_period(at->fish));
+}
+
+static enum status derive_skin(const struct key_place *at) {
+    const bool has_pressure = at->fish->force == FORCE_PRESSURE;
+    if ((int)at->fish->drag.skin < 0) at->fish->drag.skin = has_pressure ? SKIN_BOUNDARY_LAYER : SKIN_QUADRATIC;
+    return STATUS_OK;
+}
+
+static enum status derive_normal_drag(const struct key_place *at) {
+    return set_default(&at->fish->drag.normal, at->fish->force == FORCE_PRESSURE ? 0 : 1);
+}
+
+static enum status derive_motion_speed(const struct key_place *at) {
+    return set_default(&at->fish->motion.speed, at->fish->start_speed);
+}
+
+static enum status derive_control_law(const struct key_place *at) {
+    struct control_parameters *const control = &at->fish->control;
+    if ((int)control->law < 0) control->law = control->waypoints.n > 0 ? CONTROL_COURSE : CONTROL_NONE;
+    return STATUS_OK;
+}
+
+static enum status derive_desired_heading(const struct key_place *at) {
+    struct number_list *const heading = &at->fish->control.desired_heading;
+    if (heading->n > 0) return STATUS_OK;
+    TRY(MEMORY_NEW(heading->value, 2, "the desired heading"));
+    heading->value[1] = at->fish->start_heading;
+    heading->n = 1;
+    return STATUS_OK;
+}
+
+static enum status derive_control_filter(const struct key_place *at) {
+    return set_default(&at->fish->control.filter, wave_period(at->fish));
+}
+
+static enum status derive_control_ramp(const struct key_place *at) {
+    const double period = wave_period(at->fish);
+    return set_default(&at->fish->control.ramp, period > 0 ? period / 2 : 1);
+}
+
+// ---- the table
+
 const struct key case_table[] = {
     {"format", INTEGER, AT(format), NULL, FROM_TO(1, 1), "", .meaning = "version of the case file format: 1"},
     {"name", STRING, AT(name), NULL, FROM_TO(1, NAME_BYTES), "", .meaning = "name of the case",
-     .derived = "the name of the file without the ending", .synonyms = "title case"},
+     .derived = "the name of the file without the ending", .derive = derive_case_name, .synonyms = "title case"},
     {"include", FILES, 0, "[]", FROM_TO(1, FILE_BYTES), "",
      .meaning = "case files to read first, relative to this file; keys in this file override theirs",
      .synonyms = "import includes"},
@@ -44,10 +226,11 @@ const struct key case_table[] = {
      .meaning = "time between two events; at each event every fish sheds a vortex",
      .derived = "1/100 of the period of the fastest beat or prescribed motion, 0.01 s without a beat; time.end and the "
                 "output intervals are then rounded to events",
-     .synonyms = "dt delta_t timestep time_step", .published = "0.01"},
+     .derive = derive_shedding_interval, .synonyms = "dt delta_t timestep time_step", .published = "0.01"},
     {"time.output_interval", REAL, AT(time.output_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two rows of output; an integer multiple of shedding_interval",
-     .derived = "ten shedding intervals", .synonyms = "output_every save_interval dt_out"},
+     .derived = "ten shedding intervals", .derive = derive_output_interval,
+     .synonyms = "output_every save_interval dt_out"},
     {"time.checkpoint_interval", REAL, AT(time.checkpoint_interval), "0", FROM(0), "s",
      .meaning = "time between two checkpoints for `shoal resume`; an integer multiple of shedding_interval; 0: a "
                 "checkpoint only when the run is stopped",
@@ -77,16 +260,17 @@ const struct key case_table[] = {
     {"wake.taper", REAL, AT(school.wake.taper), NULL, FROM(0), "",
      .meaning = "shedding sheet: distance from the tail over which the smoothing radius of the wake, for the velocity "
                 "induced at the body, grows from 0, in body lengths; 0: no taper",
-     .derived = "0.6 with shedding sheet, else 0"},
+     .derived = "0.6 with shedding sheet, else 0", .derive = derive_taper},
     {"wake.taper_beside", REAL, AT(school.wake.taper_beside), NULL, FROM(0), "",
      .meaning = "shedding sheet: the same distance for vortices beside the body, in body lengths",
-     .derived = "0.07 with shedding sheet, else 0"},
+     .derived = "0.07 with shedding sheet, else 0", .derive = derive_taper_beside},
     {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
      .meaning = "age at which a vortex is removed, in seconds, or in beats of the slowest fish, such as '3 beats'",
-     .derived = "3 beats; 2 s if no fish beats", .published = "2", .synonyms = "life max_age age"},
+     .derived = "3 beats; 2 s if no fish beats", .derive = derive_lifetime, .published = "2",
+     .synonyms = "life max_age age"},
     {"wake.decay", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
      .meaning = "last part of the lifetime, in which the circulation of a vortex decays to 0, in seconds or in beats",
-     .derived = "3/4 of the lifetime", .published = "0", .former = "wake.fade"},
+     .derived = "3/4 of the lifetime", .derive = derive_decay, .published = "0", .former = "wake.fade"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "sheet", ANY, "",
      .meaning = "sheet: a vortex sheet grows from the tail; continuous: a nascent vortex grows between events; "
                 "impulsive: a vortex of full circulation appears at each event",
@@ -97,7 +281,7 @@ const struct key case_table[] = {
     {"wake.tolerance", REAL, AT(school.wake.tolerance), NULL, FROM_TO(0, 0.01), "",
      .meaning = "estimated error allowed in the velocity that far vortices induce at the bodies, in body lengths per "
                 "beat; 0: direct summation",
-     .derived = "solver.rtol/100", .synonyms = "accuracy theta"},
+     .derived = "solver.rtol/100", .derive = derive_wake_tolerance, .synonyms = "accuracy theta"},
     {"wake.merge", REAL, AT(school.wake.merge), "0", FROM_TO(0, 0.1), "",
      .meaning = "error allowed in the velocity at the bodies due to merging neighbouring vortices of a wake far from "
                 "all bodies, in body lengths per beat; 0: no merging",
@@ -161,7 +345,7 @@ const struct key case_table[] = {
      .words = WORDS("totals", "edges")},
     {"output.wake_interval", REAL, AT(output.wake_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two records of the wake; an integer multiple of output_interval",
-     .derived = "time.output_interval"},
+     .derived = "time.output_interval", .derive = derive_wake_interval},
 
     {"steady.tolerance", REAL, AT(steady.tolerance), "1e-5", FROM_TO(1e-12, 0.1), "",
      .meaning = "maximum change per beat of a steady state: of the speed, in body lengths per beat, and of the other "
@@ -183,7 +367,7 @@ const struct key case_table[] = {
      .meaning = "defaults: {fish: {...}}: values for every fish without the key", .synonyms = "default common shared"},
 
     {"fish.name", STRING, IN_FISH(name), NULL, FROM_TO(1, NAME_BYTES), "",
-     .meaning = "name of the fish, unique in the school", .derived = "fish1, fish2, ..."},
+     .meaning = "name of the fish, unique in the school", .derived = "fish1, fish2, ...", .derive = derive_fish_name},
     {"fish.length", REAL, IN_FISH(length), "1", ABOVE(0), "m", .meaning = "body length L", .synonyms = "size chord"},
     {"fish.nodes", INTEGER, IN_FISH(nodes), "25", FROM_TO(4, MAX_NODES), "", .meaning = "number of nodes of the body",
      .synonyms = "n_nodes segments points resolution", .published = "7"},
@@ -191,7 +375,8 @@ const struct key case_table[] = {
      .meaning = "number of nodes for which wave.amplitude and the damping coefficients are given"},
     {"fish.sheet_points", INTEGER, IN_FISH(sheet_points), NULL, FROM_TO(5, MAX_NODES), "",
      .meaning = "number of vortices of the bound sheet", .synonyms = "vortices panels bound_vortices",
-     .published = "21", .derived = "2 nodes - 1, at least 33; with pressure.span finite at least 1 + 5 L/w"},
+     .published = "21", .derived = "2 nodes - 1, at least 33; with pressure.span finite at least 1 + 5 L/w",
+     .derive = derive_sheet_points},
 
     {"fish.body.profile", CHOICE, IN_FISH(body.profile), "joukowski", ANY, "",
      .meaning = "thickness along the body: a Joukowski foil, uniform, or the lists thickness_table and depth_table",
@@ -200,7 +385,7 @@ const struct key case_table[] = {
      .meaning = "joukowski: parameter d of the foil; uniform: thickness over length"},
     {"fish.body.tail_thickness", REAL, IN_FISH(body.tail_thickness), NULL, FROM_BELOW(0, 1), "",
      .meaning = "joukowski: thickness at the tail over length; 0: a cusp, for which results do not converge with nodes",
-     .derived = "0.04 with profile joukowski, else 0", .published = "0"},
+     .derived = "0.04 with profile joukowski, else 0", .derive = derive_tail_thickness, .published = "0"},
     {"fish.body.depth", REAL, IN_FISH(body.depth), "0.25", ABOVE(0), "",
      .meaning = "depth of the body (its span, out of the plane of motion) over length", .former = "fish.body.width"},
     {"fish.body.thickness_table", NUMBERS, IN_FISH(body.thickness_table), "[]", ABOVE(0), "m",
@@ -225,7 +410,8 @@ const struct key case_table[] = {
      .published = "1"},
     {"fish.body.relaxation_time", REAL, IN_FISH(body.relaxation_time), NULL, FROM(0), "s",
      .meaning = "Kelvin-Voigt damping: ratio of damping to stiffness", .published = "0",
-     .derived = "1/50 of the period of the beat or of the prescribed motion (0 without a beat)"},
+     .derived = "1/50 of the period of the beat or of the prescribed motion (0 without a beat)",
+     .derive = derive_relaxation_time},
     {"fish.body.damping", CHOICE, IN_FISH(body.damping), "strain", ANY, "",
      .meaning = "internal damping of bending; strain: of the curvature minus the natural curvature; curvature: of the "
                 "total curvature",
@@ -245,7 +431,7 @@ const struct key case_table[] = {
      .synonyms = "beta wavenumber wave_number k"},
     {"fish.wave.wavelength", REAL, IN_FISH(wave.wavelength), NULL, FROM(1e-5), "",
      .meaning = "wavelength in body lengths of a wave from head to tail; sets number to -2 pi/wavelength",
-     .derived = "from wave.number", .synonyms = "lambda"},
+     .derived = "from wave.number", .derive = derive_wavelength, .synonyms = "lambda"},
     {"fish.wave.table", ROWS, IN_FISH(wave.table), "[]", ANY, "",
      .meaning = "natural curvature times body length, replaces the wave: rows at equal distances from nose to tail, in "
                 "each row values at equal phases of one period",
@@ -255,7 +441,7 @@ const struct key case_table[] = {
     {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANGLE, "degree", .meaning = "phase at time 0"},
     {"fish.wave.ramp", REAL, IN_FISH(wave.ramp), NULL, FROM(0), "s",
      .meaning = "time over which the amplitude is ramped up", .derived = "one period, 1/frequency (0 for frequency 0)",
-     .published = "0"},
+     .derive = derive_wave_ramp, .published = "0"},
 
     {"fish.force", CHOICE, IN_FISH(force), "reactive", ANY, "",
      .meaning =
@@ -281,7 +467,7 @@ const struct key case_table[] = {
                 "on a flat plate, with fluid.viscosity; boundary_layer: the same with transition, and with factors for "
                 "waving and thick bodies",
      .words = WORDS("quadratic", "laminar", "boundary_layer"),
-     .derived = "boundary_layer with force pressure, else quadratic"},
+     .derived = "boundary_layer with force pressure, else quadratic", .derive = derive_skin},
     {"fish.drag.transition", REAL, IN_FISH(drag.transition), "2e5", FROM(0), "",
      .meaning = "skin boundary_layer: transition Reynolds number, based on the distance from the nose; 0: turbulent "
                 "from the nose",
@@ -293,7 +479,8 @@ const struct key case_table[] = {
      .meaning = "skin boundary_layer: factor of the friction due to the thickness of the body",
      .derived = "1 + 2 h/L + 60 (h/L)^4 with the largest thickness h of an edge", .synonyms = "form_factor"},
     {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "", .meaning = "normal drag coefficient",
-     .synonyms = "c_d cd lateral", .published = "0.5", .derived = "1, or 0 with force pressure"},
+     .synonyms = "c_d cd lateral", .published = "0.5", .derived = "1, or 0 with force pressure",
+     .derive = derive_normal_drag},
     {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "",
      .meaning = "dependence of both drag forces on the velocity v: v |v|, or v (V1 + |v|)", .published = "quadratic",
      .words = WORDS("quadratic", "linear_quadratic")},
@@ -325,7 +512,8 @@ const struct key case_table[] = {
                 "heading, and the forces on the body determine the surge",
      .words = WORDS("given", "free")},
     {"fish.motion.speed", REAL, IN_FISH(motion.speed), NULL, ANY, "m s-1",
-     .meaning = "prescribed speed along start.heading; surge free: at the start", .derived = "start.speed"},
+     .meaning = "prescribed speed along start.heading; surge free: at the start", .derived = "start.speed",
+     .derive = derive_motion_speed},
     {"fish.motion.heave", REAL, IN_FISH(motion.heave), "0", ANY, "m",
      .meaning = "amplitude of heave, the displacement to the left heave sin(2 pi frequency t + phase)",
      .synonyms = "plunge"},
@@ -344,12 +532,12 @@ const struct key case_table[] = {
      .meaning = "law of the steering bias; none: the key bias; heading: error of the heading; averaged_heading: error "
                 "of the heading averaged over a period; course: error of the course over the last period",
      .words = WORDS("none", "heading", "averaged_heading", "course"), .synonyms = "controller type",
-     .derived = "course with waypoints, else none"},
+     .derived = "course with waypoints, else none", .derive = derive_control_law},
     {"fish.control.bias", REAL, IN_FISH(control.bias), "0", ANY, "",
      .meaning = "law none: the steering bias; positive turns right", .synonyms = "phi0 offset"},
     {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANGLE, "degree",
      .meaning = "desired heading: a number, or a list of [time in s, angle], linear between the times",
-     .derived = "start.heading", .synonyms = "target h_des target_heading"},
+     .derived = "start.heading", .derive = derive_desired_heading, .synonyms = "target h_des target_heading"},
     {"fish.control.waypoints", PAIRS, IN_FISH(control.waypoints), "[]", ANY, "m",
      .meaning = "points [x, y] to visit in order; the next point sets the desired heading", .synonyms = "route points"},
     {"fish.control.acceptance_radius", REAL, IN_FISH(control.acceptance_radius), "0.5", ABOVE(0), "",
@@ -366,12 +554,12 @@ const struct key case_table[] = {
      .meaning = "weight of the feedforward: the filtered moment of the flow", .published = "1"},
     {"fish.control.filter", REAL, IN_FISH(control.filter), NULL, FROM(0), "s",
      .meaning = "time constant of the filter of feedforward; 0: the moment at the last event",
-     .derived = "one period, 1/wave.frequency (0 for frequency 0)"},
+     .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_control_filter},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading, course: maximum rate of change of the steering bias"},
     {"fish.control.ramp", REAL, IN_FISH(control.ramp), NULL, ABOVE(0), "s",
      .meaning = "duration of a change of amplitude, frequency, bias or desired heading by a program (doc/python.md)",
-     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)"},
+     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_control_ramp},
 
     {"sweep", AXES, 0, "[]", ANY, "",
      .meaning = "axes of a study, {key: PATH, values: [...]} or {keys: [...], values: [[...], ...]}; `shoal study` "

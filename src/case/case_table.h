@@ -1,4 +1,5 @@
-/* case_table.h: the table of the keys of a case file, and queries of the table. Tested by tests/case/test_case.c. */
+/* case_table.h: the table of the keys of a case file, queries of the table, and values of each type of key. Tested by
+ * tests/case/test_case.c. */
 #ifndef CASE_TABLE_H
 #define CASE_TABLE_H
 
@@ -7,6 +8,7 @@
 
 #include "base/text.h"
 #include "case/case_values.h"
+#include "case/yaml_tree.h"
 
 enum { CASE_MAX_FISH = 10000 };
 
@@ -35,6 +37,14 @@ struct bounds {
     bool is_min_open, is_max_open; /* the bound itself is excluded */
 };
 
+/* The place of a default: a case with all values read, a fish of the case for a key of a fish, and the name of the file
+ * with the case. */
+struct key_place {
+    struct case_values *values;
+    struct fish_parameters *fish;
+    const char *origin;
+};
+
 struct key {
     const char *path; /* "time.end"; keys of every fish begin with "fish." */
     enum key_type type;
@@ -43,7 +53,8 @@ struct key {
     struct bounds bounds;
     const char *unit; /* "": none */
     const char *meaning;
-    const char *derived;      /* how the program computes the default, in words */
+    const char *derived;                               /* how the program computes the default, in words */
+    enum status (*derive)(const struct key_place *at); /* set the default in a field that was not read; rows in order */
     const char *published;    /* the default under preset: published; NULL: as without the preset */
     const char *const *words; /* of a CHOICE, in the order of its enum, NULL at the end */
     const char *synonyms;     /* words that users write instead, separated by blanks */
@@ -74,5 +85,22 @@ const char *case_table_word(const struct key *key, int i);
 /* The type and the range of a key as in doc/cases.md: "number"; "from 0 to 1", "above 0" or "". */
 const char *case_table_type(const struct key *key);
 void case_table_range(const struct key *key, struct text *range);
+
+/* case_value.c: one value of a case. A field that was not read is NaN, -1 (word), 0, NULL or an empty list. Comparisons
+ * with such a field are false, so that a check of several keys does not report the error of one key again. */
+
+/* Mark a field as not read. */
+void case_value_clear(const struct key *key, void *field);
+
+/* Read a node into a cleared field. An error is added to errors with path as the name of the key; the field then stays
+ * cleared. Fails with STATUS_MEMORY only. */
+enum status case_value_read(const struct key *key, void *field, const struct yaml_node *node, const char *path,
+                            struct yaml_errors *errors);
+
+/* Release and clear a field. */
+void case_value_free(const struct key *key, void *field);
+
+/* Add the value as YAML. */
+void case_value_write(struct text *text, const struct key *key, const void *field);
 
 #endif

@@ -1,13 +1,12 @@
 /* case_value.c: reading, writing and releasing each type of the key table. */
-#include "case/case_value.h"
-
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/yaml_write.h"
+#include "base/memory.h"
+#include "case/case_table.h"
 
 enum { MAX_VALUES = 10000 /* of one list */ };
 
@@ -47,6 +46,14 @@ void case_value_free(const struct key *key, void *field) {
     case_value_clear(key, field);
 }
 
+/* "time.end: expects a number in s, got 'soon'" */
+static void report_form(const struct context *context, const struct yaml_node *node, const char *form,
+                        const char *unit) {
+    char shown[64];
+    yaml_errors_add(context->errors, node->mark, "%s: expects %s%s%s, got %s", context->path, form, *unit ? " in " : "",
+                    unit, yaml_tree_describe(node, shown, sizeof shown));
+}
+
 // ---- numbers
 
 /* "must be above 0 m, got '-1'" */
@@ -67,13 +74,9 @@ static bool is_in(const struct bounds *bounds, double value) {
 
 /* Read one number. what: the form for messages, "a number" or "two numbers [x, y]". */
 static bool read_any(const struct context *context, const struct yaml_node *node, const char *what, double *value) {
-    char shown[64];
-    const char *const unit = context->unit;
     double number;
-
     if (node->kind != YAML_SCALAR || !text_number(node->text, &number)) {
-        yaml_errors_add(context->errors, node->mark, "%s: expects %s%s%s, got %s", context->path, what,
-                        *unit ? " in " : "", unit, yaml_tree_describe(node, shown, sizeof shown));
+        report_form(context, node, what, context->unit);
         return false;
     }
 
@@ -125,12 +128,9 @@ static bool has_digits_only(const char *text) {
 }
 
 static void read_integer(const struct context *context, const struct yaml_node *node, int *value) {
-    char shown[64];
     double number;
-
     if (node->kind != YAML_SCALAR || !has_digits_only(node->text) || !text_number(node->text, &number)) {
-        yaml_errors_add(context->errors, node->mark, "%s: expects an integer, got %s", context->path,
-                        yaml_tree_describe(node, shown, sizeof shown));
+        report_form(context, node, "an integer", "");
     } else if (!is_in(&context->key->bounds, number) || number < INT_MIN || number > INT_MAX) {
         report_range(context, node);
     } else {
@@ -167,17 +167,15 @@ static bool has_control(const char *text) {
 }
 
 static enum status read_string(const struct context *context, const struct yaml_node *node, char **value) {
-    char shown[64];
     if (node->kind != YAML_SCALAR || node->text[0] == '\0') {
-        yaml_errors_add(context->errors, node->mark, "%s: expects a string, got %s", context->path,
-                        yaml_tree_describe(node, shown, sizeof shown));
+        report_form(context, node, "a string", "");
     } else if (has_control(node->text)) {
         yaml_errors_add(context->errors, node->mark, "%s: must be one line without control characters", context->path);
     } else if ((double)strlen(node->text) > context->key->bounds.max) {
         yaml_errors_add(context->errors, node->mark, "%s: longer than %d bytes", context->path,
                         (int)context->key->bounds.max);
-    } else if (!(*value = strdup(node->text))) {
-        return status_fail(STATUS_MEMORY, "out of memory: the value of %s", context->path);
+    } else {
+        return memory_copy_string(value, node->text, context->path);
     }
     return STATUS_OK;
 }
@@ -186,12 +184,8 @@ static enum status read_string(const struct context *context, const struct yaml_
 
 /* Read [a, b]. */
 static bool read_pair(const struct context *context, const struct yaml_node *node, const char *what, double value[2]) {
-    char shown[64];
-    const char *const unit = context->unit;
-
     if (node->kind != YAML_LIST || node->n != 2) {
-        yaml_errors_add(context->errors, node->mark, "%s: expects %s%s%s, got %s", context->path, what,
-                        *unit ? " in " : "", unit, yaml_tree_describe(node, shown, sizeof shown));
+        report_form(context, node, what, context->unit);
         return false;
     }
 
@@ -206,24 +200,7 @@ static bool read_pair(const struct context *context, const struct yaml_node *nod
     return true;
 }
 
-/* Read the values of a list, each of width 1 (numbers) or 2 (pairs). */
-static bool read_values(const struct context *context, const struct yaml_node *node, double *value) {
-    bool is_good = true;
-    for (int i = 0; i < node->n; i++) {
-        const struct yaml_node *const one = node->entry[i].value;
-        if (context->key->type == NUMBERS) {
-            is_good &= read_number(context, one, "a list of numbers", &value[i]);
-        } else if (context->key->type == PAIRS) {
-            is_good &= read_pair(context, one, "a list of pairs [x, y]", &value[2 * i]);
-        } else {
-            is_good &=
-                read_pair(context, one, "a number in degree or a list of [time in s, angle in degree]", &value[2 * i]);
-        }
-    }
-
-    return is_good;
-}
-
+/* Read a list of numbers or of pairs. */
 static enum status read_list(const struct context *context, const struct yaml_node *node, struct number_list *list) {
     char shown[64];
     if (node->kind != YAML_LIST) {
@@ -238,9 +215,20 @@ static enum status read_list(const struct context *context, const struct yaml_no
     }
 
     if (node->n == 0) return STATUS_OK;
-    double *const value = calloc(2 * (size_t)node->n, sizeof *value);
-    if (!value) return status_fail(STATUS_MEMORY, "out of memory: the %d values of %s", node->n, context->path);
-    if (read_values(context, node, value)) {
+    double *value;
+    TRY(MEMORY_NEW(value, 2 * node->n, context->path));
+    const enum key_type type = context->key->type;
+    const char *const form = type == NUMBERS ? "a list of numbers"
+                             : type == PAIRS ? "a list of pairs [x, y]"
+                                             : "a number in degree or a list of [time in s, angle in degree]";
+    bool is_good = true;
+    for (int i = 0; i < node->n; i++) {
+        const struct yaml_node *const one = node->entry[i].value;
+        is_good &=
+            type == NUMBERS ? read_number(context, one, form, &value[i]) : read_pair(context, one, form, &value[2 * i]);
+    }
+
+    if (is_good) {
         *list = (struct number_list){.n = node->n, .value = value};
     } else {
         free(value);
@@ -248,22 +236,7 @@ static enum status read_list(const struct context *context, const struct yaml_no
     return STATUS_OK;
 }
 
-/* Read the numbers of one row, all rows being as long as the first. */
-static bool read_row(const struct context *context, const struct yaml_node *node, int width, double *value) {
-    bool is_good = node->kind == YAML_LIST && node->n == width;
-    if (!is_good) {
-        char shown[64];
-        yaml_errors_add(context->errors, node->mark, "%s: expects rows of %d numbers as the first, got %s",
-                        context->path, width, yaml_tree_describe(node, shown, sizeof shown));
-    }
-
-    for (int i = 0; i < width && is_good; i++) {
-        is_good = read_number(context, node->entry[i].value, "rows of numbers", &value[i]);
-    }
-    return is_good;
-}
-
-/* Read a list of rows of numbers. */
+/* Read a list of rows of numbers, all as long as the first. */
 static enum status read_rows(const struct context *context, const struct yaml_node *node, struct number_list *list) {
     if (node->kind == YAML_LIST && node->n == 0) return STATUS_OK;
     const struct yaml_node *const first = node->kind == YAML_LIST ? node->entry[0].value : node;
@@ -281,10 +254,23 @@ static enum status read_rows(const struct context *context, const struct yaml_no
         return STATUS_OK;
     }
 
-    double *const value = calloc((size_t)node->n * (size_t)width, sizeof *value);
-    if (!value) return status_fail(STATUS_MEMORY, "out of memory: the %d rows of %s", node->n, context->path);
+    double *value;
+    TRY(MEMORY_NEW(value, node->n * width, context->path));
     bool is_good = true;
-    for (int i = 0; i < node->n; i++) is_good &= read_row(context, node->entry[i].value, width, &value[i * width]);
+    for (int i = 0; i < node->n; i++) {
+        const struct yaml_node *const row = node->entry[i].value;
+        bool is_row = row->kind == YAML_LIST && row->n == width;
+        if (!is_row) {
+            char shown[64];
+            yaml_errors_add(context->errors, row->mark, "%s: expects rows of %d numbers as the first, got %s",
+                            context->path, width, yaml_tree_describe(row, shown, sizeof shown));
+        }
+        for (int k = 0; k < width && is_row; k++) {
+            is_row = read_number(context, row->entry[k].value, "rows of numbers", &value[i * width + k]);
+        }
+        is_good &= is_row;
+    }
+
     if (is_good) {
         *list = (struct number_list){node->n, value, width};
     } else {
@@ -306,8 +292,8 @@ static enum status read_heading(const struct context *context, const struct yaml
     if (!read_number(context, node, "a number in degree or a list of [time in s, angle in degree]", &angle)) {
         return STATUS_OK;
     }
-    double *const pair = calloc(2, sizeof *pair);
-    if (!pair) return status_fail(STATUS_MEMORY, "out of memory: the value of %s", context->path);
+    double *pair;
+    TRY(MEMORY_NEW(pair, 2, context->path));
     pair[1] = angle;
     *list = (struct number_list){.n = 1, .value = pair};
     return STATUS_OK;

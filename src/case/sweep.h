@@ -1,16 +1,67 @@
-/* sweep.h: the sweep of a case file. Tested by tests/case/test_sweep.c. */
+/* sweep.h: the axes of a study, and the members: all combinations of the values. Tested by tests/case/test_sweep.c. */
 #ifndef SWEEP_H
 #define SWEEP_H
 
+#include <stdint.h>
+
 #include "base/status.h"
+#include "base/text.h"
 #include "case/case_values.h"
 #include "case/yaml_tree.h"
+
+/* A key that an axis of a sweep changes. */
+struct sweep_key {
+    char *path;       /* as --set takes it */
+    const char *row;  /* path of the row in the table of keys: fish.nodes */
+    const char *unit; /* of the table of keys */
+    int is_number;    /* each value is one number */
+};
+
+/* One axis of a sweep: changes one key, or several keys together. */
+struct sweep_axis {
+    int n_keys;
+    struct sweep_key *key; /* (n_keys) */
+    int n_values;
+    char **value;         /* value i of key k is value[i * n_keys + k], as --set takes it     (n_values * n_keys) */
+    int refine;           /* the values are resolutions of the first key: a study of convergence */
+    int steady;           /* members are steady states; each search starts from the state of the previous value */
+    int *before;          /* start from the state of this value instead, -1: start of the case; NULL     (n_values) */
+    double order, within; /* the expected order of convergence: order +- within; NaN: none */
+    uint64_t order_of;    /* bit q: of quantity q */
+    double *reference;    /* see sweep_reference; NULL: none */
+};
 
 /* Read the axes of the sweep, and check each value as a value of the key. After an error the case has no axes. Fails
  * with STATUS_MEMORY only. */
 enum status sweep_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
-
-/* Release the axes. */
 void sweep_free(struct case_values *values);
+
+/* Fail with STATUS_CASE if the case is a study; the message says how to run the study. */
+enum status sweep_refuse(const struct case_values *values);
+
+/* The number of members of the study: the product of the axes; 1 without a sweep. */
+int sweep_n_members(const struct case_values *study);
+
+/* The value of an axis for a member. The last axis runs fastest. */
+int sweep_member_value(const struct case_values *study, int member, int axis);
+
+/* True if the members are steady states: an axis has `steady`. The start of a member is the member from whose result
+ * the search starts, with the previous value of that axis; -1 for the first value. */
+int sweep_is_steady(const struct case_values *study);
+int sweep_member_before(const struct case_values *study, int member);
+
+/* Add "solver.rtol=1e-5": the assignment of this value to key k of an axis. */
+void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int value, int k);
+
+/* "solver.rtol=1e-5, fish[*].nodes=7": the assignments of one member. Empty without a sweep. The caller frees *text.
+ * Fails with STATUS_MEMORY. */
+enum status sweep_member_text(const struct case_values *study, int member, char **text);
+
+/* The quantities whose orders a study observes, as a set: bit q is set for quantity q. */
+uint64_t sweep_refine_orders(const struct case_values *study);
+
+/* The reference value of a quantity (one with orders) for errors along a refined axis; NaN if the case has none. xy is
+ * 0 for quantities other than points. */
+double sweep_reference(const struct case_values *study, int axis, int quantity, int fish, int xy);
 
 #endif

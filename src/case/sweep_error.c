@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/yaml_write.h"
+#include "base/memory.h"
 
 /* The table that studies of convergence, error bars and doc/studies.md share. */
 const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS] = {
@@ -39,10 +39,6 @@ double sweep_error_order(const struct case_values *values, const struct sweep_er
 
 // ---- reading
 
-static enum status error_out_of_memory(void) {
-    return status_fail(STATUS_MEMORY, "out of memory: the errors of a study");
-}
-
 void sweep_error_free(struct case_values *values) {
     struct sweep_error *const error = values->error;
     if (!error) return;
@@ -56,8 +52,7 @@ void sweep_error_free(struct case_values *values) {
 
 static enum status read_of(struct sweep_error *error, const struct yaml_node *of, struct yaml_errors *errors) {
     const int n = of->kind == YAML_LIST ? of->n : 1;
-    error->of = calloc((size_t)n + 1, sizeof *error->of);
-    if (!error->of) return error_out_of_memory();
+    TRY(MEMORY_NEW(error->of, n, "the errors of a study"));
 
     for (int i = 0; i < n; i++) {
         const struct yaml_node *const name = of->kind == YAML_LIST ? of->entry[i].value : of;
@@ -65,31 +60,11 @@ static enum status read_of(struct sweep_error *error, const struct yaml_node *of
             yaml_errors_add(errors, name->mark, "error.of: expects the name of a quantity, or a list of names");
             continue;
         }
-        error->of[error->n_of] = strdup(name->text);
-        if (!error->of[error->n_of++]) return error_out_of_memory();
+        TRY(memory_copy_string(&error->of[error->n_of++], name->text, "the errors of a study"));
     }
 
     if (n == 0) yaml_errors_add(errors, of->mark, "error.of: expects the name of a quantity, or a list of names");
     return STATUS_OK;
-}
-
-/* Read a positive number; the default if absent. */
-static double read_positive(const struct yaml_node *map, const char *name, double standard,
-                            struct yaml_errors *errors) {
-    const struct yaml_node *const node = yaml_tree_find(map, name);
-    double number;
-    if (!node) return standard;
-    if (node->kind == YAML_SCALAR && text_number(node->text, &number) && number > 0 && isfinite(number)) return number;
-    yaml_errors_add(errors, node->mark, "error.%s: expects a number above 0", name);
-    return standard;
-}
-
-static void read_confirm(struct sweep_error *error, const struct yaml_node *confirm, struct yaml_errors *errors) {
-    const char *const word = confirm->kind == YAML_SCALAR ? confirm->text : "";
-    error->confirm = strcmp(word, "false") != 0;
-    if (error->confirm && strcmp(word, "true") != 0) {
-        yaml_errors_add(errors, confirm->mark, "error.confirm: expects true or false");
-    }
 }
 
 /* The row of a key: "nodes", "fish.nodes" or "fish[*].nodes"; NULL after an error. */
@@ -119,11 +94,9 @@ static const struct sweep_error_key *find_key(const char *name, struct yaml_mark
 /* Read the levels of one key: a list of numbers, or default. */
 static enum status read_levels(struct sweep_error_levels *levels, const struct yaml_node *node,
                                struct yaml_errors *errors) {
-    const int is_default = node->kind == YAML_SCALAR && strcmp(node->text, "default") == 0;
-    if (is_default) return STATUS_OK;
+    if (node->kind == YAML_SCALAR && strcmp(node->text, "default") == 0) return STATUS_OK;
     int is_wrong = node->kind != YAML_LIST || node->n < 2;
-    levels->value = calloc(node->kind == YAML_LIST ? (size_t)node->n + 1 : 1, sizeof *levels->value);
-    if (!levels->value) return error_out_of_memory();
+    TRY(MEMORY_NEW(levels->value, node->n, "the errors of a study"));
 
     for (int i = 0; i < node->n && !is_wrong; i++) {
         const struct yaml_node *const number = node->entry[i].value;
@@ -147,8 +120,7 @@ static enum status read_keys(struct sweep_error *error, const struct yaml_node *
         return STATUS_OK;
     }
 
-    error->levels = calloc((size_t)keys->n, sizeof *error->levels);
-    if (!error->levels) return error_out_of_memory();
+    TRY(MEMORY_NEW(error->levels, keys->n, "the errors of a study"));
 
     for (int i = 0; i < keys->n; i++) {
         const struct yaml_entry *const entry = &keys->entry[i];
@@ -185,17 +157,16 @@ enum status sweep_error_read(struct case_values *values, const struct yaml_node 
 
     if (values->n_axes > 0) yaml_errors_add(errors, map->mark, "error: replaces a sweep: remove error or sweep");
     yaml_tree_check_keys(map, "error", "of, within, keys, confirm, most", errors);
-    struct sweep_error *const error = values->error = calloc(1, sizeof *error);
-    if (!error) return error_out_of_memory();
-    error->within = read_positive(map, "within", NAN, errors);
-    error->most = read_positive(map, "most", SWEEP_ERROR_MOST, errors);
-    error->confirm = 1;
+    TRY(MEMORY_NEW(values->error, 1, "the errors of a study"));
+    struct sweep_error *const error = values->error;
+    error->within = yaml_tree_positive(map, "error", "within", NAN, errors);
+    error->most = yaml_tree_positive(map, "error", "most", SWEEP_ERROR_MOST, errors);
     const struct yaml_node *const of = yaml_tree_find(map, "of"), *const keys = yaml_tree_find(map, "keys"),
                                   *const confirm = yaml_tree_find(map, "confirm");
     if (!of) yaml_errors_add(errors, map->mark, "error.of: is required: a quantity, or a list of quantities");
     if (of) TRY(read_of(error, of, errors));
     if (keys) TRY(read_keys(error, keys, errors));
-    if (confirm) read_confirm(error, confirm, errors);
+    error->confirm = !confirm || yaml_tree_boolean(confirm, "error.confirm", errors);
     return STATUS_OK;
 }
 

@@ -12,13 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "case/sweep_quantity.h"
-
-static enum status expect_out_of_memory(void) {
-    return status_fail(STATUS_MEMORY, "out of memory: the expectations");
-}
 
 /* An expectation being read. */
 struct reading {
@@ -42,7 +39,7 @@ void sweep_expect_free(struct case_values *values) {
     values->n_expectations = 0;
 }
 
-// ---- which members
+// ---- members
 
 /* True if two strings are the same number, or the same but for blanks and quotes. */
 static bool are_same(const char *one, const char *other) {
@@ -96,8 +93,7 @@ static enum status read_where(const struct reading *reading, const struct yaml_n
         return STATUS_OK;
     }
 
-    reading->into->where = calloc((size_t)list->n + 1, sizeof *reading->into->where);
-    if (!reading->into->where) return expect_out_of_memory();
+    TRY(MEMORY_NEW(reading->into->where, list->n, "the expectations"));
 
     for (int i = 0; i < list->n; i++) {
         const struct yaml_node *const node = list->entry[i].value;
@@ -109,24 +105,14 @@ static enum status read_where(const struct reading *reading, const struct yaml_n
                             reading->name);
             continue;
         }
-        condition->value = strdup(equals + 1);
-        if (!condition->value) return expect_out_of_memory();
+        TRY(memory_copy_string(&condition->value, equals + 1, "the expectations"));
         reading->into->n_where++;
     }
 
     return STATUS_OK;
 }
 
-/* Complain if no member is meant. */
-static void check_members(const struct reading *reading, const struct yaml_node *where) {
-    const int n = sweep_n_members(reading->values);
-    for (int m = 0; m < n; m++) {
-        if (sweep_expects_of(reading->values, reading->into, m)) return;
-    }
-    yaml_errors_add(reading->errors, where->mark, "%s.where: no member of the sweep has these values", reading->name);
-}
-
-// ---- what
+// ---- quantities and bounds
 
 /* Read a number of the expectation; NaN if absent. */
 static double read_number(const struct reading *reading, const char *name, double min) {
@@ -152,23 +138,6 @@ static void read_fish(const struct reading *reading, const struct yaml_node *nod
     yaml_errors_add(reading->errors, node->mark, "%s.fish: expects the name of a fish", reading->name);
 }
 
-/* Refuse keys that the quantity does not have. */
-static void check_quantities(const struct reading *reading) {
-    const struct sweep_expectation *const one = reading->into;
-    for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
-        const struct sweep_quantity *const quantity = &sweep_quantities[q];
-        if (!(one->of >> q & 1)) continue;
-        if (one->fish >= 0 && !quantity->of_fish) {
-            yaml_errors_add(reading->errors, reading->node->mark, "%s.fish: %s has no value for each fish",
-                            reading->name, quantity->name);
-        }
-        if (quantity->of_xy && !(isnan(one->min) && isnan(one->max) && isnan(one->ratio))) {
-            yaml_errors_add(reading->errors, reading->node->mark, "%s: %s is a point, of which only spread is known",
-                            reading->name, quantity->name);
-        }
-    }
-}
-
 /* Read the quantities and the bounds. */
 static void read_bounds(const struct reading *reading, const struct yaml_node *of) {
     struct sweep_expectation *const into = reading->into;
@@ -185,7 +154,19 @@ static void read_bounds(const struct reading *reading, const struct yaml_node *o
                         "%s: expects of, and at least one of least, most, spread, ratio", reading->name);
     }
 
-    check_quantities(reading);
+    // refuse keys that the quantity does not have
+    for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
+        const struct sweep_quantity *const quantity = &sweep_quantities[q];
+        if (!(into->of >> q & 1)) continue;
+        if (into->fish >= 0 && !quantity->of_fish) {
+            yaml_errors_add(reading->errors, reading->node->mark, "%s.fish: %s has no value for each fish",
+                            reading->name, quantity->name);
+        }
+        if (quantity->of_xy && !(isnan(into->min) && isnan(into->max) && isnan(into->ratio))) {
+            yaml_errors_add(reading->errors, reading->node->mark, "%s: %s is a point, of which only spread is known",
+                            reading->name, quantity->name);
+        }
+    }
 }
 
 /* Read "fails". */
@@ -196,8 +177,7 @@ static enum status read_fails(const struct reading *reading, const struct yaml_n
         return STATUS_OK;
     }
     yaml_tree_check_keys(reading->node, reading->name, "fails, where", reading->errors);
-    reading->into->fails = strdup(fails->text);
-    return reading->into->fails ? STATUS_OK : expect_out_of_memory();
+    return memory_copy_string(&reading->into->fails, fails->text, "the expectations");
 }
 
 /* Read one expectation into an entry that is zero. */
@@ -224,7 +204,11 @@ static enum status read_expectation(const struct reading *reading) {
     if (!where) return STATUS_OK;
     const int n_before = reading->errors->n;
     TRY(read_where(reading, where));
-    if (reading->errors->n == n_before) check_members(reading, where);
+    if (reading->errors->n > n_before) return STATUS_OK;
+    for (int m = 0; m < sweep_n_members(reading->values); m++) {
+        if (sweep_expects_of(reading->values, reading->into, m)) return STATUS_OK;
+    }
+    yaml_errors_add(reading->errors, where->mark, "%s.where: no member of the sweep has these values", reading->name);
     return STATUS_OK;
 }
 
@@ -239,8 +223,7 @@ enum status sweep_expect_read(struct case_values *values, const struct yaml_node
     }
 
     if (values->n_axes == 0) yaml_errors_add(errors, list->mark, "expect: has no effect without a sweep");
-    values->expect = calloc((size_t)list->n + 1, sizeof *values->expect);
-    if (!values->expect) return expect_out_of_memory();
+    TRY(MEMORY_NEW(values->expect, list->n, "the expectations"));
 
     for (int i = 0; i < list->n; i++) {
         struct reading reading = {

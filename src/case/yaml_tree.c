@@ -1,10 +1,133 @@
 /* yaml_tree.c: a tree from the events of libyaml; limits and refused constructs. */
 #include "case/yaml_tree.h"
 
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <yaml.h>
+
+#include "base/text.h"
+
+// ---- errors: sorted by place, each with the source line and a caret
+
+enum { EXCERPT = 100 /* characters of a source line that are shown */ };
+
+void yaml_errors_add(struct yaml_errors *errors, struct yaml_mark mark, const char *format, ...) {
+    errors->n++;
+    if (errors->n > YAML_ERRORS_KEPT) return;
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    errors->kept[errors->n - 1].mark = mark;
+    errors->kept[errors->n - 1].text = strdup(text);
+    if (!errors->kept[errors->n - 1].text) errors->out_of_memory = true;
+}
+
+void yaml_errors_free(struct yaml_errors *errors) {
+    for (int i = 0; i < errors->n && i < YAML_ERRORS_KEPT; i++) free(errors->kept[i].text);
+    *errors = (struct yaml_errors){0};
+}
+
+/* The order in which the kept errors are listed; errors at one place keep the order of detection. */
+static int sort_errors(const struct yaml_errors *errors, int order[YAML_ERRORS_KEPT]) {
+    int n = 0;
+    for (; n < errors->n && n < YAML_ERRORS_KEPT; n++) {
+        const struct yaml_mark mark = errors->kept[n].mark;
+        int i = n;
+        for (; i > 0; i--) {
+            const struct yaml_mark before = errors->kept[order[i - 1]].mark;
+            const int rank = mark.source->rank - before.source->rank, line = mark.line - before.line;
+            if ((rank ? rank : line ? line : mark.column - before.column) >= 0) break;
+            order[i] = order[i - 1];
+        }
+        order[i] = n;
+    }
+    return n;
+}
+
+/* The bytes of one character of UTF-8, at most up to end. */
+static size_t character_size(const char *from, const char *end) {
+    size_t size = 1;
+    while (from + size < end && ((unsigned char)from[size] & 0xC0) == 0x80) size++;
+    return size;
+}
+
+/* Find the line of a mark: the bytes from *from up to the returned end. */
+static const char *line_of(struct yaml_mark mark, const char **from) {
+    const char *place = mark.source->text;
+    const char *const end = place + mark.source->length;
+    if (mark.source->length >= 3 && memcmp(place, "\xEF\xBB\xBF", 3) == 0) place += 3;  // the mark of UTF-8
+
+    for (int line = 1; line < mark.line && place < end; place++) {
+        const bool return_only = *place == '\r' && !(place + 1 < end && place[1] == '\n');
+        if (*place == '\n' || return_only) line++;
+    }
+
+    *from = place;
+    while (place < end && *place != '\n' && *place != '\r') place++;
+    return place;
+}
+
+/* Add the source line and a caret under the mark; of a long line only the neighbourhood of the mark. */
+static void add_excerpt(struct text *list, struct yaml_mark mark) {
+    const char *from, *const end = line_of(mark, &from);
+    int column = 1;
+
+    for (; column < mark.column - EXCERPT / 2; column++) {
+        if (from >= end) return;
+        from += character_size(from, end);
+    }
+
+    if (from >= end) return;
+    text_add(list, "\n");
+
+    for (int shown = 0; from < end && shown < EXCERPT; shown++) {
+        const size_t size = character_size(from, end);
+        const bool visible = (unsigned char)*from >= ' ' && *from != 0x7F && (size > 1 || (unsigned char)*from < 0x80);
+        text_add(list, "%.*s", visible ? (int)size : 1, visible ? from : " ");
+        from += size;
+    }
+
+    text_add(list, "\n%*s", mark.column - column + 1, "^");
+}
+
+/* Add one error with the place. */
+static void add_error(struct text *list, struct yaml_mark mark, const char *word, const char *text) {
+    if (list->length > 0) text_add(list, "\n");
+    if (mark.source->one_line) {
+        text_add(list, "%s: %s: %s", mark.source->name, word, text);
+    } else {
+        text_add(list, "%s:%d:%d: %s: %s", mark.source->name, mark.line, mark.column, word, text);
+        add_excerpt(list, mark);
+    }
+}
+
+char *yaml_errors_list(const struct yaml_errors *errors, const char *word) {
+    int order[YAML_ERRORS_KEPT];
+    const int n = errors->out_of_memory ? 0 : sort_errors(errors, order);
+    struct text list = {0};
+    text_add(&list, "%s", "");
+    for (int i = 0; i < n && i < YAML_ERRORS_SHOWN; i++) {
+        add_error(&list, errors->kept[order[i]].mark, word, errors->kept[order[i]].text);
+    }
+    if (errors->n > YAML_ERRORS_SHOWN) text_add(&list, "\n... and %d more", errors->n - YAML_ERRORS_SHOWN);
+    if (errors->out_of_memory || list.failed) text_free(&list);
+    return list.text;
+}
+
+enum status yaml_errors_status(const struct yaml_errors *errors) {
+    if (errors->n == 0) return STATUS_OK;
+    char *const list = yaml_errors_list(errors, "error");
+    if (!list) return status_fail(STATUS_MEMORY, "out of memory: the list of errors of the case");
+    const enum status status = status_fail(STATUS_CASE, "%s", list);
+    free(list);
+    return status;
+}
 
 struct reader {
     yaml_parser_t parser;
@@ -248,24 +371,7 @@ static enum status read_list(struct reader *reader, int depth, struct yaml_node 
     }
 }
 
-/* Check a key; false if the value is discarded. */
-static bool accept_key(struct reader *reader, const struct yaml_node *map, const struct yaml_node *key) {
-    if (strcmp(key->text, "<<") == 0) {
-        yaml_errors_add(reader->errors, key->mark,
-                        "merge keys ('<<') are not used in case files; put shared values under defaults");
-        return false;
-    }
-
-    const struct yaml_entry *const twin = yaml_tree_entry(map, key->text, strlen(key->text));
-    if (twin) {
-        yaml_errors_add(reader->errors, key->mark, "the key '%.40s' is here twice; the first is on line %d: remove one",
-                        key->text, twin->mark.line);
-    }
-
-    return !twin;
-}
-
-/* Read a value and append the value under the key. */
+/* Read a value and append the value under the key, unless the key is refused. */
 static enum status read_value(struct reader *reader, int depth, struct yaml_node *map, const struct yaml_node *key) {
     yaml_event_t event;
     TRY(next_event(reader, &event));
@@ -273,12 +379,20 @@ static enum status read_value(struct reader *reader, int depth, struct yaml_node
     const enum status status = read_node(reader, &event, depth, &value);
     yaml_event_delete(&event);
 
-    if (status != STATUS_OK || !accept_key(reader, map, key)) {
-        yaml_tree_free(value);
-        return status;
-    }
+    const struct yaml_entry *const twin = yaml_tree_entry(map, key->text, strlen(key->text));
+    const bool is_merge = strcmp(key->text, "<<") == 0;
+    if (status == STATUS_OK && !is_merge && !twin) return append_node(map, key->text, key->mark, value);
 
-    return append_node(map, key->text, key->mark, value);
+    // discard the value
+    yaml_tree_free(value);
+    if (status == STATUS_OK && is_merge) {
+        yaml_errors_add(reader->errors, key->mark,
+                        "merge keys ('<<') are not used in case files; put shared values under defaults");
+    } else if (status == STATUS_OK) {
+        yaml_errors_add(reader->errors, key->mark, "the key '%.40s' is here twice; the first is on line %d: remove one",
+                        key->text, twin->mark.line);
+    }
+    return status;
 }
 
 static enum status read_map(struct reader *reader, int depth, struct yaml_node *map) {
@@ -454,4 +568,82 @@ void yaml_tree_check_keys(const struct yaml_node *map, const char *path, const c
         if (is_known) continue;
         yaml_errors_add(errors, entry->mark, "%s.%.40s: unknown key; known keys: %s", path, entry->key, known);
     }
+}
+
+bool yaml_tree_boolean(const struct yaml_node *node, const char *path, struct yaml_errors *errors) {
+    const char *const word = node->kind == YAML_SCALAR ? node->text : "";
+    const bool is_true = strcmp(word, "true") == 0;
+    if (!is_true && strcmp(word, "false") != 0) yaml_errors_add(errors, node->mark, "%s: expects true or false", path);
+    return is_true;
+}
+
+double yaml_tree_positive(const struct yaml_node *map, const char *path, const char *key, double standard,
+                          struct yaml_errors *errors) {
+    const struct yaml_node *const node = yaml_tree_find(map, key);
+    double number;
+    if (!node && !(standard == 0)) return standard;
+    if (node && node->kind == YAML_SCALAR && text_number(node->text, &number) && number > 0 && isfinite(number)) {
+        return number;
+    }
+    yaml_errors_add(errors, node ? node->mark : map->mark, "%s.%s: expects a number above 0", path, key);
+    return NAN;
+}
+
+// ---- writing
+
+/* True for the characters that are never special in YAML. */
+static bool is_ordinary(char c) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    return letter || (c >= '0' && c <= '9') || (c != '\0' && strchr("_./+-", c));
+}
+
+/* True if a string needs no quotes in YAML, also inside [ ] and { }. */
+static bool is_plain(const char *scalar) {
+    if (!is_ordinary(*scalar) || strcmp(scalar, "-") == 0 || strncmp(scalar, "- ", 2) == 0) return false;
+    if (strncmp(scalar, "---", 3) == 0 || strncmp(scalar, "...", 3) == 0) return false;
+    for (const char *c = scalar; *c; c++) {
+        const bool inner_blank = *c == ' ' && c[1] != '\0';
+        if (!is_ordinary(*c) && !inner_blank) return false;
+    }
+    return true;
+}
+
+void yaml_write_scalar(struct text *text, const char *scalar) {
+    if (is_plain(scalar)) {
+        text_add(text, "%s", scalar);
+        return;
+    }
+
+    text_add(text, "\"");
+    for (const char *c = scalar; *c; c++) {
+        const unsigned char byte = (unsigned char)*c;
+        if (*c == '"' || *c == '\\') {
+            text_add(text, "\\%c", *c);
+        } else if (byte < ' ' || byte == 0x7F) {
+            text_add(text, "\\x%02X", byte);
+        } else {
+            text_add(text, "%c", *c);
+        }
+    }
+
+    text_add(text, "\"");
+}
+
+void yaml_write_node(struct text *text, const struct yaml_node *node) {
+    if (node->kind == YAML_SCALAR) {
+        yaml_write_scalar(text, node->text);
+        return;
+    }
+
+    text_add(text, node->kind == YAML_LIST ? "[" : "{");
+    for (int i = 0; i < node->n; i++) {
+        if (i > 0) text_add(text, ", ");
+        if (node->kind == YAML_MAP) {
+            yaml_write_scalar(text, node->entry[i].key);
+            text_add(text, ": ");
+        }
+        yaml_write_node(text, node->entry[i].value);
+    }
+
+    text_add(text, node->kind == YAML_LIST ? "]" : "}");
 }

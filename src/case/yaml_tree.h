@@ -6,12 +6,67 @@
  *
  * Maps, lists and scalars only: anchors, aliases, tags, merge keys, duplicate keys and further documents are refused. A
  * scalar is a string, which the key interprets, never YAML. Only the events of libyaml are used: the loader of libyaml
- * takes quadratic time on hostile input. (The header of libyaml has the name "yaml.h".) */
+ * takes quadratic time on hostile input.
+ *
+ * A reader continues after an error, so that the user sees all errors of a case at once, in the form of a compiler:
+ *
+ *     cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'?
+ *         stifness: 1e6
+ *         ^
+ */
 #ifndef YAML_TREE_H
 #define YAML_TREE_H
 
+#include <stdbool.h>
+#include <stddef.h>
+
 #include "base/status.h"
-#include "case/yaml_errors.h"
+#include "base/text.h"
+
+// ---- places in the sources of a case, and the list of errors
+
+/* A file, or an assignment of the command line. */
+struct yaml_source {
+    char *name;    /* in messages */
+    char *text;    /* not terminated by a zero */
+    size_t length; /* bytes */
+    int rank;      /* errors are listed by rank, then by line */
+    bool one_line; /* an assignment: messages show the name, without line and caret */
+};
+
+/* A place in a source; line and column (in characters) count from 1. */
+struct yaml_mark {
+    const struct yaml_source *source;
+    int line, column;
+};
+
+enum { YAML_ERRORS_KEPT = 64, YAML_ERRORS_SHOWN = 20 };
+
+struct yaml_errors {
+    int n; /* all errors, including those that are not kept */
+    struct {
+        struct yaml_mark mark;
+        char *text;
+    } kept[YAML_ERRORS_KEPT];
+    bool out_of_memory; /* an error could not be kept */
+};
+
+/* Add an error (printf format, one line without "error:"). A failed allocation is recorded and reported by
+ * yaml_errors_status. */
+void yaml_errors_add(struct yaml_errors *errors, struct yaml_mark mark, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* STATUS_OK if nothing was added; else STATUS_CASE with the list as message, or STATUS_MEMORY. */
+enum status yaml_errors_status(const struct yaml_errors *errors);
+
+/* The list with another word than "error", such as "note"; "" for an empty list, NULL if out of memory. The caller
+ * frees the text. */
+char *yaml_errors_list(const struct yaml_errors *errors, const char *word);
+
+/* Release the errors and zero the list. */
+void yaml_errors_free(struct yaml_errors *errors);
+
+// ---- nodes
 
 enum { YAML_TREE_DEPTH = 32, YAML_TREE_KEYS = 256 /* keys of one map */, YAML_TREE_BYTES = 4 * 1024 * 1024 };
 
@@ -58,7 +113,23 @@ enum status yaml_tree_put(struct yaml_node *map, const char *key, struct yaml_ma
 /* Add an error for each key of a map that is not among the known ones, "key, values"; path: path of the map. */
 void yaml_tree_check_keys(const struct yaml_node *map, const char *path, const char *known, struct yaml_errors *errors);
 
+/* True for the word "true"; adds an error, with the path, unless the node is true or false. */
+bool yaml_tree_boolean(const struct yaml_node *node, const char *path, struct yaml_errors *errors);
+
+/* The number above 0 under a key of a map; path: path of the map. Without the key the standard, or an error if the
+ * standard is 0. After an error the result is NaN. */
+double yaml_tree_positive(const struct yaml_node *map, const char *path, const char *key, double standard,
+                          struct yaml_errors *errors);
+
 /* "a map of keys", "a list of 3", "'text'" or "nothing": for messages, kept in buffer and returned. */
 const char *yaml_tree_describe(const struct yaml_node *node, char *buffer, size_t size);
+
+// ---- writing
+
+/* Add a string, quoted if YAML needs quotes. */
+void yaml_write_scalar(struct text *text, const char *scalar);
+
+/* Add any value on one line: [1, 2] and {a: 1}. */
+void yaml_write_node(struct text *text, const struct yaml_node *node);
 
 #endif

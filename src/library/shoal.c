@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/version.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "library/handle.h"
 #include "library/led.h"
 #include "result/target.h"

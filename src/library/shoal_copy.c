@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/case_show.h"
+#include "case/case.h"
 #include "fish/fish_school.h"
 #include "library/handle.h"
 #include "result/checkpoint.h"

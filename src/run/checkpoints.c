@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "case/case_show.h"
+#include "case/case.h"
 #include "result/durable.h"
 
 // ---- names

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/case_show.h"
+#include "case/case.h"
 
 char *record_path(const struct case_values *values) {
     const char *const name = values->output.file ? values->output.file : values->name;

@@ -2,9 +2,12 @@
 #include "run/simulate.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <time.h>
 
+#include "base/memory.h"
+#include "body/bending_mode.h"
 #include "body/rod.h"
 #include "fish/fish_distance.h"
 #include "fish/fish_school.h"
@@ -19,6 +22,31 @@ static double wall_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/* Set the highest order of ida. Default (doc/numerics.md, section 3): 2 if the stiffness of a body is not damped, 5 if
+ * the slowest bending mode of every fish is below 0.6 of the beat frequency, else 3. */
+static enum status simulation_set_order(struct simulation *simulation, const struct case_values *values) {
+    const struct school *const school = simulation->school;
+    simulation->options.order = values->solver.order;
+    if (values->solver.order > 0 || values->solver.method != METHOD_IDA) return STATUS_OK;
+
+    bool are_soft = true;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const double periods = values->school.fish[f].body.relaxation_time * fish->frequency;
+        simulation->options.order = 2;
+        if (!(periods > 0.001 * (1 - 1e-9))) return STATUS_OK;
+        if (!are_soft) continue;
+
+        double *scratch;
+        TRY(MEMORY_NEW(scratch, 6 * fish->n_nodes, "the bending modes"));
+        are_soft = bending_mode_frequency(fish, scratch) < 0.6 * fish->frequency;
+        free(scratch);
+    }
+
+    simulation->options.order = are_soft ? 5 : 3;
+    return STATUS_OK;
+}
+
 // an empty simulation of a case
 static enum status simulation_begin(struct simulation **simulation, const struct case_values *values) {
     struct simulation *const new = calloc(1, sizeof *new);
@@ -28,10 +56,8 @@ static enum status simulation_begin(struct simulation **simulation, const struct
     new->started = wall_clock();
     new->n_events = lround(values->time.end / values->school.shedding_interval);
     new->integrator = integrator_of(values->solver.method);
-    new->options = (struct integrator_options){.method = values->solver.method,
-                                               .order = values->solver.order,
-                                               .step = values->solver.step,
-                                               .max_steps = values->solver.max_steps};
+    new->options = (struct integrator_options){
+        .method = values->solver.method, .step = values->solver.step, .max_steps = values->solver.max_steps};
     return STATUS_OK;
 }
 
@@ -66,6 +92,7 @@ static enum status simulation_start(struct simulation *simulation, const struct 
                                     const volatile sig_atomic_t *stop) {
     simulation->stop = stop;
     TRY(fish_school_create(&simulation->school, &values->school));
+    TRY(simulation_set_order(simulation, values));
     TRY(state_create(&simulation->state, simulation->school));
     TRY(simulation_create_equations(simulation));
     TRY(diagnostics_create(&simulation->diagnostics, simulation->school));
@@ -109,7 +136,8 @@ enum status simulate_take_up(struct simulation **simulation, const struct case_v
     new->school = school;
     new->state = state;
     new->totals = *totals;
-    enum status status = diagnostics_create(&new->diagnostics, school);
+    enum status status = simulation_set_order(new, values);
+    if (status == STATUS_OK) status = diagnostics_create(&new->diagnostics, school);
     if (status == STATUS_OK) status = simulate_renew(new);
     return simulation_discard_failed(simulation, status);
 }

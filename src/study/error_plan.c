@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "case/case_member.h"
+#include "case/case.h"
 #include "case/case_table.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "case/sweep_quantity.h"
 #include "fish/fish_school.h"
 #include "school/warnings.h"

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "case/case_member.h"
-#include "case/sweep_members.h"
+#include "case/case.h"
+#include "case/sweep.h"
 #include "result/plain_file.h"
 #include "run/estimate.h"
 #include "study/study_table.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 
 /* Error of a steady state without multipliers over the residual change per beat, unless this ratio is known for the
  * case. */

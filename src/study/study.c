@@ -15,9 +15,7 @@
 
 #include "base/parallel.h"
 #include "case/case.h"
-#include "case/case_member.h"
-#include "case/case_show.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "result/result_lock.h"
 #include "run/checkpoints.h"
 #include "run/resume.h"

@@ -9,7 +9,7 @@
 
 #include "base/methods.h"
 #include "case/case.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "study/study_comparison.h"
 #include "study/study_folder.h"
 #include "study/study_gather.h"

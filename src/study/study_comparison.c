@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "study/study_table.h"
 
 enum { METHOD, ORDER, RTOL, STEP, N_KEYS };

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "case/sweep.h"
 #include "case/sweep_expect.h"
-#include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
 
 /* Smallest and largest value of a quantity over the members and fish of an expectation. */

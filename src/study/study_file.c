@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "result/netcdf.h"
 #include "result/target.h"
 #include "study/study_comparison.h"

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "result/netcdf.h"
 #include "study/study_file.h"
 

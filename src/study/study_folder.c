@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "result/durable.h"
 
 enum { REASON_BYTES = 2048 };

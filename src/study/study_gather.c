@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "case/case.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "study/error_report.h"
 #include "study/study_comparison.h"
 #include "study/study_expect.h"

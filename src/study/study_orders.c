@@ -6,10 +6,9 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "case/sweep.h"
 #include "case/sweep_error.h"
-#include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
-#include "case/sweep_refine.h"
 #include "study/study_table.h"
 
 enum { NAME_BYTES = 64, MEANING_BYTES = 160, WORDS_BYTES = 128 };

@@ -6,9 +6,7 @@
 #include <unistd.h>
 
 #include "case/case.h"
-#include "case/case_member.h"
-#include "case/case_show.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "result/target.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "study/study_table.h"
 
 enum { MAX_FISH_SHOWN = 4, MAX_WARNINGS_SHOWN = 20 };

@@ -8,8 +8,7 @@
 #include <unistd.h>
 
 #include "case/case.h"
-#include "case/case_member.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "result/plain_file.h"
 #include "study/study_folder.h"
 

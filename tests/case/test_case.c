@@ -5,9 +5,6 @@
 #include <unistd.h>
 
 #include "case/case.h"
-#include "case/case_keys.h"
-#include "case/case_member.h"
-#include "case/case_show.h"
 #include "case/case_table.h"
 #include "case_fixture.h"
 #include "failing_malloc.h"
@@ -47,38 +44,6 @@ static void write_file(const char *path, const char *text) {
 
 // ---- defaults
 
-// the default order of a case with these assignments
-static int order_of(const char *first, const char *second) {
-    struct case_values values = parse_with(minimal, first, second, NULL);
-    const int order = values.solver.order;
-    case_free(&values);
-    return order;
-}
-
-static void order_3_needs_bodies_whose_stiffness_is_damped(void **state) {
-    (void)state;
-    assert_int_equal(order_of(NULL, NULL), 3);
-    assert_int_equal(order_of("fish[0].wave.frequency=0.7", NULL), 3);
-    assert_int_equal(order_of("fish[0].wave.frequency=0.7", "fish[0].body.relaxation_time=0.001"), 2);
-    assert_int_equal(order_of("fish[0].body.relaxation_time=0.01", NULL), 3);
-    assert_int_equal(order_of("fish[0].body.relaxation_time=0", NULL), 2);
-    assert_int_equal(order_of("fish[0].body.relaxation_time=0", "solver.order=4"), 4);
-    assert_int_equal(order_of("fish[0].wave.frequency=0", NULL), 2);
-    assert_int_equal(order_of("fish=[{name: a}, {name: b, body: {relaxation_time: 1e-4}}]", NULL), 2);
-    assert_int_equal(order_of("preset=published", NULL), 2);
-}
-
-static void order_5_is_for_bodies_slower_than_their_beat(void **state) {
-    (void)state;
-    // the slowest mode of a default fish has 0.6 Hz at 6.6e4 Pa, and grows with the root of the modulus
-    assert_int_equal(order_of("fish[0].body.modulus=6e4", NULL), 5);
-    assert_int_equal(order_of("fish[0].body.modulus=1e5", NULL), 3);
-    assert_int_equal(order_of("fish[0].body.modulus=1e5", "fish[0].wave.frequency=2"), 5);
-    assert_int_equal(order_of("fish=[{body: {modulus: 6e4}}, {name: b, start: {position: [2, 0]}}]", NULL), 3);
-    assert_int_equal(order_of("fish[0].body.modulus=6e4", "fish[0].body.relaxation_time=0"), 2);
-    assert_int_equal(order_of("fish[0].body.modulus=6e4", "solver.order=3"), 3);
-}
-
 static void the_defaults_are_those_of_the_reference(void **state) {
     (void)state;
     struct case_values s = parse(minimal);
@@ -98,7 +63,7 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     assert_int_equal(s.school.wake.removed_circulation, REMOVED_RETAINED);
     assert_int_equal(s.solver.method, METHOD_IDA);
     NEAR(s.school.rtol, 1e-5, 0, 0);
-    assert_int_equal(s.solver.order, 3);
+    assert_int_equal(s.solver.order, 0);  // chosen by the simulation
     assert_int_equal(s.school.threads, 1);
     assert_int_equal(s.output.precision, PRECISION_DOUBLE);
     assert_null(s.output.file);
@@ -576,8 +541,6 @@ static void freeing_twice_is_harmless(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(order_3_needs_bodies_whose_stiffness_is_damped),
-        cmocka_unit_test(order_5_is_for_bodies_slower_than_their_beat),
         cmocka_unit_test(the_defaults_are_those_of_the_reference),
         cmocka_unit_test(lifetime_and_fade_may_be_in_beats),
         cmocka_unit_test(derived_defaults_follow_what_they_derive_from),

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/case_member.h"
-#include "case/sweep_refine.h"
+#include "case/case.h"
+#include "case/sweep.h"
 #include "case_fixture.h"
 
 static void a_sweep_keeps_its_values_as_assignments_take_them(void **state) {

@@ -4,9 +4,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "case/yaml_errors.h"
 #include "case/yaml_tree.h"
-#include "case/yaml_write.h"
 #include "failing_malloc.h"
 #include "near.h"
 

@@ -4,9 +4,7 @@
 #include <string.h>
 
 #include "case/case.h"
-#include "case/case_member.h"
-#include "case/case_show.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "fuzz.h"
 
 enum { MAX_MEMBERS = 8 };

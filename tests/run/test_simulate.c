@@ -396,8 +396,47 @@ static void a_failure_of_a_folded_body_says_so(void **state) {
     }
 }
 
+// the default order of a fish with these values, or of a school that is written as a list
+static int order_of(const char *solver, const char *fish) {
+    char text[400];
+    snprintf(text, sizeof text, "format: 1\n" TIME "solver: {%s}\nfish: %s\n", solver, fish);
+    struct case_values values;
+    school_ok(case_parse(&values, text, strlen(text), "test", NULL, 0, NULL));
+    struct simulation *simulation;
+    school_ok(simulate_create(&simulation, &values));
+    case_free(&values);
+    const int order = simulation->options.order;
+    simulate_free(simulation);
+    return order;
+}
+
+static void order_3_needs_bodies_whose_stiffness_is_damped(void **state) {
+    (void)state;
+    assert_int_equal(order_of("", "[{}]"), 3);
+    assert_int_equal(order_of("", "[{wave: {frequency: 0.7}}]"), 3);
+    assert_int_equal(order_of("", "[{wave: {frequency: 0.7}, body: {relaxation_time: 0.001}}]"), 2);
+    assert_int_equal(order_of("", "[{body: {relaxation_time: 0.01}}]"), 3);
+    assert_int_equal(order_of("", "[{body: {relaxation_time: 0}}]"), 2);
+    assert_int_equal(order_of("order: 4", "[{body: {relaxation_time: 0}}]"), 4);
+    assert_int_equal(order_of("", "[{wave: {frequency: 0}}]"), 2);
+    assert_int_equal(order_of("", "[{}, {start: {position: [0, 2]}, body: {relaxation_time: 1e-4}}]"), 2);
+}
+
+static void order_5_is_for_bodies_slower_than_their_beat(void **state) {
+    (void)state;
+    // the slowest mode of a default fish has 0.6 Hz at 6.6e4 Pa, and grows with the root of the modulus
+    assert_int_equal(order_of("", "[{body: {modulus: 6e4}}]"), 5);
+    assert_int_equal(order_of("", "[{body: {modulus: 1e5}}]"), 3);
+    assert_int_equal(order_of("", "[{body: {modulus: 1e5}, wave: {frequency: 2}}]"), 5);
+    assert_int_equal(order_of("", "[{body: {modulus: 6e4}}, {start: {position: [2, 0]}}]"), 3);
+    assert_int_equal(order_of("", "[{body: {modulus: 6e4, relaxation_time: 0}}]"), 2);
+    assert_int_equal(order_of("order: 3", "[{body: {modulus: 6e4}}]"), 3);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(order_3_needs_bodies_whose_stiffness_is_damped),
+        cmocka_unit_test(order_5_is_for_bodies_slower_than_their_beat),
         cmocka_unit_test(a_limp_fish_swims_on),
         cmocka_unit_test(a_failure_of_a_folded_body_says_so),
         cmocka_unit_test(order_of_the_fish_does_not_matter),

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "case/case_member.h"
-#include "case/sweep_members.h"
+#include "case/case.h"
+#include "case/sweep.h"
 #include "failing_malloc.h"
 #include "near.h"
 #include "study/error_report.h"

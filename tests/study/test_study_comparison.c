@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "case/case.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "failing_malloc.h"
 #include "near.h"
 #include "study/study_compare.h"

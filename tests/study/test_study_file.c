@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
-#include "case/sweep_members.h"
+#include "case/sweep.h"
 #include "case/sweep_quantity.h"
 #include "crafted_file.h"
 #include "failing_malloc.h"
