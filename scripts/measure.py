@@ -298,7 +298,7 @@ def finer(key, finest):
         return [f"fish[*].{key[5:]}={2 * round(finest) - 1}"]
     if key != "wake.lifetime":
         return [f"{key}={finest / (2 if key == 'time.shedding_interval' else 10):.17g}"]
-    return [f"wake.lifetime={2 * finest:.17g} beats", f"wake.fade={1.5 * finest:.17g} beats"]
+    return [f"wake.lifetime={2 * finest:.17g} beats", f"wake.decay={1.5 * finest:.17g} beats"]
 
 
 def coverage_of(bench, number, of, keys, text):

@@ -132,7 +132,7 @@ static void format_rhythm(const struct steady_problem *problem, size_t size, cha
     words[0] = 0;
     if (map->n_beats < STEADY_RECENT) return;
     for (int apart = 1; apart < STEADY_RECENT; apart++) most = fmax(most, largest_difference(problem, apart));
-    for (int apart = 2; apart <= STEADY_RECENT / 4; apart++) {
+    for (int apart = 2; apart <= STEADY_RECENT / 4 && largest_difference(problem, 1) > equal; apart++) {
         if (largest_difference(problem, apart) > equal) continue;
         snprintf(words, size, ", and the speed repeats every %d beats", apart);
         return;
@@ -149,7 +149,8 @@ static enum status no_steady_state(const struct steady_problem *problem) {
     const struct fish *const first = map->simulation->school->fish;
     return status_fail(STATUS_SOLVER,
                        "no steady state in %d beats (steady.beats): residual change per beat %.2g, more than "
-                       "steady.tolerance, %.2g; speed of %s %.4g m/s, %.2g lengths per beat%s",
+                       "steady.tolerance, %.2g; speed of %s %.4g m/s, %.2g lengths per beat%s; if the residual no "
+                       "longer falls from beat to beat, reduce solver.rtol",
                        map->n_beats, steady_map_residual(map), problem->settings->tolerance, first->name,
                        map->last[0].speed, map->last[0].speed * map->period / first->length, rhythm);
 }

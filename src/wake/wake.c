@@ -237,7 +237,7 @@ enum status wake_add_vortex(struct wake *wake, const struct school *school, doub
     if (school->removed == REMOVED_DROPPED) {
         return status_fail(
             STATUS_CASE,
-            "wake.dissipated_circulation: dropped: removal of an added vortex would add its circulation to the "
+            "wake.removed_circulation: dropped: removal of an added vortex would add its circulation to the "
             "body: choose 'retained'");
     }
 

@@ -96,7 +96,7 @@ void wake_add_shed(struct wake *wake, double circulation);
  *     before:  ... i ---- i+1 ... n        after:  ... i - - - A=B - - - i' ---- i+1 ... n     i' = i
  *
  * Fails with STATUS_CASE if wake.spare_vortices is exhausted, or if removed circulation returns to the body
- * (wake.dissipated_circulation: dropped), and with STATUS_MEMORY; after a failure the wake is unchanged. */
+ * (wake.removed_circulation: dropped), and with STATUS_MEMORY; after a failure the wake is unchanged. */
 enum status wake_add_vortex(struct wake *wake, const struct school *school, double t, double x, double y,
                             double circulation);
 

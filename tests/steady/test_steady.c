@@ -331,7 +331,8 @@ static void a_search_that_takes_too_long_says_how_far_it_came(void **state) {
 static void a_search_that_fails_says_what_the_last_beats_have_in_common(void **state) {
     (void)state;
     steady_setup_fails(COARSE "steady: {tolerance: 1e-12, beats: 70}\nfish: [{" FISH "}]\n", STATUS_SOLVER,
-                       " % between the last 16 beats");
+                       " % between the last 16 beats; if the residual no longer falls from beat to beat, reduce "
+                       "solver.rtol");
 }
 
 // the balance of a school after a beat, over the largest of its terms
