@@ -245,7 +245,7 @@ def error_bars(bench):
 # Quantities of cases that were not used to choose the rule; those of runs include the judges of an error study.
 STEADY = ["steady_speed", "steady_cost_of_transport", "steady_strouhal", "steady_efficiency"]
 RUN = ["speed", "cost_of_transport", "lateral_drift", "mean_heading"]
-HEAVE = ["mean_thrust", "mean_power", "thrust_efficiency", "shed_circulation"]
+HEAVE = ["mean_thrust", "mean_power", "efficiency", "shed_circulation"]
 STILL = "wave: {amplitude: 0, frequency: 0}"
 ONE = "[{name: fish}]"
 OTHERS = "[sheet_points, shedding_interval, rtol, tolerance, lifetime]"

@@ -361,7 +361,7 @@ def panels_of(study, first):
         return ["steady_drag", "steady_lift", "steady_deflection"]
     speed, given = study["speed"][study.complete], study[first.name][study.complete]
     if first.long_name.endswith(".speed") and np.allclose(speed, given[:, None], rtol=1e-3):
-        return ["mean_thrust", "mean_power", "thrust_efficiency"]
+        return ["mean_thrust", "mean_power", "efficiency"]
     return ["speed", "cost_of_transport", "strouhal"]
 
 

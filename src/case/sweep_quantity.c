@@ -31,7 +31,6 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"efficiency", 1, 0, NULL, NULL, 0},
     {"mean_thrust", 1, 0, NULL, NULL, 0},
     {"mean_power", 1, 0, NULL, NULL, 0},
-    {"thrust_efficiency", 1, 0, NULL, NULL, 0},
     {"energy_balance", 1, 0, NULL, NULL, 0},
     {"steps", 0, 0, NULL, NULL, 0},
     {"newton_iterations", 0, 0, NULL, NULL, 0},
@@ -45,6 +44,7 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
      0},
     {"beat_time", 0, 0, "s", "wall time of a beat of the search for a steady state", SWEEP_OF_STEADY},
     {"steady_stiffness", 0, 0, NULL, NULL, SWEEP_OF_STEADY},
+    {"steady_power", 1, 0, NULL, NULL, SWEEP_OF_STEADY},
 };
 
 int sweep_quantity_find(const char *name, int n_known) {

@@ -37,6 +37,7 @@ struct layout {
 struct motion {
     enum prescribed prescribed;
     enum surge surge;          /* free: the heading is along x, and prescribed nodes move in x by the forces */
+    int is_held;               /* the motion along the heading is prescribed: surge given, prescribed not none */
     double speed;              /* m s-1 */
     double heave;              /* m */
     double pitch, pitch_phase; /* rad */

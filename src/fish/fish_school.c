@@ -21,15 +21,17 @@ static void motion_set(struct fish *fish, const struct fish_parameters *from) {
     fish->load_tip[0] = from->load_tip[0];
     fish->load_tip[1] = from->load_tip[1];
 
-    fish->motion = (struct motion){.prescribed = from->motion.prescribed,
-                                   .surge = from->motion.surge,
-                                   .speed = from->motion.speed,
-                                   .heave = from->motion.heave,
-                                   .pitch = angle_radians(from->motion.pitch),
-                                   .pitch_phase = angle_radians(from->motion.pitch_phase),
-                                   .omega = 2 * M_PI * from->motion.frequency,
-                                   .phase = angle_radians(from->motion.phase),
-                                   .pivot = from->motion.pivot * from->length};
+    fish->motion =
+        (struct motion){.prescribed = from->motion.prescribed,
+                        .surge = from->motion.surge,
+                        .is_held = from->motion.prescribed != PRESCRIBED_NONE && from->motion.surge == SURGE_GIVEN,
+                        .speed = from->motion.speed,
+                        .heave = from->motion.heave,
+                        .pitch = angle_radians(from->motion.pitch),
+                        .pitch_phase = angle_radians(from->motion.pitch_phase),
+                        .omega = 2 * M_PI * from->motion.frequency,
+                        .phase = angle_radians(from->motion.phase),
+                        .pivot = from->motion.pivot * from->length};
 
     const int given = fish->motion.prescribed != PRESCRIBED_NONE && from->motion.frequency > 0;
     fish->frequency = given ? from->motion.frequency : from->wave.frequency;

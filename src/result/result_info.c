@@ -14,6 +14,7 @@
 struct info {
     const struct netcdf_reader *reader;
     size_t n_rows, n_fish, n_name;
+    bool has_held;
     FILE *stream;
 };
 
@@ -40,24 +41,42 @@ static enum status interval_of(const struct info *info, double *interval) {
 
 // ---- the table of fish
 
-/* The columns; those with time show the last row. */
+/* The columns: constants, values of the last row, and those of files with a held body. */
 static const struct column {
     const char *head, *unit, *variable, *format;
-    bool with_time;
+    enum { CONSTANT, LAST, LAST_OF_HELD } kind;
 } columns[] = {
-    {"nodes", "", "n_nodes", "%.0f", false},
-    {"sheet", "", "n_sheet", "%.0f", false},
-    {"length", "m", "body_length", "%.4g", false},
-    {"vortices", "", "wake_count", "%.0f", true},
-    {"speed", "m s-1", "speed", "%.4f", true},
-    {"heading", "degree", "heading", "%.2f", true},
-    {"phi0", "", "phi0", "%.4f", true},
-    {"shed", "m2 s-1", "shed_circulation", "%.3e", true},
-    {"energy", "J", "kinetic_energy", "%.4g", true},
-    {"work", "J", "actuation_work", "%.4g", true},
-    {"balance", "J", "energy_balance", "%.1e", true},
+    {"nodes", "", "n_nodes", "%.0f", CONSTANT},
+    {"sheet", "", "n_sheet", "%.0f", CONSTANT},
+    {"length", "m", "body_length", "%.4g", CONSTANT},
+    {"vortices", "", "wake_count", "%.0f", LAST},
+    {"speed", "m s-1", "speed", "%.4f", LAST},
+    {"heading", "degree", "heading", "%.2f", LAST},
+    {"phi0", "", "phi0", "%.4f", LAST},
+    {"shed", "m2 s-1", "shed_circulation", "%.3e", LAST},
+    {"thrust", "N", "mean_thrust", "%.4g", LAST_OF_HELD},
+    {"power", "W", "mean_power", "%.4g", LAST_OF_HELD},
+    {"efficiency", "", "efficiency", "%.4f", LAST_OF_HELD},
+    {"energy", "J", "kinetic_energy", "%.4g", LAST},
+    {"work", "J", "actuation_work", "%.4g", LAST},
+    {"balance", "J", "energy_balance", "%.1e", LAST},
 };
 enum { N_COLUMNS = sizeof columns / sizeof *columns, N_CONSTANT_COLUMNS = 3 };
+
+static bool is_shown(const struct info *info, const struct column *column) {
+    return column->kind != LAST_OF_HELD || info->has_held;
+}
+
+/* Whether a body is held. Files of earlier versions do not say so. */
+static enum status find_held(struct info *info) {
+    if (!netcdf_has(info->reader, "is_held")) return STATUS_OK;
+    for (size_t f = 0; f < info->n_fish; f++) {
+        double is_held;
+        TRY(constant_of_fish(info, "is_held", f, &is_held));
+        info->has_held |= is_held > 0;
+    }
+    return STATUS_OK;
+}
 
 /* Print a number of a table, or "-" for NaN. */
 static void print_cell(const struct info *info, const char *format, double value) {
@@ -75,7 +94,8 @@ static enum status print_fish(const struct info *info, int n_columns, size_t f, 
     for (int c = 0; c < n_columns; c++) {
         const struct column *const column = &columns[c];
         double value;
-        if (column->with_time) {
+        if (!is_shown(info, column)) continue;
+        if (column->kind != CONSTANT) {
             TRY(of_fish(info, info->n_rows - 1, column->variable, f, &value));
         } else {
             TRY(constant_of_fish(info, column->variable, f, &value));
@@ -91,9 +111,13 @@ static enum status print_table(const struct info *info) {
     const int width = info->n_name > 4 ? (int)info->n_name : 4;
     const int n_columns = info->n_rows > 0 ? N_COLUMNS : N_CONSTANT_COLUMNS;
     fprintf(info->stream, "\n  %-*s", width, "fish");
-    for (int c = 0; c < n_columns; c++) fprintf(info->stream, "  %10s", columns[c].head);
+    for (int c = 0; c < n_columns; c++) {
+        if (is_shown(info, &columns[c])) fprintf(info->stream, "  %10s", columns[c].head);
+    }
     fprintf(info->stream, "\n  %-*s", width, "");
-    for (int c = 0; c < n_columns; c++) fprintf(info->stream, "  %10s", columns[c].unit);
+    for (int c = 0; c < n_columns; c++) {
+        if (is_shown(info, &columns[c])) fprintf(info->stream, "  %10s", columns[c].unit);
+    }
     fprintf(info->stream, "\n");
     for (size_t f = 0; f < info->n_fish; f++) TRY(print_fish(info, n_columns, f, width));
     return STATUS_OK;
@@ -191,6 +215,7 @@ static enum status print_all(const struct netcdf_reader *reader, FILE *stream) {
     TRY(netcdf_read_length(reader, "time", 0, SIZE_MAX, &info.n_rows));
     TRY(netcdf_read_length(reader, "fish", 1, INT_MAX, &info.n_fish));
     TRY(netcdf_read_length(reader, "name", 1, INT_MAX, &info.n_name));
+    TRY(find_held(&info));
     TRY(print_status(&info));
     TRY(print_rows(&info));
     TRY(print_table(&info));

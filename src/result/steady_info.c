@@ -25,6 +25,7 @@ static const struct quantity {
     {"steady_constraint_power", "driving power", "W", "%.5g", false},
     {"steady_damping_power", "power of damping", "W", "%.5g", false},
     {"steady_fluid_power", "power to the fluid", "W", "%.5g", false},
+    {"steady_power", "power of muscle and drive", "W", "%.5g", false},
     {"steady_cost_of_transport", "cost of transport", "m s-2", "%.5f", false},
     {"steady_efficiency", "efficiency", "", "%.5f", false},
     {"steady_strouhal", "Strouhal number", "", "%.5f", false},

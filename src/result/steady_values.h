@@ -11,11 +11,12 @@ struct steady_fish {
     double turn;       /* of the heading in a beat, degree */
     double place[2];   /* of the centre of mass relative to the first fish: ahead and to the left, m */
     double force[2];   /* of the fluid on the body, N */
-    double thrust;     /* of the fluid on the body, along the heading, N */
+    double thrust;     /* of the fluid on the body, along the direction of travel, N */
     double drag, lift; /* along the oncoming stream, and to the left of the stream, N; without a beat only, */
     double deflection; /* and of the tail, to the left of the heading of a stiff body, m; else NaN */
     double actuation_power, damping_power, constraint_power; /* W */
     double fluid_power;                                      /* that goes into the fluid, W */
+    double power;                                            /* of muscle and drive without the work of the thrust, W */
     double cost_of_transport;                                /* m s-2 */
     double efficiency, strouhal;
 };

@@ -43,11 +43,28 @@ void diagnostics_fluid_force(const double resistive[2], const double reactive[2]
     for (int i = 0; i < 2; i++) force[i] = resistive[i] + reactive[i] + pressure->pressure[i] + pressure->suction[i];
 }
 
+/* The direction of the thrust: heading of a free fish; of prescribed motion the direction of travel, of a held body
+ * through the water without the gust. doc/model.md, section 13. */
+static void thrust_direction(const struct school *school, const struct fish *fish, const double com[2], const double *y,
+                             double direction[2]) {
+    const int is_prescribed = fish->motion.prescribed != PRESCRIBED_NONE;
+    const double heading = is_prescribed ? fish->start_heading : control_heading(fish, y);
+    direction[0] = cos(heading);
+    direction[1] = sin(heading);
+    if (!fish->motion.is_held) return;
+
+    const double travel[2] = {fish->motion.speed * direction[0] - school->velocity[0] - school->shear * com[1],
+                              fish->motion.speed * direction[1] - school->velocity[1]};
+    const double speed = hypot(travel[0], travel[1]);
+    for (int i = 0; i < 2 && speed > 0; i++) direction[i] = travel[i] / speed;
+}
+
 void diagnostics_forces(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, to->com, y);
-    const double heading = control_heading(fish, y), ahead[2] = {cos(heading), sin(heading)};
+    double ahead[2];
+    thrust_direction(residual->school, fish, to->com, y, ahead);
 
     // total force of the fluid, for the thrust
     to->pressure = diagnostics_pressure(residual, f, to->com, y);

@@ -156,6 +156,19 @@ static double separation_share(const struct history *history, double limit) {
     return sum / (history->n - 1);
 }
 
+/* Mean thrust, power and efficiency of a held body (doc/model.md, section 13): the drive of the body also takes the
+ * thrust, whose work is no part of the power of the motion. */
+static void thrust_of_held(const struct fish *fish, const struct history *history, const double way[2], double distance,
+                           struct diagnostics_fish *to) {
+    // in water at rest a body that does not travel has the direction of the heading
+    const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)};
+    const int travels = distance > 1e-9 * fish->length;
+    to->mean_thrust =
+        -mean_against(history, offsetof(struct sample, force), travels ? way : ahead, travels ? distance : 1);
+    to->mean_power += to->mean_thrust * to->speed;
+    to->efficiency = to->mean_thrust * to->speed / to->mean_power;
+}
+
 static void means_over_period(const struct fish *fish, const struct history *history, double interval,
                               struct diagnostics_fish *to) {
     const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
@@ -165,10 +178,10 @@ static void means_over_period(const struct fish *fish, const struct history *his
     to->speed = hypot(to->com_velocity[0] - new->stream[0], to->com_velocity[1] - new->stream[1]);
     to->drift = to->heading_error = to->strouhal = NAN;
     to->cost_of_transport = to->cost_of_transport_fluid = to->cost_of_transport_body = to->efficiency = NAN;
-    to->mean_thrust = to->mean_power = to->thrust_efficiency = to->mean_actuation_power = NAN;
+    to->mean_thrust = to->mean_power = to->mean_actuation_power = NAN;
     if (history->n < 2) return;
 
-    // speeds
+    // speeds and powers
     const double duration = (history->n - 1) * interval;
     double way[2];
     way_through_water(new, old, way);
@@ -177,22 +190,24 @@ static void means_over_period(const struct fish *fish, const struct history *his
     to->speed = distance / duration;
     to->drift = speed_drift(history);
     to->mean_actuation_power = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / duration;
+    const double drive = (new->work[WORK_DRIVING_ON_WATER] - old->work[WORK_DRIVING_ON_WATER]) / duration;
+    to->mean_power = to->mean_actuation_power + drive;
+    const int is_held = fish->motion.is_held;
+    if (is_held) thrust_of_held(fish, history, way, distance, to);
     if (distance <= 0) return;
 
     // quantities along the path
     to->heading_error = angle_degrees(angle_wrap(atan2(way[1], way[0]) - angle_radians(to->desired_heading)));
     const double momentum = fish->total_mass * to->speed;
-    const double drive = (new->work[WORK_DRIVING_ON_WATER] - old->work[WORK_DRIVING_ON_WATER]) / duration;
     to->cost_of_transport = (to->mean_actuation_power + drive) / momentum;
     to->cost_of_transport_fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / duration / momentum;
     to->cost_of_transport_body = (old->work[WORK_DAMPING] - new->work[WORK_DAMPING]) / duration / momentum;
+    to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
+    if (is_held) return;
 
     const double into_water = old->work[WORK_FLUID] - new->work[WORK_FLUID];
-    to->efficiency = mean_against(history, offsetof(struct sample, friction), way, distance) * distance / into_water;
     to->mean_thrust = -mean_against(history, offsetof(struct sample, force), way, distance);
-    to->mean_power = into_water / duration + to->mean_thrust * to->speed;
-    to->thrust_efficiency = to->mean_thrust * to->speed / to->mean_power;
-    to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
+    to->efficiency = mean_against(history, offsetof(struct sample, friction), way, distance) * distance / into_water;
 }
 
 void diagnostics_period(const struct fish *fish, const struct history *history, double interval,

@@ -37,15 +37,15 @@ struct diagnostics_fish {
     struct pressure_forces pressure; /* force: pressure, else 0 */
     double leading_edge_most;        /* largest magnitude of A_0 over the last period; NaN unless force: pressure */
     double separation_share;         /* fraction of the last period with A_0 above the suction limit */
-    double thrust;                   /* forces of the fluid along the heading, N */
+    double thrust;                   /* force of the fluid along the heading; prescribed motion: along the travel, N */
     double mean_thrust;              /* mean force of the fluid along the path, N, last period: 0 in steady swimming */
-    double mean_power;               /* mean power for thrust and wake, W, over the last period */
-    double thrust_efficiency;        /* mean thrust times speed over mean_power */
+    double mean_power;               /* mean power of muscle and drive, W, over the last period */
     double mean_actuation_power;     /* mean power of the muscle, W, over the last period */
     double cost_of_transport;        /* mean power of muscle, prescribed motion and loads / (mass speed), m s-2 */
     double cost_of_transport_fluid;  /* part of the cost of transport transferred to the fluid, m s-2 */
     double cost_of_transport_body;   /* part of the cost of transport dissipated by damping, m s-2 */
-    double efficiency;               /* friction times speed over the power transferred to the fluid, last period */
+    double efficiency;               /* held body: mean_thrust times speed over mean_power; else friction times speed
+                                      * over the power transferred to the fluid, last period */
     double strouhal;                 /* frequency times peak-to-peak amplitude of the tail over speed */
 };
 

@@ -120,7 +120,7 @@ static void gather_means(struct run *run) {
                                       .turn = beat->turn * 180 / M_PI,
                                       .place = {beat->place[0], beat->place[1]},
                                       .force = {beat->force[0], beat->force[1]},
-                                      .thrust = beat->thrust,
+                                      .thrust = last->mean_thrust,
                                       .drag = NAN,
                                       .lift = NAN,
                                       .deflection = NAN,
@@ -128,6 +128,7 @@ static void gather_means(struct run *run) {
                                       .damping_power = beat->damping,
                                       .constraint_power = beat->driving,
                                       .fluid_power = beat->fluid,
+                                      .power = last->mean_power,
                                       .cost_of_transport = last->cost_of_transport,
                                       .efficiency = last->efficiency,
                                       .strouhal = last->strouhal};

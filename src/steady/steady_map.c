@@ -13,7 +13,7 @@
 
 enum steady_freedom steady_map_freedom(const struct fish *fish) {
     if (fish->motion.prescribed == PRESCRIBED_NONE) return STEADY_SWIMS;
-    return fish->motion.surge == SURGE_FREE ? STEADY_SURGES : STEADY_HELD;
+    return fish->motion.is_held ? STEADY_HELD : STEADY_SURGES;
 }
 
 // ---- the beat

@@ -338,6 +338,7 @@ static void fill_fish(const struct simulation *simulation, int f, struct steady_
                                   .damping_power = NAN,
                                   .constraint_power = now->constraint_power,
                                   .deflection = way[0] * direction[1] - way[1] * direction[0],
+                                  .power = NAN,
                                   .cost_of_transport = NAN,
                                   .efficiency = NAN,
                                   .strouhal = NAN};

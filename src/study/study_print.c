@@ -9,22 +9,27 @@
 
 enum { MAX_FISH_SHOWN = 4, MAX_WARNINGS_SHOWN = 20 };
 
-/* The printed quantities, those of steady states only where a member has a value; study.nc contains all quantities. */
+/* The printed quantities, those of steady states only where a member has a value, those of held bodies only with a held
+ * body; study.nc contains all quantities. */
 static const struct shown {
     const char *quantity, *head, *format;
+    int of_held;
 } shown[] = {
-    {"time", "t", "%.4g"},
-    {"speed", "speed", "%.5f"},
-    {"mean_heading", "heading", "%.3f"},
-    {"cost_of_transport", "cost", "%.4g"},
-    {"strouhal", "Strouhal", "%.4f"},
-    {"steady_growth", "growth", "%+.4f"},
-    {"lateral_drift", "drift", "%.5f"},
-    {"shed_circulation", "shed", "%.5f"},
-    {"energy_balance", "balance", "%.1e"},
-    {"steps", "steps", "%.0f"},
-    {"residual_evaluations", "evaluations", "%.0f"},
-    {"wall_time", "wall", "%.2f"},
+    {"time", "t", "%.4g", 0},
+    {"speed", "speed", "%.5f", 0},
+    {"mean_heading", "heading", "%.3f", 0},
+    {"cost_of_transport", "cost", "%.4g", 0},
+    {"strouhal", "Strouhal", "%.4f", 0},
+    {"mean_thrust", "thrust", "%.5g", 1},
+    {"mean_power", "power", "%.5g", 1},
+    {"efficiency", "efficiency", "%.5f", 1},
+    {"steady_growth", "growth", "%+.4f", 0},
+    {"lateral_drift", "drift", "%.5f", 0},
+    {"shed_circulation", "shed", "%.5f", 0},
+    {"energy_balance", "balance", "%.1e", 0},
+    {"steps", "steps", "%.0f", 0},
+    {"residual_evaluations", "evaluations", "%.0f", 0},
+    {"wall_time", "wall", "%.2f", 0},
 };
 enum { N_SHOWN = sizeof shown / sizeof *shown };
 
@@ -34,10 +39,19 @@ struct columns {
     int n;
 };
 
-/* Leave out the quantities of steady states that no member has. */
-static struct columns columns_of(const struct member_file *members, int n) {
+static int has_held(const struct case_values *study) {
+    for (int f = 0; f < study->school.n_fish; f++) {
+        const struct motion_parameters *const motion = &study->school.fish[f].motion;
+        if (motion->prescribed != PRESCRIBED_NONE && motion->surge == SURGE_GIVEN) return 1;
+    }
+    return 0;
+}
+
+/* Leave out the quantities of held bodies in a study without one, and those of steady states that no member has. */
+static struct columns columns_of(const struct case_values *study, const struct member_file *members, int n) {
     struct columns columns = {.n = 0};
     for (int s = 0; s < N_SHOWN; s++) {
+        if (shown[s].of_held && !has_held(study)) continue;
         const int quantity = member_file_quantity_number(shown[s].quantity);
         int is_known = !member_file_quantity(quantity)->of_steady;
         for (int m = 0; m < n && !is_known; m++) is_known = !isnan(member_file_value(&members[m], quantity, 0, 0));
@@ -111,7 +125,7 @@ static void members_print_reasons(const struct member_file *members, int n, FILE
 enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
     const int n = sweep_n_members(study),
               n_fish = study->school.n_fish < MAX_FISH_SHOWN ? study->school.n_fish : MAX_FISH_SHOWN;
-    const struct columns columns = columns_of(members, n);
+    const struct columns columns = columns_of(study, members, n);
     int n_columns = 2 + (n_fish > 1) + columns.n;
 
     for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;

@@ -1,5 +1,6 @@
 /* test_diagnostics.c: derived quantities of a state, and energy balances: doc/model.md, section 13. */
 #include <stdio.h>
+#include <string.h>
 
 #include "school.h"
 #include "school/diagnostics.h"
@@ -407,10 +408,46 @@ static void thrust_and_power_of_a_held_plate_are_means_over_the_last_period(void
     NEAR(of->mean_thrust, thrust, 0, 1e-9);
     // works are integrated over steps, the power here over events
     NEAR(of->mean_power, power, 0, 5e-3);
-    NEAR(of->thrust_efficiency, of->mean_thrust * 1 / of->mean_power, 0, 1e-6);
+    NEAR(of->efficiency, of->mean_thrust * 1 / of->mean_power, 0, 1e-6);
     NEAR(of->leading_edge_most, edge, 0, 1e-4);
     assert_true(thrust > 0 && power > thrust);
     simulate_free(simulation);
+}
+
+/* A plate with damping and a muscle: the drive pays for both, and the power is the same in a stream. */
+static void power_of_a_held_plate_is_the_work_of_muscle_and_drive(void **state) {
+    (void)state;
+    double power[2];
+    for (int i = 0; i < 2; i++) {
+        char text[768];
+        snprintf(
+            text, sizeof text,
+            SCHOOL_DEFAULTS
+            "time: {end: 4, shedding_interval: 0.02}\n"
+            "fluid: {density: 1, velocity: [%d, 0]}\n"
+            "fish: [{force: pressure, nodes: 13, wave: {amplitude: 0.1}, body: {profile: uniform, thickness: 0.05,\n"
+            "  depth: 1, density: 25, modulus: 8.0e+5, relaxation_time: 0.02},\n"
+            "  motion: {prescribed: head, speed: %d, heave: 0.05, frequency: 1}}]\n",
+            i, 1 - i);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 3);
+        const double *const work = simulation->state->balance[0].work;
+        double before[N_WORKS], of[N_WORKS];
+        memcpy(before, work, sizeof before);
+        school_run(simulation, 4);
+        simulate_measure(simulation);
+        for (int w = 0; w < N_WORKS; w++) of[w] = work[w] - before[w];
+
+        const struct diagnostics_fish *const fish = simulation->diagnostics->fish;
+        power[i] = fish->mean_power;
+        NEAR(power[i], of[WORK_ACTUATION] + of[WORK_DRIVING_ON_WATER] + fish->mean_thrust * fish->speed, 0, 1e-9);
+        NEAR(fish->efficiency, fish->mean_thrust * fish->speed / power[i], 0, 1e-12);
+        // a beat that repeats: the power goes into fluid, thrust and damping, by 4 % of it from beat to beat
+        NEAR(power[i], -of[WORK_FLUID] - of[WORK_DAMPING] + fish->mean_thrust * fish->speed, 0, 0.04);
+        assert_true(-of[WORK_DAMPING] > 0.02 * power[i] && of[WORK_ACTUATION] > 0.02 * power[i]);
+        simulate_free(simulation);
+    }
+    NEAR(power[1], power[0], 0, 1e-4);
 }
 
 static void forces_by_name_make_up_momentum_and_angular_momentum(void **state) {
@@ -445,7 +482,8 @@ static void forces_by_name_make_up_momentum_and_angular_momentum(void **state) {
             // tolerance: residual of the equation of motion after the Newton iteration
             NEAR_ARRAY(3, forces, rate, 2e-3, 1e-4);
             assert_true(fabs(rate[2]) > 0.01);
-            const double heading = of->heading * acos(-1) / 180;
+            // prescribed motion travels along its first heading, not along the pitching one
+            const double heading = i == 0 ? of->heading * acos(-1) / 180 : fish->start_heading;
             NEAR(of->thrust,
                  cos(heading) * (of->resistive_force[0] + of->reactive_force[0]) +
                      sin(heading) * (of->resistive_force[1] + of->reactive_force[1]),
@@ -557,6 +595,7 @@ int main(void) {
         cmocka_unit_test(cost_of_transport_is_what_fluid_and_damping_take),
         cmocka_unit_test(cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream),
         cmocka_unit_test(thrust_and_power_of_a_held_plate_are_means_over_the_last_period),
+        cmocka_unit_test(power_of_a_held_plate_is_the_work_of_muscle_and_drive),
         cmocka_unit_test(forces_by_name_make_up_momentum_and_angular_momentum),
         cmocka_unit_test(vortices_inside_an_outline_are_counted),
         cmocka_unit_test(a_body_that_sweeps_over_a_wake_loses_no_circulation),

@@ -119,7 +119,6 @@ static void means_over_the_last_period_do_not_notice_a_turn_in_a_stream(void **s
     NEAR(now->mean_thrust, before.mean_thrust, 0, rounding);
     NEAR(now->mean_power, before.mean_power, 0, rounding);
     NEAR(now->efficiency, before.efficiency, 0, rounding);
-    NEAR(now->thrust_efficiency, before.thrust_efficiency, 0, rounding);
     NEAR(now->strouhal, before.strouhal, 0, rounding);
     // the path through the water turns, the desired heading does not
     NEAR(now->heading_error, before.heading_error + 0.7 * 180 / M_PI, 1e-10, 0);

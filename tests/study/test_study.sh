@@ -285,7 +285,7 @@ end
     panels() { /usr/bin/python3 panels.py "$scripts" "$@"; }
     run study held.yaml -q -o held
     check a_picture_of_a_held_fish draws held/study.nc
-    check it_shows_what_holding_takes panels held/study.nc mean_thrust mean_power thrust_efficiency
+    check it_shows_what_holding_takes panels held/study.nc mean_thrust mean_power efficiency
     run study held.yaml -q -o free --set 'fish[0].motion.prescribed=none'
     check a_free_fish_that_starts_at_a_speed_is_not_held panels free/study.nc speed cost_of_transport strouhal
     run study held.yaml -q -o heaving --set 'fish[0].wave={amplitude: 0, frequency: 0}' --set \

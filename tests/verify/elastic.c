@@ -177,7 +177,7 @@ static struct driven drive(const struct setting *setting, double amplitude, int 
         verify_run(simulation, n_periods - 1 + (double)i / N_FRACTION);
         add_event(simulation, 1.0 / N_FRACTION, &driven);
     }
-    driven.efficiency = simulation->diagnostics->fish[0].thrust_efficiency;
+    driven.efficiency = simulation->diagnostics->fish[0].efficiency;
     simulate_free(simulation);
     driven.lift /= amplitude;
     driven.thrust /= amplitude * amplitude;
