@@ -39,7 +39,7 @@ CC = clang
 B = build-sanitize-thread
 sanitize = -fsanitize=thread
 # what lets threads work side by side; `make test SANITIZE=thread TEST="..."` for others
-TEST = parallel pairwise treecode velocity_sum images flow residual linear simulate shoal clearance sundials_context threads
+TEST = parallel pairwise treecode velocity_sum images flow residual linear simulate shoal clearance sundials threads
 else
 B = build-sanitize$(if $(is_clang),-clang)
 # gcc 12 warns of variables that may be unset where the sanitizer's own code hides how they are set

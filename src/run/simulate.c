@@ -14,7 +14,7 @@
 #include "flow/flow_at_bodies.h"
 #include "result/result_table.h"
 #include "run/event.h"
-#include "solver/integrator_table.h"
+#include "solver/integrator.h"
 
 static double wall_clock(void) {
     struct timespec now;

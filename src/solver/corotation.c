@@ -4,21 +4,22 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "fish/fish_prescribed.h"
 
 // two translations and a rotation
 enum { N_RIGID = 3 };
 
-// all arrays with x in the first half and y in the second, as the unknowns have them
+// in all arrays x is the first half and y the second half, as in the unknowns
 struct body {
     const struct fish *fish;
     int has_moved;         /* since corotation_set_reference */
-    int n_rigid;           /* motions that are mapped: none where nodes are prescribed */
+    int n_rigid;           /* number of mapped rigid motions: 0 with prescribed nodes */
     double *reference;     /* positions of the nodes in the reference configuration, m      (2 n_nodes) */
-    double *rotation;      /* cosine and sine of the rotation of each node since then       (2 n_nodes) */
-    double *from[N_RIGID]; /* the rigid motions of the reference body, with nodes rotated   (2 n_nodes each) */
-    double *to[N_RIGID];   /* those of the current body; both sets are orthonormal          (2 n_nodes each) */
+    double *rotation;      /* cosine and sine of the rotation of each node since the reference  (2 n_nodes) */
+    double *from[N_RIGID]; /* orthonormal rigid motions of the reference body, nodes rotated (2 n_nodes each) */
+    double *to[N_RIGID];   /* orthonormal rigid motions of the current body                 (2 n_nodes each) */
 };
 
 struct corotation {
@@ -31,15 +32,20 @@ enum { N_ARRAYS = 2 + 2 * N_RIGID };
 
 enum status corotation_create(struct corotation **corotation, const struct school *school) {
     *corotation = NULL;
-    struct corotation *const new = calloc(1, sizeof *new);
-    if (!new) goto no_memory;
-    const size_t n_fish = (size_t)school->n_fish;
+    struct corotation *new;
+    TRY(MEMORY_NEW(new, 1, "the configurations of bodies"));
+    new->school = school;
     size_t n_nodes = 0;
     for (int f = 0; f < school->n_fish; f++) n_nodes += (size_t)school->fish[f].n_nodes;
-    new->school = school;
-    new->body = calloc(n_fish, sizeof *new->body);
-    new->values = calloc(n_nodes * 2 * N_ARRAYS, sizeof *new->values);
-    if (!new->body || !new->values) goto no_memory;
+    enum status status = MEMORY_NEW(new->body, school->n_fish, "the configurations of bodies");
+    if (status == STATUS_OK) {
+        status = MEMORY_NEW(new->values, n_nodes * 2 * N_ARRAYS, "the configurations of bodies");
+    }
+    if (status != STATUS_OK) {
+        corotation_free(new);
+        return status;
+    }
+
     double *next = new->values;
     for (int f = 0; f < school->n_fish; f++) {
         struct body *body = &new->body[f];
@@ -51,10 +57,6 @@ enum status corotation_create(struct corotation **corotation, const struct schoo
     }
     *corotation = new;
     return STATUS_OK;
-
-no_memory:
-    corotation_free(new);
-    return status_fail(STATUS_MEMORY, "out of memory: the configurations of %d bodies", school->n_fish);
 }
 
 void corotation_free(struct corotation *corotation) {
@@ -64,15 +66,15 @@ void corotation_free(struct corotation *corotation) {
     free(corotation);
 }
 
-static double dot(const struct fish *fish, const double *a, const double *b) {
+static double corotation_dot(const struct fish *fish, const double *a, const double *b) {
     const int n = fish->n_nodes;
     double sum = 0;
     for (int k = 0; k < n; k++) sum += fish->mass[k] * (a[k] * b[k] + a[n + k] * b[n + k]);
     return sum;
 }
 
-static void normalise(const struct fish *fish, double *a) {
-    const double size = sqrt(dot(fish, a, a));
+static void corotation_normalise(const struct fish *fish, double *a) {
+    const double size = sqrt(corotation_dot(fish, a, a));
     for (int i = 0; i < 2 * fish->n_nodes; i++) a[i] /= size;
 }
 
@@ -83,23 +85,25 @@ static void rigid_motions(const struct fish *fish, const double *position, doubl
         motion[0][k] = motion[1][n + k] = 1;
         motion[0][n + k] = motion[1][k] = 0;
     }
-    normalise(fish, motion[0]);
-    normalise(fish, motion[1]);
-    const double along_x = dot(fish, motion[0], position), along_y = dot(fish, motion[1], position);
+    corotation_normalise(fish, motion[0]);
+    corotation_normalise(fish, motion[1]);
+    const double along_x = corotation_dot(fish, motion[0], position),
+                 along_y = corotation_dot(fish, motion[1], position);
     for (int k = 0; k < n; k++) {
         motion[2][k] = -(position[n + k] - along_y * motion[1][n + k]);
         motion[2][n + k] = position[k] - along_x * motion[0][k];
     }
-    normalise(fish, motion[2]);
+    corotation_normalise(fish, motion[2]);
 }
 
-// apply to a the rotation that maps the unit vector u to the unit vector v and keeps what is perpendicular to both
-static void rotate(const struct fish *fish, const double *u, const double *v, double *a) {
-    const double both = (dot(fish, u, a) + dot(fish, v, a)) / (1 + dot(fish, u, v)), first = 2 * dot(fish, u, a);
+// apply to a the rotation that maps the unit vector u to the unit vector v and keeps vectors perpendicular to both
+static void corotation_rotate(const struct fish *fish, const double *u, const double *v, double *a) {
+    const double both = (corotation_dot(fish, u, a) + corotation_dot(fish, v, a)) / (1 + corotation_dot(fish, u, v)),
+                 first = 2 * corotation_dot(fish, u, a);
     for (int i = 0; i < 2 * fish->n_nodes; i++) a[i] += first * v[i] - both * (u[i] + v[i]);
 }
 
-// rotate the vector of each node; sign -1: backwards
+// corotation_rotate the vector of each node; sign -1: backwards
 static void rotate_nodes(const struct body *body, double sign, double *a) {
     const int n = body->fish->n_nodes;
     for (int k = 0; k < n; k++) {
@@ -118,13 +122,13 @@ void corotation_set_reference(struct corotation *corotation, const double *y) {
 }
 
 // the unit vector along (c, s): cosine and sine of its angle
-static void direction(double c, double s, double *unit) {
+static void corotation_direction(double c, double s, double *unit) {
     const double size = hypot(c, s);
     unit[0] = c / size;
     unit[1] = s / size;
 }
 
-// the rotation of a node is the mean of its two edges': the direction of the sum of their unit vectors
+// the rotation of a node is the mean of the rotations of its two edges: the direction of the sum of their unit vectors
 static void find_rotations(struct body *body, const double *position) {
     const int n = body->fish->n_nodes;
     double before[2] = {0, 0};
@@ -134,9 +138,9 @@ static void find_rotations(struct body *body, const double *position) {
             const double a[2] = {body->reference[k + 1] - body->reference[k],
                                  body->reference[n + k + 1] - body->reference[n + k]};
             const double b[2] = {position[k + 1] - position[k], position[n + k + 1] - position[n + k]};
-            direction(a[0] * b[0] + a[1] * b[1], a[0] * b[1] - a[1] * b[0], after);
+            corotation_direction(a[0] * b[0] + a[1] * b[1], a[0] * b[1] - a[1] * b[0], after);
         }
-        direction(before[0] + after[0], before[1] + after[1], mean);
+        corotation_direction(before[0] + after[0], before[1] + after[1], mean);
         body->rotation[k] = mean[0];
         body->rotation[n + k] = mean[1];
         before[0] = after[0];
@@ -161,7 +165,7 @@ static void set_current(void *data, int f) {
     rigid_motions(fish, position, body->to);
     for (int i = 0; i < N_RIGID; i++) {
         rotate_nodes(body, 1, body->from[i]);
-        for (int j = 0; j < i; j++) rotate(fish, body->from[j], body->to[j], body->from[i]);
+        for (int j = 0; j < i; j++) corotation_rotate(fish, body->from[j], body->to[j], body->from[i]);
     }
 }
 
@@ -172,11 +176,11 @@ void corotation_set_current(struct corotation *corotation, const double *y) {
 
 static void body_to_current(const struct body *body, double *a) {
     rotate_nodes(body, 1, a);
-    for (int i = 0; i < body->n_rigid; i++) rotate(body->fish, body->from[i], body->to[i], a);
+    for (int i = 0; i < body->n_rigid; i++) corotation_rotate(body->fish, body->from[i], body->to[i], a);
 }
 
 static void body_to_reference(const struct body *body, double *a) {
-    for (int i = body->n_rigid - 1; i >= 0; i--) rotate(body->fish, body->to[i], body->from[i], a);
+    for (int i = body->n_rigid - 1; i >= 0; i--) corotation_rotate(body->fish, body->to[i], body->from[i], a);
     rotate_nodes(body, -1, a);
 }
 

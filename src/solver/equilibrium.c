@@ -1,5 +1,4 @@
-/* equilibrium.c: see equilibrium.h. The residual of a run whose rates are those of bodies that go on as they are, with
- * the unknowns that then are not known: free places, and sheets. */
+/* equilibrium.c: the residual of a run with constant velocities; unknowns are free positions and sheets. */
 #include "solver/equilibrium.h"
 
 #include <lapacke.h>
@@ -14,14 +13,14 @@
 #include "school/residual_jacobian.h"
 #include "solver/newton.h"
 
-/* Equations are solved to this, over their scales; forces no better than the rounding of places makes those along a
- * body: some times 1e-16 of a place over the length of an edge. */
+/* Tolerance of the scaled residual. The scale of a force includes this fraction of the axial force by the rounding of
+ * positions: some 1e-16 of a position over the length of an edge. */
 static const double tolerance = 1e-10, rounding = 1e-5;
 
-/* A solution that is near takes less than half as many. */
+/* More than twice the number of iterations from a close initial guess. */
 enum { MAX_ITERATIONS = 16 };
 
-/* An eigenvalue counts as real where its imaginary part is less than this part of it. */
+/* An eigenvalue is real if the imaginary part is below this fraction of the real part. */
 static const double nearly_real = 1e-3;
 
 struct equilibrium {
@@ -29,18 +28,17 @@ struct equilibrium {
     struct state *state;
     struct jacobian *jacobian;
     double reach;                    /* of the couplings in a run */
-    int n, n_places;                 /* unknowns: first the free places of all bodies, then their sheets */
-    int *unknown, *row;              /* where they stand among all unknowns, and their equations             (n) */
-    int *number;                     /* of an unknown of the school: in the list of unknowns, or -1      (n_unknowns) */
-    int *row_number;                 /* and of an equation                                               (n_unknowns) */
+    int n, n_places;                 /* unknowns: first the free positions of all bodies, then the sheets */
+    int *unknown, *row;              /* indices of unknown and equation in the school                        (n) */
+    int *number, *row_number;        /* inverse of unknown and row, or -1                               (n_unknowns) */
     double *scale, *row_scale, *one; /* (n) */
-    double *u, *value;               /* over these scales                                   (n) */
-    double *all;                     /* a residual of the school                            (n_unknowns) */
+    double *u, *value;               /* scaled unknowns and residuals                       (n) */
+    double *all;                     /* residual of the school                              (n_unknowns) */
 };
 
-// ---- what is not known
+// ---- unknowns
 
-static void list_one(struct equilibrium *e, int unknown, int row, double scale, double row_scale) {
+static void equilibrium_list_one(struct equilibrium *e, int unknown, int row, double scale, double row_scale) {
     const int i = e->n++;
     e->unknown[i] = unknown;
     e->row[i] = row;
@@ -50,7 +48,7 @@ static void list_one(struct equilibrium *e, int unknown, int row, double scale, 
     e->row_number[row] = i;
 }
 
-// the force that bends a body by its length, and that of the stream
+// the force that bends a body by its length, plus the force of the stream, plus rounding
 static double force_scale(const struct school *school, const struct fish *fish) {
     const double speed = fish->length * fish_rate(school, fish);
     double stiffness = 0, axial = 0, depth = 0;
@@ -70,7 +68,7 @@ static void list_places(struct equilibrium *e, const struct fish *fish) {
         for (int k = 0; k < fish->n_nodes; k++) {
             const int node = i * fish->n_nodes + k;
             if (fish_is_prescribed(fish, k, i)) continue;
-            list_one(e, fish->at.x + node, fish->at.ax + node, fish->length, force / fish->mass[k]);
+            equilibrium_list_one(e, fish->at.x + node, fish->at.ax + node, fish->length, force / fish->mass[k]);
         }
     }
 }
@@ -79,24 +77,23 @@ static void list_sheet(struct equilibrium *e, const struct fish *fish) {
     const double speed = fish->length * fish_rate(e->residual->school, fish), circulation = speed * fish->length;
     for (int j = 0; j < fish->n_sheet; j++) {
         // the last is Kelvin's equation
-        list_one(e, fish->at.gamma + j, fish->at.gamma + j, speed, j < fish->n_control ? speed : circulation);
+        equilibrium_list_one(e, fish->at.gamma + j, fish->at.gamma + j, speed,
+                             j < fish->n_control ? speed : circulation);
     }
-    list_one(e, fish->at.circulation, fish->at.circulation, circulation, circulation);
+    equilibrium_list_one(e, fish->at.circulation, fish->at.circulation, circulation, circulation);
 }
 
-static enum status allocate(struct equilibrium *e) {
+static enum status equilibrium_allocate(struct equilibrium *e) {
     const struct school *school = e->residual->school;
     const size_t n = (size_t)school->n_unknowns;
     int **const counts[] = {&e->unknown, &e->row, &e->number, &e->row_number};
     double **const reals[] = {&e->scale, &e->row_scale, &e->one, &e->u, &e->value, &e->all};
-    int has_all = 1;
-    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) has_all &= !!(*counts[i] = calloc(n, sizeof(int)));
-    for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) has_all &= !!(*reals[i] = calloc(n, sizeof(double)));
-    if (!has_all) return status_fail(STATUS_MEMORY, "out of memory: the equilibrium of %d bodies", school->n_fish);
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) TRY(MEMORY_NEW(*counts[i], n, "an equilibrium"));
+    TRY(MEMORY_ARRAYS(reals, school->n_unknowns, "an equilibrium"));
     return jacobian_create(&e->jacobian, school);
 }
 
-static void list(struct equilibrium *e) {
+static void equilibrium_list(struct equilibrium *e) {
     const struct school *school = e->residual->school;
     for (int i = 0; i < school->n_unknowns; i++) {
         e->number[i] = e->row_number[i] = -1;
@@ -112,16 +109,16 @@ enum status equilibrium_create(struct equilibrium **equilibrium, struct residual
     struct equilibrium *new;
     TRY(MEMORY_NEW(new, 1, "an equilibrium"));
     *new = (struct equilibrium){.residual = residual, .state = state, .reach = residual->couplings.reach};
-    // all bodies couple, however far they are from each other
+    // couple all bodies at any distance
     residual->couplings.reach = 1e6 * residual->school->fish[0].length;
     residual->shed_now = SHED_IS_FAR;
-    enum status status = allocate(new);
+    enum status status = equilibrium_allocate(new);
     if (status == STATUS_OK) status = residual_couple(&residual->couplings, state->y);
     if (status != STATUS_OK) {
         equilibrium_free(new);
         return status;
     }
-    list(new);
+    equilibrium_list(new);
     *equilibrium = new;
     return STATUS_OK;
 }
@@ -139,8 +136,8 @@ void equilibrium_free(struct equilibrium *e) {
 
 // ---- the equations
 
-// what is known: all nodes go as the first one does, nothing accelerates
-static void set_known(struct equilibrium *e) {
+// set the known values: all nodes have the velocity of the first node, and no acceleration
+static void equilibrium_set_known(struct equilibrium *e) {
     struct state *const state = e->state;
     const struct school *school = e->residual->school;
     memset(state->yp, 0, (size_t)school->n_unknowns * sizeof *state->yp);
@@ -156,7 +153,7 @@ static void set_known(struct equilibrium *e) {
     }
 }
 
-static enum status evaluate(struct equilibrium *e) {
+static enum status equilibrium_evaluate(struct equilibrium *e) {
     struct state *const state = e->state;
     const struct school *school = e->residual->school;
     for (int f = 0; f < school->n_fish; f++) {
@@ -168,12 +165,12 @@ static enum status evaluate(struct equilibrium *e) {
 static enum status value_of(void *data, const double *u, double *value) {
     struct equilibrium *const e = data;
     for (int i = 0; i < e->n; i++) e->state->y[e->unknown[i]] = u[i] * e->scale[i];
-    TRY(evaluate(e));
+    TRY(equilibrium_evaluate(e));
     for (int i = 0; i < e->n; i++) value[i] = e->all[e->row[i]] / e->row_scale[i];
     return STATUS_OK;
 }
 
-static void put(const struct equilibrium *e, int row, int column, double value, double *matrix) {
+static void equilibrium_put(const struct equilibrium *e, int row, int column, double value, double *matrix) {
     const int i = e->row_number[row], j = e->number[column];
     if (i >= 0 && j >= 0) matrix[(size_t)i + (size_t)e->n * (size_t)j] = value * e->scale[j] / e->row_scale[i];
 }
@@ -181,7 +178,7 @@ static void put(const struct equilibrium *e, int row, int column, double value, 
 static void put_own(const struct equilibrium *e, const struct sparse *own, double *matrix) {
     for (int c = 0; c < own->n; c++) {
         for (int64_t k = own->column_start[c]; k < own->column_start[c + 1]; k++) {
-            put(e, own->first + (int)own->row_index[k], own->first + c, own->value[k], matrix);
+            equilibrium_put(e, own->first + (int)own->row_index[k], own->first + c, own->value[k], matrix);
         }
     }
 }
@@ -192,7 +189,7 @@ static void put_coupling(const struct equilibrium *e, int f, const struct jacobi
     for (int c = 0; c < rows->n_columns; c++) {
         const int column = flow_column(&school->fish[coupling->other], c);
         for (int r = 0; r < rows->n_rows; r++) {
-            put(e, school->fish[f].at.ax + r, column, rows->value[(long)c * rows->n_rows + r], matrix);
+            equilibrium_put(e, school->fish[f].at.ax + r, column, rows->value[(long)c * rows->n_rows + r], matrix);
         }
     }
 }
@@ -211,7 +208,7 @@ static enum status jacobian_of(void *data, double *matrix) {
     return STATUS_OK;
 }
 
-// momenta follow from places and sheets: their equations are less them
+// momenta follow from positions and sheets
 static void set_momenta(struct equilibrium *e) {
     const struct school *school = e->residual->school;
     for (int f = 0; f < school->n_fish; f++) {
@@ -233,12 +230,12 @@ enum status equilibrium_solve(struct equilibrium *e) {
                                    .value = value_of,
                                    .jacobian = jacobian_of,
                                    .data = e};
-    set_known(e);
+    equilibrium_set_known(e);
     for (int i = 0; i < e->n; i++) e->u[i] = e->state->y[e->unknown[i]] / e->scale[i];
     TRY(newton_solve(&problem, e->u));
     TRY(value_of(e, e->u, e->value));
     set_momenta(e);
-    return evaluate(e);
+    return equilibrium_evaluate(e);
 }
 
 double equilibrium_residual(const struct equilibrium *e) {
@@ -249,12 +246,12 @@ double equilibrium_residual(const struct equilibrium *e) {
 
 // ---- the stiffness
 
-// A - B D^-1 C of [A B; C D], A of the first n_places unknowns; in A
+// replace A by A - B D^-1 C in [A B; C D], A: block of the first n_places unknowns
 static enum status eliminate_sheets(const struct equilibrium *e, double *matrix, lapack_int *pivot) {
     const int n = e->n, p = e->n_places, m = n - p;
     double *const right = matrix + (size_t)n * (size_t)p, *const below = matrix + p;
     if (LAPACKE_dgesv(LAPACK_COL_MAJOR, m, p, right + p, n, pivot, below, n) != 0) {
-        return status_fail(STATUS_SOLVER, "the sheets do not follow from the places of the bodies");
+        return status_fail(STATUS_SOLVER, "the positions of the bodies do not determine the sheets");
     }
     for (int j = 0; j < p; j++) {
         double *const column = matrix + (size_t)n * (size_t)j;
@@ -271,7 +268,7 @@ static enum status eliminate_sheets(const struct equilibrium *e, double *matrix,
 static enum status take_eigenvalues(const struct equilibrium *e, double *matrix, double *real, double *imaginary,
                                     struct equilibrium_stiffness *stiffness) {
     if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', e->n_places, matrix, e->n, real, imaginary, NULL, 1, NULL, 1) != 0) {
-        return status_fail(STATUS_SOLVER, "the eigenvalues of the static stiffness cannot be found");
+        return status_fail(STATUS_SOLVER, "the eigenvalues of the static stiffness do not converge");
     }
     for (int i = 0; i < e->n_places; i++) {
         stiffness->log_determinant += log(hypot(real[i], imaginary[i]));

@@ -1,17 +1,113 @@
-/* fish_factors.c: elimination of the rod, and the full matrix that is left. */
+/* fish_factors.c: KLU, elimination of the rod, and factors of the full Schur complement. */
 #include "solver/fish_factors.h"
 
+#include <klu.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Sheets of at least this many points are eliminated by LAPACK. With fewer, KLU is nearly as fast. */
+#include "base/memory.h"
+
+/* A diagonal pivot keeps the factors sparse. Use a diagonal pivot of at least diagonal_tolerance (the default of KLU)
+ * times the largest entry of the column. If the reciprocal pivot growth is then below min_growth, as in soft rods of
+ * many nodes, the solution has too few digits for Newton's iteration: use the largest entries as pivots. If the
+ * elimination of the rod lets a column of S grow by more than 1/min_growth, KLU factorises the whole block. */
+static const double diagonal_tolerance = 1e-3, min_growth = 1e-6;
+
+/* Keep the pivots of an earlier matrix while reciprocal condition estimate and reciprocal pivot growth are at least
+ * this fraction of the values when the pivots were chosen. */
+static const double min_quality = 1e-3;
+
+/* Sheets with at least this many points are eliminated by LAPACK. With fewer points KLU is nearly as fast. */
 enum { MIN_POINTS = 100 };
 
-/* KLU takes all if the elimination of the rod without the sheet makes the entries of a column grow by more than the
- * inverse of this: as in sparse_factors.c, the digits that are left may be too few. */
-static const double min_growth = 1e-6;
+// ---- factors of a sparse matrix by KLU
+
+/* A square matrix in compressed columns, as in base/sparse.h. */
+struct sparse_columns {
+    int n;
+    unsigned version; /* of the pattern, not 0; a new version is analysed again */
+    int64_t *start;   /* (n + 1) */
+    int64_t *row;     /* (start[n]) */
+    double *value;    /* (start[n]) */
+};
+
+struct sparse_factors {
+    int n;
+    unsigned version; /* version of the analysed pattern; 0: none */
+    klu_l_common common;
+    klu_l_symbolic *symbolic;
+    klu_l_numeric *numeric;
+    double rcond, rgrowth; /* when the pivots were chosen */
+    struct fish_factors_counts counts;
+};
+
+static enum status sparse_factors_create(struct sparse_factors **factors) {
+    TRY(MEMORY_NEW(*factors, 1, "factors of a sparse matrix"));
+    klu_l_defaults(&(*factors)->common);
+    return STATUS_OK;
+}
+
+static void sparse_factors_free(struct sparse_factors *factors) {
+    if (!factors) return;
+    klu_l_free_numeric(&factors->numeric, &factors->common);
+    klu_l_free_symbolic(&factors->symbolic, &factors->common);
+    free(factors);
+}
+
+// factorise with the pivots of the last factorisation; returns whether the factors are good
+static int sparse_refactor(struct sparse_factors *factors, const struct sparse_columns *matrix) {
+    if (!factors->numeric) return 0;
+    klu_l_common *const common = &factors->common;
+    factors->counts.refactorisations++;
+    return klu_l_refactor(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common) &&
+           klu_l_rcond(factors->symbolic, factors->numeric, common) && common->rcond >= min_quality * factors->rcond &&
+           klu_l_rgrowth(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common) &&
+           common->rgrowth >= min_quality * factors->rgrowth;
+}
+
+// choose pivots of at least this fraction (tolerance) of the largest entry
+static enum status sparse_factor(struct sparse_factors *factors, const struct sparse_columns *matrix,
+                                 double tolerance) {
+    klu_l_common *const common = &factors->common;
+    klu_l_free_numeric(&factors->numeric, common);
+    common->tol = tolerance;
+    factors->counts.factorisations++;
+    factors->numeric = klu_l_factor(matrix->start, matrix->row, matrix->value, factors->symbolic, common);
+    if (!factors->numeric) return common->status == KLU_OUT_OF_MEMORY ? STATUS_MEMORY : STATUS_SOLVER;
+    klu_l_rcond(factors->symbolic, factors->numeric, common);
+    factors->rcond = common->rcond;
+    klu_l_rgrowth(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common);
+    factors->rgrowth = common->rgrowth;
+    return STATUS_OK;
+}
+
+// without a message
+static enum status sparse_factors_set_up(struct sparse_factors *factors, const struct sparse_columns *matrix) {
+    if (factors->version != matrix->version) {
+        klu_l_free_numeric(&factors->numeric, &factors->common);
+        klu_l_free_symbolic(&factors->symbolic, &factors->common);
+        factors->counts.analyses++;
+        factors->symbolic = klu_l_analyze(matrix->n, matrix->start, matrix->row, &factors->common);
+        factors->version = matrix->version;
+        factors->n = matrix->n;
+    }
+    // without an analysis the matrix is structurally singular, or memory is lacking
+    if (!factors->symbolic) {
+        factors->version = 0;
+        return factors->common.status == KLU_OUT_OF_MEMORY ? STATUS_MEMORY : STATUS_SOLVER;
+    }
+    if (sparse_refactor(factors, matrix)) return STATUS_OK;
+    const enum status status = sparse_factor(factors, matrix, diagonal_tolerance);
+    return status == STATUS_OK && factors->rgrowth < min_growth ? sparse_factor(factors, matrix, 1) : status;
+}
+
+static void sparse_factors_solve(struct sparse_factors *factors, double *x) {
+    klu_l_solve(factors->symbolic, factors->numeric, factors->n, 1, x, &factors->common);
+}
+
+// ---- the block of one fish
 
 struct fish_factors {
     const struct fish *fish;
@@ -19,22 +115,18 @@ struct fish_factors {
     int was_factorised;
     struct sparse_factors *whole;
 
-    /* in parts: the rows of A are the first of the block, its columns begin with first */
+    /* in parts: the rows of A are the first rows of the block, the columns of A begin with column first */
     int in_parts;
     struct sparse_factors *a;
-    unsigned version; /* of the pattern that is divided; 0: none */
+    unsigned version; /* version of the divided pattern; 0: none */
     int first, n_rod, n_sheet;
-    int64_t *split;            /* where rows of the sheet begin in the columns of the block   (n) */
+    int64_t *split;            /* start of the rows of the sheet in each column of the block  (n) */
     struct sparse_columns rod; /* A; owned */
-    double *schur;             /* S, then its factors                        (n_sheet, n_sheet), by columns */
+    double *schur;             /* S, later the factors of S                  (n_sheet, n_sheet), by columns */
     lapack_int *pivot;         /* (n_sheet) */
     double *row_scale;         /* the largest entry of each row of the block                  (n) */
-    double *x_rod, *x_sheet;   /* room for solutions                               (n_rod), (n_sheet) */
+    double *x_rod, *x_sheet;   /* solutions                                        (n_rod), (n_sheet) */
 };
-
-static int is_large(const struct fish_factors *factors) {
-    return factors->fish->n_sheet >= MIN_POINTS;
-}
 
 void fish_factors_free(struct fish_factors *factors) {
     if (!factors) return;
@@ -52,49 +144,44 @@ void fish_factors_free(struct fish_factors *factors) {
     free(factors);
 }
 
-// for the parts, but the entries of A
-static enum status make_room(struct fish_factors *factors) {
-    TRY(sparse_factors_create(&factors->a));
-    const size_t n_rod = (size_t)factors->n_rod, n_sheet = (size_t)factors->n_sheet, n = n_rod + n_sheet;
-    factors->split = calloc(n, sizeof *factors->split);
-    factors->rod.start = calloc(n_rod + 1, sizeof *factors->rod.start);
-    factors->schur = calloc(n_sheet * n_sheet, sizeof *factors->schur);
-    factors->pivot = calloc(n_sheet, sizeof *factors->pivot);
-    factors->row_scale = calloc(n, sizeof *factors->row_scale);
-    factors->x_rod = calloc(n_rod, sizeof *factors->x_rod);
-    factors->x_sheet = calloc(n_sheet, sizeof *factors->x_sheet);
-    const int has_all = factors->split && factors->rod.start && factors->schur && factors->pivot &&
-                        factors->row_scale && factors->x_rod && factors->x_sheet;
-    return has_all ? STATUS_OK : STATUS_MEMORY;
-}
-
 enum status fish_factors_create(struct fish_factors **factors, const struct fish *fish, const struct sparse *block) {
     *factors = NULL;
-    struct fish_factors *const new = calloc(1, sizeof *new);
-    if (!new || sparse_factors_create(&new->whole) != STATUS_OK) goto no_memory;
+    struct fish_factors *new;
+    TRY(MEMORY_NEW(new, 1, "factors of a fish"));
     new->fish = fish;
     new->block = block;
-    // with momenta the law of motion is as full as the rows of the sheet, and with it the places are left to the last
+    // with momenta the law of motion is as full as the rows of the sheet, so the positions belong to the last columns
     const int is_full = fish_has_momentum(fish);
     new->first = is_full ? fish->at.vx - fish->at.x : 0;
     new->n_rod = (is_full ? fish->at.ax : fish->at.gamma) - fish->at.x;
     new->n_sheet = block->n - new->n_rod;
-    if (is_large(new) && make_room(new) != STATUS_OK) goto no_memory;
-    *factors = new;
-    return STATUS_OK;
 
-no_memory:
-    fish_factors_free(new);
-    return status_fail(STATUS_MEMORY, "out of memory: factors of the %d unknowns of fish %s", block->n, fish->name);
+    enum status status = sparse_factors_create(&new->whole);
+    if (fish->n_sheet >= MIN_POINTS) {
+        if (status == STATUS_OK) status = sparse_factors_create(&new->a);
+        if (status == STATUS_OK) status = MEMORY_NEW(new->split, block->n, "factors of a fish");
+        if (status == STATUS_OK) status = MEMORY_NEW(new->rod.start, new->n_rod + 1, "factors of a fish");
+        if (status == STATUS_OK) status = MEMORY_NEW(new->schur, new->n_sheet *new->n_sheet, "factors of a fish");
+        if (status == STATUS_OK) status = MEMORY_NEW(new->pivot, new->n_sheet, "factors of a fish");
+        if (status == STATUS_OK) status = MEMORY_NEW(new->row_scale, block->n, "factors of a fish");
+        if (status == STATUS_OK) status = MEMORY_NEW(new->x_rod, new->n_rod, "factors of a fish");
+        if (status == STATUS_OK) status = MEMORY_NEW(new->x_sheet, new->n_sheet, "factors of a fish");
+    }
+    if (status == STATUS_OK) {
+        *factors = new;
+    } else {
+        fish_factors_free(new);
+    }
+    return status;
 }
 
-// the column of the block that is column k of the sheet
+// number in the block of column k of the sheet
 static int sheet_column(const struct fish_factors *factors, int k) {
     return k < factors->first ? k : k + factors->n_rod;
 }
 
-// find where the parts lie in the columns of the block, and the pattern of A
-static enum status divide(struct fish_factors *factors) {
+// find the parts in the columns of the block, and the pattern of A
+static enum status factors_divide(struct fish_factors *factors) {
     const struct sparse *const block = factors->block;
     struct sparse_columns *const rod = &factors->rod;
     for (int c = 0; c < block->n; c++) {
@@ -112,6 +199,7 @@ static enum status divide(struct fish_factors *factors) {
     rod->row = calloc(n_entries, sizeof *rod->row);
     rod->value = calloc(n_entries, sizeof *rod->value);
     if (!rod->row || !rod->value) return STATUS_MEMORY;
+
     for (int c = 0; c < factors->n_rod; c++) {
         const int64_t *const from = block->row_index + block->column_start[factors->first + c];
         memcpy(rod->row + rod->start[c], from, (size_t)(rod->start[c + 1] - rod->start[c]) * sizeof *from);
@@ -122,7 +210,7 @@ static enum status divide(struct fish_factors *factors) {
     return STATUS_OK;
 }
 
-static void take_values(struct fish_factors *factors) {
+static void factors_take_values(struct fish_factors *factors) {
     const struct sparse *const block = factors->block;
     const struct sparse_columns *const rod = &factors->rod;
     for (int c = 0; c < factors->n_rod; c++) {
@@ -136,7 +224,7 @@ static void take_values(struct fish_factors *factors) {
     }
 }
 
-// subtract C x from rows of the sheet; x are unknowns of the rod
+// subtract C x from the rows of the sheet; x: unknowns of the rod
 static void subtract_rod(const struct fish_factors *factors, const double *x, double *rows) {
     const struct sparse *const block = factors->block;
     for (int c = 0; c < factors->n_rod; c++) {
@@ -172,9 +260,9 @@ static double fill_column(struct fish_factors *factors, int k) {
     return after > 0 ? before / after : 1;
 }
 
-// STATUS_RETRY: the rod cannot be eliminated, or not well
-static enum status set_up_parts(struct fish_factors *factors) {
-    take_values(factors);
+// STATUS_RETRY: A is singular or nearly singular
+static enum status factors_set_up_parts(struct fish_factors *factors) {
+    factors_take_values(factors);
     const enum status status = sparse_factors_set_up(factors->a, &factors->rod);
     if (status != STATUS_OK) return status == STATUS_MEMORY ? status : STATUS_RETRY;
     const int n = factors->n_sheet;
@@ -185,13 +273,13 @@ static enum status set_up_parts(struct fish_factors *factors) {
     return is_singular ? STATUS_SOLVER : STATUS_OK;
 }
 
-static enum status set_up(struct fish_factors *factors) {
+static enum status factors_set_up(struct fish_factors *factors) {
     const struct sparse *const block = factors->block;
-    if (is_large(factors) && factors->version != block->version) TRY(divide(factors));
+    if (factors->fish->n_sheet >= MIN_POINTS && factors->version != block->version) TRY(factors_divide(factors));
     if (factors->in_parts) {
-        const enum status status = set_up_parts(factors);
+        const enum status status = factors_set_up_parts(factors);
         if (status != STATUS_RETRY) return status;
-        // the whole block, until it has another pattern
+        // factorise the whole block until the pattern changes
         factors->in_parts = 0;
     }
     return sparse_factors_set_up(factors->whole, &(struct sparse_columns){block->n, block->version, block->column_start,
@@ -199,14 +287,14 @@ static enum status set_up(struct fish_factors *factors) {
 }
 
 enum status fish_factors_set_up(struct fish_factors *factors) {
-    const enum status status = set_up(factors);
+    const enum status status = factors_set_up(factors);
     if (status == STATUS_SOLVER && factors->was_factorised) return STATUS_RETRY;
     if (status == STATUS_OK) factors->was_factorised = 1;
     return status;
 }
 
-// unknowns of the sheet: S y = d - C A^-1 b; then those of the rod: A z = b - B y
-static void solve_parts(struct fish_factors *factors, double *x) {
+// unknowns of the sheet: S y = d - C A^-1 b; unknowns of the rod: A z = b - B y
+static void factors_solve_parts(struct fish_factors *factors, double *x) {
     const struct sparse *const block = factors->block;
     const int n = factors->n_sheet;
     double *const rod = factors->x_rod, *const sheet = factors->x_sheet;
@@ -228,17 +316,17 @@ static void solve_parts(struct fish_factors *factors, double *x) {
 
 void fish_factors_solve(struct fish_factors *factors, double *x) {
     if (factors->in_parts)
-        solve_parts(factors, x);
+        factors_solve_parts(factors, x);
     else
         sparse_factors_solve(factors->whole, x);
 }
 
-struct sparse_factors_counts fish_factors_count(const struct fish_factors *factors) {
-    struct sparse_factors_counts counts = sparse_factors_count(factors->whole);
-    if (!factors->a) return counts;
-    const struct sparse_factors_counts of_rod = sparse_factors_count(factors->a);
-    counts.analyses += of_rod.analyses;
-    counts.factorisations += of_rod.factorisations;
-    counts.refactorisations += of_rod.refactorisations;
-    return counts;
+void fish_factors_count(const struct fish_factors *factors, struct fish_factors_counts *counts) {
+    const struct sparse_factors *const parts[] = {factors->whole, factors->a};
+    for (int i = 0; i < 2; i++) {
+        if (!parts[i]) continue;
+        counts->analyses += parts[i]->counts.analyses;
+        counts->factorisations += parts[i]->counts.factorisations;
+        counts->refactorisations += parts[i]->counts.refactorisations;
+    }
 }

@@ -1,6 +1,4 @@
 /* ida.c: IDA applied to the residual of the school. */
-#include "solver/ida.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,27 +7,26 @@
 #include "body/rod.h"
 #include "school/diagnostics_energy.h"
 #include "school/residual_jacobian.h"
-#include "solver/algebraic_rates.h"
 #include "solver/ida_newton.h"
+#include "solver/integrator.h"
+#include "solver/linear.h"
 #include "solver/sundials.h"
-#include "solver/sundials_context.h"
-#include "solver/sundials_linear.h"
 
-/* Newton's iteration has converged when its error is this fraction of the error test's unit. Velocities are outside the
- * error test: with IDA's default, 0.33, the iteration would leave noise in the accelerations of stiff bodies. Measured:
- * doc/numerics.md. */
+/* Tolerance of Newton's iteration as a fraction of the tolerance of the error test. Velocities are outside the error
+ * test: IDA's default of 0.33 would leave noise in the accelerations of stiff bodies. Measured: doc/numerics.md. */
 static const double newton_coefficient = 0.003;
 
-/* A Jacobian is kept while its leading coefficient is within this fraction of the step's (IDA's default is 0.25), and
- * while it saves more iterations than its evaluation costs. Measured: doc/numerics.md. */
+/* Keep a Jacobian while its leading coefficient is within this fraction of the leading coefficient of the step (IDA's
+ * default is 0.25), and while the Jacobian saves more iterations than an evaluation costs. Measured: doc/numerics.md.
+ * */
 static const double cj_change = 0.1;
 static const int jacobian_cost = 5, max_iterations = 6, max_with_new = 20;
 
-/* Tolerances of the linear solver, as fractions of the right-hand side and of the error at which Newton's iteration has
- * converged: tighter ones save no iteration. Measured: doc/numerics.md. */
+/* Tolerances of the linear solver, as fractions of the right-hand side and of the tolerance of Newton's iteration:
+ * smaller tolerances save no iteration. Measured: doc/numerics.md. */
 static const double linear_relative = 1e-4, linear_absolute = 0.1;
 
-/* After a restart the order is one: the first step is this fraction of the last one. */
+/* After a restart the order is one: the first step is this fraction of the last step. */
 static const double first_step = 0.3;
 
 struct ida {
@@ -44,12 +41,12 @@ struct ida {
 
     struct sundials_context context;
     N_Vector y, yp, weights, kinds, scratch[2];
-    struct sundials_linear linear;
+    struct linear_sundials linear;
     SUNNonlinearSolver newton;
     void *ida;
-    struct algebraic_rates *algebraic_rates;
-    struct integrator_counts before; /* totals up to the last restart: that sets IDA's own to zero */
-    long jacobians; /* evaluations so far: IDA sets its own total to zero only some time after a restart */
+    struct integrator_rates *algebraic_rates;
+    struct integrator_counts before; /* totals up to the last restart, which resets the totals of IDA */
+    long jacobians; /* evaluations so far: IDA resets the total of evaluations only some time after a restart */
 };
 
 static int residual_callback(sunrealtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
@@ -86,7 +83,7 @@ static double leading_coefficient(void *data) {
     return value;
 }
 
-// a stretch of a free sheet grows at the tail from nothing in every interval
+// the newest stretch of a free sheet grows from zero length at the tail in every interval
 static void update_jacobian(void *data) {
     struct ida *const solver = data;
     double *const by_shed = N_VGetArrayPointer(solver->scratch[1]);
@@ -96,7 +93,7 @@ static void update_jacobian(void *data) {
     linear_update_shed(solver->linear.linear, by_shed);
 }
 
-// the blocks of fish that are further apart were left out
+// add coupling blocks of fish at larger distances
 static int couple_more(void *data) {
     struct ida *const solver = data;
     return residual_couple_more(&solver->residual->couplings, solver->state->y);
@@ -107,14 +104,14 @@ static void ida_free(void *data) {
     if (!solver) return;
     if (solver->ida) IDAFree(&solver->ida);
     if (solver->newton) SUNNonlinSolFree(solver->newton);
-    sundials_linear_free(&solver->linear);
+    linear_sundials_free(&solver->linear);
     const N_Vector vectors[] = {solver->y,     solver->yp,         solver->weights,
                                 solver->kinds, solver->scratch[0], solver->scratch[1]};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         if (vectors[i]) N_VDestroy(vectors[i]);
     }
     jacobian_free(solver->jacobian);
-    algebraic_rates_free(solver->algebraic_rates);
+    integrator_rates_free(solver->algebraic_rates);
     free(solver->tolerance);
     free(solver->weight);
     free(solver->kind);
@@ -122,8 +119,8 @@ static void ida_free(void *data) {
     free(solver);
 }
 
-// IDA's own guess of the first step ignores how stiff the body is; the last step does not
-static enum status choose_first_step(struct ida *solver) {
+// derive the first step from the last step: IDA's guess ignores the stiffness of the body
+static enum status ida_first_step(struct ida *solver) {
     const double step = first_step * solver->before.step_size;
     if (step > 0 && IDASetInitStep(solver->ida, step)) {
         return status_fail(STATUS_SOLVER, "IDA cannot start: %s", status_message());
@@ -131,7 +128,7 @@ static enum status choose_first_step(struct ida *solver) {
     return STATUS_OK;
 }
 
-static enum status set_up_ida(struct ida *solver) {
+static enum status ida_set_up(struct ida *solver) {
     const struct school *school = solver->residual->school;
     void *const ida = solver->ida;
     if (IDASetErrHandlerFn(ida, sundials_context_message, &solver->failure) || IDASetUserData(ida, solver) ||
@@ -145,26 +142,26 @@ static enum status set_up_ida(struct ida *solver) {
         return status_fail(STATUS_SOLVER, "IDA cannot be set up: %s", status_message());
     }
     TRY(sundials_context_check(&solver->context));
-    return choose_first_step(solver);
+    return ida_first_step(solver);
 }
 
-static enum status fill(struct ida *solver) {
+static enum status ida_fill(struct ida *solver) {
     const struct school *const school = solver->residual->school;
     const int n = school->n_unknowns;
-    solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
-    solver->weight = calloc((size_t)n, sizeof *solver->weight);
-    solver->kind = calloc((size_t)n, sizeof *solver->kind);
-    if (!solver->tolerance || !solver->weight || !solver->kind)
-        return status_fail(STATUS_MEMORY, "out of memory: %d tolerances", n);
+    double **const arrays[] = {&solver->tolerance, &solver->weight, &solver->kind};
+    TRY(MEMORY_ARRAYS(arrays, n, "tolerances"));
     residual_kinds(solver->residual, solver->kind);
     for (int i = 0; i < n; i++) {
         solver->tolerance[i] = school->rtol * residual_scale(school, i);
         solver->weight[i] = 1 / solver->tolerance[i];
     }
+
     TRY(jacobian_create(&solver->jacobian, school));
-    TRY(algebraic_rates_create(&solver->algebraic_rates, school));
-    algebraic_rates_begin(solver->algebraic_rates, solver->state);
+    TRY(integrator_rates_create(&solver->algebraic_rates, school));
+    integrator_rates_begin(solver->algebraic_rates, solver->state);
     residual_mask(solver->residual, solver->jacobian);
+
+    // vectors and solvers of SUNDIALS
     TRY(sundials_context_create(&solver->context, n, school->threads, &solver->failure));
     TRY(sundials_context_vector(&solver->context, &solver->y, solver->state->y));
     TRY(sundials_context_vector(&solver->context, &solver->yp, solver->state->yp));
@@ -175,7 +172,7 @@ static enum status fill(struct ida *solver) {
         if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "out of memory: a vector of %d unknowns", n);
     }
     const struct linear_tolerance linear = {linear_relative, linear_absolute * newton_coefficient};
-    TRY(sundials_linear_create(&solver->linear, solver->context.context, solver->jacobian, solver->tolerance, linear,
+    TRY(linear_sundials_create(&solver->linear, solver->context.context, solver->jacobian, solver->tolerance, linear,
                                &solver->failure));
     const int is_sheet = school->shedding == SHEDDING_SHEET;
     const struct ida_newton_rules rules = {.max_iterations = max_iterations,
@@ -189,7 +186,7 @@ static enum status fill(struct ida *solver) {
     TRY(ida_newton_create(&solver->newton, solver->context.context, solver->y, school, rules));
     solver->ida = IDACreate(solver->context.context);
     if (!solver->ida) return status_fail(STATUS_MEMORY, "out of memory: IDA");
-    return set_up_ida(solver);
+    return ida_set_up(solver);
 }
 
 static enum status ida_create(void **solver, struct residual *residual, struct state *state,
@@ -202,7 +199,7 @@ static enum status ida_create(void **solver, struct residual *residual, struct s
     new->options = *options;
     new->before = options->before;
     new->jacobians = options->before.jacobian_evaluations;
-    const enum status status = fill(new);
+    const enum status status = ida_fill(new);
     if (status != STATUS_OK) {
         ida_free(new);
         return status;
@@ -233,11 +230,11 @@ static void ida_count(const void *data, struct integrator_counts *counts) {
 static enum status ida_restart(void *data) {
     struct ida *const solver = data;
     ida_count(solver, &solver->before);
-    algebraic_rates_begin(solver->algebraic_rates, solver->state);
+    integrator_rates_begin(solver->algebraic_rates, solver->state);
     if (IDAReInit(solver->ida, solver->state->t, solver->y, solver->yp)) {
         return status_fail(STATUS_SOLVER, "IDA cannot start again: %s", status_message());
     }
-    return choose_first_step(solver);
+    return ida_first_step(solver);
 }
 
 // the unknown with the largest estimated error, in units of its tolerance
@@ -257,24 +254,23 @@ static struct unknown_place worst_unknown(const struct ida *solver, double *size
     return residual_place(solver->residual->school, worst);
 }
 
-static const char *reason(int code) {
+static const char *ida_reason(int code) {
     switch (code) {
         case IDA_TOO_MUCH_WORK: return "more steps between two events than solver.max_steps: raise it, or solver.rtol";
         case IDA_TOO_MUCH_ACC: return "the tolerance is below rounding errors: raise solver.rtol";
-        case IDA_ERR_FAIL: return "the error test failed too often, or with the minimum step: lower solver.rtol";
+        case IDA_ERR_FAIL: return "the error test ida_failed too often, or with the minimum step: lower solver.rtol";
         case IDA_CONV_FAIL:
             return "Newton's iteration did not converge, down to the minimum step: lower solver.rtol or "
-                   "time.shedding_interval, and see whether the fish does there what a fish can do";
-        case IDA_LSETUP_FAIL: return "the Jacobian is singular: see whether the body has the units that the keys say";
+                   "time.shedding_interval, and check that the motion at that time is physical";
+        case IDA_LSETUP_FAIL: return "the Jacobian is singular: check the units of the body";
         case IDA_REP_RES_ERR:
-            return "the equations had no finite value, down to the minimum step: see whether the fish does there what "
-                   "a "
-                   "fish can do";
+            return "the equations had no finite value, down to the minimum step: check that the motion at that time is "
+                   "physical";
         default: return "see the message of IDA";
     }
 }
 
-// what can be seen of a body: an edge that forces have pressed to nothing, against which a rod has no finite force
+// name an edge that forces have compressed to almost zero length: the elastic force of a rod is finite at length zero
 static void tell_crushed(const struct ida *solver, size_t size, char *text) {
     const struct school *school = solver->residual->school;
     const double *const y = N_VGetArrayPointer(solver->y);
@@ -290,46 +286,46 @@ static void tell_crushed(const struct ida *solver, size_t size, char *text) {
     }
 }
 
-// the pairs of fish of which Newton's iteration does not know how they act on each other, if there are any
+// count the pairs of fish without coupling blocks in the Jacobian, if any
 static void tell_uncoupled(const struct ida *solver, size_t size, char *text) {
     const struct school *school = solver->residual->school;
     const int n_pairs = school->n_fish * (school->n_fish - 1) / 2;
     const int n_uncoupled = n_pairs - solver->jacobian->n_couplings / 2;
     if (n_uncoupled == 0) return;
-    snprintf(
-        text, size,
-        "; %d of %d pairs of fish are further apart than %.3g m, and Newton's iteration does not know how they act "
-        "on each other: raise solver.coupling_distance",
-        n_uncoupled, n_pairs, solver->residual->couplings.reach);
+    snprintf(text, size,
+             "; the Jacobian has no coupling of %d of %d pairs of fish, which are more than %.3g m apart: increase "
+             "solver.coupling_distance",
+             n_uncoupled, n_pairs, solver->residual->couplings.reach);
 }
 
-static enum status failed(const struct ida *solver, int code, long steps) {
+static enum status ida_failed(const struct ida *solver, int code, long steps) {
     const struct school *school = solver->residual->school;
     double now = 0, step = 0, size;
     IDAGetCurrentTime(solver->ida, &now);
     IDAGetCurrentStep(solver->ida, &step);
-    // the limit of steps is ours: there is no message of IDA
+    // the limit of steps is not IDA's, so IDA has no message
     char message[512] = "", error[256] = "", last[64] = "", seen[256] = "";
     if (code != IDA_TOO_MUCH_WORK) snprintf(message, sizeof message, "; %s", status_message());
     const struct unknown_place place = worst_unknown(solver, &size);
-    // an error that has not been estimated, or a step that has not been made, is not told
+    // omit an error without an estimate, and the step before the first step
     if (size > 0) {
-        const int length = snprintf(error, sizeof error, "; the largest error is that of %s[%d] of fish %.80s",
-                                    place.name, place.index, school->fish[place.fish].name);
+        const int length = snprintf(error, sizeof error, "; largest error: %s[%d] of fish %.80s", place.name,
+                                    place.index, school->fish[place.fish].name);
         if (size > 0.01) snprintf(error + length, sizeof error - (size_t)length, ", %.3g tolerances", size);
     }
     tell_crushed(solver, sizeof seen, seen);
     if (code == IDA_CONV_FAIL && !*seen) tell_uncoupled(solver, sizeof seen, seen);
     if (steps > 0) snprintf(last, sizeof last, ", the last of %.3g s", step);
-    return status_fail(STATUS_SOLVER,
-                       "integration failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
-                       "event%s%s",
-                       now, reason(code), seen, error, solver->options.order, steps, last, message);
+    return status_fail(
+        STATUS_SOLVER,
+        "integration ida_failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
+        "event%s%s",
+        now, ida_reason(code), seen, error, solver->options.order, steps, last, message);
 }
 
-// The latest end of the next step. Steps that divide the rest of the interval into equal parts keep their size from
-// event to event, so the Jacobian can be kept too.
-static double next_stop(const struct ida *solver, double now, double end) {
+// The latest end of the next step: equal parts of the rest of the interval. Steps then keep their size from event to
+// event, and so does the Jacobian.
+static double ida_next_stop(const struct ida *solver, double now, double end) {
     long steps = 0;
     double step = 0;
     IDAGetNumSteps(solver->ida, &steps);
@@ -347,15 +343,15 @@ static enum status ida_advance(void *data, double t, const volatile sig_atomic_t
     double reached = state->t;
     solver->stop = stop;
     for (long steps = 0; reached < t; steps++) {
-        if (steps == solver->options.max_steps) return failed(solver, IDA_TOO_MUCH_WORK, steps);
-        const double end = next_stop(solver, reached, t);
-        if (IDASetStopTime(solver->ida, end)) return failed(solver, IDA_ILL_INPUT, steps);
+        if (steps == solver->options.max_steps) return ida_failed(solver, IDA_TOO_MUCH_WORK, steps);
+        const double end = ida_next_stop(solver, reached, t);
+        if (IDASetStopTime(solver->ida, end)) return ida_failed(solver, IDA_ILL_INPUT, steps);
         solver->failure = STATUS_OK;
         const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
         if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
-        if (code < 0) return failed(solver, code, steps);
+        if (code < 0) return ida_failed(solver, code, steps);
         if (code == IDA_TSTOP_RETURN) reached = end;
-        algebraic_rates_step(solver->algebraic_rates, reached, state);
+        integrator_rates_step(solver->algebraic_rates, reached, state);
         diagnostics_step(solver->residual, state, reached, state->y);
     }
     return STATUS_OK;

@@ -4,9 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The norms of a correction: of all unknowns, and of the differential ones alone. Among all, the algebraic ones hide
- * how slowly the places converge: where a sheet is shed the first correction of its circulation is a hundred times
- * larger, and gone with the second. */
+/* The norms of a correction: of all unknowns, and of the differential unknowns only. In the former the algebraic
+ * unknowns hide slow convergence of the positions: with a free sheet the first correction of the circulation is a
+ * hundred times larger, and vanishes with the second correction. */
 enum { ALL, DIFFERENTIAL, N_NORMS };
 
 struct ida_newton {
@@ -21,22 +21,22 @@ struct ida_newton {
     SUNNonlinSolLSetupFn set_up;
     SUNNonlinSolLSolveFn solve;
 
-    /* of this solution: total iterations and failures, iterations with the present Jacobian */
+    /* of this solution */
     long iterations, failures;
-    int done, most;        /* and how many there may be */
+    int done, most;        /* iterations with the present Jacobian, and their maximum */
     double first[N_NORMS]; /* size of the first correction */
 
-    /* since the Jacobian was evaluated: solutions, their iterations, iterations of the last solution */
+    /* since the evaluation of the Jacobian: solutions, their iterations, iterations of the last solution */
     int n_solutions, n_iterations, n_last;
-    int is_incomplete; /* a new one would be more complete */
+    int is_incomplete; /* a new Jacobian would be more complete */
 };
 
 static struct ida_newton *newton_of(SUNNonlinearSolver solver) {
     return solver->content;
 }
 
-// after a correction of this size: whether the iteration has converged in one norm, goes on, or fails
-static int test_norm(struct ida_newton *newton, int norm, double size, double tolerance) {
+// judge a correction by one norm: converged, continue, or failed
+static int newton_test_norm(struct ida_newton *newton, int norm, double size, double tolerance) {
     if (!isfinite(size)) return SUN_NLS_CONV_RECVR;
     if (newton->done == 1) {
         newton->first[norm] = size;
@@ -44,7 +44,7 @@ static int test_norm(struct ida_newton *newton, int norm, double size, double to
         return size <= 1e-4 * tolerance ? SUN_SUCCESS : SUN_NLS_CONTINUE;
     }
     const double rate = size > 0 ? pow(size / newton->first[norm], 1.0 / (newton->done - 1)) : 0;
-    // corrections that are noise of the linear solver no longer shrink: accept them when they are small
+    // corrections at the noise level of the linear solver no longer shrink: accept small corrections
     const double remaining = rate < 0.9 ? rate / (1 - rate) : 10;
     if (size * remaining <= tolerance) return SUN_SUCCESS;
     // with an old Jacobian the first two corrections may grow
@@ -52,8 +52,8 @@ static int test_norm(struct ida_newton *newton, int norm, double size, double to
     return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
 
-// both norms of the correction, weighted root mean squares, in one pass; each of the two sums in the order of unknowns
-static void find_norms(const struct ida_newton *newton, N_Vector weights, double norm[N_NORMS]) {
+// both norms of the correction, weighted root mean squares; each sum in the order of the unknowns
+static void newton_norms(const struct ida_newton *newton, N_Vector weights, double norm[N_NORMS]) {
     const double *const correction = N_VGetArrayPointer(newton->correction), *const weight =
                                                                                  N_VGetArrayPointer(weights);
     const double *const kind = newton->rules.kinds ? N_VGetArrayPointer(newton->rules.kinds) : NULL;
@@ -68,18 +68,18 @@ static void find_norms(const struct ida_newton *newton, N_Vector weights, double
     norm[DIFFERENTIAL] = sqrt(differential / (double)n);
 }
 
-static int test_convergence(struct ida_newton *newton, N_Vector weights, double tolerance) {
+static int newton_test(struct ida_newton *newton, N_Vector weights, double tolerance) {
     double norm[N_NORMS];
-    find_norms(newton, weights, norm);
-    const int all = test_norm(newton, ALL, norm[ALL], tolerance);
+    newton_norms(newton, weights, norm);
+    const int all = newton_test_norm(newton, ALL, norm[ALL], tolerance);
     if (all == SUN_NLS_CONV_RECVR || !newton->rules.kinds) return all;
-    if (test_norm(newton, DIFFERENTIAL, norm[DIFFERENTIAL], tolerance) == SUN_SUCCESS) return all;
-    // the places may begin to converge later than the rest
+    if (newton_test_norm(newton, DIFFERENTIAL, norm[DIFFERENTIAL], tolerance) == SUN_SUCCESS) return all;
+    // positions may converge later than the other unknowns
     return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
 
-// iterate with the present Jacobian; newton->correction holds the residual
-static int iterate(struct ida_newton *newton, N_Vector total, N_Vector weights, double tolerance, void *ida) {
+// newton_iterate with the present Jacobian; newton->correction holds the residual
+static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector weights, double tolerance, void *ida) {
     double *const values = N_VGetArrayPointer(newton->correction);
     newton->done = 0;
     for (;;) {
@@ -91,27 +91,27 @@ static int iterate(struct ida_newton *newton, N_Vector total, N_Vector weights, 
         if (code != 0) return code;
         corotation_to_current(newton->corotation, values);
         N_VLinearSum(1, total, 1, newton->correction, total);
-        code = test_convergence(newton, weights, tolerance);
+        code = newton_test(newton, weights, tolerance);
         if (code != SUN_NLS_CONTINUE) return code;
         code = newton->residual(total, newton->correction, ida);
         if (code != 0) return code;
     }
 }
 
-// whether a solution with this Jacobian now costs as much as its mean solution, the cost of the Jacobian included
+// whether the last solution cost as much as the mean solution with this Jacobian, including the cost of the Jacobian
 static int jacobian_is_stale(const struct ida_newton *newton) {
     return newton->n_last * newton->n_solutions >= newton->n_iterations + newton->rules.jacobian_cost;
 }
 
-// start from the last total correction if the step has not changed: the error of the predictor is nearly the same again
-static void initial_guess(struct ida_newton *newton, N_Vector total) {
+// start from the last total correction if the step is unchanged: the error of the predictor is then nearly unchanged
+static void newton_initial_guess(struct ida_newton *newton, N_Vector total) {
     const double coefficient = newton->rules.leading_coefficient(newton->rules.data);
     const int same = fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient;
     N_VScale(same ? 1 : 0, newton->last, total);
     newton->coefficient = coefficient;
 }
 
-static int complete(const struct ida_newton *newton) {
+static int jacobian_complete(const struct ida_newton *newton) {
     return newton->rules.complete && newton->rules.complete(newton->rules.data);
 }
 
@@ -122,7 +122,7 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
     if (newton->is_incomplete || jacobian_is_stale(newton)) evaluate = SUNTRUE;
     newton->is_incomplete = 0;
     if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
-    initial_guess(newton, total);
+    newton_initial_guess(newton, total);
     for (sunbooleantype failed = SUNFALSE;; failed = SUNTRUE) {
         int code = newton->residual(total, newton->correction, ida);
         if (code != 0) return code;
@@ -136,24 +136,25 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
             newton->rules.update(newton->rules.data);
         }
         newton->most = evaluate ? newton->rules.max_with_new : newton->rules.max_iterations;
-        code = iterate(newton, total, weights, tolerance, ida);
+        code = newton_iterate(newton, total, weights, tolerance, ida);
         if (code == 0) {
             N_VScale(1, total, newton->last);
             newton->n_solutions++;
             newton->n_last = newton->done;
             newton->n_iterations += newton->done;
-            if (evaluate && newton->done > newton->rules.max_iterations) newton->is_incomplete = complete(newton);
+            if (evaluate && newton->done > newton->rules.max_iterations)
+                newton->is_incomplete = jacobian_complete(newton);
             return 0;
         }
         newton->failures++;
-        if (code < 0 || (evaluate && !complete(newton))) return code;
+        if (code < 0 || (evaluate && !jacobian_complete(newton))) return code;
         // try again with a new Jacobian
         evaluate = SUNTRUE;
         N_VConst(0, total);
     }
 }
 
-// IDA starts again: discard the history
+// restart of IDA: discard the history
 static int newton_initialize(SUNNonlinearSolver solver) {
     struct ida_newton *const newton = newton_of(solver);
     newton->coefficient = 0;

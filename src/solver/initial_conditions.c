@@ -1,5 +1,5 @@
-/* initial_conditions.c: KINSOL's Newton method on the algebraic equations. The differential unknowns take part with the
- * equation that they do not change, so that the Jacobian of the school can be used with their rows masked. */
+/* initial_conditions.c: KINSOL's Newton method for the algebraic equations. The equation of a differential unknown is
+ * "no change", so the Jacobian of the school serves, with the rows of differential unknowns masked. */
 #include "solver/initial_conditions.h"
 
 #include <math.h>
@@ -11,24 +11,22 @@
 #include "flow/flow_at_bodies.h"
 #include "school/residual_jacobian.h"
 #include "solver/integrator.h"
+#include "solver/linear.h"
 #include "solver/sundials.h"
-#include "solver/sundials_context.h"
-#include "solver/sundials_linear.h"
 
-/* Rows are scaled to order one; Newton's method has converged at this norm, or when its steps no longer change the
+/* Norm of the scaled residual at which Newton's method has converged; it also converges when steps no longer change the
  * unknowns. */
 static const double tolerance = 1e-14;
 
-/* Where many bodies are near each other, rounding in the sums of a row can keep the norm above that, and the steps as
- * long as before: after all iterations a solution is good enough at this norm. */
+/* With many close bodies, rounding in the sums of a row can keep the norm above the tolerance and the steps constant:
+ * accept this norm after the last iteration. */
 static const double rounded = 1e-12;
 
-/* With momenta nothing depends on accelerations, which follow from an equation that is linear in them, and velocities
- * are solved for: the rounding of what they do to stiff forces must not keep the iteration from ending. Factor on the
- * scale. */
+/* With momenta no equation but the own linear equation depends on an acceleration, and velocities are algebraic: their
+ * rounding errors in stiff forces must not prevent convergence. Factor on the scale of accelerations. */
 static const double loose = 1e6;
 
-/* Tight, so that no step of Newton's method gains fewer digits than with an exact solution. */
+/* Small, so that each step of Newton's method gains as many digits as with an exact solution. */
 static const struct linear_tolerance linear_tolerance = {.relative = 1e-10};
 
 struct initial_conditions {
@@ -45,7 +43,7 @@ struct initial_conditions {
 
     struct sundials_context context;
     N_Vector solution, solution_scales, value_scales;
-    struct sundials_linear linear;
+    struct linear_sundials linear;
     void *kinsol;
     long iterations;
 };
@@ -53,7 +51,7 @@ struct initial_conditions {
 void initial_conditions_free(struct initial_conditions *c) {
     if (!c) return;
     if (c->kinsol) KINFree(&c->kinsol);
-    sundials_linear_free(&c->linear);
+    linear_sundials_free(&c->linear);
     const N_Vector vectors[] = {c->solution, c->solution_scales, c->value_scales};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         if (vectors[i]) N_VDestroy(vectors[i]);
@@ -65,7 +63,7 @@ void initial_conditions_free(struct initial_conditions *c) {
     free(c);
 }
 
-// the differential unknowns keep their bits, whatever KINSOL adds to them
+// copy the algebraic unknowns only: the differential unknowns keep their bits
 static void take_algebraic(const struct initial_conditions *c, const double *from, double *y) {
     for (int i = 0; i < c->n; i++) {
         if (c->kind[i] <= 0) y[i] = from[i];
@@ -92,28 +90,28 @@ static int algebraic_jacobian(N_Vector solution, N_Vector value, SUNMatrix matri
     return c->failure;
 }
 
-// whether an unknown is an acceleration on which nothing depends
+// whether an unknown is an acceleration on which no other equation depends
 static int is_loose(const struct residual *residual, int i) {
     const struct unknown_place place = residual_place(residual->school, i);
     const int is_acceleration = place.kind == UNKNOWN_AX || place.kind == UNKNOWN_AY;
     return is_acceleration && fish_has_momentum(&residual->school->fish[place.fish]);
 }
 
-// equations are accelerations, velocities, circulations and numbers: most have the scale of the unknown of their row
+// the scale of an equation: for most equations the scale of the unknown of the same row
 static double row_scale(const struct residual *residual, int i) {
     const struct unknown_place place = residual_place(residual->school, i);
     const struct layout *at = &residual->school->fish[place.fish].at;
     const double speed = residual_scale(residual->school, at->gamma);
     if (place.kind == UNKNOWN_GAMMA) return speed;
-    // the relation of p and v has the size of p, in whichever row it stands
+    // the relation of p and v has the scale of p in both rows
     const int is_velocity = place.kind == UNKNOWN_VX || place.kind == UNKNOWN_VY;
     return residual_scale(residual->school, is_velocity && at->px < at->ax ? i + (at->px - at->vx) : i);
 }
 
-static enum status set_up_kinsol(struct initial_conditions *c) {
+static enum status initial_set_up_kinsol(struct initial_conditions *c) {
     c->kinsol = KINCreate(c->context.context);
     if (!c->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
-    // full Newton steps, since the equations are nearly linear, with a new Jacobian each
+    // full Newton steps, because the equations are nearly linear, with a new Jacobian in each step
     if (KINSetErrHandlerFn(c->kinsol, sundials_context_message, &c->failure) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||
         KINSetLinearSolver(c->kinsol, c->linear.solver, c->linear.matrix) ||
@@ -126,7 +124,7 @@ static enum status set_up_kinsol(struct initial_conditions *c) {
     return sundials_context_check(&c->context);
 }
 
-static enum status fill(struct initial_conditions *c) {
+static enum status initial_fill(struct initial_conditions *c) {
     const int n = c->n;
     double **const arrays[] = {&c->y,     &c->zero,           &c->kind,        &c->scale,
                                &c->value, &c->solution_scale, &c->value_scale, &c->start};
@@ -143,8 +141,8 @@ static enum status fill(struct initial_conditions *c) {
     TRY(sundials_context_vector(&c->context, &c->solution, c->start));
     TRY(sundials_context_vector(&c->context, &c->solution_scales, c->solution_scale));
     TRY(sundials_context_vector(&c->context, &c->value_scales, c->value_scale));
-    TRY(sundials_linear_create(&c->linear, c->context.context, c->jacobian, c->scale, linear_tolerance, &c->failure));
-    return set_up_kinsol(c);
+    TRY(linear_sundials_create(&c->linear, c->context.context, c->jacobian, c->scale, linear_tolerance, &c->failure));
+    return initial_set_up_kinsol(c);
 }
 
 enum status initial_conditions_create(struct initial_conditions **solver, struct residual *residual) {
@@ -153,7 +151,7 @@ enum status initial_conditions_create(struct initial_conditions **solver, struct
     TRY(MEMORY_NEW(new, 1, "the initial conditions"));
     new->residual = residual;
     new->n = residual->school->n_unknowns;
-    const enum status status = fill(new);
+    const enum status status = initial_fill(new);
     if (status != STATUS_OK) {
         initial_conditions_free(new);
         return status;
@@ -162,8 +160,8 @@ enum status initial_conditions_create(struct initial_conditions **solver, struct
     return STATUS_OK;
 }
 
-// kinds of unknowns may have changed since the last solution: mask the rows of the differential ones
-static void update_kinds(struct initial_conditions *c) {
+// kinds of unknowns may have changed since the last solution: mask the rows of the differential unknowns
+static void initial_update_kinds(struct initial_conditions *c) {
     double *const kind = c->value;
     residual_kinds(c->residual, kind);
     if (memcmp(kind, c->kind, (size_t)c->n * sizeof *kind) == 0) return;
@@ -177,17 +175,17 @@ static void update_kinds(struct initial_conditions *c) {
     }
 }
 
-static const char *reason(int code) {
+static const char *initial_reason(int code) {
     switch (code) {
         case KIN_MAXITER_REACHED: return "Newton's method did not converge";
         case KIN_FIRST_SYSFUNC_ERR:
         case KIN_REPTD_SYSFUNC_ERR: return "the equations have no finite value";
         case KIN_LSETUP_FAIL: return "the Jacobian is singular";
-        default: return "KINSOL failed";
+        default: return "KINSOL initial_failed";
     }
 }
 
-// the largest residual of the last evaluation over its scale, and the row that has it
+// the largest scaled residual of the last evaluation, and its row
 static double largest_residual(const struct initial_conditions *c, int *worst) {
     double max = -1;
     for (int i = 0; i < c->n; i++) {
@@ -201,7 +199,7 @@ static double largest_residual(const struct initial_conditions *c, int *worst) {
 }
 
 // a message that names the equation with the largest residual
-static enum status failed(struct initial_conditions *c, int code) {
+static enum status initial_failed(struct initial_conditions *c, int code) {
     int worst = 0;
     const double max = largest_residual(c, &worst);
     const struct unknown_place place = residual_place(c->residual->school, worst);
@@ -209,19 +207,19 @@ static enum status failed(struct initial_conditions *c, int code) {
     snprintf(cause, sizeof cause, "%s", status_message());
     const char *const name = c->residual->school->fish[place.fish].name;
     char largest[256] = "";
-    // a residual that has not been computed is not told
-    if (isfinite(max) && max > 0)
-        snprintf(largest, sizeof largest, "; the largest residual is that of %s[%d] of fish %.60s, %.3g of its scale",
-                 place.name, place.index, name, max);
+    // omit a residual that has not been computed
+    if (isfinite(max) && max > 0) {
+        snprintf(largest, sizeof largest, "; largest residual: %s[%d] of fish %.60s, %.3g of its scale", place.name,
+                 place.index, name, max);
+    }
     return status_fail(
         STATUS_SOLVER,
-        "no consistent initial conditions at t = %.10g s: %s: see whether sizes, speeds and positions have "
-        "the units that the keys say%s (%s)",
-        c->t, reason(code), largest, cause);
+        "no consistent initial conditions at t = %.10g s: %s: check the units of sizes, speeds and positions%s (%s)",
+        c->t, initial_reason(code), largest, cause);
 }
 
-// rates of the differential unknowns; those of the algebraic ones keep their values
-static void set_rates(const struct initial_conditions *c, double t, const double *y, double *yp) {
+// set the rates of the differential unknowns only
+static void initial_rates(const struct initial_conditions *c, double t, const double *y, double *yp) {
     const struct school *school = c->residual->school;
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
@@ -241,7 +239,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
     memcpy(c->y, y, (size_t)c->n * sizeof *y);
     memcpy(c->start, y, (size_t)c->n * sizeof *y);
     flow_sum_exactly(c->residual->flow);
-    update_kinds(c);
+    initial_update_kinds(c);
     c->failure = STATUS_OK;
     const int code = KINSol(c->kinsol, c->solution, KIN_NONE, c->solution_scales, c->value_scales);
     long iterations = 0;
@@ -250,14 +248,14 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
     if (c->failure == STATUS_MEMORY || c->failure == STATUS_STOPPED) return c->failure;
     int worst;
     const int is_rounded = code == KIN_MAXITER_REACHED && largest_residual(c, &worst) <= rounded;
-    if (code < 0 && !is_rounded) return failed(c, code);
-    // the fluid's velocity at the solution is needed for the rates, and for the diagnostics
+    if (code < 0 && !is_rounded) return initial_failed(c, code);
+    // rates and diagnostics need the velocity of the fluid at the solution
     take_algebraic(c, c->start, c->y);
     c->failure = residual_evaluate(c->residual, t, c->y, c->zero, c->value);
     if (c->failure == STATUS_MEMORY) return STATUS_MEMORY;
-    if (c->failure != STATUS_OK) return failed(c, code);
+    if (c->failure != STATUS_OK) return initial_failed(c, code);
     memcpy(y, c->y, (size_t)c->n * sizeof *y);
-    set_rates(c, t, y, yp);
+    initial_rates(c, t, y, yp);
     return STATUS_OK;
 }
 

@@ -16,12 +16,12 @@ enum status initial_conditions_create(struct initial_conditions **solver, struct
 /* Release it. Accepts NULL. */
 void initial_conditions_free(struct initial_conditions *solver);
 
-/* Solve for the algebraic unknowns of y at time t [s], and set the rates yp of the differential ones; both arrays are
- * (n_unknowns). Which unknowns are algebraic is looked up in the residual each time. Fails with STATUS_SOLVER,
+/* Solve for the algebraic unknowns of y at time t [s], and set the rates yp of the differential unknowns; both arrays
+ * are (n_unknowns). The residual defines the kinds of the unknowns at each call. Fails with STATUS_SOLVER,
  * STATUS_MEMORY or STATUS_STOPPED; y and yp are then unchanged. */
 enum status initial_conditions_solve(struct initial_conditions *solver, double t, double *y, double *yp);
 
-/* From now on each iteration looks at *stop and, once it is not 0, ends the solution; NULL: never. */
+/* Let every later solution end once *stop is not 0; NULL: never. */
 void initial_conditions_listen(struct initial_conditions *solver, const volatile sig_atomic_t *stop);
 
 /* Newton iterations so far. */

@@ -1,4 +1,5 @@
-/* integrator.h: the interface of every time integrator, implicit or explicit. */
+/* integrator.h: the interface of the time integrators, their table, and rates of algebraic unknowns. Tested by
+ * tests/solver/test_integrator.c. */
 #ifndef INTEGRATOR_H
 #define INTEGRATOR_H
 
@@ -17,21 +18,14 @@ struct integrator_counts {
     int order;
 };
 
-/* How to integrate. */
 struct integrator_options {
     enum method method;
-    int order;     /* maximum, of BDF */
+    int order;     /* maximum order of BDF */
     double step;   /* fixed step of all other methods, s; 0: adaptive */
-    int max_steps; /* maximum between two events */
-    /* totals up to now, from which the counts go on; where the method chooses its steps, the first one follows from the
-     * size of the last one; zeros at the start of a run */
+    int max_steps; /* maximum number of steps between two events */
+    /* totals so far; zeros at the start of a run. An adaptive method derives the first step from the last step size. */
     struct integrator_counts before;
 };
-
-/* STATUS_STOPPED once *stop is no longer 0; stop may be NULL. */
-static inline enum status integrator_ask(const volatile sig_atomic_t *stop) {
-    return stop && *stop ? status_fail(STATUS_STOPPED, "stopped by a signal") : STATUS_OK;
-}
 
 /* A family of methods. A solver advances y and yp of a state in place, and reads the wakes through the residual. */
 struct integrator {
@@ -39,17 +33,75 @@ struct integrator {
     enum status (*create)(void **solver, struct residual *residual, struct state *state,
                           const struct integrator_options *options);
 
-    /* Integrate to time t [s], the next event, and update the energy balance after every step. Fails with
-     * STATUS_SOLVER, and a message that says when and why, or with STATUS_MEMORY; never with STATUS_RETRY. Before each
-     * step and each iteration it looks whether it has been asked to stop (integrator_ask), and fails with
-     * STATUS_STOPPED, anywhere between the two events. */
+    /* Integrate to time t [s], the next event, and update the energy balance after every step. Calls integrator_ask
+     * before each step and each iteration. Fails with STATUS_SOLVER and a message with time and cause, with
+     * STATUS_MEMORY, or with STATUS_STOPPED at any time between the two events; never with STATUS_RETRY. */
     enum status (*advance)(void *solver, double t, const volatile sig_atomic_t *stop);
 
-    /* Start again after a jump: the state is consistent, the history is discarded. Fails with STATUS_SOLVER. */
+    /* Discard the history after a jump of the state, which must be consistent. Fails with STATUS_SOLVER. */
     enum status (*restart)(void *solver);
 
     void (*count)(const void *solver, struct integrator_counts *counts);
     void (*free)(void *solver); /* accepts NULL */
 };
+
+/* BDF of variable order and step by IDA, with the analytic Jacobian, our linear solver (linear.h) and our nonlinear
+ * solver (ida_newton.h). doc/numerics.md. Tested by tests/solver/test_ida.c. */
+extern const struct integrator ida_integrator;
+
+/* Explicit Runge-Kutta methods by ARKStep of ARKODE, for comparison, on the right-hand side of ode_rhs.h. An overflow
+ * or a step below the minimum is STATUS_SOLVER with a message that contains "unstable" and the time. Tested by
+ * tests/solver/test_runge_kutta.c. */
+extern const struct integrator runge_kutta_integrator;
+
+/* Implicit one-step methods of fixed step, for comparison: implicit Euler, trapezoidal rule. The equations F(t, y, y')
+ * = 0 hold at the end of each step of h from y_n to y_n+1, with
+ *
+ *     implicit Euler      y'_n+1 = (y_n+1 - y_n) / h
+ *     trapezoid           y'_n+1 = 2 (y_n+1 - y_n) / h - y'_n
+ *
+ * Newton's iteration with the Jacobian dF/dy + cj dF/dy', cj = 1/h or 2/h, solves for y_n+1; without convergence the
+ * step fails with STATUS_SOLVER. Tested by tests/solver/test_one_step.c. */
+extern const struct integrator one_step_integrator;
+
+/* Velocity Verlet, symplectic and of order 2, for rods under elastic forces and loads only (no fluid, damping,
+ * prescribed motion or control law: case/case_check.c), for comparison. doc/numerics.md, section 4. With accelerations
+ * a that depend on positions and time only:
+ *
+ *     v_n+1/2 = v_n + h/2 a(x_n, t_n)     x_n+1 = x_n + h v_n+1/2     v_n+1 = v_n+1/2 + h/2 a(x_n+1, t_n+1)
+ *
+ * Sheets and wakes exert no force here; one solution at the end of each interval serves the output. A step above the
+ * stability limit is STATUS_SOLVER. Tested by tests/solver/test_one_step.c. */
+extern const struct integrator one_step_verlet;
+
+/* The integrator of a method. */
+static inline const struct integrator *integrator_of(enum method method) {
+    if (methods_table[method].fixed) return &runge_kutta_integrator;
+    if (method == METHOD_IDA) return &ida_integrator;
+    return method == METHOD_VERLET ? &one_step_verlet : &one_step_integrator;
+}
+
+/* STATUS_STOPPED once *stop is no longer 0; stop may be NULL. */
+static inline enum status integrator_ask(const volatile sig_atomic_t *stop) {
+    return stop && *stop ? status_fail(STATUS_STOPPED, "stopped by a signal") : STATUS_OK;
+}
+
+/* ---- rates of algebraic unknowns
+ *
+ * With force: pressure the force depends on the rates of velocities, bound strengths and shed circulation, which are
+ * algebraic unknowns. IDA's derivatives of algebraic unknowns are of first order where the motion of a body is
+ * prescribed, because no differential unknown controls the order. Instead, use the slope of the parabola through the
+ * last three steps. doc/numerics.md, section 3. */
+struct integrator_rates;
+
+/* For a school, which must outlive the rates. Fails with STATUS_MEMORY; integrator_rates_free accepts NULL. */
+enum status integrator_rates_create(struct integrator_rates **rates, const struct school *school);
+void integrator_rates_free(struct integrator_rates *rates);
+
+/* Discard the history at an event: at the start, or after a jump. */
+void integrator_rates_begin(struct integrator_rates *rates, const struct state *state);
+
+/* Set the rates in state->yp after a step that ended at t [s]. */
+void integrator_rates_step(struct integrator_rates *rates, double t, struct state *state);
 
 #endif

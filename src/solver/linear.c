@@ -5,24 +5,26 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "solver/fish_factors.h"
-#include "solver/sundials_context.h"
+#include "solver/sundials.h"
 
-/* The relative tolerance of GMRES where bodies touch: the forces between two bodies cancel only as far as the system is
- * solved, and what is left changes the momentum of both together. */
+/* Relative tolerance of GMRES during contact: the forces between two bodies cancel only to the accuracy of the
+ * solution, and the remainder changes the total momentum. */
 static const double contact_relative = 1e-9;
 
-/* GMRES takes at most this many iterations; Newton's iteration judges what it returns then. */
+/* Maximum number of iterations of GMRES; Newton's iteration judges the solution after the last iteration. */
 enum { MAX_ITERATIONS = 40 };
 
 /* The diagonal block of one fish. */
 struct block {
     struct fish_factors *factors;
-    /* the change of one column since then: */
-    int is_updated;
-    double *update; /* D^-1 times the change over 1 plus its element of that column's unknown  (unknowns of the fish) */
     enum status status; /* of the last set-up */
+    /* change of the column of the shed circulation since the last set-up: z = D^-1 change, over 1 plus the element of z
+     * for that circulation                                                            (unknowns of the fish) */
+    int is_updated;
+    double *update;
 };
 
 struct linear {
@@ -30,7 +32,7 @@ struct linear {
     struct linear_tolerance tolerance;
     struct block *block;
     long solves, iterations;
-    /* GMRES, made for the first system that needs it: solution, right-hand side, 1/(sqrt(n_unknowns) scale) */
+    /* GMRES, created for the first coupled system: solution, right-hand side, 1/(sqrt(n_unknowns) scale) */
     struct sundials_context context;
     N_Vector x, b, weights;
     SUNLinearSolver gmres;
@@ -44,28 +46,28 @@ static int n_unknowns(const struct linear *linear) {
 
 enum status linear_create(struct linear **linear, const struct jacobian *jacobian, const double *scale,
                           struct linear_tolerance tolerance) {
+    const struct school *const school = jacobian->school;
     *linear = NULL;
-    struct linear *const new = calloc(1, sizeof *new);
-    if (!new) goto no_memory;
+    struct linear *new;
+    TRY(MEMORY_NEW(new, 1, "the linear solver"));
     new->jacobian = jacobian;
     new->tolerance = tolerance;
-    new->weight = calloc((size_t)n_unknowns(new), sizeof *new->weight);
-    new->block = calloc((size_t)jacobian->school->n_fish, sizeof *new->block);
-    if (!new->weight || !new->block) goto no_memory;
-    for (int i = 0; i < n_unknowns(new); i++) new->weight[i] = 1 / (sqrt(n_unknowns(new)) * scale[i]);
-    for (int f = 0; f < jacobian->school->n_fish; f++) {
-        const enum status status =
-            fish_factors_create(&new->block[f].factors, &jacobian->school->fish[f], jacobian->own[f]);
-        if (status != STATUS_OK) goto no_memory;
-        new->block[f].update = calloc((size_t)jacobian->own[f]->n, sizeof(double));
-        if (!new->block[f].update) goto no_memory;
-    }
-    *linear = new;
-    return STATUS_OK;
 
-no_memory:
-    linear_free(new);
-    return status_fail(STATUS_MEMORY, "out of memory: linear systems of %d unknowns", jacobian->school->n_unknowns);
+    enum status status = MEMORY_NEW(new->weight, school->n_unknowns, "the linear solver");
+    for (int i = 0; i < school->n_unknowns && status == STATUS_OK; i++) {
+        new->weight[i] = 1 / (sqrt(school->n_unknowns) * scale[i]);
+    }
+    if (status == STATUS_OK) status = MEMORY_NEW(new->block, school->n_fish, "the linear solver");
+    for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
+        status = fish_factors_create(&new->block[f].factors, &school->fish[f], jacobian->own[f]);
+        if (status == STATUS_OK) status = MEMORY_NEW(new->block[f].update, jacobian->own[f]->n, "the linear solver");
+    }
+    if (status == STATUS_OK) {
+        *linear = new;
+    } else {
+        linear_free(new);
+    }
+    return status;
 }
 
 void linear_free(struct linear *linear) {
@@ -105,7 +107,7 @@ enum status linear_setup(struct linear *linear) {
     return STATUS_OK;
 }
 
-// x becomes D^-1 x for one fish; x begins with its first unknown
+// replace x by D^-1 x for one fish; x begins with the first unknown of the fish
 static void solve_block(const struct linear *linear, int f, double *x) {
     const struct layout *at = &linear->jacobian->school->fish[f].at;
     struct block *const block = &linear->block[f];
@@ -116,8 +118,8 @@ static void solve_block(const struct linear *linear, int f, double *x) {
     for (int i = 0; i < n; i++) x[i] -= shed * block->update[i];
 }
 
-// the change of the column of the circulation shed, in rows of the block
-static void find_change(const struct fish *fish, const struct sparse *own, const double *value, double *change) {
+// the change of the column of the shed circulation, in rows of the block
+static void shed_change(const struct fish *fish, const struct sparse *own, const double *value, double *change) {
     const int column = fish->at.circulation - fish->at.x, end = fish->at.gamma + fish->n_control - fish->at.x;
     const int first = (fish_has_momentum(fish) ? fish->at.ax : fish->at.gamma) - fish->at.x;
     memset(change, 0, (size_t)own->n * sizeof *change);
@@ -130,7 +132,7 @@ static void find_change(const struct fish *fish, const struct sparse *own, const
     }
 }
 
-/* A product or solution, fish by fish, with one vector and for another. */
+/* A product or solution, fish by fish. */
 struct operation {
     struct linear *linear;
     const double *from;
@@ -147,7 +149,7 @@ static void update_shed(void *data, int f) {
     const struct jacobian *const jacobian = of->linear->jacobian;
     const struct fish *fish = &jacobian->school->fish[f];
     struct block *const block = &of->linear->block[f];
-    find_change(fish, jacobian->own[f], of->from, block->update);
+    shed_change(fish, jacobian->own[f], of->from, block->update);
     block->is_updated = 0;
     solve_block(of->linear, f, block->update);
     const double divisor = 1 + block->update[fish->at.circulation - fish->at.x];
@@ -159,8 +161,8 @@ void linear_update_shed(struct linear *linear, const double *value) {
     for_each_fish(update_shed, (struct operation){linear, value, NULL});
 }
 
-// x = D^-1 b with the diagonal blocks D alone; both may be the same array
-static void solve_one(void *data, int f) {
+// x = D^-1 b with the diagonal blocks D; both may be the same array
+static void uncoupled_solve(void *data, int f) {
     const struct operation *const of = data;
     const struct layout *at = &of->linear->jacobian->school->fish[f].at;
     const int n = at->end - at->x;
@@ -168,8 +170,8 @@ static void solve_one(void *data, int f) {
     solve_block(of->linear, f, of->to + at->x);
 }
 
-// product = v + D^-1 C v, C being the coupling blocks
-static void multiply_one(void *data, int f) {
+// product = v + D^-1 C v, C: coupling blocks
+static void coupled_multiply(void *data, int f) {
     const struct operation *const of = data;
     const struct jacobian *jacobian = of->linear->jacobian;
     const struct layout *at = &jacobian->school->fish[f].at;
@@ -180,48 +182,48 @@ static void multiply_one(void *data, int f) {
     for (int i = at->x; i < at->end; i++) product[i] += of->from[i];
 }
 
-static int multiply(void *data, N_Vector v, N_Vector product) {
+static int gmres_multiply(void *data, N_Vector v, N_Vector product) {
     struct linear *const linear = data;
-    for_each_fish(multiply_one, (struct operation){linear, N_VGetArrayPointer(v), N_VGetArrayPointer(product)});
+    for_each_fish(coupled_multiply, (struct operation){linear, N_VGetArrayPointer(v), N_VGetArrayPointer(product)});
     return 0;
 }
 
-/* Whether there is memory for what GMRES allocates. Where there is not SUNDIALS frees a half of it, and crashes. */
-static int has_memory(int n) {
+/* Whether memory for the vectors of GMRES is available: after a failed allocation SUNDIALS frees a part and crashes. */
+static int gmres_has_memory(int n) {
     enum { VECTORS = MAX_ITERATIONS + 8, SMALL = 1 << 17 };
     void *volatile const needed = malloc((size_t)n * VECTORS * sizeof(double) + SMALL);
     free(needed);
     return needed != NULL;
 }
 
-/* The operator of GMRES, 1 + D^-1 C, is the system with its preconditioner already; x is set for each solution. Norms
- * and dot products are sums over all unknowns: one thread.
- *
- * SUNLinSol_SPGMR costs a run of 16 close fish 2.4 % more instructions than a GMRES without the vectors of SUNDIALS
- * (callgrind); for 64 and 256 fish the difference is within the noise. */
-static enum status create_gmres(struct linear *linear) {
+/* The operator of GMRES, 1 + D^-1 C, includes the preconditioner; x is set for each solution. Norms and dot products
+ * are sums over all unknowns, so they use one thread. A run of 16 close fish takes 2.4 % more instructions with
+ * SUNLinSol_SPGMR than with a GMRES without the vectors of SUNDIALS (callgrind); for 64 and 256 fish the difference is
+ * within the noise. */
+static enum status gmres_create(struct linear *linear) {
     const int n = n_unknowns(linear);
     linear->right = calloc((size_t)n, sizeof *linear->right);
-    if (!linear->right || !has_memory(n)) return status_fail(STATUS_MEMORY, "out of memory: GMRES");
+    if (!linear->right || !gmres_has_memory(n)) return status_fail(STATUS_MEMORY, "out of memory: GMRES");
+
     TRY(sundials_context_create(&linear->context, n, 1, &linear->failure));
     TRY(sundials_context_vector(&linear->context, &linear->x, linear->right));
     TRY(sundials_context_vector(&linear->context, &linear->b, linear->right));
     TRY(sundials_context_vector(&linear->context, &linear->weights, linear->weight));
     linear->gmres = SUNLinSol_SPGMR(linear->x, SUN_PREC_NONE, MAX_ITERATIONS, linear->context.context);
-    if (!linear->gmres || SUNLinSolSetATimes(linear->gmres, linear, multiply) != SUN_SUCCESS ||
+    if (!linear->gmres || SUNLinSolSetATimes(linear->gmres, linear, gmres_multiply) != SUN_SUCCESS ||
         SUNLinSolSetScalingVectors(linear->gmres, linear->weights, linear->weights) != SUN_SUCCESS) {
         return status_fail(STATUS_MEMORY, "out of memory: GMRES");
     }
     if (SUNLinSolInitialize(linear->gmres) != SUN_SUCCESS) {
-        linear->gmres = NULL;  // it has been freed, if badly
+        linear->gmres = NULL;  // SUNDIALS has freed the solver
         return status_fail(STATUS_MEMORY, "out of memory: GMRES");
     }
     return sundials_context_check(&linear->context);
 }
 
-// solve the coupled system; x enters as the solution of the uncoupled one
+// solve the coupled system; initially x is the solution of the uncoupled system
 static enum status solve_coupled(struct linear *linear, double *x) {
-    if (!linear->gmres) TRY(create_gmres(linear));
+    if (!linear->gmres) TRY(gmres_create(linear));
     N_VSetArrayPointer(x, linear->x);
     const double start = N_VWL2Norm(linear->x, linear->weights);
     const double limit = linear->jacobian->has_contacts
@@ -234,14 +236,14 @@ static enum status solve_coupled(struct linear *linear, double *x) {
     SUNLinSolSetZeroGuess(linear->gmres, SUNTRUE);
     const int code = SUNLinSolSolve(linear->gmres, NULL, linear->x, linear->b, limit);
     linear->iterations += SUNLinSolNumIters(linear->gmres);
-    // after too many iterations a smaller residual is what Newton's iteration judges
+    // after too many iterations Newton's iteration judges a solution with a reduced residual
     if (code == SUN_SUCCESS || code == SUNLS_RES_REDUCED) return STATUS_OK;
     return status_fail(STATUS_RETRY, "GMRES has found no solution");
 }
 
 enum status linear_solve(struct linear *linear, const double *b, double *x) {
     linear->solves++;
-    for_each_fish(solve_one, (struct operation){linear, b, x});
+    for_each_fish(uncoupled_solve, (struct operation){linear, b, x});
     if (linear->jacobian->n_couplings > 0) TRY(solve_coupled(linear, x));
     for (int i = 0; i < n_unknowns(linear); i++) {
         if (!isfinite(x[i])) return status_fail(STATUS_RETRY, "a linear system has no finite solution");
@@ -252,10 +254,65 @@ enum status linear_solve(struct linear *linear, const double *b, double *x) {
 struct linear_counts linear_count(const struct linear *linear) {
     struct linear_counts counts = {.solves = linear->solves, .iterations = linear->iterations};
     for (int f = 0; f < linear->jacobian->school->n_fish; f++) {
-        const struct sparse_factors_counts block = fish_factors_count(linear->block[f].factors);
-        counts.analyses += block.analyses;
-        counts.factorisations += block.factorisations;
-        counts.refactorisations += block.refactorisations;
+        fish_factors_count(linear->block[f].factors, &counts.klu);
     }
     return counts;
+}
+
+// ---- matrix and linear solver of SUNDIALS, both empty
+
+static SUNMatrix_ID matrix_id(SUNMatrix matrix) {
+    (void)matrix;
+    return SUNMATRIX_CUSTOM;
+}
+
+// residual_jacobian sets the values to zero
+static int matrix_zero(SUNMatrix matrix) {
+    (void)matrix;
+    return SUN_SUCCESS;
+}
+
+static SUNLinearSolver_Type solver_type(SUNLinearSolver solver) {
+    (void)solver;
+    return SUNLINEARSOLVER_DIRECT;
+}
+
+static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix) {
+    (void)matrix;
+    const struct linear_sundials *const own = solver->content;
+    *own->failure = linear_setup(own->linear);
+    return *own->failure;
+}
+
+static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance) {
+    (void)matrix, (void)tolerance;
+    const struct linear_sundials *const own = solver->content;
+    *own->failure = linear_solve(own->linear, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+    return *own->failure;
+}
+
+enum status linear_sundials_create(struct linear_sundials *linear, SUNContext context, const struct jacobian *jacobian,
+                                   const double *scale, struct linear_tolerance tolerance, enum status *failure) {
+    *linear = (struct linear_sundials){.failure = failure};
+    TRY(linear_create(&linear->linear, jacobian, scale, tolerance));
+    linear->matrix = SUNMatNewEmpty(context);
+    linear->solver = SUNLinSolNewEmpty(context);
+    if (!linear->matrix || !linear->solver) {
+        linear_sundials_free(linear);
+        return status_fail(STATUS_MEMORY, "out of memory: a linear solver");
+    }
+    linear->matrix->ops->getid = matrix_id;
+    linear->matrix->ops->zero = matrix_zero;
+    linear->solver->content = linear;
+    linear->solver->ops->gettype = solver_type;
+    linear->solver->ops->setup = solver_setup;
+    linear->solver->ops->solve = solver_solve;
+    return STATUS_OK;
+}
+
+void linear_sundials_free(struct linear_sundials *linear) {
+    if (linear->solver) SUNLinSolFreeEmpty(linear->solver);
+    if (linear->matrix) SUNMatFreeEmpty(linear->matrix);
+    linear_free(linear->linear);
+    *linear = (struct linear_sundials){0};
 }

@@ -8,22 +8,22 @@
 
 #include "base/status.h"
 #include "school/jacobian.h"
+#include "solver/fish_factors.h"
+#include "solver/sundials.h"
 
 struct linear;
 
 /* Totals so far. */
 struct linear_counts {
-    long analyses;           /* of sparsity patterns, over all fish */
-    long factorisations;     /* with new pivots */
-    long refactorisations;   /* with the pivots of the last factorisation */
-    long solves, iterations; /* iterations: of GMRES */
+    struct fish_factors_counts klu; /* over all fish */
+    long solves, iterations;        /* iterations: of GMRES */
 };
 
-/* When GMRES has converged. The norm of the preconditioned residual is the root mean square over all unknowns, each in
- * units of its scale; it is close to the error of the solution. */
+/* Convergence of GMRES. The norm of the preconditioned residual is the root mean square over all unknowns in units of
+ * their scales, and is close to the error of the solution. */
 struct linear_tolerance {
-    double relative; /* norm, as a fraction of the initial one */
-    double absolute; /* norm; the larger of both counts */
+    double relative; /* norm as a fraction of the initial norm */
+    double absolute; /* norm; GMRES stops at the larger of both */
 };
 
 /* Create a solver for a Jacobian, which must outlive it; scale (n_unknowns) is copied. Fails with STATUS_MEMORY.
@@ -32,21 +32,37 @@ enum status linear_create(struct linear **linear, const struct jacobian *jacobia
                           struct linear_tolerance tolerance);
 void linear_free(struct linear *linear);
 
-/* Factorise the diagonal blocks with their present values. Fails with STATUS_MEMORY, and for a singular block with
- * STATUS_SOLVER if it has never been factorised, else with STATUS_RETRY. */
+/* Factorise the diagonal blocks with their present values. Fails with STATUS_MEMORY; a singular block fails with
+ * STATUS_SOLVER at the first factorisation, later with STATUS_RETRY. */
 enum status linear_setup(struct linear *linear);
 
-/* From now on, until the next linear_setup, solve with other derivatives of impermeability, and with force: pressure of
- * the law of motion, by the circulation that the same fish has shed: those in the rows of these equations of value
- * (n_unknowns). The factors stay: the solutions are
- * corrected by a matrix of rank one for each fish (Sherman and Morrison). Where that matrix is singular, they are not
- * finite. After linear_setup. */
+/* Replace derivatives by the shed circulation of the same fish until the next linear_setup: those of impermeability
+ * and, with force: pressure, of the law of motion. value (n_unknowns): new derivatives, in the rows of these equations.
+ * The factors are unchanged; a matrix of rank one per fish corrects the solutions (Sherman and Morrison). If that
+ * matrix is singular, the solutions are not finite. Requires linear_setup. */
 void linear_update_shed(struct linear *linear, const double *value);
 
-/* Solve J x = b. Both arrays are (n_unknowns) and may be the same one. Fails with STATUS_RETRY if x is not finite, or
- * with STATUS_MEMORY. */
+/* Solve J x = b. Both arrays are (n_unknowns) and may be identical. Fails with STATUS_RETRY if x is not finite, or with
+ * STATUS_MEMORY. */
 enum status linear_solve(struct linear *linear, const double *b, double *x);
 
 struct linear_counts linear_count(const struct linear *linear);
+
+/* The linear solver as a matrix and a linear solver of SUNDIALS, for IDA and KINSOL. Tested by
+ * tests/solver/test_initial_conditions.c and tests/solver/test_ida.c. */
+struct linear_sundials {
+    struct linear *linear;
+    enum status *failure; /* status of the last callback; owned by the caller */
+    SUNMatrix matrix;     /* empty: the callback for the Jacobian fills struct jacobian */
+    SUNLinearSolver solver;
+};
+
+/* Create the solver for a Jacobian; scale and tolerance as in linear_create. The solver declares itself as direct, so
+ * IDA scales the solutions if the step has changed since the evaluation of the Jacobian. *failure receives the status
+ * of each set-up and each solution. Jacobian and *failure must outlive the solver, and the struct must not move. Fails
+ * with STATUS_MEMORY; nothing is then allocated. linear_sundials_free accepts a struct of zeros. */
+enum status linear_sundials_create(struct linear_sundials *linear, SUNContext context, const struct jacobian *jacobian,
+                                   const double *scale, struct linear_tolerance tolerance, enum status *failure);
+void linear_sundials_free(struct linear_sundials *linear);
 
 #endif

@@ -1,5 +1,5 @@
-/* modes.c: see modes.h. The algebraic unknowns are eliminated once; the exponents then are roots of a small nonlinear
- * eigenvalue problem, each followed from that without a wake to that with all of it. */
+/* modes.c: elimination of the algebraic unknowns; the exponents are then roots of a small nonlinear eigenvalue problem.
+ * Continuation from the problem without memory of the wake to the full problem finds each root. */
 #include "solver/modes.h"
 
 #include <complex.h>
@@ -16,35 +16,36 @@
 #include "school/residual_couplings.h"
 #include "school/residual_jacobian.h"
 
-/* Gauss's points of the interval. */
+/* Gauss points of the interval. */
 enum { N_POINTS = 2 };
 static const double point[N_POINTS] = {0.21132486540518712, 0.78867513459481288};
 
-/* The wake decays over this part of its length at least: where it just ended, its end would be felt. */
+/* The strength of the wake decays over at least this fraction of its length, because an abrupt end of the wake would
+ * change the modes. */
 static const double window = 0.75;
 
-/* A mode turns by no more than this within an event, and decays by no more than exp(-slowest) in the life of the wake;
- * it is found to this part of itself. */
+/* Largest |lambda| times the interval; largest decay over the life of the wake is exp(-slowest); relative accuracy of
+ * lambda. */
 static const double fastest = 0.4, slowest = 6, accuracy = 1e-7;
 
-/* Modes that are followed, in steps from no wake to all of it; of the iterations and inverse iterations of a step. */
+/* Number of candidates; steps of the continuation; iterations and inverse iterations of a step. */
 enum { CANDIDATES = 24, STEPS = 4, ITERATIONS = 30, INNER = 2 };
 
-/* Two modes are the same where they differ by less than this part of the larger one. */
+/* Two modes are identical if they differ by less than this fraction of the larger mode. */
 static const double same = 1e-4;
 
 struct modes {
     struct residual *residual;
     struct state *state;
-    int n_all, n, n_slow, n_shed; /* unknowns of the school; without those that are given; of these the differential
-                                     ones; one circulation of each fish */
-    int *unknown;                 /* differential ones first                                    (n) */
-    double *by_value, *by_rate;   /* dF/dy and dF/dy', the algebraic unknowns eliminated: rows of the slow unknowns, and
-                                     of the circulations; columns of the slow ones      (n_slow + n_shed, n_slow) */
-    double *eliminate;            /* what makes these rows of all rows                  (n_slow + n_shed, n) */
-    double *y;                    /* the unknowns within the interval                   (n_all) */
+    int n_all, n, n_slow, n_shed; /* unknowns of the school; unknowns that are not prescribed; differential unknowns;
+                                     circulations, one of each fish */
+    int *unknown;                 /* unknowns that are not prescribed, differential first       (n) */
+    double *by_value, *by_rate;   /* dF/dy and dF/dy' without algebraic unknowns: rows of differential unknowns and of
+                                     circulations; columns of differential unknowns     (n_slow + n_shed, n_slow) */
+    double *eliminate;            /* combination of all rows into these rows            (n_slow + n_shed, n) */
+    double *y;                    /* unknowns within the interval                       (n_all) */
     double *plain, *shifted;      /* residuals of the school                            (n_all) */
-    double **label;               /* circulations of the wakes as they are, oldest first   (n_shed, n_vortex) */
+    double **label;               /* circulations of the wakes before, oldest first     (n_shed, n_vortex) */
     double *shed;                 /* (n_shed) */
 };
 
@@ -54,8 +55,7 @@ static enum status out_of_memory(const struct modes *modes) {
 
 // ---- the wake
 
-/* The part of the strength of a stretch a events old that is left by the window; 1 where the whole wake of the case is
- * there and fades by itself. */
+/* The window at a stretch that is a events old; 1 if the wake has its full length and decays. */
 static double window_of(const struct modes *modes, int a, int n_vortex) {
     const struct school *const school = modes->residual->school;
     const int has_all = (n_vortex + 2) * school->interval >= school->lifetime;
@@ -63,7 +63,7 @@ static double window_of(const struct modes *modes, int a, int n_vortex) {
     return 1 - ramp_step(((a + 0.5) / n_vortex - (1 - window)) / window);
 }
 
-/* Put the labels of a fish as a motion of this exponent leaves them, tau after the event: the real or the imaginary
+/* Set the labels of a fish to the labels shed by a motion with exponent lambda, tau after the event: real or imaginary
  * part, times a factor. */
 static void put_labels(const struct modes *modes, int f, double complex lambda, double tau, int is_imaginary,
                        double factor) {
@@ -82,8 +82,8 @@ static void put_labels(const struct modes *modes, int f, double complex lambda, 
     wake->version++;
 }
 
-/* Where the bodies are tau after the event: all go as their first nodes do. */
-static void place(const struct modes *modes, double tau) {
+/* The bodies tau after the event: all nodes have the velocity of the first node. */
+static void modes_place(const struct modes *modes, double tau) {
     const struct school *const school = modes->residual->school;
     memcpy(modes->y, modes->state->y, (size_t)modes->n_all * sizeof *modes->y);
     for (int f = 0; f < school->n_fish; f++) {
@@ -94,9 +94,9 @@ static void place(const struct modes *modes, double tau) {
     }
 }
 
-static enum status evaluate(const struct modes *modes, double tau, double *value) {
+static enum status modes_evaluate(const struct modes *modes, double tau, double *value) {
     const struct state *const state = modes->state;
-    place(modes, tau);
+    modes_place(modes, tau);
     flow_sum_exactly(modes->residual->flow);
     const enum status status = residual_evaluate(modes->residual, state->t + tau, modes->y, state->yp, value);
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
@@ -111,10 +111,10 @@ static void restore_labels(const struct modes *modes) {
     }
 }
 
-/* w_f(lambda), reduced: a mean over the interval                                    (n_slow + n_shed) */
+/* w_f(lambda), reduced, mean over the interval                                      (n_slow + n_shed) */
 static enum status wake_column(const struct modes *modes, int f, double complex lambda, double complex *column) {
     const struct school *const school = modes->residual->school;
-    // small beside a circulation of the stream, so that the forces, which are quadratic, stay linear
+    // small compared with a circulation of the stream: the forces are quadratic in the circulation
     const double factor = 1e-4 * school->fish[f].length * school->fish[f].length;
     const int rows = modes->n_slow + modes->n_shed;
     for (int i = 0; i < rows; i++) column[i] = 0;
@@ -122,9 +122,9 @@ static enum status wake_column(const struct modes *modes, int f, double complex 
         const double tau = point[p] * school->interval;
         for (int part = 0; part < (fabs(cimag(lambda)) > 0 ? 2 : 1); part++) {
             put_labels(modes, f, lambda, tau, part, factor);
-            TRY(evaluate(modes, tau, modes->plain));
+            TRY(modes_evaluate(modes, tau, modes->plain));
             put_labels(modes, f, lambda, tau, part, -factor);
-            TRY(evaluate(modes, tau, modes->shifted));
+            TRY(modes_evaluate(modes, tau, modes->shifted));
             for (int k = 0; k < modes->n; k++) {
                 const int i = modes->unknown[k];
                 const double change = (modes->plain[i] - modes->shifted[i]) / (2 * factor * N_POINTS);
@@ -175,12 +175,13 @@ static enum status add_jacobian(const struct modes *modes, struct jacobian *jaco
     return STATUS_OK;
 }
 
-/* dF/dy and dF/dy', as means over the interval. */
-static enum status linearise(const struct modes *modes, struct jacobian *jacobian, double *by_value, double *by_rate) {
+/* dF/dy and dF/dy', means over the interval. */
+static enum status modes_linearise(const struct modes *modes, struct jacobian *jacobian, double *by_value,
+                                   double *by_rate) {
     const size_t size = (size_t)modes->n_all * (size_t)modes->n_all;
     for (int p = 0; p < N_POINTS; p++) {
         const double tau = point[p] * modes->residual->school->interval, t = modes->state->t + tau;
-        TRY(evaluate(modes, tau, modes->plain));
+        TRY(modes_evaluate(modes, tau, modes->plain));
         TRY(add_jacobian(modes, jacobian, t, 0, 1.0 / N_POINTS, by_value));
         TRY(add_jacobian(modes, jacobian, t, 1, 1.0 / N_POINTS, by_rate));
     }
@@ -188,8 +189,8 @@ static enum status linearise(const struct modes *modes, struct jacobian *jacobia
     return STATUS_OK;
 }
 
-/* The unknowns whose equation is no given motion, those first whose rates are in an equation. */
-static void list(struct modes *modes, const struct jacobian *jacobian, const double *by_rate) {
+/* List the unknowns that are not prescribed, first the unknowns with a rate in an equation. */
+static void modes_list(struct modes *modes, const struct jacobian *jacobian, const double *by_rate) {
     const struct school *const school = modes->residual->school;
     const int n = modes->n_all;
     for (int slow = 1; slow >= 0; slow--) {
@@ -208,10 +209,9 @@ static void list(struct modes *modes, const struct jacobian *jacobian, const dou
     }
 }
 
-/* Eliminate the algebraic unknowns. Their columns of dF/dy are C = Q [R; 0]: the last columns of Q, times all the
- * equations, have none of them; and R gives a circulation that is algebraic: Gamma + z^T Q^T (the rest) = 0 with
- * R^T z = e. */
-static enum status reduce(struct modes *modes, const double *by_value, const double *by_rate) {
+/* Eliminate the algebraic unknowns. Their columns of dF/dy are C = Q [R; 0]: the last columns of Q times all equations
+ * are free of algebraic unknowns. R gives an algebraic circulation: Gamma + z^T Q^T (rest) = 0 with R^T z = e. */
+static enum status modes_reduce(struct modes *modes, const double *by_value, const double *by_rate) {
     const int n = modes->n, slow = modes->n_slow, fast = n - slow, rows = slow + modes->n_shed;
     const size_t n_rows = (size_t)rows, n_all = (size_t)modes->n_all;
     double *const c = calloc((size_t)n * (size_t)(fast + 1), sizeof *c), *const q =
@@ -235,11 +235,11 @@ static enum status reduce(struct modes *modes, const double *by_value, const dou
     for (int i = 0; i < n; i++) q[i + n * i] = 1;
     if (fast > 0) LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', n, n, fast, c, n, tau, q, n);
 
-    // the last columns of Q have no algebraic unknown
+    // the last columns of Q: equations without algebraic unknowns
     for (int row = 0; row < slow; row++) {
         for (int k = 0; k < n; k++) modes->eliminate[row + rows * k] = q[k + n * (fast + row)];
     }
-    // a circulation is slow itself, or the row of R^-1 Q^T that gives it
+    // a circulation is differential, or follows from a row of R^-1 Q^T
     for (int f = 0; f < modes->n_shed; f++) {
         const int circulation = modes->residual->school->fish[f].at.circulation;
         int place = 0;
@@ -285,7 +285,7 @@ end:
 
 // ---- one mode
 
-/* The matrix of the slow unknowns and the circulations at an exponent: [A + lambda E, W; B + lambda D, W + 1]. */
+/* The matrix of differential unknowns and circulations at an exponent: [A + lambda E, W; B + lambda D, W + 1]. */
 static void fill_matrix(const struct modes *modes, double complex lambda, const double complex *wake,
                         double complex *matrix) {
     const int slow = modes->n_slow, rows = slow + modes->n_shed;
@@ -294,7 +294,7 @@ static void fill_matrix(const struct modes *modes, double complex lambda, const 
     for (int f = 0; f < modes->n_shed; f++) matrix[slow + f + rows * (slow + f)] += 1;
 }
 
-/* The derivative of that by lambda, without that of the wake, times a vector. */
+/* The derivative of the matrix by lambda, for a constant wake, times a vector. */
 static void times_rate(const struct modes *modes, const double complex *vector, double complex *product) {
     const int slow = modes->n_slow, rows = slow + modes->n_shed;
     for (int i = 0; i < rows; i++) product[i] = 0;
@@ -303,7 +303,7 @@ static void times_rate(const struct modes *modes, const double complex *vector, 
     }
 }
 
-/* Workspace of a mode that is followed. */
+/* Workspace of the continuation of one mode. */
 struct following {
     double complex *matrix;        /* (rows, rows) */
     double complex *wake, *still;  /* w(lambda), w(0)                                   (rows, n_shed) */
@@ -311,9 +311,9 @@ struct following {
     lapack_int *pivot;             /* (rows) */
 };
 
-/* Find the exponent near lambda with this part of the wake's memory. Whether it converges, in *found. */
-static enum status solve(const struct modes *modes, struct following *at, double part, double complex *lambda,
-                         int *found) {
+/* Find the exponent near lambda with this fraction (part) of the memory of the wake; *found: converged. */
+static enum status mode_solve(const struct modes *modes, struct following *at, double part, double complex *lambda,
+                              int *found) {
     const int rows = modes->n_slow + modes->n_shed;
     *found = 0;
     for (int iteration = 0; iteration < ITERATIONS && !*found; iteration++) {
@@ -325,7 +325,7 @@ static enum status solve(const struct modes *modes, struct following *at, double
         }
         fill_matrix(modes, *lambda, at->wake, at->matrix);
         if (LAPACKE_zgetrf(LAPACK_COL_MAJOR, rows, rows, at->matrix, rows, at->pivot) != 0) {
-            *found = 1;  // singular to rounding: it is one
+            *found = 1;  // singular to rounding: lambda is a root
             return STATUS_OK;
         }
         double complex change = 0;
@@ -356,8 +356,8 @@ struct candidate {
     double complex *vector; /* (rows) */
 };
 
-/* The exponents without a wake, whose labels follow the circulation at once: eigenvalues of -E^-1 A, the circulations
- * eliminated. In real and imaginary, with the vectors                                 (n_slow), (n_slow, n_slow) */
+/* The exponents of a wake without memory, with labels equal to the present circulation: eigenvalues of -E^-1 A without
+ * the circulations. real, imaginary (n_slow), vectors (n_slow, n_slow) */
 static enum status find_still(const struct modes *modes, const double complex *still, double *real, double *imaginary,
                               double *vectors) {
     const int slow = modes->n_slow, shed = modes->n_shed, rows = slow + shed;
@@ -397,9 +397,9 @@ static enum status find_still(const struct modes *modes, const double complex *s
     return status;
 }
 
-/* Put a candidate among the n slowest ones. column: of its vector. */
-static void insert(const struct modes *modes, double complex lambda, const double *vectors, int column,
-                   struct candidate *candidates, int *n) {
+/* Insert a candidate into the list of the slowest candidates; column: index of the vector. */
+static void candidate_insert(const struct modes *modes, double complex lambda, const double *vectors, int column,
+                             struct candidate *candidates, int *n) {
     if (*n == CANDIDATES && cabs(candidates[CANDIDATES - 1].lambda) <= cabs(lambda)) return;
     int i = *n < CANDIDATES ? (*n)++ : CANDIDATES - 1;
     double complex *const vector = candidates[i].vector;
@@ -411,7 +411,7 @@ static void insert(const struct modes *modes, double complex lambda, const doubl
     for (int f = 0; f < modes->n_shed; f++) vector[modes->n_slow + f] = 0;
 }
 
-/* Whether a mode is slow enough to be resolved by the events, and lives as long as the wake, or a factor times that. */
+/* Whether the events resolve a mode, and the mode lives as long as the wake; loosely: factor on both limits. */
 static int is_resolved(const struct modes *modes, double complex lambda, double loosely) {
     const double interval = modes->residual->school->interval;
     double life = interval;
@@ -422,8 +422,8 @@ static int is_resolved(const struct modes *modes, double complex lambda, double 
 
 // ---- all
 
-/* Put a mode among those that are known, by falling rate; nothing is done where it is one of them. */
-static void keep(double complex lambda, int n_most, struct mode *mode, int *n) {
+/* Insert a mode into the list of modes, sorted by falling rate, unless the list contains the mode. */
+static void mode_keep(double complex lambda, int n_most, struct mode *mode, int *n) {
     const struct mode new = {creal(lambda), cimag(lambda)};
     for (int i = 0; i < *n; i++) {
         const double size = same * hypot(new.rate, new.omega);
@@ -448,16 +448,16 @@ static enum status follow_all(const struct modes *modes, struct following *at, s
     int n_candidates = 0;
     for (int j = 0; j < slow && status == STATUS_OK; j++) {
         const double complex lambda = values[j] + I * values[slow + j];
-        if (is_resolved(modes, lambda, 3)) insert(modes, lambda, vectors, j, candidates, &n_candidates);
+        if (is_resolved(modes, lambda, 3)) candidate_insert(modes, lambda, vectors, j, candidates, &n_candidates);
     }
     for (int c = 0; c < n_candidates && status == STATUS_OK; c++) {
         int found = 1;
         at->vector = candidates[c].vector;
         for (int step = 1; step <= STEPS && found && status == STATUS_OK; step++) {
-            status = solve(modes, at, (double)step / STEPS, &candidates[c].lambda, &found);
+            status = mode_solve(modes, at, (double)step / STEPS, &candidates[c].lambda, &found);
         }
         if (status == STATUS_OK && found && is_resolved(modes, candidates[c].lambda, 1)) {
-            keep(candidates[c].lambda, n_most, mode, n);
+            mode_keep(candidates[c].lambda, n_most, mode, n);
         }
     }
     free(values);
@@ -465,7 +465,7 @@ static enum status follow_all(const struct modes *modes, struct following *at, s
     return status;
 }
 
-static enum status find(struct modes *modes, int n_most, struct mode *mode, int *n) {
+static enum status modes_find_all(struct modes *modes, int n_most, struct mode *mode, int *n) {
     const int rows = modes->n_slow + modes->n_shed;
     const size_t columns = (size_t)rows * (size_t)modes->n_shed;
     struct following at = {.matrix = calloc((size_t)rows * (size_t)rows + 1, sizeof *at.matrix),
@@ -504,7 +504,7 @@ static enum status keep_labels(struct modes *modes) {
     return STATUS_OK;
 }
 
-static enum status pose(struct modes *modes, struct jacobian **jacobian) {
+static enum status modes_pose(struct modes *modes, struct jacobian **jacobian) {
     const size_t n = (size_t)modes->n_all;
     modes->unknown = calloc(n, sizeof *modes->unknown);
     modes->y = calloc(n, sizeof *modes->y);
@@ -517,11 +517,11 @@ static enum status pose(struct modes *modes, struct jacobian **jacobian) {
     if (status == STATUS_OK) status = jacobian_create(jacobian, modes->residual->school);
     if (status == STATUS_OK) {
         residual_mask(modes->residual, *jacobian);
-        status = linearise(modes, *jacobian, by_value, by_rate);
+        status = modes_linearise(modes, *jacobian, by_value, by_rate);
     }
     if (status == STATUS_OK) {
-        list(modes, *jacobian, by_rate);
-        status = reduce(modes, by_value, by_rate);
+        modes_list(modes, *jacobian, by_rate);
+        status = modes_reduce(modes, by_value, by_rate);
     }
     free(by_value);
     free(by_rate);
@@ -533,10 +533,10 @@ enum status modes_find(struct residual *residual, struct state *state, int n_mos
     struct jacobian *jacobian = NULL;
     const double reach = residual->couplings.reach;
     *n = 0;
-    // all bodies couple, however far they are from each other
+    // couple all bodies at any distance
     residual->couplings.reach = 1e6 * residual->school->fish[0].length;
-    enum status status = pose(&modes, &jacobian);
-    if (status == STATUS_OK && modes.n_slow > 0) status = find(&modes, n_most, mode, n);
+    enum status status = modes_pose(&modes, &jacobian);
+    if (status == STATUS_OK && modes.n_slow > 0) status = modes_find_all(&modes, n_most, mode, n);
     residual->couplings.reach = reach;
     jacobian_free(jacobian);
     for (int f = 0; f < modes.n_shed && modes.label; f++) free(modes.label[f]);

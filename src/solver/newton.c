@@ -1,11 +1,13 @@
 /* newton.c: KINSOL with a dense matrix. */
 #include "solver/newton.h"
 
+#include <lapacke.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "solver/sundials.h"
-#include "solver/sundials_context.h"
 
 struct solver {
     const struct newton *problem;
@@ -17,7 +19,7 @@ struct solver {
     void *kinsol;
 };
 
-// a failure of a callback is final: a smaller step would cost as much as all that went before
+// a failure of a callback is final: evaluations are too expensive for smaller steps
 static int value_of(N_Vector u, N_Vector value, void *data) {
     struct solver *const solver = data;
     solver->failure = solver->problem->value(solver->problem->data, N_VGetArrayPointer(u), N_VGetArrayPointer(value));
@@ -31,7 +33,7 @@ static int jacobian_of(N_Vector u, N_Vector value, SUNMatrix matrix, void *data,
     return solver->failure == STATUS_OK ? 0 : -1;
 }
 
-static void release(struct solver *solver) {
+static void newton_release(struct solver *solver) {
     if (solver->kinsol) KINFree(&solver->kinsol);
     if (solver->linear) SUNLinSolFree(solver->linear);
     if (solver->matrix) SUNMatDestroy(solver->matrix);
@@ -40,7 +42,7 @@ static void release(struct solver *solver) {
     sundials_context_free(&solver->context);
 }
 
-static enum status set_up(struct solver *solver, double *u, double *inverse) {
+static enum status newton_set_up(struct solver *solver, double *u, double *inverse) {
     const struct newton *const problem = solver->problem;
     for (int i = 0; i < problem->n; i++) inverse[i] = 1 / problem->scale[i];
     TRY(sundials_context_create(&solver->context, problem->n, 1, &solver->failure));
@@ -50,7 +52,7 @@ static enum status set_up(struct solver *solver, double *u, double *inverse) {
     solver->linear = solver->matrix ? SUNLinSol_Dense(solver->unknowns, solver->matrix, solver->context.context) : NULL;
     solver->kinsol = KINCreate(solver->context.context);
     if (!solver->linear || !solver->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
-    // steps of rounding do not end the iteration
+    // steps of dead_multiplier do not end the iteration
     if (KINSetErrHandlerFn(solver->kinsol, sundials_context_message, &solver->failure) ||
         KINSetUserData(solver->kinsol, solver) || KINInit(solver->kinsol, value_of, solver->unknowns) ||
         KINSetLinearSolver(solver->kinsol, solver->linear, solver->matrix) ||
@@ -64,7 +66,7 @@ static enum status set_up(struct solver *solver, double *u, double *inverse) {
     return sundials_context_check(&solver->context);
 }
 
-static const char *reason(int code) {
+static const char *newton_reason(int code) {
     switch (code) {
         case KIN_MXNEWT_5X_EXCEEDED:
         case KIN_MAXITER_REACHED: return "Newton's method did not converge";
@@ -77,7 +79,7 @@ static const char *reason(int code) {
 static enum status solve(struct solver *solver) {
     int code = KIN_MXNEWT_5X_EXCEEDED;
     long n_iterations = 0, n = 0;
-    // five longest steps in a row are no reason to stop
+    // five longest steps in a row are no newton_reason to stop
     while (code == KIN_MXNEWT_5X_EXCEEDED && n_iterations < solver->problem->max_iterations) {
         code = KINSol(solver->kinsol, solver->unknowns, KIN_NONE, solver->scales, solver->scales);
         KINGetNumNonlinSolvIters(solver->kinsol, &n);
@@ -87,16 +89,115 @@ static enum status solve(struct solver *solver) {
     if (code >= 0) return STATUS_OK;
     char cause[512];
     snprintf(cause, sizeof cause, "%s", status_message());
-    return status_fail(STATUS_SOLVER, "%s (%s)", reason(code), cause);
+    return status_fail(STATUS_SOLVER, "%s (%s)", newton_reason(code), cause);
 }
 
 enum status newton_solve(const struct newton *problem, double *u) {
     struct solver solver = {.problem = problem};
     double *const inverse = calloc((size_t)problem->n, sizeof *inverse);
     enum status status = inverse ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: Newton's method");
-    if (status == STATUS_OK) status = set_up(&solver, u, inverse);
+    if (status == STATUS_OK) status = newton_set_up(&solver, u, inverse);
     if (status == STATUS_OK) status = solve(&solver);
-    release(&solver);
+    newton_release(&solver);
     free(inverse);
+    return status;
+}
+
+// ---- least squares and eigenvalues of LAPACK
+
+static int multiplier_comes_before(const double *real, const double *imaginary, int i, int j) {
+    const double a = hypot(real[i], imaginary[i]), b = hypot(real[j], imaginary[j]);
+    // the two of a pair have the same value but for dead_multiplier
+    if (fabs(a - b) > 1e-12 * (a + b)) return a > b;
+    return imaginary[i] > imaginary[j];
+}
+
+static void swap(double *a, double *b) {
+    const double value = *a;
+    *a = *b;
+    *b = value;
+}
+
+static void multipliers_sort(int n, double *real, double *imaginary) {
+    for (int i = 1; i < n; i++) {
+        for (int j = i; j > 0 && multiplier_comes_before(real, imaginary, j, j - 1); j--) {
+            swap(&real[j], &real[j - 1]);
+            swap(&imaginary[j], &imaginary[j - 1]);
+        }
+    }
+}
+
+// exchange rows and columns                                                       from (n, m), to (m, n)
+static void multipliers_transpose(int n, int m, const double *from, double *to) {
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < m; j++) to[j + m * i] = from[i + n * j];
+    }
+}
+
+/* Directions in which the columns are below this fraction of the largest column have decayed: the remaining columns are
+ * errors of the integration. */
+static const double least_singular = 0.03;
+
+/* Eigenvalues of decayed directions are below this limit. */
+static const double dead_multiplier = 1e-10;
+
+// (I - A) way = change, with the transposed map in the first n rows of images                        (m, n)
+static enum status find_fixed_point(int n, int m, const double *images, const double *change, double *way) {
+    double *const matrix = calloc((size_t)n * (size_t)n, sizeof *matrix);
+    lapack_int *const pivot = calloc((size_t)n, sizeof *pivot);
+    enum status status = STATUS_OK;
+    if (matrix && pivot) {
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++) matrix[i + n * j] = (i == j) - images[j + m * i];
+        }
+        memcpy(way, change, (size_t)n * sizeof *way);
+        if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, matrix, n, pivot, way, n) != 0) {
+            memset(way, 0, (size_t)n * sizeof *way);
+        }
+    } else {
+        status = status_fail(STATUS_MEMORY, "out of memory: the fixed point of %d quantities", n);
+    }
+    free(matrix);
+    free(pivot);
+    return status;
+}
+
+/* A map of n dimensions and m images; results. */
+struct map {
+    int n, m;
+    const double *before, *after, *change;
+    double *real, *imaginary, *way;
+};
+
+// the transposed map is the solution X of before^T X = after^T, and has the same eigenvalues
+static enum status multipliers_solve(const struct map *map, double *matrix, double *images) {
+    const int n = map->n, m = map->m;
+    multipliers_transpose(n, m, map->before, matrix);
+    multipliers_transpose(n, m, map->after, images);
+    // real is scratch for the singular values; rows of images below n contain the residuals
+    lapack_int rank = 0;
+    double *const real = map->real, *const imaginary = map->imaginary;
+    const int failed = LAPACKE_dgelsd(LAPACK_COL_MAJOR, m, n, n, matrix, m, images, m, real, least_singular, &rank);
+    if (failed != 0 || rank < 1) return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
+    TRY(find_fixed_point(n, m, images, map->change, map->way));
+    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, images, m, real, imaginary, NULL, 1, NULL, 1) != 0) {
+        return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
+    }
+    for (int i = 0; i < n; i++) {
+        if (hypot(real[i], imaginary[i]) < dead_multiplier) real[i] = imaginary[i] = 0;
+    }
+    multipliers_sort(n, real, imaginary);
+    return STATUS_OK;
+}
+
+enum status newton_multipliers(int n, int n_columns, const double *before, const double *after, const double *change,
+                               double *real, double *imaginary, double *way) {
+    const struct map map = {n, n_columns, before, after, change, real, imaginary, way};
+    const size_t size = (size_t)n * (size_t)n_columns;
+    double *const matrix = calloc(size, sizeof *matrix), *const images = calloc(size, sizeof *images);
+    const enum status status = matrix && images ? multipliers_solve(&map, matrix, images)
+                                                : status_fail(STATUS_MEMORY, "out of memory: %d multipliers", n);
+    free(matrix);
+    free(images);
     return status;
 }

@@ -1,26 +1,35 @@
-/* newton.h: Newton's method of KINSOL for a few equations, each of which is dear to evaluate: those of a steady state.
- * Tested by tests/solver/test_newton.c. */
+/* newton.h: small dense systems: Newton's method of KINSOL for a few expensive equations, such as the equations of a
+ * steady state; fixed point and eigenvalues of a linear map. Tested by tests/solver/test_newton.c. */
 #ifndef NEWTON_H
 #define NEWTON_H
 
 #include "base/status.h"
 
-/* n equations value(u) = 0. A callback that fails ends newton_solve with its status. */
+/* n equations value(u) = 0. A failed callback ends newton_solve with its status. */
 struct newton {
     int n;
-    const double *scale; /* of unknown i and of equation i, which have the same unit                    (n) */
-    double tolerance;    /* solved where no equation is above it, over its scale */
-    double max_step;     /* in the norm of the unknowns over their scales; at least 1 */
-    int reuse;           /* steps with one Jacobian */
+    const double *scale; /* of unknown i and equation i, which have the same unit                       (n) */
+    double tolerance;    /* largest accepted residual, in units of scale */
+    double max_step;     /* largest norm of a step in units of scale, at least 1 */
+    int reuse;           /* number of steps with one Jacobian */
     int max_iterations;
     enum status (*value)(void *data, const double *u, double *value);
-    /* matrix[i + n j] = d value_i / d u_j where value was evaluated last */
+    /* matrix[i + n j] = d value_i / d u_j at the last evaluation of value */
     enum status (*jacobian)(void *data, double *matrix);
     void *data;
 };
 
-/* Solve from u, which holds the last iterate afterwards, also where this fails: with STATUS_SOLVER (no solution after
- * max_iterations, or a Jacobian that is singular), with STATUS_MEMORY, or as a callback. */
+/* Solve from the initial guess u. u is then the last iterate, also after a failure. Fails with STATUS_SOLVER (no
+ * solution after max_iterations, or a singular Jacobian), with STATUS_MEMORY, or with the status of a callback. */
 enum status newton_solve(const struct newton *problem, double *u);
+
+/* Eigenvalues of the linear map A of n dimensions that maps the columns of before to the columns of after best in the
+ * sense of least squares; both (n, n_columns), column after column, n_columns >= n. Eigenvalues are sorted by falling
+ * absolute value, in a complex pair positive imaginary part first; they are 0 in directions in which the columns of
+ * before are below 3 % of the largest column. way (n): vector to the fixed point of x -> A x + b from the point at
+ * which the map changes x by change, (I - A) way = change; 0 if 1 is an eigenvalue, when there is no fixed point. Fails
+ * with STATUS_SOLVER if all columns are 0, or with STATUS_MEMORY. */
+enum status newton_multipliers(int n, int n_columns, const double *before, const double *after, const double *change,
+                               double *real, double *imaginary, double *way);
 
 #endif

@@ -18,25 +18,24 @@ struct ode_rhs {
     double *no_sheets; /* the unknowns with sheets and nascent vortices of no strength    (n_unknowns) */
     struct influence_block *influence; /* of the vortices of fish g on the points of fish f     (n_fish, n_fish) */
 
-    /* the system of all sheets, dense, column after column: of each fish its strengths, then, where there are
-     * momenta, its velocities */
+    /* the dense system of all sheets, column after column: strengths and, with momenta, velocities of each fish */
     int n;
     int *first;                /* row and column of the first unknown of each fish                      (n_fish) */
-    double *matrix, *solution; /* the solution enters as the right-hand side                       (n, n), (n) */
+    double *matrix, *solution; /* solution: initially the right-hand side                          (n, n), (n) */
     lapack_int *pivot;         /*                                                                           (n) */
 
-    /* the mass matrix of one fish, with added mass: its lower band, column after column; and its right-hand side */
+    /* lower band of the mass matrix of one fish with added mass, column after column; right-hand side */
     double *band, *force;
 };
 
-enum { BANDWIDTH = 4 }; /* of the mass matrix, x and y of each node being neighbours: the diagonal and three below */
+enum { BANDWIDTH = 4 }; /* of the mass matrix with x and y of a node in neighbouring rows: diagonal and three below */
 
-// with the Kutta condition at the edge the circulation shed is an unknown too
+// with the Kutta condition at the edge the shed circulation is an unknown
 static int n_strengths(const struct residual *residual, const struct fish *fish) {
     return fish->n_sheet + (residual_shed_is_algebraic(residual) ? 1 : 0);
 }
 
-// with momenta the velocities follow together with the strengths
+// with momenta the velocities are unknowns of the system of the sheets
 static int n_velocities(const struct fish *fish) {
     return fish_has_momentum(fish) ? 2 * fish->n_nodes : 0;
 }
@@ -47,7 +46,7 @@ static int velocity_at(const struct ode_rhs *d, int f, int i, int k) {
     return d->first[f] + n_strengths(d->residual, fish) + i * fish->n_nodes + k;
 }
 
-static enum status allocate(struct ode_rhs *d) {
+static enum status ode_allocate(struct ode_rhs *d) {
     const struct school *school = d->residual->school;
     const size_t n_fish = (size_t)school->n_fish;
     int max_nodes = 0;
@@ -86,7 +85,7 @@ enum status ode_rhs_create(struct ode_rhs **rhs, struct residual *residual) {
     struct ode_rhs *new;
     TRY(MEMORY_NEW(new, 1, "the right-hand side"));
     new->residual = residual;
-    const enum status status = allocate(new);
+    const enum status status = ode_allocate(new);
     if (status != STATUS_OK) {
         ode_rhs_free(new);
         return status;
@@ -113,7 +112,7 @@ void ode_rhs_free(struct ode_rhs *d) {
     free(d);
 }
 
-// the velocity of the fluid without sheets and nascent vortices, and the influence of each of those
+// the velocity of the fluid without sheets and nascent vortices, and the influence of sheets and nascent vortices
 static enum status update_flow(struct ode_rhs *d, double t, const double *y) {
     const struct school *school = d->residual->school;
     const struct state *state = d->residual->state;
@@ -143,8 +142,7 @@ static double *entry(const struct ode_rhs *d, int row, int column) {
     return &d->matrix[(long)column * d->n + row];
 }
 
-// what fish f contributes to its own rows, and the right-hand side: minus the residual where nothing unknown has
-// strength
+// the own rows of fish f, and the right-hand side: minus the residual with all unknown strengths zero
 static void assemble_own(struct ode_rhs *d, int f, double t, const double *y, double *rhs) {
     const struct residual *residual = d->residual;
     const struct fish *fish = &residual->school->fish[f];
@@ -168,7 +166,7 @@ static void assemble_own(struct ode_rhs *d, int f, double t, const double *y, do
     }
 }
 
-// impermeability of the fish's own velocities, and what they follow from: m v + I = m p, or the given motion
+// impermeability at the own velocities, and the equations of the velocities: m v + I = m p, or the prescribed motion
 static void assemble_velocities(struct ode_rhs *d, int f, const double *y, double *rhs) {
     const struct fish *fish = &d->residual->school->fish[f];
     for (int c = 0; c < fish->n_control; c++) {
@@ -210,8 +208,8 @@ static void assemble_influence(struct ode_rhs *d, int f, int g, const double *y,
     }
 }
 
-// the system: the rows of a fish are its control points, Kelvin's theorem and, if it holds, the edge condition; the
-// columns of a fish are its bound vortices and, with the edge condition, its nascent vortex
+// rows of a fish: control points, Kelvin's theorem, optional edge condition; columns: bound vortices and, with the edge
+// condition, the nascent vortex
 static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
     const struct residual *residual = d->residual;
     const struct school *school = residual->school;
@@ -235,7 +233,7 @@ static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
     return STATUS_OK;
 }
 
-// add the velocity of the sheets and nascent vortices, now known, at the points
+// add the velocity of the sheets and nascent vortices at the points
 static void add_sheets(struct ode_rhs *d, const double *y) {
     const struct school *school = d->residual->school;
     struct flow *const flow = d->residual->flow;
@@ -280,7 +278,7 @@ static void assemble_mass(const struct fish *fish, const double *y, double *band
     }
 }
 
-// rows and columns of prescribed accelerations become those of the identity
+// replace rows and columns of prescribed accelerations by rows and columns of the identity
 static void fix_given(const struct fish *fish, double t, double *band, double *force) {
     const int n = 2 * fish->n_nodes;
     for (int given = 0; given < 2 * fish_n_prescribed(fish); given++) {
@@ -341,7 +339,7 @@ static void find_phi0(struct ode_rhs *d, int f, double t, double *y) {
     const struct state *state = d->residual->state;
     const struct fish *fish = &d->residual->school->fish[f];
     double *const value = d->residual->scratch;
-    // the control law is phi0 minus a value that does not depend on phi0
+    // the control law is phi0 minus a value independent of phi0
     y[fish->at.phi0] = 0;
     control_residual(fish, &state->control[f], t, t - state->t, y, value);
     y[fish->at.phi0] = -value[fish->at.phi0];

@@ -1,14 +1,13 @@
-/* ode_rhs.h: the equations as an ordinary differential equation dy/dt = f(t, y), for explicit methods: every evaluation
- * solves for the algebraic unknowns one after another, without iteration. doc/model.md, section 10. Tested by
+/* ode_rhs.h: the equations as an ordinary differential equation dy/dt = f(t, y) for explicit methods. Every evaluation
+ * solves for the algebraic unknowns in sequence, without iteration. doc/model.md, section 10. Tested by
  * tests/solver/test_ode_rhs.c.
  *
- * Given positions and velocities, each step needs only those before it:
+ * Given positions and velocities, the sequence is
  *
  *     bound sheets (and, with kutta: edge, the circulation shed) -> velocity of the fluid -> phi0 -> accelerations
  *     dense in the school                                                                     banded, fish by fish
  *
- * With force: pressure momenta are given instead of velocities, which follow together with the sheets.
- */
+ * With force: pressure, momenta are given instead of velocities, and the velocities follow together with the sheets. */
 #ifndef ODE_RHS_H
 #define ODE_RHS_H
 
@@ -22,8 +21,8 @@ struct ode_rhs;
 enum status ode_rhs_create(struct ode_rhs **rhs, struct residual *residual);
 void ode_rhs_free(struct ode_rhs *rhs);
 
-/* Compute the algebraic unknowns of y at time t [s], move prescribed nodes to their given path, and set the rates yp of
- * the differential unknowns (those of the algebraic ones are 0); both arrays are (n_unknowns). Fails with STATUS_RETRY
+/* Compute the algebraic unknowns of y at time t [s], set prescribed nodes to their paths, and set the rates yp of the
+ * differential unknowns (rates of algebraic unknowns become 0); both arrays are (n_unknowns). Fails with STATUS_RETRY
  * if a value is not finite, a body is torn or a system has no solution, or with STATUS_MEMORY. */
 enum status ode_rhs_rates(struct ode_rhs *rhs, double t, double *y, double *yp);
 

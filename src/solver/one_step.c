@@ -1,6 +1,4 @@
-/* one_step.c: implicit Euler and the trapezoidal rule, applied to the residual of the school. */
-#include "solver/one_step.h"
-
+/* one_step.c: implicit Euler and the trapezoidal rule applied to the residual of the school, and Verlet's method. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,17 +6,17 @@
 #include "base/memory.h"
 #include "school/diagnostics_energy.h"
 #include "school/residual_jacobian.h"
-#include "solver/algebraic_rates.h"
+#include "solver/integrator.h"
 #include "solver/linear.h"
+#include "solver/ode_rhs.h"
 
-/* Newton's iteration has converged when its error is this fraction of the tolerance. */
+/* Tolerance of Newton's iteration as a fraction of the tolerance of the unknowns. */
 static const double newton_coefficient = 0.01;
 
-/* Tolerance of the linear solver, as a fraction of the right-hand side: an old Jacobian costs Newton's iteration more.
- * */
+/* Tolerance of the linear solver as a fraction of the right-hand side; the error of an old Jacobian is larger. */
 static const double linear_relative = 1e-3;
 
-/* A Jacobian is kept, from step to step, while each correction is at most this fraction of the one before. */
+/* Keep a Jacobian while each correction is at most this fraction of the preceding correction. */
 static const double slow_rate = 0.3;
 
 enum { MAX_ITERATIONS = 12 };
@@ -35,7 +33,7 @@ struct one_step {
     double *kind, *tolerance;          /* kind and absolute tolerance of each unknown     (n_unknowns) */
     double *before, *rates;            /* unknowns and rates at the start of the step     (n_unknowns) */
     double *correction, *right_hand;   /* Newton's                                        (n_unknowns) */
-    struct algebraic_rates *algebraic_rates;
+    struct integrator_rates *algebraic_rates;
     struct integrator_counts counts;
 };
 
@@ -44,14 +42,14 @@ static void one_step_free(void *data) {
     if (!solver) return;
     linear_free(solver->linear);
     jacobian_free(solver->jacobian);
-    algebraic_rates_free(solver->algebraic_rates);
+    integrator_rates_free(solver->algebraic_rates);
     double *const arrays[] = {solver->kind,  solver->tolerance,  solver->before,
                               solver->rates, solver->correction, solver->right_hand};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     free(solver);
 }
 
-static enum status fill(struct one_step *solver) {
+static enum status one_step_fill(struct one_step *solver) {
     const int n = solver->residual->school->n_unknowns;
     double **const arrays[] = {&solver->kind,  &solver->tolerance,  &solver->before,
                                &solver->rates, &solver->correction, &solver->right_hand};
@@ -63,8 +61,8 @@ static enum status fill(struct one_step *solver) {
                                residual_undamped(solver->residual->school, i);
     }
     TRY(jacobian_create(&solver->jacobian, solver->residual->school));
-    TRY(algebraic_rates_create(&solver->algebraic_rates, solver->residual->school));
-    algebraic_rates_begin(solver->algebraic_rates, solver->state);
+    TRY(integrator_rates_create(&solver->algebraic_rates, solver->residual->school));
+    integrator_rates_begin(solver->algebraic_rates, solver->state);
     residual_mask(solver->residual, solver->jacobian);
     return linear_create(&solver->linear, solver->jacobian, solver->tolerance,
                          (struct linear_tolerance){linear_relative, 0});
@@ -82,7 +80,7 @@ static enum status one_step_create(void **solver, struct residual *residual, str
     new->counts = options->before;
     new->counts.step_size = options->step;
     new->counts.order = methods_table[options->method].order;
-    const enum status status = fill(new);
+    const enum status status = one_step_fill(new);
     if (status != STATUS_OK) {
         one_step_free(new);
         return status;
@@ -95,29 +93,29 @@ static void one_step_count(const void *data, struct integrator_counts *counts) {
     *counts = ((const struct one_step *)data)->counts;
 }
 
-// a one-step method has no history but its Jacobian
+// the Jacobian is the only history of a one-step method
 static enum status one_step_restart(void *data) {
     struct one_step *const solver = data;
     solver->cj = 0;
-    algebraic_rates_begin(solver->algebraic_rates, solver->state);
+    integrator_rates_begin(solver->algebraic_rates, solver->state);
     return STATUS_OK;
 }
 
 // ---- one step
 
 /* The rates at the end of the step, from the unknowns there. */
-static void set_rates(struct one_step *solver, double h) {
+static void one_step_rates(struct one_step *solver, double h) {
     struct state *const state = solver->state;
     const int is_trapezoid = solver->options.method == METHOD_TRAPEZOID;
     for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
         const double change = (state->y[i] - solver->before[i]) / h;
-        // of the algebraic unknowns only the circulation's is read
+        // rates of algebraic unknowns are unused, except for the circulation
         state->yp[i] = is_trapezoid && solver->kind[i] > 0 ? 2 * change - solver->rates[i] : change;
     }
 }
 
 /* Evaluate and factorise the Jacobian. */
-static enum status set_up(struct one_step *solver, double t, double cj) {
+static enum status one_step_set_up(struct one_step *solver, double t, double cj) {
     solver->pattern = solver->residual->couplings.pattern;
     solver->counts.jacobian_evaluations++;
     solver->cj = 0;
@@ -130,10 +128,10 @@ static enum status set_up(struct one_step *solver, double t, double cj) {
 }
 
 /* One correction of the unknowns, and its size in tolerances. */
-static enum status correct(struct one_step *solver, double t, double h, double *size) {
+static enum status one_step_correct(struct one_step *solver, double t, double h, double *size) {
     struct state *const state = solver->state;
     const int n = solver->residual->school->n_unknowns;
-    set_rates(solver, h);
+    one_step_rates(solver, h);
     solver->counts.residual_evaluations++;
     solver->counts.newton_iterations++;
     TRY(residual_evaluate(solver->residual, t, state->y, state->yp, solver->right_hand));
@@ -149,19 +147,20 @@ static enum status correct(struct one_step *solver, double t, double h, double *
 }
 
 /* Newton's iteration, starting from the unknowns in the state. */
-static enum status iterate(struct one_step *solver, double t, double h, int *converged) {
+static enum status one_step_iterate(struct one_step *solver, double t, double h, int *converged) {
     double before = 0;
     *converged = 0;
     const double cj = solver->options.method == METHOD_TRAPEZOID ? 2 / h : 1 / h;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         TRY(integrator_ask(solver->stop));
-        if (solver->cj != cj || solver->pattern != solver->residual->couplings.pattern) TRY(set_up(solver, t, cj));
+        if (solver->cj != cj || solver->pattern != solver->residual->couplings.pattern)
+            TRY(one_step_set_up(solver, t, cj));
         double size = 0;
-        TRY(correct(solver, t, h, &size));
+        TRY(one_step_correct(solver, t, h, &size));
         const double rate = i > 0 ? size / before : 0;
         // the error after this correction, estimated from the rate of convergence
         const double error = i > 0 && rate < 0.5 ? size * rate / (1 - rate) : size;
-        // at the lower bound set by rounding corrections no longer shrink
+        // at the level of rounding corrections no longer shrink
         *converged = error < newton_coefficient || (rate > 0.9 && size < 1);
         if (*converged || !isfinite(size)) return STATUS_OK;
         if (rate > slow_rate) solver->cj = 0;
@@ -178,24 +177,24 @@ static enum status failed(const struct one_step *solver, double t) {
 }
 
 /* One step of h to time t. */
-static enum status step(struct one_step *solver, double t, double h) {
+static enum status one_step_step(struct one_step *solver, double t, double h) {
     struct state *const state = solver->state;
     const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
     memcpy(solver->before, state->y, size);
     memcpy(solver->rates, state->yp, size);
     int converged = 0;
-    // a second attempt has a new Jacobian
+    // the second attempt has a new Jacobian
     for (int attempt = 0; attempt < 2 && !converged; attempt++) {
         memcpy(state->y, solver->before, size);
-        const enum status status = iterate(solver, t, h, &converged);
+        const enum status status = one_step_iterate(solver, t, h, &converged);
         if (status < 0) return status;
         if (status > 0) converged = 0;
         if (!converged) solver->cj = 0;
     }
     if (!converged) return failed(solver, t - h);
-    set_rates(solver, h);
+    one_step_rates(solver, h);
     solver->counts.steps++;
-    algebraic_rates_step(solver->algebraic_rates, t, state);
+    integrator_rates_step(solver->algebraic_rates, t, state);
     diagnostics_step(solver->residual, state, t, state->y);
     return STATUS_OK;
 }
@@ -212,7 +211,7 @@ static enum status one_step_advance(void *data, double t, const volatile sig_ato
                            start, n);
     }
     const double h = solver->residual->school->interval / (double)n;
-    for (long i = 1; i <= n; i++) TRY(step(solver, i < n ? start + (double)i * h : t, h));
+    for (long i = 1; i <= n; i++) TRY(one_step_step(solver, i < n ? start + (double)i * h : t, h));
     return STATUS_OK;
 }
 
@@ -221,3 +220,146 @@ const struct integrator one_step_integrator = {.create = one_step_create,
                                                .restart = one_step_restart,
                                                .count = one_step_count,
                                                .free = one_step_free};
+
+// ---- kick, drift, kick
+
+struct verlet {
+    struct residual *residual;
+    struct state *state;
+    struct integrator_options options;
+    struct ode_rhs *rhs;
+    double *circulation; /* shed circulation at the start of an interval                   (n_fish) */
+    struct integrator_counts counts;
+};
+
+static void verlet_free(void *data) {
+    struct verlet *const solver = data;
+    if (!solver) return;
+    ode_rhs_free(solver->rhs);
+    free(solver->circulation);
+    free(solver);
+}
+
+static enum status verlet_create(void **solver, struct residual *residual, struct state *state,
+                                 const struct integrator_options *options) {
+    *solver = NULL;
+    struct verlet *new;
+    TRY(MEMORY_NEW(new, 1, "the solver of rods"));
+    new->residual = residual;
+    new->state = state;
+    new->options = *options;
+    new->counts = options->before;
+    new->counts.step_size = options->step;
+    new->counts.order = methods_table[options->method].order;
+    enum status status = MEMORY_NEW(new->circulation, residual->school->n_fish, "the solver of rods");
+    if (status == STATUS_OK) status = ode_rhs_create(&new->rhs, residual);
+    if (status != STATUS_OK) {
+        verlet_free(new);
+        return status;
+    }
+    *solver = new;
+    return STATUS_OK;
+}
+
+static void verlet_count(const void *data, struct integrator_counts *counts) {
+    *counts = ((const struct verlet *)data)->counts;
+}
+
+// Verlet has no history
+static enum status verlet_restart(void *data) {
+    (void)data;
+    return STATUS_OK;
+}
+
+static enum status verlet_unstable(const struct verlet *solver, double t) {
+    return status_fail(
+        STATUS_SOLVER,
+        "unstable at t = %.10g s: with steps of %.3g s the body is too stiff for an explicit method: choose "
+        "solver.method: ida, or a smaller solver.step",
+        t, solver->options.step);
+}
+
+// the accelerations of fish f at the positions in the state and time t
+static void verlet_accelerate(struct verlet *solver, int f, double t) {
+    const struct fish *fish = &solver->residual->school->fish[f];
+    double *const y = solver->state->y, *const value = solver->residual->scratch;
+    residual_muscle(solver->residual, f, t, y);
+    // without acceleration the balance is minus the forces
+    memset(y + fish->at.ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
+    residual_balance(solver->residual, f, y, value);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        y[fish->at.ax + k] = -value[fish->at.ax + k] / fish->mass[k];
+        y[fish->at.ay + k] = -value[fish->at.ay + k] / fish->mass[k];
+    }
+}
+
+// to[i] += h rate[i] for x and y of all nodes
+static void verlet_move(const struct fish *fish, double h, const double *rate, double *to) {
+    for (int i = 0; i < 2 * fish->n_nodes; i++) to[i] += h * rate[i];
+}
+
+/* One step of h to time t. */
+static enum status verlet_step(struct verlet *solver, double t, double h) {
+    const struct school *school = solver->residual->school;
+    double *const y = solver->state->y;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        verlet_move(fish, h / 2, y + fish->at.ax, y + fish->at.vx);
+        verlet_move(fish, h, y + fish->at.vx, y + fish->at.x);
+    }
+    const enum status status = residual_contact(solver->residual, t, y);
+    if (status > 0) return verlet_unstable(solver, t);
+    TRY(status);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        verlet_accelerate(solver, f, t);
+        verlet_move(fish, h / 2, y + fish->at.ax, y + fish->at.vx);
+    }
+    solver->counts.steps++;
+    solver->counts.residual_evaluations++;
+    return STATUS_OK;
+}
+
+// the sheets and the rates of all unknowns; the rate of the shed circulation is a difference over the interval
+static enum status close_interval(struct verlet *solver, double t) {
+    struct state *const state = solver->state;
+    const struct school *school = solver->residual->school;
+    const enum status status = ode_rhs_rates(solver->rhs, t, state->y, state->yp);
+    if (status > 0) return verlet_unstable(solver, t);
+    TRY(status);
+    for (int f = 0; f < school->n_fish; f++) {
+        const int shed = school->fish[f].at.circulation;
+        state->yp[shed] = (state->y[shed] - solver->circulation[f]) / school->interval;
+    }
+    return STATUS_OK;
+}
+
+static enum status verlet_advance(void *data, double t, const volatile sig_atomic_t *stop) {
+    struct verlet *const solver = data;
+    struct state *const state = solver->state;
+    const struct school *school = solver->residual->school;
+    const double start = state->t;
+    const long n = lround(school->interval / solver->options.step);
+    const double h = school->interval / (double)n;
+    if (n > solver->options.max_steps) {
+        return status_fail(STATUS_SOLVER,
+                           "integration failed at t = %.10g s: %ld steps between two events are more than "
+                           "solver.max_steps: raise it, or solver.step",
+                           start, n);
+    }
+    for (int f = 0; f < school->n_fish; f++) solver->circulation[f] = state->y[school->fish[f].at.circulation];
+    for (long i = 1; i <= n; i++) {
+        TRY(integrator_ask(stop));
+        const double now = i < n ? start + (double)i * h : t;
+        TRY(verlet_step(solver, now, h));
+        if (i == n) TRY(close_interval(solver, t));
+        diagnostics_step(solver->residual, state, now, state->y);
+    }
+    return STATUS_OK;
+}
+
+const struct integrator one_step_verlet = {.create = verlet_create,
+                                           .advance = verlet_advance,
+                                           .restart = verlet_restart,
+                                           .count = verlet_count,
+                                           .free = verlet_free};

@@ -1,16 +1,13 @@
-/* runge_kutta.c: ARKStep applied to the right-hand side of ode_rhs.c. */
-#include "solver/runge_kutta.h"
-
+/* runge_kutta.c: ARKStep applied to the right-hand side of ode_rhs.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "school/diagnostics_energy.h"
-#include "solver/algebraic_rates.h"
+#include "solver/integrator.h"
 #include "solver/ode_rhs.h"
 #include "solver/sundials.h"
-#include "solver/sundials_context.h"
 
 struct runge_kutta {
     struct residual *residual;
@@ -21,23 +18,23 @@ struct runge_kutta {
     enum status failure;               /* of the last right-hand side */
     double *tolerance;                 /* absolute tolerance of each unknown                        (n_unknowns) */
 
-    /* the last evaluation: unknowns, algebraic ones included, and rates */
+    /* the last evaluation: all unknowns, and rates */
     double *work, *rates; /*                                                           (n_unknowns) */
     int known;            /* whether they are valid */
     double known_t;
     long known_event;
     long evaluations;    /* so far */
     double *circulation; /* of each fish at the end of the last step                     (n_fish) */
-    struct algebraic_rates *algebraic_rates;
+    struct integrator_rates *algebraic_rates;
 
     struct sundials_context context;
     N_Vector y, tolerances;
     void *arkode;
-    struct integrator_counts before; /* totals up to the last restart: that sets ARKODE's own to zero */
+    struct integrator_counts before; /* totals up to the last restart, which resets the totals of ARKODE */
 };
 
-// whether time, differential unknowns and wakes are those of the last evaluation
-static int is_known(const struct runge_kutta *solver, double t, const double *y) {
+// whether time, differential unknowns and wakes equal the arguments of the last evaluation
+static int evaluation_is_known(const struct runge_kutta *solver, double t, const double *y) {
     if (!solver->known || t != solver->known_t || solver->state->event != solver->known_event) return 0;
     for (int f = 0; f < solver->residual->school->n_fish; f++) {
         const struct layout *at = &solver->residual->school->fish[f].at;
@@ -53,9 +50,9 @@ static int is_known(const struct runge_kutta *solver, double t, const double *y)
 }
 
 // compute work and rates from the differential unknowns in y
-static enum status evaluate(struct runge_kutta *solver, double t, const double *y) {
+static enum status runge_kutta_evaluate(struct runge_kutta *solver, double t, const double *y) {
     // one evaluation serves the end of a step and the start of the next
-    if (is_known(solver, t, y)) return STATUS_OK;
+    if (evaluation_is_known(solver, t, y)) return STATUS_OK;
     solver->known = 0;
     solver->evaluations++;
     memcpy(solver->work, y, (size_t)solver->residual->school->n_unknowns * sizeof *y);
@@ -69,7 +66,7 @@ static enum status evaluate(struct runge_kutta *solver, double t, const double *
 static int rates_callback(sunrealtype t, N_Vector y, N_Vector rates, void *data) {
     struct runge_kutta *const solver = data;
     solver->failure = integrator_ask(solver->stop);
-    if (solver->failure == STATUS_OK) solver->failure = evaluate(solver, t, N_VGetArrayPointer(y));
+    if (solver->failure == STATUS_OK) solver->failure = runge_kutta_evaluate(solver, t, N_VGetArrayPointer(y));
     if (solver->failure == STATUS_OK) {
         memcpy(N_VGetArrayPointer(rates), solver->rates,
                (size_t)solver->residual->school->n_unknowns * sizeof *solver->rates);
@@ -77,7 +74,7 @@ static int rates_callback(sunrealtype t, N_Vector y, N_Vector rates, void *data)
     return solver->failure;
 }
 
-// the library only reads the coefficients
+// ARKODE only reads the coefficients, although the arguments are not const
 static ARKodeButcherTable tableau_of(enum method method, int adaptive) {
     const struct method_properties *const properties = &methods_table[method];
     const struct butcher_tableau *const t = adaptive ? properties->adaptive : properties->fixed;
@@ -95,7 +92,7 @@ static void runge_kutta_free(void *data) {
     free(solver->work);
     free(solver->rates);
     free(solver->circulation);
-    algebraic_rates_free(solver->algebraic_rates);
+    integrator_rates_free(solver->algebraic_rates);
     free(solver->tolerance);
     sundials_context_free(&solver->context);
     free(solver);
@@ -106,8 +103,8 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     const double step = solver->options.step;
     const ARKodeButcherTable table = tableau_of(solver->options.method, step <= 0);
     if (!table) return status_fail(STATUS_MEMORY, "out of memory: the tableau of a Runge-Kutta method");
-    // 6.4 interpolates at the stop time, for order one with a constant: Hermite's is the mean of both ends of the step,
-    // that of Lagrange the solution at the later one
+    // 6.4 interpolates at the stop time, for order one by a constant: Hermite's interpolant is the mean of both ends of
+    // the step, Lagrange's interpolant the solution at the end
     const int order = table->q;
     const int failed = ARKStepSetErrHandlerFn(arkode, sundials_context_message, &solver->failure) ||
                        ARKodeSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
@@ -128,24 +125,21 @@ static void keep_circulation(struct runge_kutta *solver) {
     }
 }
 
-static enum status fill(struct runge_kutta *solver) {
+static enum status runge_kutta_fill(struct runge_kutta *solver) {
     const int n = solver->residual->school->n_unknowns;
-    solver->work = calloc((size_t)n, sizeof *solver->work);
-    solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
-    solver->rates = calloc((size_t)n, sizeof *solver->rates);
-    solver->circulation = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->circulation);
-    if (!solver->work || !solver->rates || !solver->circulation || !solver->tolerance)
-        return status_fail(STATUS_MEMORY, "out of memory: %d unknowns", n);
-    // algebraic unknowns have neither rate nor error here; without a tolerance for velocities an explicit method can go
-    // wrong unnoticed
+    double **const arrays[] = {&solver->work, &solver->tolerance, &solver->rates};
+    TRY(MEMORY_ARRAYS(arrays, n, "the unknowns"));
+    TRY(MEMORY_NEW(solver->circulation, solver->residual->school->n_fish, "the unknowns"));
+
+    // algebraic unknowns have no rate and no error here; only a tolerance for velocities reveals an instability
     for (int i = 0; i < n; i++) {
         solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual->school, i) *
                                residual_undamped(solver->residual->school, i);
     }
     keep_circulation(solver);
     TRY(ode_rhs_create(&solver->rhs, solver->residual));
-    TRY(algebraic_rates_create(&solver->algebraic_rates, solver->residual->school));
-    algebraic_rates_begin(solver->algebraic_rates, solver->state);
+    TRY(integrator_rates_create(&solver->algebraic_rates, solver->residual->school));
+    integrator_rates_begin(solver->algebraic_rates, solver->state);
     TRY(sundials_context_create(&solver->context, n, 1, &solver->failure));
     TRY(sundials_context_vector(&solver->context, &solver->y, solver->state->y));
     TRY(sundials_context_vector(&solver->context, &solver->tolerances, solver->tolerance));
@@ -164,7 +158,7 @@ static enum status runge_kutta_create(void **solver, struct residual *residual, 
     new->options = *options;
     new->before = options->before;
     new->evaluations = options->before.residual_evaluations;
-    const enum status status = fill(new);
+    const enum status status = runge_kutta_fill(new);
     if (status != STATUS_OK) {
         runge_kutta_free(new);
         return status;
@@ -192,7 +186,7 @@ static enum status runge_kutta_restart(void *data) {
     struct runge_kutta *const solver = data;
     runge_kutta_count(solver, &solver->before);
     keep_circulation(solver);
-    algebraic_rates_begin(solver->algebraic_rates, solver->state);
+    integrator_rates_begin(solver->algebraic_rates, solver->state);
     if (ARKStepReInit(solver->arkode, rates_callback, NULL, solver->state->t, solver->y)) {
         return status_fail(STATUS_SOLVER, "ARKODE cannot start again: %s", status_message());
     }
@@ -200,7 +194,7 @@ static enum status runge_kutta_restart(void *data) {
     return STATUS_OK;
 }
 
-// the velocity that is largest on its scale, or is no number
+// the velocity that is largest in units of its scale, or is not a number
 static struct unknown_place worst_velocity(const struct runge_kutta *solver) {
     const struct school *const school = solver->residual->school;
     int worst = school->fish[0].at.vx;
@@ -222,11 +216,11 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
     ARKodeGetLastStep(solver->arkode, &step);
     const struct unknown_place place = worst_velocity(solver);
     const struct fish *const fish = &solver->residual->school->fish[place.fish];
-    // a body that is too stiff and a control that goes wrong look alike from here
+    // a too stiff body and an unstable control have the same symptom
     const char *const control = fish->control.law == CONTROL_NONE
                                     ? ""
-                                    : "; or its control drives it there: lower control.gain, and see whether the "
-                                      "desired heading can be reached";
+                                    : "; or the control is unstable: lower control.gain, and check that the desired "
+                                      "heading is reachable";
     return status_fail(STATUS_SOLVER,
                        "unstable at t = %.10g s: %s; the largest velocity is %s[%d] of fish %s; the last step was "
                        "%.3g s, with which the body is too stiff for an explicit method: choose solver.method: ida, or "
@@ -235,14 +229,14 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
 }
 
 // the algebraic unknowns and all rates at the end of a step, for the energy balance and the event
-static enum status close_step(struct runge_kutta *solver, double before, double reached) {
+static enum status runge_kutta_close_step(struct runge_kutta *solver, double before, double reached) {
     struct state *const state = solver->state;
     const struct school *school = solver->residual->school;
-    const enum status status = evaluate(solver, reached, state->y);
+    const enum status status = runge_kutta_evaluate(solver, reached, state->y);
     if (status > 0) return unstable(solver, reached, status_message());
     TRY(status);
     memcpy(state->yp, solver->rates, (size_t)school->n_unknowns * sizeof *state->yp);
-    // that of an algebraic circulation is a difference over the step
+    // the rate of an algebraic circulation is a difference over the step
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
         if (residual_shed_is_algebraic(solver->residual)) {
@@ -251,7 +245,7 @@ static enum status close_step(struct runge_kutta *solver, double before, double 
     }
     memcpy(state->y, solver->work, (size_t)school->n_unknowns * sizeof *state->y);
     keep_circulation(solver);
-    algebraic_rates_step(solver->algebraic_rates, reached, state);
+    integrator_rates_step(solver->algebraic_rates, reached, state);
     return STATUS_OK;
 }
 
@@ -273,7 +267,7 @@ static enum status runge_kutta_advance(void *data, double t, const volatile sig_
         if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
         if (code < 0) return unstable(solver, reached, status_message());
         if (code == ARK_TSTOP_RETURN) reached = t;
-        TRY(close_step(solver, before, reached));
+        TRY(runge_kutta_close_step(solver, before, reached));
         diagnostics_step(solver->residual, state, reached, state->y);
     }
     return STATUS_OK;

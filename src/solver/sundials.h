@@ -1,9 +1,8 @@
-/* sundials.h: SUNDIALS 6.4 to 7.x under the names of 7.x. All differences between the versions stand here: other files
- * include this header instead of those of SUNDIALS, and have no #if of their own.
+/* sundials.h: SUNDIALS 6.4 to 7.x under the names of 7.x, and contexts and vectors. All differences between the
+ * versions are here: other files include this header instead of the headers of SUNDIALS, and contain no #if.
  *
- * In 7 the errors of all packages reach the handlers of their context; in 6 each package has a handler of its own. Who
- * creates a package calls both SUNContext_PushErrHandler and the package's SetErrHandlerFn: of the two the version at
- * hand has one, and the other one does nothing. */
+ * In 7 the errors of all packages reach the handlers of their context; in 6 each package has a handler. The creator of
+ * a package calls both SUNContext_PushErrHandler and the SetErrHandlerFn of the package; one of the two is a no-op. */
 #ifndef SOLVER_SUNDIALS_H
 #define SOLVER_SUNDIALS_H
 
@@ -25,13 +24,15 @@
 #include <sunlinsol/sunlinsol_spgmr.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
+#include "base/status.h"
+
 #define SUNDIALS_AT_LEAST(major, minor) \
     (SUNDIALS_VERSION_MAJOR > (major) || (SUNDIALS_VERSION_MAJOR == (major) && SUNDIALS_VERSION_MINOR >= (minor)))
 #define SUNDIALS_UNUSED __attribute__((unused))
 
 #if SUNDIALS_AT_LEAST(7, 0)
 
-/* The arguments of a handler of errors: code, function, text and data are those that both versions give. */
+/* The arguments of an error handler; both versions give code, function, text and data. */
 #define SUNDIALS_ERROR_ARGUMENTS                                                                        \
     SUNDIALS_UNUSED int line, const char *function, SUNDIALS_UNUSED const char *file, const char *text, \
         SUNErrCode code, void *data, SUNDIALS_UNUSED SUNContext context
@@ -77,5 +78,34 @@ typedef int SUNErrCode;
 #define ARKodeSetStopTime ARKStepSetStopTime
 #define ARKodeSetUserData ARKStepSetUserData
 #endif
+
+// ---- context, vectors, error handler. Tested by tests/solver/test_sundials.c
+
+/* The context of one solver, shared by its vectors. The struct must not move while vectors exist. */
+struct sundials_context {
+    SUNContext context;
+    int n, threads;       /* of every vector: number of values, threads of an operation */
+    enum status *failure; /* status of the last callback; owned by the caller */
+    N_Vector spare;       /* replaces a clone after a failed allocation */
+    int lacked_memory;    /* for a clone */
+};
+
+/* Create a context for vectors of n values. Threads share the operations on long vectors; the bits of each value are
+ * independent of the number of threads, and norms are sums in the order of the values. Errors of SUNDIALS go to
+ * sundials_context_message with failure. Fails with STATUS_MEMORY. sundials_context_free accepts a struct of zeros. */
+enum status sundials_context_create(struct sundials_context *context, int n, int threads, enum status *failure);
+void sundials_context_free(struct sundials_context *context);
+
+/* Create a vector on the caller's array of values. Fails with STATUS_MEMORY. */
+enum status sundials_context_vector(struct sundials_context *context, N_Vector *vector, double *values);
+
+/* Fail with STATUS_MEMORY if a clone of a vector could not be allocated. SUNDIALS 6 crashes if a clone is NULL, so the
+ * spare vector is then the clone, and all results are worthless. Call after calls that may clone vectors: the set-up of
+ * a solver, and the first step. */
+enum status sundials_context_check(const struct sundials_context *context);
+
+/* Error handler for SUNDIALS; data: status of the last callback. The message of a failed callback is the cause and
+ * stays; otherwise the text of SUNDIALS becomes the message of this thread. */
+void sundials_context_message(SUNDIALS_ERROR_ARGUMENTS);
 
 #endif

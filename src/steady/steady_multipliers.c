@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "solver/multipliers.h"
+#include "solver/newton.h"
 
 /* disturbance: increment of a slow quantity, in the scale of the quantity; a disturbance that grows beyond small is
  * followed no further. Of at most BEATS beats the last SLOW_BEATS count, and not the first two, in which the fast
@@ -97,7 +97,7 @@ enum status steady_multipliers_find(struct steady_problem *problem, double *real
     if (status == STATUS_OK) status = disturb_each_unknown(&all);
     if (status == STATUS_OK) {
         mean_change(&all);
-        status = multipliers_of((int)n, all.n_columns, all.before, all.after, all.add, real, imaginary, way);
+        status = newton_multipliers((int)n, all.n_columns, all.before, all.after, all.add, real, imaginary, way);
     }
 
     if (status == STATUS_OK) status = steady_map_return(&problem->map, all.kept);

@@ -141,13 +141,13 @@ failures() {
     check "integration fails: run_status" grep -q '^failed: ' <(status_of failed.nc)
     check "integration fails: its first row stays" has_rows failed.nc 1
 
-    refused "a body of nothing: what to do" 1 'see whether the body has the units that the keys say' \
+    refused "a body of nothing: what to do" 1 'the Jacobian is singular: check the units of the body' \
         run "$demo" -q --set "fish[0].body.density=1e-300" --set "fish[0].nodes=17" --force -o none.nc
     check "a body of nothing: no error that was not estimated" test -z "$(grep -E '0 tolerances|nan|x\[0\]' err)"
-    refused "a fish of no size: what to do" 1 'have the units that the keys say' \
+    refused "a fish of no size: what to do" 1 'check the units of sizes, speeds' \
         run "$demo" -q --set "fish[0].length=1e-90" --force -o none.nc
     check "a fish of no size: no code, and no residual of zero" test -z "$(grep -E 'code -|0 of its scale' err)"
-    refused "a fish of no speed that can be: what to do" 1 "Newton's method did not converge: see whether sizes, speeds" \
+    refused "a fish of no speed that can be: what to do" 1 "Newton's method did not converge: check the units of sizes, speeds" \
         run "$demo" -q --set "fish[0].start.speed=1e15" --force -o none.nc
 
     printf '%s\n' 'format: 1' 'name: overlap' 'time: {end: 1}' 'fish:' '  - {name: a}' \

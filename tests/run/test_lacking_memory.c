@@ -2,10 +2,8 @@
 #include "failing_malloc.h"
 #include "fish/fish_school.h"
 #include "school.h"
-#include "solver/ida.h"
+#include "solver/integrator.h"
 #include "solver/ode_rhs.h"
-#include "solver/one_step.h"
-#include "solver/runge_kutta.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 

@@ -5,7 +5,7 @@
 
 #include "fish/fish_prescribed.h"
 #include "school.h"
-#include "solver/ida.h"
+#include "solver/integrator.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
@@ -224,8 +224,8 @@ static void an_iteration_that_ignores_other_fish_ends_with_a_remedy(void **state
     enum status status = STATUS_OK;
     for (int i = 0; i < 5 && status == STATUS_OK; i++) status = simulate_step(simulation);
     assert_int_equal(status, STATUS_SOLVER);
-    assert_non_null(strstr(status_message(), "120 of 120 pairs of fish are further apart than 0 m"));
-    assert_non_null(strstr(status_message(), "raise solver.coupling_distance"));
+    assert_non_null(strstr(status_message(), "no coupling of 120 of 120 pairs of fish, which are more than 0 m apart"));
+    assert_non_null(strstr(status_message(), "increase solver.coupling_distance"));
     simulate_free(simulation);
 }
 

@@ -92,12 +92,86 @@ static void a_singular_jacobian_is_named(void **state) {
     assert_non_null(strstr(status_message(), "singular"));
 }
 
+// ---- eigenvalues of maps of which images are known
+
+// 0.9 along the first axis, a rotation by 30 degrees that shrinks by 0.8 in the plane of the others
+static void image_of(const double *v, double *image) {
+    const double c = 0.8 * cos(M_PI / 6), s = 0.8 * sin(M_PI / 6);
+    image[0] = 0.9 * v[0];
+    image[1] = c * v[1] - s * v[2];
+    image[2] = s * v[1] + c * v[2];
+}
+
+enum { N = 3, COLUMNS = 5 };
+
+static void eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told(void **state) {
+    (void)state;
+    // five vectors that span the space, mixed so that no column is an eigenvector
+    const double before[N * COLUMNS] = {1, 2, -1, 0, 1, 3, 2, -1, 1, -2, 0, 1, 1, 1, 1};
+    const double want_way[N] = {3, -1, 2};
+    double after[N * COLUMNS], real[N], imaginary[N], way[N], change[N];
+    image_of(want_way, change);
+    for (int i = 0; i < N; i++) change[i] = want_way[i] - change[i];
+    for (int k = 0; k < COLUMNS; k++) image_of(before + N * k, after + N * k);
+    assert_int_equal(newton_multipliers(N, COLUMNS, before, after, change, real, imaginary, way), STATUS_OK);
+    NEAR_ARRAY(N, way, want_way, 1e-13, 0);
+    const double want_real[N] = {0.9, 0.8 * cos(M_PI / 6), 0.8 * cos(M_PI / 6)}, want_imaginary[N] = {0, 0.4, -0.4};
+    NEAR_ARRAY(N, real, want_real, 1e-14, 0);
+    NEAR_ARRAY(N, imaginary, want_imaginary, 1e-14, 0);
+}
+
+static void errors_of_single_images_are_averaged(void **state) {
+    (void)state;
+    // one dimension: images of 1, 2, -2 under 0.5, of which the first is wrong by 0.09: least squares have 0.5 + 0.09/9
+    const double before[3] = {1, 2, -2}, after[3] = {0.59, 1, -1};
+    const double change = 0.98;
+    double real, imaginary, way;
+    assert_int_equal(newton_multipliers(1, 3, before, after, &change, &real, &imaginary, &way), STATUS_OK);
+    NEAR(real, 0.51, 1e-14, 0);
+    NEAR(imaginary, 0, 0, 0);
+    NEAR(way, 2, 1e-13, 0);
+}
+
+static void columns_that_do_not_span_the_space_tell_nothing(void **state) {
+    (void)state;
+    const double before[4] = {0, 0, 0, 0}, after[4] = {1, 1, 2, 2};
+    const double change[2] = {0, 0};
+    double real[2], imaginary[2], way[2];
+    assert_int_equal(newton_multipliers(2, 2, before, after, change, real, imaginary, way), STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "multipliers"));
+}
+
+static void a_direction_that_has_died_has_a_multiplier_of_zero(void **state) {
+    (void)state;
+    // 0.8 along the first axis; of the second only errors are left, which seem to grow
+    const double before[8] = {1, 1e-3, 0.8, 2e-3, 0.64, -1e-3, 0.512, 3e-3};
+    const double after[8] = {0.8, 2e-3, 0.64, -1e-3, 0.512, 3e-3, 0.4096, -5e-3}, change[2] = {0.2, 0};
+    double real[2], imaginary[2], way[2];
+    assert_int_equal(newton_multipliers(2, 4, before, after, change, real, imaginary, way), STATUS_OK);
+    NEAR(real[0], 0.8, 1e-5, 0);
+    assert_true(real[1] == 0 && imaginary[1] == 0);
+    NEAR(way[0], 1, 1e-4, 0);
+}
+
+static void a_map_that_keeps_what_it_gets_has_no_fixed_point(void **state) {
+    (void)state;
+    const double before[4] = {1, 0, 0, 1}, change[2] = {1, 1};
+    double real[2], imaginary[2], way[2];
+    assert_int_equal(newton_multipliers(2, 2, before, before, change, real, imaginary, way), STATUS_OK);
+    assert_true(way[0] == 0 && way[1] == 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_equations_are_solved_with_a_value_and_a_jacobian_for_each_step),
         cmocka_unit_test(no_step_is_longer_than_the_longest),
         cmocka_unit_test(a_value_that_fails_ends_it_with_its_own_reason),
         cmocka_unit_test(a_singular_jacobian_is_named),
+        cmocka_unit_test(eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told),
+        cmocka_unit_test(errors_of_single_images_are_averaged),
+        cmocka_unit_test(columns_that_do_not_span_the_space_tell_nothing),
+        cmocka_unit_test(a_direction_that_has_died_has_a_multiplier_of_zero),
+        cmocka_unit_test(a_map_that_keeps_what_it_gets_has_no_fixed_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

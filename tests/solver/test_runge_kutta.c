@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "school.h"
+#include "solver/integrator.h"
 #include "solver/ode_rhs.h"
-#include "solver/runge_kutta.h"
 
 // without drag: v|v| has a kink in its derivative, at which no method keeps an order above three
 static const char soft[] =

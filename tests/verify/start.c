@@ -11,9 +11,8 @@
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_derivative.h"
 #include "school/residual_jacobian.h"
+#include "solver/linear.h"
 #include "solver/sundials.h"
-#include "solver/sundials_context.h"
-#include "solver/sundials_linear.h"
 #include "verify.h"
 
 // ---- dense matrices, row after row
@@ -325,7 +324,7 @@ static void refinement(void) {
 struct correction {
     struct simulation *simulation;
     struct jacobian *jacobian;
-    struct sundials_linear linear;
+    struct linear_sundials linear;
     enum status failure;
 };
 
@@ -357,7 +356,7 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
         if (sundials_context_vector(&context, &vector[i], values[i]) != STATUS_OK) abort();
     }
     if (jacobian_create(&correction.jacobian, simulation->school) != STATUS_OK ||
-        sundials_linear_create(&correction.linear, context.context, correction.jacobian, tolerance, linear_tolerance,
+        linear_sundials_create(&correction.linear, context.context, correction.jacobian, tolerance, linear_tolerance,
                                &correction.failure) != STATUS_OK) {
         abort();
     }
@@ -373,7 +372,7 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     if (code == 0) code = IDACalcIC(ida, IDA_YA_YDP_INIT, simulation->state->t + simulation->school->interval);
     if (code == 0) code = IDAGetConsistentIC(ida, vector[0], vector[1]);
     IDAFree(&ida);
-    sundials_linear_free(&correction.linear);
+    linear_sundials_free(&correction.linear);
     for (int i = 0; i < 4; i++) N_VDestroy(vector[i]);
     jacobian_free(correction.jacobian);
     sundials_context_free(&context);

@@ -1,4 +1,4 @@
-/* test_sundials_context.c: vectors against the serial ones of SUNDIALS, bit by bit, with any number of threads; clones
+/* test_sundials.c: vectors against the serial ones of SUNDIALS, bit by bit, with any number of threads; clones
  * without memory; messages. */
 #include <math.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "failing_malloc.h"
 #include "school.h"
-#include "solver/sundials_context.h"
+#include "solver/sundials.h"
 
 // enough for threads
 enum { N = PARALLEL_ELEMENTS + 77, N_VECTORS = 4, OURS = 0, SERIAL = 1 };

@@ -1,15 +1,15 @@
-/* sundials_context.c: vectors of SUNDIALS, serial ones or those of OpenMP, with norms and clones of our own.
+/* sundials.c: vectors of SUNDIALS, serial ones or those of OpenMP, with norms and clones of our own.
  *
  * A school of 64 fish takes 3.53 s of CPU on two threads with the vectors of OpenMP, and 3.55 s with vectors of our
  * own; a school of 256 fish 3.43 s and 3.44 s. */
-#include "solver/sundials_context.h"
+#include "solver/sundials.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/parallel.h"
 
-/* What a vector has: the library's own content first, so that all operations of the library know it. */
+/* The content of a vector begins with the content that the operations of the library expect. */
 struct content {
     union {
         struct _N_VectorContent_Serial serial;
@@ -38,7 +38,7 @@ static double norm(N_Vector x, N_Vector weight) {
     return sqrt(sum / n);
 }
 
-// that of SUNDIALS has a branch on the kind of a value
+// without the branch on the kind of a value in the norm of SUNDIALS
 static double masked_norm(N_Vector x, N_Vector weight, N_Vector mask) {
     const double *const value = N_VGetArrayPointer(x), *const w = N_VGetArrayPointer(weight);
     const double *const kind = N_VGetArrayPointer(mask);
@@ -61,7 +61,7 @@ static void destroy(N_Vector vector) {
     }
 }
 
-// make room for the context in the content of a vector of the library, and put it there; frees the vector if it fails
+// extend the content of a vector of the library by the context; after a failure the vector is freed
 static N_Vector give_context(N_Vector vector, struct sundials_context *context) {
     if (!vector) return NULL;
     struct content *const content = realloc(vector->content, sizeof *content);
@@ -100,7 +100,7 @@ enum status sundials_context_create(struct sundials_context *context, int n, int
     *context = (struct sundials_context){
         .n = n, .threads = parallel_threads(threads, n, n, PARALLEL_ELEMENTS), .failure = failure};
     double *values = NULL;
-    // without a logger: it would print warnings
+    // no logger, because a logger prints warnings
     if (SUNContext_Create(SUN_COMM_NULL, &context->context) != SUN_SUCCESS ||
         SUNContext_SetLogger(context->context, NULL) != SUN_SUCCESS ||
         SUNContext_ClearErrHandlers(context->context) != SUN_SUCCESS ||
@@ -132,6 +132,6 @@ enum status sundials_context_check(const struct sundials_context *context) {
 
 void sundials_context_message(SUNDIALS_ERROR_ARGUMENTS) {
     const enum status *const failure = data;
-    // warnings are dropped: what matters also comes back as a code
+    // drop warnings: relevant failures also return a code
     if (code < 0 && *failure == STATUS_OK) status_fail(STATUS_SOLVER, "%s (%s)", text, function);
 }
