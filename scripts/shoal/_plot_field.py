@@ -1,6 +1,6 @@
 """Draw the file of `shoal field` on a figure: vorticity or speed, streamlines, bodies. Used by shoal.plot."""
 
-from ._plot_style import BODY, BODY_EDGE, Wall, matplotlib
+from ._plot_style import BODY, BODY_EDGE, Wall, colour_bar, matplotlib, with_unit
 from ._files import FileError, np, open_dataset, outline, sections, walls
 
 SPECIAL = 0.995  # share of the points below the end of the scale: bound sheets are much stronger than wakes
@@ -34,10 +34,10 @@ def draw(path, figure, with_speed=False, with_streamlines=True):
     field = Field(path)
     axes = figure.add_subplot()
     if with_speed:
-        values, label = np.hypot(field.u, field.v), "speed of the fluid [m/s]"
+        values, label = np.hypot(field.u, field.v), with_unit("speed of the fluid", "m s-1")
         scale = {"cmap": "cividis", "vmin": 0, "vmax": end_of_scale(values)}
     else:
-        values, label = field.vorticity, "vorticity [1/s], red counter-clockwise"
+        values, label = field.vorticity, with_unit("vorticity", "s-1") + ", red counter-clockwise"
         end = end_of_scale(values)
         scale = {"cmap": "RdBu_r", "vmin": -end, "vmax": end}
     mesh = axes.pcolormesh(field.x, field.y, values, shading="gouraud", rasterized=True, **scale)
@@ -53,4 +53,4 @@ def draw(path, figure, with_speed=False, with_streamlines=True):
     axes.set_aspect("equal")
     axes.set(xlim=field.x[[0, -1]], ylim=field.y[[0, -1]], xlabel="x [m]", ylabel="y [m]")
     axes.set_title(f"$t$ = {field.time:.4g} s", size=9, loc="right")
-    figure.colorbar(mesh, ax=axes, label=label, pad=0.02, extend="max" if with_speed else "both", aspect=25, shrink=0.9)
+    colour_bar(figure, mesh, [axes], label, extend="max" if with_speed else "both")

@@ -1,6 +1,6 @@
 """Draw polarisation, distances to the nearest neighbour and contacts of a school over time. Used by shoal.plot."""
 
-from ._plot_style import GRID, matplotlib
+from ._plot_style import DASHES, GRID, LINES, MANY, calm, draw_bands, matplotlib
 from ._files import np
 
 
@@ -14,27 +14,60 @@ def nearest(places):
     return distances
 
 
-def draw(results, figure):
-    """Fill an empty figure."""
-    time = results.time
-    polarisation, near, least, touching = figure.subplots(4, sharex=True)
-    polarisation.plot(time, results["polarisation"], color="black", lw=1)
-    polarisation.set_ylabel("polarisation")
-
+def draw_nearest(axes, results):
+    """Distances between centres of mass: of a pair one line, of a few fish one each, of many their bands."""
     distances = nearest(results["com"])
-    low, median, high = np.quantile(distances, [0.1, 0.5, 0.9], axis=1)
-    near.fill_between(time, low, high, color=GRID, lw=0, label="8 of 10 fish")
-    near.plot(time, median, color="black", lw=1, label="median")
-    near.plot(time, distances.min(axis=1), color="black", lw=0.8, ls="--", label="nearest two")
-    near.set_ylabel("to the nearest\nneighbour [m]")
-    near.legend(ncols=3, loc="lower right", bbox_to_anchor=(1, 1), frameon=False, borderpad=0)
+    if results.n_fish == 2:
+        axes.plot(results.time, distances[:, 0], color="black", lw=1)
+        axes.set_ylabel("between\ncentres [m]")
+        return
+    if results.n_fish > MANY:
+        handles = draw_bands(axes, results.time, distances)
+    else:
+        handles = [
+            axes.plot(results.time, one, color=LINES[f], ls=DASHES[f], lw=1, label=results.names[f])[0]
+            for f, one in enumerate(distances.T)
+        ]
+    axes.set_ylabel("to the nearest\ncentre [m]")
+    axes.legend(
+        handles=handles, ncols=len(handles), loc="lower left", bbox_to_anchor=(0, 1), borderpad=0, columnspacing=1.5
+    )
 
-    least.plot(time, results["least_distance"], color="black", lw=1)
-    least.set(ylabel="least between\noutlines [m]", ylim=(0, None))
-    touching.step(time, (results["contact_energy"] > 0).sum(axis=1), color="black", lw=1, where="mid")
-    touching.set(ylabel="fish in\ncontact", xlabel="time [s]", ylim=(0, None))
-    touching.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
+
+def draw(results, figure, scale_of_variable):
+    """Fill an empty figure: panels of what there is only."""
+    touching = (results["contact_energy"] > 0).sum(axis=1)
+    least = results["least_distance"]
+    names = ["polarisation", "nearest"]
+    names += ["least"] if np.isfinite(least).any() else []
+    names += ["touching"] if touching.any() else []
+    stack = dict(zip(names, np.atleast_1d(figure.subplots(len(names), sharex=True))))
+    figure.set_figheight(1.4 * len(names) + 0.5)
+    time = results.time
+
+    stack["polarisation"].plot(time, results["polarisation"], color="black", lw=1)
+    stack["polarisation"].set_ylabel("polarisation")
+    calm([stack["polarisation"]], 1.0, rounding=1e-6)
+
+    draw_nearest(stack["nearest"], results)
+    calm([stack["nearest"]], scale_of_variable("com"))
+
+    if "least" in stack:
+        axes = stack["least"]
+        axes.plot(time, least, color="black", lw=1)
+        axes.set_ylabel("least between\noutlines [m]")
+        if np.nanmin(least) < 0.3 * np.nanmax(least):
+            axes.set_ylim(0, None)
+        if not calm([axes], scale_of_variable("com")) and "touching" not in stack:
+            axes.annotate("no contact", (0.99, 0.9), xycoords="axes fraction", ha="right", va="top", size=7)
+    if "touching" in stack:
+        axes = stack["touching"]
+        axes.step(time, touching, color="black", lw=1, where="mid")
+        axes.set(ylabel="fish in\ncontact", ylim=(0, None))
+        axes.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
+
     for axes in figure.axes:
         axes.grid(lw=0.3, color=GRID)
         axes.margins(x=0)
+    figure.axes[-1].set_xlabel("time [s]")
     figure.align_ylabels()

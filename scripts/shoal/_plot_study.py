@@ -1,21 +1,26 @@
 """Pictures of studies: study.nc of `shoal study`, and the file of `shoal compare`, which is one. Used by shoal.plot.
 
     the errors of a case            what each key has in them, and the values at its levels
-    a refined axis                  differences from the finest level, with the design slope and the range of orders that is
-                                    accepted; with another axis of three numbers or more values with error bars over that
+    a refined axis                  the error of each level by Richardson with the next finer one, over the grid spacing, with a
+                                    triangle of the design slope and the orders that are accepted; with another axis of three
+                                    numbers or more values with error bars over that
     solver.method as an axis        cost against the first axis, a line per method; where there are several settings of a
                                     method the cheapest that is accurate, also as a table
-    a position as the only axis     a map of the places, a number at each
-    two axes of numbers             a map over both
+    a position as the only axis     a map of the places; lines where the places are in a row
+    two axes of numbers             a map over both: cells with their values, contours where there are many
     anything else                   speed, cost of transport and Strouhal number over the first axis; of fish that are held
-                                    at a speed thrust and power over it; of bodies without a beat drag, lift and deflection
+                                    thrust, power and efficiency; of bodies that a heave drives the efficiency in place of the
+                                    Strouhal number; of bodies without a beat drag, lift and deflection
     a comparison of methods         error against wall time and evaluations
 """
 
 import ast
 
-from ._plot_style import DASHES, GRID, MARKS, few_ticks, scale_of
+from ._plot_style import (
+    DASHES, GRID, MARKS, calm, colour_bar, few_ticks, matplotlib, number_text, scale_of, unit_text, with_unit,
+)
 from ._files import FileError, netCDF4, np
+from ._library import CaseError
 
 COLOURS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#aa4499", "#b06000", "#3366aa", "#666666"]  # all dark
 NAMES = {
@@ -57,8 +62,7 @@ class Study:
         """The last word of a key or the name of a quantity, with its unit."""
         variable = self.data.variables[name]
         word = variable.long_name.split(".")[-1] if hasattr(variable, "axis") else name
-        unit = getattr(variable, "units", "1")
-        return NAMES.get(word, word.replace("_", " ")) + (f" [{unit}]" if unit != "1" else "")
+        return with_unit(NAMES.get(word, word.replace("_", " ")), getattr(variable, "units", "1"))
 
 
 def style(i):
@@ -93,20 +97,29 @@ def case_of(study, member, refined):
 SLACK, FAR_ABOVE = 1, 1.5  # orders that are accepted, below and above the design order: src/study/error_budget.c
 
 
-def draw_design(axes, x, size, finest, design):
-    """What differences from the finest level do by the design order, over that of the coarsest level, and the orders that
-    are accepted; size: grid spacing of each level, finest: that of the finest one, 0 where the limit is given."""
+def draw_design(axes, size, drawn, design):
+    """The orders that are accepted, as slopes from the coarsest level, and a triangle of the design order below all lines.
+
+    size: grid spacing of the levels that are drawn, falling; drawn: the lines, (line, level), 1 at the first.
+    """
     if not np.isfinite(design) or size.size < 2:
         return
-    fine = np.geomspace(size[0], size[-1], 50)
-    at = np.interp(np.log(fine), np.log(size[::-1]), np.log(x[::-1]))
-    low, middle, high = (
-        (fine**p - finest**p) / (size[0] ** p - finest**p) if p > 0 else np.log(fine / finest) / np.log(size[0] / finest)
-        for p in (design - SLACK, design, design + FAR_ABOVE)
-    )
-    words = f"accepted orders, {design - SLACK:g} and more" if design > SLACK else "accepted orders, above 0"
-    axes.fill_between(np.exp(at), low, high, color="#e4e4e4", zorder=0, label=words)
-    axes.plot(np.exp(at), middle, color="#888888", lw=0.8, zorder=1, label=f"design order {design:g}")
+    low, high = max(design - SLACK, 0), design + FAR_ABOVE
+    ends = size[[0, -1]]
+    words = f"accepted orders, {low:g} and more" if low > 0 else "accepted orders, above 0"
+    axes.fill_between(ends, (ends / size[0]) ** low, (ends / size[0]) ** high, color="#e8e8e8", zorder=0, label=words)
+
+    # the triangle: from 0.45 to 0.9 of the way to the coarsest level, with the legs 1 and the order
+    left, right = size[-1] * (size[0] / size[-1]) ** np.array([0.45, 0.9])
+    lines = np.array([np.interp(np.log([left, right]), np.log(size[::-1]), np.log(line[::-1])) for line in drawn])
+    lowest = np.minimum(np.exp(np.nanmin(lines, axis=0)), (np.array([left, right]) / size[0]) ** high)
+    rise = (right / left) ** design
+    foot = 0.7 * min(lowest[0], lowest[1] / rise)
+    axes.fill([left, right, right], [foot, foot, foot * rise], fc="white", ec="black", lw=0.8, label="_triangle")
+    place = {"textcoords": "offset points", "size": 8}
+    axes.annotate("1", (np.sqrt(left * right), foot), (0, -2), ha="center", va="top", **place)
+    axes.annotate(f"order {design:g}", (right, foot * np.sqrt(rise)), (3, 0), va="center", **place)
+    axes.set_ylim(foot / 2, None)
 
 
 def quantities_of(study):
@@ -117,41 +130,70 @@ def quantities_of(study):
     return [name for name in names if np.isfinite(study[f"error_{name}"]).any()]
 
 
+def level_errors(study, name, design):
+    """The error of each level but the finest (group, fish, level): the difference from the next finer level over 1 - r^p, with
+    the ratio r of their grid spacings and the design order p; where a reference is given, the distance from it."""
+    known = study[f"difference_{name}"]
+    if np.isfinite(known[..., -1]).any():
+        return known
+    size, first = study["level_size"], study["group_member"]
+    keys = [v.name for axis in study.axes for v in axis]
+    refined = [v.name for axis in study.axes for v in axis if hasattr(v, "refine")]
+    others = [key for key in keys if study.data[key].axis != study.data[refined[0]].axis]
+    settings = [tuple(str(study[key][m]) for key in others) for m in range(study.complete.size)]
+    values = study[name]
+    errors = np.full(known.shape, np.nan)
+    for g, member in enumerate(first):
+        at = [
+            next((m for m in range(study.complete.size) if settings[m] == settings[member] and study[refined[0]][m] == value), None)
+            for value in study["level_value"]
+        ]
+        for k in range(len(at) - 1):
+            if at[k] is None or at[k + 1] is None or not study.complete[[at[k], at[k + 1]]].all():
+                continue
+            apart = values[at[k]] - values[at[k + 1]]
+            apart = np.hypot(*apart.T) if apart.ndim == 2 else np.abs(apart)
+            share = 1 - (size[k + 1] / size[k]) ** design if np.isfinite(design) else 1
+            errors[g, :, k] = apart / share
+    return errors
+
+
 def plot_convergence(study, refined, figure):
-    """Differences of some quantities from the finest level, over those of the coarsest one; one panel per fish."""
+    """The errors of the levels of some quantities over that of the coarsest one; one panel per fish."""
     level, size, first = study["level_value"], study["level_size"], study["group_member"]
+    design = float(study["group_design_order"][0])
     names = list(study["fish_name"])
     all_axes = figure.subplots(1, len(names), squeeze=False, sharey=True)[0]
-    quantities = quantities_of(study)
-    errors = {name: study[f"difference_{name}"] for name in quantities}
+    errors = {name: level_errors(study, name, design) for name in quantities_of(study)}
     known = np.concatenate([np.zeros(0), *(e[np.isfinite(e) & (e > 0)] for e in errors.values())])
     if known.size == 0:
         raise FileError(f"{study.path}: no errors to draw: all levels are equal, or too few are complete")
-    # the finest level has no difference but where a reference is given
+    # the finest level has an error only where a reference is given
     is_known = np.any([np.isfinite(e).any(axis=(0, 1)) for e in errors.values()], axis=0)
-    drawn = level[is_known]
+    drawn = size[is_known]
     for f, axes in enumerate(all_axes):
-        i = 0
+        lines = []
         for g, member in enumerate(first):
-            for name in quantities:
-                difference, bound = errors[name][g, f, is_known], study[f"error_{name}"][g, f]
-                if not difference[0] > 0:
+            for name, error in errors.items():
+                line, bound = error[g, f, is_known], study[f"error_{name}"][g, f]
+                if not line[0] > 0:
                     continue
                 flag = "flagged" if str(study.data[f"objection_{name}"][g, f]).strip("\0") else ""
                 unit = study.data.variables[f"error_{name}"].units
                 words = [study.label(name).split(" [")[0], case_of(study, member, refined)]
-                words += [f"error {bound:.1e} {unit if unit != '1' else ''}".strip(), flag]
-                axes.loglog(drawn, difference / difference[0], label=", ".join(filter(None, words)), **style(i))
-                i += 1
-        draw_design(axes, drawn, size[is_known], 0 if is_known.all() else size[-1], study["group_design_order"][0])
+                words += [f"error {number_text(bound)} {unit_text(unit) if unit != '1' else ''}".strip(), flag]
+                axes.loglog(drawn, line / line[0], label=", ".join(filter(None, words)), **style(len(lines)))
+                lines.append(np.where(line > 0, line / line[0], np.nan))
+        if lines:
+            draw_design(axes, drawn, np.array(lines), design)
         axes.set_xlabel(study.label(refined.name))
-        axes.set_xticks(drawn, [f"{x:g}" for x in drawn])
+        axes.set_xticks(drawn, [f"{x:g}" for x in level[is_known]])
         axes.minorticks_off()
+        few_ticks(axes.yaxis)
         if len(names) > 1:
             axes.set_title(names[f], size=9)
         axes.grid(lw=0.3, color=GRID)
-    what = "error" if is_known.all() else "difference from the finest level"
-    all_axes[0].set_ylabel(f"{what},\nover that of the coarsest")
+    all_axes[0].set_ylabel("error of the level,\nover that of the coarsest")
     legend_above(all_axes[0], figure, 2)
 
 
@@ -327,48 +369,125 @@ def digits_for(values):
     return int(np.clip(2 - np.floor(np.log10(spread)), 0, 12)) if spread > 0 else 4
 
 
+CONTOURS = 6  # so many values on both axes of a map are drawn as contours, fewer as cells
+SAME = 1e-6  # relative range of values of members that is noise of the solver
+
+
+def edges_between(at, scale):
+    """Edges of cells around values, halfway between them on the scale of the axis."""
+    at = np.log(at) if scale == "log" else np.asarray(at, float)
+    middle = (at[1:] + at[:-1]) / 2
+    edges = np.concatenate([[at[0] - (middle[0] - at[0])], middle, [at[-1] + (at[-1] - middle[-1])]]) if at.size > 1 else (
+        np.array([at[0] - 0.5, at[0] + 0.5]))
+    return np.exp(edges) if scale == "log" else edges
+
+
+def grid_of(x, y):
+    """The values of both axes, and the row and column of each member, where members fill a grid for the most part."""
+    (xs, i), (ys, j) = np.unique(x, return_inverse=True), np.unique(y, return_inverse=True)
+    fits = xs.size > 1 and ys.size > 1 and 2 * x.size > xs.size * ys.size
+    return (xs, ys, i, j) if fits else None
+
+
+def draw_cells(axes, grid, values, digits, norm, scales):
+    """A cell per member with its value; cells without a member are hatched."""
+    xs, ys, i, j = grid
+    table = np.full((ys.size, xs.size), np.nan)
+    table[j, i] = values
+    edges = edges_between(xs, scales[0]), edges_between(ys, scales[1])
+    if np.isnan(table).any():
+        whole = {"transform": axes.transAxes, "fc": "#eeeeee", "ec": "#bbbbbb", "hatch": "////", "lw": 0, "zorder": 0}
+        axes.add_artist(matplotlib.patches.Rectangle((0, 0), 1, 1, **whole))
+    mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(table), cmap="cividis", norm=norm, edgecolors="white", lw=0.5)
+    if table.size <= 80:
+        for row, column in np.argwhere(np.isfinite(table)):
+            value = table[row, column]
+            colour = "white" if norm(value) < 0.55 else "black"
+            size = 7 if xs.size < 8 else 5.5
+            axes.annotate(f"{value:.{digits}f}", (xs[column], ys[row]), ha="center", va="center", size=size, color=colour)
+    axes.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
+    axes.set_xticks(xs if xs.size <= 9 else xs[:: -(-xs.size // 9)])
+    axes.set_yticks(ys if ys.size <= 12 else ys[:: -(-ys.size // 12)])
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_locator(matplotlib.ticker.NullLocator())
+    return mesh
+
+
+def draw_contours(axes, x, y, values, digits, norm):
+    """Filled contours through the members, whose places are marked, and the value at each line."""
+    levels = matplotlib.ticker.MaxNLocator(9).tick_values(norm.vmin, norm.vmax)
+    drawn = axes.tricontourf(x, y, values, levels, cmap="cividis", norm=norm, extend="both")
+    colours = ["white" if norm(level) < 0.55 else "black" for level in levels]
+    lines = axes.tricontour(x, y, values, levels, colors=colours, linewidths=0.6)
+    axes.clabel(lines, fmt=lambda value: f"{value:.{max(digits - 1, 0)}f}", fontsize=7)
+    axes.plot(x, y, ls="", marker=".", ms=2, color="black")
+    return drawn
+
+
 def plot_map(study, x, y, labels, quantity, figure):
-    """One panel per fish: a mark per member, as dark as its value, and the value."""
+    """One panel per fish: cells with their values, or contours through many places."""
     names = list(study["fish_name"])
     x, y = x[study.complete], y[study.complete]
-    all_axes = figure.subplots(1, len(names), squeeze=False, sharey=True)[0]
-    known = study[quantity][study.complete]
-    known = known[np.isfinite(known)]
+    values = study[quantity][study.complete]
+    known = values[np.isfinite(values)]
     if known.size == 0:
         raise FileError(f"{study.path}: {quantity} has no value in any member: are the runs shorter than a beat?")
-    digits, ends = digits_for(known), {"vmin": known.min(), "vmax": known.max()}  # the same for all fish
+    all_axes = figure.subplots(1, len(names), squeeze=False, sharex=True, sharey=True)[0]
+    scales, grid = (scale_of(x), scale_of(y)), grid_of(x, y)
+    is_fine = grid is None or min(grid[0].size, grid[1].size) >= CONTOURS and x.size == grid[0].size * grid[1].size
+    # the same scale for all fish
+    digits, norm = digits_for(known), matplotlib.colors.Normalize(known.min(), known.max())
+    is_same = np.ptp(known) <= SAME * np.abs(known).max()
+    if is_same:  # colours would show the noise
+        digits, norm = 6, matplotlib.colors.Normalize(known.min() - 1, known.max() + 1)
     for f, axes in enumerate(all_axes):
-        values = study[quantity][study.complete, f]
-        axes.set_xscale(scale_of(x))
-        axes.set_yscale(scale_of(y))
-        marks = axes.scatter(x, y, c=values, cmap="Greys", edgecolors="black", s=110, lw=0.7, **ends)
-        for at_x, at_y, value in zip(x, y, values):
-            text = f"{value:.{digits}f}"
-            axes.annotate(text, (at_x, at_y), (0, 8), textcoords="offset points", ha="center", size=7)
-        axes.margins(0.2)
+        axes.set(xscale=scales[0], yscale=scales[1])
+        here = np.isfinite(values[:, f])
+        if is_fine and not is_same:
+            drawn = draw_contours(axes, x[here], y[here], values[here, f], digits, norm)
+        elif grid:
+            drawn = draw_cells(axes, grid, values[:, f], digits, norm, scales)
+        else:
+            drawn = axes.scatter(x, y, c=values[:, f], norm=norm, cmap="cividis", s=20)
         axes.set_xlabel(labels[0])
         if len(names) > 1:
             axes.set_title(names[f], size=9)
     all_axes[0].set_ylabel(labels[1])
-    bar = figure.colorbar(marks, ax=all_axes, label=study.label(quantity))
-    bar.formatter.set_useOffset(False)
+    if is_same:
+        all_axes[0].annotate(f"{quantity.replace('_', ' ')} is constant: {known.mean():.6g}", (0, 1), (0, 14), size=8,
+                             xycoords="axes fraction", textcoords="offset points")
+        return
+    colour_bar(figure, matplotlib.cm.ScalarMappable(norm, "cividis"), all_axes, study.label(quantity))
+
+
+def is_known(study, name):
+    """True if all complete members have a value of this name."""
+    return name in study.data.variables and np.isfinite(study[name][study.complete]).all()
 
 
 def panels_of(study, first):
-    """What is drawn over an axis: speed and cost; of fish that are held at the speeds of the axis what that takes; of
-    bodies at rest what the stream does to them."""
-    if "steady_drag" in study.data.variables and np.isfinite(study["steady_drag"][study.complete]).all():
+    """What is drawn over an axis: speed, cost and Strouhal number; of bodies that a heave drives the efficiency; of held ones
+    the forces, power and efficiency; of bodies at rest what the stream does to them."""
+    if is_known(study, "steady_drag"):
         return ["steady_drag", "steady_lift", "steady_deflection"]
-    speed, given = study["speed"][study.complete], study[first.name][study.complete]
-    if first.long_name.endswith(".speed") and np.allclose(speed, given[:, None], rtol=1e-3):
+    speed = study["speed"][study.complete]
+    given = study[first.name][study.complete] if study.is_number(first.name) else np.full(speed.shape[0], np.nan)
+    is_given = first.long_name.endswith(".speed") and np.allclose(speed, given[:, None], rtol=1e-3)
+    is_driven = is_known(study, "mean_power") and is_known(study, "mean_actuation_power") and bool(np.all(
+        np.abs(study["mean_actuation_power"][study.complete]) < 1e-6 * np.abs(study["mean_power"][study.complete])))
+    is_same = len(speed) > 1 and np.all(np.ptp(speed, axis=0) <= SAME * np.abs(speed).max(axis=0)) and np.all(speed > 0)
+    if is_given or is_driven and is_same:
         return ["mean_thrust", "mean_power", "efficiency"]
-    return ["speed", "cost_of_transport", "strouhal"]
+    return ["speed", "cost_of_transport", "efficiency" if is_driven and is_known(study, "efficiency") else "strouhal"]
 
 
-def plot_lines(study, figure):
-    """Three quantities over the first axis; a line per fish and per value of the rest."""
+def plot_lines(study, figure, x=None, label=None):
+    """Three quantities over the first axis, or over x with a label; a line per fish and per value of the rest."""
     first = study.axes[0][0]
-    x = study[first.name] if study.is_number(first.name) else np.arange(study.complete.size)
+    is_number = x is not None or study.is_number(first.name)
+    if x is None:
+        x = study[first.name] if is_number else np.arange(study.complete.size)
     rest = [[case_of(study, m, first)] if study.axes[1:] else [] for m in range(x.size)]
     names = list(study["fish_name"])
     figure.set_figheight(4.8)
@@ -378,16 +497,17 @@ def plot_lines(study, figure):
         for words in dict.fromkeys(map(tuple, rest)):
             rows = np.array([tuple(r) == words for r in rest]) & study.complete
             for f, name in enumerate(names):
-                label = ", ".join([*words, *([name] if len(names) > 1 else [])])
-                axes.plot(x[rows], study[quantity][rows, f], label=label or None, **style(i))
+                who = ", ".join([*words, *([name] if len(names) > 1 else [])])
+                axes.plot(x[rows], study[quantity][rows, f], label=who or None, **style(i))
                 i += 1
         axes.set_yscale(scale_of(study[quantity][study.complete]))
+        calm([axes], rounding=SAME)
         axes.set_ylabel(study.label(quantity).replace(" [", "\n["))
         axes.grid(lw=0.3, color=GRID)
-    stack[-1].set_xscale(scale_of(x) if study.is_number(first.name) else "linear")
-    if not study.is_number(first.name):
+    stack[-1].set_xscale(scale_of(x) if is_number else "linear")
+    if not is_number:
         stack[-1].set_xticks(x, study[first.name])
-    stack[-1].set_xlabel(study.label(first.name))
+    stack[-1].set_xlabel(label or study.label(first.name))
     if i > 1:
         legend_above(stack[0], figure, 2)
 
@@ -432,12 +552,47 @@ def plot_comparison(study, figure):
     legend_above(panels[0], figure, 6)
 
 
-def draw(path, figure, quantity="speed"):
-    """Draw what a file calls for on an empty figure; quantity: what a map is of."""
-    study = Study(path)
+PLACE = ["x of the nose at the start [m]", "y of the nose at the start [m]"]
+
+
+def is_place(keys):
+    """True if the only swept key is a position."""
+    return len(keys) == 1 and keys[0].name.endswith("position")
+
+
+def places(study, key):
+    """Positions as two arrays of numbers."""
+    return np.array([ast.literal_eval(text) for text in study[key.name]], dtype=float).T
+
+
+def map_axes(study):
+    """x, y and their labels where members are places in a plane or pairs of numbers; None for any other study."""
+    keys = [v for axis in study.axes for v in axis]
+    if study.is_comparison or "key_name" in study.data.variables or any(hasattr(v, "refine") for v in keys):
+        return None
+    if not study.complete.any() or "solver_method" in study.data.variables:
+        return None
+    if is_place(keys):
+        x, y = places(study, keys[0])
+        is_row = np.linalg.matrix_rank(np.array([x - x[0], y - y[0]])) < 2
+        return None if is_row else (x, y, PLACE)
+    if len(study.axes) == len(keys) == 2 and all(study.is_number(v.name) for v in keys):
+        if min(np.unique(study[v.name]).size for v in keys) > 1:
+            return study[keys[0].name], study[keys[1].name], [study.label(v.name) for v in keys]
+    return None
+
+
+def draw(path, figure, asked=None):
+    """Draw what a file calls for on an empty figure; asked: what a map is of, without it of the speed."""
+    study, quantity = Study(path), asked or "speed"
     drawn = study.data.variables.get(quantity)
     if drawn is None or drawn.dimensions[1:] != ("fish",) or not study.is_number(quantity):
         raise FileError(f"{path}: {quantity} is not a quantity of the fish in it, such as speed or cost_of_transport")
+    over = map_axes(study)
+    if asked and not over:
+        raise CaseError(f"--of: only maps take it, and {path} is not drawn as a map")
+    if over:
+        return plot_map(study, *over, quantity, figure)
     if study.is_comparison:
         return plot_comparison(study, figure)
     if "key_name" in study.data.variables:
@@ -453,13 +608,9 @@ def draw(path, figure, quantity="speed"):
         if len(others) == 1 and study.is_number(others[0].name) and np.unique(study[others[0].name]).size >= 3:
             return plot_values(study, refined[0], others[0], figure)
         return plot_convergence(study, refined[0], figure)
-    numbers = [v.name for v in keys if study.is_number(v.name)]
     if "solver_method" in study.data.variables and study.is_number(keys[0].name):
         return plot_methods(study, keys[0].name, figure)
-    if len(study.axes) == 1 and keys[0].name.endswith("position"):
-        x, y = np.array([ast.literal_eval(text) for text in study[keys[0].name]]).T
-        return plot_map(study, x, y, ["x of the nose at the start [m]", "y of the nose [m]"], quantity, figure)
-    if len(study.axes) == 2 and len(numbers) == len(keys) == 2:
-        labels = [study.label(name) for name in numbers]
-        return plot_map(study, study[numbers[0]], study[numbers[1]], labels, quantity, figure)
+    if is_place(keys):
+        x, y = places(study, keys[0])
+        return plot_lines(study, figure, *((x, PLACE[0]) if np.ptp(x) >= np.ptp(y) else (y, PLACE[1])))
     return plot_lines(study, figure)

@@ -3,10 +3,13 @@
 Colours can be told apart by the colour-blind and, with marks and dashes, in grey.
 """
 
+import re
+
 try:
     import matplotlib
     import numpy as np
-    from matplotlib import ticker
+    from matplotlib import colorbar, ticker
+    from matplotlib.transforms import Bbox
 except ImportError as missing:
     raise ImportError(f"{missing}: apt install python3-matplotlib, and run this with /usr/bin/python3") from missing
 
@@ -41,6 +44,7 @@ PHASES = matplotlib.colors.LinearSegmentedColormap.from_list(
     "phases", ["#000000", "#0072b2", "#56b4e9", "#d55e00", "#000000"]
 )
 BEYOND = 1e6  # where hatching ends, far outside of any picture [m]
+MANY = 6  # more lines than these are drawn as bands
 SPAN = 30  # positive values that span more than this are drawn on a logarithmic axis
 
 
@@ -60,6 +64,104 @@ class Wall:
         """Put it elsewhere."""
         self.line.set_ydata([y, y])
         self.solid.set_y(y - BEYOND if self.inward > 0 else y)
+
+
+# ---- words
+
+
+def unit_text(unit):
+    """A unit as print shows it, with raised exponents: "m s-1" is m s$^{-1}$."""
+    return re.sub(r"(?<=[A-Za-z])(-?\d+)", r"$^{\1}$", unit)
+
+
+def with_unit(words, unit):
+    """The label of a quantity: its unit in brackets, none for "1"."""
+    return words if unit == "1" else f"{words} [{unit_text(unit)}]"
+
+
+def number_text(value):
+    """A number of two digits as print shows it: 2.6e-04 is 2.6 x 10^-4 with a raised exponent."""
+    if value == 0 or 1e-2 <= abs(value) < 1e4:
+        return f"{value:.2g}"
+    digits, exponent = f"{value:.1e}".split("e")
+    return rf"{digits}$\times$10$^{{{int(exponent)}}}$"
+
+
+# ---- parts of a panel
+
+ROUNDING = 1e-9  # relative range of values that are constant but for rounding
+NEAR_ZERO = 1e-12  # the same for values around 0, relative to the scale of their unit
+
+
+def calm(panels, scale=0.0, rounding=ROUNDING):
+    """Where the lines of panels with one scale are constant but for rounding, widen the scale and say so; scale: of values
+    like these. True if they are constant."""
+    lines = [line for axes in panels for line in axes.lines]
+    values = np.concatenate([np.ravel(line.get_ydata()) for line in lines] or [np.zeros(0)]).astype(float)
+    values = values[np.isfinite(values)]
+    if values.size == 0 or np.ptp(values) > max(rounding * np.abs(values).max(), NEAR_ZERO * scale):
+        for axes in panels:
+            if axes.get_yscale() == "linear":
+                axes.ticklabel_format(axis="y", useOffset=False)
+        return False
+    middle = float(values.mean())
+    if abs(middle) <= NEAR_ZERO * scale:
+        middle = 0.0
+    half = 0.05 * abs(middle) or 1.0
+    for axes in panels:
+        axes.set_yscale("linear")
+        axes.set_ylim(middle - half, middle + half)
+        axes.ticklabel_format(axis="y", useOffset=False)
+        for line in axes.lines:
+            line.set_ydata(np.where(np.isfinite(np.asarray(line.get_ydata(), float)), middle, np.nan))
+        axes.annotate(f"constant: {middle:.6g}", (0.99, 0.9), xycoords="axes fraction", ha="right", va="top", size=7)
+    return True
+
+
+def draw_bands(axes, x, values, who="fish"):
+    """Median, quartiles and range of many lines, values: (x, line); returns handles for a legend."""
+    low, lower, median, upper, high = np.nanquantile(values, [0, 0.25, 0.5, 0.75, 1], axis=1)
+    band = axes.fill_between(x, lower, upper, color="#b0b0b0", lw=0, label=f"half of {values.shape[1]} {who}")
+    edge = [axes.plot(x, end, color="#555555", lw=0.8, ls=":")[0] for end in (low, high)][0]
+    edge.set_label("lowest and highest")
+    middle = axes.plot(x, median, color="black", lw=1.3, label="median")[0]
+    return [middle, band, edge]
+
+
+BAR_WIDTH = 0.12  # of a colour bar, inches
+
+
+class BesidePanels:
+    """The place of a colour bar: right of panels and exactly as high as they are, also where their aspect is fixed."""
+
+    def __init__(self, panels):
+        self.panels = panels
+
+    def __call__(self, axes, _renderer):
+        for panel in self.panels:
+            panel.apply_aspect()
+        box = Bbox.union([panel.get_position() for panel in self.panels])
+        width, height = axes.figure.get_size_inches()
+        # matplotlib gives the bar an aspect, which would make a high bar shorter
+        axes.set_box_aspect(box.height * height / BAR_WIDTH)
+        if hasattr(axes, "_colorbar_info"):
+            axes._colorbar_info["aspect"] = box.height * height / BAR_WIDTH
+        return Bbox.from_bounds(box.x1 + 0.1 / width, box.y0, BAR_WIDTH / width, box.height)
+
+
+def colour_bar(figure, mappable, panels, label, **options):
+    """A colour bar as high as the panels."""
+    axes, words = colorbar.make_axes(list(panels), pad=0.02, aspect=25, fraction=0.06)
+    words.pop("orientation", None), words.pop("ticklocation", None)
+    axes.set_axes_locator(BesidePanels(list(panels)))
+    bar = figure.colorbar(mappable, cax=axes, label=label, **options)
+    if hasattr(bar.formatter, "set_useOffset"):
+        bar.formatter.set_useOffset(False)
+        bar.update_ticks()
+    return bar
+
+
+# ---- scales of axes
 
 
 def scale_of(values):

@@ -21,16 +21,20 @@ from . import _plot_school as plot_school_module
 from . import _plot_study as plot_study_module
 from ._files import Results, kind_of
 from ._library import CaseError, FileError, kind as kind_of_value
-from ._plot_style import BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, PATH, PHASES, RED, STYLE, WIDTH, Wall, matplotlib
+from ._plot_style import (
+    BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, MANY, PATH, PHASES, RED, STYLE, WIDTH, Wall, calm, colour_bar, draw_bands,
+    matplotlib, unit_text, with_unit,
+)
 
 from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
+from matplotlib.transforms import ScaledTranslation
 
 __all__ = ["swim", "gait", "time", "forces", "pressure", "school", "field", "study", "STYLE"]
 
 NAMED = 30  # the names of more fish than these would hide the fish
-MANY = 6  # more fish than these are drawn in grey, with their mean
+MOST_PANELS = 24  # of a picture with a panel per fish
 
 
 class UsageError(CaseError):
@@ -115,10 +119,12 @@ def limits(results, rows, with_paths=True, margin=0.4):
     return x0 - margin, x1 + margin, min(heights) - margin, max(heights) + margin
 
 
-def add_legend(axes, handles):
-    """What colours and lines mean, in one row above a panel; returns the legend."""
+def add_legend(axes, handles, above=0):
+    """What colours and lines mean, in one row some points above a panel; returns the legend."""
+    place = axes.transAxes + ScaledTranslation(0, above / 72, axes.figure.dpi_scale_trans)
     legend = axes.legend(
-        handles=handles, loc="lower left", bbox_to_anchor=(0, 1), ncol=len(handles), borderpad=0, columnspacing=1.5
+        handles=handles, loc="lower left", bbox_to_anchor=(0, 1), bbox_transform=place, ncol=len(handles), borderpad=0,
+        columnspacing=1.5,
     )
     legend.set_in_layout(False)  # it may be wider than its panel
     return legend
@@ -161,10 +167,13 @@ def panels(n, n_rows, n_columns, height):
 
 def label_panels(all_axes, n_columns, x, y):
     """The labels of panels that share their axes: x below the lowest of each column, y left of the middle row."""
-    for axes in all_axes[-n_columns:]:
-        axes.set_xlabel(x)
     n_rows = math.ceil(len(all_axes) / n_columns)
-    all_axes[(n_rows - 1) // 2 * n_columns].set_ylabel(y)
+    for axes in all_axes[(n_rows - 1) * n_columns :]:
+        axes.set_xlabel(x)
+    if n_rows % 2:
+        all_axes[n_rows // 2 * n_columns].set_ylabel(y)
+    else:
+        all_axes[0].figure.supylabel(y, size=9)
 
 
 def place_clock(snapshot, row, window):
@@ -257,22 +266,50 @@ def chosen(results, options, most=None):
     return fish
 
 
+def panel_per_fish(of):
+    """The fish that get a panel of a grid, a few of many, shared out evenly; and the columns that leave the fewest gaps."""
+    shown = [of[i] for i in np.unique(np.linspace(0, len(of) - 1, min(len(of), MOST_PANELS)).round().astype(int))]
+    n_columns = min(len(shown), 3)
+    if len(shown) > 6:
+        n_columns = min((4, 5, 3, 6), key=lambda n: -len(shown) % n)
+    return shown, n_columns
+
+
+def legend_above_titles(all_axes, shown, of, handles=()):
+    """A legend above a grid, which also says so where panels of a few of the fish only are shown."""
+    handles = list(handles)
+    if len(shown) < len(of):
+        handles.append(Line2D([], [], ls="", label=f"{len(shown)} of {len(of)} fish (--fish chooses others)"))
+    if handles:
+        add_legend(all_axes[0], handles, above=16)
+
+
 def plot_gait(results, options):
-    """The reference shapes of each fish over its last beat, one panel per fish."""
+    """The reference shapes of each fish over its last beat, a grid with one panel per fish."""
     of = chosen(results, options)
-    n_columns = min(len(of), 3)
-    figure, all_axes = panels(len(of), math.ceil(len(of) / n_columns), n_columns, 4.5 / n_columns)
-    for fish, axes in zip(of, all_axes):
+    shown, n_columns = panel_per_fish(of)
+    shapes, curvatures = {}, results["natural_curvature"]
+    for fish in shown:
         rows = beat_rows(results, fish, options.shapes)
-        for row in rows:
-            curvature = results.read("natural_curvature", row)[fish, : results.n_nodes[fish] - 2]
-            phase = (results.time[row] - results.time[rows[0]]) * results["frequency"][fish]
-            axes.plot(*reference_shape(curvature).T, color=PHASES(phase), lw=1, marker="o", ms=1.8)
-        axes.set_title(results.names[fish], size=9)
+        phases = (results.time[rows] - results.time[rows[0]]) * results["frequency"][fish]
+        curvature = curvatures[rows, fish, : results.n_nodes[fish] - 2]
+        shapes[fish] = list(zip(phases, map(reference_shape, curvature)))
+    points = np.concatenate([shape for of_fish in shapes.values() for _, shape in of_fish])
+    y = 1.1 * np.abs(points[:, 1]).max()
+    n_rows = math.ceil(len(shown) / n_columns)
+    height = (WIDTH - 1.2) / n_columns * 2 * max(y, 0.1) / 1.1
+    figure, all_axes = panels(len(shown), n_rows, n_columns, height + 0.2)
+    for fish, axes in zip(shown, all_axes):
+        for phase, shape in shapes[fish]:
+            axes.plot(*shape.T, color=PHASES(phase), lw=1, marker="o", ms=1.8 if n_columns < 4 else 1)
+        axes.set_title(results.names[fish], size=9 if n_columns < 4 else 8, pad=3)
         axes.set_aspect("equal")
+        axes.grid(lw=0.3, color=GRID)
+    all_axes[0].set(xlim=(-0.05, 1.05), ylim=(-max(y, 0.1), max(y, 0.1)))
     label_panels(all_axes, n_columns, "x / body length", "y / body length")
+    legend_above_titles(all_axes, shown, of)
     scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 1), PHASES)
-    figure.colorbar(scale, ax=all_axes, label="time / period", aspect=15, pad=0.02)
+    colour_bar(figure, scale, all_axes, "time / period")
     return figure
 
 
@@ -313,55 +350,91 @@ def draw_forces(axes, results, fish, rows):
     return list(lines.values())
 
 
-ROUNDING = 1e-9  # relative range of values that are constant but for rounding
-
-
-def calm(axes):
-    """Widen the scale of a panel whose lines are constant but for rounding, and say so."""
-    values = np.concatenate([np.ravel(line.get_ydata()) for line in axes.lines] or [np.zeros(0)]).astype(float)
-    values = values[np.isfinite(values)]
-    if values.size == 0 or np.ptp(values) > ROUNDING * np.abs(values).max():
-        return
-    middle = float(values.mean())
-    half = 0.05 * abs(middle) or 1.0
-    axes.set_ylim(middle - half, middle + half)
-    axes.ticklabel_format(axis="y", useOffset=False)
-    axes.annotate(f"constant: {middle:.6g}", (0.99, 0.9), xycoords="axes fraction", ha="right", va="top", size=7)
+def natural_scale(results, name):
+    """The size of an ordinary value of a variable, by its unit: that of the largest fish with a beat of its frequency."""
+    length, mass = np.nanmax(results["body_length"]), np.nanmax(results["body_mass"])
+    frequency = max(float(np.nanmax(results["frequency"])), 1.0)
+    speed = length * frequency
+    force = mass * speed**2 / length
+    scales = {"m": length, "m s-1": speed, "degree": 180, "N": force, "W": force * speed, "J": force * length}
+    return float(scales.get(getattr(results.data.variables.get(name), "units", ""), 0))
 
 
 def draw_lines(axes, time, values, labels):
-    """A line per fish: of its own colour and dashes; of many fish all in grey, and their mean."""
+    """A line per fish: of its own colour and dashes; of many fish the median, the quartiles and the range."""
     if len(labels) > MANY:
-        axes.plot(time, values, color="#aaaaaa", lw=0.5)
-        axes.plot(time, np.nanmean(values, axis=1), color="black", lw=1.4)
-        return [
-            Line2D([], [], color="#aaaaaa", lw=0.5, label=f"each of {len(labels)} fish"),
-            Line2D([], [], color="black", lw=1.4, label="their mean"),
-        ]
+        return draw_bands(axes, time, values)
     return [
         axes.plot(time, one, color=LINES[f], ls=DASHES[f], lw=1, label=labels[f])[0] for f, one in enumerate(values.T)
     ]
 
 
+def unwrapped(heading):
+    """Headings without jumps, (time, fish): continuous in time, and at the first time within half a turn of their mean."""
+    values = np.array(heading, dtype=float)
+    for column in values.T:
+        known = np.isfinite(column)
+        column[known] = np.unwrap(column[known], period=360)
+    first = np.array([column[np.isfinite(column)][0] if np.isfinite(column).any() else np.nan for column in values.T])
+    angle = np.radians(first[np.isfinite(first)])
+    mean = np.degrees(np.arctan2(np.sin(angle).sum(), np.cos(angle).sum()))
+    return values + 360 * np.round((mean - first) / 360)
+
+
+def desired(results, rows, of, heading):
+    """Desired headings next to the headings (time, fish) that are drawn, without jumps."""
+    values = results["desired_heading"][rows][:, of].astype(float)
+    for column, drawn in zip(values.T, heading.T):
+        known = np.isfinite(column)
+        if known.any():
+            column[known] = np.unwrap(column[known], period=360)
+            at = np.flatnonzero(known)[0]
+            column += 360 * np.round((drawn[at] - column[at]) / 360)
+    return values
+
+
 def plot_each(results, options):
     """One variable over time, a panel per fish: its line in black before those of the others in grey."""
+    if options.balance:
+        raise UsageError("--balance: not together with --each")
     of, values, drawn = chosen(results, options), results[options.each], last_beats(results, options.beats)
     if values.shape != (results.time.size, results.n_fish):
         raise UsageError(f"--each {options.each}: not one number per fish and time, such as speed or heading")
     time, values = results.time[drawn], values[drawn]
-    n_columns = min(len(of), 4)
-    n_rows = math.ceil(len(of) / n_columns)
-    figure, all_axes = panels(len(of), n_rows, n_columns, 1.4 if n_rows > 1 else 2.5)
-    for fish, axes in zip(of, all_axes):
-        axes.plot(time, values[:, [f for f in of if f != fish]], color="#bbbbbb", lw=0.5)
+    if options.each.endswith("heading"):
+        values = unwrapped(values)
+    shown, n_columns = panel_per_fish(of)
+    n_rows = math.ceil(len(shown) / n_columns)
+    figure, all_axes = panels(len(shown), n_rows, n_columns, 1.4 if n_rows > 1 else 2.5)
+    for fish, axes in zip(shown, all_axes):
+        others = [f for f in of if f != fish]
+        if len(of) > MANY:
+            axes.fill_between(time, *np.nanquantile(values[:, others], [0.25, 0.75], axis=1), color="#cccccc", lw=0)
+        else:
+            axes.plot(time, values[:, others], color="#bbbbbb", lw=0.5)
         axes.plot(time, values[:, fish], color="black", lw=1.1)
-        axes.set_title(results.names[fish], size=9)
+        axes.set_title(results.names[fish], size=9 if n_columns < 4 else 8, pad=3)
         axes.grid(lw=0.3, color=GRID)
         axes.margins(x=0)
+    others = [matplotlib.patches.Patch(color="#cccccc", label="half of the other fish")] if len(of) > MANY else []
+    legend_above_titles(all_axes, shown, of, others)
+    calm(all_axes, natural_scale(results, options.each))
     unit = getattr(results.data.variables[options.each], "units", "1")
-    what = options.each.replace("_", " ") + (f" [{unit}]" if unit != "1" else "")
-    label_panels(all_axes, n_columns, "time [s]", what)
+    label_panels(all_axes, n_columns, "time [s]", with_unit(options.each.replace("_", " "), unit))
     return figure
+
+
+def draw_desired(axes, time, values):
+    """Desired headings in grey: once where all fish have the same, of many fish their median; returns the handle."""
+    if not np.isfinite(values).any():
+        return []
+    label = "desired heading"
+    if np.allclose(values, values[:, :1], atol=1e-6, equal_nan=True):
+        values = values[:, :1]
+    elif values.shape[1] > MANY:
+        values, label = np.nanmedian(values, axis=1, keepdims=True), "median of the desired headings"
+    axes.plot(time, values, color="#888888", lw=0.8, zorder=1)
+    return [Line2D([], [], color="#888888", lw=0.8, label=label)]
 
 
 def plot_time(results, options):
@@ -370,36 +443,29 @@ def plot_time(results, options):
         return plot_each(results, options)
     of, drawn = chosen(results, options), last_beats(results, options.beats)
     time, labels = results.time[drawn], [results.names[fish] for fish in of]
-    rows = [("speed", "speed [m/s]"), ("heading", "heading [degree]"), ("actuation_power", "muscle power [W]")]
+    rows = [("speed", "speed"), ("heading", "heading"), ("actuation_power", "muscle power")]
     if options.balance:
-        rows.append(("energy_balance", "energy balance [J]"))
-    rows.append((None, "force ahead [N]"))
+        rows.append(("energy_balance", "energy balance"))
+    rows.append(("thrust", "thrust" if len(of) > 1 else "force ahead"))
     figure, stack = pyplot.subplots(
         len(rows), 1, sharex=True, layout="constrained", figsize=(WIDTH, 0.5 + 1.5 * len(rows))
     )
     figure.get_layout_engine().set(h_pad=0.1)  # room for a legend above a panel
-    forces = []
+    forces, heading = [], unwrapped(results["heading"][drawn][:, of])
     for axes, (variable, label) in zip(stack, rows):
-        if variable:
-            fish = draw_lines(axes, time, results[variable][drawn][:, of], labels)
-        elif len(of) == 1:
+        if variable == "thrust" and len(of) == 1:
             forces = draw_forces(axes, results, of[0], drawn)
         else:
-            draw_lines(axes, time, results["thrust"][drawn][:, of], labels)
-            label = "thrust [N]"
-        axes.set_ylabel(label)
+            fish = draw_lines(axes, time, heading if variable == "heading" else results[variable][drawn][:, of], labels)
+        axes.set_ylabel(with_unit(label, results.data.variables[variable].units))
         axes.grid(lw=0.3, color=GRID)
         axes.margins(x=0)
-    desired = results["desired_heading"][drawn][:, of]
-    one = np.allclose(desired, desired[:, :1], atol=1e-6, equal_nan=True)  # for all: drawn once
-    for values in desired[:, :1].T if one else desired.T:
-        stack[1].plot(time, values, color="#888888", lw=0.8, zorder=1)
-    for axes in stack:
-        calm(axes)
+    asked = draw_desired(stack[1], time, desired(results, drawn, of, heading))
+    for axes, (variable, _) in zip(stack, rows):
+        calm([axes], natural_scale(results, variable))
     stack[-1].set_xlabel("time [s]")
     figure.align_ylabels(stack)
-    asked = Line2D([], [], color="#888888", lw=0.8, label="desired heading")
-    add_legend(stack[0], [*(fish if len(of) > 1 else []), asked])
+    add_legend(stack[0], [*(fish if len(of) > 1 else []), *asked])
     if forces:
         add_legend(stack[-1], forces)
     return figure
@@ -449,6 +515,8 @@ def plot_forces(results, options):
     for axes in grid.flat:
         axes.grid(lw=0.3, color=GRID)
         axes.margins(x=0)
+    for panels_of_row, variable in zip(grid, ("thrust", "thrust", "actuation_power")):
+        calm(panels_of_row, natural_scale(results, variable))
     figure.align_ylabels(grid[:, 0])
     for row, table in ((0, FORCES), (2, POWERS)):
         handles = [lines[name] for name in table if name in lines]
@@ -462,13 +530,14 @@ def plot_forces(results, options):
 def plot_pressure(results, options):
     """The jump of the pressure along each body at some times of its last beat, one panel per fish."""
     of = chosen(results, options)
-    n_columns = min(len(of), 2)
-    figure, all_axes = panels(len(of), math.ceil(len(of) / n_columns), n_columns, 6 / (n_columns + 1))
+    shown, n_columns = panel_per_fish(of)
+    n_rows = math.ceil(len(shown) / n_columns)
+    figure, all_axes = panels(len(shown), n_rows, n_columns, 6 / (n_columns + 1) if n_columns < 3 else 1.6)
     jump, arc = results["pressure"], results["control_arc"]
     if not np.isfinite(jump).any():
         raise FileError(f"{results.path}: no fish has force: pressure")
     drawn = []
-    for fish, axes in zip(of, all_axes):
+    for fish, axes in zip(shown, all_axes):
         rows = beat_rows(results, fish, options.shapes)
         along = arc[fish] / results["body_length"][fish]
         for row in rows:
@@ -481,8 +550,9 @@ def plot_pressure(results, options):
     label_panels(all_axes, n_columns, "distance from the nose / body length", "pressure, left less right [Pa]")
     most = 1.1 * max(np.nanmax(values) for values in drawn)
     all_axes[0].set_ylim(-most, most)
+    legend_above_titles(all_axes, shown, of)
     scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 1), PHASES)
-    figure.colorbar(scale, ax=all_axes, label="time / period", aspect=20, pad=0.02)
+    colour_bar(figure, scale, all_axes, "time / period")
     return figure
 
 
@@ -498,7 +568,8 @@ def plot_school(results, options):
     if results.n_fish < 2:
         raise FileError(f"{options.results}: one fish is no school")
     figure = pyplot.figure(figsize=(WIDTH, 6), layout="constrained")
-    plot_school_module.draw(results, figure)
+    figure.get_layout_engine().set(h_pad=0.1)  # room for a legend above a panel
+    plot_school_module.draw(results, figure, lambda name: natural_scale(results, name))
     return figure
 
 
@@ -584,6 +655,6 @@ def field(source, speed: bool = False, streamlines: bool = True):
     return _axes("field", source, speed=speed, no_streamlines=not streamlines)
 
 
-def study(source, of: str = "speed"):
-    """What a study or a comparison of methods calls for: orders, costs, curves, or a map of a quantity."""
+def study(source, of: str | None = None):
+    """What a study or a comparison of methods calls for: orders, costs, curves, or a map of a quantity (None: the speed)."""
     return _axes("study", source, of=of)

@@ -122,9 +122,28 @@ refuses 2 "--each com: not one number per fish and time" plot.py time seven.nc -
 draws plot.py seven.nc --times 0.5 1 -- follow.png
 refuses 2 "--times 100: the run covers 0 to 1 s" plot.py seven.nc --times 0.5 100 -- no.png
 "$program" run "$root/cases/demo.yaml" -q -o swim.nc --set time.end=0.2 --set "fish[0].nodes=7"
+"$program" run seven.yaml -q -o turned.nc --set "fish[2].start.heading=-178"
+cat >refine.yaml <<'end'
+format: 1
+time: {end: 0.4, shedding_interval: 0.04}
+fish: [{nodes: 5, sheet_points: 9, start: {speed: 0.5}}]
+sweep: [{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true}]
+end
+"$program" study refine.yaml -q -o refine >/dev/null 2>&1
+cat >map.yaml <<'end'
+format: 1
+time: {end: 0.1, shedding_interval: 0.05, output_interval: 0.05}
+fish: [{nodes: 5, sheet_points: 9}]
+sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.3, 0.4]}, {key: "fish[0].wave.frequency", values: [1, 2]}]
+end
+"$program" study map.yaml -q -o map >/dev/null 2>&1
+draws plot.py study map/study.nc --of shed_circulation -- map.png
+refuses 2 "--of: only maps take it" plot.py study refine/study.nc --of speed -- no.png
+draws plot.py study refine/study.nc refine.png
 cat >look.py <<'end'
 """Facts on what is drawn, where a picture does not tell."""
-import argparse, sys
+import argparse, re, sys
+import netCDF4
 import numpy as np
 sys.path.insert(0, sys.argv[1])
 from shoal import _files as shoal_results, _plot_style as plot_style, plot
@@ -137,13 +156,84 @@ assert plot.plot_swim(results, options).axes[0].get_xlabel() == "x [m]", "unless
 over_time = argparse.Namespace(balance=False, fish=None, each=None, beats=0)
 heading = plot.time("seven.nc")[1]
 assert any("constant" in text.get_text() for text in heading.texts), "rounding is not drawn as if it were a course"
-assert plot.plot_time(results, over_time).axes[0].lines[7].get_color() == "black", "a mean of many"
+speed = plot.plot_time(results, over_time).axes[0]
+assert len(speed.lines) == 3 and len(speed.collections) == 1, "many fish are a band"
+assert np.allclose(speed.lines[2].get_ydata(), np.median(results["speed"], axis=1)), "with their median"
+band = speed.collections[0].get_paths()[0].vertices
+quartiles = np.quantile(results["speed"], [0.25, 0.75], axis=1)
+assert np.isclose(band[:, 1].min(), quartiles[0].min()) and np.isclose(band[:, 1].max(), quartiles[1].max()), "and quartiles"
 over_time.fish = ["number 2", "number 5"]
 lines = plot.plot_time(results, over_time).axes[0].lines
 assert len(lines) == 2 and len({line.get_linestyle() for line in lines}) == 2, "lines are told apart without colour"
 over_time.fish, over_time.each = None, "speed"
 titles = [axes.get_title() for axes in plot.plot_time(results, over_time).axes if axes.get_visible()]
 assert titles == results.names, "a panel per fish"
+
+# headings on both sides of 180 degrees are next to each other, and a turn goes on
+assert np.allclose(plot.unwrapped([[-178, 179], [178, 184], [170, 190]]), [[-178, -181], [-182, -176], [-190, -170]])
+turned = plot.time("turned.nc", fish=["number 1", "number 2"])[1]
+assert np.ptp([np.mean(line.get_ydata()) for line in turned.lines]) < 3, "182 and 180 degrees are near"
+
+# what is rounding is constant, also around 0
+speed = plot.time("run.nc")[0]
+assert [text.get_text() for text in speed.texts] == ["constant: 0"], "rounding of a speed"
+assert all(np.all(line.get_ydata() == 0) for line in speed.lines)
+
+# every unit has raised exponents
+shown = [plot.time("run.nc", balance=True), plot.forces("run.nc"), plot.field("run-field.nc"), plot.study("map/study.nc"),
+         plot.field("run-field.nc", speed=True), plot.pressure("pressure.nc"), plot.study("refine/study.nc"),
+         plot.time("run.nc", each="speed"), plot.school("seven.nc")]
+for axes in shown:
+    for text in axes[0].figure.findobj(plot.matplotlib.text.Text):
+        assert not re.search(r"[a-zA-Z]-?[0-9]|/s", re.sub(r"number [0-9]|[$][^$]*[$]", "", text.get_text())), text.get_text()
+assert "m s$^{-1}$" in shown[0][0].get_ylabel(), shown[0][0].get_ylabel()
+
+# a colour bar is as high as the panels
+for axes in (plot.gait("run.nc"), plot.gait("seven.nc"), plot.field("run-field.nc"), plot.study("map/study.nc")):
+    figure = axes[0].figure
+    figure.canvas.draw()
+    bars, panels = ([a for a in axes if (a.get_label() == "<colorbar>") == is_bar] for is_bar in (True, False))
+    box = plot.matplotlib.transforms.Bbox.union([a.get_window_extent() for a in panels])
+    bar = bars[0].get_tightbbox(figure.canvas.get_renderer()) if "vorticity" in bars[0].get_ylabel() else bars[0].get_window_extent()
+    assert len(bars) == 1 and abs(bar.height - box.height) < 0.02 * box.height, (bar, box)
+
+# the gaits of seven fish are a grid with equal scales
+panels = plot.gait("seven.nc")[:-1]
+assert len(panels) == 7 and len({tuple(a.get_xlim() + a.get_ylim()) for a in panels}) == 1
+columns = {round(a.get_subplotspec().colspan.start) for a in panels}
+assert columns == {0, 1, 2, 3} and max(a.get_subplotspec().rowspan.start for a in panels) == 1
+
+# a school has panels of what there is only
+for axes in plot.school("seven.nc"):
+    assert "contact" not in axes.get_ylabel() and any(np.isfinite(line.get_ydata()).any() for line in axes.lines)
+
+# a slope triangle below all lines of three levels, inside of the axes, with the design order as its slope
+axes = plot.study("refine/study.nc")[0]
+corner = next(patch.get_xy() for patch in axes.patches if patch.get_label() == "_triangle")[:3]
+order = float(netCDF4.Dataset("refine/study.nc")["group_design_order"][0])
+(left, foot), (right, _), (_, top) = corner
+assert np.isclose(np.log(top / foot) / np.log(right / left), order), (corner, order)
+assert axes.get_ylim()[0] < foot and axes.get_xlim()[0] < left < right < axes.get_xlim()[1]
+assert any(text.get_text() == f"order {order:g}" for text in axes.texts)
+for line in axes.lines:
+    x, y = (np.log(np.array(value, float)[::-1]) for value in line.get_data())
+    assert x.size == 2 and np.interp(np.log(right), x, y) > np.log(top) and np.interp(np.log(left), x, y) > np.log(foot)
+# and the lines are straight where the order is the design order, whatever the ratios of the levels
+from shoal._plot_study import Study, edges_between, level_errors
+study = Study("refine/study.nc")
+size, speed = study["level_size"], study["speed"][:, 0]
+wanted = np.abs(np.diff(speed)) / (1 - (size[1:] / size[:-1]) ** order)
+assert np.allclose(level_errors(study, "speed", order)[0, 0, :-1], wanted, rtol=1e-9)
+
+# a map of few members has cells with their values around the places, many have contours
+axes = plot.study("map/study.nc", of="shed_circulation")[0]
+mesh = axes.collections[0]
+assert isinstance(mesh, plot.matplotlib.collections.QuadMesh) and len(axes.collections) == 1, "cells, no dots"
+written = sorted(float(text.get_text()) for text in axes.texts)
+values = np.sort(Study("map/study.nc")["shed_circulation"].ravel())
+assert len(written) == 6 and np.allclose(written, values, atol=0.02 * np.ptp(values)), (written, values)
+assert np.allclose(edges_between(np.array([1.0, 2, 4]), "linear"), [0.5, 1.5, 3, 5])
+assert np.allclose(edges_between(np.array([1.0, 4, 16]), "log"), [0.5, 2, 8, 32])
 
 # walls are in the window, hatched on the side without fluid, at their height whatever a window follows
 results = shoal_results.Results("channel.nc")

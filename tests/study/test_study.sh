@@ -290,7 +290,11 @@ end
     check a_free_fish_that_starts_at_a_speed_is_not_held panels free/study.nc speed cost_of_transport strouhal
     run study held.yaml -q -o heaving --set 'fish[0].wave={amplitude: 0, frequency: 0}' --set \
         'fish[0].motion={prescribed: head, surge: free, heave: 0.1, frequency: 1}'
-    check a_heaving_fish_has_the_cost_of_its_heave panels heaving/study.nc speed cost_of_transport strouhal
+    check a_heaving_fish_has_cost_and_efficiency_of_its_heave panels heaving/study.nc speed cost_of_transport efficiency
+    run study held.yaml -q -o foil --set 'fish[0].wave={amplitude: 0, frequency: 0}' --set 'fluid.velocity=[1, 0]' --set \
+        'fish[0].motion={prescribed: head, speed: 0, heave: 0.1, frequency: 1}' --set \
+        'sweep=[{key: "fish[*].body.modulus", values: [1e5, 1e6]}]'
+    check a_foil_held_in_a_stream_has_thrust_and_efficiency panels foil/study.nc mean_thrust mean_power efficiency
     # two of three levels need more steps than they may take
     run study refined.yaml -o lonely -q --set time.end=0.04 --set time.shedding_interval=0.02 --set solver.method=rk4 \
         --set solver.max_steps=3 --set 'sweep=[{key: solver.step, values: [0.01, 0.005, 0.0025], refine: true}]'
