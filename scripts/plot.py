@@ -77,7 +77,7 @@ def parse(arguments):
         options[kind].add_argument("--beats", type=int, default=n, help=f"the last beats, 0: the whole run ({n})")
     options["field"].add_argument("--speed", action="store_true", help="draw the speed, not the vorticity")
     options["field"].add_argument("--no-streamlines", action="store_true", help="draw no streamlines")
-    options["study"].add_argument("--of", metavar="QUANTITY", help="what a map is of (speed)")
+    options["study"].add_argument("--of", metavar="QUANTITY", help="what a map is of (speed), or the only curves")
     options["time"].add_argument(
         "--each", nargs="?", const="speed", metavar="VARIABLE", help="a panel per fish, of one variable (speed)"
     )

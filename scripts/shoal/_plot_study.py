@@ -476,23 +476,28 @@ def panels_of(study, first):
     is_given = first.long_name.endswith(".speed") and np.allclose(speed, given[:, None], rtol=1e-3)
     is_driven = is_known(study, "mean_power") and is_known(study, "mean_actuation_power") and bool(np.all(
         np.abs(study["mean_actuation_power"][study.complete]) < 1e-6 * np.abs(study["mean_power"][study.complete])))
-    is_same = len(speed) > 1 and np.all(np.ptp(speed, axis=0) <= SAME * np.abs(speed).max(axis=0)) and np.all(speed > 0)
+    # a free body finds another speed in every member, and has no mean thrust
+    is_same = len(speed) > 1 and np.all(speed > 0) and np.all(np.ptp(speed, axis=0) <= 1e-3 * speed.max(axis=0))
+    is_same = is_same and is_known(study, "mean_thrust") and bool(np.any(
+        np.abs(study["mean_thrust"] * study["speed"])[study.complete] > 0.01 * np.abs(study["mean_power"][study.complete])))
     if is_given or is_driven and is_same:
         return ["mean_thrust", "mean_power", "efficiency"]
     return ["speed", "cost_of_transport", "efficiency" if is_driven and is_known(study, "efficiency") else "strouhal"]
 
 
-def plot_lines(study, figure, x=None, label=None):
-    """Three quantities over the first axis, or over x with a label; a line per fish and per value of the rest."""
+def plot_lines(study, figure, asked=None, x=None, label=None):
+    """Three quantities, or the one that is asked for, over the first axis, or over x with a label; a line per fish and per
+    value of the rest."""
     first = study.axes[0][0]
     is_number = x is not None or study.is_number(first.name)
     if x is None:
         x = study[first.name] if is_number else np.arange(study.complete.size)
     rest = [[case_of(study, m, first)] if study.axes[1:] else [] for m in range(x.size)]
     names = list(study["fish_name"])
-    figure.set_figheight(4.8)
-    stack = figure.subplots(3, 1, sharex=True)
-    for axes, quantity in zip(stack, panels_of(study, first)):
+    quantities = [asked] if asked else panels_of(study, first)
+    figure.set_figheight(1.2 + 1.2 * len(quantities))
+    stack = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, quantity in zip(stack, quantities):
         i = 0
         for words in dict.fromkeys(map(tuple, rest)):
             rows = np.array([tuple(r) == words for r in rest]) & study.complete
@@ -582,17 +587,25 @@ def map_axes(study):
     return None
 
 
+def own_words(study):
+    """What a study is drawn as that has its quantities given."""
+    if study.is_comparison or "solver_method" in study.data.variables:
+        return "a comparison of methods"
+    return "an error budget" if "key_name" in study.data.variables else "orders of convergence"
+
+
 def draw(path, figure, asked=None):
-    """Draw what a file calls for on an empty figure; asked: what a map is of, without it of the speed."""
+    """Draw what a file calls for on an empty figure; asked: the quantity of a map or of lines over an axis."""
     study, quantity = Study(path), asked or "speed"
     drawn = study.data.variables.get(quantity)
     if drawn is None or drawn.dimensions[1:] != ("fish",) or not study.is_number(quantity):
         raise FileError(f"{path}: {quantity} is not a quantity of the fish in it, such as speed or cost_of_transport")
     over = map_axes(study)
-    if asked and not over:
-        raise CaseError(f"--of: only maps take it, and {path} is not drawn as a map")
     if over:
         return plot_map(study, *over, quantity, figure)
+    has_own = study.is_comparison or any(name in study.data.variables for name in ("key_name", "level_value", "solver_method"))
+    if asked and has_own:
+        raise CaseError(f"--of: only maps and curves of a sweep take it, and {path} is drawn as {own_words(study)}")
     if study.is_comparison:
         return plot_comparison(study, figure)
     if "key_name" in study.data.variables:
@@ -612,5 +625,5 @@ def draw(path, figure, asked=None):
         return plot_methods(study, keys[0].name, figure)
     if is_place(keys):
         x, y = places(study, keys[0])
-        return plot_lines(study, figure, *((x, PLACE[0]) if np.ptp(x) >= np.ptp(y) else (y, PLACE[1])))
-    return plot_lines(study, figure)
+        return plot_lines(study, figure, asked, *((x, PLACE[0]) if np.ptp(x) >= np.ptp(y) else (y, PLACE[1])))
+    return plot_lines(study, figure, asked)

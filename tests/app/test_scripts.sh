@@ -138,7 +138,7 @@ sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.3, 0.4]}, {key: "fish[0]
 end
 "$program" study map.yaml -q -o map >/dev/null 2>&1
 draws plot.py study map/study.nc --of shed_circulation -- map.png
-refuses 2 "--of: only maps take it" plot.py study refine/study.nc --of speed -- no.png
+refuses 2 "--of: only maps and curves of a sweep take it" plot.py study refine/study.nc --of speed -- no.png
 draws plot.py study refine/study.nc refine.png
 cat >look.py <<'end'
 """Facts on what is drawn, where a picture does not tell."""
