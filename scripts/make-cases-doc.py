@@ -20,7 +20,7 @@ fish:
   - name: first
 ```
 
-A larger one, two fish side by side, one of them with heading control:
+A larger case, two fish side by side, one with heading control:
 
 ```yaml
 format: 1
@@ -31,7 +31,7 @@ time:
   output_interval: 0.05
 fluid: {velocity: [0.05, 0]}     # m s-1
 defaults:
-  fish:                          # what all fish have in common
+    fish:                          # values of all fish
     body: {modulus: 1e6}         # Pa
     wave: {frequency: 1}         # Hz
 fish:
@@ -43,8 +43,9 @@ fish:
     start: {position: [0, 0], speed: 0.8}
 ```
 
-`shoal check CASE` checks a case and estimates time and memory of its run, `shoal show CASE` prints it in full, with every key, value and unit, and `shoal keys`
-prints the tables below. All errors of a case are listed at once, each with its place and a remedy:
+`shoal check CASE` checks a case and estimates time and memory of the run, `shoal show CASE` prints every key, value and
+unit of the case, and `shoal keys` prints the tables below. All errors of a case are listed at once, each with a place and
+a remedy:
 
 ```
 cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'? The key belongs to fish[2].body
@@ -54,7 +55,7 @@ cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'?
 
 ## Values
 
-- Units are SI, angles are in degrees; a value is written without its unit: `length: 0.5`, not `length: 0.5 m`.
+- Units are SI, angles are in degrees; a value is written without a unit: `length: 0.5`, not `length: 0.5 m`.
 - The key decides how a value is read: `name: no` is a string, `end: 1e1` is the number 10. Numbers are decimal, with a
   point; `nan` and `inf` are refused.
 - "required" in the tables means that there is no default. A default in *italics* is computed from other values.
@@ -64,11 +65,11 @@ cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'?
 
 ## Precedence
 
-A value is taken from the first of these places that has it:
+A value comes from the first of these places that sets the key:
 
 1. the command line: `--set PATH=VALUE`, the last one first;
 2. the case file;
-3. the files it includes, the last one first;
+3. the included files, the last one first;
 4. `defaults.fish`, for keys of a fish;
 5. the `preset`;
 6. the default in the tables below.
@@ -87,11 +88,11 @@ the including file. Included files may include others, up to 8 deep.
 
 ### defaults
 
-`defaults: {fish: {...}}` has the values of every fish that does not set the key itself.
+`defaults: {fish: {...}}` has the values of every fish without the key.
 
 ### --set
 
-`--set` takes any key by its path and a value in YAML. Fish are counted from 0; `fish[*]` is every fish.
+`--set` takes the path of any key and a value in YAML. Fish are counted from 0; `fish[*]` is every fish.
 
 ```
 shoal run pair.yaml --set time.end=20 --set 'fish[*].nodes=13' --set 'fish[1].start.position=[0, -1]'
@@ -99,8 +100,8 @@ shoal run pair.yaml --set time.end=20 --set 'fish[*].nodes=13' --set 'fish[1].st
 
 ### sweep
 
-A sweep is a list of axes, each the path of a key, as for `--set`, and its values; a study runs every combination. Paths
-with brackets need quotes.
+A sweep is a list of axes, each with the path of a key, as for `--set`, and the values of the key; a study runs every
+combination. Paths with brackets need quotes.
 
 ```yaml
 sweep:
@@ -118,17 +119,17 @@ have `refine: true`: the study then prints observed orders of convergence, and t
 | key | meaning |
 |---|---|
 | `expect: {order: 2, within: 0.2, of: [nose, speed]}` | the study ends with exit code 3 if an order is not within these bounds; without `of`, the orders of nose and tail are checked, or of `steady_speed` |
-| `reference: {speed: 1.014, nose: [-1.6, 0.01]}` | errors and orders of these quantities refer to these values instead of the finest level: those of an exact solution, or of much finer levels. In a school a value may be a list with one for each fish |
+| `reference: {speed: 1.014, nose: [-1.6, 0.01]}` | errors and orders of these quantities refer to these values, of an exact solution or of much finer levels, instead of the finest level. In a school a value may be a list with one value for each fish |
 
-Orders are those of ORDERS; the `steady_` ones where members are steady states. `shoal study` runs a sweep; `shoal run` refuses one.
+Orders exist for ORDERS; the `steady_` quantities for members that are steady states. `shoal study` runs a sweep; `shoal run` refuses a sweep.
 
-#One axis may have `steady: true`: every member is then a steady state, looked for from that of the value before
-([steady.md](steady.md)).
+One axis may have `steady: true`: every member is then a steady state, and the search starts from the steady state of the
+previous value ([steady.md](steady.md)).
 
 ## expect
 
-With a sweep, `expect` is a list of expectations of the ends of the members. `shoal study` prints for each the value and
-its bound, and ends with exit code 3 if one is not met, or if a member that it is about is not complete.
+With a sweep, `expect` is a list of expectations of the final values of the members. `shoal study` prints the value and the
+bound of each expectation, and ends with exit code 3 if an expectation is not met or a tested member is not complete.
 
 ```yaml
 expect:
@@ -141,20 +142,20 @@ expect:
 | key | meaning |
 |---|---|
 | `of` | a quantity or a list of them; the expectation is checked for each separately |
-| `fish` | the name of a fish; without it, the values of all fish are checked |
-| `where` | the members with these values, with one of them for each key that is named; without it, all members |
+| `fish` | the name of a fish; without `fish`, the values of all fish are checked |
+| `where` | the members with these values, with one of the values for each named key; without `where`, all members |
 | `least`, `most` | lower and upper bound of every value |
-| `spread` | upper bound of the difference between the largest and the smallest value; of positions, of the diagonal of the box around them |
-| `ratio` | upper bound of the largest over the smallest absolute value; not met where a value is 0 or signs differ |
-| `fails` | alone or with `where`: the members fail, with these words in their messages; such failures do not make the exit code 1 |
+| `spread` | upper bound of the difference between the largest and the smallest value; for positions, of the diagonal of the bounding box |
+| `ratio` | upper bound of the largest over the smallest absolute value; not met if a value is 0 or signs differ |
+| `fails` | alone or with `where`: the members fail with these words in the messages; such failures do not cause exit code 1 |
 
-Quantities are those with orders, and QUANTITIES. Only a comparison of methods ([studies.md](studies.md)) has `nose_error`,
+Quantities are the quantities with orders, and QUANTITIES. Only a comparison of methods ([studies.md](studies.md)) has `nose_error`,
 `tail_error` and `power_error`. `shoal run` ignores `expect`.
 
 ## error
 
-In place of a sweep, `error` asks for the errors of quantities: `shoal study` and `shoal error` then vary each numerical
-key alone ([studies.md](studies.md#error-bars)). `shoal run` and `shoal steady` ignore it.
+In place of a sweep, `error` requests the errors of quantities: `shoal study` and `shoal error` then vary each numerical
+key alone ([studies.md](studies.md#error-bars)). `shoal run` and `shoal steady` ignore `error`.
 
 ```yaml
 error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, most: 16}
@@ -170,7 +171,7 @@ error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: defaul
 
 ## The subset of YAML
 
-Maps, lists, plain and quoted scalars, comments, and the short forms `{a: 1}` and `[1, 2]`. Refused, each with its place:
+Maps, lists, plain and quoted scalars, comments, and the short forms `{a: 1}` and `[1, 2]`. Refused, with the place:
 anchors, aliases, tags, merge keys (`<<`), a key twice in one map, several documents in one file, indentation by tabs,
 files that are not UTF-8, more than 4 MiB, 32 levels, or 256 keys in a map.
 

@@ -304,12 +304,12 @@ const struct result_variable result_table[] = {
     {"lost_impulse",          {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(lost_impulse),
      .long_name = "part of fluid_impulse: of decayed and removed circulation, at the places of decay and removal"},
     {"lost_angular_impulse",  {TIME, FISH},           RESULT_REAL,    "N m s",  IN_FISH_DIAGNOSTICS(lost_impulse[2]),
-     .long_name = "part of fluid_angular_impulse: of circulation that has faded or been removed"},
+     .long_name = "part of fluid_angular_impulse: of decayed and removed circulation"},
     {"external_impulse",      {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(external_impulse),
      .long_name = "impulse of drag, contacts, loads, constraint, separation, walls, stream; NaN without reaction"},
     {"external_angular_impulse",{TIME, FISH},         RESULT_REAL,    "N m s",
      IN_FISH_DIAGNOSTICS(external_impulse[2]),
-     .long_name = "angular impulse about the origin of the same forces since the start"},
+     .long_name = "angular impulse about the origin of the forces in external_impulse since the start"},
 
     {"edge_resistive_force",  {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
      GATHERED(result_row_edge_resistive_force), .forces = OUTPUT_FORCES_EDGES,
@@ -329,7 +329,7 @@ const struct result_variable result_table[] = {
     {"leading_edge_most",     {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(leading_edge_most),
      .long_name = "largest magnitude of leading_edge_a0 over the last period"},
     {"separation_share",      {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(separation_share),
-     .long_name = "part of the last period in which |leading_edge_a0| is above pressure.suction_limit"},
+     .long_name = "part of the last period with a magnitude of leading_edge_a0 above pressure.suction_limit"},
 
     // the school and the solver
     {"total_circulation",     {TIME},                 RESULT_REAL,    "m2 s-1", IN_DIAGNOSTICS(total_circulation),
@@ -337,7 +337,7 @@ const struct result_variable result_table[] = {
     {"momentum_balance",        {TIME, XY},             RESULT_REAL,    "N s",    IN_DIAGNOSTICS(momentum_balance),
      .long_name = "momentum balance of the school: change of momentum and fluid_impulse, less external_impulse"},
     {"angular_momentum_balance",{TIME},                 RESULT_REAL,    "N m s",  IN_DIAGNOSTICS(momentum_balance[2]),
-     .long_name = "the same for the angular momentum about the origin"},
+     .long_name = "angular momentum balance of the school about the origin, as momentum_balance"},
     {"least_distance",        {TIME},                 RESULT_REAL,    "m",      IN_DIAGNOSTICS(least_distance),
      .long_name = "smallest distance between two bodies"},
     {"polarisation",          {TIME},                 RESULT_REAL,    "1",      IN_DIAGNOSTICS(polarisation),
