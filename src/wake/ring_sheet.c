@@ -25,12 +25,15 @@ static void stretch_point(const struct ends *ends, double xi, double point[2]) {
 }
 
 double ring_sheet_leg(const struct fish *fish, double distance) {
-    const double depth = fish->strip_depth, ratio = distance / (3 * depth);
-    return depth * depth / 8 * -expm1(-ratio * ratio * ratio * ratio);
+    const double depth = fish->strip_depth, ratio = distance / (3 * depth), fourth = ratio * ratio * ratio * ratio;
+
+    // exp(-40) is less than the rounding of 1
+    return depth * depth / 8 * (fourth < 40 ? -expm1(-fourth) : 1);
 }
 
 static double stretch_length(const struct ends *ends) {
-    return hypot(ends->newer[0] - ends->older[0], ends->newer[1] - ends->older[1]);
+    const double x = ends->newer[0] - ends->older[0], y = ends->newer[1] - ends->older[1];
+    return sqrt(x * x + y * y);
 }
 
 void ring_sheet_free(struct ring_sheet *sheet) {
@@ -71,8 +74,12 @@ static void ring_sheet_add(struct ring_sheet *sheet, enum ring_view view, const 
                                      point[1] - markers->y[newest] - tau * markers->tail_velocity[1]};
 
         // middles are sources for other targets, with the full smoothing of the pair
-        sheet->smoothing[end][i] =
-            view == RING_GRADED ? free_sheet_smoothing(fish, from_tail, markers->tail_tangent) : 0;
+        sheet->smoothing[end][i] = 0;
+        if (view == RING_GRADED) {
+            sheet->smoothing[end][i] = free_sheet_is_far(fish, from_tail)
+                                           ? fish->smoothing
+                                           : free_sheet_smoothing(fish, from_tail, markers->tail_tangent);
+        }
         sheet->leg[end][i] = ring_sheet_leg(fish, distance[end] + xi * stretch_length(&at[end]));
     }
 }
