@@ -660,6 +660,7 @@ FIGURES = {
     "steady_amplitude.png": (["study studies/steady_amplitude"], ["study", "steady_amplitude/study.nc"]),
     "steady_resonance.png": (["study studies/steady_resonance"], ["study", "steady_resonance/study.nc"]),
     "steady_thrust.png": (["study studies/steady_thrust"], ["study", "steady_thrust/study.nc"]),
+    "depth.png": (["study studies/depth"], ["study", "depth/study.nc"]),
     "crowd.png": (["run crowd"], ["swim", "crowd.nc", "--times", "3"]),
     "crowd_distances.png": (["run crowd"], ["school", "crowd.nc"]),
     "stiffness.png": (["study studies/stiffness"], ["study", "stiffness/study.nc"]),

@@ -8,9 +8,9 @@
                                     method the cheapest that is accurate, also as a table
     a position as the only axis     a map of the places; lines where the places are in a row
     two axes of numbers             a map over both: cells with their values, contours where there are many
-    anything else                   speed, cost of transport and Strouhal number over the first axis; of fish that are held
-                                    thrust, power and efficiency; of bodies that a heave drives the efficiency in place of the
-                                    Strouhal number; of bodies without a beat drag, lift and deflection
+    anything else                   speed, cost of transport and Strouhal number, over depth thrust, over the first axis; of
+                                    fish that are held thrust, power and efficiency; of bodies that a heave drives the
+                                    efficiency in place of the Strouhal number; of bodies without a beat drag, lift and deflection
     a comparison of methods         error against wall time and evaluations
 """
 
@@ -467,8 +467,8 @@ def is_known(study, name):
 
 
 def panels_of(study, first):
-    """What is drawn over an axis: speed, cost and Strouhal number; of bodies that a heave drives the efficiency; of held ones
-    the forces, power and efficiency; of bodies at rest what the stream does to them."""
+    """What is drawn over an axis: speed, cost and Strouhal number, over depth thrust; of bodies that a heave drives the
+    efficiency; of held ones the forces, power and efficiency; of bodies at rest what the stream does to them."""
     if is_known(study, "steady_drag"):
         return ["steady_drag", "steady_lift", "steady_deflection"]
     speed = study["speed"][study.complete]
@@ -482,6 +482,8 @@ def panels_of(study, first):
         np.abs(study["mean_thrust"] * study["speed"])[study.complete] > 0.01 * np.abs(study["mean_power"][study.complete])))
     if is_given or is_driven and is_same:
         return ["mean_thrust", "mean_power", "efficiency"]
+    if first.long_name.endswith(".depth") and is_known(study, "steady_thrust"):
+        return ["speed", "cost_of_transport", "steady_thrust"]
     return ["speed", "cost_of_transport", "efficiency" if is_driven and is_known(study, "efficiency") else "strouhal"]
 
 
@@ -498,16 +500,19 @@ def plot_lines(study, figure, asked=None, x=None, label=None):
     figure.set_figheight(1.2 + 1.2 * len(quantities))
     stack = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
     for axes, quantity in zip(stack, quantities):
+        value, title = study[quantity], study.label(quantity)
+        if quantity == "steady_thrust" and first.long_name.endswith(".depth"):
+            value, title = value / x[:, None], "thrust over depth [N]"
         i = 0
         for words in dict.fromkeys(map(tuple, rest)):
             rows = np.array([tuple(r) == words for r in rest]) & study.complete
             for f, name in enumerate(names):
                 who = ", ".join([*words, *([name] if len(names) > 1 else [])])
-                axes.plot(x[rows], study[quantity][rows, f], label=who or None, **style(i))
+                axes.plot(x[rows], value[rows, f], label=who or None, **style(i))
                 i += 1
-        axes.set_yscale(scale_of(study[quantity][study.complete]))
+        axes.set_yscale(scale_of(value[study.complete]))
         calm([axes], rounding=SAME)
-        axes.set_ylabel(study.label(quantity).replace(" [", "\n["))
+        axes.set_ylabel(title.replace(" [", "\n["))
         axes.grid(lw=0.3, color=GRID)
     stack[-1].set_xscale(scale_of(x) if is_number else "linear")
     if not is_number:
