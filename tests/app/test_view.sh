@@ -130,6 +130,33 @@ end
 check the_last_row_is_always_there /usr/bin/python3 thinned.py
 check what_is_left_out_is_said grep -q '"thinned":"[^"]*wakes: one of ' long.html
 
+# 200 fish, of headings on both sides of 180 degrees, without fluid: one of them jerks
+{ printf 'format: 1\ntime: {end: 1, shedding_interval: 0.1, output_interval: 0.1}\nfluid: {density: 0}\nwake: {lifetime: 0.3}\n'
+  printf 'defaults: {fish: {nodes: 5, sheet_points: 5}}\nfish:\n'
+  for i in {0..199}; do
+      printf '  - {start: {position: [%d, %d], heading: %d}, wave: {phase: %d}}\n' $((i / 20 * 2)) $((i % 20)) $((175 + i % 11)) $((i * 37 % 360))
+  done; } >crowd.yaml
+run run crowd.yaml -q -o crowd.nc
+run view crowd.nc -q
+cat >bands.py <<'end'
+"""What the page says of its traces in its elements: bands are quantiles of the result, headings have no jump."""
+import re
+import netCDF4, numpy as np
+
+page, data = open("browser.out", encoding="utf-8").read(), netCDF4.Dataset("crowd.nc")
+def element(name, key):
+    canvas = re.search(rf'<canvas[^>]*data-name="{name}"[^>]*>', page)[0]
+    return re.search(rf'data-{key}="([^"]*)"', canvas)[1]
+power = np.quantile(data["actuation_power"][-1], [0, 0.25, 0.5, 0.75, 1])
+got = np.array(element("actuation_power", "bands").split(), float)
+assert np.allclose(got, power, rtol=1e-5, atol=1e-5 * np.ptp(power)), (got, power)
+low, high = float(element("heading", "low")), float(element("heading", "high"))
+assert high - low < 60, (low, high)
+assert element("speed", "constant") == "true", "a speed of rounding is constant"
+assert 'data-overview="200"' in page, "the school is in the corner"
+assert re.search(r'id="scale"[^>]*>heading \[degree\]', page), "a scale of colours"
+end
+
 # ---- in a browser
 
 # Look at a page for some seconds of its own time; leaves the console in browser.err.
@@ -194,6 +221,13 @@ else
     browse 'wall.html#t=0.04&theme=light' --window-size=1280,1000 --virtual-time-budget=500 --screenshot=wall.png
     check no_error_beside_a_wall test -z "$(console)"
     check a_wall_is_drawn /usr/bin/python3 wall.py
+    browse 'crowd.html#t=0.5&theme=light&follow=77&colour=heading' --virtual-time-budget=500 --dump-dom
+    check no_error_in_a_crowd test -z "$(console)"
+    check a_crowd_has_bands_and_an_overview /usr/bin/python3 bands.py
+    browse 'crowd.html#t=0.5&theme=light' --virtual-time-budget=500 --dump-dom
+    check no_overview_beside_the_whole_school grep -q 'data-overview="0"' browser.out
+    browse 'crowd.html#t=0.5&theme=light&colour=heading' --window-size=1280,1100 --virtual-time-budget=500 --screenshot=crowd.png
+    check fish_have_the_colours_of_their_headings shows crowd.png 1000 1000 1280 True
     # the console is heard
     sed 's/^const run = .*/const run = nothing_of_this_name;/' pair.html >broken.html
     browse broken.html --virtual-time-budget=100 --dump-dom
