@@ -13,7 +13,9 @@
 """
 
 import argparse
+import difflib
 import os
+import re
 import sys
 
 EXIT_USAGE, EXIT_FILE = 2, 4  # as the program itself: doc/cases.md
@@ -53,9 +55,41 @@ def implied_kind(arguments):
     return plot.KIND_OF_FILE.get(kind_of(files[0]) if files else None, "swim")
 
 
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line."""
+
+    def error(self, message):
+        stop(message, EXIT_USAGE)
+
+
+def similar(word, words):
+    """The question for a word that is meant, empty where none is near."""
+    near = difflib.get_close_matches(word, words, 1, 0.5)
+    return f": did you mean {near[0]}?" if near else ""
+
+
+def check_kind(word):
+    """Refuse a first word that is neither a figure nor a file."""
+    if not re.search(r"[./]", word) and not word.startswith("-") and not os.path.exists(word):
+        stop(f"{word}: neither a figure nor a file{similar(word, PICTURES) or ': figures are ' + ', '.join(PICTURES)}", EXIT_USAGE)
+
+
+def check_options(kind, options, arguments):
+    """Refuse options that a figure ignores, and say which figures take them."""
+    flags = {name: {flag for action in one._actions for flag in action.option_strings} for name, one in options.items()}
+    for word in arguments[: arguments.index("--") if "--" in arguments else None]:
+        flag = word.split("=")[0]
+        if not flag.startswith("--") or any(known.startswith(flag) for known in flags[kind]):
+            continue
+        takers = [name for name in options if flag in flags[name]]
+        if takers:
+            stop(f"{flag}: {kind} does not take it, {' and '.join(takers)} {'do' if takers[1:] else 'does'}", EXIT_USAGE)
+        stop(f"{flag}: unrecognized option of {kind}{similar(flag, sorted(flags[kind]))}", EXIT_USAGE)
+
+
 def parse(arguments):
     """The options of the command line; without a kind of picture the file decides."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
     options = {}
     for kind, words in PICTURES.items():
@@ -74,7 +108,7 @@ def parse(arguments):
     for kind, what in (("gait", "shapes"), ("pressure", "times")):
         options[kind].add_argument("--shapes", type=int, default=12, help=f"how many {what} to draw (12)")
     for kind, n in (("time", 0), ("forces", 4)):
-        options[kind].add_argument("--beats", type=int, default=n, help=f"the last beats, 0: the whole run ({n})")
+        options[kind].add_argument("--beats", type=int, help=f"the last beats, 0: the whole run ({n})")
     options["field"].add_argument("--speed", action="store_true", help="draw the speed, not the vorticity")
     options["field"].add_argument("--no-streamlines", action="store_true", help="draw no streamlines")
     options["study"].add_argument("--of", metavar="QUANTITY", help="what a map is of (speed), or the only curves")
@@ -85,9 +119,11 @@ def parse(arguments):
         options[kind].add_argument("--fish", nargs="+", metavar="NAME", help="only these fish (default: all)")
     options["time"].add_argument("--balance", action="store_true", help="add the energy balance")
     if arguments and arguments[0] not in (*PICTURES, "-h", "--help"):
+        check_kind(arguments[0])
         arguments = [implied_kind(arguments), *arguments]
     if not arguments or arguments[0] not in PICTURES:
         parser.parse_args(arguments)  # prints help or what is missing, and ends
+    check_options(arguments[0], options, arguments[1:])
     chosen = options[arguments[0]].parse_intermixed_args(arguments[1:])  # options and names in any order
     return argparse.Namespace(kind=arguments[0], **vars(chosen))
 

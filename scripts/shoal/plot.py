@@ -220,6 +220,8 @@ def rows_at(results, times):
 
 def plot_swim(results, options):
     """Bodies, wakes and paths: one panel per time."""
+    if options.limits and options.follow:
+        raise UsageError("--limits: not together with --follow, whose windows move")
     rows = rows_at(results, options.times)
     window, unit = options.limits or limits(results, rows), None
     if options.follow or (options.follow is None and not options.limits and wants_following(results, rows, window)):
@@ -323,10 +325,15 @@ FORCES = {
 }
 
 
-def last_beats(results, n):
-    """The rows of the last n beats of the slowest fish; all where n is 0, or where nothing beats."""
+def last_beats(results, asked, usual=0):
+    """The rows of the last beats of the slowest fish, as many as asked for, else as usual; all of 0, or where nothing beats."""
     frequency = results["frequency"]
     beating = frequency[frequency > 0]
+    n = usual if asked is None else asked
+    if asked and beating.size == 0:
+        raise UsageError(f"--beats {asked}: no fish of this run beats")
+    if n < 0:
+        raise UsageError(f"--beats {n}: a number of beats, 0 for the whole run")
     if n == 0 or beating.size == 0:
         return np.arange(results.time.size)
     return np.flatnonzero(results.time >= results.time[-1] - (n + 1e-6) / beating.min())
@@ -490,7 +497,7 @@ POWERS = {
 def plot_forces(results, options):
     """Forces ahead and to the left, and powers, by name over the last beats, one column per fish."""
     of = chosen(results, options, most=4)
-    rows = last_beats(results, options.beats)
+    rows = last_beats(results, options.beats, usual=4)
     time = results.time[rows]
     labels = ["force ahead [N]", "force to the left [N]", "power [W]"]
     figure, grid = pyplot.subplots(
@@ -629,14 +636,14 @@ def gait(source, fish=None, shapes: int = 12):
     return _axes("gait", source, fish=fish, shapes=shapes)
 
 
-def time(source, fish=None, beats: int = 0, each: str | None = None, balance: bool = False):
-    """Speed, m s-1, heading, degree, power of the muscle, W, and forces, N, over time. beats: the last ones, 0: all. each:
+def time(source, fish=None, beats: int | None = None, each: str | None = None, balance: bool = False):
+    """Speed, m s-1, heading, degree, power of the muscle, W, and forces, N, over time. beats: the last ones (None: all). each:
     a panel per fish of this variable. balance: the energy balance, J, too."""
     return _axes("time", source, fish=fish, beats=beats, each=each, balance=balance)
 
 
-def forces(source, fish=None, beats: int = 4):
-    """Forces, N, and powers, W, by name over the last beats, a column per fish."""
+def forces(source, fish=None, beats: int | None = None):
+    """Forces, N, and powers, W, by name over the last beats (None: 4, 0: all), a column per fish."""
     return _axes("forces", source, fish=fish, beats=beats)
 
 

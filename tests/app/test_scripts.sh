@@ -351,7 +351,23 @@ refuses 4 "the end of the file is missing" plot.py cut.nc
 refuses 4 "no folder" plot.py run.nc no/such.png
 refuses 2 "such" plot.py run.nc picture.such
 refuses 2 "required" plot.py gait
-refuses 2 "unrecognized" plot.py run.nc --colour
+refuses 2 "--colour: unrecognized option of swim" plot.py run.nc --colour
+refuses 2 "--shapse: unrecognized option of gait: did you mean --shapes?" plot.py gait run.nc --shapse 3
+refuses 2 "swin: neither a figure nor a file: did you mean swim?" plot.py swin run.nc
+refuses 2 "heads: neither a figure nor a file: figures are swim, gait, time" plot.py heads
+
+# an option that a figure ignores is refused, in one line
+ignored() {  # message, arguments...
+    refuses 2 "$@"
+    check "$*: one line" test "$(wc -l <err)" = 1
+}
+ignored "--balance: gait does not take it, time does" plot.py gait run.nc --balance
+ignored "--shapes: swim does not take it, gait and pressure do" plot.py run.nc --shapes=3
+ignored "--of: time does not take it, study does" plot.py time run.nc --of speed
+ignored "--balance: not together with --each" plot.py time run.nc --each speed --balance
+ignored "--limits: not together with --follow" plot.py swim run.nc --follow --limits 0 1 0 1
+"$program" run seven.yaml -q -o still.nc --set "fish[*].wave.frequency=0"
+ignored "--beats 2: no fish of this run beats" plot.py time still.nc --beats 2
 refuses 4 "no such file" animate.py nothing.nc
 refuses 2 ".mp4 or .gif" animate.py run.nc movie.png
 
