@@ -194,12 +194,16 @@ def place_clock(snapshot, row, window):
 
 def following_limits(results, rows):
     """The window around the middle of the school that holds all bodies and the wakes near them, in metres from there."""
-    half = np.zeros(2)
+    length = float(np.nanmax(results["body_length"]))
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
     for row in rows:
-        bodies = np.concatenate([results.outline(row, f) for f in range(results.n_fish)])
-        half = np.maximum(half, np.abs(bodies - results["com"][row].mean(axis=0)).max(axis=0))
-    half += 1.5 * float(np.nanmax(results["body_length"])) * np.array([1, 0.5])
-    return -half[0], half[0], -half[1], half[1]
+        com, wake = results["com"][row], results.wake(row)[0]
+        bodies = [results.outline(row, f) for f in range(results.n_fish)]
+        near = [wake[np.hypot(*(wake - place).T) < 3 * length] for place in com]
+        points = np.concatenate([*bodies, *near]) - com.mean(axis=0)
+        low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+    low, high = low - 0.3 * length, high + 0.3 * length
+    return low[0], high[0], low[1], high[1]
 
 
 def wants_following(results, rows, window):
