@@ -574,6 +574,26 @@ def cost(bench):
         yield name, end, n_events(bench.run(text, *keys)), f"{bench.seconds(text, *keys):.2f}"
 
 
+@table("speed [m/s]", "steps, most in 10 ms", "median after that", "closest [mm]", "balance over energy", "rtol 1e-6",
+       "energy [J]", "of it stretching", "shortest body [L]", "shortest edge")
+def impact(bench):
+    """two fish that meet head on (seconds)"""
+    for speed in (1, 5, 15):
+        keys = ("time.end=0.2", f"fish[*].start.speed={speed}")
+        run, finer = bench.run("head_on", *keys), bench.run("head_on", *keys, "solver.rtol=1e-6")
+        energy = run["kinetic_energy"][0, 0]
+        balances = [short(float(np.abs(one["energy_balance"]).max() / energy)) for one in (run, finer)]
+        steps = np.diff(np.asarray(run["steps"]))
+        most = int(np.argmax(steps))
+        closest = float(run.data.closest_approach.split()[0])
+        close_up = bench.run("head_on", *keys, "time.shedding_interval=0.001", "time.output_interval=0.001")
+        edges = np.linalg.norm(np.diff(np.asarray(close_up["x"])[:, 0], axis=1), axis=2)
+        stretching = float(np.max(close_up["stretching_energy"])) / energy
+        yield (speed, int(steps[most]), f"{np.median(steps[most + 1:]):.0f}", f"{1000 * closest:.1f}" if closest > 0 else "< 0.05", *balances,
+               f"{energy:.4g}", f"{stretching:.2f}", f"{edges.sum(axis=1).min():.2f}",
+               f"{edges.min() * edges.shape[1]:.2f}")
+
+
 @table("wake.merge", "vortices at the end", "velocity of the centre of mass [m/s]", "position [m]", "CPU time over none")
 def merge(bench):
     """error and saving of wake.merge: one fish that feels its own wake of 16 s, 20 s from 1 m/s (minutes)"""
@@ -653,8 +673,8 @@ def write(bench, path):
 FIGURES = {
     "demo.png": (["run demo"], ["swim", "demo.nc"]),
     "gait.png": (["run gait"], ["gait", "gait.nc", "--shapes", "20"]),
-    "single_turn.png": (["run single_turn"], ["swim", "single_turn.nc", "--times", "3", "5", "8", "15"]),
-    "diamond.png": (["run diamond"], ["swim", "diamond.nc", "--times", "2", "10", "25"]),
+    "single_turn.png": (["run single_turn"], ["swim", "single_turn.nc", "--no-follow", "--times", "3", "5", "8", "15"]),
+    "diamond.png": (["run diamond"], ["swim", "diamond.nc", "--no-follow", "--times", "2", "10", "25"]),
     "school.png": (["run school"], ["swim", "school.nc", "--times", "2", "10", "30"]),
     "steady_frequency.png": (["study studies/steady_frequency"], ["study", "steady_frequency/study.nc"]),
     "steady_amplitude.png": (["study studies/steady_amplitude"], ["study", "steady_amplitude/study.nc"]),
