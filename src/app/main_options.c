@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "study/study_compare.h"
+#include "study/study_gather.h"
 
 /* One option: its names, the word for the argument (NULL: none), and the meaning (NULL: struct command has the
  * meaning). */

@@ -10,11 +10,9 @@
 #include "case/case.h"
 #include "case/sweep_error.h"
 #include "result/target.h"
-#include "study/error_study.h"
+#include "study/error_plan.h"
 #include "study/study.h"
-#include "study/study_compare.h"
 #include "study/study_gather.h"
-#include "study/study_slurm.h"
 
 // ---- study, error, gather
 

@@ -69,21 +69,16 @@ static enum status read_of(struct sweep_error *error, const struct yaml_node *of
 
 /* The row of a key: "nodes", "fish.nodes" or "fish[*].nodes"; NULL after an error. */
 static const struct sweep_error_key *find_key(const char *name, struct yaml_mark mark, struct yaml_errors *errors) {
-    static const char every[] = "fish[*].";
-    struct text known = {0};
-
     for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
         const char *const path = sweep_error_keys[i].path, *const last = strrchr(path, '.') + 1;
-        const int is_of_fish = strncmp(path, "fish.", 5) == 0;
-        const int is_it = strcmp(name, path) == 0 || strcmp(name, last) == 0 ||
-                          (is_of_fish && strncmp(name, every, 8) == 0 && strcmp(name + 8, last) == 0);
-        if (is_it) {
-            text_free(&known);
-            return &sweep_error_keys[i];
-        }
-        text_add(&known, "%s%s", i > 0 ? ", " : "", last);
+        const int is_of_every = strncmp(path, "fish.", 5) == 0 && strncmp(name, "fish[*].", 8) == 0;
+        if (strcmp(name, path) == 0 || strcmp(is_of_every ? name + 8 : name, last) == 0) return &sweep_error_keys[i];
     }
 
+    struct text known = {0};
+    for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
+        text_add(&known, "%s%s", i > 0 ? ", " : "", strrchr(sweep_error_keys[i].path, '.') + 1);
+    }
     yaml_errors_add(errors, mark, "error.keys: '%.60s' is not a numerical key; these are: %s", name,
                     known.text ? known.text : "");
     if (known.failed) errors->out_of_memory = true;

@@ -2,7 +2,7 @@
  *
  *     error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, most: 16}
  *
- * Evaluation: study/error_study.h and doc/studies.md. */
+ * Evaluation: study/error_plan.h and doc/studies.md. */
 #ifndef SWEEP_ERROR_H
 #define SWEEP_ERROR_H
 

@@ -1,4 +1,4 @@
-/* error_plan.c: see error_plan.h. */
+/* error_plan.c: keys, levels and members of an error study. */
 #include "study/error_plan.h"
 
 #include <math.h>
@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "case/case.h"
 #include "case/case_table.h"
@@ -18,9 +19,7 @@
 /* Largest number of finer levels that replace invalid coarser levels. */
 enum { MOST_FINER = 2 };
 
-static enum status out_of_memory(void) {
-    return status_fail(STATUS_MEMORY, "out of memory: the errors of a study");
-}
+static const char what[] = "the errors of a study"; /* in messages on memory */
 
 int error_plan_place(const struct error_study *study, int quantity, int fish) {
     return quantity * study->n_fish + fish;
@@ -73,19 +72,6 @@ static int are_fish_alike(const struct case_values *values, const char *path) {
     return 1;
 }
 
-/* "fish[*].nodes", or "fish[2].nodes" if the fish differ. */
-static char *path_of(const struct case_values *values, const char *path, int fish) {
-    struct text text = {0};
-    if (!case_table_is_of_fish(case_table_row(path))) {
-        text_add(&text, "%s", path);
-    } else if (are_fish_alike(values, path)) {
-        text_add(&text, "fish[*]%s", path + 4);
-    } else {
-        text_add(&text, "fish[%d]%s", fish, path + 4);
-    }
-    return text.text;
-}
-
 /* The text of a value, in the unit of number_of. */
 static char *text_of(const struct case_values *values, const struct key *key, double value) {
     struct text text = {0};
@@ -102,25 +88,30 @@ static char *text_of(const struct case_values *values, const struct key *key, do
 static enum status add_columns(struct error_study *study, const struct case_values *values, const char *path) {
     struct sweep_axis *const axis = axis_of(study);
     const struct key *const key = case_table_row(path);
-    const int n = are_fish_alike(values, path) ? 1 : n_owners(values, path);
-    struct sweep_key *const keys = realloc(axis->key, (size_t)(axis->n_keys + n) * sizeof *keys);
-
-    if (keys) axis->key = keys;
-    char **const row = keys ? realloc(axis->value, (size_t)(axis->n_keys + n) * sizeof *row) : NULL;
-    if (!row) return out_of_memory();
-    axis->value = row;
+    const int are_alike = are_fish_alike(values, path), n = are_alike ? 1 : n_owners(values, path);
+    TRY(MEMORY_RESIZE(axis->key, axis->n_keys + n, what));
+    TRY(MEMORY_RESIZE(axis->value, axis->n_keys + n, what));
 
     for (int f = 0; f < n; f++) {
-        row[axis->n_keys] = text_of(values, key, number_of(values, path, f));
+        // "fish[*].nodes", or "fish[2].nodes" if the fish differ
+        struct text text = {0};
+        if (!case_table_is_of_fish(key)) {
+            text_add(&text, "%s", path);
+        } else if (are_alike) {
+            text_add(&text, "fish[*]%s", path + 4);
+        } else {
+            text_add(&text, "fish[%d]%s", f, path + 4);
+        }
+        axis->value[axis->n_keys] = text_of(values, key, number_of(values, path, f));
         axis->key[axis->n_keys++] = (struct sweep_key){
-            .path = path_of(values, path, f), .row = key->path, .unit = key->unit, .is_number = key->type != CHOICE};
-        if (!row[axis->n_keys - 1] || !axis->key[axis->n_keys - 1].path) return out_of_memory();
+            .path = text.text, .row = key->path, .unit = key->unit, .is_number = key->type != CHOICE};
+        if (!axis->value[axis->n_keys - 1] || !text.text) return status_fail(STATUS_MEMORY, "out of memory: %s", what);
     }
 
     return STATUS_OK;
 }
 
-/* The first column of a key; -1: not varied. The columns of further fish follow. */
+// the columns of further fish follow
 int error_plan_column(const struct error_study *study, const char *path) {
     const struct sweep_axis *const axis = axis_of(study);
     for (int c = 0; c < axis->n_keys; c++) {
@@ -211,8 +202,8 @@ static int asks_for_modes(const struct error_study *study) {
 static enum status make_row(const struct error_study *study, int n, const struct error_plan_change *changes,
                             struct row *row) {
     const struct sweep_axis *const axis = axis_of(study);
-    *row = (struct row){study, calloc((size_t)axis->n_keys, sizeof *row->value), n > 1, 0};
-    if (!row->value) return out_of_memory();
+    *row = (struct row){study, NULL, n > 1, 0};
+    TRY(MEMORY_NEW(row->value, axis->n_keys, what));
     for (int c = 0; c < axis->n_keys; c++) {
         row->value[c] = strdup(axis->value[c]);
         if (!row->value[c]) row->failed = 1;
@@ -222,9 +213,9 @@ static enum status make_row(const struct error_study *study, int n, const struct
     if (!asks_for_modes(study)) row_set(row, "steady.multipliers", 0, NO);
     for (int i = 0; i < n; i++) row_apply(row, &changes[i]);
     if (!row->failed) return STATUS_OK;
-    row_free(row);
 
-    return out_of_memory();
+    row_free(row);
+    return status_fail(STATUS_MEMORY, "out of memory: %s", what);
 }
 
 /* The member with the values of a row, except for multipliers; -1: none. */
@@ -245,25 +236,20 @@ static int find_row(const struct error_study *study, const struct row *row) {
 static enum status row_append(struct error_study *study, struct row *row, int before, int *member) {
     struct sweep_axis *const axis = axis_of(study);
     const size_t n = (size_t)axis->n_keys, n_values = (size_t)axis->n_values + 1;
-    char **const values = realloc(axis->value, n * n_values * sizeof *values);
-
-    if (values) axis->value = values;
-    int *const befores = values ? realloc(axis->before, n_values * sizeof *befores) : NULL;
-    if (!befores) {
+    enum status status = MEMORY_RESIZE(axis->value, n * n_values, what);
+    if (status == STATUS_OK) status = MEMORY_RESIZE(axis->before, n_values, what);
+    if (status != STATUS_OK) {
         row_free(row);
-        return out_of_memory();
+        return status;
     }
 
-    axis->before = befores;
-    memcpy(values + n * (n_values - 1), row->value, n * sizeof *values);
+    memcpy(axis->value + n * (n_values - 1), row->value, n * sizeof *axis->value);
     axis->before[n_values - 1] = before;
     free(row->value);
     *member = axis->n_values++;
-
     return STATUS_OK;
 }
 
-/* Find the member with some changes, or add a new member (*is_new). */
 enum status error_plan_member(struct error_study *study, int n, const struct error_plan_change *changes, int before,
                               int *member, int *is_new) {
     struct row row;
@@ -275,7 +261,6 @@ enum status error_plan_member(struct error_study *study, int n, const struct err
     return STATUS_OK;
 }
 
-/* Remove the last rows of the axis. */
 void error_plan_shorten(struct error_study *study, int n_values) {
     struct sweep_axis *const axis = axis_of(study);
     for (; axis->n_values > n_values; axis->n_values--) {
@@ -303,12 +288,11 @@ static int is_finer(const struct sweep_error_key *row, double a, double b) {
     return row->kind == SWEEP_POINTS || row->kind == SWEEP_DURATION ? a > b : a < b;
 }
 
-/* The grid spacing of a level. */
 double error_plan_size(const struct sweep_error_key *row, double value) {
     return row->kind == SWEEP_POINTS ? 1 / (value - 1) : row->kind == SWEEP_DURATION ? 1 / value : value;
 }
 
-/* Insert a value into the levels of a key, from fine to coarse, unless the value is a level already. */
+// unless the value is a level already
 void error_plan_insert(struct error_study_key *key, double value) {
     if (key->n_levels == ERROR_STUDY_LEVELS) return;
     int i = 0;
@@ -327,7 +311,6 @@ void error_plan_insert(struct error_study_key *key, double value) {
     if (i <= key->first_stated && key->n_levels > 1) key->first_stated++;
 }
 
-/* Find a level of a key near from*factor that is a valid case. */
 enum status error_plan_find_level(struct error_study *study, int k, double from, double factor, double *level) {
     const struct case_values *const values = &study->study;
     const struct error_study_key *const key = &study->key[k];
@@ -396,18 +379,7 @@ static enum status add_default_levels(struct error_study *study, int k) {
     return STATUS_OK;
 }
 
-/* Add the levels given in the case. */
-static enum status add_given_levels(struct error_study *study, int k, const struct sweep_error_levels *given) {
-    for (int i = 0; i < given->n; i++) {
-        int is_valid;
-        TRY(test_level(study, k, given->value[i], &is_valid));
-        if (!is_valid) return status_fail(STATUS_CASE, "error.keys: level %g: %s", given->value[i], status_message());
-        error_plan_insert(&study->key[k], given->value[i]);
-    }
-    return STATUS_OK;
-}
-
-// ---- which keys
+// ---- keys
 
 /* Whether a key affects the results of this case. */
 static int is_used(const struct error_study *study, const struct sweep_error_key *row) {
@@ -428,15 +400,6 @@ static int is_used(const struct error_study *study, const struct sweep_error_key
     return !is_wake || value > 0;
 }
 
-static enum status add_key(struct error_study *study, const struct sweep_error_key *row) {
-    struct error_study_key *const key = &study->key[study->n_keys++];
-    const double base = number_of(&study->study, row->path, 0);
-    const char *const unit = is_in_beats(&study->study, row->path) ? " beats" : "";
-    *key = (struct error_study_key){.row = row, .unit = unit, .n_levels = 1, .value = {base}, .member = {-1}};
-    key->part = calloc((size_t)(study->n_asked * study->n_fish) + 1, sizeof *key->part);
-    return key->part ? STATUS_OK : out_of_memory();
-}
-
 /* Add all varied keys, without levels. */
 static enum status choose_keys(struct error_study *study) {
     const struct sweep_error *const error = study->study.error;
@@ -444,8 +407,17 @@ static enum status choose_keys(struct error_study *study) {
         const struct sweep_error_key *const row = &sweep_error_keys[i];
         int is_wanted = error->n_keys == 0;
         for (int k = 0; k < error->n_keys; k++) is_wanted |= error->levels[k].key == row;
-        if (is_wanted && is_used(study, row)) TRY(add_key(study, row));
+        if (!is_wanted || !is_used(study, row)) continue;
+
+        struct error_study_key *const key = &study->key[study->n_keys++];
+        *key = (struct error_study_key){.row = row,
+                                        .unit = is_in_beats(&study->study, row->path) ? " beats" : "",
+                                        .n_levels = 1,
+                                        .value = {number_of(&study->study, row->path, 0)},
+                                        .member = {-1}};
+        TRY(MEMORY_NEW(key->part, study->n_asked * study->n_fish, what));
     }
+
     if (study->n_keys > 0) return STATUS_OK;
     return status_fail(STATUS_CASE, "error.keys: none of these keys changes anything in this case");
 }
@@ -499,18 +471,10 @@ static void list_objections(struct error_study *study, const struct school *scho
 
 // ---- quantities
 
-/* The number of a quantity; -1: unknown. */
-int error_plan_quantity(const char *name) {
-    for (int q = 0; member_file_quantity(q); q++) {
-        if (strcmp(member_file_quantity(q)->name, name) == 0) return q;
-    }
-    return -1;
-}
-
 static enum status choose_quantities(struct error_study *study) {
     const struct sweep_error *const error = study->study.error;
     for (int i = 0; i < error->n_of; i++) {
-        const int q = error_plan_quantity(error->of[i]);
+        const int q = member_file_quantity_number(error->of[i]);
         const struct member_file_quantity *const quantity = q < 0 ? NULL : member_file_quantity(q);
         if (!quantity || quantity->of_xy || quantity->of_comparison) {
             return status_fail(STATUS_CASE,
@@ -537,7 +501,7 @@ static enum status choose_quantities(struct error_study *study) {
     for (int s = 0; s < SWEEP_N_QUANTITIES; s++) {
         const unsigned traits = sweep_quantities[s].traits;
         if (!(traits & SWEEP_JUDGE) || ((traits & SWEEP_OF_STEADY) != 0) != study->is_steady) continue;
-        const int q = error_plan_quantity(sweep_quantities[s].name);
+        const int q = member_file_quantity_number(sweep_quantities[s].name);
         int is_new = 1;
         for (int i = 0; i < study->n_quantities; i++) is_new &= study->quantity[i] != q;
         if (is_new) study->quantity[study->n_quantities++] = q;
@@ -548,51 +512,30 @@ static enum status choose_quantities(struct error_study *study) {
 
 // ---- the plan
 
-/* Plan a member for the levels at this distance from the stated level. The neighbour towards the stated level already
- * has a member, which supplies the initial state of the search. */
-static enum status plan_levels(struct error_study *study, int k, int distance, int *n_new) {
-    struct error_study_key *const key = &study->key[k];
-    const int order[] = {key->stated - distance, key->stated + distance};
-    for (int i = 0; i < (distance > 0 ? 2 : 1); i++) {
-        const int level = order[i];
-        if (level < 0 || level >= key->n_levels || key->member[level] >= 0) continue;
-        const int before = distance == 0 ? 0 : key->member[level + (level < key->stated ? 1 : -1)];
-        int is_new;
-        TRY(error_plan_member(study, 1, &(struct error_plan_change){k, key->value[level]}, before, &key->member[level],
-                              &is_new));
-        *n_new += is_new;
-    }
-
-    return STATUS_OK;
-}
-
 enum status error_plan_members(struct error_study *study, int *n_new) {
     *n_new = 0;
     for (int distance = 0; distance < ERROR_STUDY_LEVELS; distance++) {
         for (int k = 0; k < study->n_keys; k++) {
-            if (study->key[k].n_levels > 1) TRY(plan_levels(study, k, distance, n_new));
+            struct error_study_key *const key = &study->key[k];
+            const int levels[] = {key->stated - distance, key->stated + distance};
+            for (int i = 0; i < (distance > 0 ? 2 : 1) && key->n_levels > 1; i++) {
+                const int level = levels[i];
+                if (level < 0 || level >= key->n_levels || key->member[level] >= 0) continue;
+
+                // the search starts from the neighbour towards the stated level, which already has a member
+                const int before = distance == 0 ? 0 : key->member[level + (level < key->stated ? 1 : -1)];
+                int is_new;
+                TRY(error_plan_member(study, 1, &(struct error_plan_change){k, key->value[level]}, before,
+                                      &key->member[level], &is_new));
+                *n_new += is_new;
+            }
         }
     }
-    return STATUS_OK;
-}
-
-/* Create an axis without keys and with one value, which is the case. */
-static enum status begin_axis(struct error_study *study) {
-    struct case_values *const values = &study->study;
-    values->sweep = calloc(1, sizeof *values->sweep);
-    if (!values->sweep) return out_of_memory();
-    values->n_axes = 1;
-    struct sweep_axis *const axis = axis_of(study);
-    axis->order = axis->within = NAN;
-    axis->steady = study->is_steady;
-    axis->before = malloc(sizeof *axis->before);
-    if (!axis->before) return out_of_memory();
-    axis->before[0] = -1;
-    axis->n_values = 1;
 
     return STATUS_OK;
 }
 
+/* Set the levels of each key: given in the case, or of the table. */
 static enum status choose_levels(struct error_study *study) {
     const struct sweep_error *const error = study->study.error;
     for (int k = 0; k < study->n_keys; k++) {
@@ -600,7 +543,16 @@ static enum status choose_levels(struct error_study *study) {
         for (int i = 0; i < error->n_keys; i++) {
             if (error->levels[i].key == study->key[k].row && error->levels[i].n > 0) given = &error->levels[i];
         }
-        TRY(given ? add_given_levels(study, k, given) : add_default_levels(study, k));
+
+        if (!given) TRY(add_default_levels(study, k));
+        for (int i = 0; given && i < given->n; i++) {
+            int is_valid;
+            TRY(test_level(study, k, given->value[i], &is_valid));
+            if (!is_valid) {
+                return status_fail(STATUS_CASE, "error.keys: level %g: %s", given->value[i], status_message());
+            }
+            error_plan_insert(&study->key[k], given->value[i]);
+        }
         if (study->key[k].n_levels > 1) continue;
         snprintf(study->key[k].objection, ERROR_STUDY_BYTES, "no other level is a valid case");
     }
@@ -609,29 +561,35 @@ static enum status choose_levels(struct error_study *study) {
 }
 
 static enum status make_plan(struct error_study *study) {
-    int n_new;
     TRY(choose_quantities(study));
     study->is_static &= study->is_steady;
-    const size_t n = (size_t)(study->n_asked * study->n_fish) + 1;
-    study->value = calloc(n, sizeof *study->value);
-    study->error = calloc(n, sizeof *study->error);
-    study->together = calloc(n, sizeof *study->together);
-    if (!study->value || !study->error || !study->together) return out_of_memory();
+    const int n = study->n_asked * study->n_fish;
+    TRY(MEMORY_NEW(study->value, n, what));
+    TRY(MEMORY_NEW(study->error, n, what));
+    TRY(MEMORY_NEW(study->together, n, what));
     TRY(choose_keys(study));
-    TRY(begin_axis(study));
+
+    // an axis without keys and with one value, which is the case
+    TRY(MEMORY_NEW(study->study.sweep, 1, what));
+    study->study.n_axes = 1;
+    struct sweep_axis *const axis = axis_of(study);
+    axis->order = axis->within = NAN;
+    axis->steady = study->is_steady;
+    TRY(MEMORY_NEW(axis->before, 1, what));
+    axis->before[0] = -1;
+    axis->n_values = 1;
+
+    int n_new;
     TRY(add_all_columns(study));
     TRY(choose_levels(study));
-
     return error_plan_members(study, &n_new);
 }
 
 enum status error_plan_create(struct error_study *study, const struct case_values *values) {
     *study = (struct error_study){0};
     TRY(case_parse(&study->study, values->merged, strlen(values->merged), values->name, NULL, 0, NULL));
-    char *const text = strdup(values->text);
-    if (!text) return out_of_memory();
     free(study->study.text);
-    study->study.text = text;
+    TRY(memory_copy_string(&study->study.text, values->text, what));
     study->n_fish = values->school.n_fish;
     struct school *school;
     TRY(fish_school_create(&school, &study->study.school));

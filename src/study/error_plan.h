@@ -1,5 +1,5 @@
-/* error_plan.h: the members of an error study: keys, levels, and what each member sets. doc/studies.md, "Error bars".
- * Tested by tests/study/test_error_study.c.
+/* error_plan.h: the error of a value: each numerical key is varied alone. Keys, levels and members of the study.
+ * doc/studies.md, "Error bars". Tested by tests/study/test_error_study.c and test_error.sh.
  *
  *                       fish.nodes               13     17    [25]    35
  *     the case  --<     fish.sheet_points        25     35    [49]    69        [ ]: the stated value
@@ -65,9 +65,6 @@ void error_plan_free(struct error_study *study);
 /* The index of a quantity of a fish in part, value and error. */
 int error_plan_place(const struct error_study *study, int quantity, int fish);
 
-/* The number of a quantity of member_file.h; -1: unknown. */
-int error_plan_quantity(const char *name);
-
 /* The column of the axis that sets a key, for the first fish; -1: not varied. */
 int error_plan_column(const struct error_study *study, const char *path);
 
@@ -93,5 +90,36 @@ struct error_plan_change {
 enum status error_plan_member(struct error_study *study, int n, const struct error_plan_change *changes, int before,
                               int *member, int *is_new);
 void error_plan_shorten(struct error_study *study, int n_members);
+
+// ---- error_study.c: judgement of the levels by error_budget.h, and refinement
+//
+// With `within` the stated value moves to finer levels, which adds members. The choice depends on the case and the
+// existing members only, so the same files always give the same study.
+
+/* The next refinement: the key with the largest share. */
+struct error_study_next {
+    int key;       /* -1: nothing to refine */
+    double value;  /* next level of the key; NaN: no finer level is a valid case */
+    int is_member; /* a member at this level exists */
+    double cost;   /* CPU time of the stated value after over before the refinement */
+    double part;   /* predicted largest error of the key over the value of the quantity; NaN: not predictable */
+    double sum;    /* predicted largest error of all keys over the value of the quantity */
+};
+
+/* Judge all keys by the members, one member for each value of the axis. Fails with STATUS_MEMORY. */
+enum status error_study_judge(struct error_study *study, const struct member_file *members);
+
+/* Find the next refinement of a judged study. Fails with STATUS_MEMORY. */
+enum status error_study_find_next(struct error_study *study, const struct member_file *members,
+                                  struct error_study_next *next);
+
+/* Refine a judged study: move the stated value towards `within` of the case and add *n_new required members to the
+ * axis, up to most_members in total. *n_new 0: the study is complete. Fails with STATUS_MEMORY. */
+enum status error_study_refine(struct error_study *study, const struct member_file *members, int most_members,
+                               int *n_new);
+
+/* Describe the cost of a judged study with errors within the bound, "fish.nodes 69: 3.1 times the CPU time", or the
+ * reason why the cost is not predictable. */
+void error_study_say_cost(const struct error_study *study, char words[ERROR_STUDY_BYTES]);
 
 #endif

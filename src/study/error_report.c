@@ -1,16 +1,17 @@
-/* error_report.c: see error_report.h. */
+/* error_report.c: the plan, the budget, error.csv and the variables of study.nc. */
 #include "study/error_report.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "case/case.h"
 #include "case/sweep.h"
 #include "result/plain_file.h"
 #include "run/estimate.h"
-#include "study/study_table.h"
+#include "study/study_print.h"
 
 enum { MOST_FISH = 4, LEVEL_BYTES = 160, NAME_BYTES = 80, MEANING_BYTES = 200 };
 
@@ -83,9 +84,8 @@ static void print_duration(double seconds, FILE *stream) {
 
 enum status error_report_plan(const struct error_study *study, int n_processes, FILE *stream) {
     const int n = sweep_n_members(&study->study);
-    double sum = 0, longest = 0, *const duration = calloc((size_t)n, sizeof *duration);
-    if (!duration) return status_fail(STATUS_MEMORY, "out of memory: the plan of a study");
-    enum status status = STATUS_OK;
+    double sum = 0, longest = 0, *duration;
+    enum status status = MEMORY_NEW(duration, n, "the plan of a study");
     for (int m = 0; m < n && status == STATUS_OK; m++) {
         // the time of an equilibrium is negligible
         if (!study->is_static) status = estimate_member(study, m, patience / n, &duration[m]);
@@ -151,19 +151,18 @@ static int decimals_for(double number) {
 static void print_value(const struct error_study *study, int q, int f, FILE *stream) {
     const int place = error_plan_place(study, q, f);
     const double value = study->value[place], error = study->error[place];
-    const char *const unit = member_file_quantity(study->quantity[q])->unit;
+    const char *const own_unit = member_file_quantity(study->quantity[q])->unit;
+    const char *const unit = strcmp(own_unit, "1") == 0 ? "" : own_unit, *const blank = *unit ? " " : "";
 
     fprintf(stream, "%s", name_of(study, q));
     if (of_fish(study, q)) fprintf(stream, " of %s", study->study.school.fish[f].name);
     if (isnan(value)) {
         fprintf(stream, ": unknown\n");
     } else if (isnan(error)) {
-        fprintf(stream, ": %.5g%s%s, error unknown\n", value, strcmp(unit, "1") == 0 ? "" : " ",
-                strcmp(unit, "1") == 0 ? "" : unit);
+        fprintf(stream, ": %.5g%s%s, error unknown\n", value, blank, unit);
     } else {
         const int decimals = decimals_for(error);
-        fprintf(stream, ": %.*f +- %.*f%s%s", decimals, value, decimals, error, strcmp(unit, "1") == 0 ? "" : " ",
-                strcmp(unit, "1") == 0 ? "" : unit);
+        fprintf(stream, ": %.*f +- %.*f%s%s", decimals, value, decimals, error, blank, unit);
         if (fabs(value) > 0) fprintf(stream, " (%.2g %%)", 100 * error / fabs(value));
         fprintf(stream, "\n");
     }
@@ -206,13 +205,6 @@ static void write_order(const struct error_study *study, const struct error_stud
     }
 }
 
-/* "4 levels", "3 levels (wider bounds)". */
-static const char *basis_of(const struct error_study_key *key) {
-    static const char *const words[] = {"", "", "2 levels", "3 levels", "4 levels"};
-    if (key->n_levels == 3 && key->stated == 0) return "3 levels (wider bounds)";
-    return words[key->n_levels > 4 ? 4 : key->n_levels == 1 ? 0 : key->n_levels];
-}
-
 /* Describe the effect of the next level of the key with the largest share. */
 static void write_next(const struct error_study *study, const struct error_study_next *next,
                        char text[STUDY_CELL_BYTES]) {
@@ -253,7 +245,12 @@ static void fill_row(const struct error_study *study, const struct study_table *
         study_table_number(table, row, c + 2, "%.0f", study->error[place] > 0 ? 100 * error / study->error[place] : 0);
     }
 
-    study_table_set(table, row, c, "%s", key->n_levels > 1 ? basis_of(key) : "");
+    // the basis of the error
+    if (key->n_levels == 3 && key->stated == 0) {
+        study_table_set(table, row, c, "3 levels (wider bounds)");
+    } else if (key->n_levels > 1) {
+        study_table_set(table, row, c, "%d levels", key->n_levels < 4 ? key->n_levels : 4);
+    }
 }
 
 /* Print the share of each key for one fish. */
@@ -342,25 +339,22 @@ static void print_choices(const struct error_study *study, FILE *stream) {
     if (n > 0) fprintf(stream, "\n");
 }
 
-/* Whether a key has at least 1 % of the error of some quantity, or an unknown error. */
-static int has_share(const struct error_study *study, const struct error_study_key *key) {
-    for (int place = 0; place < study->n_asked * study->n_fish; place++) {
-        if (!(key->part[place].error < 0.01 * study->error[place])) return 1;
-    }
-    return 0;
-}
-
 /* Print the reasons of flagged and fixed keys, and the failed members. */
 static void print_reasons(const struct error_study *study, const struct member_file *members, FILE *stream) {
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
         if (key->n_levels == 1) fprintf(stream, "not varied: %s: %s\n", key->row->path, key->objection);
-        if (key->n_levels > 1 && is_error(key) && *key->reason && has_share(study, key)) {
+        // at least 1 % of the error of some quantity, or an unknown error
+        int has_share = 0;
+        for (int place = 0; place < study->n_asked * study->n_fish; place++) {
+            has_share |= !(key->part[place].error < 0.01 * study->error[place]);
+        }
+        if (key->n_levels > 1 && is_error(key) && *key->reason && has_share) {
             fprintf(stream, "flagged: %s: %s\n", key->row->path, key->reason);
         }
     }
     for (int m = 0; m < sweep_n_members(&study->study); m++) {
-        if (strcmp(members[m].status, "complete") != 0) fprintf(stream, "member %d: %s\n", m, members[m].status);
+        if (!member_file_is_complete(&members[m])) fprintf(stream, "member %d: %s\n", m, members[m].status);
     }
 }
 
@@ -457,12 +451,6 @@ static const struct of_quantity {
     {"key_order_%s", "observed order of %s in each key", 1, 0},
 };
 
-// insert the name of a quantity into a name or meaning
-static void fill_name(char *text, size_t size, const char *format, const char *quantity) {
-    const int before = (int)(strstr(format, "%s") - format);
-    snprintf(text, size, "%.*s%s%s", before, format, quantity, format + before + 2);
-}
-
 int error_report_listed(int i, struct result_listed *listed) {
     static char name[N_OF_QUANTITY][NAME_BYTES], meaning[N_OF_QUANTITY][MEANING_BYTES];
     if (i < N_OF_KEY) {
@@ -482,8 +470,8 @@ int error_report_listed(int i, struct result_listed *listed) {
 
     const int k = i - N_OF_KEY;
     if (k >= N_OF_QUANTITY) return 0;
-    fill_name(name[k], NAME_BYTES, of_quantity[k].name, "Q");
-    fill_name(meaning[k], MEANING_BYTES, of_quantity[k].meaning, "Q");
+    study_fill_name(name[k], NAME_BYTES, of_quantity[k].name, "Q");
+    study_fill_name(meaning[k], MEANING_BYTES, of_quantity[k].meaning, "Q");
     *listed = (struct result_listed){
         .name = name[k], .type = "double", .unit = of_quantity[k].has_unit ? "of Q" : "1", .meaning = meaning[k]};
     snprintf(listed->dimensions, sizeof listed->dimensions, "%sfish", of_quantity[k].by_key ? "key, " : "");
@@ -510,8 +498,8 @@ void error_report_define(struct netcdf_writer *writer, const struct error_study 
     for (int q = 0; q < study->n_asked; q++) {
         for (int i = 0; i < N_OF_QUANTITY; i++) {
             char name[NAME_BYTES], meaning[MEANING_BYTES];
-            fill_name(name, sizeof name, of_quantity[i].name, name_of(study, q));
-            fill_name(meaning, sizeof meaning, of_quantity[i].meaning, name_of(study, q));
+            study_fill_name(name, sizeof name, of_quantity[i].name, name_of(study, q));
+            study_fill_name(meaning, sizeof meaning, of_quantity[i].meaning, name_of(study, q));
             const int by_key = of_quantity[i].by_key;
             const char *const unit = member_file_quantity(study->quantity[q])->unit;
             netcdf_define_variable(writer,
@@ -561,7 +549,7 @@ void error_report_write(struct netcdf_writer *writer, const struct error_study *
     for (int q = 0; q < study->n_asked; q++) {
         char name[N_OF_QUANTITY][NAME_BYTES];
         for (int i = 0; i < N_OF_QUANTITY; i++) {
-            fill_name(name[i], NAME_BYTES, of_quantity[i].name, name_of(study, q));
+            study_fill_name(name[i], NAME_BYTES, of_quantity[i].name, name_of(study, q));
         }
         for (int f = 0; f < study->n_fish; f++) {
             const int place = error_plan_place(study, q, f);

@@ -7,7 +7,7 @@
 
 #include "result/netcdf.h"
 #include "result/result_kind.h"
-#include "study/error_study.h"
+#include "study/error_plan.h"
 
 /* Print keys, levels and number of members; estimate the time of n_processes simultaneous members from a few events of
  * each member. Fails as simulate_create, or with STATUS_MEMORY. */

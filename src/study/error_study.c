@@ -1,13 +1,13 @@
-/* error_study.c: see error_study.h. */
-#include "study/error_study.h"
-
+/* error_study.c: judgement of the levels, and refinement. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
+#include "study/error_plan.h"
 
 /* Error of a steady state without multipliers over the residual change per beat, unless this ratio is known for the
  * case. */
@@ -19,27 +19,19 @@ static const double rounding = 1e-12;
 /* Largest number of added levels per key. */
 enum { MOST_ADDED = 3 };
 
-static enum status out_of_memory(void) {
-    return status_fail(STATUS_MEMORY, "out of memory: the errors of a study");
-}
-
 // ---- values of the members
 
 static double value_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
-    if (m < 0 || strcmp(members[m].status, "complete") != 0) return NAN;
+    if (m < 0 || !member_file_is_complete(&members[m])) return NAN;
     const int quantity = study->quantity[q];
     return member_file_value(&members[m], quantity, member_file_quantity(quantity)->of_fish ? f : 0, 0);
-}
-
-static double steady_number(const struct member_file *member, const char *name) {
-    return member_file_value(member, error_plan_quantity(name), 0, 0);
 }
 
 /* The reference length of the error of a search, in body lengths: distance travelled per beat for the speed and derived
  * quantities, tail excursion for a Strouhal number. */
 static double lengths_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
-    const double speed = member_file_value(&members[m], error_plan_quantity("steady_speed"), f, 0);
-    const double strouhal = member_file_value(&members[m], error_plan_quantity("steady_strouhal"), f, 0);
+    const double speed = member_file_number(&members[m], "steady_speed", f);
+    const double strouhal = member_file_number(&members[m], "steady_strouhal", f);
     const double way = speed * study->beat / study->study.school.fish[f].length;
     if (study->is_static || !(way > 0)) return 1;
     const int is_tail = strcmp(member_file_quantity(study->quantity[q])->name, "steady_strouhal") == 0;
@@ -56,10 +48,10 @@ static double noise_of(const struct error_study *study, const struct member_file
     if (column >= 0) text_number(axis->value[m * axis->n_keys + column], &rtol);
     if (study->study.solver.step > 0) rtol = rounding;
     if (!study->is_steady) return rtol;
-    const double error = steady_number(&members[0], "steady_error");
-    const double part = error / steady_number(&members[0], "steady_residual");
+    const double error = member_file_number(&members[0], "steady_error", 0);
+    const double part = error / member_file_number(&members[0], "steady_residual", 0);
     const double distance =
-        steady_number(&members[m], "steady_residual") * (isfinite(part) ? fmax(1, part) : of_residual);
+        member_file_number(&members[m], "steady_residual", 0) * (isfinite(part) ? fmax(1, part) : of_residual);
 
     return rtol + distance / lengths_of(study, members, m, q, f);
 }
@@ -69,7 +61,8 @@ static double noise_of(const struct error_study *study, const struct member_file
 static double cost_of(const struct error_study *study, const struct member_file *members, int m) {
     const int is_by_beats = study->is_steady && !study->is_static;
     const double least_beat = 1e-3, least_run = 0.1;
-    return steady_number(&members[m], is_by_beats ? "beat_time" : "wall_time") + (is_by_beats ? least_beat : least_run);
+    return member_file_number(&members[m], is_by_beats ? "beat_time" : "wall_time", 0) +
+           (is_by_beats ? least_beat : least_run);
 }
 
 /* The logarithmic slope of the wall time over the resolution, from the coarsest to the finest level. */
@@ -90,7 +83,7 @@ static void object_to_interval(const struct error_study *study, const struct mem
     *key->objection = '\0';
     for (int f = 0; f < study->n_fish && !*key->objection; f++) {
         const struct fish_parameters *const fish = &values->school.fish[f];
-        const double speed = member_file_value(&members[0], error_plan_quantity("speed"), f, 0);
+        const double speed = member_file_number(&members[0], "speed", f);
         const double needed = 1 + 3.2 / sqrt(fabs(speed) * values->school.shedding_interval / fish->length);
         const double most = 1000;  // a fish that needs more sheet points does not swim
         if (!(fish->sheet_points < needed) || needed > most) continue;
@@ -108,11 +101,17 @@ static enum status judge_key(struct error_study *study, const struct member_file
     int n_levels = key->row->kind == SWEEP_DURATION ? 3 : MOST;
 
     if (n_levels > key->n_levels) n_levels = key->n_levels;
-    double size[MOST], (*value)[MOST][2] = calloc((size_t)n_most, sizeof *value);
-    struct error_budget_sequence *const sequence = calloc((size_t)n_most, sizeof *sequence);
-    struct error_budget_result *const result = calloc((size_t)n_most, sizeof *result);
-    int *const origin = calloc((size_t)n_most, sizeof *origin), n = 0, culprit;
-    const enum status status = value && sequence && result && origin ? STATUS_OK : out_of_memory();
+    struct judged {
+        double value[MOST][2];
+        int place; /* of quantity and fish */
+    } * judged;
+    struct error_budget_sequence *sequence = NULL;
+    struct error_budget_result *result = NULL;
+    double size[MOST];
+    int n = 0, culprit;
+    enum status status = MEMORY_NEW(judged, n_most, "the errors of a study");
+    if (status == STATUS_OK) status = MEMORY_NEW(sequence, n_most, "the errors of a study");
+    if (status == STATUS_OK) status = MEMORY_NEW(result, n_most, "the errors of a study");
     if (status != STATUS_OK) goto end;
 
     for (int i = 0; i < n_levels; i++) size[i] = error_plan_size(key->row, key->value[i]);
@@ -120,14 +119,14 @@ static enum status judge_key(struct error_study *study, const struct member_file
         for (int f = 0; f < (member_file_quantity(study->quantity[q])->of_fish ? n_fish : 1); f++) {
             int is_known = q < study->n_asked;
             for (int i = 0; i < n_levels; i++) {
-                value[n][i][0] = value_of(study, members, key->member[i], q, f);
-                is_known |= !isnan(value[n][i][0]);
+                judged[n].value[i][0] = value_of(study, members, key->member[i], q, f);
+                is_known |= !isnan(judged[n].value[i][0]);
             }
             // speed, cost and Strouhal number judge if known
             if (!is_known) continue;
             const double noise = noise_of(study, members, key->member[key->stated], q, f);
-            sequence[n] = (struct error_budget_sequence){(const double(*)[2])value[n], noise};
-            origin[n++] = q * n_fish + f;
+            sequence[n] = (struct error_budget_sequence){(const double(*)[2])judged[n].value, noise};
+            judged[n++].place = error_plan_place(study, q, f);
         }
     }
 
@@ -136,8 +135,8 @@ static enum status judge_key(struct error_study *study, const struct member_file
     key->verdict = error_budget_judge(&levels, n, sequence, result, &culprit);
     *key->reason = '\0';
     if (error_budget_is_flagged(key->verdict)) {
-        const int q = culprit < 0 ? 0 : study->quantity[origin[culprit] / n_fish];
-        const char *const fish = culprit < 0 ? "" : study->study.school.fish[origin[culprit] % n_fish].name;
+        const int q = culprit < 0 ? 0 : study->quantity[judged[culprit].place / n_fish];
+        const char *const fish = culprit < 0 ? "" : study->study.school.fish[judged[culprit].place % n_fish].name;
         snprintf(key->reason, ERROR_STUDY_BYTES, "%s%s%s%s%.60s%s",
                  key->verdict == ERROR_BUDGET_OBJECTION ? key->objection : error_budget_words(key->verdict),
                  culprit < 0 ? "" : " (", culprit < 0 ? "" : member_file_quantity(q)->name, culprit < 0 ? "" : " of ",
@@ -145,20 +144,19 @@ static enum status judge_key(struct error_study *study, const struct member_file
     }
 
     for (int i = 0; i < n; i++) {
-        if (origin[i] / n_fish >= study->n_asked) continue;
-        key->part[origin[i]] = (struct error_study_part){.error = result[i].error,
-                                                         .finest_error = result[i].finest_error,
-                                                         .order = result[i].order,
-                                                         .verdict = result[i].verdict};
+        if (judged[i].place / n_fish >= study->n_asked) continue;
+        key->part[judged[i].place] = (struct error_study_part){.error = result[i].error,
+                                                               .finest_error = result[i].finest_error,
+                                                               .order = result[i].order,
+                                                               .verdict = result[i].verdict};
     }
 
     key->cost_exponent = cost_exponent_of(study, members, key);
 
 end:
-    free(value);
+    free(judged);
     free(sequence);
     free(result);
-    free(origin);
 
     return status;
 }
@@ -247,11 +245,6 @@ enum status error_study_judge(struct error_study *study, const struct member_fil
 
 // ---- refinement
 
-/* Whether the error decreases if the stated value moves to a finer level. */
-static int is_movable(const struct error_study_key *key) {
-    return !error_budget_is_flagged(key->verdict);
-}
-
 /* The largest error of a key over the value of a quantity. */
 static double relative_part(const struct error_study *study, const struct error_study_key *key) {
     double most = 0;
@@ -302,9 +295,11 @@ enum status error_study_find_next(struct error_study *study, const struct member
     }
 
     if (next->key < 0) return STATUS_OK;
+    // the error decreases if the stated value of a key without a flag moves to a finer level
     struct error_study_key *const key = &study->key[next->key];
+    const int is_movable = !error_budget_is_flagged(key->verdict);
     const int has_room = key->n_levels < ERROR_STUDY_LEVELS && key->n_added < MOST_ADDED;
-    if (key->stated > 0 && is_movable(key)) {
+    if (key->stated > 0 && is_movable) {
         next->value = key->value[key->stated - 1];
         next->is_member = 1;
         next->cost =
@@ -317,14 +312,27 @@ enum status error_study_find_next(struct error_study *study, const struct member
     }
 
     if (isnan(next->value)) return STATUS_OK;
-    next->part = is_movable(key) ? next_part(study, members, key, next->value) : NAN;
+    next->part = is_movable ? next_part(study, members, key, next->value) : NAN;
     next->sum = relative_error(study, study->error) - most + next->part;
 
     return STATUS_OK;
 }
 
-/* Find or add the member with all refined keys at the stated levels. */
-static enum status find_stated(struct error_study *study, int *n_new) {
+/* Move to the next finer level, or insert a finer level; then find or add the member with all refined keys at the
+ * stated levels. */
+static enum status take_step(struct error_study *study, const struct error_study_next *next, int *n_new) {
+    struct error_study_key *const refined = &study->key[next->key];
+    if (next->is_member) {
+        refined->stated--;
+    } else {
+        error_plan_insert(refined, next->value);
+        refined->n_added++;
+        // more nodes need more sheet points at all levels
+        const int are_nodes = strcmp(refined->row->path, "fish.nodes") == 0;
+        for (int i = 0; i < refined->n_levels && are_nodes; i++) refined->member[i] = -1;
+        TRY(error_plan_members(study, n_new));
+    }
+
     struct error_plan_change changes[SWEEP_N_ERROR_KEYS];
     int n = 0, is_new;
     for (int k = 0; k < study->n_keys; k++) {
@@ -335,24 +343,6 @@ static enum status find_stated(struct error_study *study, int *n_new) {
     TRY(error_plan_member(study, n, changes, study->stated, &study->stated, &is_new));
     *n_new += is_new;
     return STATUS_OK;
-}
-
-/* Move to the next finer level, or insert a finer level. */
-static enum status take_step(struct error_study *study, const struct error_study_next *next, int *n_new) {
-    struct error_study_key *const key = &study->key[next->key];
-    if (next->is_member) {
-        key->stated--;
-        return find_stated(study, n_new);
-    }
-
-    error_plan_insert(key, next->value);
-    key->n_added++;
-
-    // more nodes need more sheet points at all levels
-    for (int i = 0; i < key->n_levels && strcmp(key->row->path, "fish.nodes") == 0; i++) key->member[i] = -1;
-    TRY(error_plan_members(study, n_new));
-
-    return find_stated(study, n_new);
 }
 
 enum status error_study_refine(struct error_study *study, const struct member_file *members, int most_members,

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "case/sweep_quantity.h"
 #include "result/netcdf.h"
 #include "result/result_table.h"
@@ -18,27 +19,19 @@ static const char *const computed[] = {"nose",       "tail",       "lateral_drif
                                        "nose_error", "tail_error", "power_error",   "beat_time"};
 enum { NOSE, TAIL, DRIFT, MEAN_HEADING, NOSE_ERROR, TAIL_ERROR, POWER_ERROR, BEAT_TIME, N_COMPUTED };
 
-/* True for (time), (time, fish) and (time, fish, xy). */
-static int has_end(const struct result_variable *variable) {
-    const enum result_dimension *const d = variable->dimension;
-    if (d[0] != TIME || variable->type == RESULT_TEXT) return 0;
-    return d[1] == NONE || (d[1] == FISH && (d[2] == NONE || d[2] == XY));
-}
-
-/* True for real numbers of a steady state, and of each fish; counts have the names of keys. */
-static int is_of_steady(const struct result_variable *variable) {
-    const enum result_dimension *const d = variable->dimension;
-    if (!variable->of_steady || variable->type != RESULT_REAL) return 0;
-    return d[0] == NONE || (d[0] == FISH && (d[1] == NONE || d[1] == XY));
-}
-
 const struct member_file_quantity *member_file_quantity(int i) {
     static struct member_file_quantity all[RESULT_TABLE_MAX + N_COMPUTED];
     static int n;
     if (n == 0) {
         for (int v = 0; v < result_table_n; v++) {
+            // (time), (time, fish), (time, fish, xy), and the same without time for real numbers of a steady state;
+            // the counts of a steady search have the names of keys
             const struct result_variable *const from = &result_table[v];
-            if (!has_end(from) && !is_of_steady(from)) continue;
+            const int is_row = from->dimension[0] == TIME && from->type != RESULT_TEXT;
+            const int is_steady = from->of_steady && from->type == RESULT_REAL && from->dimension[0] != TIME;
+            const enum result_dimension *const d = from->dimension + is_row;
+            const int is_number = d[0] == NONE || (d[0] == FISH && (d[1] == NONE || d[1] == XY));
+            if (!(is_row || is_steady) || !is_number) continue;
             all[n++] = (struct member_file_quantity){.name = from->name,
                                                      .unit = from->unit,
                                                      .long_name = from->long_name,
@@ -64,9 +57,10 @@ const struct member_file_quantity *member_file_quantity(int i) {
 }
 
 int member_file_quantity_number(const char *name) {
-    int i = 0;
-    while (strcmp(member_file_quantity(i)->name, name) != 0) i++;
-    return i;
+    for (int q = 0; member_file_quantity(q); q++) {
+        if (strcmp(member_file_quantity(q)->name, name) == 0) return q;
+    }
+    return -1;
 }
 
 int member_file_n_quantities(void) {
@@ -82,15 +76,23 @@ double *member_file_place(const struct member_file *member, int quantity, int fi
 }
 
 double member_file_value(const struct member_file *member, int quantity, int fish, int xy) {
-    return member->value && fish < member->n_fish ? *member_file_place(member, quantity, fish, xy) : NAN;
+    const int is_known = member->value && quantity >= 0 && fish < member->n_fish;
+    return is_known ? *member_file_place(member, quantity, fish, xy) : NAN;
+}
+
+double member_file_number(const struct member_file *member, const char *name, int fish) {
+    return member_file_value(member, member_file_quantity_number(name), fish, 0);
+}
+
+int member_file_is_complete(const struct member_file *member) {
+    return strcmp(member->status, "complete") == 0;
 }
 
 enum status member_file_create_values(struct member_file *member, int n_fish) {
-    const size_t n = (size_t)member_file_n_quantities() * (size_t)n_fish * 2;
+    const int n = member_file_n_quantities() * n_fish * 2;
     member->n_fish = n_fish;
-    member->value = malloc((n + 1) * sizeof *member->value);
-    if (!member->value) return status_fail(STATUS_MEMORY, "out of memory: a member of a study");
-    for (size_t i = 0; i < n; i++) member->value[i] = NAN;
+    TRY(MEMORY_NEW(member->value, n, "a member of a study"));
+    for (int i = 0; i < n; i++) member->value[i] = NAN;
     return STATUS_OK;
 }
 
@@ -122,71 +124,59 @@ static enum status read_quantity(const struct reading *reading, int q) {
     return STATUS_OK;
 }
 
-/* Read a time-independent value of a fish, or values of one row of a variable over (time, fish, ...). */
+/* Read a time-independent value of a fish. */
 static enum status read_constant(const struct reading *reading, const char *name, size_t f, double *value) {
     return netcdf_read_doubles(&reading->reader, name, (struct netcdf_slice[]){{"fish", f, 1}, {NULL}}, value);
 }
 
-static enum status read_number(const struct reading *reading, const char *name, size_t row, size_t f, double *value) {
-    const struct netcdf_slice slice[] = {{"time", row, 1}, {"fish", f, 1}, {NULL}};
-    return netcdf_read_doubles(&reading->reader, name, slice, value);
-}
+/* Compute nose, tail, drift and mean heading of a fish. */
+static enum status compute_fish(const struct reading *reading, int fish) {
+    const int computed_first = member_file_n_quantities() - N_COMPUTED;
+    const struct netcdf_reader *const reader = &reading->reader;
+    const size_t f = (size_t)fish, last = reading->n_rows - 1;
 
-static enum status read_com(const struct reading *reading, size_t row, size_t f, double com[2]) {
-    const struct netcdf_slice slice[] = {{"time", row, 1}, {"fish", f, 1}, {"xy", 0, 2}, {NULL}};
-    return netcdf_read_doubles(&reading->reader, "com", slice, com);
-}
-
-static enum status read_node(const struct reading *reading, size_t f, size_t node, double x[2]) {
-    const struct netcdf_slice slice[] = {
-        {"time", reading->n_rows - 1, 1}, {"fish", f, 1}, {"node", node, 1}, {"xy", 0, 2}, {NULL}};
-    return netcdf_read_doubles(&reading->reader, "x", slice, x);
-}
-
-/* Nose and tail of a fish at the end. */
-static enum status compute_ends(const struct reading *reading, size_t f, double nose[2], double tail[2]) {
+    // nose and tail at the end
     double n_nodes;
     TRY(read_constant(reading, "n_nodes", f, &n_nodes));
     if (!(n_nodes >= 1 && n_nodes <= (double)reading->n_node)) {
-        return status_fail(STATUS_FILE, "%s: fish %zu cannot have %g nodes", reading->reader.path, f, n_nodes);
+        return status_fail(STATUS_FILE, "%s: fish %zu cannot have %g nodes", reader->path, f, n_nodes);
     }
-    TRY(read_node(reading, f, 0, nose));
-    return read_node(reading, f, (size_t)n_nodes - 1, tail);
-}
+    for (int i = 0; i < 2; i++) {
+        const size_t node = i == 0 ? 0 : (size_t)n_nodes - 1;
+        const struct netcdf_slice slice[] = {
+            {"time", last, 1}, {"fish", f, 1}, {"node", node, 1}, {"xy", 0, 2}, {NULL}};
+        double *const to = member_file_place(reading->member, computed_first + (i == 0 ? NOSE : TAIL), fish, 0);
+        TRY(netcdf_read_doubles(reader, "x", slice, to));
+    }
 
-/* The displacement of the centre of mass to the left of the first heading. */
-static enum status compute_drift(const struct reading *reading, size_t f, double *drift) {
-    double heading, first[2], last[2];
-    TRY(read_number(reading, "heading", 0, f, &heading));
-    TRY(read_com(reading, 0, f, first));
-    TRY(read_com(reading, reading->n_rows - 1, f, last));
-    heading *= M_PI / 180;
-    *drift = cos(heading) * (last[1] - first[1]) - sin(heading) * (last[0] - first[0]);
-    return STATUS_OK;
-}
+    // displacement of the centre of mass to the left of the first heading
+    const struct netcdf_slice all_rows[] = {{"time", 0, reading->n_rows}, {"fish", f, 1}, {NULL}};
+    double com[2][2], *const heading = reading->heading;
+    TRY(netcdf_read_doubles(reader, "heading", all_rows, heading));
+    for (int i = 0; i < 2; i++) {
+        const struct netcdf_slice slice[] = {{"time", i == 0 ? 0 : last, 1}, {"fish", f, 1}, {"xy", 0, 2}, {NULL}};
+        TRY(netcdf_read_doubles(reader, "com", slice, com[i]));
+    }
+    const double angle = heading[0] * (M_PI / 180);
+    *member_file_place(reading->member, computed_first + DRIFT, fish, 0) =
+        cos(angle) * (com[1][1] - com[0][1]) - sin(angle) * (com[1][0] - com[0][0]);
 
-/* The mean heading over the last period, or over a shorter run: trapezoidal rule. */
-static enum status compute_mean_heading(const struct reading *reading, size_t f, double *mean) {
-    const double *const time = reading->time, *const heading = reading->heading;
-    const size_t last = reading->n_rows - 1;
-    double frequency;
-
+    // mean heading over the last period, or over a shorter run: trapezoidal rule
+    const double *const time = reading->time;
+    double frequency, sum = 0;
     TRY(read_constant(reading, "frequency", f, &frequency));
-    const struct netcdf_slice slice[] = {{"time", 0, reading->n_rows}, {"fish", f, 1}, {NULL}};
-    TRY(netcdf_read_doubles(&reading->reader, "heading", slice, reading->heading));
     const double end = time[last], start = end - (1 + 1e-9) / frequency;
     size_t row = 0;
     while (row < last && time[row] < start) row++;
     const double duration = end - time[row];
-    double sum = 0;
     for (; row < last; row++) sum += (heading[row] + heading[row + 1]) / 2 * (time[row + 1] - time[row]);
-    *mean = duration > 0 ? sum / duration : NAN;
+    *member_file_place(reading->member, computed_first + MEAN_HEADING, fish, 0) = duration > 0 ? sum / duration : NAN;
 
     return STATUS_OK;
 }
 
-/* The wall time per beat of a steady search, including multipliers and rows; NaN without a beat. */
-static enum status compute_beat_time(const struct reading *reading, double *time) {
+/* Compute the wall time per beat of a steady search, including multipliers and rows; NaN without a beat. */
+static enum status compute_beat_time(const struct reading *reading) {
     static const char *const names[] = {"steady_beats", "steady_multiplier_beats"};
     const struct netcdf_slice last[] = {{"time", reading->n_rows - 1, 1}, {NULL}};
     double count, beats = 0, wall_time, frequency;
@@ -200,20 +190,10 @@ static enum status compute_beat_time(const struct reading *reading, double *time
     TRY(read_constant(reading, "frequency", 0, &frequency));
     TRY(netcdf_read_doubles(&reading->reader, "wall_time", last, &wall_time));
     beats += frequency > 0 ? (reading->time[reading->n_rows - 1] - reading->time[0]) * frequency : 0;
-    *time = beats > 0 ? wall_time / beats : NAN;
+    const int q = member_file_n_quantities() - N_COMPUTED + BEAT_TIME;
+    *member_file_place(reading->member, q, 0, 0) = beats > 0 ? wall_time / beats : NAN;
 
     return STATUS_OK;
-}
-
-/* Compute the computed quantities of one fish. */
-static enum status compute(const struct reading *reading, int f) {
-    const int first = member_file_n_quantities() - N_COMPUTED;
-    const struct member_file *const member = reading->member;
-    TRY(compute_ends(reading, (size_t)f, member_file_place(member, first + NOSE, f, 0),
-                     member_file_place(member, first + TAIL, f, 0)));
-    TRY(compute_drift(reading, (size_t)f, member_file_place(member, first + DRIFT, f, 0)));
-    if (f == 0) TRY(compute_beat_time(reading, member_file_place(member, first + BEAT_TIME, 0, 0)));
-    return compute_mean_heading(reading, (size_t)f, member_file_place(member, first + MEAN_HEADING, f, 0));
 }
 
 static enum status read_attributes(struct reading *reading) {
@@ -241,19 +221,16 @@ static enum status read_values(struct reading *reading) {
     TRY(netcdf_read_length(reader, "node", 1, SIZE_MAX, &reading->n_node));
     TRY(member_file_create_values(reading->member, (int)reading->n_fish));
     if (reading->n_rows == 0) return STATUS_OK;
-    reading->time = calloc(reading->n_rows, sizeof *reading->time);
-    reading->heading = calloc(reading->n_rows, sizeof *reading->heading);
-    reading->values = calloc(reading->n_fish * 2, sizeof *reading->values);
-    if (!reading->time || !reading->heading || !reading->values) {
-        return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reader->path);
-    }
+    TRY(MEMORY_NEW(reading->time, reading->n_rows, reader->path));
+    TRY(MEMORY_NEW(reading->heading, reading->n_rows, reader->path));
+    TRY(MEMORY_NEW(reading->values, reading->n_fish * 2, reader->path));
 
     const struct netcdf_slice all_rows[] = {{"time", 0, reading->n_rows}, {NULL}};
     TRY(netcdf_read_doubles(reader, "time", all_rows, reading->time));
     for (int q = 0; q < member_file_n_quantities() - N_COMPUTED; q++) TRY(read_quantity(reading, q));
-    for (int f = 0; f < reading->member->n_fish; f++) TRY(compute(reading, f));
+    for (int f = 0; f < reading->member->n_fish; f++) TRY(compute_fish(reading, f));
 
-    return STATUS_OK;
+    return compute_beat_time(reading);
 }
 
 enum status member_file_read(struct member_file *member, const char *path) {

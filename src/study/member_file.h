@@ -19,7 +19,7 @@ struct member_file_quantity {
 /* Quantity number i, from 0; NULL beyond the last. */
 const struct member_file_quantity *member_file_quantity(int i);
 
-/* The index of an existing quantity with this name; the number of quantities. */
+/* The index of the quantity with this name, -1 if there is none; the number of quantities. */
 int member_file_quantity_number(const char *name);
 int member_file_n_quantities(void);
 
@@ -44,8 +44,13 @@ enum status member_file_create_values(struct member_file *member, int n_fish);
 /* Release the memory of a member and zero *member. */
 void member_file_free(struct member_file *member);
 
-/* One value; NaN: unknown. fish and xy are 0 if the quantity does not depend on fish or direction. */
+/* One value; NaN: unknown. fish and xy are 0 if the quantity does not depend on fish or direction. The second function
+ * takes the name of a quantity without directions. */
 double member_file_value(const struct member_file *member, int quantity, int fish, int xy);
+double member_file_number(const struct member_file *member, const char *name, int fish);
+
+/* Whether the run of the member is complete. */
+int member_file_is_complete(const struct member_file *member);
 
 /* The address of an existing value. */
 double *member_file_place(const struct member_file *member, int quantity, int fish, int xy);

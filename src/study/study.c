@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "case/case.h"
 #include "case/sweep.h"
@@ -22,7 +23,6 @@
 #include "run/simulate_run.h"
 #include "steady/steady.h"
 #include "study/study_folder.h"
-#include "study/study_plan.h"
 
 enum { REASON_BYTES = 2048 };
 
@@ -147,21 +147,18 @@ static enum status run_member(const struct study *study, const struct job *job) 
     return status;
 }
 
-/* Keep the SIGINT handler after the first signal: a second SIGINT to the process group is meant for the study. */
-static void keep_handler(void) {
-    struct sigaction action;
-    sigaction(SIGINT, NULL, &action);
-    action.sa_flags &= ~(int)SA_RESETHAND;
-    sigaction(SIGINT, &action, NULL);
-}
-
 /* Never returns. mask: the signals that a member blocks. */
 static void be_member(const struct study *study, const struct job *job, pid_t parent, const sigset_t *mask) {
     // the members stop if the study is killed
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     // a study that is stopping has no signal handlers any more
     if (is_stopped(study) || getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
-    keep_handler();
+
+    // keep the SIGINT handler after the first signal: a second SIGINT to the process group is meant for the study
+    struct sigaction action;
+    sigaction(SIGINT, NULL, &action);
+    action.sa_flags &= ~(int)SA_RESETHAND;
+    sigaction(SIGINT, &action, NULL);
     sigprocmask(SIG_SETMASK, mask, NULL);
     const enum status status = run_member(study, job);
     if (status != STATUS_OK) snprintf(job->report->reason, REASON_BYTES, "%s", status_message());
@@ -246,64 +243,55 @@ static int has_to_wait(const struct study *study) {
     return 0;
 }
 
-/* Ask all processes once to stop at the next event. */
-static void stop_all(struct study *study) {
-    if (study->is_stopping) return;
-    study->is_stopping = 1;
-    for (int j = 0; j < study->n_jobs; j++) {
-        if (study->job[j].process) kill(study->job[j].process, SIGTERM);
-    }
-}
-
-/* Ask processes beyond the time limit once to stop. */
-static void stop_late(struct study *study) {
-    for (int j = 0; j < study->n_jobs && study->options->limit > 0; j++) {
-        struct job *const job = &study->job[j];
-        if (!job->process || job->is_late || seconds_since(&job->started) <= study->options->limit) continue;
-        job->is_late = 1;
-        kill(job->process, SIGTERM);
-    }
-}
-
-/* Collect ended processes. */
-static enum status collect_ended(struct study *study) {
-    for (int j = 0; j < study->n_jobs; j++) {
-        int outcome;
-        const pid_t process = study->job[j].process;
-        if (process && waitpid(process, &outcome, WNOHANG) == process)
-            TRY(member_finish(study, &study->job[j], outcome));
-    }
-    return STATUS_OK;
-}
-
 /* Start members until all members have ended. mask: the signals that a member blocks. */
 static enum status run_until_all_end(struct study *study, const sigset_t *mask) {
     sigset_t ended;
     sigemptyset(&ended);
     sigaddset(&ended, SIGCHLD);
     const struct timespec patience = {.tv_nsec = 200000000};
+    const double limit = study->options->limit;
     enum status status = STATUS_OK;
+
     for (;;) {
-        if (is_stopped(study) || study->required || status != STATUS_OK) stop_all(study);
-        stop_late(study);
+        // ask processes to stop, once: all at the end of the study, and those beyond the time limit
+        const int is_end = !study->is_stopping && (is_stopped(study) || study->required || status != STATUS_OK);
+        for (int j = 0; j < study->n_jobs; j++) {
+            struct job *const job = &study->job[j];
+            const int is_late = limit > 0 && !job->is_late && seconds_since(&job->started) > limit;
+            if (!job->process || !(is_end || is_late)) continue;
+            if (is_late) job->is_late = 1;
+            kill(job->process, SIGTERM);
+        }
+        study->is_stopping |= is_end;
+
         for (int j = 0; j < study->n_jobs && !study->is_stopping && status == STATUS_OK; j++) {
-            if (study->job[j].process == 0 && study->n_next < study->plan.n && !has_to_wait(study))
+            if (study->job[j].process == 0 && study->n_next < study->plan.n && !has_to_wait(study)) {
                 status = member_start(study, &study->job[j], mask);
+            }
         }
         show_progress(study);
         if (n_running(study) == 0) return status;
+
+        // collect ended processes
         sigtimedwait(&ended, NULL, &patience);
-        const enum status collected = collect_ended(study);
+        enum status collected = STATUS_OK;
+        for (int j = 0; j < study->n_jobs && collected == STATUS_OK; j++) {
+            int outcome;
+            const pid_t process = study->job[j].process;
+            if (process && waitpid(process, &outcome, WNOHANG) == process) {
+                collected = member_finish(study, &study->job[j], outcome);
+            }
+        }
         if (status == STATUS_OK) status = collected;
     }
 }
 
 static enum status run_jobs(struct study *study) {
-    study->job = calloc((size_t)study->n_jobs, sizeof *study->job);
+    TRY(MEMORY_NEW(study->job, study->n_jobs, "the processes of a study"));
     study->report = mmap(NULL, (size_t)study->n_jobs * sizeof *study->report, PROT_READ | PROT_WRITE,
                          MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (study->report == MAP_FAILED) study->report = NULL;
-    if (!study->job || !study->report) return status_fail(STATUS_MEMORY, "out of memory: %d processes", study->n_jobs);
+    if (!study->report) return status_fail(STATUS_MEMORY, "out of memory: the processes of a study");
     for (int j = 0; j < study->n_jobs; j++) study->job[j].report = &study->report[j];
 
     // a blocked signal stays pending, so the end of a process is never missed
@@ -325,14 +313,6 @@ static enum status run_jobs(struct study *study) {
                        study->progress.n_done, study->progress.n_members);
 }
 
-/* The number of simultaneous members: usable processors over threads per member. */
-static int n_at_once(const struct study *study) {
-    int n = study->options->n_processes;
-    if (n == 0) n = omp_get_num_procs() / study->plan.max_threads;
-    if (n < 1) n = 1;
-    return n < study->plan.n ? n : study->plan.n;
-}
-
 /* Lock the members, so that no other study runs the same members in the folder. */
 static enum status lock_members(struct study *study) {
     const struct study_options *const options = study->options;
@@ -350,7 +330,11 @@ static enum status plan_and_run(struct study *study) {
     study->progress.n_members = study->plan.n_members;
     study->progress.n_done = study->plan.n_done;
     if (!exists) TRY(lock_members(study));
-    study->n_jobs = n_at_once(study);
+
+    // simultaneous members: usable processors over threads per member
+    int n = options->n_processes != 0 ? options->n_processes : omp_get_num_procs() / study->plan.max_threads;
+    if (n < 1) n = 1;
+    study->n_jobs = n < study->plan.n ? n : study->plan.n;
     return study->n_jobs > 0 ? run_jobs(study) : STATUS_OK;
 }
 

@@ -1,4 +1,5 @@
-/* study.h: runs the members of a study, one process per member. Tested by tests/study/test_study.sh.
+/* study.h: runs the members of a study, one process per member. Tested by tests/study/test_study.sh and
+ * tests/slurm/test_slurm.sh.
  *
  * A second call on the same folder continues the study: finished members are skipped, members with a checkpoint are
  * resumed, all other members run again. */
@@ -6,6 +7,7 @@
 #define STUDY_H
 
 #include <signal.h>
+#include <stdio.h>
 
 #include "base/status.h"
 #include "case/case_values.h"
@@ -36,5 +38,10 @@ struct study_options {
  * STATUS_CASE (a member is not a valid case; no member has run), STATUS_FILE (the folder contains another study, or a
  * process cannot be started), STATUS_SOLVER (a required member has failed), STATUS_STOPPED or STATUS_MEMORY. */
 enum status study_run(const struct case_values *values, const struct study_options *options, int *n_failed);
+
+/* study_slurm.c: write the files of an array job of Slurm into the folder: study.yaml (the whole study in one file),
+ * array.sbatch (the members, bundle members per task; bundle 0: the fewest members per task with at most 1000 tasks),
+ * gather.sbatch, and submit.sh, which submits both jobs. Fails with STATUS_CASE or STATUS_FILE. */
+enum status study_slurm(const struct case_values *study, const char *folder, int bundle, FILE *stream);
 
 #endif

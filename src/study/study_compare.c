@@ -1,7 +1,5 @@
 /* study_compare.c: write the sweep of a comparison and run the study. */
 #define _DEFAULT_SOURCE  // mkdtemp
-#include "study/study_compare.h"
-
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>

@@ -5,9 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
-#include "study/study_table.h"
+#include "study/study_print.h"
 
 enum { METHOD, ORDER, RTOL, STEP, N_KEYS };
 static const char *const keys[N_KEYS] = {"solver.method", "solver.order", "solver.rtol", "solver.step"};
@@ -20,33 +21,15 @@ int study_comparison_is(const struct case_values *study) {
     return study->sweep[0].n_values > STUDY_COMPARISON_N_REFERENCES;
 }
 
-static int is_complete(const struct member_file *member) {
-    return strcmp(member->status, "complete") == 0;
-}
-
 // ---- errors
 
-/* The distance of a point of a fish from the same point in the reference, in body lengths; NaN: unknown. */
+/* The distance of a point of a fish from the same point in the reference, in body lengths. */
 static double point_error(const struct case_values *study, const struct member_file *members, int m, const char *point,
                           int f) {
-    if (!is_complete(&members[m]) || !is_complete(&members[0])) return NAN;
     const int q = member_file_quantity_number(point);
     const double x = member_file_value(&members[m], q, f, 0) - member_file_value(&members[0], q, f, 0);
     const double y = member_file_value(&members[m], q, f, 1) - member_file_value(&members[0], q, f, 1);
     return hypot(x, y) / study->school.fish[f].length;
-}
-
-/* The relative error of the muscle work of a fish, or without a muscle of the mean power into the water. */
-static double power_error(const struct member_file *members, int m, int f) {
-    if (!is_complete(&members[m]) || !is_complete(&members[0])) return NAN;
-    static const char *const powers[] = {"actuation_work", "mean_power"};
-    for (int i = 0; i < 2; i++) {
-        const int q = member_file_quantity_number(powers[i]);
-        const double reference = member_file_value(&members[0], q, f, 0);
-        if (!(fabs(reference) > 0)) continue;
-        return fabs(member_file_value(&members[m], q, f, 0) / reference - 1);
-    }
-    return NAN;
 }
 
 void study_comparison_fill_errors(const struct case_values *study, const struct member_file *members) {
@@ -54,10 +37,17 @@ void study_comparison_fill_errors(const struct case_values *study, const struct 
     const int nose = member_file_quantity_number("nose_error"), tail = member_file_quantity_number("tail_error"),
               power = member_file_quantity_number("power_error");
     for (int m = 0; m < sweep_n_members(study); m++) {
+        const int are_known = member_file_is_complete(&members[m]) && member_file_is_complete(&members[0]);
         for (int f = 0; f < members[m].n_fish; f++) {
-            *member_file_place(&members[m], nose, f, 0) = point_error(study, members, m, "nose", f);
-            *member_file_place(&members[m], tail, f, 0) = point_error(study, members, m, "tail", f);
-            *member_file_place(&members[m], power, f, 0) = power_error(members, m, f);
+            *member_file_place(&members[m], nose, f, 0) = are_known ? point_error(study, members, m, "nose", f) : NAN;
+            *member_file_place(&members[m], tail, f, 0) = are_known ? point_error(study, members, m, "tail", f) : NAN;
+
+            // the work of the muscle, or without a muscle the mean power into the water
+            const int has_muscle = fabs(member_file_number(&members[0], "actuation_work", f)) > 0;
+            const char *const name = has_muscle ? "actuation_work" : "mean_power";
+            const double reference = member_file_number(&members[0], name, f);
+            *member_file_place(&members[m], power, f, 0) =
+                are_known && fabs(reference) > 0 ? fabs(member_file_number(&members[m], name, f) / reference - 1) : NAN;
         }
     }
 }
@@ -66,7 +56,7 @@ void study_comparison_fill_errors(const struct case_values *study, const struct 
 static double largest_error(const struct case_values *study, const struct member_file *member, const char *error) {
     double max = NAN;
     for (int f = 0; f < study->school.n_fish; f++) {
-        max = fmax(max, member_file_value(member, member_file_quantity_number(error), f, 0));
+        max = fmax(max, member_file_number(member, error, f));
     }
     return max;
 }
@@ -105,18 +95,17 @@ struct wall_time {
 /* buffer: (members) */
 static struct wall_time wall_time_of(const struct case_values *study, const struct member_file *members, int m,
                                      double *buffer) {
-    const int wall_time = member_file_quantity_number("wall_time");
     int n = 0;
     for (int i = m; i < sweep_n_members(study); i++) {
-        if (!are_repeats(study, i, m) || !is_complete(&members[i])) continue;
-        buffer[n++] = member_file_value(&members[i], wall_time, 0, 0);
+        if (!are_repeats(study, i, m) || !member_file_is_complete(&members[i])) continue;
+        buffer[n++] = member_file_number(&members[i], "wall_time", 0);
     }
     if (n == 0) return (struct wall_time){NAN, NAN};
     qsort(buffer, (size_t)n, sizeof *buffer, compare_numbers);
     return (struct wall_time){(buffer[(n - 1) / 2] + buffer[n / 2]) / 2, n > 1 ? (buffer[n - 1] - buffer[0]) / 2 : NAN};
 }
 
-// ---- the table
+// ---- names
 
 /* "ida2" for ida of order 2, otherwise the word of the method. */
 static void name_method(const struct case_values *study, int m, char name[STUDY_CELL_BYTES]) {
@@ -139,58 +128,6 @@ static const struct count {
     {"jacobian_evaluations", "Jacobians"},
 };
 enum { N_COUNTS = sizeof counts / sizeof *counts, N_BEFORE = 8, N_COLUMNS = N_BEFORE + N_COUNTS + 2 };
-
-static void comparison_fill_head(const struct study_table *table) {
-    static const char *const heads[N_BEFORE][2] = {{"method", ""},      {"rtol", ""},        {"step", "s"},
-                                                   {"nose", "lengths"}, {"tail", "lengths"}, {"power", "part"},
-                                                   {"wall", "s"},       {"+-", "s"}};
-    for (int c = 0; c < N_BEFORE; c++) {
-        for (int row = 0; row < 2; row++) study_table_set(table, row, c, "%s", heads[c][row]);
-    }
-    for (int c = 0; c < N_COUNTS; c++) study_table_set(table, 0, N_BEFORE + c, "%s", counts[c].head);
-    study_table_set(table, 0, N_COLUMNS - 2, "us/eval.");
-    study_table_set(table, 0, N_COLUMNS - 1, "status");
-}
-
-static void comparison_fill_row(const struct study_table *table, int row, const struct case_values *study,
-                                const struct member_file *members, int m, struct wall_time wall_time) {
-    const struct member_file *const member = &members[m];
-    char method[STUDY_CELL_BYTES];
-    name_method(study, m, method);
-    study_table_set(table, row, 0, "%s", method);
-    study_table_set(table, row, 1, "%s", has_step(study, m) ? "-" : set_to(study, m, RTOL));
-    study_table_set(table, row, 2, "%s", has_step(study, m) ? set_to(study, m, STEP) : "-");
-    study_table_number(table, row, 3, "%.1e", largest_error(study, member, "nose_error"));
-    study_table_number(table, row, 4, "%.1e", largest_error(study, member, "tail_error"));
-    study_table_number(table, row, 5, "%.1e", largest_error(study, member, "power_error"));
-    study_table_number(table, row, 6, "%.3f", wall_time.median);
-    study_table_number(table, row, 7, "%.3f", wall_time.spread);
-
-    for (int c = 0; c < N_COUNTS; c++) {
-        const int quantity = member_file_quantity_number(counts[c].quantity);
-        study_table_number(table, row, N_BEFORE + c, "%.0f", member_file_value(member, quantity, 0, 0));
-    }
-
-    const int evaluations = member_file_quantity_number("residual_evaluations");
-    study_table_number(table, row, N_COLUMNS - 2, "%.1f",
-                       1e6 * wall_time.median / member_file_value(member, evaluations, 0, 0));
-
-    // "failed: reason": the reasons follow the table
-    study_table_set(table, row, N_COLUMNS - 1, "%.*s", (int)strcspn(member->status, ":"), member->status);
-}
-
-/* One sentence on the reference. */
-static void print_reference(const struct case_values *study, const struct member_file *members, FILE *stream) {
-    char method[STUDY_CELL_BYTES], other[STUDY_CELL_BYTES];
-    name_method(study, 0, method);
-    name_method(study, 1, other);
-    fprintf(stream, "Reference: %s, rtol %s; difference of %s, rtol %s: %.1e (nose) and %.1e (tail) lengths", method,
-            set_to(study, 0, RTOL), other, set_to(study, 1, RTOL), largest_error(study, &members[1], "nose_error"),
-            largest_error(study, &members[1], "tail_error"));
-    const double power = largest_error(study, &members[1], "power_error");
-    if (!isnan(power)) fprintf(stream, ", relative difference of the power %.1e", power);
-    fprintf(stream, ".\n");
-}
 
 // ---- the cost at equal error
 
@@ -235,29 +172,15 @@ static int collect_points(const struct case_values *study, const struct member_f
                           struct point *point) {
     int n = 0;
     for (int i = m; i < sweep_n_members(study); i++) {
-        if (!is_same_method(study, i, m) || first_repeat(study, i) != i || !is_complete(&members[i])) continue;
-        const int evaluations = member_file_quantity_number("residual_evaluations");
-        point[n] = (struct point){i, error_of(study, &members[i]), member_file_value(&members[i], evaluations, 0, 0),
-                                  wall_time_of(study, members, i, buffer)};
+        if (!is_same_method(study, i, m) || first_repeat(study, i) != i || !member_file_is_complete(&members[i]))
+            continue;
+        point[n] =
+            (struct point){i, error_of(study, &members[i]), member_file_number(&members[i], "residual_evaluations", 0),
+                           wall_time_of(study, members, i, buffer)};
         n += point[n].error > 0;
     }
     qsort(point, (size_t)n, sizeof *point, compare_errors);
     return n;
-}
-
-/* The last setting with an error below a bound; n - 1: all settings, -1: no setting. */
-static int last_below(int n, const struct point *point, double error) {
-    int i = n - 1;
-    while (i >= 0 && point[i].error > error) i--;
-    return i;
-}
-
-static int cheapest_point(int n, const struct point *point) {
-    int least = 0;
-    for (int i = 1; i < n; i++) {
-        if (point[i].evaluations <= point[least].evaluations) least = i;
-    }
-    return least;
 }
 
 /* The cost at an error, by a power law between two settings. */
@@ -297,7 +220,10 @@ static void fill_cost(const struct study_table *table, int row, const struct cas
     char name[STUDY_CELL_BYTES], fine[STUDY_CELL_BYTES], coarse[STUDY_CELL_BYTES];
     name_method(study, point[0].member, name);
     study_table_set(table, row, 0, "%s", name);
-    const int i = last_below(n, point, error);
+
+    // the last setting with an error below the common one
+    int i = n - 1;
+    while (i >= 0 && point[i].error > error) i--;
     if (i < 0) {
         name_setting(study, point[0].member, fine);
         study_table_set(table, row, 5, "not reached: error %.1e with %s", point[0].error, fine);
@@ -306,7 +232,9 @@ static void fill_cost(const struct study_table *table, int row, const struct cas
 
     // if the errors of all settings are below, the cheapest setting gives an upper bound
     const int is_bound = i == n - 1;
-    const struct point *const a = &point[is_bound ? cheapest_point(n, point) : i], *const b = is_bound ? a : a + 1;
+    int least = is_bound ? 0 : i;
+    for (int k = 1; k < n && is_bound; k++) least = point[k].evaluations <= point[least].evaluations ? k : least;
+    const struct point *const a = &point[least], *const b = is_bound ? a : a + 1;
     name_setting(study, a->member, fine);
     const struct cost evaluations =
         is_bound ? (struct cost){a->evaluations, 0} : cost_at(a, b, error, unsure, a->evaluations, b->evaluations, 0);
@@ -329,11 +257,10 @@ static void fill_cost(const struct study_table *table, int row, const struct cas
 static enum status print_costs(const struct case_values *study, const struct member_file *members, FILE *stream) {
     const int n = sweep_n_members(study);
     struct study_table table = {0};
-    double *const buffer = calloc((size_t)n, sizeof *buffer);
-    struct point *const point = calloc((size_t)n, sizeof *point);
-    enum status status = STATUS_OK;
-
-    if (!buffer || !point) status = status_fail(STATUS_MEMORY, "out of memory: a comparison of %d members", n);
+    struct point *point = NULL;
+    double *buffer;
+    enum status status = MEMORY_NEW(buffer, n, "a comparison");
+    if (status == STATUS_OK) status = MEMORY_NEW(point, n, "a comparison");
     if (status == STATUS_OK) status = study_table_create(&table, 1 + n, 6);
     if (status != STATUS_OK) goto end;
 
@@ -360,42 +287,82 @@ end:
     return status;
 }
 
-// ---- printing
+// ---- the table
 
-/* Print the reasons of incomplete rows. */
-static void comparison_print_reasons(const struct case_values *study, const struct member_file *members, FILE *stream) {
-    for (int m = 0; m < sweep_n_members(study); m++) {
-        if (!strchr(members[m].status, ':')) continue;
-        if (m >= STUDY_COMPARISON_N_REFERENCES && first_repeat(study, m) != m) continue;
-        char method[STUDY_CELL_BYTES];
-        name_method(study, m, method);
-        const int by_step = has_step(study, m);
-        fprintf(stream, "%s, %s %s %s\n", method, by_step ? "step" : "rtol", set_to(study, m, by_step ? STEP : RTOL),
-                members[m].status);
+/* Fill the row of a setting, whose first member is m. */
+static void fill_setting(const struct study_table *table, int row, const struct case_values *study,
+                         const struct member_file *members, int m, double *buffer) {
+    const struct member_file *const member = &members[m];
+    const struct wall_time wall_time = wall_time_of(study, members, m, buffer);
+    char method[STUDY_CELL_BYTES];
+    name_method(study, m, method);
+    study_table_set(table, row, 0, "%s", method);
+    study_table_set(table, row, 1, "%s", has_step(study, m) ? "-" : set_to(study, m, RTOL));
+    study_table_set(table, row, 2, "%s", has_step(study, m) ? set_to(study, m, STEP) : "-");
+    study_table_number(table, row, 3, "%.1e", largest_error(study, member, "nose_error"));
+    study_table_number(table, row, 4, "%.1e", largest_error(study, member, "tail_error"));
+    study_table_number(table, row, 5, "%.1e", largest_error(study, member, "power_error"));
+    study_table_number(table, row, 6, "%.3f", wall_time.median);
+    study_table_number(table, row, 7, "%.3f", wall_time.spread);
+
+    for (int c = 0; c < N_COUNTS; c++) {
+        study_table_number(table, row, N_BEFORE + c, "%.0f", member_file_number(member, counts[c].quantity, 0));
     }
+
+    study_table_number(table, row, N_COLUMNS - 2, "%.1f",
+                       1e6 * wall_time.median / member_file_number(member, "residual_evaluations", 0));
+
+    // "failed: reason": the reasons follow the table
+    study_table_set(table, row, N_COLUMNS - 1, "%.*s", (int)strcspn(member->status, ":"), member->status);
 }
 
 enum status study_comparison_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
+    static const char *const heads[N_BEFORE][2] = {{"method", ""},      {"rtol", ""},        {"step", "s"},
+                                                   {"nose", "lengths"}, {"tail", "lengths"}, {"power", "part"},
+                                                   {"wall", "s"},       {"+-", "s"}};
     const int n = sweep_n_members(study);
+    struct study_table table = {0};
+    double *buffer;
     int n_rows = 0;
     for (int m = STUDY_COMPARISON_N_REFERENCES; m < n; m++) n_rows += first_repeat(study, m) == m;
-    double *const buffer = calloc((size_t)n, sizeof *buffer);
-    if (!buffer) return status_fail(STATUS_MEMORY, "out of memory: a comparison of %d members", n);
-    struct study_table table;
-    enum status status = study_table_create(&table, 2 + n_rows, N_COLUMNS);
-    if (status == STATUS_OK) {
-        comparison_fill_head(&table);
-        for (int m = STUDY_COMPARISON_N_REFERENCES, row = 2; m < n; m++) {
-            if (first_repeat(study, m) != m) continue;
-            comparison_fill_row(&table, row++, study, members, m, wall_time_of(study, members, m, buffer));
-        }
-        print_reference(study, members, stream);
-        study_table_print(&table, stream);
-        study_table_free(&table);
-        status = print_costs(study, members, stream);
-        comparison_print_reasons(study, members, stream);
+    enum status status = MEMORY_NEW(buffer, n, "a comparison");
+    if (status == STATUS_OK) status = study_table_create(&table, 2 + n_rows, N_COLUMNS);
+    if (status != STATUS_OK) goto free_buffer;
+
+    // one sentence on the reference
+    char method[STUDY_CELL_BYTES], other[STUDY_CELL_BYTES];
+    name_method(study, 0, method);
+    name_method(study, 1, other);
+    fprintf(stream, "Reference: %s, rtol %s; difference of %s, rtol %s: %.1e (nose) and %.1e (tail) lengths", method,
+            set_to(study, 0, RTOL), other, set_to(study, 1, RTOL), largest_error(study, &members[1], "nose_error"),
+            largest_error(study, &members[1], "tail_error"));
+    const double power = largest_error(study, &members[1], "power_error");
+    if (!isnan(power)) fprintf(stream, ", relative difference of the power %.1e", power);
+    fprintf(stream, ".\n");
+
+    for (int c = 0; c < N_BEFORE; c++) {
+        for (int row = 0; row < 2; row++) study_table_set(&table, row, c, "%s", heads[c][row]);
+    }
+    for (int c = 0; c < N_COUNTS; c++) study_table_set(&table, 0, N_BEFORE + c, "%s", counts[c].head);
+    study_table_set(&table, 0, N_COLUMNS - 2, "us/eval.");
+    study_table_set(&table, 0, N_COLUMNS - 1, "status");
+    for (int m = STUDY_COMPARISON_N_REFERENCES, row = 2; m < n; m++) {
+        if (first_repeat(study, m) == m) fill_setting(&table, row++, study, members, m, buffer);
+    }
+    study_table_print(&table, stream);
+
+    status = print_costs(study, members, stream);
+    for (int m = 0; m < n; m++) {
+        if (!strchr(members[m].status, ':')) continue;
+        if (m >= STUDY_COMPARISON_N_REFERENCES && first_repeat(study, m) != m) continue;
+        char setting[STUDY_CELL_BYTES];
+        name_method(study, m, method);
+        name_setting(study, m, setting);
+        fprintf(stream, "%s, %s %s\n", method, setting, members[m].status);
     }
 
+free_buffer:
+    study_table_free(&table);
     free(buffer);
     return status;
 }

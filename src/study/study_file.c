@@ -1,11 +1,13 @@
-/* study_file.c: writing study.nc. */
+/* study_file.c: writing and reading study.nc. */
 #include "study/study_file.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
 #include "result/netcdf.h"
@@ -56,22 +58,21 @@ static const char *set_text(const struct writing *writing, int m, int axis, int 
     return swept->value[sweep_member_value(writing->study, m, axis) * swept->n_keys + key];
 }
 
-static const char *warnings_of(const struct writing *writing, int m) {
-    return writing->member[m].warnings ? writing->member[m].warnings : "";
-}
-
 /* The length of the longest string in the file. */
 static size_t longest_text(const struct writing *writing) {
-    size_t max = writing->errors ? ERROR_STUDY_BYTES : MIN_TEXT;
     const struct case_values *const study = writing->study;
-    for (int m = 0; m < writing->n_members; m++) {
-        if (strlen(writing->member[m].status) > max) max = strlen(writing->member[m].status);
-        if (strlen(warnings_of(writing, m)) > max) max = strlen(warnings_of(writing, m));
-    }
+    size_t max = writing->errors ? ERROR_STUDY_BYTES : MIN_TEXT;
 
-    for (int a = 0; a < study->n_axes; a++) {
-        for (int i = 0; i < study->sweep[a].n_values * study->sweep[a].n_keys; i++) {
-            if (strlen(study->sweep[a].value[i]) > max) max = strlen(study->sweep[a].value[i]);
+    for (int m = 0; m < writing->n_members; m++) {
+        const struct member_file *const member = &writing->member[m];
+        const size_t of_status = strlen(member->status), of_warnings = member->warnings ? strlen(member->warnings) : 0;
+        if (of_status > max) max = of_status;
+        if (of_warnings > max) max = of_warnings;
+        for (int a = 0; a < study->n_axes; a++) {
+            for (int k = 0; k < study->sweep[a].n_keys; k++) {
+                const size_t of_key = strlen(set_text(writing, m, a, k));
+                if (of_key > max) max = of_key;
+            }
         }
     }
 
@@ -96,33 +97,10 @@ static int define_variable(struct writing *writing, const char *name, enum netcd
     return netcdf_define_variable(&writing->writer, &variable);
 }
 
-static void define_quantity(struct writing *writing, const struct member_file_quantity *quantity) {
-    struct netcdf_variable variable = {.name = quantity->name,
-                                       .long_name = quantity->long_name,
-                                       .units = quantity->unit,
-                                       .type = NETCDF_DOUBLE,
-                                       .n_dimensions = 1,
-                                       .dimension = {writing->member_dimension},
-                                       .has_gaps = true};
-    if (quantity->of_fish) variable.dimension[variable.n_dimensions++] = writing->fish_dimension;
-    if (quantity->of_xy) variable.dimension[variable.n_dimensions++] = writing->xy_dimension;
-    netcdf_define_variable(&writing->writer, &variable);
-}
-
 /* Whether study.nc contains a quantity. */
 static bool has_quantity(const struct case_values *study, const struct member_file_quantity *quantity) {
     if (quantity->of_steady) return sweep_is_steady(study);
     return !quantity->of_comparison || study_comparison_is(study);
-}
-
-static void define_key(struct writing *writing, int a, int k) {
-    const struct sweep_axis *const axis = &writing->study->sweep[a];
-    char name[NAME_BYTES];
-    variable_name(axis->key[k].path, name);
-    const int number = define_variable(writing, name, axis->key[k].is_number ? NETCDF_DOUBLE : NETCDF_TEXT,
-                                       writing->member_dimension, axis->key[k].path, axis->key[k].unit);
-    netcdf_write_integer(&writing->writer, number, "axis", a);
-    if (k == 0 && axis->refine) netcdf_write_integer(&writing->writer, number, "refine", 1);
 }
 
 static void define_all(struct writing *writing) {
@@ -141,11 +119,30 @@ static void define_all(struct writing *writing) {
     }
 
     for (int a = 0; a < study->n_axes; a++) {
-        for (int k = 0; k < study->sweep[a].n_keys; k++) define_key(writing, a, k);
+        for (int k = 0; k < study->sweep[a].n_keys; k++) {
+            const struct sweep_key *const key = &study->sweep[a].key[k];
+            char name[NAME_BYTES];
+            variable_name(key->path, name);
+            const int number = define_variable(writing, name, key->is_number ? NETCDF_DOUBLE : NETCDF_TEXT,
+                                               writing->member_dimension, key->path, key->unit);
+            netcdf_write_integer(writer, number, "axis", a);
+            if (k == 0 && study->sweep[a].refine) netcdf_write_integer(writer, number, "refine", 1);
+        }
     }
 
     for (int q = 0; member_file_quantity(q); q++) {
-        if (has_quantity(study, member_file_quantity(q))) define_quantity(writing, member_file_quantity(q));
+        const struct member_file_quantity *const quantity = member_file_quantity(q);
+        if (!has_quantity(study, quantity)) continue;
+        struct netcdf_variable variable = {.name = quantity->name,
+                                           .long_name = quantity->long_name,
+                                           .units = quantity->unit,
+                                           .type = NETCDF_DOUBLE,
+                                           .n_dimensions = 1,
+                                           .dimension = {writing->member_dimension},
+                                           .has_gaps = true};
+        if (quantity->of_fish) variable.dimension[variable.n_dimensions++] = writing->fish_dimension;
+        if (quantity->of_xy) variable.dimension[variable.n_dimensions++] = writing->xy_dimension;
+        netcdf_define_variable(writer, &variable);
     }
 
     const int of_orders[] = {writing->fish_dimension, writing->xy_dimension, writing->text_dimension};
@@ -197,7 +194,7 @@ static void write_all(struct writing *writing) {
         netcdf_write_ints(&writing->writer, netcdf_number(&writing->writer, own[MEMBER].name), (size_t[]){(size_t)m},
                           (size_t[]){1}, &m);
         write_text(writing, own[STATUS].name, m, writing->member[m].status);
-        write_text(writing, own[WARNINGS].name, m, warnings_of(writing, m));
+        write_text(writing, own[WARNINGS].name, m, writing->member[m].warnings ? writing->member[m].warnings : "");
     }
 
     for (int f = 0; f < writing->n_fish; f++) write_text(writing, own[FISH_NAME].name, f, study->school.fish[f].name);
@@ -213,17 +210,6 @@ static void write_all(struct writing *writing) {
     if (writing->errors) error_report_write(&writing->writer, writing->errors, writing->n_text, writing->text);
 }
 
-/* Write a temporary file, then rename the file to path. */
-static enum status write_file(struct writing *writing, const char *path, const char *command) {
-    TRY(target_check(path, TARGET_NETCDF, true));
-    TRY(netcdf_create(&writing->writer, path, writing->study->name, command));
-    define_all(writing);
-    write_all(writing);
-    const enum status status = netcdf_publish(&writing->writer, true);
-    const enum status finished = netcdf_finish(&writing->writer);
-    return status == STATUS_OK ? finished : status;
-}
-
 enum status study_file_write(const char *path, const struct case_values *study, const struct member_file *member,
                              const struct study_orders *orders, const struct error_study *errors, const char *command) {
     struct writing writing = {.study = study,
@@ -234,14 +220,22 @@ enum status study_file_write(const char *path, const struct case_values *study, 
                               .n_fish = study->school.n_fish};
 
     writing.n_text = longest_text(&writing);
-    writing.buffer = calloc((size_t)writing.n_members * (size_t)writing.n_fish * 2, sizeof *writing.buffer);
-    writing.text = calloc(writing.n_text, 1);
-    const enum status status = writing.buffer && writing.text
-                                   ? write_file(&writing, path, command)
-                                   : status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
+    enum status status = MEMORY_NEW(writing.buffer, writing.n_members * writing.n_fish * 2, "study.nc");
+    if (status == STATUS_OK) status = MEMORY_NEW(writing.text, writing.n_text, "study.nc");
+
+    // write a temporary file, then rename the file to path
+    if (status == STATUS_OK) status = target_check(path, TARGET_NETCDF, true);
+    if (status == STATUS_OK) status = netcdf_create(&writing.writer, path, study->name, command);
+    if (status == STATUS_OK) {
+        define_all(&writing);
+        write_all(&writing);
+        status = netcdf_publish(&writing.writer, true);
+        const enum status finished = netcdf_finish(&writing.writer);
+        if (status == STATUS_OK) status = finished;
+    }
+
     free(writing.buffer);
     free(writing.text);
-
     return status;
 }
 
@@ -271,4 +265,104 @@ int study_file_listed(int i, struct result_listed *listed) {
     int n_orders = 0;
     for (struct result_listed other; study_orders_listed(n_orders, &other);) n_orders++;
     return k < n_orders ? study_orders_listed(k, listed) : error_report_listed(k - n_orders, listed);
+}
+
+// ---- reading
+
+enum { MAX_MEMBERS = 100000 };
+
+/* An open study.nc. */
+struct reading {
+    struct netcdf_reader reader;
+    const struct case_values *study;
+    struct member_file *member;
+    size_t n_members, n_text; /* lengths of dimensions */
+    double *buffer;           /* one quantity of all members */
+};
+
+/* Read one quantity of all members; files of earlier versions may lack the quantity. */
+static enum status read_quantity(const struct reading *reading, int q) {
+    const struct member_file_quantity *const quantity = member_file_quantity(q);
+    if (!netcdf_has(&reading->reader, quantity->name)) return STATUS_OK;
+    const int n_fish = reading->study->school.n_fish;
+    const struct netcdf_slice slice[] = {{"member", 0, reading->n_members},
+                                         {quantity->of_fish ? "fish" : NULL, 0, (size_t)n_fish},
+                                         {quantity->of_xy ? "xy" : NULL, 0, 2},
+                                         {NULL}};
+    TRY(netcdf_read_doubles(&reading->reader, quantity->name, slice, reading->buffer));
+    const double *from = reading->buffer;
+    for (size_t m = 0; m < reading->n_members; m++) {
+        for (int f = 0; f < (quantity->of_fish ? n_fish : 1); f++) {
+            for (int k = 0; k < 1 + quantity->of_xy; k++) {
+                *member_file_place(&reading->member[m], q, f, k) = *from++;
+            }
+        }
+    }
+
+    return STATUS_OK;
+}
+
+/* Read a string of a member; the caller frees the string. */
+static enum status read_string(const struct reading *reading, const char *name, size_t m, char **string) {
+    TRY(MEMORY_NEW(*string, reading->n_text + 1, "study.nc"));
+    const struct netcdf_slice slice[] = {{"member", m, 1}, {"text", 0, reading->n_text}, {NULL}};
+    return netcdf_read_text(&reading->reader, name, slice, *string);
+}
+
+static enum status read_members(struct reading *reading) {
+    const size_t n_fish = (size_t)reading->study->school.n_fish;
+    const struct netcdf_reader *const reader = &reading->reader;
+    size_t length;
+
+    if (reading->study->error) {
+        // an error study with refinement has a variable number of members
+        TRY(netcdf_read_length(reader, "member", 1, MAX_MEMBERS, &reading->n_members));
+    } else {
+        TRY(netcdf_read_length(reader, "member", reading->n_members, reading->n_members, &length));
+    }
+
+    TRY(netcdf_read_length(reader, "fish", n_fish, n_fish, &length));
+    TRY(netcdf_read_length(reader, "text", 1, INT_MAX, &reading->n_text));
+    TRY(MEMORY_NEW(reading->member, reading->n_members, "the members of study.nc"));
+    TRY(MEMORY_NEW(reading->buffer, reading->n_members * n_fish * 2, "the members of study.nc"));
+
+    // files of earlier versions have no warnings
+    for (size_t m = 0; m < reading->n_members; m++) {
+        struct member_file *const member = &reading->member[m];
+        member->number = (int)m;
+        TRY(member_file_create_values(member, reading->study->school.n_fish));
+        TRY(read_string(reading, "status", m, &member->status));
+        if (netcdf_has(reader, "warnings")) TRY(read_string(reading, "warnings", m, &member->warnings));
+    }
+    for (int q = 0; member_file_quantity(q); q++) TRY(read_quantity(reading, q));
+
+    return STATUS_OK;
+}
+
+enum status study_file_read(const char *path, struct case_values *study, struct member_file **members, int *n_members) {
+    struct reading reading = {.study = study};
+    char *text = NULL;
+    TRY(netcdf_open(&reading.reader, path));
+    enum status status = netcdf_read_string(&reading.reader, "study_case", &text);
+    if (status == STATUS_OK) status = case_parse(study, text, strlen(text), path, NULL, 0, NULL);
+    free(text);
+
+    if (status == STATUS_OK) {
+        reading.n_members = (size_t)sweep_n_members(study);
+        status = read_members(&reading);
+        free(reading.buffer);
+        for (size_t m = 0; status != STATUS_OK && reading.member && m < reading.n_members; m++) {
+            member_file_free(&reading.member[m]);
+        }
+        if (status != STATUS_OK) free(reading.member);
+        if (status != STATUS_OK) case_free(study);
+    }
+
+    netcdf_close(&reading.reader);
+    if (status == STATUS_OK) {
+        *members = reading.member;
+        *n_members = (int)reading.n_members;
+    }
+    if (status == STATUS_OK || status == STATUS_MEMORY) return status;
+    return status_fail(STATUS_FILE, "%s; write study.nc again with `shoal gather`", status_message());
 }

@@ -1,4 +1,5 @@
-/* study_folder.h: the folder and the files of a study. Tested by tests/study/test_study.sh.
+/* study_folder.h: the folder and the files of a study; the members that have to run. Tested by
+ * tests/study/test_study.sh and test_study_folder.c.
  *
  *     FOLDER/member-0000.nc       result of a member, with the study and the number of the member
  *     FOLDER/member-0003.failed   reason of the failure of a member
@@ -37,5 +38,23 @@ void study_folder_free_members(struct member_file *members, int n);
 /* Read the merged case of the study from the first readable member file of the folder. The caller frees *text. Fails
  * with STATUS_FILE or STATUS_MEMORY. */
 enum status study_folder_find_study(const char *folder, char **text);
+
+// ---- the plan: selection of the unfinished members
+//
+// A member is finished if the member file is complete and was written by the same case.
+
+struct study_plan {
+    int n_members, n_done; /* requested members; finished members among the requested ones */
+    int n, *member;        /* numbers of the unfinished members                    (n) */
+    int max_threads;       /* largest number of threads of an unfinished member */
+};
+
+/* Check all members from first to last (last -1: all) and list the unfinished members. force: accept results of another
+ * study in the folder, and remove such results beyond the last member. The caller frees the plan, also after a failure.
+ * Fails with STATUS_CASE (no such members, or a member is not a valid case), STATUS_FILE (the folder contains results
+ * of another study) or STATUS_MEMORY. */
+enum status study_plan_create(struct study_plan *plan, const struct case_values *study, const char *folder, int first,
+                              int last, int force);
+void study_plan_free(struct study_plan *plan);
 
 #endif

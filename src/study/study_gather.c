@@ -11,7 +11,6 @@
 #include "case/sweep.h"
 #include "study/error_report.h"
 #include "study/study_comparison.h"
-#include "study/study_expect.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
 #include "study/study_orders.h"
@@ -23,7 +22,7 @@ static enum status test_completeness(const struct case_values *study, const stru
     const int n = sweep_n_members(study);
     int n_failed = 0;
     for (int m = 0; m < n; m++) {
-        n_failed += strcmp(members[m].status, "complete") != 0 && !study_expects_failure(study, members, m);
+        n_failed += !member_file_is_complete(&members[m]) && !study_expects_failure(study, members, m);
     }
     if (n_failed == 0) return STATUS_OK;
     return status_fail(STATUS_SOLVER, "%d of %d members in %s are not complete; run `shoal study` on this folder again",
@@ -172,15 +171,6 @@ enum status study_errors(const struct case_values *values, const struct study_op
     return status;
 }
 
-static enum status gather_errors(const struct case_values *values, const char *folder, const char *command, int strict,
-                                 FILE *stream) {
-    struct error_study study;
-    enum status status = error_plan_create(&study, values);
-    if (status == STATUS_OK) status = refine_and_report(&study, folder, NULL, command, strict, stream);
-    error_plan_free(&study);
-    return status;
-}
-
 enum status study_gather(const char *folder, const char *command, int strict, FILE *stream) {
     char *text;
     TRY(study_folder_find_study(folder, &text));
@@ -188,24 +178,16 @@ enum status study_gather(const char *folder, const char *command, int strict, FI
     enum status status = case_parse(&study, text, strlen(text), folder, NULL, 0, NULL);
     free(text);
     TRY(status);
-    status = study.error ? gather_errors(&study, folder, command, strict, stream)
-                         : study_report(&study, folder, NULL, command, strict, stream);
+    if (study.error) {
+        struct error_study errors;
+        status = error_plan_create(&errors, &study);
+        if (status == STATUS_OK) status = refine_and_report(&errors, folder, NULL, command, strict, stream);
+        error_plan_free(&errors);
+    } else {
+        status = study_report(&study, folder, NULL, command, strict, stream);
+    }
     case_free(&study);
     return status;
-}
-
-/* Print the number of members, the number of complete members and the axes. */
-static void print_head(const struct case_values *study, const struct member_file *members, int n, FILE *stream) {
-    int n_complete = 0;
-    for (int m = 0; m < n; m++) n_complete += strcmp(members[m].status, "complete") == 0;
-    fprintf(stream, "  %-10s  %d, %d of them complete\n", "members", n, n_complete);
-    for (int a = 0; a < study->n_axes; a++) {
-        const struct sweep_axis *const axis = &study->sweep[a];
-        fprintf(stream, "  axis %-5d  %d values of ", a, axis->n_values);
-        for (int k = 0; k < axis->n_keys; k++) fprintf(stream, "%s%s", k > 0 ? ", " : "", axis->key[k].path);
-        fprintf(stream, "%s\n", axis->refine ? ", refined" : "");
-    }
-    fprintf(stream, "\n");
 }
 
 static enum status print_study(const struct case_values *study, const struct member_file *members, FILE *stream) {
@@ -244,7 +226,19 @@ enum status study_info(const char *path, FILE *stream) {
     int n;
 
     TRY(study_file_read(path, &study, &members, &n));
-    print_head(&study, members, n, stream);
+
+    // the number of members, the number of complete members and the axes
+    int n_complete = 0;
+    for (int m = 0; m < n; m++) n_complete += member_file_is_complete(&members[m]);
+    fprintf(stream, "  %-10s  %d, %d of them complete\n", "members", n, n_complete);
+    for (int a = 0; a < study.n_axes; a++) {
+        const struct sweep_axis *const axis = &study.sweep[a];
+        fprintf(stream, "  axis %-5d  %d values of ", a, axis->n_values);
+        for (int k = 0; k < axis->n_keys; k++) fprintf(stream, "%s%s", k > 0 ? ", " : "", axis->key[k].path);
+        fprintf(stream, "%s\n", axis->refine ? ", refined" : "");
+    }
+    fprintf(stream, "\n");
+
     const enum status status =
         study.error ? print_errors(&study, members, n, stream) : print_study(&study, members, stream);
 

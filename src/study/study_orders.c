@@ -1,15 +1,16 @@
-/* study_orders.c: see study_orders.h. */
+/* study_orders.c: orders, limits and errors; their table and their variables in study.nc. */
 #include "study/study_orders.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
 #include "case/sweep_error.h"
 #include "case/sweep_quantity.h"
-#include "study/study_table.h"
+#include "study/study_print.h"
 
 enum { NAME_BYTES = 64, MEANING_BYTES = 160, WORDS_BYTES = 128 };
 
@@ -48,24 +49,6 @@ struct study_order study_order_of_errors(int n, const double *size, const double
 
 // ---- all groups
 
-static enum status orders_allocate(struct study_orders *orders, int n_groups, int n_levels) {
-    const size_t n = (size_t)n_groups * SWEEP_N_ORDERS * (size_t)orders->n_fish;
-    orders->level = calloc((size_t)n_levels, sizeof *orders->level);
-    orders->grid_spacing = calloc((size_t)n_levels, sizeof *orders->grid_spacing);
-    orders->first = calloc((size_t)n_groups, sizeof *orders->first);
-    orders->order = calloc(n, sizeof *orders->order);
-    orders->error = calloc(n * (size_t)n_levels, sizeof *orders->error);
-    if (!orders->level || !orders->grid_spacing || !orders->first || !orders->order || !orders->error) {
-        return status_fail(STATUS_MEMORY, "out of memory: the orders of %d levels", n_levels);
-    }
-
-    orders->n_groups = n_groups;
-    orders->n_levels = n_levels;
-    orders->n_judged = n_levels < ERROR_BUDGET_LEVELS ? n_levels : ERROR_BUDGET_LEVELS;
-
-    return STATUS_OK;
-}
-
 void study_orders_free(struct study_orders *orders) {
     free(orders->level);
     free(orders->grid_spacing);
@@ -98,30 +81,6 @@ static double size_of(const struct refinement *refinement, int value) {
                                                      : number;
 }
 
-/* Sort the levels from coarse to fine: insertion sort of few levels. */
-static void sort_levels(const struct refinement *refinement) {
-    struct study_orders *const orders = refinement->orders;
-    for (int i = 0; i < orders->n_levels; i++) {
-        const double size = size_of(refinement, i);
-        int j = i;
-        for (; j > 0 && orders->grid_spacing[j - 1] < size; j--) {
-            orders->grid_spacing[j] = orders->grid_spacing[j - 1];
-            orders->level[j] = orders->level[j - 1];
-        }
-        orders->grid_spacing[j] = size;
-        orders->level[j] = i;
-    }
-}
-
-/* A group starts at each member with the first value of the refined axis. */
-static void find_groups(const struct refinement *refinement) {
-    int n = 0;
-    for (int m = 0; m < sweep_n_members(refinement->study); m++) {
-        const int value = sweep_member_value(refinement->study, m, refinement->orders->axis);
-        if (value == 0) refinement->orders->first[n++] = m;
-    }
-}
-
 /* The member at a level of a group. */
 static const struct member_file *member_at(const struct refinement *refinement, int group, int level) {
     const struct study_orders *const orders = refinement->orders;
@@ -134,7 +93,7 @@ static const struct member_file *member_at(const struct refinement *refinement, 
 static void read_value(const struct refinement *refinement, int group, int level, int q, int f, double value[2]) {
     const struct member_file *const member = member_at(refinement, group, level);
     const int quantity = member_file_quantity_number(sweep_quantities[q].name);
-    const int is_complete = strcmp(member->status, "complete") == 0;
+    const int is_complete = member_file_is_complete(member);
     value[0] = is_complete ? member_file_value(member, quantity, f, 0) : NAN;
     value[1] = sweep_quantities[q].of_xy ? member_file_value(member, quantity, f, 1) : 0;
 }
@@ -153,8 +112,8 @@ static double noise_of(const struct refinement *refinement, const struct member_
     }
 
     if (!sweep_is_steady(study)) return rtol;
-    const double error = member_file_value(member, member_file_quantity_number("steady_error"), 0, 0);
-    const double residual = member_file_value(member, member_file_quantity_number("steady_residual"), 0, 0);
+    const double error = member_file_number(member, "steady_error", 0);
+    const double residual = member_file_number(member, "steady_residual", 0);
 
     return rtol + (isnan(error) ? of_residual * residual : error);
 }
@@ -245,12 +204,37 @@ enum status study_orders_create(struct study_orders *orders, const struct case_v
     *orders = (struct study_orders){.n_fish = study->school.n_fish};
     while (orders->axis < study->n_axes && !study->sweep[orders->axis].refine) orders->axis++;
     if (orders->axis == study->n_axes) return STATUS_OK;
+
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
-    const int n = axis->n_values, n_groups = sweep_n_members(study) / n;
-    TRY(orders_allocate(orders, n_groups, n));
+    const int n_levels = axis->n_values, n_groups = sweep_n_members(study) / n_levels;
+    const int n = n_groups * SWEEP_N_ORDERS * orders->n_fish;
+    static const char what[] = "the orders of a study";
+    TRY(MEMORY_NEW(orders->level, n_levels, what));
+    TRY(MEMORY_NEW(orders->grid_spacing, n_levels, what));
+    TRY(MEMORY_NEW(orders->first, n_groups, what));
+    TRY(MEMORY_NEW(orders->order, n, what));
+    TRY(MEMORY_NEW(orders->error, n * n_levels, what));
+    orders->n_groups = n_groups;
+    orders->n_levels = n_levels;
+    orders->n_judged = n_levels < ERROR_BUDGET_LEVELS ? n_levels : ERROR_BUDGET_LEVELS;
+
+    // sort the levels from coarse to fine: insertion sort of few levels
     const struct refinement refinement = {study, members, orders, sweep_error_find(axis->key[0].row)};
-    sort_levels(&refinement);
-    find_groups(&refinement);
+    for (int i = 0; i < n_levels; i++) {
+        const double size = size_of(&refinement, i);
+        int j = i;
+        for (; j > 0 && orders->grid_spacing[j - 1] < size; j--) {
+            orders->grid_spacing[j] = orders->grid_spacing[j - 1];
+            orders->level[j] = orders->level[j - 1];
+        }
+        orders->grid_spacing[j] = size;
+        orders->level[j] = i;
+    }
+
+    // a group starts at each member with the first value of the refined axis
+    for (int m = 0, g = 0; m < sweep_n_members(study); m++) {
+        if (sweep_member_value(study, m, orders->axis) == 0) orders->first[g++] = m;
+    }
 
     for (int g = 0; g < n_groups; g++) {
         for (int q = 0; q < SWEEP_N_ORDERS; q++) {
@@ -271,47 +255,6 @@ static void write_flag(const struct study_order *order, int q, size_t size, char
 }
 
 // ---- the table
-
-/* Head: the values of the axis over the columns of errors. */
-static void orders_fill_head(const struct study_table *table, const struct case_values *study,
-                             const struct study_orders *orders) {
-    static const char *const heads[] = {"coarse order", "order", "extrapolated", "", "error", "by"};
-    const struct sweep_axis *const axis = &study->sweep[orders->axis];
-    study_table_set(table, 0, 0, "difference of");
-    study_table_set(table, 0, 1, "fish");
-    study_table_set(table, 0, 2, "unit");
-    for (int i = 0; i < orders->n_levels; i++) {
-        study_table_set(table, 0, 3 + i, "%s", axis->value[orders->level[i] * axis->n_keys]);
-    }
-    for (int i = 0; i < 6; i++) study_table_set(table, 0, 3 + orders->n_levels + i, "%s", heads[i]);
-}
-
-/* The basis of an error. */
-static const char *error_basis(const struct study_orders *orders, const struct study_order *order, int is_given) {
-    if (is_given) return "reference";
-    if (order->verdict == ERROR_BUDGET_NONE) return "noise";
-    return orders->n_judged < ERROR_BUDGET_LEVELS ? "3 levels (wider bounds)" : "4 levels";
-}
-
-/* Fill the row of one quantity of one fish. */
-static void orders_fill_row(const struct study_table *table, int row, const struct case_values *study,
-                            const struct study_orders *orders, int group, int q, int f) {
-    const int n = orders->n_levels, place = place_of(orders, group, q, f);
-    const int is_given = !isnan(sweep_reference(study, orders->axis, q, f, 0));
-    const struct study_order *const order = &orders->order[place];
-
-    study_table_set(table, row, 0, "%s%s", sweep_quantities[q].name, is_given ? "*" : "");
-    study_table_set(table, row, 1, "%s", study->school.fish[f].name);
-    study_table_set(table, row, 2, "%s",
-                    member_file_quantity(member_file_quantity_number(sweep_quantities[q].name))->unit);
-    for (int i = 0; i < n; i++) study_table_number(table, row, 3 + i, "%.2e", orders->error[place * n + i]);
-    study_table_number(table, row, n + 3, "%.2f", order->coarse_order);
-    study_table_number(table, row, n + 4, "%.2f", order->order);
-    study_table_number(table, row, n + 5, "%.9g", order->limit[0]);
-    if (sweep_quantities[q].of_xy) study_table_number(table, row, n + 6, "%.9g", order->limit[1]);
-    study_table_number(table, row, n + 7, "%.1e", order->error);
-    study_table_set(table, row, n + 8, "%s", error_basis(orders, order, is_given));
-}
 
 /* Print the flag of an order and the test of the expected order; STATUS_MISSED for another order. */
 static enum status test_order(const struct case_values *study, const struct study_orders *orders, int group, int q,
@@ -336,26 +279,52 @@ static enum status test_order(const struct case_values *study, const struct stud
 /* Print errors and orders of one group: members that differ in the refined axis only. */
 static enum status print_group(const struct case_values *study, const struct study_orders *orders, int group,
                                FILE *stream) {
+    static const char *const heads[] = {"coarse order", "order", "extrapolated", "", "error", "by"};
+    const struct sweep_axis *const axis = &study->sweep[orders->axis];
+    const int n = orders->n_levels;
     struct study_table table;
-    TRY(study_table_create(&table, 1 + SWEEP_N_ORDERS * orders->n_fish, orders->n_levels + 9));
-    orders_fill_head(&table, study, orders);
-    int n_rows = 1;
-    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-        for (int f = 0; f < orders->n_fish; f++) {
-            if (!orders->order[place_of(orders, group, q, f)].is_known) continue;
-            orders_fill_row(&table, n_rows++, study, orders, group, q, f);
-        }
+    TRY(study_table_create(&table, 1 + SWEEP_N_ORDERS * orders->n_fish, n + 9));
+
+    // the values of the axis over the columns of errors
+    study_table_set(&table, 0, 0, "difference of");
+    study_table_set(&table, 0, 1, "fish");
+    study_table_set(&table, 0, 2, "unit");
+    for (int i = 0; i < n; i++) study_table_set(&table, 0, 3 + i, "%s", axis->value[orders->level[i] * axis->n_keys]);
+    for (int i = 0; i < 6; i++) study_table_set(&table, 0, 3 + n + i, "%s", heads[i]);
+
+    // a row for each quantity of each fish
+    int row = 1;
+    for (int place = 0; place < SWEEP_N_ORDERS * orders->n_fish; place++) {
+        const int q = place / orders->n_fish, f = place % orders->n_fish;
+        const struct study_order *const order = &orders->order[place_of(orders, group, q, f)];
+        const double *const error = &orders->error[place_of(orders, group, q, f) * n];
+        const struct sweep_quantity *const quantity = &sweep_quantities[q];
+        const int is_given = !isnan(sweep_reference(study, orders->axis, q, f, 0));
+        if (!order->is_known) continue;
+        study_table_set(&table, row, 0, "%s%s", quantity->name, is_given ? "*" : "");
+        study_table_set(&table, row, 1, "%s", study->school.fish[f].name);
+        study_table_set(&table, row, 2, "%s", member_file_quantity(member_file_quantity_number(quantity->name))->unit);
+        for (int i = 0; i < n; i++) study_table_number(&table, row, 3 + i, "%.2e", error[i]);
+        study_table_number(&table, row, n + 3, "%.2f", order->coarse_order);
+        study_table_number(&table, row, n + 4, "%.2f", order->order);
+        study_table_number(&table, row, n + 5, "%.9g", order->limit[0]);
+        if (quantity->of_xy) study_table_number(&table, row, n + 6, "%.9g", order->limit[1]);
+        study_table_number(&table, row, n + 7, "%.1e", order->error);
+        study_table_set(&table, row++, n + 8, "%s",
+                        is_given                                 ? "reference"
+                        : order->verdict == ERROR_BUDGET_NONE    ? "noise"
+                        : orders->n_judged < ERROR_BUDGET_LEVELS ? "3 levels (wider bounds)"
+                                                                 : "4 levels");
     }
 
-    table.n_rows = n_rows;
+    table.n_rows = row;
     study_table_print(&table, stream);
     study_table_free(&table);
     enum status status = STATUS_OK;
-    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-        for (int f = 0; f < orders->n_fish; f++) {
-            const enum status tested = test_order(study, orders, group, q, f, stream);
-            if (status == STATUS_OK) status = tested;
-        }
+    for (int place = 0; place < SWEEP_N_ORDERS * orders->n_fish; place++) {
+        const enum status tested =
+            test_order(study, orders, group, place / orders->n_fish, place % orders->n_fish, stream);
+        if (status == STATUS_OK) status = tested;
     }
 
     return status;
@@ -415,17 +384,6 @@ static const struct kind {
     {"objection_%s", "", "why the levels of %s state no order, so that the error is a largest difference", ORDERS_TEXT},
 };
 
-// the third dimension of a variable of a quantity: an extrapolated value has directions only where the quantity has
-static enum orders_dimension last_of(int kind, int of_xy) {
-    return kinds[kind].last == ORDERS_XY && !of_xy ? GROUP : kinds[kind].last;
-}
-
-// name or meaning of a kind for a quantity
-static void fill_name(char *text, size_t size, const char *format, const char *quantity) {
-    const int before = (int)(strstr(format, "%s") - format);
-    snprintf(text, size, "%.*s%s%s", before, format, quantity, format + before + 2);
-}
-
 int study_orders_listed(int i, struct result_listed *listed) {
     if (i < N_SINGLE) {
         *listed = (struct result_listed){.name = singles[i].name,
@@ -439,8 +397,8 @@ int study_orders_listed(int i, struct result_listed *listed) {
     static char name[N_KINDS][NAME_BYTES], meaning[N_KINDS][MEANING_BYTES];
     const int k = i - N_SINGLE;
     if (k >= N_KINDS) return 0;
-    fill_name(name[k], NAME_BYTES, kinds[k].name, "Q");
-    fill_name(meaning[k], MEANING_BYTES, kinds[k].meaning, "Q");
+    study_fill_name(name[k], NAME_BYTES, kinds[k].name, "Q");
+    study_fill_name(meaning[k], MEANING_BYTES, kinds[k].meaning, "Q");
     *listed = (struct result_listed){.name = name[k],
                                      .type = k == FLAG ? "char" : "double",
                                      .unit = kinds[k].unit ? kinds[k].unit : "of Q",
@@ -450,8 +408,6 @@ int study_orders_listed(int i, struct result_listed *listed) {
 
     return 1;
 }
-
-// ---- definition
 
 static void define(struct netcdf_writer *writer, const char *name, enum netcdf_type type, int n, const int *dimensions,
                    const char *units, const char *meaning) {
@@ -463,20 +419,6 @@ static void define(struct netcdf_writer *writer, const char *name, enum netcdf_t
                                        .has_gaps = type == NETCDF_DOUBLE};
     memcpy(variable.dimension, dimensions, (size_t)n * sizeof *dimensions);
     netcdf_define_variable(writer, &variable);
-}
-
-static void define_quantity(struct netcdf_writer *writer, int q, const int dimensions[N_ORDERS_DIMENSIONS]) {
-    const struct sweep_quantity *const quantity = &sweep_quantities[q];
-    const char *const own_units = member_file_quantity(member_file_quantity_number(quantity->name))->unit;
-    for (int k = 0; k < N_KINDS; k++) {
-        char name[NAME_BYTES], meaning[MEANING_BYTES];
-        fill_name(name, sizeof name, kinds[k].name, quantity->name);
-        fill_name(meaning, sizeof meaning, kinds[k].meaning, quantity->name);
-        const enum orders_dimension last = last_of(k, quantity->of_xy);
-        const int of_variable[] = {dimensions[GROUP], dimensions[ORDERS_FISH], dimensions[last]};
-        define(writer, name, k == FLAG ? NETCDF_TEXT : NETCDF_DOUBLE, last == GROUP ? 2 : 3, of_variable,
-               kinds[k].unit ? kinds[k].unit : own_units, meaning);
-    }
 }
 
 void study_orders_define(struct netcdf_writer *writer, const struct case_values *study,
@@ -492,11 +434,20 @@ void study_orders_define(struct netcdf_writer *writer, const struct case_values 
     }
 
     for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-        if (is_observed(study, q)) define_quantity(writer, q, all);
+        const struct sweep_quantity *const quantity = &sweep_quantities[q];
+        const char *const own_units = member_file_quantity(member_file_quantity_number(quantity->name))->unit;
+        for (int k = 0; k < N_KINDS && is_observed(study, q); k++) {
+            char name[NAME_BYTES], meaning[MEANING_BYTES];
+            study_fill_name(name, sizeof name, kinds[k].name, quantity->name);
+            study_fill_name(meaning, sizeof meaning, kinds[k].meaning, quantity->name);
+            // an extrapolated value has directions only where the quantity has
+            const enum orders_dimension last = kinds[k].last == ORDERS_XY && !quantity->of_xy ? GROUP : kinds[k].last;
+            const int of_variable[] = {all[GROUP], all[ORDERS_FISH], all[last]};
+            define(writer, name, k == FLAG ? NETCDF_TEXT : NETCDF_DOUBLE, last == GROUP ? 2 : 3, of_variable,
+                   kinds[k].unit ? kinds[k].unit : own_units, meaning);
+        }
     }
 }
-
-// ---- writing
 
 /* Write one quantity of one fish of a group. */
 static void write_order(struct netcdf_writer *writer, const struct study_orders *orders, int group, int q, int f,
@@ -514,11 +465,11 @@ static void write_order(struct netcdf_writer *writer, const struct study_orders 
 
     for (int k = 0; k < FLAG; k++) {
         const size_t n_last = k == DIFFERENCE ? (size_t)orders->n_levels : k == LIMIT && quantity->of_xy ? 2 : 1;
-        fill_name(name, sizeof name, kinds[k].name, quantity->name);
+        study_fill_name(name, sizeof name, kinds[k].name, quantity->name);
         netcdf_write_doubles(writer, netcdf_number(writer, name), start, (size_t[]){1, 1, n_last}, values[k]);
     }
 
-    fill_name(name, sizeof name, kinds[FLAG].name, quantity->name);
+    study_fill_name(name, sizeof name, kinds[FLAG].name, quantity->name);
     memset(text, 0, n_text);
     write_flag(order, q, n_text, text);
     netcdf_write_text(writer, netcdf_number(writer, name), start, (size_t[]){1, 1, n_text}, text);

@@ -1,11 +1,71 @@
-/* study_print.c: the table of members. */
+/* study_print.c: tables, the members of a study, and the expectations. */
 #include "study/study_print.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "case/sweep.h"
-#include "study/study_table.h"
+#include "case/sweep_expect.h"
+#include "case/sweep_quantity.h"
+
+// ---- tables
+
+enum status study_table_create(struct study_table *table, int n_rows, int n_columns) {
+    *table = (struct study_table){n_rows, n_columns, 0, NULL};
+    return MEMORY_NEW(table->cell, n_rows * n_columns, "a table");
+}
+
+void study_table_free(struct study_table *table) {
+    free(table->cell);
+    *table = (struct study_table){0};
+}
+
+void study_table_set(const struct study_table *table, int row, int column, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(table->cell[row * table->n_columns + column], STUDY_CELL_BYTES, format, arguments);
+    va_end(arguments);
+}
+
+void study_table_number(const struct study_table *table, int row, int column, const char *format, double number) {
+    char text[STUDY_CELL_BYTES];
+    snprintf(text, sizeof text, format, number);
+    study_table_set(table, row, column, "%s", isnan(number) ? "-" : text);
+}
+
+void study_fill_name(char *text, size_t size, const char *format, const char *quantity) {
+    const int before = (int)(strstr(format, "%s") - format);
+    snprintf(text, size, "%.*s%s%s", before, format, quantity, format + before + 2);
+}
+
+static int column_width(const struct study_table *table, int column) {
+    int max = 0;
+    for (int row = 0; row < table->n_rows; row++) {
+        const int length = (int)strlen(table->cell[row * table->n_columns + column]);
+        if (length > max) max = length;
+    }
+    return max;
+}
+
+void study_table_print(const struct study_table *table, FILE *stream) {
+    for (int row = 0; row < table->n_rows; row++) {
+        int n_blanks = 0;  // no blanks at the end of a line
+        for (int column = 0; column < table->n_columns; column++) {
+            const char *const text = table->cell[row * table->n_columns + column];
+            const int is_last = column == table->n_columns - 1, is_left = column < table->n_left;
+            const int rest = is_last ? 0 : column_width(table, column) - (int)strlen(text);
+            n_blanks += (column > 0 ? 2 : 0) + (is_left ? 0 : rest);
+            if (*text) fprintf(stream, "%*s%s", n_blanks, "", text);
+            n_blanks = (*text ? 0 : n_blanks) + (is_left ? rest : 0);
+        }
+        fprintf(stream, "\n");
+    }
+}
+
+// ---- members
 
 enum { MAX_FISH_SHOWN = 4, MAX_WARNINGS_SHOWN = 20 };
 
@@ -33,117 +93,88 @@ static const struct shown {
 };
 enum { N_SHOWN = sizeof shown / sizeof *shown };
 
-/* The printed quantities of the members of a study. */
-struct columns {
-    const struct shown *shown[N_SHOWN];
-    int n;
-};
-
-static int has_held(const struct case_values *study) {
+/* Whether a quantity is printed. */
+static int is_shown(const struct shown *one, const struct case_values *study, const struct member_file *members) {
+    int has_held = !one->of_held;
     for (int f = 0; f < study->school.n_fish; f++) {
         const struct motion_parameters *const motion = &study->school.fish[f].motion;
-        if (motion->prescribed != PRESCRIBED_NONE && motion->surge == SURGE_GIVEN) return 1;
-    }
-    return 0;
-}
-
-/* Leave out the quantities of held bodies in a study without one, and those of steady states that no member has. */
-static struct columns columns_of(const struct case_values *study, const struct member_file *members, int n) {
-    struct columns columns = {.n = 0};
-    for (int s = 0; s < N_SHOWN; s++) {
-        if (shown[s].of_held && !has_held(study)) continue;
-        const int quantity = member_file_quantity_number(shown[s].quantity);
-        int is_known = !member_file_quantity(quantity)->of_steady;
-        for (int m = 0; m < n && !is_known; m++) is_known = !isnan(member_file_value(&members[m], quantity, 0, 0));
-        if (is_known) columns.shown[columns.n++] = &shown[s];
-    }
-    return columns;
-}
-
-/* "modulus" for fish[*].body.modulus, "[1]phase" for fish[1].wave.phase. */
-static void set_short_name(const struct study_table *table, int row, int column, const char *path) {
-    const char *const dot = strrchr(path, '.');
-    const int is_one = strncmp(path, "fish[", 5) == 0 && path[5] != '*';
-    study_table_set(table, row, column, "%.*s%s", is_one ? (int)strcspn(path + 4, ".") : 0, path + 4,
-                    dot ? dot + 1 : path);
-}
-
-/* Head and unit of each column. */
-static void members_fill_head(const struct study_table *table, const struct case_values *study,
-                              const struct columns *columns, int with_fish) {
-    int c = 0;
-    study_table_set(table, 0, c++, "member");
-    for (int a = 0; a < study->n_axes; a++) {
-        for (int k = 0; k < study->sweep[a].n_keys; k++, c++) {
-            set_short_name(table, 0, c, study->sweep[a].key[k].path);
-            study_table_set(table, 1, c, "%s", study->sweep[a].key[k].unit);
-        }
+        has_held |= motion->prescribed != PRESCRIBED_NONE && motion->surge == SURGE_GIVEN;
     }
 
-    if (with_fish) study_table_set(table, 0, c++, "fish");
-    for (int s = 0; s < columns->n; s++, c++) {
-        const char *const unit = member_file_quantity(member_file_quantity_number(columns->shown[s]->quantity))->unit;
-        study_table_set(table, 0, c, "%s", columns->shown[s]->head);
-        study_table_set(table, 1, c, "%s", strcmp(unit, "1") == 0 ? "" : unit);
+    int is_known = !member_file_quantity(member_file_quantity_number(one->quantity))->of_steady;
+    for (int m = 0; m < sweep_n_members(study) && !is_known; m++) {
+        is_known = !isnan(member_file_number(&members[m], one->quantity, 0));
     }
-
-    study_table_set(table, 0, c, "status");
-}
-
-/* Fill the row of one fish of one member. */
-static void members_fill_row(const struct study_table *table, int row, const struct case_values *study,
-                             const struct columns *columns, const struct member_file *member, int number, int f,
-                             int with_fish) {
-    int c = 0;
-    study_table_set(table, row, c++, "%d", number);
-    for (int a = 0; a < study->n_axes; a++) {
-        const struct sweep_axis *const axis = &study->sweep[a];
-        const int value = sweep_member_value(study, number, a);
-        for (int k = 0; k < axis->n_keys; k++) {
-            study_table_set(table, row, c++, "%s", axis->value[value * axis->n_keys + k]);
-        }
-    }
-
-    if (with_fish) study_table_set(table, row, c++, "%s", study->school.fish[f].name);
-    for (int s = 0; s < columns->n; s++) {
-        const int quantity = member_file_quantity_number(columns->shown[s]->quantity);
-        const double value = member_file_value(member, quantity, member_file_quantity(quantity)->of_fish ? f : 0, 0);
-        study_table_number(table, row, c++, columns->shown[s]->format, value);
-    }
-
-    // "failed: reason": the reasons follow the table
-    study_table_set(table, row, c, "%.*s", (int)strcspn(member->status, ":"), member->status);
-}
-
-/* Print the reasons of incomplete members. */
-static void members_print_reasons(const struct member_file *members, int n, FILE *stream) {
-    for (int m = 0; m < n; m++) {
-        if (strchr(members[m].status, ':')) fprintf(stream, "member %d %s\n", m, members[m].status);
-    }
+    return has_held && is_known;
 }
 
 enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
     const int n = sweep_n_members(study),
               n_fish = study->school.n_fish < MAX_FISH_SHOWN ? study->school.n_fish : MAX_FISH_SHOWN;
-    const struct columns columns = columns_of(study, members, n);
-    int n_columns = 2 + (n_fish > 1) + columns.n;
-
-    for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;
     struct study_table table;
+    int n_columns = 2 + (n_fish > 1), c = 0;
+    for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;
+    for (int s = 0; s < N_SHOWN; s++) n_columns += is_shown(&shown[s], study, members);
     TRY(study_table_create(&table, 2 + n * n_fish, n_columns));
-    members_fill_head(&table, study, &columns, n_fish > 1);
 
-    for (int m = 0; m < n; m++) {
-        for (int f = 0; f < n_fish; f++) {
-            members_fill_row(&table, 2 + m * n_fish + f, study, &columns, &members[m], m, f, n_fish > 1);
+    // one column after the other: head, unit and values
+    study_table_set(&table, 0, c, "member");
+    for (int row = 0; row < n * n_fish; row++) study_table_set(&table, 2 + row, c, "%d", row / n_fish);
+    c++;
+
+    for (int a = 0; a < study->n_axes; a++) {
+        const struct sweep_axis *const axis = &study->sweep[a];
+        for (int k = 0; k < axis->n_keys; k++, c++) {
+            // "modulus" for fish[*].body.modulus, "[1]phase" for fish[1].wave.phase
+            const char *const path = axis->key[k].path, *const dot = strrchr(path, '.');
+            const int is_one = strncmp(path, "fish[", 5) == 0 && path[5] != '*';
+            study_table_set(&table, 0, c, "%.*s%s", is_one ? (int)strcspn(path + 4, ".") : 0, is_one ? path + 4 : "",
+                            dot ? dot + 1 : path);
+            study_table_set(&table, 1, c, "%s", axis->key[k].unit);
+            for (int row = 0; row < n * n_fish; row++) {
+                const int value = sweep_member_value(study, row / n_fish, a);
+                study_table_set(&table, 2 + row, c, "%s", axis->value[value * axis->n_keys + k]);
+            }
         }
+    }
+
+    if (n_fish > 1) {
+        study_table_set(&table, 0, c, "fish");
+        for (int row = 0; row < n * n_fish; row++) {
+            study_table_set(&table, 2 + row, c, "%s", study->school.fish[row % n_fish].name);
+        }
+        c++;
+    }
+
+    for (int s = 0; s < N_SHOWN; s++) {
+        if (!is_shown(&shown[s], study, members)) continue;
+        const struct member_file_quantity *const quantity =
+            member_file_quantity(member_file_quantity_number(shown[s].quantity));
+        study_table_set(&table, 0, c, "%s", shown[s].head);
+        study_table_set(&table, 1, c, "%s", strcmp(quantity->unit, "1") == 0 ? "" : quantity->unit);
+        for (int row = 0; row < n * n_fish; row++) {
+            const int f = quantity->of_fish ? row % n_fish : 0;
+            study_table_number(&table, 2 + row, c, shown[s].format,
+                               member_file_number(&members[row / n_fish], quantity->name, f));
+        }
+        c++;
+    }
+
+    // "failed: reason": the reasons follow the table
+    study_table_set(&table, 0, c, "status");
+    for (int row = 0; row < n * n_fish; row++) {
+        const char *const status = members[row / n_fish].status;
+        study_table_set(&table, 2 + row, c, "%.*s", (int)strcspn(status, ":"), status);
     }
 
     study_table_print(&table, stream);
     study_table_free(&table);
-    if (n_fish < study->school.n_fish)
+    if (n_fish < study->school.n_fish) {
         fprintf(stream, "The first %d of %d fish; study.nc has all.\n", n_fish, study->school.n_fish);
-    members_print_reasons(members, n, stream);
+    }
+    for (int m = 0; m < n; m++) {
+        if (strchr(members[m].status, ':')) fprintf(stream, "member %d %s\n", m, members[m].status);
+    }
 
     return STATUS_OK;
 }
@@ -161,4 +192,134 @@ int study_print_warnings(const struct member_file *members, int n, FILE *stream)
     if (n_warnings > MAX_WARNINGS_SHOWN)
         fprintf(stream, "The first %d of %d warnings; study.nc has all.\n", MAX_WARNINGS_SHOWN, n_warnings);
     return n_warnings;
+}
+
+// ---- expectations
+
+/* Smallest and largest value of a quantity over the members and fish of an expectation. */
+struct extrema {
+    int n;
+    double min[2], max[2]; /* x and y of points */
+    int missing;           /* a member without a value; -1: none */
+};
+
+static struct extrema extrema_of(const struct case_values *study, const struct member_file *members,
+                                 const struct sweep_expectation *one, int q) {
+    const struct sweep_quantity *const what = &sweep_quantities[q];
+    const int quantity = member_file_quantity_number(what->name);
+    struct extrema extrema = {.min = {INFINITY, INFINITY}, .max = {-INFINITY, -INFINITY}, .missing = -1};
+
+    for (int m = 0; m < sweep_n_members(study); m++) {
+        if (!sweep_expects_of(study, one, m)) continue;
+        for (int f = 0; f < (what->of_fish ? study->school.n_fish : 1); f++) {
+            if (one->fish >= 0 && one->fish != f) continue;
+            extrema.n++;
+            for (int k = 0; k < 1 + what->of_xy; k++) {
+                const double value = member_file_value(&members[m], quantity, f, k);
+                if (isnan(value) || !member_file_is_complete(&members[m])) extrema.missing = m;
+                extrema.min[k] = fmin(extrema.min[k], value);
+                extrema.max[k] = fmax(extrema.max[k], value);
+            }
+        }
+    }
+
+    return extrema;
+}
+
+/* Print a value and the bound; 1 if the bound is met or NaN (no bound). */
+static int test_bound(const char *what, double value, const char *word, double bound, FILE *stream) {
+    if (isnan(bound)) return 1;
+    const int is_lower = strcmp(word, "least") == 0;
+    const int is_met = is_lower ? value >= bound : value <= bound;
+    fprintf(stream, "  %-8s %s %.9g, expected at %s %.9g\n", is_met ? "met" : "MISSED", what, value, word, bound);
+    return is_met;
+}
+
+/* Test the bounds of an expectation on one quantity. */
+static int test_quantity(const struct case_values *study, const struct member_file *members, int number, int q,
+                         FILE *stream) {
+    const struct sweep_expectation *const one = &study->expect[number];
+    const struct extrema extrema = extrema_of(study, members, one, q);
+    const char *const name = sweep_quantities[q].name;
+
+    fprintf(stream, "%s%s%s, %d value%s\n", name, one->fish >= 0 ? " of " : "",
+            one->fish >= 0 ? study->school.fish[one->fish].name : "", extrema.n, extrema.n == 1 ? "" : "s");
+    if (extrema.missing >= 0) {
+        const int is_complete = member_file_is_complete(&members[extrema.missing]);
+        fprintf(stream, "  MISSED   member %d %s\n", extrema.missing,
+                is_complete ? "has no such value" : "is not complete");
+        return 0;
+    }
+
+    // a scalar has no second direction
+    const double width = extrema.max[0] - extrema.min[0];
+    const double height = sweep_quantities[q].of_xy ? extrema.max[1] - extrema.min[1] : 0;
+
+    // infinite if the signs differ or a value is 0
+    const double low = extrema.min[0], high = extrema.max[0];
+    const double ratio = low > 0 ? high / low : high < 0 ? low / high : INFINITY;
+
+    // no short circuit: print every bound
+    const int n_met = test_bound("the smallest is", extrema.min[0], "least", one->min, stream) +
+                      test_bound("the largest is", extrema.max[0], "most", one->max, stream) +
+                      test_bound("the spread is", hypot(width, height), "most", one->spread, stream) +
+                      test_bound("the ratio is", ratio, "most", one->ratio, stream);
+
+    return n_met == 4;
+}
+
+static int has_failed(const struct member_file *member, const char *words) {
+    return strncmp(member->status, "failed", strlen("failed")) == 0 && strstr(member->status, words) != NULL;
+}
+
+int study_expects_failure(const struct case_values *study, const struct member_file *members, int member) {
+    for (int i = 0; i < study->n_expectations; i++) {
+        const struct sweep_expectation *const one = &study->expect[i];
+        if (one->fails && sweep_expects_of(study, one, member) && has_failed(&members[member], one->fails)) return 1;
+    }
+    return 0;
+}
+
+/* Whether all members of an expectation have failed with the expected message. */
+static int test_failures(const struct case_values *study, const struct member_file *members,
+                         const struct sweep_expectation *one, FILE *stream) {
+    int n = 0, wrong = -1;
+    for (int m = 0; m < sweep_n_members(study); m++) {
+        if (!sweep_expects_of(study, one, m)) continue;
+        n++;
+        if (!has_failed(&members[m], one->fails)) wrong = m;
+    }
+
+    fprintf(stream, "failures, %d member%s\n", n, n == 1 ? "" : "s");
+    if (wrong < 0) {
+        fprintf(stream, "  met      failed with '%s'\n", one->fails);
+    } else {
+        fprintf(stream, "  MISSED   member %d has not failed with '%s'\n", wrong, one->fails);
+    }
+
+    return wrong < 0;
+}
+
+enum status study_expect(const struct case_values *study, const struct member_file *members, FILE *stream) {
+    int n_missed = 0, first = 0;
+    const char *first_what = "";
+    if (study->n_expectations > 0) fprintf(stream, "\nExpected:\n");
+
+    for (int i = 0; i < study->n_expectations; i++) {
+        // test all quantities, and keep the first that is missed
+        const struct sweep_expectation *const one = &study->expect[i];
+        const char *what = NULL;
+        if (one->fails && !test_failures(study, members, one, stream)) what = "failures";
+        for (int q = 0; q < SWEEP_N_QUANTITIES && !one->fails; q++) {
+            if (!(one->of >> q & 1) || test_quantity(study, members, i, q, stream) || what) continue;
+            what = sweep_quantities[q].name;
+        }
+        if (!what || n_missed++ > 0) continue;
+        first = i;
+        first_what = what;
+    }
+
+    if (n_missed == 0) return STATUS_OK;
+    return status_fail(STATUS_MISSED, "expect[%d]: %s: expectation not met%s: see the output", first, first_what,
+                       n_missed > 1 ? ", and others" : "");
 }

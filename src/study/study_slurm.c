@@ -1,6 +1,4 @@
 /* study_slurm.c: a study as an array job of Slurm. */
-#include "study/study_slurm.h"
-
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
@@ -10,6 +8,7 @@
 #include "case/case.h"
 #include "case/sweep.h"
 #include "result/plain_file.h"
+#include "study/study.h"
 #include "study/study_folder.h"
 
 enum { MAX_TASKS = 1000 /* Slurm's own default is 1001 */ };

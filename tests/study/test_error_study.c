@@ -9,8 +9,8 @@
 #include "case/sweep.h"
 #include "failing_malloc.h"
 #include "near.h"
+#include "study/error_plan.h"
 #include "study/error_report.h"
-#include "study/error_study.h"
 
 /* A fish whose tail is no cusp, and long waves: nothing flags its keys before. */
 #define UNIFORM                                                           \

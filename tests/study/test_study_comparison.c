@@ -9,10 +9,10 @@
 #include "case/sweep.h"
 #include "failing_malloc.h"
 #include "near.h"
-#include "study/study_compare.h"
 #include "study/study_comparison.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
+#include "study/study_gather.h"
 
 #define CASE "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\n"
 #define ROW_A "[rk4, 4, 1e-5, 0.01]"

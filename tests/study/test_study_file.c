@@ -17,8 +17,7 @@
 #include "study/study_folder.h"
 #include "study/study_gather.h"
 #include "study/study_orders.h"
-#include "study/study_slurm.h"
-#include "study/study_table.h"
+#include "study/study_print.h"
 
 static void a_given_value_gives_the_order_with_two_levels_each(void **state) {
     (void)state;

@@ -1,4 +1,4 @@
-/* test_study_expect.c: statements about the ends of members: when they hold, and what is printed. */
+/* test_study_print.c: expectations on the results of members: the bounds that are met, and the printed text. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "case/case.h"
 #include "near.h"
 #include "study/member_file.h"
-#include "study/study_expect.h"
+#include "study/study_print.h"
 
 enum { N_MEMBERS = 3, N_FISH = 2 };
 

@@ -1,11 +1,11 @@
-/* test_study_plan.c: what of a study is still to be run, after all that can have happened to its folder. */
+/* test_study_folder.c: the members that have to run, for every state of the folder. */
 #include <stdlib.h>
 #include <sys/stat.h>
 
 #include "case/case.h"
 #include "crafted_file.h"
 #include "study/study.h"
-#include "study/study_plan.h"
+#include "study/study_folder.h"
 
 static const char case_text[] =
     "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\nfish: [{nodes: 5, sheet_points: 6}]\n"
