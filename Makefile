@@ -39,7 +39,7 @@ CC = clang
 B = build-sanitize-thread
 sanitize = -fsanitize=thread
 # what lets threads work side by side; `make test SANITIZE=thread TEST="..."` for others
-TEST = parallel pairwise treecode velocity_sum images flow residual linear simulate shoal clearance sundials threads
+TEST = parallel velocity_sum treecode images flow residual linear simulate shoal clearance sundials threads
 else
 B = build-sanitize$(if $(is_clang),-clang)
 # gcc 12 warns of variables that may be unset where the sanitizer's own code hides how they are set
@@ -329,9 +329,9 @@ $(B)/view/page.o: shoal_cflags += -Wa,-I$(abspath src/view)
 
 # with the sanitizers of clang this one, of long sums, takes minutes; the targets of `make fuzz` do not come here
 ifdef FUZZER
-$(B)/vortex/expansions_boxes.o: sanitize =
+$(B)/vortex/expansions.o: sanitize =
 else ifneq ($(and $(SANITIZE),$(is_clang)),)
-$(B)/vortex/expansions_boxes.o: CFLAGS = -O0 -g
+$(B)/vortex/expansions.o: CFLAGS = -O0 -g
 endif
 
 # rewritten only when the commit changes

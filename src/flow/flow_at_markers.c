@@ -7,7 +7,7 @@
 
 #include "flow/flow_external.h"
 #include "vortex/kernel.h"
-#include "vortex/pairwise.h"
+#include "vortex/velocity_sum.h"
 
 static const double two_pi = 6.28318530717958647692;
 
@@ -106,7 +106,7 @@ static enum status markers_induce_pairs(const struct flow *flow, int threads) {
     markers.n = flow->n_markers;
     // remove the last group, the bodies
     markers.n_groups--;
-    return pairwise_add_velocity(&markers, PAIRWISE_OF_PAIR, threads, flow->wake_u, flow->wake_v);
+    return velocity_sum_pairwise(&markers, PAIRWISE_OF_PAIR, threads, flow->wake_u, flow->wake_v);
 }
 
 // velocity of all images at the markers of a class, also stored in wake_image_u and wake_image_v

@@ -7,7 +7,7 @@
 #include "flow/flow_at_markers.h"
 #include "flow/flow_external.h"
 #include "flow/flow_rings.h"
-#include "vortex/pairwise.h"
+#include "vortex/velocity_sum.h"
 
 // external flow, nascent vortices, and direct sums of sheets and images at the free vortices
 static void others_at_wake(const struct flow *flow, int sheets_by_tree, int images_by_cells,
@@ -58,7 +58,7 @@ static enum status induce_many(struct flow *flow, int sheets_too, const struct v
         TRY(velocity_sum_induce(sum, &flow->sheet, tolerance, threads, at));
     }
 
-    return by_tree ? STATUS_OK : pairwise_add_velocity(moving, PAIRWISE_OF_SOURCE, threads, at->u, at->v);
+    return by_tree ? STATUS_OK : velocity_sum_pairwise(moving, PAIRWISE_OF_SOURCE, threads, at->u, at->v);
 }
 
 static enum status flow_at_vortices(struct flow *flow) {

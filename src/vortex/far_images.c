@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "vortex/tolerance.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -103,7 +104,7 @@ static void chebyshev_polynomials(int n, double x, double *value, double *slope)
 }
 
 static int n_nodes(double rho, double tolerance) {
-    const double n = ceil(log(error_factor * 10 / tolerance) / log(rho));
+    const double n = ceil(log(error_factor * TOLERANCE_SUM / tolerance) / log(rho));
     return n < 2 ? 2 : n > MAX_NODES ? MAX_NODES : (int)n;
 }
 
@@ -189,9 +190,7 @@ static void table_fill_offset(const struct table *table, int d, int e, double *v
 static enum status table_fill(struct table *table, int n_offsets, int threads) {
     const size_t n_values = (size_t)table->square.n * n_of_square(table);
     if (n_offsets > table->capacity) {
-        double *const value = realloc(table->value, (size_t)n_offsets * n_values * sizeof *value);
-        if (!value) return status_fail(STATUS_MEMORY, "out of memory: images in a channel");
-        table->value = value;
+        TRY(MEMORY_RESIZE(table->value, (size_t)n_offsets * n_values, "images in a channel"));
         table->capacity = n_offsets;
     }
 
@@ -235,8 +234,7 @@ static struct table *table_find(struct far_images *far, const struct walls *chan
 }
 
 enum status far_images_create(struct far_images **far) {
-    *far = calloc(1, sizeof **far);
-    return *far ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: images in a channel");
+    return MEMORY_NEW(*far, 1, "images in a channel");
 }
 
 void far_images_free(struct far_images *far) {

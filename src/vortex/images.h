@@ -3,11 +3,11 @@
  *
  * A vortex of circulation G at (x, y) has in the wall y = h an image of -G at (x, 2h - y). In a channel, h < y < h + H,
  * each image is mirrored again: G at (x, y + 2kH) and -G at (x, 2h - y + 2kH) for every integer k. The sums over k have
- * a closed form (image_rows.h). */
+ * a closed form (far_images.h). Part of the tolerance: tolerance.h. */
 #ifndef IMAGES_H
 #define IMAGES_H
 
-#include "vortex/image_rows.h"
+#include "vortex/far_images.h"
 #include "vortex/kernel.h"
 #include "vortex/velocity_sum.h"
 #include "vortex/vortices.h"

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "vortex/kernel.h"
 
 static const double inverse_two_pi = 0.159154943091895335769;
@@ -35,9 +36,7 @@ enum status ring_append(struct rings *rings, int n) {
     if (needed > rings->capacity) {
         const int capacity = needed + needed / 2;
         for (int i = 0; i < N_ARRAYS; i++) {
-            double *const more = realloc(*array[i], (size_t)capacity * sizeof *more);
-            if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d vortex rings", needed);
-            *array[i] = more;
+            TRY(MEMORY_RESIZE(*array[i], capacity, "vortex rings"));
         }
 
         rings->capacity = capacity;
@@ -81,7 +80,9 @@ struct block_sources {
     double span, factor, add;
 };
 
-static KERNEL_WIDE(void, block_velocity, (struct block * at, const struct block_sources *from), (at, from)) {
+// velocity and divergence, and optionally the gradients of both
+static inline __attribute__((always_inline)) void block_add(struct block *at, const struct block_sources *from,
+                                                            const int with_gradient) {
     const double scale = from->span * inverse_two_pi;
     for (int n = 0; n < from->n; n++) {
         const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, dx = from->dx[n] * scale;
@@ -96,30 +97,14 @@ static KERNEL_WIDE(void, block_velocity, (struct block * at, const struct block_
             at->v[i] += f * rx;
             at->leg_u[i] -= g * dy;
             at->leg_v[i] += g * dx;
-            at->div[i] += g * g * root * (rx * dy - ry * dx);
-        }
-    }
-}
-
-static KERNEL_WIDE(void, block_gradient, (struct block * at, const struct block_sources *from), (at, from)) {
-    const double scale = from->span * inverse_two_pi;
-    for (int n = 0; n < from->n; n++) {
-        const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, dx = from->dx[n] * scale;
-        const double dy = from->dy[n] * scale, half = from->factor * from->half[n] + from->leg[n];
-        const double square = from->square[n] + from->add;
-
-        for (int i = 0; i < BLOCK; i++) {
-            const double rx = at->x[i] - x, ry = at->y[i] - y, r2 = rx * rx + ry * ry;
-            const double r = r2 + (at->square[i] + square), t = r2 + (at->half[i] + half), root = sqrt(t);
-            const double inverse = 1 / (r * t * root), f = q * (inverse * t), g = inverse * r;
+            if (!with_gradient) {
+                at->div[i] += g * g * root * (rx * dy - ry * dx);
+                continue;
+            }
 
             // 1/T^(5/2), and the slopes of f and g over r
             const double fifth = g * g * root, by_f = -f * (2 * inverse * t * root + g * root), by_g = -3 * fifth;
             const double across = ry * dx - rx * dy, h = by_g, k = 15 * fifth * g * root;
-            at->u[i] -= f * ry;
-            at->v[i] += f * rx;
-            at->leg_u[i] -= g * dy;
-            at->leg_v[i] += g * dx;
             at->div[i] += h / 3 * across;
             at->u_x[i] -= (ry * by_f + dy * by_g) * rx;
             at->u_y[i] -= (ry * by_f + dy * by_g) * ry + f;
@@ -128,6 +113,14 @@ static KERNEL_WIDE(void, block_gradient, (struct block * at, const struct block_
             at->div_y[i] += k * across * ry + h * dx;
         }
     }
+}
+
+static KERNEL_WIDE(void, block_velocity, (struct block * at, const struct block_sources *from), (at, from)) {
+    block_add(at, from, 0);
+}
+
+static KERNEL_WIDE(void, block_gradient, (struct block * at, const struct block_sources *from), (at, from)) {
+    block_add(at, from, 1);
 }
 
 static KERNEL_WIDE(void, block_edge, (struct block * at, const struct block_sources *from), (at, from)) {

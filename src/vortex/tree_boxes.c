@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "vortex/kernel.h"
 
@@ -13,29 +14,21 @@ struct tree_point {
     int index;
 };
 
-static enum status tree_resize(void *memory, size_t n, size_t size) {
-    void **const pointer = memory;
-    void *const more = realloc(*pointer, n * size);
-    if (!more) return status_fail(STATUS_MEMORY, "out of memory: a tree of %zu points", n);
-    *pointer = more;
-    return STATUS_OK;
-}
-
 static enum status boxes_reserve(struct tree_boxes *boxes, int n, int n_boxes) {
     if (n > boxes->capacity) {
         const size_t capacity = (size_t)n + (size_t)n / 2;
         boxes->capacity = 0;
-        TRY(tree_resize(&boxes->index, capacity, sizeof *boxes->index));
-        TRY(tree_resize(&boxes->x, capacity, sizeof *boxes->x));
-        TRY(tree_resize(&boxes->y, capacity, sizeof *boxes->y));
-        TRY(tree_resize(&boxes->weight, capacity, sizeof *boxes->weight));
-        TRY(tree_resize(&boxes->work, capacity, sizeof *boxes->work));
+        TRY(MEMORY_RESIZE(boxes->index, capacity, "the tree of vortices"));
+        TRY(MEMORY_RESIZE(boxes->x, capacity, "the tree of vortices"));
+        TRY(MEMORY_RESIZE(boxes->y, capacity, "the tree of vortices"));
+        TRY(MEMORY_RESIZE(boxes->weight, capacity, "the tree of vortices"));
+        TRY(MEMORY_RESIZE(boxes->work, capacity, "the tree of vortices"));
         boxes->capacity = (int)capacity;
     }
 
     if (n_boxes > boxes->box_capacity) {
         boxes->box_capacity = 0;
-        TRY(tree_resize(&boxes->box, (size_t)n_boxes, sizeof *boxes->box));
+        TRY(MEMORY_RESIZE(boxes->box, n_boxes, "the tree of vortices"));
         boxes->box_capacity = n_boxes;
     }
 

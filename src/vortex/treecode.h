@@ -2,7 +2,7 @@
  * doc/performance.md, section "Fast multipole sums". Tested by tests/vortex/test_treecode.c.
  *
  * Vortices and targets are sorted into boxes (tree_boxes.h). Well-separated boxes interact by multipole and local
- * expansions (expansions.h); the degrees of every pair follow from the tolerance (tree_pairs.h). Near boxes interact by
+ * expansions (expansions.h); the degrees of every pair follow from the tolerance. Near boxes interact by
  * the direct sum of kernel.h:
  *
  *     upward pass      P2M in the leaves of the sources, M2M from halves to parents
@@ -14,9 +14,8 @@
  *
  *     |error of the velocity| <= tolerance A,      A = sum_j |Gamma_j| / (2 pi sqrt(|x - x_j|^2 + e^2)):
  *
- * A is about the velocity of the vortices without cancellation. The tests check this error; the bound in the choice of
- * the degrees is 4 times larger, errors in wakes are 100 times smaller. The error of a gradient is at most 50 tolerance
- * sum_j |Gamma_j| / (2 pi (|x - x_j|^2 + e^2)). Rounding adds some 1e-15 of the same sums.
+ * A is about the velocity of the vortices without cancellation. The tests check this error. The error of a gradient is
+ * at most 50 tolerance sum_j |Gamma_j| / (2 pi (|x - x_j|^2 + e^2)). Rounding adds some 1e-15 of the same sums.
  *
  * The order of the sums depends on the points only: the bits do not depend on the number of threads. */
 #ifndef TREECODE_H

@@ -21,8 +21,8 @@ struct far_images *velocity_sum_far_images(struct velocity_sum *sum);
 int velocity_sum_by_tree(const struct vortices *vortices, int n_targets, double tolerance);
 
 /* Add the velocity of all vortices to the targets, by the tree. The error of the velocity at a target is at most
- * tolerance/10 times the velocity without cancellation, sum |Gamma| / (2 pi sqrt(r^2 + e^2)); in a school this sum is
- * up to some ten body lengths per beat. The bits do not depend on the number of threads. Fails with STATUS_MEMORY. */
+ * tolerance / TOLERANCE_SUM times the velocity without cancellation, sum |Gamma| / (2 pi sqrt(r^2 + e^2)). The bits do
+ * not depend on the number of threads. Fails with STATUS_MEMORY. */
 enum status velocity_sum_induce(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
                                 int threads, const struct induced *at);
 
@@ -41,5 +41,30 @@ enum status velocity_sum_plan(struct velocity_sum *sum, const struct vortices *v
  * sums. */
 enum status velocity_sum_by_plan(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
                                  int threads, const struct induced *at);
+
+/* ---- the mutually induced velocities of smoothed point vortices, by the direct sum
+ *
+ * If a pair has one smoothing in both directions, K is odd: both velocities of the pair share K up to the sign, and the
+ * pair takes one division. doc/model.md, first paragraph.
+ *
+ * The vortices of one smoothing are sorted into tiles, and the pairs of tiles are distributed to shares. The number of
+ * shares depends on the vortices only. Each share has separate sums; the sums of the shares are added in a fixed order.
+ * The bits do not depend on the number of threads.
+ *
+ *          tile  0   1   2   3
+ *             0  a   a   b   b      a, b, c, d: shares; diagonal: pairs within one tile,
+ *             1      b   c   c      off-diagonal: pairs of two tiles
+ *             2          c   d
+ *             3              d                                                                                       */
+
+/* The smoothing of the velocity between two vortices of different smoothings. */
+enum pairwise_smoothing {
+    PAIRWISE_OF_SOURCE, /* the smoothing of the inducing vortex */
+    PAIRWISE_OF_PAIR    /* vortices_pair_smoothing, in both directions */
+};
+
+/* Add to u and v, m s-1 (n), at every vortex the velocity of all other vortices. Unchanged on STATUS_MEMORY. */
+enum status velocity_sum_pairwise(const struct vortices *vortices, enum pairwise_smoothing smoothing, int threads,
+                                  double *u, double *v);
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "vortex/kernel.h"
 
 void vortices_free(struct vortices *vortices) {
@@ -49,9 +50,7 @@ enum status vortices_append(struct vortices *vortices, int n, double smoothing) 
     } else {
         if (vortices->n_groups == vortices->group_capacity) {
             const int capacity = 2 * vortices->group_capacity + 1;
-            struct vortex_group *const more = realloc(vortices->group, (size_t)capacity * sizeof *more);
-            if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d groups of vortices", capacity);
-            vortices->group = more;
+            TRY(MEMORY_RESIZE(vortices->group, capacity, "groups of vortices"));
             vortices->group_capacity = capacity;
         }
         vortices->group[vortices->n_groups++] = (struct vortex_group){{vortices->n, n}, smoothing};

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "vortex/tolerance.h"
+
 static const double two_pi = 6.28318530717958647692;
 
 /* Interpolation costs more than the direct sum if the near vortices are more than FEW and more than a third of all. */
@@ -241,17 +243,16 @@ static enum status near_field_divide_image(struct near_field *near_field, const 
     const struct near_field_error error = estimate_error(max_of(distance, 0), school->fish[g].smoothing, speed,
                                                          acceleration, school->interval, bounds.strength, bounds.decay);
 
-    if (error.error <= near_field->tolerance / 8 / (school->n_fish * n_images)) {
+    if (error.error <= near_field->tolerance / TOLERANCE_WAKES / (school->n_fish * n_images)) {
         near_field_add_far(near_field, &error);
         return STATUS_OK;
     }
 
-    const double max_error = near_field->tolerance / 8 / (input->n_released * n_images);
+    const double max_error = near_field->tolerance / TOLERANCE_SINGLES / (input->n_released * n_images);
     return near_field_divide_wake(input, g, image, is_own, body, max_error, near_field);
 }
 
-/* Budget of the tolerance: half for the far field on the predicted path (an eighth for whole wakes, an eighth for
- * single vortices of small effect, a quarter for near_field_move_far), half for drift. */
+// parts of the tolerance: vortex/tolerance.h
 static enum status near_field_divide(struct near_field *near_field, const struct near_field_input *input, int f) {
     const struct school *const school = input->school;
     const struct fish *const fish = &school->fish[f];
@@ -270,7 +271,7 @@ static enum status near_field_divide(struct near_field *near_field, const struct
         }
     }
 
-    near_field_move_far(near_field, near_field->tolerance / 4);
+    near_field_move_far(near_field, near_field->tolerance / TOLERANCE_MOVED);
 
     // a near vortex is evaluated about twice as often as a far vortex
     near_field->is_interpolated = 3 * near_field->n_near <= n_released || near_field->n_near <= FEW;
@@ -309,8 +310,8 @@ enum status near_field_find(struct near_field *near_field, const struct near_fie
 
 int near_field_is_valid(const struct near_field *near_field, double drift_square) {
     const struct near_field_error *const far = &near_field->far;
-    return near_field->is_interpolated &&
-           far->by_drift_square * drift_square + far->by_drift * sqrt(drift_square) <= near_field->tolerance / 2;
+    return near_field->is_interpolated && far->by_drift_square * drift_square + far->by_drift * sqrt(drift_square) <=
+                                              near_field->tolerance / TOLERANCE_DRIFT;
 }
 
 void near_field_update(struct near_field *near_field, double tau, double q, double factor) {

@@ -1,6 +1,6 @@
 /* kernels.c: how many velocities of one vortex at one point the program computes in a second: the loops of
  * src/vortex/kernel.c on one core, for every variant that this processor has, and whole wakes at themselves
- * (src/vortex/pairwise.c) with more threads. A pair of the pairwise sum counts twice. Printed by `make bench`.
+ * (src/vortex/velocity_sum.c) with more threads. A pair of the pairwise sum counts twice. Printed by `make bench`.
  *
  * The first two rows are the speed of the processor with vectors of that width: products and divisions of numbers in
  * registers. A velocity takes 5.5 products (some with a sum) and half a division, two velocities of a pair at each
@@ -12,7 +12,7 @@
 #include <time.h>
 
 #include "vortex/kernel.h"
-#include "vortex/pairwise.h"
+#include "vortex/velocity_sum.h"
 
 enum { MAX = 3200, N_RUNS = 50 };
 static const double per_run = 1e6; /* interactions at least */
@@ -111,7 +111,7 @@ static void wake(const struct kernel_variant *variant, int n, int m) {
     struct vortex_group all = {{0, n}, 0.2};
     const struct vortices vortices = {
         .n = n, .x = cloud.x, .y = cloud.y, .circulation = cloud.circulation, .n_groups = 1, .group = &all};
-    if (pairwise_add_velocity(&vortices, PAIRWISE_OF_SOURCE, m, cloud.u, cloud.v) != STATUS_OK) abort();
+    if (velocity_sum_pairwise(&vortices, PAIRWISE_OF_SOURCE, m, cloud.u, cloud.v) != STATUS_OK) abort();
 }
 
 // ---- the tables

@@ -32,7 +32,7 @@
 #include "school/residual_jacobian.h"
 #include "solver/linear.h"
 #include "vortex/kernel.h"
-#include "vortex/pairwise.h"
+#include "vortex/velocity_sum.h"
 
 static double read_clock(clockid_t id) {
     struct timespec t;
@@ -145,7 +145,7 @@ static double best_rate(void) {
     double best = 0;
     for (int run = 0; run < RUNS; run++) {
         const double since = now();
-        must(pairwise_add_velocity(&vortices, PAIRWISE_OF_SOURCE, 1, u, v));
+        must(velocity_sum_pairwise(&vortices, PAIRWISE_OF_SOURCE, 1, u, v));
         best = fmax(best, (double)N * N / (now() - since));
     }
     vortices_free(&vortices);
