@@ -3,10 +3,10 @@
 
     scripts/check-docs.py
 
-In doc/*.md and README.md: files and folders, links and their anchors, names in backticks with a low line or brackets
-(functions, keys, variables), tests of `make test TEST=...`, tables of `scripts/measure.py NAME`, sections of
-`build/verify/verify NAME`. In the comments of src, include and tests: files, and sections of documents. And no two
-tests have one name. Exit codes: 0 all is there, 1 some is not.
+In doc/*.md, README.md and CONTRIBUTING.md: files and folders, links and their anchors, names with a low line or brackets
+(functions, keys, variables; in doc/model.md those in backticks), tests of `make test TEST=...`, tables of
+`scripts/measure.py NAME`, sections of `build/verify/verify NAME`. In the comments of src, include and tests: files, and
+sections of documents. And no two tests have one name. Exit codes: 0 all is there, 1 some is not.
 """
 
 import glob
@@ -88,6 +88,11 @@ def faults_of_document(path, words, tests, numerics, sections):
     for name in re.findall(r"`([a-z]\w*_\w*|[a-z]\w*\(\))`", inline):
         if not is_known(name.removesuffix("()"), words):
             yield f"`{name}` is nowhere in the sources"
+    # names in diagrams and blocks of code too; in doc/model.md a low line is a subscript
+    bare = [] if path == "doc/model.md" else re.findall(r"(?<![\w/.$-])([a-z]\w*_\w+)(?![\w/.-])", text)
+    for name in bare:
+        if not is_known(name, words) and name not in tests:
+            yield f"{name} is nowhere in the sources"
     for names in re.findall(r'make (?:test|valgrind|mutants)[^`\n]*? TEST=("[^"]*"|[\w]+)', text):
         for name in names.strip('"').split():
             if name not in tests:
@@ -117,7 +122,7 @@ def main():
     words, tests = code_words(), test_names()
     numerics = set(re.findall(r"\w+", read("scripts/measure.py")))
     sections = set(re.findall(r"\w+", "".join(read(p) for p in files("tests/verify/*.c"))))
-    faults = [(path, fault) for path in files("doc/*.md", "README.md")
+    faults = [(path, fault) for path in files("doc/*.md", "README.md", "CONTRIBUTING.md")
               for fault in faults_of_document(path, words, tests, numerics, sections)]
     sources = files("src/*/*.[ch]", "include/*.h", "tests/*.[ch]", "tests/*.sh", "tests/*/*.[ch]", "tests/*/*.sh", "scripts/*.sh")
     faults += [(path, fault) for path in sources for fault in faults_of_source(path)]
