@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "body/edge.h"
 #include "flow/flow_at_bodies.h"
 #include "force/fluid_force.h"
 #include "school.h"
@@ -161,6 +162,37 @@ static void powers_are_those_of_the_forces(void **state) {
     }
 }
 
+static void friction_is_the_tangential_part_of_the_drag(void **state) {
+    (void)state;
+    const double about[2] = {0.3, -0.7};
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fluid: {shear: 0.5, velocity: [0, 0.3]}\n"
+                 "fish: [{sheet_points: 9, drag: {tangential: 0.3}}]\n");
+    school_stir(&setup);
+    school_flow(&setup, setup.state->y);
+    const struct fish *fish = setup.school->fish;
+    const struct flow_at_body flow = flow_at_body(setup.residual->flow, 0);
+    const double *const y = setup.state->y;
+    double power = 0, moment = 0, resistive_moment = 0;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct edge edge = edge_at(fish, k, y);
+        const struct fluid_forces on = fluid_force_of_edge(fish, &flow, k, about, y);
+        NEAR(edge_dot(on.friction, edge.t), edge_dot(on.resistive, edge.t), 0, 1e-12);
+        NEAR(edge_dot(on.friction, edge.n), 0, 1e-12, 0);
+        power += edge_dot(on.friction, edge.velocity);
+        const double arm[2] = {edge.middle[0] - about[0], edge.middle[1] - about[1]};
+        moment += arm[0] * on.friction[1] - arm[1] * on.friction[0];
+        resistive_moment += arm[0] * on.resistive[1] - arm[1] * on.resistive[0];
+    }
+    const struct fluid_forces sum = fluid_force_sum(fish, &flow, about, y);
+    NEAR(fluid_force_power(fish, &flow, y).friction, power, 0, 1e-12);
+    NEAR(sum.friction_moment, moment, 0, 1e-12);
+    NEAR(sum.resistive_moment, resistive_moment, 0, 1e-12);
+    assert_true(fabs(moment) > 1e-3 && fabs(resistive_moment - moment) > 1e-3);
+    school_clear(&setup);
+}
+
 static void added_mass_takes_up_no_tangential_acceleration(void **state) {
     (void)state;
     struct setup setup;
@@ -212,6 +244,7 @@ int main(void) {
         cmocka_unit_test(jacobian_agrees_with_differences),
         cmocka_unit_test(forces_on_a_plate_are_the_formulas),
         cmocka_unit_test(powers_are_those_of_the_forces),
+        cmocka_unit_test(friction_is_the_tangential_part_of_the_drag),
         cmocka_unit_test(the_reactive_force_does_not_feel_the_own_wake),
         cmocka_unit_test(added_mass_takes_up_no_tangential_acceleration),
     };

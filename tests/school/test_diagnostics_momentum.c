@@ -33,6 +33,14 @@ static struct balance run(const char *text, double end) {
         worst.angular = fmax(worst.angular, fabs(now->momentum_balance[2]));
         size = fmax(size, now->momentum_size);
         assert_true(now->momentum_balance[0] <= size);
+
+        // no term of the balance is larger than its size
+        double external = 0;
+        for (int f = 0; f < simulation->school->n_fish; f++) {
+            const double *const impulse = now->fish[f].external_impulse;
+            if (!isnan(impulse[0])) external += hypot(impulse[0], impulse[1]);
+        }
+        assert_true(external <= now->momentum_size);
     }
     worst.momentum /= size;
     worst.angular /= size;
@@ -63,6 +71,8 @@ static void the_balance_is_closed_with_every_external_force(void **state) {
          "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
          "body: {depth: 1, modulus: 1.0e+5}, drag: {skin: laminar}, start: {speed: 1}, "
          "motion: {prescribed: head, heave: 0.02, pitch: 3, frequency: 1, phase: 90}}]\n"},
+        {"separation at the nose, half of the suction",
+         "fish: [{" FISH ", pressure: {suction: 0.5, suction_limit: 0.01}}]\n"},
         {"merged vortices",
          "wake: {lifetime: 3, merge: 1e-2}\n"
          "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
@@ -114,6 +124,28 @@ static void without_a_fluid_it_is_closed_too(void **state) {
                                      0.3);
     assert_true(worst.momentum < 1e-6);
     assert_true(worst.angular < 1e-6);
+}
+
+// between events that remove no circulation only the legs lose impulse
+static void legs_are_booked_by_the_trapezoidal_rule(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_DEFAULTS TIME "wake: {lifetime: 10}\nfish: [{" STRIP "}]\n");
+    const struct momentum_balance *const now = simulation->state->momentum;
+    const double interval = simulation->school->interval;
+    school_run(simulation, 0.2);
+    double change = 0, most = 0;
+    for (int n = 0; n < 10; n++) {
+        const struct momentum_balance before = *now;
+        school_ok(simulate_step(simulation));
+        for (int i = 0; i < 3; i++) {
+            NEAR(now->lost[i] - before.lost[i], interval / 2 * (before.legs[i] + now->legs[i]), 1e-15, 1e-12);
+            change = fmax(change, fabs(now->legs[i] - before.legs[i]));
+            most = fmax(most, fabs(now->legs[i]));
+        }
+    }
+    assert_true(most > 0 && change > 0.01 * most);
+    simulate_free(simulation);
 }
 
 static void forces_without_a_reaction_have_no_balance(void **state) {
@@ -263,6 +295,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_balance_is_closed_with_every_external_force),
         cmocka_unit_test(without_a_fluid_it_is_closed_too),
+        cmocka_unit_test(legs_are_booked_by_the_trapezoidal_rule),
         cmocka_unit_test(forces_without_a_reaction_have_no_balance),
         cmocka_unit_test(impulses_do_not_depend_on_the_origin),
         cmocka_unit_test(a_stream_changes_no_balance),
