@@ -206,6 +206,46 @@ static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_str
     school_clear(&setup);
 }
 
+// the newborn marker has the velocity of the own body at h/(2 pi) behind the tail, without smoothing
+static void the_newborn_marker_feels_its_body_behind_the_tail(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, SCHOOL_DEFAULTS
+                 "time: {end: 1, shedding_interval: 0.02}\n"
+                 "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}]\n");
+    school_stir(&setup);
+    setup.t = setup.state->t;
+    const struct fish *const fish = setup.school->fish;
+    double *const y = setup.state->y;
+    struct wake *const wake = setup.state->wake;
+
+    // a wake without circulation
+    for (int i = 0; i < wake->n_vortex; i++) wake->circulation[i] = 0;
+    y[fish->at.circulation] = 0;
+    wake->version++;
+    const struct direction tail = fish_direction(fish, &fish->tail_tangent, y);
+    const double speeds[] = {0.7, 0, -0.7}, last[2] = {y[fish->at.x + 4], y[fish->at.y + 4]};
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 2; j++) wake->slip[j] = speeds[i] * tail.t[j];
+        school_flow(&setup, y);
+        struct flow *const flow = setup.residual->flow;
+        school_ok(flow_at_wake(flow, setup.state));
+
+        const int newest = wake->n_vortex - 1;
+        const double behind = fmax(0, speeds[i]) * setup.school->interval / two_pi, w = fish->strip_depth;
+        const double at[2] = {last[0] + behind * tail.t[0], last[1] + behind * tail.t[1]};
+        struct felt felt = {0};
+        for (int c = 0; c < fish->n_control; c++) {
+            const struct rings *const body = &flow->rings->fish[0].body;
+            const double from[2] = {body->x[c], body->y[c]}, d[2] = {body->dx[c], body->dy[c]};
+            add_ring(&felt, at, from, body->q[c], d, w / 4, w * w / 16, 0, 0);
+        }
+        NEAR(flow->wake_u[newest], felt.u, 1e-13, 1e-11);
+        NEAR(flow->wake_v[newest], felt.v, 1e-13, 1e-11);
+    }
+    school_clear(&setup);
+}
+
 // no flow through the wall; the labels change with the divergence at markers
 static void markers_are_stretched_and_a_wall_lets_nothing_through(void **state) {
     (void)state;
@@ -242,6 +282,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_of_others_feel_bodies_wakes_and_images_with_twice_the_span),
         cmocka_unit_test(control_points_feel_their_own_body_and_wake_with_the_span_of_the_strip),
+        cmocka_unit_test(the_newborn_marker_feels_its_body_behind_the_tail),
         cmocka_unit_test(markers_are_stretched_and_a_wall_lets_nothing_through),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
