@@ -154,6 +154,28 @@ static void without_fade_a_vortex_vanishes_within_one_interval(void **state) {
     school_clear(&setup);
 }
 
+static void a_stretch_is_as_old_as_its_newer_marker(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {lifetime: 0.1, decay: 0.06}\nfish: [{}]\n");
+    struct wake *wake = &setup.state->wake[0];
+    wake->has_markers = 1;
+    for (int i = 0; i < 5; i++) school_ok(wake_release(wake, i, 0, i * i, 0.02 * i));
+
+    // the stretch between the labels i^2 and (i + 1)^2 has the circulation 2 i + 1
+    for (int k = 0; k <= 2; k++) {
+        const double tau = 0.01 * k;
+        double lost = 0;
+        for (int i = 0; i < 4; i++) {
+            const double age = 0.08 - 0.02 * (i + 1);
+            lost += (2 * i + 1) * (1 - wake_strength_within(setup.school, age, tau / 0.02));
+        }
+        assert_true(lost > 0.1);
+        NEAR(wake_lost(wake, setup.school, 0.08, tau), lost, 1e-13, 0);
+    }
+    school_clear(&setup);
+}
+
 static void what_was_shed_long_ago_changes_no_vortex(void **state) {
     (void)state;
 
@@ -203,6 +225,7 @@ int main(void) {
         cmocka_unit_test(strength_fades_as_the_ramp_over_the_last_part_of_life),
         cmocka_unit_test(old_vortices_go_and_leave_their_circulation),
         cmocka_unit_test(without_fade_a_vortex_vanishes_within_one_interval),
+        cmocka_unit_test(a_stretch_is_as_old_as_its_newer_marker),
         cmocka_unit_test(what_was_shed_long_ago_changes_no_vortex),
         cmocka_unit_test(most_is_enough_and_not_too_much),
         cmocka_unit_test(nascent_vortex_is_the_centroid_of_what_was_shed),
