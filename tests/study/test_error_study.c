@@ -134,6 +134,11 @@ static void an_interval_divides_the_beat_or_the_run(void **state) {
     // 50 events in a beat; 12.5 are none
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 1 / 13.0}, 0.02);
     error_plan_free(&study);
+    // a search ends after whole beats, no earlier than the case
+    study = open_study("format: 1\ntime: {end: 4.5, shedding_interval: 0.02, output_interval: 0.1}\nfish: [{}]\n",
+                       "{of: steady_speed, keys: [shedding_interval]}");
+    NEAR(setting(&study, key_of(&study, "time.shedding_interval")->member[3], "time.end"), 5, 0, 1e-12);
+    error_plan_free(&study);
     study = open_study(text, "{of: speed, keys: [shedding_interval]}");
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 0.08}, 0.02);
     error_plan_free(&study);
