@@ -1,5 +1,5 @@
 /* steady_start.h: the start of a search from the steady state of a similar case. Tested by
- * tests/app/test_steady_command.sh. */
+ * tests/steady/test_steady_start.c and tests/app/test_steady_command.sh. */
 #ifndef STEADY_START_H
 #define STEADY_START_H
 
