@@ -98,11 +98,19 @@ draws plot.py channel.nc channel.png
 refuses 4 "the file of a run, not of a field: use plot.py swim run.nc" plot.py field run.nc no.png
 refuses 4 "the file of a field, not of a run: use plot.py field run-field.nc" plot.py swim run-field.nc no.png
 if command -v ffmpeg >/dev/null; then
-    draws animate.py run.nc --fps 10 --dpi 60 movie.mp4
+    draws animate.py run.nc --dpi 60 movie.mp4
+    # two seconds of rows 0.05 s apart
+    check "it says what its pictures are" grep -qx "51 pictures, 25 a second: interpolated between rows 0.05 s apart" out
+    if command -v ffprobe >/dev/null; then
+        ffprobe -v error -select_streams v -show_entries stream=avg_frame_rate,nb_frames -of csv=p=0 movie.mp4 >out
+        check "it has 25 pictures a second" grep -qx "25/1,51" out
+    fi
 else
     skip "animate.py movie.mp4" "there is no ffmpeg"
 fi
 draws animate.py run.nc --fps 10 --dpi 40 --follow movie.gif
+check "it says so of whole rows" grep -qx "21 pictures, 10 a second: every 2nd row of the file; the camera follows the school" out
+refuses 2 "--fps: has to be positive" animate.py run.nc --fps 0
 
 # ---- several fish, far from their start, of 7 nodes
 
@@ -122,6 +130,10 @@ refuses 2 "--each com: not one number per fish and time" plot.py time seven.nc -
 draws plot.py seven.nc --times 0.5 1 -- follow.png
 refuses 2 "--times 100: the run covers 0 to 1 s" plot.py seven.nc --times 0.5 100 -- no.png
 "$program" run "$root/cases/demo.yaml" -q -o swim.nc --set time.end=0.2 --set "fish[0].nodes=7"
+for interval in 0.1 0.02; do
+    "$program" run "$root/cases/demo.yaml" -q -o rows_$interval.nc --set time.end=1.2 --set time.shedding_interval=0.02 \
+        --set "time.output_interval=$interval" --set "fish[0].nodes=9" --set "fish[0].sheet_points=17" 2>/dev/null
+done
 "$program" run seven.yaml -q -o turned.nc --set "fish[2].start.heading=-178"
 cat >refine.yaml <<'end'
 format: 1
@@ -147,6 +159,7 @@ import netCDF4
 import numpy as np
 sys.path.insert(0, sys.argv[1])
 from shoal import _files as shoal_results, _plot_style as plot_style, plot
+plot.matplotlib.rcParams["figure.max_open_warning"] = 0
 
 results = shoal_results.Results("seven.nc")
 options = argparse.Namespace(times=None, limits=None, follow=None)
@@ -265,6 +278,33 @@ means = 0.1 * (np.diff(k) - np.diff(np.sin(2 * k)) / 2) / -np.diff(np.cos(k))
 for thickness, is_mean in ((ends, False), (means, True)):
     off = np.abs(shoal_results.half_thickness(thickness, at, is_mean) - 0.1 * np.sqrt(at * (1 - at)) * 2).max()
     assert off < 1e-12, (is_mean, off)
+
+# between rows bodies and wakes of a movie are near those of finer rows; on rows they are the rows
+import animate
+frames, fine = animate.Frames("rows_0.1.nc", 25, 1), shoal_results.Results("rows_0.02.nc")
+assert not frames.is_exact and np.allclose(np.diff(frames.time), 0.04) and frames.time.size == 31
+length = fine["body_length"][0]
+for i, t in enumerate(frames.time):
+    row = fine.nearest(t)
+    off = np.abs(frames.nodes(i, 0) - fine.nodes(row, 0)).max()
+    assert off < (1e-12 if abs(t * 10 - round(t * 10)) < 1e-9 else 1e-3) * length, (t, off)
+    (place, strength), (wanted, other) = frames.wake(i), fine.wake(row)
+    # the newest vortex still grows
+    assert place.shape == wanted.shape and np.allclose(strength[:-1], other[:-1], atol=1e-12), t
+    assert np.abs(place - wanted).max(initial=0) < 0.02 * length, (t, np.abs(place - wanted).max())
+    assert np.abs(frames["com"][i] - fine["com"][row]).max() < 1e-4 * length
+assert animate.Frames("rows_0.02.nc", 25, 1).how == "every 2nd row of the file"
+# the camera holds the bodies and does not beat with them: its path bends less than that of the fish
+window, size, follow = animate.choose_window(frames, True)
+windows = np.array([window(i) for i in range(frames.time.size)])
+assert follow and np.allclose(np.ptp(windows[:, :2], axis=1), size[0])
+for i in range(frames.time.size):
+    (x0, y0), (x1, y1) = frames.outline(i, 0).min(axis=0), frames.outline(i, 0).max(axis=0)
+    assert windows[i, 0] < x0 and x1 < windows[i, 1] and windows[i, 2] < y0 and y1 < windows[i, 3], i
+bends = [np.abs(np.diff(y, 2)).max() for y in (windows[:, 2:].mean(axis=1), frames["com"][:, 0, 1])]
+assert bends[0] < 0.5 * bends[1], bends
+far = animate.Frames("seven.nc", 25, 1)
+assert animate.choose_window(far, None)[2] and not animate.choose_window(far, False)[2], "a long way is followed"
 
 assert plot_style.scale_of([1e4, 1e10]) == "log" and plot_style.scale_of([1, 30]) == "linear"
 assert plot_style.scale_of([-1, 1e3]) == "linear"
