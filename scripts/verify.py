@@ -9,10 +9,10 @@ FOLDER holds SECTION.tsv of every section and receives report.md and figures/. T
     row    section  quantity  source  reference  obtained  error  bound  order  verdict
     point  figure   series    x       y
 
-A figure belongs to the section in whose table its points are. How it is drawn stands in FIGURE below; a figure that is
-not there has logarithmic axes if its points allow. A series whose name begins with "exact" is a line without markers,
-one that begins with "published" or "Navier-Stokes" a dashed one, "experiment" filled markers without a line.
-The same tables give the same files, byte for byte.
+A figure belongs to the section whose table contains the points. FIGURE below sets titles and axes; other figures have
+logarithmic axes if the points allow. A series with the prefix "exact" is a line without markers, with the prefix
+"published" or "Navier-Stokes" a dashed line, with the prefix "experiment" filled markers without a line. The same tables
+give the same files, byte for byte.
 """
 
 import math
@@ -32,187 +32,182 @@ from PIL import Image
 INTRODUCTION = """\
 # Verification report
 
-Every number below was obtained by `make verify`. The checks are C programs in tests/verify, one file per section; each
-runs a case like those of a user and compares with a result that does not come from this program: a closed formula, a
-number from the literature, a conservation law, a symmetry, or the same run refined. Equation numbers refer to
-doc/model.md.
+`make verify` computed every number below. The checks are C programs in tests/verify, one file per section. Each check
+runs an ordinary case and compares with an independent result: a closed formula, a number from the literature, a
+conservation law, a symmetry, or a refined run. Equation numbers refer to doc/model.md.
 
-*error* is the difference from the reference, relative where marked (rel); *order* is the observed order of
-convergence, log2 of the ratio of two errors at a refinement by two, or a slope. A row without a bound shows a number
-and checks nothing. A bound that is not obvious has its reason under *reference*.
+*error* is the difference from the reference, relative if marked (rel); *order* is the observed order of convergence,
+log2 of the ratio of two errors at a refinement by two, or a slope. A row without a bound is not a check. The column
+*reference* gives the reason of an unusual bound.
 """
 
-# per section: its heading and what stands above its table
+# per section: heading and text above the table
 SECTIONS = {
     "theory": ("Linear theory", """\
-Where other sections compare with the linear theory of thin foils, the numbers come from small solvers of our own
-(tests/verify/linear_theory.c): Theodorsen's lift and moment, Garrick's thrust, Wagner's start, Wu's series for plates of
-any shape, and Galerkin's method for elastic plates clamped at the nose. They use nothing of the program. Here they are
-compared with published values, with limits in closed form, with each other, and with numbers that were computed before
-by another program."""),
+Other sections compare with the linear theory of thin foils, computed by small solvers in tests/verify/linear_theory.c:
+Theodorsen's lift and moment, Garrick's thrust, Wagner's start, Wu's series for plates of any shape, and Galerkin's method
+for elastic plates clamped at the nose. These solvers share no code with the program. This section compares the solvers
+with published values, with limits in closed form, with each other, and with numbers of another program."""),
     "rod": ("Rod alone", """\
-The elastic body of model.md 1 to 3 without fluid: large deflections, vibrations, and what a body that nothing touches
-must conserve."""),
+The elastic body of model.md 1 to 3 without fluid: large deflections, vibrations, and the conservation laws of an isolated
+body."""),
     "force": ("Force of the fluid", """\
-The reactive force of model.md 9 in still fluid: free vortices are smoothed so far that they cause nothing, bodies have
-no drag and no damping. A fish gains nothing from fluid at rest whatever its gait; what is in body and fluid together is
-what the muscle put in; a wave that runs backwards takes the body back; and plates meet results by hand and Lighthill's
-thrust."""),
+The reactive force of model.md 9 in still fluid: the large smoothing of free vortices makes their velocity negligible,
+bodies have no drag and no damping. A fish gains nothing from fluid at rest with any gait; the energy of body and fluid
+together is the work of the muscle; a reversed wave returns the body; plates agree with analytic results and with
+Lighthill's thrust."""),
     "sheet": ("Sheet alone", """\
-The bound vortex sheet of model.md 6 on bodies that move as given: its strength against closed forms, and how the two
-ways of choosing control points converge. On bent bodies the smooth curve is compared with the polygon (chebyshev and
+The bound vortex sheet of model.md 6 on bodies with prescribed motion: the strength against closed forms, and the
+convergence of both choices of control points. On bent bodies the smooth curve is compared with the polygon (chebyshev and
 midpoint are the control points of the polygon)."""),
     "wake": ("Wake alone", """\
-Free vortices without a body, model.md 8: translation, rotation, the growth of a perturbed row, and the invariants of a
-wake that is left alone."""),
+Free vortices without a body, model.md 8: translation, rotation, the growth of a perturbed row, and the invariants of an
+isolated wake."""),
     "plate": ("Plate in a wake", """\
-Sheet and wake together, on a plate that moves as given: the impulsive start (Wagner 1925) and harmonic heaving
+Sheet and wake together, on a plate with prescribed motion: the impulsive start (Wagner 1925) and harmonic heaving
 (Theodorsen 1935)."""),
     "school": ("Everything", """\
-A school of three different fish near each other (lengths 1, 0.8 and 0.9, different beats and stiffness), one of them
-15 degrees off its desired heading: all terms of the model at once. There is no closed solution. Runs are compared with
-finer ones, as a norm over all fish, at t = 1.2 s; the *free sheet* is the place, at that time, of the piece of every
-fish's wake that was shed at 0.6 s. That is a fixed Lagrangian label: a vortex released at t_n stands for what was shed
-around t_n - Dt/2, so its place is interpolated along the wake, and not read off the vortex that was released at 0.6 s,
-which is other fluid at every Dt.
+A school of three different fish near each other (lengths 1, 0.8 and 0.9, different beats and stiffness), one fish 15
+degrees off the desired heading: all terms of the model at once. There is no closed solution. Runs are compared with finer
+runs, as a norm over all fish, at t = 1.2 s; the *free sheet* is the position, at that time, of the piece of every wake
+shed at 0.6 s. This is a fixed Lagrangian label: a vortex released at t_n represents circulation shed around t_n - Dt/2, so
+the position is interpolated along the wake. The vortex released at 0.6 s represents different fluid for every Dt.
 
-Where a bound is not the obvious one: BDF of order p that keeps the error of one step below rtol has a global error of
-rtol^(p/(p+1)), a slope of 2/3 at order 2 and 5/6 at order 5. The default body has order 3/2 in N at the nose: the
-height of an edge is the sum of two radii, the trapezoidal rule on a profile that rises like a square root. Mean
-heights make that error 17 times smaller, which supports this; what is left has an order near 3/2 too, and its cause is
-not known.
+Unusual bounds: BDF of order p that keeps the error of one step below rtol has a global error of rtol^(p/(p+1)), a slope of
+2/3 at order 2 and 5/6 at order 5. The default body has order 3/2 in N at the nose: the thickness of an edge is the sum of
+two radii, the trapezoidal rule on a profile that rises like a square root. Mean thicknesses make that error 17 times
+smaller; the remaining error has an order near 3/2 too, of unknown cause.
 
-What is not settled: the order in N of circulation. It is shown without a bound, because the ladder that is run here
-(N up to 65) looks regular and a finer one does not continue it. In the limit 3/2 would be expected of a polygon, whose
-last edge points as the body does half an edge ahead of the tail; that is a conjecture and not shown here. In M only
-shed circulation is checked on the default fish: the changes of nose and wake are smaller and irregular."""),
+The order in N of circulation has no bound: the sequence of this section (N up to 65) is regular, and a finer sequence
+does not continue the order. In the limit 3/2 would be expected of a polygon, whose last edge has the direction of the body
+half an edge ahead of the tail; this is a conjecture. In M only shed circulation is checked on the default fish: the
+changes of nose and wake are smaller and irregular."""),
     "interval": ("Shedding interval of one fish", """\
 One soft fish (E = 1e5 Pa, N = 7), from rest and from 1 m/s, with a force that depends on the own wake: the pressure of the
-bound sheet with *sheet*, the published force with *continuous*. All else has the defaults of the program. The run ends
-at 1.5 s; vortices decay from an age of 0.8 s to 1 s, so that part of the wake is lost in it, which Kelvin's theorem
-retains or drops (`removed_circulation`). The interval is halved from 0.02 s to 0.00125 s. The sheet points grow with it,
-M - 1 as Dt^(-1/2) from 33 to 129, because with M points an interval below U Dt/L = (3.2/(M - 1))^2 measures the spacing
-of the bound sheet; *continuous* has 65. Changes and errors are root mean squares over the run: those of one instant
-change their sign now and then. The order is the slope of the changes over the interval, and the size of the error at
-0.01 s stands beside it.
+bound sheet with *sheet*, the published force with *continuous*. All other keys have defaults. The run ends at 1.5 s;
+vortices decay from an age of 0.8 s to 1 s, so a part of the wake is lost, which Kelvin's theorem retains or drops
+(`removed_circulation`). The interval is halved from 0.02 s to 0.00125 s. The sheet points increase with the refinement, M
+- 1 as Dt^(-1/2) from 33 to 129, because below U Dt/L = (3.2/(M - 1))^2 the error depends on the spacing of the bound sheet;
+*continuous* has 65. Changes and errors are root mean squares over the run, because instantaneous values change sign. The
+order is the slope of the changes over the interval; the table also has the error at 0.01 s.
 
 *continuous* is of second order, towards a wake that is too weak at the edge (section Plate in a wake). *sheet* converges
-to the right one with order 1.0 to 1.4, the order of the spacing of the sheet. Its errors at 0.01 s are 4e-5 m in the
-places of a fish that starts with speed, and 1.5e-4 to 2e-4 m from rest."""),
+to the correct wake with order 1.0 to 1.4, the order of the spacing of the sheet. The errors at 0.01 s are 4e-5 m in the
+positions of a fish with initial speed, and 1.5e-4 to 2e-4 m from rest."""),
     "symmetry": ("Symmetries", """\
-What must not change the motion: the same school shifted, turned, mirrored, seen from a moving frame, listed in another
-order, on two threads, written at other times, with companions too far away to matter. Rows without a name are
-those of the article's model; *default model* has the free sheet and the reactive force of the defaults.
-Where the integrator takes the same steps the results agree to round-off; otherwise to its tolerance. A muscle that
-starts smoothly makes its first error estimates round-off, so that after a change of view the first steps differ; with
-a muscle that starts at once they are the same."""),
+Invariance of the motion: the same school shifted, rotated, mirrored, in a moving frame, listed in another order, on two
+threads, written at other times, with companions too far away to matter. Rows without a name use the article's model;
+*default model* has the free sheet and the reactive force of the defaults. With identical steps of the integrator the
+results agree to round-off, otherwise to the tolerance. The first error estimates after a smooth start of the muscle are
+round-off, so a change of view changes the first steps; with a sudden start the steps are identical."""),
     "start": ("Start and index", """\
 The consistent start of model.md 10: the algebraic equations determine the algebraic unknowns, and the start satisfies
 all equations."""),
     "energy": ("Energy", """\
-The energy balance of model.md 13: energy of the body less its initial value less all the work done on it, over long runs. And a
-default fish (but for 7 nodes) over one beat: what its muscle puts in is found again in damping, drag and wake; and its
-speed in the long run does not depend on the speed at which it was started."""),
+The energy balance of model.md 13 over long runs: energy of the body less the initial energy less all work on the body. And
+a default fish (with 7 nodes) over one beat: the work of the muscle equals damping, drag and wake; the speed in the long
+run is independent of the initial speed."""),
     "momentum": ("Momentum", """\
-The momentum balance of model.md 13, of swimmers with `force: pressure`: bodies and wakes have one smoothing for each
-other in both directions (model.md 8), so that what a body gives to the fluid is found there. What is left are the errors
-of the interval, in the first beat mostly, where a fish from rest has swum less than a hundredth of a length in an
-interval. *Momentum lost* is the balance over the largest momentum of the bodies. A plate that starts at once across
-itself loses some per cent in its first interval (model.md 13) and nothing after."""),
+The momentum balance of model.md 13, of swimmers with `force: pressure`: bodies and wakes have one smoothing for each other
+in both directions (model.md 8), so the fluid receives the momentum of the bodies. The remaining errors are the errors of
+the interval, mostly in the first beat, during which a fish from rest swims less than a hundredth of a length per interval.
+*Momentum lost* is the balance over the largest momentum of the bodies. A plate with a sudden start across its axis loses
+some per cent in the first interval (model.md 13) and nothing after."""),
     "fish": ("The default fish", """\
-The numbers of a default fish have a limit in its nodes, and do not depend on what is no property of the fish: the
-smoothing of its wake, which its reactive force does not feel, or the frequency, with the modulus as its square. The cost
-of stiff bodies has a limit as well: the muscle is not braked by its own damping, and its power follows from the balance
-of momentum (doc/model.md, sections 3 and 13; doc/numerics.md, section 9)."""),
+The numbers of a default fish converge in the nodes, and are independent of the smoothing of the wake, which has no effect
+on the reactive force, and of the frequency, with the modulus proportional to the square. The cost of stiff bodies has a
+limit: damping acts on the strain, and the power of the muscle follows from the balance of momentum (doc/model.md, sections
+3 and 13; doc/numerics.md, section 9)."""),
     "control": ("Control", """\
-Heading control with feedforward, and course control, on bodies from soft to stiff: the same run with the implicit and
-with an explicit method. The bound is a little more than twice what the tolerance leaves where nothing steers (law none).
-Where the feedforward acts through a moving mean there is no algebraic loop, and the bias of the
-stiffest body changes as smoothly as that of the softest. A default fish goes to waypoints, another holds its course in
-the wake of a leader."""),
+Heading control with feedforward, and course control, on bodies from soft to stiff: the same run with the implicit and with
+an explicit method. The bound is a little more than twice the effect of the tolerance without control (law none). With the
+moving mean of the feedforward there is no algebraic loop, and the bias of the stiffest body changes as smoothly as the bias
+of the softest body. A default fish swims through waypoints, another holds a course in the wake of a leader."""),
     "pressure": ("Pressure", """\
 Forces of `force: pressure`, model.md 15, against the linear theory of thin foils: rigid plates that heave and pitch,
-sudden starts, and plates that swim by their heave. The settings are those of a case that says nothing but for 65 sheet
-points and 300 events a period. That no run fails is tested elsewhere: 36 random schools of plates and fish in `make test`
-(TEST=pressure_cases), 500 in `make soak`."""),
+sudden starts, and plates that swim by heave. The settings are the defaults with 65 sheet points and 300 events a period.
+Other tests show that no run fails: 36 random schools of plates and fish in `make test` (TEST=pressure_cases), 500 in `make
+soak`."""),
     "elastic": ("Elastic plates", """\
-`force: pressure` on plates with a clamped nose in a stream, rtol 1e-5, U Dt = 0.01 L, the whole wake kept. *Flutter*: growth
-rates and frequencies are those of `shoal steady`, eigenvalues of the linearised equations; secants from the threshold of
-theory on give the U* at which the growth vanishes; `wake.taper` is 0.8 there, as the sheet is straight. The errors of N
-and (N + 1)/2 nodes show how fast they fall.
-*Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods (5 in the figures)."""),
+`force: pressure` on plates with a clamped nose in a stream, rtol 1e-5, U Dt = 0.01 L, with the whole wake. *Flutter*:
+growth rates and frequencies come from `shoal steady`, eigenvalues of the linearised equations; secants from the
+theoretical threshold give the U* of zero growth; `wake.taper` is 0.8, as the sheet is straight. The errors of N and (N +
+1)/2 nodes show the convergence. *Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods (5 in the figures)."""),
     "steady": ("Steady states", """\
-Steady states, doc/steady.md: what `shoal steady` finds in some twelve to twenty beats against runs of two hundred, and the
-multiplier against the decay of the run."""),
+Steady states, doc/steady.md: results of `shoal steady` after twelve to twenty beats against runs of two hundred beats, and
+the multiplier against the decay of the run."""),
     "static": ("Equilibria", """\
-Bodies without a beat, doc/steady.md: what `shoal steady` finds for a stiff plate, for one that bends (thin airfoils and
-Galerkin's method, a solver of our own), for a plate with its clamp downstream, which the reactive force of slender bodies
-buckles as a column (Euler), and for a plate across the stream with the drag of its edges alone, which is an elastica: its
-drag over that of a stiff plate falls with the Cauchy number, in the end like U^(4/3) over U^2, with Vogel's exponent -2/3
-(Alben, Shelley and Zhang, Nature 420, 2002; Luhar and Nepf, Limnol. Oceanogr. 56, 2011). Thickness and stretching are not
-in theory. Then runs that have settled."""),
+Bodies without a beat, doc/steady.md: results of `shoal steady` for a stiff plate; for a flexible plate (thin airfoils and
+Galerkin's method, an independent solver); for a plate with the clamp downstream, which the reactive force of slender
+bodies buckles as a column (Euler); and for a plate across the stream with drag of the edges alone, an elastica: the drag
+over the drag of a stiff plate falls with the Cauchy number, in the limit like U^(4/3) over U^2, with Vogel's exponent -2/3
+(Alben, Shelley and Zhang, Nature 420, 2002; Luhar and Nepf, Limnol. Oceanogr. 56, 2011). The theory neglects thickness and
+stretching. The last rows compare with converged runs."""),
     "tandem": ("A plate behind another one", """\
-Two rigid plates in line heave alike and swim freely along their line: where does the second one stay? Places are given
-from the tail of the first to the nose of the second, in wavelengths, the way that both go in a beat; each is found as
-`shoal steady` does, with `steady.formation: true` (doc/steady.md, cases/tandem_plates.yaml). What others found:
+Two rigid plates in line heave alike and swim freely along the line; the section computes the equilibrium position of the
+second plate. Positions are measured from the tail of the first to the nose of the second plate, in wavelengths, the
+distance travelled in a beat, and computed by `shoal steady` with `steady.formation: true` (doc/steady.md,
+cases/tandem_plates.yaml). Published findings:
 
-* *Places are one wavelength apart, near integers, and stable.* Fang, Mavroyiakoumou, Ristroph and Shelley (J. Fluid Mech.
-  2026, arXiv:2505.13149), vortex sheets: separations are "approximately integer multiples of the wavelength traced out by
-  each wing", the one that is reached depends on the start, and a follower that is too near has less thrust, one that is
+* *Positions are one wavelength apart, near integers, and stable.* Fang, Mavroyiakoumou, Ristroph and Shelley (J. Fluid
+  Mech. 2026, arXiv:2505.13149), vortex sheets: separations are "approximately integer multiples of the wavelength traced
+  out by each wing", the position depends on the start, and a follower that is too near has less thrust, a follower that is
   too far more. Nitsche, Oza and Siegel (J. Fluid Mech. 2025, arXiv:2410.04626), vortex sheets: "quantized on the flapping
-  wavelength". Before them Ramananarivo, Fang, Oza, Zhang and Ristroph (Phys. Rev. Fluids 1, 2016), in a water tank. The
-  bound of 0.15 is for the word *approximately*.
-* *The follower's phase shifts the place, linearly.* Two foils in a tank (H19.1 of the fluids meeting of the APS, 2016,
+  wavelength". Earlier Ramananarivo, Fang, Oza, Zhang and Ristroph (Phys. Rev. Fluids 1, 2016), in a water tank. The bound
+  of 0.15 stands for the word *approximately*.
+* *The follower's phase shifts the position linearly.* Two foils in a tank (H19.1 of the fluids meeting of the APS, 2016,
   meetings-archive.aps.org/dfd/2016/h19/1): "shifted to any arbitrary downstream position by varying only the relative
-  flapping phase". Li et al. (Nature Communications 11, 2020, doi:10.1038/s41467-020-19086-0),
-  robots and fish: a phase that "varies linearly with front-back distance". Heydari, Hang and Kanso (eLife 96129, 2024,
-  reply to the reviews) put these, Newbolt, Zhang and Ristroph (PNAS 116, 2019) and simulations on one line.
-* *The leader swims as if alone*, but for compact pairs (Arranz, Flores and Garcia-Villalba, J. Fluid Mech. 2022), pairs that
-  heave "a slight increase in the swimming speed" faster than one (Heydari and Kanso, J. Fluid Mech. 2021,
+  flapping phase". Li et al. (Nature Communications 11, 2020, doi:10.1038/s41467-020-19086-0), robots and fish: a phase
+  that "varies linearly with front-back distance". Heydari, Hang and Kanso (eLife 96129, 2024, reply to the reviews) put
+  these, Newbolt, Zhang and Ristroph (PNAS 116, 2019) and simulations on one line.
+* *The leader swims as if alone*, except in compact pairs (Arranz, Flores and Garcia-Villalba, J. Fluid Mech. 2022); pairs
+  that heave swim with "a slight increase in the swimming speed" (Heydari and Kanso, J. Fluid Mech. 2021,
   arXiv:2009.12715).
-* *The wavelength that counts is that of the wake*, which moves by itself (Han et al., arXiv:2410.01932): places are 1.02 U/f
-  apart here; with a smaller amplitude they come to those of the linear theory.
+* *The relevant wavelength is the wavelength of the wake*, which convects itself (Han et al., arXiv:2410.01932): positions
+  are 1.02 U/f apart here; with a smaller amplitude the positions approach linear theory.
 
-Of these papers we had abstracts and replies, no tables; so the numbers come from linear theory: the second plate in the
-flat far wake of the first, by Theodorsen, Garrick and Sears (tests/verify/linear_theory.c). It gives the thrust of the
-second one at every distance, with a stable and an unstable place in each wavelength, whatever the amplitude. The plates
-of Fang et al. are those of their program (github.com/FangMath/VortexSheetSchooling, parameter.m): length 2, heave 0.2,
-mass 2, drag 0.04 U^1.5, for which it lists the speed 13.25 of one alone, as Garrick's theory has, too."""),
+Only abstracts and replies of these papers were available, no tables; the reference numbers therefore come from linear
+theory: the second plate in the flat far wake of the first, by Theodorsen, Garrick and Sears
+(tests/verify/linear_theory.c). The theory gives the thrust of the second plate at every distance, with a stable and an
+unstable position in each wavelength, at any amplitude. The plates of Fang et al. have the parameters of the published
+program (github.com/FangMath/VortexSheetSchooling, parameter.m): length 2, heave 0.2, mass 2, drag 0.04 U^1.5; the program
+lists the speed 13.25 of a single plate, in agreement with Garrick's theory."""),
     "coupled": ("Coupled bodies", """\
-Free bodies and the fluid that they move, with `force: pressure`: the added mass of a plate; the impulse of a stream of 0.1
-across a plate that starts at once, where places and momenta stay and velocities jump; and fish that swim by a wave of
-curvature 5 (0.2 + 0.8 s) sin(2 pi (t - s)) (mass 0.1 rho L, E I = rho f^2 L^5, friction 0.0133 U^1.5), alone and one
-behind the other. Their speeds are compared with those of the prototype from which the method was taken, another program
-with another body (a polygon) and another solver."""),
+Free bodies in the moving fluid, with `force: pressure`: the added mass of a plate; the impulse of a sudden stream of 0.1
+across a plate, with continuous positions and momenta and a jump of the velocities; and fish that swim by a wave of
+curvature 5 (0.2 + 0.8 s) sin(2 pi (t - s)) (mass 0.1 rho L, E I = rho f^2 L^5, friction 0.0133 U^1.5), alone and one behind
+the other. The speeds are compared with a prototype of the method, another program with another body (a polygon) and
+another solver."""),
     "depth": ("Finite depth", """\
 `pressure.span: finite` (model.md 18): sheets of vortex rings, between Lighthill's slender body and two dimensions; the
-momentum of fish of one and of two depths is found in the fluid."""),
+fluid receives the momentum of fish of one and of two depths."""),
     "walls": ("Walls", """\
-Bodies beside straight walls, model.md 17: a fish beside a wall moves as it does beside its mirror image, a plate between two
-walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to it."""),
+Bodies beside straight walls, model.md 17: a fish beside a wall moves like a fish beside the mirror image, a plate between
+two walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to
+the wall."""),
     "validation": ("Against experiment and Navier-Stokes", """\
-`force: pressure` with its limit of suction and its boundary-layer friction (model.md 9 and 15) against real water: the
-cases foil_anderson, foil_heave and swimmer_navier_stokes of cases/, with the defaults of the program otherwise. The
-references are in tests/verify/data with their sources. *Error* is the ratio of what the program finds to the reference,
-*bound* the range in which the ratio has to be. Why they differ:
+`force: pressure` with the limit of suction and the boundary-layer friction (model.md 9 and 15) against real fluids: the
+cases foil_anderson, foil_heave and swimmer_navier_stokes of cases/, with other keys at defaults. The references are in
+tests/verify/data with their sources. *Error* is the ratio of the result to the reference, *bound* the permitted range of
+the ratio. Reasons of the differences:
 
-* *Foil, thrust.* 3 to 13 % too small for St from 0.2 to 0.5: the sheet has no thickness, by which the inviscid theory of the
-  same article (dashed) has more, and the friction of a steady boundary layer takes 3 to 6 %. At psi = 90 that theory is
-  below the experiment too: there leading-edge vortices join those of the trailing edge, which no attached flow has.
-* *Foil, St = 0.1.* The thrust is the small difference of suction, pressure and friction: with all of the suction it is 1.4
-  times that of the experiment at psi = 90, and the limit takes away half of what is too much.
-* *Foil, power.* Up to 16 % too large at St = 0.5. At psi = 75 the flow separates there at the nose for a fifth of the period,
-  and the limit changes the suction, not the lift and its power; the cause of the 9 % at psi = 90 is not known.
-* *Heave, thrust.* What is left of the suction is about the friction, and depends on the critical A_0 (0.01 in A_0 is 0.017 in
-  the coefficient). The two references at Re 4000 differ by more than each of them from the program: other noses and tails,
-  and other grids.
-* *Heave, lift and power.* Up to a quarter too large: the boundary layer displaces the flow at the trailing edge (round, of the
-  ellipse), so that Kutta's condition holds less than fully, and the leading-edge vortex takes circulation.
-* *Swimmer, speed.* 8 % above the middle of an extrapolation that spreads by 12 %: the friction is that of a steady boundary
-  layer with factors for wave and thickness (without these the swimmer is 22 % too fast), and has no history.
-* *Swimmer, power and forces.* 13 % less power, as the body is a sheet: its thickness, 8 % of its length, and its boundary
-  layer displace fluid that a sheet does not. The lateral force is what is left of forces that cancel along the body, and
-  the vortices of the wake balance a smaller friction."""),
+* *Foil, thrust.* 3 to 13 % too small for St from 0.2 to 0.5: the sheet has no thickness, which increases the thrust in the
+  inviscid theory of the same article (dashed), and the friction of a steady boundary layer takes 3 to 6 %. At psi = 90 that
+  theory is below the experiment too: leading-edge vortices join the trailing-edge vortices, in contrast to attached flow.
+* *Foil, St = 0.1.* The thrust is the small difference of suction, pressure and friction: with full suction the thrust is
+  1.4 times the experiment at psi = 90, and the limit removes half of the excess.
+* *Foil, power.* Up to 16 % too large at St = 0.5. At psi = 75 the flow separates at the nose for a fifth of the period; the
+  limit changes the suction, but not the lift and its power. The cause of the 9 % at psi = 90 is not known.
+* *Heave, thrust.* The remaining suction is about as large as the friction, and depends on the critical A_0 (0.01 in A_0 is
+  0.017 in the coefficient). The two references at Re 4000 differ from each other by more than from the program: other
+  noses and tails, and other grids.
+* *Heave, lift and power.* Up to a quarter too large: the boundary layer displaces the flow at the trailing edge (round, of
+  the ellipse), so the Kutta condition holds only in part, and the leading-edge vortex takes circulation.
+* *Swimmer, speed.* 8 % above the middle of an extrapolation with a range of 12 %: the friction is the friction of a steady
+  boundary layer with factors for wave and thickness (without the factors the swimmer is 22 % too fast), and has no history.
+* *Swimmer, power and forces.* 13 % less power, as the body is a sheet: thickness, 8 % of the length, and boundary layer
+  displace additional fluid. The lateral force is a sum of forces that nearly cancel along the body, and the vortices of
+  the wake balance a smaller friction."""),
 }
 
 # figure: title, x axis, y axis, further keys: scale (log, linear, semilog, semilogx), slopes of the triangles, joined
@@ -315,7 +310,7 @@ FIGURE = {
     "symmetry_far": ("A fish and its far companion", "distance [lengths]", "change of position [m]", {"slopes": [-2]}),
 }
 
-# told apart by marker and dash as well as by colour
+# marker and dash distinguish series as well as colour
 MARKERS = ["o", "s", "^", "D", "v", "x", "+", "P", "*"]
 DASHES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1))]
 
@@ -339,7 +334,7 @@ def read_table(path):
 
 
 def slug(name):
-    """A figure's name as part of a file's."""
+    """The name of a figure as part of a file name."""
     return re.sub("[^a-z0-9]+", "_", name.lower()).strip("_")
 
 
@@ -351,14 +346,14 @@ def is_logarithmic(figure):
 
 
 def draw_triangles(axes, figure, slopes):
-    """One triangle per slope, below the lowest curve; as steep as the slope, with the slope's number."""
+    """Draw one triangle per slope below the lowest curve, labelled with the slope."""
     xs = sorted({x for points in figure.values() for x, y in points if y > 0})
     ys = [y for points in figure.values() for _, y in points if y > 0]
     left, right = math.log10(xs[0]), math.log10(xs[-1])
     width = 0.16 * (right - left)
     bottom = math.log10(min(ys)) + 0.03 * math.log10(max(ys) / min(ys))
     for number, slope in enumerate(slopes):
-        # rising curves leave room at the lower right, falling ones at the lower left
+        # rising curves have free space at the lower right, falling curves at the lower left
         x0 = right - (1.3 * number + 1) * width if slope > 0 else left + 1.3 * number * width
         y0 = bottom if slope > 0 else bottom - slope * width
         corner = (x0 + width, y0) if slope > 0 else (x0, y0 + slope * width)
@@ -398,7 +393,7 @@ def draw_figure(name, figure, path):
     axes.set_yscale("log" if scale in ("log", "semilog") else "linear")
     places = sorted({x for points in figure.values() for x, _ in points})
     if scale in ("log", "semilogx") and len(places) <= 7:
-        # a tick where a run is, instead of decades
+        # ticks at the runs instead of decades
         axes.set_xticks(places, [f"{x:.4g}" for x in places])
         axes.set_xticks([], minor=True)
     if scale == "log":
@@ -437,7 +432,7 @@ def table_of(rows):
 
 
 def summary(tables):
-    """One line per section: how many checks, how many missed."""
+    """One line per section: number of checks, number of missed bounds."""
     lines = ["| section | checks | missed |", "|---|--:|--:|"]
     totals = [0, 0]
     for name, (rows, _) in tables.items():
