@@ -1,5 +1,5 @@
-/* control.c: the section "control" (model.md 11): laws that steer soft and stiff bodies, against an explicit method
- * whose steps resolve every vibration; a fish that goes to waypoints, and one that holds its course in a wake. */
+/* control.c: the section "control" (model.md 11): control laws of soft and stiff bodies, against an explicit method
+ * with steps that resolve every vibration; a fish that swims to waypoints, and a fish that holds a course in a wake. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,7 +21,7 @@ struct steered {
     double place[14], phi0, largest_rate;
 };
 
-// where a body is at the end of a run, and how fast its bias has changed from event to event
+// final position of a body, and the rate of change of the bias from event to event
 static struct steered steer(const char *law, double modulus, const char *solver, double end) {
     struct simulation *const simulation = verify_open(STEERED, INTERVAL, solver, modulus, law);
     const struct fish *const fish = simulation->school->fish;
@@ -67,7 +67,7 @@ static void stiff_bodies(void) {
     if (!verify_is_fast()) compare("heading", heading, 1e11, 0.3);
 }
 
-// ---- where it leads
+// ---- paths
 
 static void waypoints(void) {
     if (verify_is_fast()) return;

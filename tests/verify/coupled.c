@@ -1,6 +1,6 @@
-/* coupled.c: the section "coupled": bodies whose motion the pressure of their sheet decides: the added mass of a plate,
- * the impulse of a stream that starts at once, and fish that swim, alone and one behind the other. Length L, density of
- * the fluid and span 1. */
+/* coupled.c: the section "coupled": bodies under the pressure of the bound sheet: the added mass of a plate, the
+ * impulse of a sudden stream, and fish that swim, alone and one behind the other. Length L, density of the fluid and
+ * span 1. */
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@ enum { MAX_NODES = 33 };
 
 // ---- added mass
 
-/* A free plate along the x axis: its mass, E I, and the stream across it. */
+/* A free plate along the x axis: mass, E I, and the stream across the plate. */
 struct plate {
     int nodes, n_sheet;
     double mass, stiffness, stream, relaxation_time;
@@ -36,7 +36,7 @@ static struct simulation *open_plate(const struct plate *plate) {
                        plate->stiffness / (pi / 64 * pow(thickness, 3)), plate->relaxation_time);
 }
 
-// the added momentum of the nodes of a plate in still fluid where they have these velocities across it, nothing shed
+// the added momentum of the nodes of a plate in still fluid for given velocities across the plate, without shedding
 static void added_momentum(struct simulation *simulation, const double *velocity, double *momentum) {
     const struct fish *fish = simulation->school->fish;
     double *const y = simulation->state->y;
@@ -48,7 +48,7 @@ static void added_momentum(struct simulation *simulation, const double *velocity
            (size_t)fish->n_nodes * sizeof *momentum);
 }
 
-// that of one motion against another
+// the added mass of one motion by another
 static double added_mass(struct simulation *simulation, const double *velocity) {
     double momentum[MAX_NODES], sum = 0;
     added_momentum(simulation, velocity, momentum);
@@ -91,7 +91,7 @@ static void added_masses(void) {
             verify_text("added mass of rotation about the middle, N = %d, M = %d", plate.nodes, plate.n_sheet),
             "pi/128 rho L^4", pi / 128, added_mass(simulation, rotation), cases[i].rotation);
         if (cases[i].least > 0) {
-            verify_relative(verify_text("its smallest eigenvalue, N = %d, M = %d", plate.nodes, plate.n_sheet),
+            verify_relative(verify_text("smallest eigenvalue, N = %d, M = %d", plate.nodes, plate.n_sheet),
                             "positive; the number is the prototype's", cases[i].least, smallest_eigenvalue(simulation),
                             0.05);
         }
@@ -109,7 +109,7 @@ static double mean_velocity(const struct simulation *simulation) {
     return sum;
 }
 
-// the momenta are those of still fluid; with nothing shed where it says so
+// the momenta are the momenta of still fluid; without shedding where stated
 static struct simulation *start_stream(const struct plate *plate, enum shed_now shed_now) {
     struct simulation *const simulation = open_plate(plate);
     const struct fish *fish = simulation->school->fish;
@@ -152,7 +152,7 @@ static void impulses(void) {
 // ---- fish
 
 // A fish: curvature 5 S(t/2) (0.2 + 0.8 s) sin(2 pi (t - s)), mass 0.1, E I = 1, E A = 500,
-// friction 0.0133 U^1.5; another one behind it, where the gap is above 0
+// friction 0.0133 U^1.5; a second fish behind the first if the gap is above 0
 static struct simulation *open_fish(int nodes, double interval, double rtol, double start, double end, double gap,
                                     double smoothing) {
     const double thickness = sqrt(16 / 500.0);

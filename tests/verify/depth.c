@@ -20,7 +20,7 @@ static struct simulation *heave(const char *span, double depth, double amplitude
                        wake, span, depth, amplitude);
 }
 
-/* Thrust m (v^2 - U^2 y'^2)/2 and power m U v^2 of a slender body by the motion of its tail, m = pi rho w^2/4. */
+/* Thrust m (v^2 - U^2 y'^2)/2 and power m U v^2 of a slender body by the motion of the tail, m = pi rho w^2/4. */
 static void check_slender(void) {
     const double depth = 0.25, amplitude = 0.03, square = pow(amplitude * 2 * pi * 0.8, 2) / 2;
     const double mass = pi * depth * depth / 4;

@@ -1,8 +1,8 @@
-/* elastic.c: the section "elastic": plates that the pressure of their sheet bends and pushes, against linear theory:
- * the threshold of flutter, and plates whose clamped nose heaves.
+/* elastic.c: the section "elastic": flexible plates under the pressure of the bound sheet, against linear theory: the
+ * threshold of flutter, and plates with a heaving clamped nose.
  *
- * Lengths in L, speeds in U, density of the fluid and span 1; the plate is at rest in a stream. Its mass and bending
- * stiffness are those of elliptic sections of a thickness that linear theory does not know. */
+ * Lengths in L, speeds in U, density of the fluid and span 1; the plate is at rest in a stream. Mass and bending
+ * stiffness belong to elliptic sections; linear theory neglects the thickness. */
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
@@ -28,7 +28,7 @@ static struct setting usual(int n_nodes) {
     return (struct setting){n_nodes, 2 * n_nodes - 1, 0.4, 1e-5};
 }
 
-/* A plate with its nose in a stream of speed 1: body as in linear theory, motion: further keys of it. */
+/* A plate with a clamped nose in a stream of speed 1: body as in linear theory, motion: further keys of the motion. */
 static struct simulation *open_plate(const struct setting *setting, double end, const struct linear_theory_body *body,
                                      double heading, const char *motion) {
     const double thickness = 0.1;
@@ -64,7 +64,7 @@ static void follow_tail(struct simulation *simulation, int n, double *tail) {
 
 // ---- flutter
 
-/* The growth rate of the mode of a plate whose frequency is nearest to one, from its equilibrium along the stream. */
+/* Growth rate of the mode with the frequency nearest to a given frequency, from the equilibrium along the stream. */
 static double growth_of(int n_nodes, double mass_ratio, double speed, double *frequency) {
     const struct linear_theory_body body = {1 / mass_ratio, 1 / mass_ratio / (speed * speed)};
     // the sheet is straight: a longer taper costs nothing, and halves the error of the shedding
@@ -86,7 +86,7 @@ static double growth_of(int n_nodes, double mass_ratio, double speed, double *fr
     return rate[best];
 }
 
-/* Where that growth vanishes: secants from the threshold of theory and one 0.5 % above it. */
+/* U* of zero growth: secants from the theoretical threshold and a value 0.5 % above. */
 static struct linear_theory_threshold measure(int n_nodes, double mass_ratio,
                                               const struct linear_theory_threshold *theory) {
     double speed[2] = {theory->speed, 1.005 * theory->speed}, frequency = theory->frequency;
@@ -124,7 +124,7 @@ static void flutter_of(double mass_ratio, int n_nodes) {
                     fine.frequency, 0.005);
 }
 
-/* The growth rate beside that of a run: the logarithm of the ratio of two swings of its tail. */
+/* The growth rate and the growth rate of a run: the logarithm of the ratio of two swings of the tail. */
 static void growth_of_a_run(void) {
     enum { FROM = 12, PERIODS = 3, END = 24, N = END * N_FRACTION };
     const double mass_ratio = 1, speed = 8;
@@ -150,10 +150,10 @@ static void growth_of_a_run(void) {
 
 // ---- the heaving nose
 
-/* What one period shows: the first harmonic of nose and tail, and the means of thrust and power. */
+/* Results of one period: the first harmonic of nose and tail, and the means of thrust and power. */
 struct driven {
     double complex nose, tail, lift;
-    double thrust, power, efficiency; /* efficiency: that of the result */
+    double thrust, power, efficiency; /* efficiency: the result variable */
 };
 
 // add an event to the means over a period that begins and ends at events
@@ -185,7 +185,7 @@ static struct driven drive(const struct setting *setting, double amplitude, int 
     return driven;
 }
 
-// what linear theory says of such a plate
+// linear theory of such a plate
 static struct linear_theory_load theory_of(const struct linear_theory_body *body, double complex *tip) {
     const struct linear_theory_plate plate = {1, 1, 1, 2 * pi};
     struct linear_theory_shape shape;
@@ -204,9 +204,9 @@ static void driven_plate(double mass, double stiffness, int n_nodes, int n_perio
     verify_relative(verify_text("heaving nose, k = pi, m = %g, E I = %g: tail over nose", mass, stiffness), source,
                     cabs(tip), cabs(ratio), 0.01);
     verify_value("its phase, degrees", source, carg(tip) * 180 / pi, carg(ratio) * 180 / pi, 1);
-    verify_relative("its mean thrust over the square of the amplitude", "Wu's series for that shape", load.thrust,
+    verify_relative("mean thrust over the square of the amplitude", "Wu's series for that shape", load.thrust,
                     driven.thrust, 0.02);
-    verify_relative("its mean power over the square of the amplitude", "Wu's series for that shape", load.power,
+    verify_relative("mean power over the square of the amplitude", "Wu's series for that shape", load.power,
                     driven.power, 0.02);
     verify_relative("its efficiency", "Wu's series for that shape", load.thrust / load.power, driven.efficiency, 0.01);
 }
@@ -241,7 +241,7 @@ static void order_in_nodes(void) {
                  verify_order_of_errors(cabs(lift[0] - lift[1]), cabs(lift[1] - lift[2])), 1.6, 3);
 }
 
-// what the tolerance leaves of the motion of a soft light plate whose nose heaves by 0.01
+// effect of the tolerance on the motion of a soft light plate with a heave of 0.01 at the nose
 static void tolerance_of_tail(void) {
     enum { END = 3, N = END * N_FRACTION };
     const struct linear_theory_body body = {0.1, 0.1};

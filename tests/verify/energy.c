@@ -1,13 +1,13 @@
-/* energy.c: the section "energy": what the muscle puts in is where the energy balance finds it. The balance is the
- * energy less what it was at the start less all work done since; its error is that of the integrator and of summing
- * powers over its steps. */
+/* energy.c: the section "energy": the energy balance accounts for the work of the muscle. The balance is the energy
+ * less the initial energy less all work since the start; the error comes from the integrator and from the quadrature of
+ * powers over the steps. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "verify.h"
 
-// a case of cases/, with more keys behind it
+// a case of cases/, followed by more keys
 static struct simulation *open_case(const char *path, const char *more) {
     char text[8192];
     FILE *const file = fopen(path, "r");
@@ -21,7 +21,7 @@ static struct simulation *open_case(const char *path, const char *more) {
     return verify_open("%s\n%s", text, more);
 }
 
-// the largest energy balance of any fish now, over the work of its muscle
+// the largest current energy balance of any fish, over the work of the muscle
 static double relative_balance(struct simulation *simulation) {
     double most = 0;
     simulate_measure(simulation);
@@ -65,7 +65,7 @@ static double balance_with(double rtol, int order, double end, double *step) {
     return balance;
 }
 
-// to second order when the tolerance falls: in the mean step, for the error of a step is held, not that of the run
+// second order in the mean step as the tolerance falls: the tolerance controls the error of a step, not of the run
 static void second_order(void) {
     enum { MOST = 5 };
     const int n = verify_is_fast() ? MOST - 1 : MOST;
@@ -83,8 +83,8 @@ static void second_order(void) {
                  verify_slope(n, step, balance), 1.8, 2.5);
 }
 
-// The formulas of orders above 2 are unstable on modes that hardly decay. From 1e-6 on the error test sees that in
-// time; coarser tolerances are shown only: they miss the bound
+// The formulas of orders above 2 are unstable on weakly damped modes. From 1e-6 on the error test limits the
+// instability; coarser tolerances miss the bound and are shown without a check
 static void fifth_order(void) {
     double rtol = 1e-3, step;
     for (int i = 0; i < 5; i++) {
@@ -103,7 +103,7 @@ static void fifth_order(void) {
 
 // ---- a default fish
 
-// means over the last beat of a run, W, and what the body stored in it
+// means over the last beat of a run, W, and the stored energy of the body
 struct beat {
     double actuation, damping, drag, added_mass, wake, stored; /* W */
     double speed;                                              /* m/s */
@@ -152,7 +152,7 @@ static void default_fish(void) {
     }
     verify_show(verify_text("default fish from rest, beat %d: stored in the body, W", n_beats), "mean", beat.stored);
     verify_zero(verify_text("default fish from rest, beat %d: sum of powers over the muscle's", n_beats),
-                "what comes in goes out or is stored", left / beat.actuation, 0.01);
+                "the work is dissipated or stored", left / beat.actuation, 0.01);
     if (verify_is_fast()) return;
     verify_show(verify_text("default fish from rest, beat %d: speed, m/s", n_beats), "mean", beat.speed);
     const double start[] = {0.5, 1, 2};
@@ -173,6 +173,6 @@ void verify_energy(void) {
     fifth_order();
     whole_case("single_free", "", 20, 1e-4, source);
     whole_case("diamond", "", 20, 1.2e-4,
-               "not 1e-4 at the default rtol: it is the steps' error, as the next row shows");
+               "not 1e-4 at the default rtol, by the error of the steps, as the next row shows");
     whole_case("diamond", "solver: {rtol: 5.0e-6}", 20, 1e-4, source);
 }

@@ -1,5 +1,5 @@
-/* fish.c: the section "fish": the numbers of a default fish have a limit, in its nodes, its stiffness, and everything
- * that is no property of it. doc/model.md, sections 1, 3, 9, 13. */
+/* fish.c: the section "fish": the numbers of a default fish converge in the nodes and in the stiffness, and do not
+ * depend on numerical parameters of the wake. doc/model.md, sections 1, 3, 9, 13. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,7 +11,7 @@ struct swim {
     double speed, cost; /* m s-1, m s-2 */
 };
 
-// the steady state of a default fish with some keys; school: the other sections of its case
+// the steady state of a default fish with some keys; school: the other sections of the case
 static struct swim steady_swim(const char *school, const char *keys) {
     char text[512];
     snprintf(text, sizeof text, "format: 1\n" VERIFY_DEFAULTS "%sfish: [{%s}]\n", school, keys);
@@ -57,7 +57,7 @@ static void refine(const char *modulus, const struct swim *limit, double speed_b
                  verify_order_of_values(swim[0].speed, standard->speed, best->speed), 1.8, 5);
 }
 
-// ---- what is no property of the fish
+// ---- parameters without an effect on the fish
 
 static void leave_out_the_wake(void) {
     const struct swim standard = steady_swim(COARSE, "");
@@ -70,7 +70,7 @@ static void leave_out_the_wake(void) {
     }
 }
 
-// the same swim at another frequency: modulus with its square
+// the same swimming motion at another frequency: modulus proportional to the square
 static void scale(void) {
     const struct swim standard = steady_swim("time: {end: 1}\n", "");
     static const double frequency[] = {0.2, 4, 20};

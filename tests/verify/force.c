@@ -1,8 +1,8 @@
-/* force.c: the section "force": the force of the fluid that a body accelerates (model.md 9) in still fluid: what it may
- * not give, what it keeps, and closed results for plates.
+/* force.c: the section "force": the reactive force (model.md 9) in still fluid: limits of the energy gain,
+ * conservation, and closed results for plates.
  *
- * Still fluid: free vortices of a smoothing of 1e6 lengths cause velocities of 1e-12 m/s, and a body does not feel its
- * own sheet. Bodies have no drag and no damping, so that the force of the fluid is alone with the muscle. */
+ * Still fluid: free vortices of a smoothing of 1e6 lengths induce velocities of 1e-12 m/s, and the own sheet does not
+ * act on a body. Bodies have no drag and no damping, so only the muscle and the reactive force act. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,8 +35,8 @@ static double random_number(uint64_t *seed) {
     return (double)(int64_t)(*seed >> 11) / 4503599627370496.0 - 1;
 }
 
-// what the fluid has given to a fish with a random gait, at most, over the work of its muscle: without damping all that
-// is in the body and did not come from the muscle, less what the energy balance says of the integration
+// largest energy from the fluid of a fish with a random gait, over the work of the muscle: without damping the energy
+// of the body that did not come from the muscle, less the error of the integration in the energy balance
 static double most_gained(uint64_t *seed, int flux, double end, double *speed) {
     const double amplitude = 0.4 + 0.2 * random_number(seed), number = 8 * random_number(seed);
     const double frequency = 1 + 0.5 * random_number(seed), quadratic = random_number(seed);
@@ -64,7 +64,7 @@ static void no_gain(void) {
         uint64_t seed = 11;
         double most = 0, speed = 0;
         for (int i = 0; i < n; i++) most = fmax(most, most_gained(&seed, flux, end, &speed));
-        const char *const tail = flux ? "with what leaves at the tail" : "pointed tail";
+        const char *const tail = flux ? "with the flux at the tail" : "pointed tail";
         char name[120];
         snprintf(name, sizeof name, "%d random gaits, %g s, %s: most gained", n, end, tail);
         verify_zero(name, "from still fluid, over the work of the muscle", most, 1e-9);
@@ -73,7 +73,7 @@ static void no_gain(void) {
     }
 }
 
-// ---- what is kept
+// ---- conservation
 
 // the largest change of the energy of body and fluid less the work of the muscle, over that energy
 static double lost(double rtol, double *step) {
@@ -106,7 +106,7 @@ static void conservation(void) {
         verify_point("energy of body and fluid", "E + T", step[i], change[i]);
         char name[80];
         snprintf(name, sizeof name, "energy of body and fluid, rtol %.0e", rtol);
-        // a method of order 2 whose steps go as rtol^(1/3)
+        // a method of order 2 with steps proportional to rtol^(1/3)
         verify_zero(name, source, change[i], pow(rtol, 2.0 / 3.0));
     }
     verify_order("energy of body and fluid, order in the mean step", source, verify_slope(n, step, change), 1.8, 3.2);
@@ -140,7 +140,7 @@ static void reversal(void) {
     verify_run(back, 1);
     for (int i = 0; i < n; i++) missed = fmax(missed, fabs(y[fish->at.x + i] - start[i]));
     // the method's error, (omega step)^4 with omega the fastest motion of a soft body
-    verify_zero("the wave reversed: where the nodes end less where they began", "over the way that they went there",
+    verify_zero("the wave reversed: final less initial position of the nodes", "over the distance before the reversal",
                 missed / went, 1e-9);
     simulate_free(there);
     simulate_free(back);
@@ -156,7 +156,7 @@ static const double added_mass = 1000 * M_PI * 0.0625 / 4; /* per length: width 
     "body: {profile: uniform, section: mean, thickness: 0.1}, wave: {amplitude: 0}, drag: {tangential: 0, " \
     "normal: 0}, added_mass: {coefficient: 1, extent: depth}, motion: {prescribed: all, %s}}]\n"
 
-// force on the plate at time t and its moment about the nose, from the balance of its prescribed nodes
+// force on the plate at time t and moment about the nose, from the balance of the prescribed nodes
 static void force_on_plate(const char *motion, double t, double force[2], double *moment) {
     struct simulation *const simulation = verify_open(PLATE, motion);
     const struct fish *const fish = simulation->school->fish;
@@ -187,30 +187,30 @@ static void force_on_plate(const char *motion, double t, double force[2], double
 }
 
 static void towed_plate(void) {
-    // heading 180 degrees, its nose 10 degrees to the left, at 2 m/s
+    // heading 180 degrees, nose 10 degrees to the left, at 2 m/s
     double force[2], moment;
     force_on_plate("speed: 2, pitch: 10, phase: 90", 0, force, &moment);
     const double alpha = M_PI / 18, wt = -2 * cos(alpha), wn = 2 * sin(alpha);
     verify_relative("towed plate: drag, N", "by hand: the energy left in the wake per second, over the speed",
                     added_mass * wn * wn * -wt / 4, force[0], 1e-12);
-    verify_relative("towed plate: side force, N", "by hand: what leaves at the tail",
+    verify_relative("towed plate: side force, N", "by hand: flux at the tail",
                     added_mass * (wt * wn * cos(alpha) - wn * wn / 2 * sin(alpha)), force[1], 1e-12);
     verify_zero("towed plate: moment about the nose over m_L U^2 L, N m",
                 "by hand: Munk's couple and the force at the tail cancel", moment / (4 * added_mass), 1e-12);
 }
 
 static void oscillating_plate(void) {
-    // at the end of its stroke it is at rest; the heave is to the left of 180 degrees, downwards
+    // the plate is at rest at the end of the stroke; the heave is to the left of 180 degrees, downwards
     double force[2], moment;
     force_on_plate("speed: 0, heave: 0.1, frequency: 2", 0.125, force, &moment);
     const double acceleration = 0.1 * 16 * M_PI * M_PI;
-    verify_relative("oscillating plate: force at the end of its stroke, N", "by hand: added mass times acceleration",
+    verify_relative("oscillating plate: force at the end of the stroke, N", "by hand: added mass times acceleration",
                     -added_mass * acceleration, force[1], 1e-12);
     verify_relative("oscillating plate: moment about the nose, N m", "by hand: at half of the length",
                     -added_mass * acceleration / 2, moment, 1e-12);
 }
 
-// mean thrust of a plate that heaves and pitches about its nose over Lighthill's, (m_L/2) mean(hdot^2 - U^2 h'^2)
+// mean thrust of a plate in heave and pitch about the nose over Lighthill's, (m_L/2) mean(hdot^2 - U^2 h'^2)
 static double thrust_ratio(double heave, double pitch) {
     enum { N = 64 };
     const double speed = 1.5, phase = 70 * M_PI / 180, omega = 2 * M_PI * 1.2;

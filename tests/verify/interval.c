@@ -1,11 +1,11 @@
-/* interval.c: the section "interval": the order in the shedding interval of the default model: one soft
- * fish, from rest and from a moving start, whose oldest wake decays during the run.
+/* interval.c: the section "interval": the order in the shedding interval of the default model: one soft fish, from rest
+ * and from a moving start, with decay of the oldest wake during the run.
  *
- * Runs are compared with finer ones as root mean squares over the run: at one instant the error of one point of a fish
- * that beats may be near a change of its sign, and orders from there are anything between 0.7 and 1.9. A free sheet is
- * refined together with the bound sheet, M - 1 with the inverse root of the interval (doc/numerics.md 5): with the same
- * sheet points, intervals below U Dt/L = (3.2/(M - 1))^2 change nothing. Errors are larger where the fish starts from
- * rest: its first wake is shed next to a tail that hardly leaves it.
+ * Runs are compared with finer runs as root mean squares over the run, because the instantaneous error of a point of a
+ * beating fish changes sign, with orders between 0.7 and 1.9. A free sheet is refined together with the bound sheet, M
+ * - 1 with the inverse root of the interval (doc/numerics.md 5): with the same sheet points, intervals below U Dt/L =
+ * (3.2/(M - 1))^2 change nothing. Errors are larger for a fish from rest, because the first wake stays next to the
+ * tail.
  */
 #include <math.h>
 #include <stdio.h>
@@ -16,21 +16,21 @@
 enum quantity { NOSE, TAIL, SHED, N_QUANTITIES };
 static const char *const quantity_name[N_QUANTITIES] = {"nose", "tail", "shed circulation"};
 enum { MOST_RUNS = 5, N_TIMES = 75 };
-static const double longest = 0.02;  // interval, s; runs are compared at its multiples
+static const double longest = 0.02;  // interval, s; runs are compared at multiples of this interval
 
 // a run: places in m, circulation in m2/s
 struct path {
     double nose[N_TIMES][2], tail[N_TIMES][2], shed[N_TIMES];
 };
 
-// one fish, and what is varied; force: one that feels the own wake
+// one fish, and the varied keys; force: a force that depends on the own wake
 struct variant {
     const char *shedding, *force, *removed;
     double speed;  // at the start, m/s
 };
 
-// A free sheet acts on its fish by the pressure. A reactive fish does not feel its own wake, so only its circulation
-// depends on the interval.
+// A free sheet acts on the own fish by the pressure. The own wake has no effect on a reactive fish, so only the
+// circulation depends on the interval.
 static int is_sheet(const struct variant *variant) {
     return strcmp(variant->shedding, "sheet") == 0;
 }
@@ -71,7 +71,7 @@ static double difference(const struct path *a, const struct path *b, enum quanti
     return sqrt(sum / N_TIMES);
 }
 
-// what is expected: orders, and why
+// expected orders, with reasons
 struct expected {
     double least, most;
     const char *source;
@@ -99,7 +99,7 @@ static void report(const struct variant *variant, const struct expected *expecte
                 difference(&runs[1], &runs[n - 1], quantity));
 }
 
-// the changes when the interval is halved, from the longest on: the slope over all of them, and the size of the error
+// the changes when the interval is halved, from the longest on: the slope over all changes, and the size of the error
 static void halve_interval(const struct variant *variant, const struct expected *expected) {
     const int n = verify_is_fast() ? 4 : MOST_RUNS;
     double interval[MOST_RUNS];

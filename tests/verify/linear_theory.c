@@ -40,11 +40,11 @@ double linear_theory_wagner(double s) {
 }
 
 // Wagner's integral equation int_0^s G'(q) sqrt((2 + s - q)/(s - q)) dq = 1 for G'(q) = f(q)/sqrt(q) with a smooth f:
-// linear between n + 1 points of [0, last], found one after another. With q = s (1 - cos phi)/2 the integral becomes
-// that of f sqrt(2 + s - q) over phi, where equal steps are most exact.
+// linear between n + 1 points of [0, last], computed one after another. With q = s (1 - cos phi)/2 the integrand
+// becomes f sqrt(2 + s - q) over phi, for which equal steps are most accurate.
 enum { ANGLES = 2000 };
 
-// the place q of an angle, of n cells of length h, and what part of the way through which cell it is
+// the position q of an angle, as one of n cells of length h and the fraction of the cell
 static double place_of(int angle, int n, double h, int *cell, double *part) {
     const double q = n * h * (1 - cos(pi * (angle + 0.5) / ANGLES)) / 2;
     *cell = (int)(q / h) < n - 1 ? (int)(q / h) : n - 1;
@@ -81,7 +81,7 @@ static struct linear_theory_growth growth_linear(double s, int n) {
         growth.circulation +=
             2 * (f[i] - slope * a) * (next - root) + slope * 2 / 3 * (next * next * next - root * root * root);
     }
-    // the lift of a sheet is that of its parts: (1 + s - q)/sqrt((2 + s - q) (s - q)) each
+    // the lift of a sheet is the sum over the parts: (1 + s - q)/sqrt((2 + s - q) (s - q)) each
     for (int angle = 0, cell; angle < ANGLES; angle++) {
         double part;
         const double r = 1 + s - place_of(angle, n, h, &cell, &part);
@@ -141,9 +141,9 @@ double linear_theory_heaving_speed(const struct linear_theory_plate *plate, doub
 // ---- two plates in line
 
 // A velocity w of heave makes A_0 of the sheet at the nose C(k) w, an upwash V exp(i (omega t - k x/b)), x from the
-// middle, S(k) V with the function of Sears, S = 2 i/(pi k (H1 + i H0)). The wake of the leader has V = pi k S w far
-// behind it. So A_0 of the follower over the leader's is exp(i lead) - Z exp(-i k d/b), d the distance of the middles
-// and Z = pi k S^2/C. The thrust goes with its square.
+// middle, S(k) V with the function of Sears, S = 2 i/(pi k (H1 + i H0)). The far wake of the leader has V = pi k S w.
+// So A_0 of the follower over A_0 of the leader is exp(i lead) - Z exp(-i k d/b), d the distance of the middles and Z =
+// pi k S^2/C. The thrust is proportional to the square of A_0.
 static double complex wake_over_heave(const struct linear_theory_plate *plate, double smoothing) {
     const double k = plate->omega * plate->length / 2 / plate->speed;
     const double complex h0 = j0(k) - I * y0(k), h1 = j1(k) - I * y1(k);
@@ -167,7 +167,7 @@ struct linear_theory_places linear_theory_places(const struct linear_theory_plat
 
 // ---- impulse
 
-// m v = C = sum b_n sin(n theta), and the stream less v is what the sheet induces: sum n b_n sin(n theta)/sin(theta).
+// m v = C = sum b_n sin(n theta), and the sheet induces the stream less v: sum n b_n sin(n theta)/sin(theta).
 // Times sin(theta) sin(l theta), integrated: n and l are odd
 double linear_theory_impulse(double mass, double stream) {
     enum { N = 60 };
@@ -231,7 +231,7 @@ struct linear_theory_load linear_theory_flexible(const struct linear_theory_plat
     const double complex one[LINEAR_THEORY_TERMS] = {2}, arm[LINEAR_THEORY_TERMS] = {2 * b, b};
     double complex a[LINEAR_THEORY_TERMS], rate[LINEAR_THEORY_TERMS], slope[LINEAR_THEORY_TERMS];
     pressure_of(plate, shape, a);
-    // the mean of a product takes one of its factors conjugate
+    // the mean of a product takes one factor conjugate
     for (int n = 0; n < LINEAR_THEORY_TERMS; n++) {
         rate[n] = conj(I * plate->omega * shape->place[n]);
         slope[n] = conj(shape->slope[n]);
@@ -254,7 +254,7 @@ double linear_theory_mode_number(int j) {
     return beta;
 }
 
-// 1 - s of the mode cosh - cos - s (sinh - sin), the small factor of the growing exponential, where nothing cancels
+// 1 - s of the mode cosh - cos - s (sinh - sin), the small factor of the growing exponential, without cancellation
 static double mode_rest(double beta) {
     return (sin(beta) - cos(beta) - exp(-beta)) / (sinh(beta) + sin(beta));
 }

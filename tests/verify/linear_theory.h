@@ -1,9 +1,9 @@
-/* linear_theory.h: solvers of our own for the linear theory of thin foils, from which `make verify` takes references.
- * Nothing of the model in src is used.
+/* linear_theory.h: independent solvers for the linear theory of thin foils, the references of `make verify`. The
+ * solvers share no code with the model in src.
  *
- * A plate of length L and span 1 along the x axis in a stream U towards +x, its nose at x = 0; small displacements
- * y(x, t) = Re(y(x) exp(i omega t)) to the left (+y); b = L/2, k = omega b/U, x = b (1 + cos theta), so that theta = 0
- * is the tail. [p] is the pressure on the right side less that on the left: the force per area to the left.
+ * A plate of length L and span 1 along the x axis in a stream U towards +x, its nose at x = 0; small displacements y(x,
+ * t) = Re(y(x) exp(i omega t)) to the left (+y); b = L/2, k = omega b/U, x = b (1 + cos theta), so that theta = 0 is
+ * the tail. [p] is the pressure on the right side less the pressure on the left: the force per area to the left.
  *
  * Sources: T. Theodorsen (1935), NACA report 496; I. E. Garrick (1936), NACA report 567; W. R. Sears (1941), J.
  * Aeronautical Sciences 8; T. Y. Wu (1961), J. Fluid Mech. 10. Tested by the section "theory" of `make verify`. */
@@ -12,7 +12,7 @@
 
 #include <complex.h>
 
-/* Theodorsen's function C(k) of the reduced frequency k > 0, and Wagner's lift over its final value after s > 0 half
+/* Theodorsen's function C(k) of the reduced frequency k > 0, and Wagner's lift over the final value after s > 0 half
  * lengths: 1/2 + (2/pi) int (Re C - 1/2) sin(k s)/k dk. */
 double complex linear_theory_theodorsen(double k);
 double linear_theory_wagner(double s);
@@ -24,14 +24,13 @@ struct linear_theory_growth {
 };
 struct linear_theory_growth linear_theory_growth(double s);
 
-/* What holds for every plate: L [m], U [m s-1], density of the fluid [kg m-3], omega > 0 [rad s-1]. */
+/* Parameters of every plate: L [m], U [m s-1], density of the fluid [kg m-3], omega > 0 [rad s-1]. */
 struct linear_theory_plate {
     double length, speed, density, omega;
 };
 
-/* What the fluid does to a plate of span 1 m: the force to the left [N] and its moment about the nose, positive
- * counter-clockwise [N m], as amplitudes; and means over a period: thrust [N] and the power that the motion takes
- * [W]. */
+/* Load of the fluid on a plate of span 1 m: the force to the left [N] and the moment about the nose, positive
+ * counter-clockwise [N m], as amplitudes; and means over a period: thrust [N] and power of the motion [W]. */
 struct linear_theory_load {
     double complex lift, moment;
     double thrust, power;
@@ -42,7 +41,7 @@ struct linear_theory_load {
 struct linear_theory_load linear_theory_rigid(const struct linear_theory_plate *plate, double complex heave,
                                               double complex pitch, double axis);
 
-/* A motion of any shape: coefficients c_n of y = c_0/2 + sum c_n cos(n theta) [m], and of its slope dy/dx [1]. */
+/* A motion of any shape: coefficients c_n of y = c_0/2 + sum c_n cos(n theta) [m], and of the slope dy/dx [1]. */
 enum { LINEAR_THEORY_TERMS = 64 };
 struct linear_theory_shape {
     double complex place[LINEAR_THEORY_TERMS], slope[LINEAR_THEORY_TERMS];
@@ -55,7 +54,7 @@ struct linear_theory_function {
 };
 void linear_theory_sample(const struct linear_theory_function *function, struct linear_theory_shape *shape);
 
-/* What the fluid does to a plate that moves with this shape: Wu's series. */
+/* Load of the fluid on a plate that moves with this shape: Wu's series. */
 struct linear_theory_load linear_theory_flexible(const struct linear_theory_plate *plate,
                                                  const struct linear_theory_shape *shape);
 
@@ -63,22 +62,22 @@ struct linear_theory_load linear_theory_flexible(const struct linear_theory_plat
  * plate of span 1 m. */
 double linear_theory_heaving_speed(const struct linear_theory_plate *plate, double amplitude, double friction);
 
-/* Two of these plates in line heave alike, the second one `lead` [rad] ahead, and its nose is `gap` [m] behind the tail
- * of the first: the mean thrust of the second over that of the first. The second one moves in the far wake of the
- * first, a flat sheet whose velocity is smoothed over `smoothing` [m], and does not act on it. The sheet goes by with
- * U, so that the gap and the lead only matter as 2 pi gap/wavelength + lead, wavelength 2 pi U/omega. */
+/* Two of these plates in line heave alike, the second plate `lead` [rad] ahead, with the nose `gap` [m] behind the tail
+ * of the first: the mean thrust of the second over the mean thrust of the first. The second plate moves in the far wake
+ * of the first, a flat sheet with a velocity smoothed over `smoothing` [m], and does not act on the wake. The sheet
+ * moves with U, so the result depends on 2 pi gap/wavelength + lead only, wavelength 2 pi U/omega. */
 double linear_theory_follower_thrust(const struct linear_theory_plate *plate, double smoothing, double gap,
                                      double lead);
 
-/* Where the two thrusts are equal, in wavelengths from 0 to 1 behind the tail, to which any integer may be added:
- * stable where the thrust of the second grows with its distance, at the other place unstable. Minus lead/(2 pi). */
+/* Positions of equal thrust, in wavelengths from 0 to 1 behind the tail, plus any integer: stable if the thrust of the
+ * second plate grows with the distance, unstable at the other position. Minus lead/(2 pi). */
 struct linear_theory_places {
     double stable, unstable;
 };
 struct linear_theory_places linear_theory_places(const struct linear_theory_plate *plate, double smoothing);
 
-/* A free limp plate of this mass per length over density L, in a stream across it that starts at once: its mean
- * velocity then. The impulse of the pressure at a point is density C, C the circulation from the nose to there. */
+/* Mean velocity of a free limp plate of this mass per length over density L in a sudden stream across the plate. The
+ * impulse of the pressure at a point is density C, C the circulation between the nose and the point. */
 double linear_theory_impulse(double mass, double stream);
 
 /* ---- elastic plates, clamped at the nose: Galerkin's method with modes of a clamped beam in vacuum */
@@ -95,12 +94,12 @@ struct linear_theory_body {
     double mass, stiffness;
 };
 
-/* The shape of a plate whose clamped nose heaves with amplitude 1 m; tip: its displacement at the tail [m]. */
+/* The shape of a plate with a clamped nose that heaves with amplitude 1 m; tip: displacement of the tail [m]. */
 void linear_theory_driven(const struct linear_theory_plate *plate, const struct linear_theory_body *body,
                           struct linear_theory_shape *shape, double complex *tip);
 
-/* Where a clamped plate in a stream begins to flutter: the least U* = U L sqrt(mass/stiffness) with a neutral motion,
- * and f L/U of it. mass_ratio: M* = density L/mass. */
+/* Threshold of flutter of a clamped plate in a stream: the least U* = U L sqrt(mass/stiffness) with a neutral motion,
+ * and f L/U of this motion. mass_ratio: M* = density L/mass. */
 struct linear_theory_threshold {
     double speed, frequency;
 };

@@ -1,6 +1,6 @@
-/* momentum.c: the section "momentum": what swimmers with force: pressure give to the fluid is found there
- * (doc/model.md, sections 8 and 13). The bodies are those for which the bounds were set, written out: 17 nodes, 33
- * sheet points, a pointed tail, full suction; unless said, no friction, and a wake that nothing is lost of. */
+/* momentum.c: the section "momentum": the fluid receives the momentum of swimmers with force: pressure (doc/model.md,
+ * sections 8 and 13). The bodies have explicit settings: 17 nodes, 33 sheet points, a pointed tail, full suction; no
+ * friction and a wake without decay unless stated. */
 #include <math.h>
 #include <stdio.h>
 
@@ -10,7 +10,7 @@
     "force: pressure, nodes: 17, drag: {skin: laminar}, pressure: {suction_limit: 0}, body: {depth: %g, " \
     "tail_thickness: 0, damping: curvature, relaxation_time: 0.001}"
 
-/* A run: its fish, and what differs from the usual one. */
+/* A run: the fish, and the differences from the standard run. */
 struct run {
     const char *fish;
     double end, interval, viscosity; /* s, s, m2 s-1 */
@@ -18,9 +18,9 @@ struct run {
     const char *fluid;               /* further keys of the fluid */
 };
 
-/* What a run shows: the largest balance over the largest term of it; at the end; over the largest momentum of the
- * bodies; the largest angular balance, and at the end, N m s; the mean of its rate from a beat on, N; the balance at
- * the end, and since the first beat. */
+/* Results of a run: the largest balance over the largest term of the balance; at the end; over the largest momentum of
+ * the bodies; the largest angular balance, and at the end, N m s; the mean rate of the balance from a beat on, N; the
+ * balance at the end, and since the first beat. */
 struct found {
     double part, part_at_end, of_momentum, angular, angular_at_end, force[2], balance[2], since_beat[2], size;
 };
@@ -132,7 +132,7 @@ static void nothing_comes_from_outside(void) {
     verify_zero("side by side, 0.35 L, from rest: momentum lost", conservation, find(&beside).of_momentum, 4e-3);
 }
 
-// M - 1 grows like 1/sqrt(U Dt/L), as the sheet needs it; at one interval more points must not make it worse
+// M - 1 grows like 1/sqrt(U Dt/L), as required by the sheet; at one interval more points must not increase the error
 static void refined(void) {
     const struct {
         double interval;
@@ -144,7 +144,7 @@ static void refined(void) {
         error[i] = find(&run).part_at_end;
         verify_point("momentum_interval", "from rest, 6 s", both[i].interval, error[i]);
     }
-    verify_order("momentum lost in the interval, sheet points with it", "0.01 s, 33 to 0.0025 s, 65",
+    verify_order("momentum lost in the interval, sheet points refined with the interval", "0.01 s, 33 to 0.0025 s, 65",
                  verify_order_of_errors(error[0], error[2]) / 2, 0.7, 2);
     double least = INFINITY, most = 0;
     for (int i = 0; i < 3; i++) {
@@ -185,7 +185,7 @@ static void balances(void) {
     verify_zero("in shear and gusts: balance over its largest term", conservation, find(&shear).part, 1e-3);
 }
 
-// the same swim over ground: heading 180 degrees, the stream against it
+// the same swimming motion over ground: heading 180 degrees against the stream
 static void stream(void) {
     const struct run still = {fish(MOVES, 1, 0, 0), 3, 0.01, 1e-6, 33, 1, NULL};
     const struct found a = find(&still);

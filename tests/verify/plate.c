@@ -1,12 +1,12 @@
-/* plate.c: the section "plate": a rigid plate and the wake that it sheds, against the linear theory of thin foils:
- * Wagner's impulsive start and a heaving plate. Length L = 1 m, speed U = 1 m/s.
+/* plate.c: the section "plate": a rigid plate and the shed wake, against the linear theory of thin foils: Wagner's
+ * impulsive start and a heaving plate. Length L = 1 m, speed U = 1 m/s.
  *
- * Linear theory has a vortex sheet that begins at the edge itself. So has the program by default (shedding: sheet); the
- * checks at default settings hold for it. With shedding: continuous it has vortices of radius delta (smoothing), the
- * newest at half the distance w Dt that the fluid goes past the tail in one interval. Near the edge their effect on the
- * bound circulation is an integral with 1/sqrt(distance): smoothing takes a part of order sqrt(delta/L) off it, one
- * vortex at the centroid instead of a sheet a part of order sqrt(U Dt/L). That is what the studies of point vortices
- * show. */
+ * Linear theory has a vortex sheet that begins at the edge. So has the program by default (shedding: sheet), for which
+ * the checks at default settings hold. With shedding: continuous the wake has vortices of radius delta (smoothing), the
+ * newest at half the distance w Dt of the flow past the tail in one interval. The effect of vortices near the edge on
+ * the bound circulation is an integral with 1/sqrt(distance): smoothing reduces the integral by a part of order
+ * sqrt(delta/L), one vortex at the centroid instead of a sheet by a part of order sqrt(U Dt/L), as the studies of point
+ * vortices show. */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,7 +17,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-// ---- what is varied
+// ---- varied keys
 
 struct resolution {
     double interval, smoothing, sheet_smoothing; /* s, L, L */
@@ -26,18 +26,18 @@ struct resolution {
 };
 
 /* Radii far below the distance of the vortices, and bound vortices closer to each other at the edge, (pi/M)^2/4
- * lengths, than the newest free one is to it: what is left is the error of the interval. */
+ * lengths, than the newest free vortex is to the edge: the remaining error is the error of the interval. */
 static struct resolution point_vortices(double interval) {
     return (struct resolution){interval, 1e-5, 0.05, 81, "edge", "chebyshev", "continuous"};
 }
 
-/* What a case gets that says nothing, at U Dt = 0.01 L. */
+/* The default settings, at U Dt = 0.01 L. */
 static const struct resolution defaults = {0.01, 0.1, 0.05, 33, "edge", "chebyshev", "sheet"};
 
 /* One nascent vortex, smoothed also next to the edge: the default of the article's model. */
 static const struct resolution smoothed = {0.01, 0.2, 0.05, 21, "edge", "chebyshev", "continuous"};
 
-/* A straight prescribed plate; motion: further keys of it. */
+/* A straight prescribed plate; motion: further keys of the motion. */
 static struct simulation *open_plate(const struct resolution *with, double end, const double velocity[2],
                                      const char *motion) {
     return verify_open(VERIFY_DEFAULTS
@@ -60,7 +60,7 @@ static double bound_circulation(const struct simulation *simulation) {
 
 // ---- Wagner's problem
 
-/* Shed circulation over its final value. */
+/* Shed circulation over the final value. */
 static double exact_growth(double s) {
     return linear_theory_growth(s).circulation;
 }
@@ -73,7 +73,7 @@ static struct simulation *start_plate(const struct resolution *with, double s) {
     return open_plate(with, s / 2, velocity, "speed: 0");
 }
 
-/* Shed circulation over its final value after s half lengths. */
+/* Shed circulation over the final value after s half lengths. */
 static double grown(struct simulation *simulation, double s) {
     verify_run(simulation, s / 2);
     return -bound_circulation(simulation) / (pi * sin(incidence));
@@ -166,7 +166,7 @@ static void order_in_the_smoothing(void) {
                 start_error(other, 2) - start_error(defaults, 2), 1e-4);
 }
 
-/* At one interval: the limit of many sheet points is that of edge and chebyshev with 161. */
+/* At one interval: edge and chebyshev with 161 points are the limit of many sheet points. */
 static void convergence_in_the_sheet(void) {
     static const char *const kutta[] = {"edge", "rate"}, *const collocation[] = {"chebyshev", "midpoint"};
     struct resolution with = point_vortices(0.01);
@@ -209,13 +209,13 @@ static void figure_of_the_start(void) {
 
 // ---- heaving plate
 
-/* Bound circulation over that of a steady flow at each instant's velocity; j0, j1, y0, y1 of the C library. */
+/* Bound circulation over the quasi-steady circulation; j0, j1, y0, y1 of the C library. */
 static double complex exact_ratio(double k) {
     const double complex h0 = j0(k) - I * y0(k), h1 = j1(k) - I * y1(k);
     return 2 * I * cexp(-I * k) / (pi * k * (h1 + I * h0));
 }
 
-/* Solve four normal equations, each with its right side behind it; the factor of function i is left in sums[i][4]. */
+/* Solve four normal equations with the right sides in column 4; the factor of function i is in sums[i][4]. */
 static void solve_normal(double sums[4][5]) {
     for (int pivot = 0; pivot < 4; pivot++) {
         for (int column = 4; column >= pivot; column--) sums[pivot][column] /= sums[pivot][pivot];
@@ -233,7 +233,7 @@ static double complex exact_lift(double k) {
     return linear_theory_rigid(&plate, I / plate.omega, 0, 0).lift;
 }
 
-/* sum of circulation times x over everything that has circulation: its rate is the lift over the density. */
+/* sum of circulation times x over all vortices: the rate of the sum is the lift over the density. */
 static double impulse(const struct simulation *simulation) {
     const struct fish *const fish = &simulation->school->fish[0];
     const struct wake *const wake = &simulation->state->wake[0];
@@ -249,8 +249,8 @@ static double impulse(const struct simulation *simulation) {
 }
 
 /* Obtained over exact: the bound circulation and the lift of a heaving plate with n intervals a period, each fitted
- * over the second period with a sine and, for what is left of the start, a straight line. It starts at its lowest point
- * with no velocity. */
+ * over the second period with a sine and, for the remaining transient, a straight line. The plate starts at rest at the
+ * lowest point. */
 struct heaving {
     double complex circulation, lift;
 };
@@ -277,7 +277,7 @@ static struct heaving heave(double k, int n, struct resolution with) {
     simulate_free(simulation);
     for (int what = 0; what < 2; what++) solve_normal(sums[what]);
     const double complex circulation = sums[0][0][4] - I * sums[0][1][4], moment = sums[1][0][4] - I * sums[1][1][4];
-    // swimming towards -x a motion to the left, to -y, is a stream from below: it turns the sheet clockwise
+    // a motion to the left of a plate that swims towards -x, to -y, is a stream from below with a clockwise sheet
     return (struct heaving){-circulation / (pi * velocity) / exact_ratio(k),
                             I * omega * moment / velocity / exact_lift(k)};
 }

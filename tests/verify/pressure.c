@@ -1,5 +1,5 @@
 /* pressure.c: the section "pressure": forces from the bound sheet (force: pressure) against the linear theory of thin
- * foils. Length L, speed and density of the fluid 1 and span 1 m where nothing else is said. */
+ * foils. Length L, speed and density of the fluid 1 and span 1 m unless stated. */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>
@@ -36,7 +36,7 @@ static struct simulation *open_plate(const struct plate *plate) {
                        plate->motion);
 }
 
-/* The force of the fluid at an event, N, and its moment about the nose, N m. */
+/* The force of the fluid at an event, N, and the moment about the nose, N m. */
 struct load {
     double force[2], moment;
 };
@@ -52,8 +52,8 @@ static struct load load_of(struct simulation *simulation) {
     return load;
 }
 
-/* What the fluid does over the last of some periods: amplitudes across the stream and about the nose, mean thrust, and
- * the power that the motion of the nose across the stream takes. */
+/* Force of the fluid over the last period of a run: amplitudes across the stream and about the nose, mean thrust, and
+ * the power of the motion of the nose across the stream. */
 static struct linear_theory_load oscillate(struct simulation *simulation, double omega, int n_periods, int per_period) {
     struct linear_theory_load load = {.thrust = 0};
     const double interval = simulation->school->interval;
@@ -141,7 +141,7 @@ static void pitch(void) {
     }
 }
 
-// what the taper costs: a wake with hardly any smoothing, seen by the body as it is
+// the error of the taper: a wake with negligible smoothing, without a taper for the body
 static void without_taper(void) {
     const struct linear_theory_plate plate = {1, 1, 1, 2};
     const struct linear_theory_load theory = linear_theory_rigid(&plate, I * 0.005, 0, 0);
@@ -152,7 +152,7 @@ static void without_taper(void) {
     verify_relative("its mean thrust", "Garrick (1936)", theory.thrust, load.thrust, 0.0016);
 }
 
-// fine in the interval and in the vortices: what is left is the taper
+// fine interval and sheet: the remaining error is the error of the taper
 static void refined(void) {
     const struct linear_theory_plate plate = {1, 1, 1, 2};
     const struct linear_theory_load theory = linear_theory_rigid(&plate, I * 0.005, 0, 0);
@@ -190,7 +190,7 @@ static void orders(void) {
 
 // ---- sudden starts, and long after
 
-// a plate at an incidence that starts at once; its nose points down where the angle is positive
+// a plate at an incidence with a sudden start; a positive angle points the nose down
 static struct simulation *start_plate(double alpha, double interval, double end, int n_sheet) {
     char motion[160];
     snprintf(motion, sizeof motion, "pitch: %.17g, pitch_phase: 90", alpha * 180 / pi);
@@ -208,10 +208,10 @@ static void wagner(void) {
     for (int i = 0; i < 7; i++) {
         verify_run(simulation, cases[i].s / 2);
         const struct linear_theory_growth growth = linear_theory_growth(cases[i].s);
-        verify_relative(verify_text("sudden start: lift over its final value, s = %g", cases[i].s), "Wagner (1925)",
+        verify_relative(verify_text("sudden start: lift over the final value, s = %g", cases[i].s), "Wagner (1925)",
                         growth.lift, -load_of(simulation).force[1] / (pi * sin(alpha)), cases[i].lift);
         if (cases[i].circulation <= 0) continue;
-        verify_relative(verify_text("sudden start: shed circulation over its final value, s = %g", cases[i].s),
+        verify_relative(verify_text("sudden start: shed circulation over the final value, s = %g", cases[i].s),
                         "Wagner (1925)", growth.circulation,
                         -simulation->diagnostics->fish[0].shed_circulation / (pi * sin(alpha)), cases[i].circulation);
     }
@@ -228,7 +228,7 @@ static void steady(void) {
         const struct linear_theory_growth growth = linear_theory_growth(120);
         verify_relative(verify_text("plate at %g rad after 60 lengths: shed circulation", angles[i]), "Wagner (1925)",
                         growth.circulation, -of->shed_circulation / (pi * sin(angles[i])), 0.001);
-        verify_value(verify_text("plate at %g rad: A_0", angles[i]), "tan(alpha), less what the wake takes away",
+        verify_value(verify_text("plate at %g rad: A_0", angles[i]), "tan(alpha), less the effect of the wake",
                      tan(angles[i]), fabs(of->pressure.leading_edge_a0), 0.012 * tan(angles[i]));
         verify_zero(verify_text("plate at %g rad: drag over suction", angles[i]), "d'Alembert",
                     load.force[0] / hypot(of->pressure.suction[0], of->pressure.suction[1]), 0.011);
@@ -236,11 +236,11 @@ static void steady(void) {
     }
 }
 
-// ---- bodies that go by their thrust
+// ---- self-propelled bodies
 
-// A heaving plate of length 2 with friction 0.04 U^(3/2). Its mass is 1.5: theory has a uniform speed, and that of a
-// lighter body oscillates with its thrust (mass 0.5: -0.18 %). The wake decays over several periods, for the end of a
-// short one moves with the phase of the heave: 2 beats and a decay of 0.2 make it 5 % too fast.
+// A heaving plate of length 2 with friction 0.04 U^(3/2). The mass is 1.5: theory has a uniform speed, and the speed of
+// a lighter body oscillates with the thrust (mass 0.5: -0.18 %). The wake decays over several periods, because the end
+// of a short wake moves with the phase of the heave: 2 beats and a decay of 0.2 make the plate 5 % too fast.
 static void self_propelled(double amplitude, const char *wake, int per_period, int n_periods, double bound) {
     const struct linear_theory_plate plate = {2, 1, 1, 2 * pi};
     const double speed = linear_theory_heaving_speed(&plate, amplitude, 0.04), k = 2 * pi / speed;

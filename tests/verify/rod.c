@@ -1,10 +1,10 @@
 /* rod.c: the section "rod": the elastic body alone, without a fluid, against the theory of beams.
  *
  * The rod of all checks: uniform, of length 1 m, with EI = rho A L^4/s^2, so that circular frequencies are (beta L)^2
- * per second. Its thickness h sets how far it can stretch: EA = 16 EI/h^2.
+ * per second. The thickness h determines the stretching stiffness: EA = 16 EI/h^2.
  *
- * Where a chain is clamped, a joint at its nose holds the direction of edge 0 with the stiffness of half an edge, the
- * half cell of node 0: what may bend is the whole length.
+ * The clamp of a chain is a joint at the nose that holds the direction of edge 0 with the stiffness of half an edge,
+ * the half cell of node 0: the whole length can bend.
  */
 #include "body/rod.h"
 
@@ -22,7 +22,7 @@ static const int nodes_of[N_LEVELS] = {11, 21, 41, 81};
 
 static const double thin = 1e-3;  // m: at the largest load the strain is 1e-6: as good as inextensible
 
-// the uniform rod behind its nose at the origin, along the x axis; without damping and fluid. Nodes, section,
+// the uniform rod along the x axis with the nose at the origin; without damping and fluid. Nodes, section,
 // thickness, modulus, relaxation time
 #define ROD                                                                                                           \
     "fluid: {density: 0}\nwake: {lifetime: 100, shedding: continuous, taper: 0, taper_beside: 0}\nfish:\n  - nodes: " \
@@ -42,7 +42,7 @@ static double modulus_of(double thickness) {
 static const double elastica_load[4] = {1, 2, 5, 10};
 static const double elastica_deflection[4] = {0.3017207738, 0.4934574804, 0.7137915236, 0.8106090249};
 
-// deflection of the tip over the length, once a rod clamped at its head has come to rest under P L^2/EI = load
+// deflection of the tip over the length of a clamped rod at rest under P L^2/EI = load
 static double deflection(int nodes, double load) {
     const double stiffness = modulus_of(thin) * M_PI * 0.25 * pow(thin, 3) / 64;
     // a relaxation time of 0.4 s damps the first mode and the highest ones at a rate of about 2.5 per second: after
@@ -58,10 +58,10 @@ static double deflection(int nodes, double load) {
     return w;
 }
 
-// errors fall as lbar^2: the free ends and the lumped masses are a chain's only faults. The bound on the finest is half
-// of (lbar/L)^2. What is left when that term is taken out by extrapolation is of third order: the clamp, half of a
-// joint of a beam mirrored at its root, measures its curvature by 2 tan(phi/2) of half the angle. The terms of second
-// and third order of one load may cancel near some N, so the order is that of the worst of the loads
+// errors fall as lbar^2, from the free ends and the lumped masses of the chain. The bound on the finest chain is half
+// of (lbar/L)^2. The error after extrapolation is of third order: the clamp, half of a joint of a beam mirrored at the
+// root, measures the curvature by 2 tan(phi/2) of half the angle. The terms of second and third order of one load may
+// cancel near some N, so the order uses the worst load
 static void elastica(void) {
     static const char source[] = "Bisshopp and Drucker 1945; the whole length L";
     const int n_levels = verify_is_fast() ? 2 : N_LEVELS;
@@ -185,7 +185,7 @@ static void frequencies(int clamped) {
         const double edge = b / (nodes_of[n_levels - 1] - 1);
         char name[80];
         // a travelling wave on a chain has sin(beta lbar/2) for beta lbar/2, (beta lbar)^2/24 less; the ends may
-        // bring as much again or three times that. What extrapolation leaves is of fourth order
+        // add one to three times as much. The error after extrapolation is of fourth order
         snprintf(name, sizeof name, "%s beam, mode %d, beta L, N = %d", ends, i + 1, nodes_of[n_levels - 1]);
         verify_relative(name, source, b, fine, edge * edge / 6);
         snprintf(name, sizeof name, "%s beam, mode %d, beta L, extrapolated", ends, i + 1);
@@ -195,7 +195,7 @@ static void frequencies(int clamped) {
     }
 }
 
-// the published head has no clamp: its first two nodes are given, and the beam begins in the middle of edge 0
+// the published head has no clamp: the first two nodes are prescribed, and the beam begins in the middle of edge 0
 static void published_head(void) {
     static const char source[] = "Euler-Bernoulli, cos b cosh b = -1; section: nodes";
     static const double exact = 1.8751040687;
@@ -214,7 +214,7 @@ static void published_head(void) {
 
 // ---- natural curvature
 
-// a rod that curls up to its natural shape within a second and comes to rest there
+// a rod that relaxes to the natural shape within a second
 static struct simulation *curled_rod(int nodes, int reference_nodes, const char *wave, double bias) {
     struct simulation *const simulation =
         verify_open("format: 1\ntime: {end: 12, shedding_interval: 0.25}\nsolver: {rtol: 1.0e-6}\n" ROD
@@ -231,7 +231,7 @@ static double distance(const struct simulation *simulation, int i, int k) {
 }
 
 // (sigma - sigma^2)(sin(2 pi sigma - pi/2) - 4) is -3/4 at the three joints of a chain of four edges, so an amplitude
-// of -4 pi/9 turns each by a sixth: four sides of a hexagon. A body whose ends meet would have a sheet of any strength.
+// of -4 pi/9 turns each by a sixth: four sides of a hexagon. On a closed body the strength of the sheet is not unique.
 static void polygon(void) {
     static const char source[] = "kappa = kbar everywhere: four sides of a hexagon";
     struct simulation *const simulation = curled_rod(
@@ -240,7 +240,7 @@ static void polygon(void) {
     rod_curvature(simulation->school->fish, simulation->state->y, curvature);
     for (int j = 0; j < 3; j++) turn = fmax(turn, fabs(2 * atan(curvature[j] / 2) - M_PI / 3));
     for (int k = 0; k < 4; k++) side = fmax(side, fabs(distance(simulation, k, k + 1) - 0.25));
-    // at rest the equations hold to rounding; what is left is the end of the motion
+    // at rest the equations hold to rounding; the remaining error is the end of the motion
     verify_zero("regular polygon: turning angles less a sixth of a turn, rad", source, turn, 1e-9);
     verify_zero("regular polygon: sides less L/4, m", source, side, 1e-9);
     verify_zero("regular polygon: from nose to tail less sqrt(3) L/4, m", source,
@@ -310,7 +310,7 @@ static struct invariants invariants_of(struct simulation *simulation) {
     return now;
 }
 
-// a rod struck sideways: a velocity of s^2 shifts it, turns it and makes it vibrate
+// a rod struck sideways: a velocity of s^2 causes translation, rotation and vibration
 static void strike(struct simulation *simulation) {
     const struct fish *const fish = simulation->school->fish;
     double *const y = simulation->state->y;
@@ -361,7 +361,7 @@ static void conservation(int order) {
         verify_point("conservation", series[0], rtol, angular[i]);
         verify_point("conservation", series[1], rtol, energy[i]);
     }
-    // linear in the unknowns: every step keeps it
+    // linear in the unknowns: every step conserves the momentum
     snprintf(name, sizeof name, "struck rod, order %d: momentum, rtol 1e-4 to %.0e", order, rtol);
     verify_zero(name, source, momentum, 1e-9);
     // quadratic: the error of the steps, which go as rtol^(1/3), to second order at least
@@ -370,15 +370,15 @@ static void conservation(int order) {
     verify_zero(name, source, angular[n - 1], bound);
     snprintf(name, sizeof name, "struck rod, order %d: energy, rtol %.0e", order, rtol);
     verify_zero(name, source, energy[n - 1], bound);
-    // the formulas of orders above 2 are unstable on undamped modes, which holds their steps to what is stable
+    // the formulas of orders above 2 are unstable on undamped modes, so stability limits the steps
     if (order > 2) return;
     verify_order("struck rod: angular momentum, order in the mean step", source, verify_slope(n, step, angular), 1.8,
                  4.5);
     verify_order("struck rod: energy, order in the mean step", source, verify_slope(n, step, energy), 1.8, 4.5);
 }
 
-// shown because no bound is promised: waves of stretching that no step resolves and nothing damps make Newton's
-// iteration fail now and then, and the rod gains energy. A relaxation time of 1e-4 s ends it
+// shown without a bound: unresolved, undamped waves of stretching make Newton's iteration fail now and then, and the
+// rod gains energy. A relaxation time of 1e-4 s prevents this
 static void thin_rod(void) {
     double step;
     const struct invariants change = drift(3e-3, 1e-5, 2, &step);

@@ -8,7 +8,7 @@
 #include "run/event.h"
 #include "verify.h"
 
-// where a run ended: what is compared between two runs. Places in m, circulation in m2/s, fish after fish
+// final state of a run, for comparisons between two runs: positions in m, circulation in m2/s, fish after fish
 enum quantity { NOSE, TAIL, CENTRE, SHED, SHEET, N_QUANTITIES };
 static const char *const quantity_name[N_QUANTITIES] = {"nose", "tail", "centre of mass", "shed circulation",
                                                         "free sheet"};
@@ -34,8 +34,8 @@ static double difference(const struct ends *a, const struct ends *b, enum quanti
     return sqrt(sum);
 }
 
-// The place of the piece of sheet that was shed at time shed_at: cubic in the label. A vortex stands for what was shed
-// between two events, so its label is half an interval before its release (doc/model.md, section 8).
+// Position of the piece of sheet shed at time shed_at: cubic in the label. A vortex represents the circulation shed
+// between two events, so the label is half an interval before the release (doc/model.md, section 8).
 static void add_place_in_sheet(struct ends *ends, const struct simulation *simulation, int f, double shed_at) {
     const struct wake *wake = &simulation->state->wake[f];
     const double interval = simulation->school->interval;
@@ -80,7 +80,7 @@ struct variant {
     double rtol;
     int order;
     double softness;      // divides the modulus of every fish
-    double end, shed_at;  // s; where the run is compared, and the label of the sheet
+    double end, shed_at;  // s; time of the comparison, and the label of the sheet
 };
 
 static const struct variant usual = {.interval = 0.02,
@@ -91,7 +91,7 @@ static const struct variant usual = {.interval = 0.02,
                                      .end = end_time,
                                      .shed_at = label};
 
-// Three different fish, near enough to meet, each steering by its own law's error. Their muscles start smoothly.
+// Three different fish near each other, steering by different control laws. The muscles start smoothly.
 static struct simulation *open_school(const struct variant *variant) {
     return verify_open(
         "format: 1\nname: school\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
@@ -133,7 +133,7 @@ static double order_at_end(const struct ends *runs, int n, enum quantity quantit
     return log2(difference(&runs[n - 3], &runs[n - 2], quantity) / difference(&runs[n - 2], &runs[n - 1], quantity));
 }
 
-// the change of every run against the next finer one; x is the size of what is refined
+// the change of every run against the next finer run; x is the size of the refined quantity
 static void draw_changes(const char *figure, const char *series, int n, const double *x, const struct ends *runs,
                          enum quantity quantity) {
     for (int i = 0; i + 1 < n; i++) verify_point(figure, series, x[i], difference(&runs[i], &runs[i + 1], quantity));
@@ -167,7 +167,7 @@ static void check_interval(void) {
     if (fast) continuous.rtol = 1e-9;
     halve_interval("continuous", second, "school_interval", &continuous, fast ? 3 : 6, fast ? 0.005 : 0.0025, 1.8, 2.2);
 
-    // an impulse stands for what follows it during one interval, and appears where that begins
+    // an impulse represents the circulation of the following interval, and appears at the start of the interval
     struct variant impulsive = usual;
     impulsive.rtol = 1e-8;
     impulsive.sheets = "wake: {lifetime: 4, shedding: impulsive}\n";
@@ -175,7 +175,7 @@ static void check_interval(void) {
                    &impulsive, fast ? 3 : 5, fast ? 0.005 : 0.0025, 0.9, 1.1);
     if (fast) return;
 
-    // its errors are small and change sign near Dt = 0.01: only below does the order show
+    // the errors are small and change sign near Dt = 0.01: the order shows only below
     struct variant rate = usual;
     rate.sheets = "wake: {lifetime: 4}\nsheet: {kutta: rate}\n";
     halve_interval("kutta rate", "as above; errors change sign near Dt = 0.01, so that finer steps are taken",
@@ -185,8 +185,7 @@ static void check_interval(void) {
                    1.1);
 
     // vortices that fade out and are removed during the run
-    static const char decays[] =
-        "the strength of a vortex is that of what was shed half an interval before its release";
+    static const char decays[] = "the strength of a vortex is the circulation shed half an interval before the release";
     struct variant decaying = usual;
     decaying.sheets = "wake: {lifetime: 0.64, decay: 0.32}\n";
     decaying.end = 1.28;
@@ -196,8 +195,8 @@ static void check_interval(void) {
 
 // ---- the body ----
 
-// half thickness of the Joukowski profile (thickness 0.2, length 1): its integral from the nose to s, by the midpoint
-// rule in the angle theta of doc/model.md section 1, where the integrand is smooth
+// integral from the nose to s of the half thickness of the Joukowski profile (thickness 0.2, length 1), by the midpoint
+// rule in the angle theta of doc/model.md section 1, in which the integrand is smooth
 static double profile_integral(double s) {
     const double d = 0.2, r0 = (1 - d) / 4, c = r0 * (1 + d), nose = 2 * r0 * (1 + d * d) / (d - 1);
     const int n = 20000;
@@ -219,7 +218,7 @@ static double profile_integral(double s) {
     return sum;
 }
 
-// keys of a body whose edges have the mean height of the profile over the edge, so that its mass does not depend on N
+// keys of a body with the mean thickness of the profile over each edge, so that the mass does not depend on N
 static void mean_heights(int n_nodes, char *keys, size_t size) {
     int used = snprintf(keys, size, ", nodes: %d, body: {profile: table, thickness_table: [", n_nodes);
     double before = 0;
@@ -249,8 +248,7 @@ static const char unsettled[] =
     "rtol";
 static const char smooth_body[] = "smooth in s: second order";
 static const char mean[] = "h the mean of 2 r(s) over each edge: the mass does not depend on N, second order";
-static const char rest[] =
-    "as above; what is left, of unknown cause, is 17 times smaller than with h = r(s_k) + r(s_k+1)";
+static const char rest[] = "as above; the rest, of unknown cause, is 17 times smaller than with h = r(s_k) + r(s_k+1)";
 static const struct body bodies[] = {
     {"joukowski", "", {{NOSE, 1.3, 1.7, blunt}, {CENTRE, 1.3, 1.7, blunt}, {TAIL, 1.6, 2.2, smooth_body}}},
     {"uniform",
@@ -325,7 +323,7 @@ static void check_sheet_points(void) {
     if (fast) return;
     n = refine_sheet("default fish", "", "", 5, spacing, change);
     verify_order("order in M, default fish: shed circulation",
-                 "its 5 kinks (N = 7) end spectral convergence: the flow at a kink is logarithmic",
+                 "5 kinks (N = 7) end spectral convergence: the flow at a kink is logarithmic",
                  verify_slope(n, spacing, change), 1.7, 2.3);
     verify_show("default fish: shed circulation, M = 33 against 65", "in m2/s, of about 0.5; see the figure",
                 change[2]);

@@ -2,8 +2,8 @@
  * bent fish against themselves with many nodes.
  *
  * The rows of impermeability and Kelvin of the residual are linear in the strengths: probing the residual with unit
- * strengths gives their matrix, and a dense solver of this file solves it. So what is measured is the discretisation
- * and not the tolerance of a solver.
+ * strengths gives the matrix, and a dense solver of this file solves the system. The checks therefore measure the
+ * discretisation and not the tolerance of a solver.
  *
  *     no circulation:  M - 1 times impermeability, sum of q_j = 0
  *     steady Kutta:    M - 1 times impermeability, q_{M-1} = 0: the starting vortex is infinitely far away
@@ -20,7 +20,7 @@
 static const double pi = 3.14159265358979323846;
 static const double incidence = 10 * 3.14159265358979323846 / 180; /* of a stream of 1 m/s on a body of length 1 m */
 
-/* The line through the nodes, and where it is impermeable. */
+/* The line through the nodes, and the choice of control points. */
 struct scheme {
     const char *name, *curve, *collocation;
 };
@@ -32,7 +32,7 @@ static const char *const closures[] = {"no circulation", "Kutta"};
 
 // ---- the sheet's linear system
 
-/* A body at rest in the stream and the system of its sheet: matrix * strength = right. */
+/* A body at rest in the stream and the system of the bound sheet: matrix * strength = right. */
 struct probe {
     struct simulation *simulation;
     const struct fish *fish;
@@ -78,7 +78,7 @@ static void invert(int n, const double *matrix, double *inverse) {
     free(a);
 }
 
-/* The one-norm of the matrix when the unknowns are weight[j] times its own ones; or of the inverse of that matrix. */
+/* The one-norm of the matrix, or of the inverse, for unknowns multiplied by weight[j]. */
 static double norm(int n, const double *matrix, const double *weight, int of_inverse) {
     double largest = 0;
     for (int j = 0; j < n; j++) {
@@ -123,7 +123,7 @@ static void probe_solve(struct probe *probe, enum closure closure) {
     free(row);
 }
 
-/* A body with n_nodes nodes and n points of its sheet; kutta: rate sheds nothing at the start. */
+/* A body with n_nodes nodes and n sheet points; kutta: rate sheds nothing at the start. */
 static struct probe probe_open(const struct scheme *scheme, int n, int n_nodes, const char *prescribed) {
     struct probe probe = {.n = n};
     probe.simulation = verify_open(
@@ -167,10 +167,9 @@ static double probe_strength(const struct probe *probe, int j) {
     return strength;
 }
 
-/* How far q_j is from the circulation that the strength density(s) puts on an interval pi/(M-1) of the angle theta,
- * s = (1 - cos theta)/2: the largest difference over that interval between the tips, where density is infinite;
- * in_middle: of a quarter to three quarters of the angle, 0.15 < s/L < 0.85, whose ends are bound vortices at every M
- * used here. */
+/* Largest difference between q_j and the circulation of the strength density(s), both per angle theta with s = (1 - cos
+ * theta)/2, between the tips, at which the density is infinite; in_middle: over a quarter to three quarters of the
+ * angle, 0.15 < s/L < 0.85, with ends that are bound vortices at every M used here. */
 static double probe_error(const struct probe *probe, enum closure closure, double (*density)(enum closure, double),
                           int in_middle) {
     const int last = probe->n - 1;
@@ -268,7 +267,7 @@ static void figure_of_the_plate(void) {
     }
 }
 
-/* What the program itself solves at the start is the same: the rate of Kutta's condition has not shed anything yet. */
+/* The start of the program has the same solution: the rate of the Kutta condition has not shed circulation yet. */
 static void start_of_a_run(void) {
     struct probe probe = probe_open(&schemes[CHEBYSHEV], 33, 4, "all");
     probe_solve(&probe, NO_CIRCULATION);
@@ -308,8 +307,8 @@ static void conditions(void) {
 
 // ---- the circular arc
 
-/* A sixth of a circle of length 1, nose and tail on the line y = 0, bulging up. Joukowski's map z = w + a^2/w takes the
- * circle through w = -a and a about i a tan(quarter angle) to it: both sides of the arc, quarter = 15 degrees. */
+/* A sixth of a circle of length 1, nose and tail on the line y = 0, bulging up. Joukowski's map z = w + a^2/w maps the
+ * circle through w = -a and a about i a tan(quarter angle) to both sides of the arc, quarter = 15 degrees. */
 static const double quarter = 15 * 3.14159265358979323846 / 180;
 
 static double complex arc_place(double s, double complex *tangent) {
@@ -318,7 +317,7 @@ static double complex arc_place(double s, double complex *tangent) {
     return radius * (sin(angle) + I * (cos(angle) - cos(2 * quarter)));
 }
 
-/* The velocity along the arc on one of its sides. */
+/* The velocity along the arc on one side. */
 static double arc_side(enum closure closure, double a, double complex w, double complex tangent) {
     const double complex centre = I * a * tan(quarter);
     const double radius = a / cos(quarter);
@@ -347,7 +346,7 @@ static double arc_circulation(void) {
     return -4 * pi * a / cos(quarter) * sin(incidence + quarter);
 }
 
-/* A place on a body of length 1 at the fraction s of its length; phase: of its beat. */
+/* Position on a body of length 1 at the fraction s of the length; phase: of the beat. */
 typedef double complex line(double s, double phase);
 
 static double complex arc_line(double s, double phase) {
@@ -387,8 +386,8 @@ static void figure_of_the_arc(void) {
     }
 }
 
-/* Of the polygon. The body between its nodes is straight. With 1025 nodes its corners add a few per cent to the errors
- * at M = 33 (figure sheet_arc: with 257 nodes 14 % of that of the circulation, with 65 more than half of it). */
+/* Of the polygon. The body between the nodes is straight. With 1025 nodes the corners add a few per cent to the errors
+ * at M = 33 (figure sheet_arc: with 257 nodes 14 % of the error of the circulation, with 65 more than half). */
 static void circular_arc(void) {
     static const char source[] = "Joukowski's map of a circle, exact";
     const int n_nodes = 1025;
@@ -439,7 +438,7 @@ static void smooth_arc(void) {
 
 static const double mid_beat = 1;
 
-/* A default fish in its beat: the curvature 6 A (s + 0.2 s^2) sin(phase - 6 s) of its wave, by Simpson's rule. */
+/* A default fish at a phase of the beat: the curvature 6 A (s + 0.2 s^2) sin(phase - 6 s), by Simpson's rule. */
 static double complex beat_line(double s, double phase) {
     enum { N_PIECES = 2000 };
     double angle = 0;
@@ -519,8 +518,8 @@ static void points_of_a_bent_fish(void) {
     }
 }
 
-/* The same over half a beat, whose other half is the mirror image: how many points a swimming fish needs. Of the
- * circulation relative to the largest one of the beat. */
+/* The same over half a beat (the other half is the mirror image): the number of points of a swimming fish. Errors of
+ * the circulation are relative to the largest circulation of the beat. */
 static void points_of_a_beat(const struct scheme *scheme, int n_points, const int *points, int most,
                              struct errors *largest) {
     enum { N_PHASES = 8 };

@@ -1,8 +1,8 @@
-/* start.c: the section "start": the index of the equations and their consistent start, over all options of the model.
+/* start.c: the section "start": the index of the equations and the consistent start, over all options of the model.
  *
- * The equations are of index 1 where the matrix of the algebraic equations by the algebraic unknowns is nonsingular.
- * Its rows and columns come in accelerations, velocities, circulations and numbers; each is divided by its largest
- * entry, rows first, before the condition number is taken: what is left of a bad one is no matter of units.
+ * The equations have index 1 if the matrix of the algebraic equations by the algebraic unknowns is nonsingular. Rows
+ * and columns have the units of accelerations, velocities, circulations and numbers; each row, then each column, is
+ * divided by the largest entry before the condition number is computed, so units do not affect the condition number.
  */
 #include <math.h>
 #include <stdio.h>
@@ -44,7 +44,7 @@ static double one_norm(int n, const double *a) {
     return norm;
 }
 
-// bring the largest entry of a column, from row c on, to the diagonal in both matrices; returns it
+// bring the largest entry of a column, from row c on, to the diagonal in both matrices; return the entry
 static double pivot(int n, int c, double *a, double *b) {
     int best = c;
     for (int row = c + 1; row < n; row++) {
@@ -90,7 +90,7 @@ static double reciprocal_condition(int n, double *a) {
 // a matrix of the algebraic unknowns alone
 struct algebraic {
     int n;
-    int *place;  // of every unknown in it, -1: differential   (n_unknowns)
+    int *place;  // index of every unknown in the matrix, -1: differential   (n_unknowns)
     double *matrix;
 };
 
@@ -148,7 +148,7 @@ static double condition_of(struct simulation *simulation) {
     return reciprocal;
 }
 
-// the largest value of any equation at a state: in its unit, and over the scale of its unknown
+// the largest value of any equation at a state: in the unit of the equation, and over the scale of the unknown
 struct value {
     double plain, scaled;
 };
@@ -171,7 +171,7 @@ static struct value largest_value(struct simulation *simulation) {
 
 // ---- all options
 
-// one option: its key's place in the case, and its words
+// one option: place of the key in the case, and words of the key
 static const struct option {
     int n;
     const char *words[3];
@@ -206,7 +206,7 @@ static const struct option second[] = {
 };
 enum { N_SECOND = sizeof second / sizeof *second };
 
-// what was found worst
+// the worst results
 struct worst {
     int n;
     double condition, impulse; /* least reciprocal condition number: between events, at an impulsive one */
@@ -278,7 +278,7 @@ static void all_options(void) {
         choose(number, N_SECOND, second, choice);
         examine(open_second(choice), &worst);
     }
-    // and fish so near to each other that the Jacobian couples them
+    // and nearby fish, coupled in the Jacobian
     for (int number = 0; number < 8; number++) {
         choose(number, 3, options, choice);
         examine(verify_open("format: 1\ntime: {end: 1, shedding_interval: 0.01}\nsheet: {%s, %s}\nwake: {%s}\n"
@@ -296,7 +296,7 @@ static void all_options(void) {
     // nonsingular, and so far from singular that the solution keeps twelve of sixteen digits
     verify_zero("largest condition number, rows and columns equilibrated", source, 1 / worst.condition, 1e4);
     verify_zero("largest condition number at an impulsive event", source, 1 / worst.impulse, 1e4);
-    verify_zero("largest value of F over its scale", source, worst.scaled, 1e-10);
+    verify_zero("largest value of F over the scale", source, worst.scaled, 1e-10);
     verify_zero("largest value of F, SI units", "in SI units", worst.value, 1e-10);
 }
 
@@ -320,7 +320,7 @@ static void refinement(void) {
 
 // ---- IDACalcIC
 
-// what its callbacks need
+// data of the callbacks
 struct correction {
     struct simulation *simulation;
     struct jacobian *jacobian;
@@ -343,7 +343,7 @@ static int jacobian_callback(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector
     return residual_jacobian(correction->simulation->residual, t, cj, N_VGetArrayPointer(y), correction->jacobian);
 }
 
-// let IDACalcIC find the algebraic unknowns and the rates, y and yp, from those given; returns its code
+// let IDACalcIC find the algebraic unknowns and the rates, y and yp, from the given values; return its code
 static int calculate(struct simulation *simulation, double *y, double *yp, double *kind, double *tolerance) {
     const int n = simulation->school->n_unknowns;
     struct correction correction = {.simulation = simulation};
@@ -379,15 +379,15 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     return code;
 }
 
-// forget accelerations, circulations, bias and all rates of a started simulation; the largest difference, over the
-// scales, between what IDACalcIC finds and what KINSOL had found
+// discard accelerations, circulations, bias and all rates of a started simulation; the largest difference, over the
+// scales, between the results of IDACalcIC and KINSOL
 static double disagreement(struct simulation *simulation) {
     const int n = simulation->school->n_unknowns;
     double *const work = allocate(4 * n, sizeof *work), *const y = work, *const yp = work + n;
     double *const kind = work + 2 * n, *const tolerance = work + 3 * n;
     residual_kinds(simulation->residual, kind);
     for (int i = 0; i < n; i++) {
-        // nodes need their places, those of a prescribed head too
+        // nodes need positions, also the nodes of a prescribed head
         const int given = kind[i] > 0 || residual_place(simulation->school, i).kind < UNKNOWN_AX;
         y[i] = given ? simulation->state->y[i] : 0;
         tolerance[i] = 1e-12 * residual_scale(simulation->residual->school, i);

@@ -13,7 +13,7 @@ static const double pi = 3.14159265358979323846;
 
 struct body {
     int n_nodes;
-    double speed, angle; /* of the stream; of its nose to the stream, degrees */
+    double speed, angle; /* of the stream; of the nose to the stream, degrees */
     double thickness, stiffness;
     const char *prescribed, *more; /* further keys of the fish */
     double end;                    /* of a run, s */
@@ -38,7 +38,7 @@ static struct simulation *open_body(const struct body *body) {
                        body->stiffness / (pi / 64 * pow(body->thickness, 3)), 180 - body->angle, body->prescribed);
 }
 
-// what `shoal steady` finds for it
+// the equilibrium by `shoal steady`
 struct found {
     struct simulation *simulation;
     struct steady_values values;
@@ -90,11 +90,11 @@ static void stiff_plate(void) {
     }
 }
 
-// ---- a plate that bends: Galerkin's method with modes of the clamped beam, the pressure that of thin airfoils
+// ---- a flexible plate: Galerkin's method with modes of the clamped beam and the pressure of thin airfoils
 
 enum { N_MODES = LINEAR_THEORY_MODES, N_POINTS = 200 };
 
-// chord x = (1 - cos(phi))/2 and the lift U gamma per length there of a plate whose slope is given at all points:
+// chord x = (1 - cos(phi))/2 and the lift U gamma per length of a plate with given slope at all points:
 // gamma = 2 U (A_0 (1 + cos(phi))/sin(phi) + sum A_n sin(n phi)), times sin(phi)
 static void load_of(double speed, const double slope[N_POINTS], double load[N_POINTS]) {
     for (int i = 0; i < N_POINTS; i++) load[i] = 0;
@@ -109,7 +109,7 @@ static void load_of(double speed, const double slope[N_POINTS], double load[N_PO
     }
 }
 
-// integral over the chord of a load, which has sin(phi) in it, with a function
+// integral over the chord of a load, which includes sin(phi), with a function
 static double integral(const double load[N_POINTS], const double function[N_POINTS]) {
     double sum = 0;
     for (int i = 0; i < N_POINTS; i++) sum += load[i] * function[i] * pi / N_POINTS / 2;
@@ -166,7 +166,7 @@ static void flexible_foil(void) {
     }
 }
 
-// ---- a plate whose clamp is downstream: mass pi/4 per length of slender bodies, a column under the load of its flow
+// ---- a plate with the clamp downstream: mass pi/4 per length of slender bodies, a column under the load of the flow
 
 static double stiffness_of(int n_nodes, double speed) {
     struct found found;
@@ -194,9 +194,9 @@ static void divergence(void) {
     verify_order("speed of divergence", euler, verify_order_of_errors(error[1], error[2]), 1.7, 2.3);
 }
 
-// ---- a plate across the stream: the elastica with a drag 1/2 U_n^2 across it, of Cauchy number Ca = U^2/(2 E I)
+// ---- a plate across the stream: the elastica with a normal drag 1/2 U_n^2, Cauchy number Ca = U^2/(2 E I)
 
-// over the distance from the tip: angle to the stream, its slope, and the force beyond, over that on a stiff plate
+// over the distance from the tip: angle to the stream, slope, and the force beyond, relative to a stiff plate
 static void bend(double cauchy, const double z[4], double rate[4]) {
     const double f = sin(z[0]) * fabs(sin(z[0]));
     rate[0] = z[1];
@@ -224,7 +224,7 @@ static void shoot(double cauchy, double angle, double z[4]) {
     }
 }
 
-// drag over that of a stiff plate: the least angle at the tip with which the clamp is across the stream
+// drag relative to a stiff plate: the least angle at the tip for a clamp across the stream
 static double elastica(double cauchy) {
     double z[4], low = log(1e-9), high = low;
     for (z[0] = 0; z[0] < pi / 2 && high < 1; high += 0.05) shoot(cauchy, exp(high), z);
@@ -282,7 +282,7 @@ static double distance_of_run(const struct body *body) {
 }
 
 static void ends_of_runs(void) {
-    const char *const run = "a run until it has settled: 80 s";
+    const char *const run = "a converged run: 80 s";
     verify_zero("foil at 6 degrees, E I = 0.05: places", run,
                 distance_of_run(&(struct body){17, 0.5, 6, 0.05, 0.05, "head", pressure, 80}), 1e-4);
     verify_zero("plate across the stream, Ca = 8: places", run,

@@ -1,5 +1,5 @@
-/* steady.c: the section "steady" (doc/steady.md): what `shoal steady` finds in some twenty beats against runs of two
- * hundred. */
+/* steady.c: the section "steady" (doc/steady.md): results of `shoal steady` after some twenty beats against runs of two
+ * hundred beats. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@ enum { BRUTE_BEATS = 200, MOST_BEATS = BRUTE_BEATS / 10 };
 
 struct swimmer {
     const char *name, *text;
-    int decays_from, decays_to; /* beats of the run between which its error falls by the largest multiplier */
+    int decays_from, decays_to; /* beats of the run between which the error falls by the largest multiplier */
 };
 
 struct found {
@@ -51,7 +51,7 @@ static struct found search_for(const char *text) {
     return found;
 }
 
-// the speed over each beat of a long run, and its mean power over the last
+// the speed over each beat of a long run, and the mean power over the last beat
 static double run_long(const char *text, double speed[BRUTE_BEATS + 1]) {
     struct simulation *const simulation = verify_open("%s", text);
     struct steady_map map;

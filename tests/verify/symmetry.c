@@ -1,5 +1,5 @@
-/* symmetry.c: what must not change the motion does not: where the school is, how it is turned, in which order its fish
- * are listed, how often its state is written, on how many threads it runs. */
+/* symmetry.c: the motion is invariant to position and rotation of the school, the order of the fish, the interval of
+ * output and the number of threads. */
 #include <math.h>
 #include <netcdf.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
 
 enum { N_FISH = 3, MOST_TEXT = 8192 };
 
-// three different fish that meet, and how they steer
+// three different fish that meet, with different control laws
 static const struct {
     const char *name, *keys;
     double position[2], heading, phase, bias;
@@ -34,7 +34,7 @@ struct view_point {
     int order[N_FISH];       /* in which the fish are listed */
     int threads;
     double feedforward;
-    double rtol, ramp, end; /* ramp of the muscle, and where the run ends, s */
+    double rtol, ramp, end; /* ramp of the muscle, and end of the run, s */
     int integrator_order;
     int second; /* 0: the options of the article; 1: the default model */
 };
@@ -55,8 +55,8 @@ static double turned_angle(const struct view_point *view, double degrees) {
     return (view->mirrored ? -degrees : degrees) + 90 * view->quarter_turns;
 }
 
-// the case as seen from there. Mirroring changes the sign of the wave, that is adds half a turn to its phase, and the
-// sign of the bias
+// the case in another view. Mirroring changes the sign of the wave, which adds half a turn to the phase, and the sign
+// of the bias
 static void write_case(const struct view_point *view, double output_interval, char *text) {
     int used =
         snprintf(text, MOST_TEXT,
@@ -95,7 +95,7 @@ static double largest(double a, double b) {
     return a > b ? a : b;
 }
 
-// how far a point is from where the other view puts it
+// distance of a point from the point transformed from the other view
 static double distance(const struct view_point *view, double x, double y, double seen_x, double seen_y) {
     double turned[2];
     turn(view, x, y, turned);
@@ -140,9 +140,9 @@ static void compare_with_usual(const struct view_point *view, double *bodies, do
     simulate_free(seen);
 }
 
-// A school that starts smoothly starts from rest in its muscle: the first error estimates are round-off, and round-off
-// decides what the first steps are. So a run from another view agrees to the tolerance. A muscle that starts at once
-// leaves nothing to chance: the steps are the same, and a short run agrees to round-off.
+// With a smooth start of the muscle the first error estimates are round-off, and round-off determines the first steps.
+// So a run from another view agrees to the tolerance. With a sudden start of the muscle the steps are the same, and a
+// short run agrees to round-off.
 static void check_view(const char *what, const char *source, const struct view_point *view, int same_steps) {
     double bodies, wakes;
     char quantity[80];
@@ -197,8 +197,7 @@ static void check_views(void) {
     view.threads = 2;
     double bodies, wakes;
     compare_with_usual(&view, &bodies, &wakes);
-    verify_zero("threads 2 against 1: all", "every sum has an order of its own: the same bits", largest(bodies, wakes),
-                0);
+    verify_zero("threads 2 against 1: all", "every sum has a fixed order: the same bits", largest(bodies, wakes), 0);
 }
 
 // the last row of a result file; the caller frees
@@ -266,7 +265,7 @@ static void check_output_interval(void) {
     rmdir(folder);
 }
 
-// where a fish ends that has a companion to its left, or none (distance 0); rtol far below the effect
+// final position of a fish with a companion to the left, or without (distance 0); rtol far below the effect
 static struct simulation *run_pair(double apart) {
     char companion[128] = "";
     if (apart > 0) {
@@ -280,7 +279,7 @@ static struct simulation *run_pair(double apart) {
     return simulation;
 }
 
-// no circulation in all per fish: the velocity of a far one falls as that of a dipole
+// the total circulation of a fish is zero: the far velocity is the velocity of a dipole
 static void check_far_apart(void) {
     const double apart[] = {4, 8, 16, 32, 1000};
     enum { N = sizeof apart / sizeof *apart };

@@ -1,5 +1,5 @@
-/* tandem.c: the section "tandem": a heaving plate in the wake of another one: the places where it stays, found as
- * `shoal steady` finds them (doc/steady.md), against published ones and against the linear theory of thin foils. */
+/* tandem.c: the section "tandem": a heaving plate in the wake of another plate: the equilibrium positions of `shoal
+ * steady` (doc/steady.md) against published positions and against the linear theory of thin foils. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,8 +23,8 @@ static const struct pair light = {1, 0.15, 0.785, 0.0594, 3.8, 0.2, 10, 0, 0};
 /* the plates that the program of Fang et al. starts with, in half lengths there */
 static const struct pair of_fang = {2, 0.2, 2, 0.04, 13.25, 0.2, 10, 0, 0};
 
-/* keys holds what is further to be said of the motion of both. The wake decays from 4 s on: the follower at place 3
- * meets vortices 3 beats old, at their full strength. */
+/* keys: further keys of the motion of both plates. The wake decays from 4 s on: the follower at position 3 meets
+ * vortices of 3 beats at full strength. */
 static void text_of(const struct pair *pair, int n_fish, const char *keys, size_t size, char *text) {
     const double thickness = 0.05, area = pi / 4 * thickness * pair->length * pair->length;
     const int length = snprintf(text, size,
@@ -54,11 +54,11 @@ static void text_of(const struct pair *pair, int n_fish, const char *keys, size_
 /* A steady state of one plate, or of two. */
 struct found {
     double speed; /* of both, m s-1 */
-    double place; /* from tail to nose, wavelengths of the way that they go in a beat */
+    double place; /* from tail to nose, wavelengths: the distance travelled in a beat */
     int n_beats;
     double largest; /* multiplier */
     double growth;  /* of the distance of two followers in a beat */
-    double wander;  /* what is left after 30 beats of a follower's way that is put 0.1 m ahead, m */
+    double wander;  /* remaining displacement 30 beats after a displacement of the follower by 0.1 m ahead, m */
 };
 
 static double wander(struct steady_problem *problem) {
@@ -69,7 +69,7 @@ static double wander(struct steady_problem *problem) {
     return problem->map.last[1].place[0] - place;
 }
 
-// by which the distance of two followers, put to either side of their place, grows from the second beat to the third
+// growth of the distance of two followers, on either side of the equilibrium, from the second beat to the third
 static double growth(struct steady_problem *problem, const struct state *kept) {
     const struct steady_unknown ahead = {1, STEADY_AHEAD};
     double apart[2] = {0};
@@ -134,7 +134,7 @@ static double follow(int number, double gap, double speed_alone) {
     verify_zero(verify_text("%s: beats of the search", from), "a run needs 60", found.n_beats, 40);
     verify_relative(verify_text("%s: speed, m/s", from), alone, speed_alone, found.speed, 0.02);
     verify_zero(verify_text("%s: largest multiplier", from), "stable: below 1", found.largest, 1);
-    verify_zero(verify_text("%s: put 0.1 L ahead, 30 beats on, L", from), "it returns to its place", found.wander,
+    verify_zero(verify_text("%s: put 0.1 L ahead, 30 beats on, L", from), "return to the equilibrium", found.wander,
                 0.02);
     verify_point("tandem_starts", "search", gap / found.speed, found.place);
     verify_point("tandem_places", "in phase", number, found.place);
@@ -204,7 +204,7 @@ static void out_of_phase(double speed, double place, double wavelength) {
 
 // ---- other amplitudes
 
-// friction that keeps the speed; mass that keeps what the thrust does to it
+// friction for the same speed; mass for the same effect of the thrust on the speed
 static void small_amplitudes(double speed) {
     enum { N = 3 };
     double difference[N];
@@ -229,7 +229,7 @@ static void small_amplitudes(double speed) {
 
 static void published_plates(void) {
     const struct found lone = find(&of_fang, 1, 0);
-    verify_relative("plates of Fang et al.: speed of one, half lengths a beat", "in their program, a start value",
+    verify_relative("plates of Fang et al.: speed of one, half lengths a beat", "published program, a start value",
                     13.25, lone.speed, 0.003);
     for (int number = 1; number <= 2; number++) {
         struct pair pair = of_fang;
@@ -243,7 +243,7 @@ static void published_plates(void) {
     }
 }
 
-// ---- a follower that is held: where it would be pulled
+// ---- a held follower: direction of the force
 
 // mean thrusts of both over the last of some beats, without friction
 static double thrust_over_leaders(const struct pair *pair) {

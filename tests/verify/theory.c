@@ -1,5 +1,5 @@
 /* theory.c: the section "theory": the solvers of linear_theory.h against published values, limits in closed form, and
- * each other. The numbers that other sections take from them are shown. */
+ * each other. The numbers used by other sections are shown. */
 #include <complex.h>
 #include <math.h>
 
@@ -25,7 +25,7 @@ static void published_functions(void) {
     }
     static const double s[] = {0.1, 0.5, 1, 2, 4, 10};
     for (int i = 0; i < 6; i++) {
-        verify_value(verify_text("Wagner's lift over its final value, s = %g", s[i]),
+        verify_value(verify_text("Wagner's lift over the final value, s = %g", s[i]),
                      "the wake's integral equation, solved by steps", linear_theory_growth(s[i]).lift,
                      linear_theory_wagner(s[i]), 2e-6);
     }
@@ -46,7 +46,7 @@ static void limits(void) {
                 relative(linear_theory_rigid(&slow, 0, -1, 0.3).moment, 2 * pi * 2 * 1.3 * 1.3 * b * b / 2), 1e-5);
     verify_zero("force on a plate that heaves in fluid at rest", "pi rho b^2 omega^2",
                 relative(linear_theory_rigid(&fast, 1, 0, 0).lift, pi * 2 * b * b * 1.9 * 1.9), 1e-6);
-    verify_zero("moment on a plate that turns about its middle in fluid at rest", "pi rho b^4 omega^2/8",
+    verify_zero("moment on a plate that rotates about the middle in fluid at rest", "pi rho b^4 omega^2/8",
                 relative(linear_theory_rigid(&fast, 0, 1, b).moment, pi * 2 * pow(b, 4) * 1.9 * 1.9 / 8), 1e-6);
 }
 
@@ -121,7 +121,7 @@ static void modes(void) {
         linear_theory_mode(j, 0.6, &place, &slope);
         worst = fmax(worst, fabs(difference - slope) / linear_theory_mode_number(j));
     }
-    verify_zero("ends of all modes, and their slopes against differences", "0, 0 and 2, -2", worst, 1e-7);
+    verify_zero("ends of all modes, and slopes against differences", "0, 0 and 2, -2", worst, 1e-7);
 }
 
 // without fluid the tip follows the nose as the closed form of the beam says
@@ -162,11 +162,11 @@ static void driven_plates(void) {
         verify_value(verify_text("clamped plate, k = pi, m = %g, E I = %g: tip over nose", body.mass, body.stiffness),
                      source, table[i].tip, cabs(tip), 5e-5);
         verify_value("its phase, degrees", source, table[i].degrees, carg(tip) * 180 / pi, 5e-3);
-        // what moves the nose is what the fluid gets: no damping
+        // the power at the nose goes into the fluid: no damping
         const struct linear_theory_load load = linear_theory_flexible(&plate, &shape);
         const double complex force = -plate.omega * plate.omega * body.mass * plate.length * mean_place(&shape);
         const double power = creal((force - load.lift) * conj(I * plate.omega)) / 2;
-        verify_relative("its power", "force on the nose times its velocity", power, load.power, 1e-9);
+        verify_relative("power", "force on the nose times velocity", power, load.power, 1e-9);
     }
 }
 

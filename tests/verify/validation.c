@@ -1,6 +1,6 @@
-/* validation.c: the section "validation": foils and a swimmer with force: pressure, as cases/ has them, against an
- * experiment and Navier-Stokes solutions (tests/verify/data). The bounds are ratios: what the model does not have
- * (leading-edge vortices, thickness in the sheet, history of the boundary layer) is in them. */
+/* validation.c: the section "validation": the cases with foils and a swimmer with force: pressure against an experiment
+ * and Navier-Stokes solutions (tests/verify/data). The bounds are ratios and allow for effects outside the model
+ * (leading-edge vortices, thickness of the sheet, history of the boundary layer). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@ static const double pi = 3.14159265358979323846;
 
 enum { MOST_LINES = 64, LINE_BYTES = 256 };
 
-/* A table with its lines without comments and the heading. */
+/* A table without comments and heading. */
 struct table {
     int n;
     char line[MOST_LINES][LINE_BYTES];
@@ -36,17 +36,17 @@ static void read_table(const char *path, struct table *table) {
 
 // ---- a period of a run
 
-/* The last period of a run of a body of length 1 and depth 1, whose period is 1. */
+/* The last period of a run of a body of length 1 and depth 1 with the period 1. */
 struct period {
     double speed, thrust, power;   /* means, m s-1, N, W */
-    double across, along;          /* force of the fluid across the way, and along it less its mean: rms, N */
+    double across, along;          /* force of the fluid across the path, and along the path less the mean: rms, N */
     double circulation;            /* the largest less the least circulation that was shed, m2 s-1 */
     double separation_share, edge; /* part with separation at the nose; largest A_0 */
     double imbalance;              /* the energy balance over the work of all periods */
 };
 
-/* Run a case of cases/ for so many periods, with further assignments, and look at the last of them. At every period the
- * speed is a point of the series of a figure, where there is one. */
+/* Run a case of cases/ for a number of periods, with further assignments, and evaluate the last period. The speed of
+ * every period is a point of the series of a figure, if given. */
 static struct period run_case(const char *name, int n_periods, int n_assignments, const char *const *assignments,
                               const char *figure, const char *series) {
     struct simulation *const simulation = verify_open_case(name, n_assignments, assignments);
@@ -155,7 +155,7 @@ static void anderson(void) {
 
 // ---- Navier-Stokes
 
-/* A number of the table of Navier-Stokes solutions: its mean, and what the table says of its spread. */
+/* A number of the table of Navier-Stokes solutions: mean and spread. */
 struct reference {
     double value;
     char source[64];
@@ -182,7 +182,7 @@ static void compare_flow(const struct table *table, const char *flow, const char
     verify_ratio(verify_text("%s: %s", flow, text), reference.source, reference.value, obtained, least, most);
 }
 
-// the thrust is what is left of a large suction and a large friction: its ratio is the widest
+// the thrust is the difference of a large suction and a large friction: the ratio has the widest range
 static void heave(const struct table *table) {
     static const char *const flows[] = {"heave of an ellipse at Re 1000", "heave of an ellipse at Re 4000",
                                         "heave of a NACA 0012 at Re 4000"};
@@ -229,7 +229,7 @@ static void swimmer(const struct table *table) {
     compare_flow(table, "swimmer", "force along the course", "force along the course, rms, rho L^3/T^2", period.along,
                  1, 1.2);
     compare_flow(table, "swimmer", "circulation", "circulation of a wake vortex, L^2/T", period.circulation, 0.65, 0.8);
-    // its factor of form was that of 0.08 L, the thickness of the outline; the edge there has 0.0785 L on its length
+    // the reference has the form factor of 0.08 L, the thickness of the outline; the mean over the edge is 0.0785 L
     verify_value("swimmer: speed, L/T", "the prototype of this friction", 0.627, period.speed, 0.01);
     verify_value("swimmer: power into the fluid, rho L^4/T^3", "the prototype of this friction", 0.0201, period.power,
                  3e-4);

@@ -1,5 +1,4 @@
-/* verify.c: the program of one section: verify SECTION [--fast] [-o TABLE]. Exit code 0, or 3 where a bound is
- * missed. */
+/* verify.c: the program of one section: verify SECTION [--fast] [-o TABLE]. Exit code 0, or 3 if a bound is missed. */
 #include "verify.h"
 
 #include <math.h>
@@ -43,7 +42,7 @@ int verify_is_fast(void) {
     return fast;
 }
 
-// one row: on the screen in columns, in the table with tabs; an empty text stands where there is no number
+// one row: on the screen in columns, in the table with tabs; an empty text in place of a missing number
 static void row(const char *quantity, const char *source, const char *reference, const char *obtained,
                 const char *error, const char *bound, const char *order, const char *verdict) {
     printf("%-8s %-58s %14s %14s %10s %12s %s\n", section, quantity, reference, obtained, error, bound, verdict);
@@ -156,7 +155,7 @@ struct simulation *verify_open(const char *format, ...) {
     va_start(arguments, format);
     int length = vsnprintf(text, sizeof text - sizeof include, format, arguments);
     va_end(arguments);
-    // a preset is weaker than an include, and a case of cases/ includes what it needs
+    // a preset is weaker than an include, and a case of cases/ has all necessary includes
     const int is_case = strstr(text, "include:") != NULL;
     if (!strstr(text, VERIFY_DEFAULTS) && !strstr(text, "preset:") && !is_case) {
         memmove(text + strlen(include), text, (size_t)length + 1);

@@ -1,5 +1,5 @@
-/* verify.h: checks against classical results. `make verify` runs every section as a process of its own; each check
- * prints one row and adds it to a table, from which scripts/verify.py writes doc/verification.md and its figures.
+/* verify.h: checks against classical results. `make verify` runs every section in a separate process; each check prints
+ * one row and adds the row to a table, from which scripts/verify.py writes the report and doc/verification.md.
  *
  *     section --> rows: quantity | source | reference | obtained | error | bound | order
  *             \-> points of figures: figure | series | x | y
@@ -9,7 +9,7 @@
 
 #include "run/simulate.h"
 
-/* The sections, in the order of doc/verification.md; each is in a file of its own. */
+/* The sections, in the order of doc/verification.md; one file each. */
 void verify_theory(void);
 void verify_rod(void);
 void verify_force(void);
@@ -37,18 +37,18 @@ void verify_validation(void);
 /* Only the checks that take seconds are wanted: `make test` runs those. */
 int verify_is_fast(void);
 
-/* A check: |obtained - reference| <= bound; or, relative, |obtained - reference| <= bound |reference|. source says
- * where the reference comes from. */
+/* A check: |obtained - reference| <= bound; or, relative, |obtained - reference| <= bound |reference|. source: origin
+ * of the reference. */
 void verify_value(const char *quantity, const char *source, double reference, double obtained, double bound);
 void verify_relative(const char *quantity, const char *source, double reference, double obtained, double bound);
 
-/* A check: |obtained| <= bound, where the reference is zero. */
+/* A check: |obtained| <= bound, for a reference of zero. */
 void verify_zero(const char *quantity, const char *source, double obtained, double bound);
 
 /* A check: an observed order of convergence between least and most. */
 void verify_order(const char *quantity, const char *source, double order, double least, double most);
 
-/* A check: the ratio of what was obtained to what was measured, or computed by better means, between least and most. */
+/* A check: the ratio of the result to a measured or more accurate value is between least and most. */
 void verify_ratio(const char *quantity, const char *source, double reference, double obtained, double least,
                   double most);
 
@@ -72,8 +72,8 @@ const char *verify_text(const char *format, ...) __attribute__((format(printf, 1
 /* A text with this line has the defaults of the program. */
 #define VERIFY_DEFAULTS "# defaults\n"
 
-/* The keys of a fish with the pressure of attached flow, as linear theory has it: all of the suction, and the friction
- * of a laminar boundary layer on a plate. */
+/* The keys of a fish with the pressure of attached flow as in linear theory: full suction, and the friction of a
+ * laminar boundary layer on a plate. */
 #define VERIFY_ATTACHED "force: pressure, pressure: {suction_limit: 0}, drag: {skin: laminar}"
 
 /* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_DEFAULTS or a preset with the

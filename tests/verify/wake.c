@@ -1,8 +1,8 @@
-/* wake.c: the section "wake": free vortices alone. The bound sheets keep strength zero and nothing is shed, so the
- * wakes move each other only, with the program's own steps: velocities at an event (flow.c), then on to the next
- * (wake.c).
+/* wake.c: the section "wake": free vortices alone. The bound sheets have strength zero and shed nothing, so only wakes
+ * move wakes, with the steps of the program: velocities at an event (flow.c), then motion to the next event (wake.c).
  *
- * Two fish far away own the wakes: the first one's is studied; the second one's holds what only acts on it. */
+ * Two distant fish own the wakes: the checks concern the wake of the first fish; the wake of the second fish acts on
+ * the first wake. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,7 +29,7 @@ static void release(struct simulation *simulation, int f, double x, double y, do
     if (wake_release(&simulation->state->wake[f], x, y, circulation, 0) != STATUS_OK) abort();
 }
 
-/* One event and the interval after it, as in event.c, for the first fish's wake. */
+/* One event and the following interval, as in event.c, for the wake of the first fish. */
 static void step(struct simulation *simulation) {
     struct state *const state = simulation->state;
     struct wake *const wake = &state->wake[0];
@@ -49,11 +49,11 @@ static void steps(struct simulation *simulation, int n) {
 
 static const double strength = 1, distance = 0.5; /* m2/s, m */
 
-/* The pair's vortices share one velocity for ever: its path is a straight line, which every step follows exactly. */
+/* The vortices of the pair have one constant velocity: the path is a straight line, and every step is exact. */
 static void opposite_pair(void) {
     const double interval = 0.1;
     const int n = 200;
-    const double along[2] = {sin(0.7), -cos(0.7)}, across[2] = {cos(0.7), sin(0.7)}; /* the direction it goes */
+    const double along[2] = {sin(0.7), -cos(0.7)}, across[2] = {cos(0.7), sin(0.7)}; /* the direction of motion */
     struct simulation *const simulation = still_water(interval);
     const struct wake *const wake = &simulation->state->wake[0];
     release(simulation, 0, distance / 2 * across[0], distance / 2 * across[1], strength);
@@ -120,7 +120,7 @@ static struct invariants invariants(const struct wake *wake) {
     return sums;
 }
 
-/* What has changed after 4 s in a cloud of twelve vortices of both signs that come about each other. */
+/* Changes after 4 s in a cloud of twelve interacting vortices of both signs. */
 static struct invariants change(int n) {
     struct simulation *const simulation = still_water(4.0 / n);
     const struct wake *const wake = &simulation->state->wake[0];
@@ -156,7 +156,7 @@ static void isolated_wake(void) {
                  verify_order_of_errors(changes[2].energy, changes[3].energy), 1.8, 2.2);
 }
 
-/* Vortices that grow too old are removed; what they had is kept. */
+/* Old vortices are removed; the removed circulation is kept. */
 static void removed_vortices(void) {
     struct simulation *const simulation = still_water(0.01);
     struct wake *const wake = &simulation->state->wake[0];
@@ -169,15 +169,15 @@ static void removed_vortices(void) {
     wake_remove_old(wake, simulation->school, simulation->school->lifetime + 5);
     const int removed = 1000 - wake->n_vortex;
     verify_value("a thousand vortices, half grown old: number removed", "ages beyond the lifetime", 501, removed, 0);
-    verify_zero("the same: change of circulation with what removed, m2/s", "constant",
+    verify_zero("the same: change of circulation including removed vortices, m2/s", "constant",
                 invariants(wake).circulation + wake->removed - sum, 1e-10);
     simulate_free(simulation);
 }
 
 // ---- a row of vortices
 
-/* A flat row along x of strength g = 1 m/s, wavelength 1 m with 32 vortices; the first fish's wake is one wavelength,
- * the second one's holds n_images more on either side, which move with it. */
+/* A flat row along x of strength g = 1 m/s, wavelength 1 m with 32 vortices; the wake of the first fish is one
+ * wavelength, the wake of the second fish contains n_images more on either side, which move with the first wake. */
 enum { PER_WAVE = 32 };
 static const double kappa = 2 * 3.14159265358979323846;
 
@@ -218,8 +218,8 @@ static double height(int n, double t, int n_images, double amplitude) {
     return sum;
 }
 
-/* The rate at which the difference of two rows, perturbed upwards and downwards, grows: what the row's finite length
- * and even powers of the amplitude do to both falls out. */
+/* Growth rate of the difference of two rows, perturbed upwards and downwards: effects of the finite length and of even
+ * powers of the amplitude cancel. */
 static double growth(int n, int n_images) {
     const double t = 1, amplitude = 1e-6;
     return log((height(n, t, n_images, amplitude) - height(n, t, n_images, -amplitude)) / (2 * amplitude)) / t;
@@ -236,7 +236,7 @@ static void row(void) {
         verify_point("wake_row", "finite row", images, fabs(rate[1] / exact - 1));
     }
     verify_show("row of vortices: growth rate with the images summed, 1/s", source, rate[1]);
-    // the images that are missing take away a part 2/(pi^2 n) of it: the limit of n to infinity from two sums
+    // the missing images reduce the rate by 2/(pi^2 n): the limit of n to infinity from two sums
     verify_relative("row of vortices: growth rate, 1/s", source, exact, 2 * rate[1] - rate[0], 1e-4);
     verify_order("row of vortices: order in the number of images", "1/n is missing beyond n images",
                  verify_order_of_errors(rate[0] - exact, rate[1] - exact), 0.9, 1.1);

@@ -1,5 +1,5 @@
 /* walls.c: the section "walls": bodies and wakes beside straight walls, against thin-foil theory between two walls and
- * against the same bodies beside their own mirror images. Length L = 1 m. */
+ * against the same bodies beside mirror images. Length L = 1 m. */
 #include <math.h>
 
 #include "force/bound_sheet.h"
@@ -10,8 +10,8 @@ static const double pi = 3.14159265358979323846;
 // ---- a plate between two walls
 
 /* Circulation of a plate at small incidence half way between walls at the distance H, over that without walls: the
- * singular equation with the kernel 1/(2H sinh(pi r/H)) of its row of images, and Kutta's condition at the tail, solved
- * at 60 Gauss-Jacobi points to 1e-14. To the order (L/H)^2 it is 1 + pi^2 (L/H)^2/24. */
+ * singular equation with the kernel 1/(2H sinh(pi r/H)) of the row of images, and the Kutta condition at the tail,
+ * solved at 60 Gauss-Jacobi points to 1e-14. To the order (L/H)^2 the ratio is 1 + pi^2 (L/H)^2/24. */
 static const struct {
     double ratio, circulation; /* L/H, 1 */
 } channel[] = {{0.5, 1.0951764318283912}, {1, 1.3209183476231910}};
@@ -27,7 +27,7 @@ static double circulation_between(double distance) {
         "fish: [{nodes: 4, wave: {amplitude: 0}, start: {heading: %.17g, position: [%.17g, %.17g]},\n"
         "        motion: {prescribed: all, speed: 0}}]\n",
         12 * distance, -distance / 2, distance / 2, 6 * distance, 180 - degree, -0.5 * cos(angle), 0.5 * sin(angle));
-    // a vortex at the distance x counts like exp(-pi x/H); the circulation comes near its end like exp(-0.7 U t/H)
+    // a vortex at the distance x acts like exp(-pi x/H); the circulation approaches the limit like exp(-0.7 U t/H)
     verify_run(simulation, 12 * distance);
     const double circulation = bound_sheet_circulation(&simulation->school->fish[0], simulation->state->y);
     simulate_free(simulation);
@@ -80,7 +80,7 @@ static void check_mirror(const char *force, double bound) {
     verify_run(alone, end);
     verify_show(verify_text("%s: a fish 0.25 L beside a wall: place less that without wall, L", force), "",
                 difference(wall, alone));
-    verify_zero(verify_text("%s: the same less that beside its mirror image, L", force), "two fish, rtol 1e-10",
+    verify_zero(verify_text("%s: the same less the result beside the mirror image, L", force), "two fish, rtol 1e-10",
                 difference(wall, pair), bound);
     simulate_free(wall);
     simulate_free(pair);
@@ -89,7 +89,7 @@ static void check_mirror(const char *force, double bound) {
 
 // ---- against the wall
 
-// a fish that swims against the wall of a channel and along it
+// a fish that swims against and along the wall of a channel
 static void check_energy(const char *force) {
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
@@ -108,11 +108,11 @@ static void check_energy(const char *force) {
         contact = fmax(contact, fish->contact_energy);
         circulation = fmax(circulation, fabs(simulation->diagnostics->total_circulation));
     }
-    verify_show(verify_text("%s: a fish swims against a wall and along it: largest contact_energy, J", force), "",
+    verify_show(verify_text("%s: a fish swims against and along a wall: largest contact_energy, J", force), "",
                 contact);
-    verify_zero(verify_text("%s: its energy balance over its largest kinetic energy, rtol 1e-5", force), "conservation",
+    verify_zero(verify_text("%s: energy balance over the largest kinetic energy, rtol 1e-5", force), "conservation",
                 imbalance / energy, 2e-3);
-    verify_zero(verify_text("%s: its total circulation, m2/s", force), "Kelvin", circulation, 1e-12);
+    verify_zero(verify_text("%s: total circulation, m2/s", force), "Kelvin", circulation, 1e-12);
     simulate_free(simulation);
 }
 
