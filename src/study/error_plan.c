@@ -16,9 +16,6 @@
 #include "school/warnings.h"
 #include "steady/steady_static.h"
 
-/* Largest number of finer levels that replace invalid coarser levels. */
-enum { MOST_FINER = 2 };
-
 static const char what[] = "the errors of a study"; /* in messages on memory */
 
 int error_plan_place(const struct error_study *study, int quantity, int fish) {
@@ -358,8 +355,8 @@ static enum status add_level(struct error_study *study, int k, double from, doub
     return STATUS_OK;
 }
 
-/* Add the levels of the table: coarser levels, and a finer level with confirm. Up to two finer levels replace invalid
- * coarser levels. */
+/* Add the levels of the table: coarser levels, and a finer level with confirm. Finer levels replace invalid coarser
+ * levels. */
 static enum status add_default_levels(struct error_study *study, int k) {
     struct error_study_key *const key = &study->key[k];
     const struct sweep_error_key *const row = key->row;
@@ -374,7 +371,8 @@ static enum status add_default_levels(struct error_study *study, int k) {
         n_missing += !is_there;
     }
 
-    if (n_missing > n_finer && n_missing <= MOST_FINER) n_finer = n_missing;
+    // four levels all the same: three would be judged by twice the largest difference
+    if (row->kind != SWEEP_DURATION) n_finer += n_missing;
     for (int i = 0; i < n_finer; i++) TRY(add_level(study, k, key->value[0], row->finer, &is_there));
     return STATUS_OK;
 }

@@ -112,7 +112,7 @@ static void levels_that_are_no_valid_cases_are_replaced(void **state) {
     // with the pressure a sheet needs 2 nodes - 1 points
     struct error_study study = open_study(
         "format: 1\ntime: {end: 4}\nfish: [{nodes: 25, sheet_points: 49, force: pressure}]\n", "{of: steady_speed}");
-    levels_are(&study, "fish.sheet_points", 3, (double[]){97, 69, 49}, 49);
+    levels_are(&study, "fish.sheet_points", 4, (double[]){136, 97, 69, 49}, 49);
     levels_are(&study, "fish.nodes", 4, (double[]){35, 25, 17, 13}, 25);
     error_plan_free(&study);
     // a table has a value for each edge
