@@ -11,12 +11,15 @@ void say_line(FILE *stream, const char *format, ...) {
     va_start(arguments, format);
     const int length = vsnprintf(NULL, 0, format, arguments);
     va_end(arguments);
-    char *const line = length < 0 ? NULL : malloc((size_t)length + 1);
-    if (!line) return;
+    if (length < 0) return;
+
+    // without memory for the whole line print the beginning
+    char beginning[1024], *const line = malloc((size_t)length + 1);
     va_start(arguments, format);
-    vsnprintf(line, (size_t)length + 1, format, arguments);
+    vsnprintf(line ? line : beginning, line ? (size_t)length + 1 : sizeof beginning, format, arguments);
     va_end(arguments);
-    text_print_clean(stream, line);
+    text_print_clean(stream, line ? line : beginning);
+    if (!line && (size_t)length >= sizeof beginning) fputc('\n', stream);
     free(line);
 }
 

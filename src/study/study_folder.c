@@ -67,18 +67,23 @@ enum status study_folder_set_reason(const char *folder, int member, const char *
     char *const path = study_folder_member(folder, member, ".failed");
     if (!path) return STATUS_MEMORY;
     struct durable_part part = {.descriptor = -1};
+    int code = 0;
 
     // ignore a full disk: the result file itself contains the status "running" or "failed"
     if (!reason) {
         unlink(path);
-    } else if (durable_begin(&part, path, 0666) == 0 && durable_write(part.descriptor, reason, strlen(reason)) == 0 &&
-               durable_write(part.descriptor, "\n", 1) == 0) {
-        durable_publish(&part, true);
+    } else {
+        code = durable_begin(&part, path, 0666);
+        if (code == 0 && durable_write(part.descriptor, reason, strlen(reason)) == 0 &&
+            durable_write(part.descriptor, "\n", 1) == 0) {
+            durable_publish(&part, true);
+        }
     }
 
     durable_end(&part);
     free(path);
-    return STATUS_OK;
+    if (code != ENOMEM) return STATUS_OK;
+    return status_fail(STATUS_MEMORY, "out of memory: the failure of member %d (%s)", member, reason);
 }
 
 /* Read the reason of a failed member; 0: no reason. */
