@@ -2,6 +2,7 @@
 """Write doc/cases.md: `shoal keys --json | scripts/make-cases-doc.py > doc/cases.md`, or `make docs`."""
 
 import json
+import re
 import sys
 import textwrap
 
@@ -226,12 +227,14 @@ def default(key):
 
 
 def values(key):
-    words = key["type"]
-    if key["unit"]:
-        words += f" in {key['unit']}"
+    """Type, range and unit of a key; for a number with a range the range and the unit: "> 0 s", ">= 0", "0 to 0.1"."""
     if key["type"] == "word":
         return ", ".join(code(word) for word in key["range"].split(", "))
-    return words + (f", {key['range']}" if key["range"] else "")
+    limits = key["range"].replace("above ", "> ").replace("at least ", ">= ").replace("from ", "")
+    limits = re.sub(r"^between (\S+) and (\S+)$", r"> \1, < \2", limits)
+    if key["type"] == "number" and limits:
+        return f"{limits} {key['unit']}".strip()
+    return key["type"] + (f" in {key['unit']}" if key["unit"] else "") + (f", {limits}" if limits else "")
 
 
 def table(section, keys):

@@ -420,8 +420,8 @@ def events(bench):
 
 @table("modulus [Pa]", "ramp [s]", *COUNTS)
 def start(bench):
-    """cost of a muscle that starts at once, on an undamped body"""
-    for modulus in (1e6, 1e8, 1e10):
+    """cost of a sudden start of the muscle, on an undamped body"""
+    for modulus in (1e6, 1e10):
         for ramp in (0, 0.25, 1):
             run = bench.run(ARTICLE, f"{MODULUS}={modulus:g}", f"fish[*].wave.ramp={ramp:g}")
             yield power(modulus), f"{ramp:g}", *(per_event(run) if run else ["failed", "", ""])
@@ -442,7 +442,7 @@ def tolerance(bench):
 @table("modulus [Pa]", "order", "nose or tail [L]", "balance over work", *COUNTS)
 def order(bench):
     """the default fish over the highest order of the method (minutes)"""
-    for modulus in (1e5, 1e6, 1e8, 1e10):
+    for modulus in (1e6, 1e10):
         keys = (f"{MODULUS}={modulus:g}",)
         right = bench.run(DEFAULT, *keys, "time.end=3", "solver.rtol=1e-8", "solver.order=2",
                           "solver.max_steps=100000", "wake.tolerance=1e-9")
@@ -454,7 +454,7 @@ def order(bench):
 
 @table("from", "to [periods]", "nose [L]", "order", "tail [L]", "order")
 def interval(bench):
-    """change of a fish that feels its own wake (force: pressure) from one shedding interval to the next (a minute)"""
+    """change of a fish with the own wake (force: pressure) from one shedding interval to the next (a minute)"""
     sizes = (0.04, 0.02, 0.01, 0.005, 0.0025)
     points = [1 + round(32 * math.sqrt(sizes[0] / size)) for size in sizes]
     keys = ("time.end=1.6", "time.output_interval=0.04", "solver.rtol=1e-8", "fish[*].force=pressure", "fish[*].nodes=17",
@@ -474,7 +474,7 @@ def interval(bench):
 @table("modulus [Pa]", "method", "tail [L]", "steps per event", "evaluations", "Jacobians")
 def explicit(bench):
     """cost of adaptive explicit methods over the stiffness of the article's fish (a minute)"""
-    for modulus in (1e6, 1e8, 1e10):
+    for modulus in (1e6, 1e10):
         keys = (f"{MODULUS}={modulus:g}",)
         right = bench.run(ARTICLE, *keys, "solver.rtol=1e-9")
         for method in ("ida", "heun", "rk4", "dormand_prince"):
@@ -488,7 +488,7 @@ def explicit(bench):
 
 
 def rod_settings(modulus):
-    """Settings tried on the rod: implicit methods, and explicit ones with their longest stable step."""
+    """Settings for the rod: implicit methods, and explicit methods with the longest stable step."""
     stable = math.sqrt(modulus / 1e4)
     for rtol in ("1e-4", "3e-5", "1e-5"):
         yield "ida", f"rtol {rtol}", [f"solver.rtol={rtol}"]
@@ -500,7 +500,7 @@ def rod_settings(modulus):
 @table("modulus [Pa]", "method", "setting", "nose or tail [L]", "evaluations", "CPU time over ida")
 def rod(bench):
     """the cheapest setting of each method on an undamped rod with an error below 1e-4 lengths (two minutes)"""
-    for modulus in (1e4, 1e6, 1e8, 1e10):
+    for modulus in (1e4, 1e6, 1e10):
         body = f"{MODULUS}={modulus:g}"
         exact = bench.run(ROD, body, "solver.method=verlet",
                           f"solver.step={0.02 / round(15 * math.sqrt(modulus / 1e4)):.12g}")
@@ -520,7 +520,7 @@ def rod(bench):
        "CPU time, coupled over not")
 def coupling(bench):
     """cost of two fish near each other, with and without their coupling blocks in the Jacobian (two minutes)"""
-    for layout, gaps in (("side by side", (0.1, 0.2, 0.5, 1, 2)), ("one after the other", (0.1, 0.5, 1))):
+    for layout, gaps in (("side by side", (0.1, 0.5, 2)), ("one after the other", (0.1, 1))):
         for gap in gaps:
             # 0.25: the thickness of two fish, and their approach within four seconds
             place = f"[0, {gap + 0.25:g}]" if layout == "side by side" else f"[{gap + 1:g}, 0]"
