@@ -38,25 +38,25 @@ ifeq ($(SANITIZE),thread)
 CC = clang
 B = build-sanitize-thread
 sanitize = -fsanitize=thread
-# what lets threads work side by side; `make test SANITIZE=thread TEST="..."` for others
+# flags for threads; `make test SANITIZE=thread TEST="..."` for other tests
 TEST = parallel velocity_sum treecode images flow residual linear simulate shoal clearance sundials threads
 else
 B = build-sanitize$(if $(is_clang),-clang)
-# gcc 12 warns of variables that may be unset where the sanitizer's own code hides how they are set
+# gcc 12 warns of possibly unset variables in code of the sanitizer
 sanitize = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer \
            $(if $(is_clang),$(null_plus_0),-Wno-maybe-uninitialized)
 endif
 else
 B = build
 sanitize =
-# every name that the shared library needs is there; that of a sanitizer is found in the program
+# the shared library has no undefined names, except names of a sanitizer, which the program has
 complete = -Wl,-z,defs
 endif
 
 # clang reports NULL + 0, which no compiler has ever taken for anything but NULL and the next C defines (N3322)
 null_plus_0 = -fno-sanitize=pointer-overflow
 
-# set by `make fuzz`: all for libFuzzer, whose own main takes the place of the driver's
+# set by `make fuzz`: all for libFuzzer, whose main replaces the main of the driver
 clang = $(shell command -v clang)
 ifdef FUZZER
 B = build-fuzzer
@@ -75,7 +75,7 @@ endif
 # -iquote, not -I: <netcdf.h> is the library's header and "result/netcdf.h" is ours. _XOPEN_SOURCE=700 is POSIX 2008 with M_PI.
 # The results must not depend on the machine: nothing that reorders sums or fuses operations belongs here.
 shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include $(file <$(B)/cppflags) $(CPPFLAGS)
-# One set of objects serves the program and the shared library, which shares what include/shoal.h makes visible.
+# One set of objects serves the program and the shared library, which exports the names of include/shoal.h.
 shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -fPIC -fvisibility=hidden \
                  -Wall -Wextra -Wconversion -Wshadow $(if $(WERROR),-Werror) $(warnings) $(sanitize) $(CFLAGS) \
                  $(if $(gcc_12_arm64),-fvect-cost-model=very-cheap)
@@ -83,10 +83,10 @@ shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -fPIC -fvis
 warnings = $(if $(is_clang),-Wno-missing-field-initializers)
 # gcc 12 for arm64 stops with an internal error (vect_transform_reduction) at loops that the cost model of -O3 vectorises
 gcc_12_arm64 := $(if $(is_clang),,$(filter aarch64%-12,$(shell $(CC) -dumpmachine)-$(firstword $(subst ., ,$(shell $(CC) -dumpversion)))))
-# what scripts/find-libraries.sh has found
+# results of scripts/find-libraries.sh
 libraries      = $(file <$(B)/libraries) -lm
 
-# OpenMP as a part of the program, where the compiler has it so: src/app/main.c. That of clang is another one.
+# OpenMP as a part of the program, if the compiler supports this: src/app/main.c. Clang has another OpenMP library.
 static_gomp = $(if $(is_clang),,$(wildcard $(shell $(CC) -print-file-name=libgomp.a)))
 
 # objects.a holds every function for the program and the tests; libshoal, which is installed, shares shoal_* only
@@ -119,10 +119,10 @@ manual         = $(B)/doc/shoal.1 $(B)/doc/shoal-case.5 $(B)/doc/shoal-output.5
 completion     = $(B)/doc/completion
 c_files        = $(wildcard src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
 
-# what tests need beyond scripts/install-deps.sh: a browser, readers of VTK's files, of schemas, of manual pages, and pip
+# packages for tests beyond scripts/install-deps.sh: a browser, readers of VTK's files, of schemas, of manual pages, and pip
 test_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils python3-pip python3-venv python3-setuptools python3-wheel
 
-# "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
+# "commit" or "commit-dirty" of the repository of this folder, not of a surrounding repository
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
 
 # the folder under the prefix in which $(PYTHON) looks for modules; else one for PYTHONPATH

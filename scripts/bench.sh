@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Measure the program: inner loops, fast multipole sums, where the time of runs goes, schools, whole processes.
+# Measure the program: inner loops, fast multipole sums, phases of runs, schools, whole processes.
 #
 #   scripts/bench.sh BUILD      BUILD: the folder with shoal and bench/
 #
-# Exit code 3 if a limit is missed. doc/performance.md explains the numbers. Run it on an idle machine.
+# Exit code 3 if a limit is missed. doc/performance.md explains the numbers. Use an idle machine.
 set -euo pipefail
 
 build=$(realpath "${1:?usage: scripts/bench.sh BUILD}")
@@ -14,7 +14,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
-# Run a program of tests/bench with threads like those of shoal (src/base/parallel.h).
+# Run a program of tests/bench with the thread settings of shoal (src/base/parallel.h).
 bench() {
     local name=$1
     shift
@@ -40,7 +40,7 @@ print(f"{wall:.2f} {used.ru_utime + used.ru_stime:.2f} {used.ru_maxrss / 1024:.0
 PYTHON
 }
 
-# What `shoal info` says per event of the result run.nc: steps, newton_iterations or jacobian_evaluations.
+# A count per event by `shoal info` of the result run.nc: steps, newton_iterations or jacobian_evaluations.
 per_event() {
     "$program" info run.nc | awk -v name="$1" '$1 == name { print $3 }'
 }
@@ -56,7 +56,7 @@ check_limit() {
     printf '%-58s %10s %10s  %s\n' "$1" "$2" "$3" "$result"
 }
 
-# Run a case and print its line: name, file, threads. Leaves its wall clock in $wall.
+# Run a case and print one line: name, file, threads. Leaves the wall clock in $wall.
 whole_run() {
     local name=$1 case=$2 threads=$3 cpu memory simulated
     read -r wall cpu memory < <(measured "$program" run "$case" -q --force --threads "$threads" -o run.nc)

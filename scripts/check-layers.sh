@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Prove the rooms of src/: what a file names, by #include and by the symbols of its object, lies in its own folder or in
-# one further up the list, and no two files of a folder need each other, directly or in a circle.
+# Prove the rooms of src/: every name used by a file, by #include and by the symbols of the object, lies in the same
+# folder or in a folder further up the list, and files of a folder have no circular dependencies.
 #
 #   scripts/check-layers.sh [BUILD]      BUILD: the folder with the objects, build by default
 #
-# Outside libraries stay in the folders that are named below, by their headers and by their functions.
+# External libraries stay in the folders named below, by headers and by functions.
 set -euo pipefail
 
-# Lowest first. doc/architecture.md says what each is for.
+# Lowest first. doc/architecture.md states the subject of each folder.
 readonly rooms=(base vortex fish body wake control state flow force contact school case solver result view run steady study library app)
 
 # Headers (first folder, or name without .h), the beginnings of the functions they declare, and the folders that may use
@@ -42,12 +42,12 @@ for source in src/*/*.c; do
     [[ -e $build/${module%.c}.o ]] || complain "$source: error: it has no object in $build: run 'make' first"
 done
 
-# ---- who needs whom: "from to", both as room/module
+# ---- dependencies: "from to", both as room/module
 
 # by includes
 grep -noE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"[^"]+"' src/*/*.[ch] |
     sed -E 's/^src\/([^:]*)\.[ch]:([0-9]+):.*"([^"]+)\.h"/\1 \3 src\/\1/' >"$folder/includes"
-# by symbols: who defines what, and who names what
+# by symbols: definitions and uses
 for object in $(printf "$build/%s/*.o " "${rooms[@]}"); do
     module=${object#"$build"/}
     nm --extern-only --format=posix "$object" | awk -v module="${module%.o}" '{ print module, $1, $2 }'

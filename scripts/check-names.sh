@@ -3,7 +3,7 @@
 #
 #   scripts/check-names.sh [BUILD]      BUILD: the folder with the objects, build by default
 #
-# - what src/*/x.c and src/*/x_more.c share begins with x_, or with a beginning that is listed for the module;
+# - shared names of src/*/x.c and src/*/x_more.c begin with x_, or with a prefix that is listed for the module;
 # - libshoal.a has no global name without shoal_;
 # - tests do not use cmocka's assert_float_equal, which compares in single precision: NEAR of tests/near.h does not;
 # - lines of C have at most 120 characters, and no words that doc/style.md replaces;
@@ -19,7 +19,7 @@ complain() {
     n_errors=$((n_errors + 1))
 }
 
-# Modules of several subjects, and the beginnings of their names
+# Modules of several subjects, and the prefixes of the names
 declare -A beginnings=([mathematics]='angle_|ramp_|quadrature_|box_')
 
 # Names with a dot or two leading underscores are the compiler's own.
@@ -44,7 +44,7 @@ while read -r name; do
 done < <(nm --defined-only --extern-only --format=posix "$build/libshoal.a" | awk 'NF > 1 && $1 !~ /^shoal_/ { print $1 }')
 
 # complain of each line of the files that matches
-refuse() {  # pattern, what to say, files
+refuse() {  # pattern, message, files
     local pattern=$1 remedy=$2 place
     shift 2
     while read -r place; do
@@ -60,7 +60,7 @@ for file in "${text[@]}" Makefile; do [[ ! -e $file ]] || existing+=("$file"); d
 refuse '[ \t]+$' 'blank at the end of the line' "${existing[@]}"
 refuse '\t' 'tab: use spaces' "${existing[@]/#Makefile//dev/null}"
 
-# lines of at most 120 characters; a table in a program keeps its columns
+# lines of at most 120 characters; tables in a program keep the columns
 sources=(src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
 while read -r place; do
     complain "$place: error: longer than 120 characters"

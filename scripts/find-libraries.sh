@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Find the libraries of shoal: how a compiler includes and links them.
+# Find the libraries of shoal: compiler and linker flags.
 #
 #   scripts/find-libraries.sh FOLDER COMPILER...    write FOLDER/cppflags, FOLDER/libraries and FOLDER/libraries.log
 #
 # A library is where a small program that uses it compiles and links. It is looked for in the folder that SUNDIALS_DIR,
 # SUITESPARSE_DIR, NETCDF_DIR, LAPACKE_DIR, YAML_DIR or ZLIB_DIR names, and then nowhere else; else as pkg-config says, in
 # the environment of conda, in the prefix of Homebrew, where the compiler looks by itself, and in /usr/local. CPPFLAGS
-# and LDFLAGS apply. A library that is missing costs one line, which names its packages.
+# and LDFLAGS apply. A missing library costs one line with the names of the packages.
 set -euo pipefail
 
 folder=${1:?usage: scripts/find-libraries.sh FOLDER COMPILER...}
@@ -26,7 +26,7 @@ links() {  # flags...
     "$@" >>"$log" 2>&1
 }
 
-# Flags for a prefix, whose headers may lie in a folder of their own.
+# Flags for a prefix, with headers possibly in a subfolder.
 flags_of() {  # prefix, folder of headers
     local lib
     for lib in "$1/lib64" "$1/lib"; do
@@ -34,13 +34,13 @@ flags_of() {  # prefix, folder of headers
     done
 }
 
-# Flags from pkg-config; headers as those of the system, whose warnings are not ours.
+# Flags from pkg-config; headers as system headers, without their warnings.
 packaged_flags() {  # name
     ${PKG_CONFIG:-pkg-config} --cflags --libs "$1" 2>>"$log" | sed -E 's/(^| )-I *([^ ]*)/\1-isystem \2/g' || true
 }
 
 # Flags that may find a library, a line for each place.
-places() {  # its folder, folder of headers, name for pkg-config
+places() {  # folder of the library, folder of headers, name for pkg-config
     local brew
     if [[ -n $1 ]]; then
         flags_of "$1" "$2"
@@ -56,7 +56,7 @@ places() {  # its folder, folder of headers, name for pkg-config
     flags_of /usr/local "$2"
 }
 
-# Divide flags into those of the preprocessor and those of the linker.
+# Divide flags into flags of the preprocessor and flags of the linker.
 keep() {  # flags...
     while (($# > 0)); do
         case $1 in
@@ -68,8 +68,8 @@ keep() {  # flags...
     done
 }
 
-# Find one library and keep its flags; $program uses it. Each line of the last argument may link it.
-find_library() {  # title, packages, variable with its folder, folder of headers, name for pkg-config, libraries
+# Find one library and keep the flags; $program uses the library. Each line of the last argument is a choice of link flags.
+find_library() {  # title, packages, variable with the folder, folder of headers, name for pkg-config, libraries
     local place own
     while read -r place; do
         while read -r own; do
@@ -102,7 +102,7 @@ if ! links -fopenmp; then
     exit 1
 fi
 
-# the headers of SUNDIALS may include <mpi.h>, whatever is used of them
+# the headers of SUNDIALS may include <mpi.h> in any case
 mapfile -t mpi < <(echo; for name in mpi-c ompi-c mpich; do packaged_flags $name; done
     { mpicc -showme:compile && mpicc -showme:link; } 2>>"$log" | tr '\n' ' ' || true)
 # those that a version or a distribution may lack: the vectors of OpenMP, and the core, which was in all others before 7
@@ -174,6 +174,6 @@ int main(void) { return zlibVersion()[0] == 0; }'
 find_library zlib "$(packages zlib1g-dev zlib-devel zlib zlib)" ZLIB_DIR '' zlib -lz
 
 ((n_missing == 0)) || exit 1
-# no newline: make 4.3 does not always take it off
+# no newline: make 4.3 does not always remove the newline
 printf %s "${cppflags[*]}" >"$folder/cppflags"
 printf %s "${libraries[*]}" >"$folder/libraries"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzz for a time, all targets at once, with the sanitizers; libFuzzer where clang is there, else the driver of
-# tests/fuzz with one seed after the other. Stops at the first input that is bad, which it keeps.
+# tests/fuzz with one seed after the other. Stops at the first bad input and keeps the input.
 #
 #   scripts/fuzz.sh BUILD SECONDS
 set -euo pipefail
@@ -9,7 +9,7 @@ folder=$build/fuzz/run
 mkdir -p "$folder"
 "$(dirname "$0")/../tests/fuzz/seeds.sh" "$build/shoal" "$folder/seeds"
 
-# One target until the time is over; prints how many inputs it took.
+# One target until the time is over; prints the number of inputs.
 fuzz() {  # target, seeds
     mkdir -p "$folder/$1" && cd "$folder/$1"
     local end=$((SECONDS + seconds)) seed n=0 each=2000 help

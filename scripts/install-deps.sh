@@ -8,7 +8,7 @@ readonly packages=(
     libsundials-dev libsuitesparse-dev liblapacke-dev liblapack-dev libblas-dev libnetcdf-dev libyaml-dev zlib1g-dev
     libcmocka-dev netcdf-bin clang-format  # tests and style
     python3 python3-numpy python3-scipy python3-matplotlib python3-netcdf4 python3-xarray ffmpeg  # pictures and movies
-    "$@"                                   # what a target needs beyond that
+    "$@"                                   # additional packages of a target
 )
 
 if ! command -v dpkg-query >/dev/null; then

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Build and test shoal on other systems, each in an empty chroot of its own.
+# Build and test shoal on other systems, each in a separate empty chroot.
 #
 #   scripts/platforms.sh [--write FILE] [PLATFORM[:CHECK,...]]...
 #
-# PLATFORM is a name of the table below, by default each of them with its checks:
+# PLATFORM is a name of the table below, by default every platform with all checks:
 #
 #   demo      make demo
 #   test      make test
 #   c_tests   make test-c
-#   same      demo and pair differ by at most 1e-12 m after 1 s from those of this machine's build/shoal
-#   packages  the steps of scripts/packaging/Dockerfile, in two chroots: make deb, and a trial of its packages
+#   same      demo and pair differ by at most 1e-12 m after 1 s from the results of this machine's build/shoal
+#   packages  the steps of scripts/packaging/Dockerfile, in two chroots: make deb, and a trial of the packages
 #
 # Needs root and a mirror of Debian, taken from the sources of apt; skips all platforms, with a reason, where a chroot
 # cannot be made. Leaves logs in build/platforms. --write replaces the rows of these platforms in the table of FILE that
@@ -36,7 +36,7 @@ skip_all() {
     exit $((failed > 0))
 }
 
-# Run a command in a chroot, in the sources, with /proc and /dev of its own; nothing that it starts outlives it.
+# Run a command in a chroot, in the sources, with separate /proc and /dev; kill all remaining processes afterwards.
 enter() {  # chroot, command...
     # shellcheck disable=SC2016 # expanded by the inner shell
     unshare --mount --pid --fork --kill-child --propagation private bash -c '
@@ -99,7 +99,7 @@ PYTHON
     done
 }
 
-# Run the steps of a stage of the Dockerfile, which are those of the Apptainer definition.
+# Run the steps of a stage of the Dockerfile, shared with the Apptainer definition.
 container_stage() {  # chroot, stage
     local line
     while read -r line; do
@@ -143,7 +143,7 @@ run_platform() {  # name, release, architecture, compiler, checks
     fi
     find "$root/shoal" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
     scripts/packaging/copy-sources.sh "$root/shoal"
-    # demo shows that make installs the packages; without it a mirror that fails is no fault of shoal
+    # demo shows that make installs the packages; without demo a failing mirror is not an error of shoal
     [[ $checks == demo* ]] || enter "$root" timeout 1800 scripts/install-deps.sh ||
         skip_all "$name: packages cannot be installed"
     [[ $compiler != clang ]] || enter "$root" scripts/install-deps.sh clang libomp-dev
@@ -168,7 +168,7 @@ run_platform() {  # name, release, architecture, compiler, checks
     [[ -n ${KEEP-} ]] || rm -rf "$root"
 }
 
-# Put the rows into the table of a document, in order of their names.
+# Put the rows into the table of a document, sorted by name.
 write_rows() {  # document, name...
     local document=$1
     shift

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Run test programs and say how it went.
+# Run test programs and print a report.
 #
 #   scripts/run-tests.sh PROGRAM TEST...
 #
-# A TEST that ends in .sh is a shell test: it gets PROGRAM as its argument and ends with "N passed, N failed, N skipped".
+# A TEST with the suffix .sh is a shell test: the argument is PROGRAM, the last line "N passed, N failed, N skipped".
 # Any other TEST is a cmocka program. Those in shell take longest and begin; one more runs at a time than there are
 # processors, since some of them wait. The report has the whole output of what failed. A test that crashes, exits early,
 # runs longer than the limit or tests nothing has failed.
@@ -35,7 +35,7 @@ trap 'exit 130' INT TERM
 
 # the sanitizers, when built in: show the stack, also where cmocka would catch the signal
 export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=handle_segv=2:handle_sigfpe=2
-# what OpenMP of clang keeps for its own threads is no leak of ours
+# memory kept by clang's OpenMP for its threads is not a leak of shoal
 echo 'leak:libomp.so' >"$folder/leaks"
 export LSAN_OPTIONS=suppressions=$folder/leaks:print_suppressions=0
 # that for threads: libraries that are not built for it are not watched; Archer tells it what OpenMP does (Debian keeps it
@@ -44,7 +44,7 @@ export TSAN_OPTIONS=ignore_noninstrumented_modules=1
 archer=$(printf '%s\n' /usr/lib/llvm-*/lib/libarcher.so | tail -n 1)
 [[ ! -e $archer ]] || export OMP_TOOL_LIBRARIES=$archer
 
-# Sums of a cmocka program: "passed failed skipped". What was announced and neither passed nor was skipped has failed.
+# Sums of a cmocka program: "passed failed skipped". An announced test that neither passed nor was skipped has failed.
 count_cmocka() {
     awk '/^\[==========\] .*Running [0-9]+ test/ { announced += $(NF - 1); running = 1 }
          /^\[==========\] .*[0-9]+ test\(s\) run/ { running = 0 }
@@ -53,7 +53,7 @@ count_cmocka() {
          END { print passed + 0, announced - passed - skipped, skipped + 0 }' "$1"
 }
 
-# Sums of a shell test: its last line.
+# Sums of a shell test: the last line.
 count_shell() {
     local counts
     counts=$(tail -n 1 "$1" | sed -n 's/^\([0-9]\+\) passed, \([0-9]\+\) failed, \([0-9]\+\) skipped$/\1 \2 \3/p')
@@ -69,7 +69,7 @@ start() {
     number_of[$!]=$1
 }
 
-# Print the line of test number $1, and its output if it failed; add to the sums.
+# Print the line of test number $1, and the output of a failed test; add to the sums.
 report() {
     local name=${tests[$1]} code=${exit_code[$1]} passed failed skipped note=''
     case $name in

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Let valgrind watch test programs in C, and a run of the program that is stopped and resumed: what it finds is an error.
+# Run test programs in C, and a run that is stopped and resumed, under valgrind: every report is an error.
 #
 #   scripts/valgrind.sh PROGRAM TEST...
 set -euo pipefail
 program=$(realpath "$1")
 shift
-# reachable blocks are those of libraries that keep them for later
+# reachable blocks belong to libraries
 watch=(valgrind -q --error-exitcode=99 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite
     --child-silent-after-fork=yes)
 folder=$(mktemp -d)

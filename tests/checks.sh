@@ -2,7 +2,7 @@
 #
 #     $program    the program, which is the first argument of the test
 #     $root       the top of the tree
-#     $folder     the new folder; it goes when the test ends, and the process $pid with it
+#     $folder     the new folder; removed at the end of the test, and the process $pid is killed
 #
 # shellcheck shell=bash
 set -uo pipefail
@@ -28,7 +28,7 @@ pass() {
     n_passed=$((n_passed + 1))
 }
 
-fail() {  # name, what happened
+fail() {  # name, reason
     echo "FAILED  $1: $2"
     n_failed=$((n_failed + 1))
 }
@@ -64,7 +64,7 @@ refused() {  # name, code, text on standard error, arguments...
     fi
 }
 
-# Wait until a command succeeds; its code is 1 if it has not after $time_limit seconds.
+# Wait until a command succeeds; exit code 1 after $time_limit seconds.
 wait_for() {  # command...
     local deadline=$((SECONDS + time_limit))
     until "$@" >/dev/null 2>&1; do
@@ -73,7 +73,7 @@ wait_for() {  # command...
     done
 }
 
-# Does a process have a handler for a signal by now? It dies of a signal that comes before.
+# Does a process have a handler for a signal yet? An earlier signal would kill the process.
 handles() {  # process, signal
     local caught
     caught=$(awk '$1 == "SigCgt:" { print $2 }' "/proc/$1/status")
@@ -84,7 +84,7 @@ has() {  # file, text
     grep -qF -- "$2" "$1" || { echo "'$2' is not in $1"; return 1; }
 }
 
-# The last line of a test, and its exit code.
+# The last line of a test, and the exit code of the test.
 finish() {
     echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
     ((n_failed == 0))

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Copy the sources, without what was built: scripts/packaging/copy-sources.sh FOLDER
+# Copy the sources without build products: scripts/packaging/copy-sources.sh FOLDER
 set -euo pipefail
 
 folder=$(realpath "${1:?usage: scripts/packaging/copy-sources.sh FOLDER}")

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Use each of the installed packages on an otherwise empty Debian, as root, and remove them.
+# Use each of the installed packages on an otherwise empty Debian, as root, and remove the packages.
 set -euo pipefail
 
 export DEBIAN_FRONTEND=noninteractive
 
-# the program, its manual and its cases
+# the program, the manual and the cases
 shoal --version
 shoal check /usr/share/shoal/cases/diamond.yaml
 shoal run /usr/share/shoal/cases/demo.yaml --set time.end=0.2 -q --force -o /tmp/demo.nc

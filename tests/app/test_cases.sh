@@ -34,7 +34,7 @@ def run(case, end):
         [program, "steady" if end == "steady" else "run", f"{cases}/{case}.yaml", "-q", "-o", path, *shorter],
         stdin=subprocess.DEVNULL, capture_output=True, text=True,
     )
-    # a case that warns says so, but where it is cut short and its speed is not yet steady
+    # the comment of a case names its warnings, except for an unsteady speed of a shortened run
     announced = "warning" in open(f"{cases}/{case}.yaml").read().lower()
     expected = "shoal: warning: " if announced else "shoal: warning: the speed of " if shorter else None
     others = [line for line in done.stderr.splitlines() if not (expected and line.startswith(expected))]

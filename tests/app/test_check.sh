@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `shoal check`: one verdict, whatever a run knows before its first step, and half a second of the processor.
+# `shoal check`: one verdict, with everything known before the first step, in half a second of CPU time.
 #
 #   tests/app/test_check.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -62,7 +62,7 @@ before_the_first_step() {
         '  start: {position: [0, 0.115]}}]' >near.yaml
     run check near.yaml
     check "bodies that begin near each other" has err "shoal: warning: fish1 and fish2 come within"
-    # few members, so that a slow machine examines all of them
+    # few members, so that a slow machine examines all members
     run check "$demo" --set 'sweep=[{key: "fish[0].body.modulus", values: [1e5, 9e4, 1e7]}]'
     check "a study says which members" has err "shoal: warning: member 0 and 1 other: the slowest bending mode"
 

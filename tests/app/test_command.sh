@@ -77,7 +77,7 @@ wrong_words() {
     check "nothing was written" only_files . "check.out err out "
 }
 
-# ---- where the result goes ----
+# ---- destination of the result ----
 
 output_paths() {
     run run "$demo" -q --set "$short"
@@ -211,7 +211,7 @@ repeats() {
     check "a run repeated from its result: the same to the last bit" same_bits first.nc second.nc
 }
 
-# Threads on processors of their own, on one that they share, and where the environment says: the same bits.
+# Threads on separate processors, on one shared processor, and as set by the environment: the same bits.
 spread() {
     local spread=(run "$diamond" -q --force --set time.end=0.2)
     run "${spread[@]}" -o one.nc
@@ -234,7 +234,7 @@ spread() {
 
 # ---- signals: the run is started in the background ----
 
-# Start a long run; wait until it has written some rows.
+# Start a long run; wait for the first rows.
 start_long_run() {
     rm -f long.nc
     env --default-signal=INT,TERM "$program" run "$diamond" -q --force -o long.nc >out 2>err </dev/null &
@@ -297,7 +297,7 @@ notes() {
 
 # ---- full disk, closed output, out of memory ----
 
-limited() {  # ulimit option, its value, arguments
+limited() {  # ulimit option, value of the option, arguments
     local option=$1 value=$2
     shift 2
     code=0
@@ -321,7 +321,7 @@ limits() {
     if grep -q __asan_init "$program"; then
         skip "little memory" "the address sanitizer needs all of it"
     else
-        # just enough for the program itself; what a school of fine bodies needs is not there
+        # just enough for the program, but not for a school of fine bodies
         limited -v 200000 run "$diamond" -q -o memory.nc --set "fish[*].nodes=4000" --set "fish[*].sheet_points=4000"
         check "little memory: exit 4" ended 4
         check "little memory: says memory" grep -qi memory err

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How the program ends, and what it prints then: signals and limits, exits of libraries, names with control characters.
+# Ends of the program and the printed messages: signals and limits, exits of libraries, names with control characters.
 #
 #   tests/app/test_exits.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -30,7 +30,7 @@ check it_says_how_to_go_on has err "continue with 'shoal resume small.ckpt'"
 run info small.ckpt
 check there_is_a_checkpoint ended 0
 
-# ---- a search for a steady state cannot be resumed, and says so wherever it is stopped
+# ---- a search for a steady state cannot be resumed, and the message says so at every stage
 
 for how in '' '--set steady.tolerance=0.001' "--set solver.rtol=1e-7"; do
     # shellcheck disable=SC2086 # options
@@ -96,7 +96,7 @@ check a_message_has_none eval 'ended 4 && clean && has err "no\x1b[31m"'
 printf 'format: 1\nname: a\e[31m\n' >raw.yaml
 run check raw.yaml
 check a_line_of_a_case_has_none eval 'ended 2 && clean'
-# what a file holds may be anybody's
+# the content of a file may be arbitrary
 sed 's/^name: small/name: TITLES/' small.yaml >title.yaml
 run run title.yaml -q -o title.nc
 LC_ALL=C sed -i $'s/TITLES/\e[31m!/' title.nc

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Files for other programs: VTK itself reads what is written, and finds the numbers of the result.
+# Files for other programs: VTK reads the files and finds the numbers of the result.
 #
 #   tests/app/test_export.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -81,7 +81,7 @@ for row, one in enumerate(bodies):
     same("fish", array(data.GetCellData(), "fish"), np.array([0, 1, 0, 1]))
     same("kind", array(data.GetCellData(), "outline"), np.array([0, 0, 1, 1]))
     same("heading", array(data.GetCellData(), "heading"), np.tile(file["heading"][row], 2))
-    # the cells are closed over their own points
+    # the cells are closed over the points of the cell
     cell = data.GetCell(3)
     assert [cell.GetPointId(i) for i in (0, 93)] == [54 + 94, 54 + 187], "cells"
 for one in wakes:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# shoal field: the flow of a result on a grid, its messages, and its picture.
+# shoal field: the flow of a result on a grid, messages, and the figure.
 #
 #   tests/app/test_field.sh PROGRAM
 # shellcheck source=tests/checks.sh

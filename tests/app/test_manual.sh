@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What is made from the program's tables: pages of the manual, completion, the schema of cases.
+# Documents from the tables of the program: manual pages, completion, the schema of cases.
 #
 #   tests/app/test_manual.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -17,7 +17,7 @@ page() { /usr/bin/python3 "$root/scripts/make-man.py" "$1" <"$2" >"$1"; }
 check page_of_the_program page shoal.1 about.json
 check page_of_cases page shoal-case.5 keys.json
 check page_of_results page shoal-output.5 variables.json
-# roff says nothing of a page, with all its warnings
+# roff accepts the page with all warnings enabled
 no_warnings() { groff -man -Tutf8 -ww -z "$1" >warnings 2>&1 && [[ ! -s warnings ]] || { cat warnings; false; }; }
 no_complaints() { mandoc -T lint -W warning "$1" >warnings 2>&1 && [[ ! -s warnings ]] || { cat warnings; false; }; }
 for name in shoal.1 shoal-case.5 shoal-output.5; do

@@ -7,7 +7,7 @@
 
 export MPLCONFIGDIR=$folder/matplotlib
 
-# The scripts in one process, which reads their names and arguments between tabs and writes their exit codes: loading
+# The scripts in one process, which reads names and arguments between tabs and writes the exit codes: loading
 # matplotlib takes most of the time of a call.
 cat >serve.py <<'end'
 import contextlib, importlib, sys, traceback
@@ -40,7 +40,7 @@ script() {
     read -r -t "$time_limit" code <&"${scripts[0]}"
 }
 
-# A script makes a picture: its name and arguments, the last of them the picture.
+# A script makes a figure: name and arguments, the last argument is the figure.
 draws() {
     local picture=${*: -1}
     script "$@"
@@ -49,7 +49,7 @@ draws() {
     check "$1 ${picture} is named on standard output" grep -qx "$picture" out
 }
 
-# A script refuses its arguments: exit code, text of the message, script and arguments.
+# A script refuses arguments: exit code, text of the message, script and arguments.
 refuses() {
     local want=$1 text=$2
     shift 2
@@ -64,7 +64,7 @@ code=0
 "$program" run "$root/cases/gait.yaml" -q -o run.nc 2>err || code=$?
 check "a short run" test "$code" = 0
 
-# what a vortex still acts with, by its age, as the program has it (tests/wake/test_wake.c): all, half, nothing
+# the remaining strength of a vortex over age, as in the program (tests/wake/test_wake.c): all, half, nothing
 code=0
 PYTHONPATH=$root/scripts /usr/bin/python3 - >out 2>err <<'END' || code=$?
 from shoal._files import Results, np
@@ -112,7 +112,7 @@ draws animate.py run.nc --fps 10 --dpi 40 --follow movie.gif
 check "it says so of whole rows" grep -qx "21 pictures, 10 a second: every 2nd row of the file; the camera follows the school" out
 refuses 2 "--fps: has to be positive" animate.py run.nc --fps 0
 
-# ---- several fish, far from their start, of 7 nodes
+# ---- several fish of 7 nodes, far from the start
 
 { printf 'format: 1\ntime: {end: 1, shedding_interval: 0.05, output_interval: 0.1}\nfluid: {density: 0}\n'
   printf 'defaults: {fish: {nodes: 7, motion: {prescribed: all, speed: 30}}}\nfish:\n'
@@ -187,7 +187,7 @@ assert np.allclose(plot.unwrapped([[-178, 179], [178, 184], [170, 190]]), [[-178
 turned = plot.time("turned.nc", fish=["number 1", "number 2"])[1]
 assert np.ptp([np.mean(line.get_ydata()) for line in turned.lines]) < 3, "182 and 180 degrees are near"
 
-# what is rounding is constant, also around 0
+# rounding errors are constant, also around 0
 speed = plot.time("run.nc")[0]
 assert [text.get_text() for text in speed.texts] == ["constant: 0"], "rounding of a speed"
 assert all(np.all(line.get_ydata() == 0) for line in speed.lines)
@@ -216,11 +216,11 @@ assert len(panels) == 7 and len({tuple(a.get_xlim() + a.get_ylim()) for a in pan
 columns = {round(a.get_subplotspec().colspan.start) for a in panels}
 assert columns == {0, 1, 2, 3} and max(a.get_subplotspec().rowspan.start for a in panels) == 1
 
-# a school has panels of what there is only
+# a school has panels of existing variables only
 for axes in plot.school("seven.nc"):
     assert "contact" not in axes.get_ylabel() and any(np.isfinite(line.get_ydata()).any() for line in axes.lines)
 
-# a slope triangle below all lines of three levels, inside of the axes, with the design order as its slope
+# a slope triangle below all lines of three levels, inside the axes, with the design order as slope
 axes = plot.study("refine/study.nc")[0]
 corner = next(patch.get_xy() for patch in axes.patches if patch.get_label() == "_triangle")[:3]
 order = float(netCDF4.Dataset("refine/study.nc")["group_design_order"][0])
@@ -231,14 +231,14 @@ assert any(text.get_text() == f"order {order:g}" for text in axes.texts)
 for line in axes.lines:
     x, y = (np.log(np.array(value, float)[::-1]) for value in line.get_data())
     assert x.size == 2 and np.interp(np.log(right), x, y) > np.log(top) and np.interp(np.log(left), x, y) > np.log(foot)
-# and the lines are straight where the order is the design order, whatever the ratios of the levels
+# and the lines are straight for the design order, at any ratios of the levels
 from shoal._plot_study import Study, edges_between, level_errors
 study = Study("refine/study.nc")
 size, speed = study["level_size"], study["speed"][:, 0]
 wanted = np.abs(np.diff(speed)) / (1 - (size[1:] / size[:-1]) ** order)
 assert np.allclose(level_errors(study, "speed", order)[0, 0, :-1], wanted, rtol=1e-9)
 
-# a map of few members has cells with their values around the places, many have contours
+# a map of few members has cells with values at the positions, a map of many members has contours
 axes = plot.study("map/study.nc", of="shed_circulation")[0]
 mesh = axes.collections[0]
 assert isinstance(mesh, plot.matplotlib.collections.QuadMesh) and len(axes.collections) == 1, "cells, no dots"
@@ -248,7 +248,7 @@ assert len(written) == 6 and np.allclose(written, values, atol=0.02 * np.ptp(val
 assert np.allclose(edges_between(np.array([1.0, 2, 4]), "linear"), [0.5, 1.5, 3, 5])
 assert np.allclose(edges_between(np.array([1.0, 4, 16]), "log"), [0.5, 2, 8, 32])
 
-# walls are in the window, hatched on the side without fluid, at their height whatever a window follows
+# walls are in the window, hatched on the side without fluid, at the correct height in every moving window
 results = shoal_results.Results("channel.nc")
 assert results.walls == [(0, 1), (2, -1)], results.walls
 window = plot.limits(results, [0])
@@ -263,14 +263,14 @@ for unit, shift in ((None, 0), (0.5, -results["com"][0, 0, 1])):
         assert np.isclose(solid[1 if inward > 0 else 0], drawn), (unit, solid)
 assert shoal_results.Results("seven.nc").walls == []
 
-# bodies are drawn along the curve of their bound sheet
+# bodies are drawn along the curve of the bound sheet
 for name in ("seven.nc", "swim.nc"):
     results = shoal_results.Results(name)
     n, sheet = results.n_nodes[0], results["sheet_arc"][0]
     weights = shoal_results.smooth_weights(n, sheet / results["body_length"][0] * (n - 1))
     off = np.abs(weights @ results.nodes(-1, 0) - results["sheet_x"][-1, 0]).max()
     assert off < 1e-9, (name, off)
-# and are as thick as an ellipse where that is their shape, whatever the thickness of an edge means
+# and have the thickness of an ellipse for elliptic sections, for both definitions of the thickness of an edge
 at = (1 - np.cos(np.linspace(0, np.pi, 9))) / 2
 k = np.arccos(np.linspace(1, -1, 7))
 ends = 0.1 * (np.sin(k[:-1]) + np.sin(k[1:]))
@@ -333,7 +333,7 @@ code=0
 timeout "$time_limit" /usr/bin/python3 open.py >out 2>err || code=$?
 check "names are coordinates in xarray" test "$code" = 0
 
-# ---- what cannot be drawn
+# ---- files without a figure
 
 # a copy of a file with some bytes replaced
 damaged() {  # from, place

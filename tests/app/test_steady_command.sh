@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The steady state of a case, and the equilibrium of one without a beat: what is printed and what is in its file, and what is said where there is none.
+# The steady state of a case, and the equilibrium of a case without a beat: printed values, values in the file, and messages of failures.
 #
 #   tests/app/test_steady_command.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -56,7 +56,7 @@ check plot_draws_it /usr/bin/python3 "$root/scripts/plot.py" time swim.nc swim.p
 check xarray_opens_it /usr/bin/python3 -c \
     'import xarray; xarray.open_dataset("swim.nc").steady_speed.sel(fish="a fish").item()'
 
-# ---- a fish that forgets slowly, and swings: at the end of a swing it is not steady
+# ---- a fish with a slowly decaying oscillation: the end of a swing is not a steady state
 
 for start in 0 1.5; do
     run steady "$root/cases/stiff.yaml" -q -o "from$start.nc" --set time.shedding_interval=0.02 \

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every case, command and script of doc/tutorial.md works, in its order, in an empty folder. Runs are shortened.
+# Every case, command and script of doc/tutorial.md works, in order, in an empty folder. Runs are shortened.
 #
 #   tests/app/test_tutorial.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -7,7 +7,7 @@
 
 export MPLCONFIGDIR=$folder/matplotlib
 
-# the blocks of the tutorial as files: 01-sh, 02-python, ..., and the cases by the names that the text gives them
+# the blocks of the tutorial as files: 01-sh, 02-python, ..., and the cases by the names in the text
 /usr/bin/python3 - "$root/doc/tutorial.md" <<'end'
 import re, sys
 
@@ -32,7 +32,7 @@ shoal() {
 }
 plot.py() { timeout "$time_limit" /usr/bin/python3 "$root/scripts/plot.py" "${@//[246]/1}"; }
 
-# a command as the tutorial writes it; times of pictures are within the shorter run
+# a command as written in the tutorial; times of figures are within the shorter run
 command_works() { eval "$1"; }
 
 n_blocks=0

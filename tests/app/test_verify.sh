@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# The fast part of the checks against classical results: those that take seconds. All of them: make verify.
+# The fast part of the checks against classical results (seconds). All checks: make verify.
 #
 #   tests/app/test_verify.sh PROGRAM
 #
-# PROGRAM is build/shoal; the program of the checks is built beside it, as verify/verify.
+# PROGRAM is build/shoal; the program of the checks is verify/verify in the same folder.
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
@@ -15,7 +15,7 @@ for section in theory rod force sheet wake plate school interval symmetry start 
     code=0
     : >"$folder/table"
     "$verify" "$section" --fast -o "$folder/table" >"$folder/out" 2>&1 </dev/null || code=$?
-    # the last field of a row is its verdict; a row without one shows a number and checks nothing
+    # the last field of a row is the verdict; a row without a verdict is not a check
     passed=$(awk -F '\t' '$1 == "row" && $NF == "ok"' "$folder/table" | wc -l)
     missed=$(awk -F '\t' '$1 == "row" && $NF == "MISSED"' "$folder/table" | wc -l)
     if ((code != 0 && code != 3)); then

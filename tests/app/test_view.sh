@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The page of a run: its numbers are those of the result, and a browser draws them without an error.
+# The page of a run: the numbers equal the result, and a browser draws the page without an error.
 #
 #   tests/app/test_view.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -32,7 +32,7 @@ check force_replaces_it test "$code" = 0 -a ! -s out -a -s other.html
 refused no_result 4 'nothing.nc' view nothing.nc
 refused no_file 2 'RUN.nc is missing' view
 
-# ---- its numbers
+# ---- numbers of the page
 
 cat >compare.py <<'end'
 """Compare the numbers in a page with those of the result that it is made of."""
@@ -130,7 +130,7 @@ end
 check the_last_row_is_always_there /usr/bin/python3 thinned.py
 check what_is_left_out_is_said grep -q '"thinned":"[^"]*wakes: one of ' long.html
 
-# 200 fish, of headings on both sides of 180 degrees, without fluid: one of them jerks
+# 200 fish, with headings on both sides of 180 degrees, without fluid: one fish jerks
 { printf 'format: 1\ntime: {end: 1, shedding_interval: 0.1, output_interval: 0.1}\nfluid: {density: 0}\nwake: {lifetime: 0.3}\n'
   printf 'defaults: {fish: {nodes: 5, sheet_points: 5}}\nfish:\n'
   for i in {0..199}; do
@@ -159,7 +159,7 @@ end
 
 # ---- in a browser
 
-# Look at a page for some seconds of its own time; leaves the console in browser.err.
+# Open a page for some seconds of browser time; leaves the console in browser.err.
 browse() {  # page#options, options of the browser...
     local page=$1
     shift
@@ -179,7 +179,7 @@ height = int(float(sys.argv[2]) * picture.shape[0])
 r, g, b = np.moveaxis(picture[:height], 2, 0)
 print((r - b > 0.25).sum(), (b - r > 0.25).sum(), picture.shape[1], picture.mean() > 0.5)
 end
-# A screenshot has one dark line all the way across, and strokes above it but not below.
+# A screenshot has one dark line over the full width, and strokes above the line but not below.
 cat >wall.py <<'end'
 import numpy as np
 from matplotlib import image
@@ -216,7 +216,7 @@ else
         ((${frames:-0} > 3)) && break
     done
     check frames_are_drawn test "${frames:-0}" -gt 3
-    # it begins again at the end, so any other time than that of the start is right
+    # the page starts again at the end, so any time except the start is correct
     check and_time_goes_on grep -qE 'data-time="[0-9.]+"' <(grep -v 'data-time="0.50*"' browser.out)
     browse 'wall.html#t=0.04&theme=light' --window-size=1280,1000 --virtual-time-budget=500 --screenshot=wall.png
     check no_error_beside_a_wall test -z "$(console)"

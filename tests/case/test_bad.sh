@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Bad input: each wrong case gets its message, its exit code, and nothing else.
+# Bad input: each wrong case leads to the expected message and exit code, and nothing else.
 #
 #   tests/case/test_bad.sh PROGRAM
 #
@@ -45,7 +45,7 @@ expect() {
 
 # ---- the table
 
-# Every case goes into a file, its message into another one, without the empty line before the next case.
+# Every case goes into a file and the message into another file, without the empty line before the next case.
 awk '/^==== / { name = $2; file = name ".yaml"; print name >"names"; next }
      name != "" && /^----$/ { file = name ".expected"; next }
      file ~ /expected$/ && $0 == "" { next }

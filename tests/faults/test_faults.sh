@@ -30,7 +30,7 @@ check "a sample of failing calls: whole rows, one message, exit code 0 or 4" \
 for closed in '<&-' '>&-' '2>&-' '<&- >&- 2>&-'; do
     code=0
     eval "\"\$program\" run small.yaml --force -o closed.nc $closed" || code=$?
-    # what cannot be printed is an error, after the result is complete
+    # failing output is an error, after the result is complete
     if [[ $closed == *' >&-'* || $closed == '>&-' ]]; then want=4; else want=0; fi
     check "closed $closed: exit code $want" ended $want
     check "closed $closed: the result is complete and nothing else is in it" complete closed.nc
@@ -74,7 +74,7 @@ else
     limited 300000 run small.yaml -q --force -o threads.nc --threads 64
     check "threads that cannot be started: exit 4" ended 4
     check "threads that cannot be started: says so" grep -q 'of 64 threads can be started' err
-    # a school; from what the program itself needs to what is enough: each step ends well or with a message about memory
+    # a school; from the minimum of the program to enough memory: each step ends well or with a message about memory
     sed 's/^fish.*/fish:/' small.yaml >many.yaml
     for i in $(seq 25); do
         echo "  - {name: f$i, nodes: 40, sheet_points: 41, start: {position: [0, $i]}}"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A thousand mutated cases, a thousand mutated files of runs, studies and fields, and a thousand mutated checkpoints:
-# always the same ones. More of them, and others: make fuzz.
+# from a fixed seed. More and new mutations: make fuzz.
 #
 #   tests/faults/test_fuzz.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -15,7 +15,7 @@ check a_thousand_cases timeout "$time_limit" "$targets/fuzz_case" 1000 1 seeds/c
 check a_thousand_results timeout "$time_limit" "$targets/fuzz_result" 1000 1 seeds/results/*
 check a_thousand_checkpoints timeout "$time_limit" "$targets/fuzz_checkpoint" 1000 1 seeds/checkpoints/*
 
-# scripts/fuzz.sh knows libFuzzer by its help, however long that is: always the same answer
+# scripts/fuzz.sh recognises libFuzzer by a help text of any length: always the same answer
 mkdir -p tree/scripts tree/tests/fuzz tree/build/fuzz
 cp "$root/scripts/fuzz.sh" tree/scripts
 printf '#!/bin/sh\nmkdir -p "$2"\n' >tree/tests/fuzz/seeds.sh

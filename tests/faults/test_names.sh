@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Names and links: what is written is a regular file of ours, and nothing else is touched; no name is taken for a command.
+# Names and links: shoal writes only regular files of its own and touches nothing else; no name is executed as a command.
 #
 #   tests/faults/test_names.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -23,7 +23,7 @@ ln -s nowhere dangling.nc
 mkfifo fifo.nc
 for name in link dangling; do
     for force in '' --force; do
-        # shellcheck disable=SC2086 # no option where it is empty
+        # shellcheck disable=SC2086 # no option if the variable is empty
         refused "run $force does not replace a link ($name)" 4 'is a link' run small.yaml -q $force -o $name.nc
     done
     check "the link stays ($name)" test -L $name.nc

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Power cuts: a result that has lost its last rows, and a sample of what a cut at any time can leave (1000 cuts: make soak).
+# Power cuts: a result without the last rows, and a sample of states after a cut at any time (1000 cuts: make soak).
 #
 #   tests/faults/test_power.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -46,7 +46,7 @@ refused a_run_that_can_go_on_says_so 4 "continue from t = " run case.yaml -q
 run resume x.ckpt -q
 check it_is_resumed_to_the_same_bits eval '((code == 0)) && same x.nc whole.nc'
 
-# with fewer rows than the newest checkpoint counts the one before it serves; with fewer than both there is nothing to do
+# with fewer rows than the newest checkpoint counts the previous checkpoint serves; with fewer than both no checkpoint serves
 cp kept/* .
 "$program" info x.ckpt >out
 rows=$(sed -n 's/.*with \([0-9]*\) rows up to this time/\1/p' out)
@@ -62,7 +62,7 @@ check info_still_reads_it test "$code" = 0
 truncate -s -$((2 * per_row)) x.nc
 refused a_file_without_its_constants_is_damaged 4 'the end of the file is missing' info x.nc
 
-# a member of a study that lost its end, in a copy perhaps, is not complete
+# a truncated member of a study, for example after a copy, is not complete
 mkdir study
 cat case.yaml >study.yaml
 echo 'sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.3]}]' >>study.yaml

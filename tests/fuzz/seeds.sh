@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Make a folder with what fuzz targets begin with: cases/, results/ (a run, a study, its member, a field), checkpoints/;
+# Make a folder with the seeds of the fuzz targets: cases/, results/ (a run, a study, a member, a field), checkpoints/;
 # all small.
 #
 #   tests/fuzz/seeds.sh PROGRAM FOLDER
@@ -11,7 +11,7 @@ cd "$2"
 for file in "$tests"/../cases/*.yaml "$tests"/../cases/studies/*.yaml; do
     cp "$file" "cases/$(basename "$(dirname "$file")")-$(basename "$file")"
 done
-# bad cases, without their messages
+# bad cases, without the messages
 awk '/^==== / { file = "cases/bad-" $2 ".yaml"; next } /^----$/ { file = "" } file { print >file }' "$tests/case/bad_cases.txt"
 cat >small.yaml <<'end'
 format: 1

@@ -8,7 +8,7 @@ library=$(dirname "$program")/libshoal.so.0
 
 preload=''
 if nm -D --undefined-only "$library" | grep __asan >/dev/null; then
-    # Python itself is built without sanitizers, and frees nothing at its end
+    # Python is built without sanitizers, and frees nothing at exit
     preload="$(gcc -print-file-name=libasan.so) $(gcc -print-file-name=libubsan.so)"
     export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0
 fi

@@ -12,7 +12,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INDEX=1 PIP_ROOT_USER_ACTION=ignor
 unset PYTHONPATH SHOAL_LIBRARY SHOAL_PROGRAM
 
 new_environment() {
-    # NumPy is that of the system
+    # NumPy comes from the system
     /usr/bin/python3 -m venv --system-site-packages environment
 }
 

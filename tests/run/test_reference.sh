@@ -44,7 +44,7 @@ def places(result, f):
 for case in ["single1", "pair1", "single3", "pair3"]:
     with open(f"{data}/{case}.json") as stream:
         want = json.load(stream)
-    # the error of the integration is then below a tenth of what is allowed; the reference itself is good to 1e-8
+    # the error of the integration is then below a tenth of the tolerance; the reference has an error of 1e-8
     result = run(case, "solver.rtol=1e-9", "solver.order=5", "wake.tolerance=0")
     for f, fish in enumerate(want["fish"]):
         n = int(result["n_nodes"][f])
@@ -60,7 +60,7 @@ for case in ["single1", "pair1", "single3", "pair3"]:
         largest = np.abs(strength).max()
         check(f"{case} fish {f} strength of the sheet, over the largest",
               result["sheet_strength"][-1, f, : len(strength)] / largest, strength / largest, 1e-4)
-        # the power of the muscle is compared where the bias is at rest: the reference leaves out what its change does
+        # the power of the muscle is compared at constant bias: the reference omits the effect of a changing bias
         still = fish["phi0"] == 0
         for name, atol in [("speed", 1e-6), ("ground_speed", 1e-6), ("resistive_force", 1e-5), ("reactive_force", 3e-5),
                            ("added_mass_energy", 1e-6), ("wake_power", 1e-5)] + [("actuation_power", 1e-5)] * still:

@@ -15,7 +15,7 @@ fish:
   - {name: b, nodes: 9, sheet_points: 21, start: {position: [0.2, 1.5]}, control: {law: heading, desired_heading: 170}}
 CASE
 
-# Start a run in the background, and wait until it has written some rows.
+# Start a run in the background, and wait for the first rows.
 start() {  # arguments of the program
     env --default-signal=INT,TERM,HUP,USR1 "$program" "$@" -q >out 2>err </dev/null &
     pid=$!
@@ -53,7 +53,7 @@ attempt() {  # signal, arguments of the program
 stopped() {  # name, signals, arguments of run...
     local name=$1 signals=$2 signal command round codes
     shift 2
-    # a run that was stopped near its end leaves no time for another signal: then all begins again
+    # a run that was stopped near the end leaves no time for another signal: start again
     for ((round = 0; round < 20; round++)); do
         rm -f ./*.nc ./*.ckpt*
         command=(run "$@" -o run.nc)
@@ -106,7 +106,7 @@ run info --case run.ckpt
 cp out case.yaml
 check the_case_of_a_checkpoint_is_a_case "$program" check case.yaml -q
 
-# ---- killed: the last checkpoint and the one before it
+# ---- killed: the last checkpoint and the previous checkpoint
 
 rm -f ./*.nc ./*.ckpt*
 regular=(small.yaml --set time.checkpoint_interval=0.1)

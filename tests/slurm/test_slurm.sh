@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A study as an array job, for real: this script starts munge and Slurm on this machine alone and stops them again.
+# A study as a real array job: this script starts munge and Slurm on this machine alone and stops both again.
 #
 #   tests/slurm/test_slurm.sh PROGRAM        as root; needs the packages slurm-wlm and munge
 set -uo pipefail
@@ -98,7 +98,7 @@ slurmd -D >d.out 2>&1 &
 started=("$!" "${started[@]}")
 check the_cluster_is_up wait_for 30 sh -c 'sinfo -h -o %T | grep -q idle'
 
-# ---- a study on it
+# ---- a study with Slurm
 
 cat >case.yaml <<'end'
 format: 1
@@ -119,7 +119,7 @@ check study_nc_is_there test -s array/study.nc
 "$program" study array/study.yaml -o array -q >again 2>&1
 check the_same_study_goes_on_by_hand cmp <(grep ' complete$' again) <(grep ' complete$' array/study.txt)
 
-# ---- a task that is stopped, as before its time limit, goes back into the queue and goes on
+# ---- a task that is stopped, as before the time limit, returns to the queue and continues
 
 cat >long.yaml <<'end'
 format: 1
@@ -135,7 +135,7 @@ job=$(squeue -h -t running -o %A | head -1)
 scancel --signal=TERM --batch "$job"
 check a_stopped_task_is_requeued wait_for 30 sh -c "scontrol show job $job | grep -q Restarts=1"
 check its_member_has_a_checkpoint test -s long/member-0000.ckpt
-# Slurm lets a requeued task wait for two minutes; in the second in which it was stopped its node would refuse it
+# Slurm delays a requeued task by two minutes; in the second of the stop the node would refuse the task
 wait_for 30 scontrol update jobid="$job" starttime=now+3
 check it_goes_on wait_for 400 sh -c 'ncdump -h long/member-0000.nc | grep -q "run_status = .complete"'
 check from_its_checkpoint sh -c 'ncdump -h long/member-0000.nc | grep -q "checkpoint_at = .[0-9]"'

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# 200 kills and stops at random times, 50 of them while a run is resumed (tests/soak/kills.py).
+# 200 kills and stops at random times, 50 of them while resuming (tests/soak/kills.py).
 #
 #   tests/soak/kills.sh PROGRAM
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A result of a million rows (1.3 GB): a run writes it, is resumed beyond it, and every reader reads it. Ten minutes.
+# A result of a million rows (1.3 GB): a run writes and resumes the result, and every reader reads the file. Ten minutes.
 #
 #   tests/soak/million_rows.sh PROGRAM
 # shellcheck source=tests/checks.sh

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# All failing calls of runs with checkpoints, one at a time, and what is left is resumed (tests/soak/resume_faults.py).
+# All failing calls of runs with checkpoints, one at a time, and resuming from the remaining files (tests/soak/resume_faults.py).
 #
 #   tests/soak/resume_faults.sh PROGRAM
 set -euo pipefail

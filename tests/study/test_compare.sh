@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Comparing methods: what a row says, what ends early, and wrong input.
+# Comparing methods: content of a row, early ends, and wrong input.
 #
 #   tests/study/test_compare.sh PROGRAM
 # shellcheck source=tests/checks.sh

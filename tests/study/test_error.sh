@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Error bars by the command line: plans, budgets, refinement, and what is made again from the files of members.
+# Error bars on the command line: plans, budgets, refinement, and gathering from the files of members.
 #
 #   tests/study/test_error.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -71,7 +71,7 @@ check show_prints_it grep -qx 'error: {of: \[steady_lift\], confirm: false, keys
 run run foil.yaml -q --set 'error={of: steady_lift}' -o single.nc
 check a_run_is_one_run test "$code" = 0 -a -s single.nc
 
-# ---- a swimmer: its steady speed, and the state that a run ends with
+# ---- a swimmer: the steady speed, and the final state of a run
 
 cat >swimmer.yaml <<'end'
 format: 1

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Studies: members, what is skipped and repeated, and what happens when something dies.
+# Studies: members, skipped and repeated members, and behaviour after crashes.
 #
 #   tests/study/test_study.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -84,7 +84,7 @@ else
 fi
 check slurm_scripts_are_written "$program" study small.yaml --slurm --bundle 4 -o cluster
 check a_task_has_a_bundle has cluster/array.sbatch '#SBATCH --array=0-1'
-# what a task does, without Slurm
+# the actions of a task, without Slurm
 for task in 0 1; do SLURM_ARRAY_TASK_ID=$task sh cluster/array.sbatch >/dev/null 2>&1; done
 check the_tasks_run_all_members test -e cluster/member-0003.nc \
     -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
@@ -164,7 +164,7 @@ refused another_order_gives_exit_code_3 3 \
     --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true,
                    expect: {order: 3, within: 0.1}}]'
 check then_everything_is_written_all_the_same test -s third/study.nc
-# a speed that no level comes near: all errors are its own, and the order is none
+# a speed not reached by any level: all errors are equal to the distance, and there is no order
 run study refined.yaml -o given -q \
     --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100}}]'
 check errors_are_against_the_reference grep -qE \
@@ -202,7 +202,7 @@ run study flag.yaml -q -o flag --set 'fish[*].nodes=13' --set 'fish[*].sheet_poi
 check the_growth_rate_of_equilibria_is_in_the_table eval 'grep -qE "^member +modulus .* growth +drift " out &&
     grep -qE "^ +0 +5e4 .* \+0\.[0-9]{4} " out && grep -qE "^ +1 +1e5 .* -0\.[0-9]{4} " out'
 
-# ---- what is expected of members
+# ---- expectations of members
 
 cat >stated.yaml <<end
 format: 1
@@ -295,7 +295,7 @@ end
         'fish[0].motion={prescribed: head, speed: 0, heave: 0.1, frequency: 1}' --set \
         'sweep=[{key: "fish[*].body.modulus", values: [1e5, 1e6]}]'
     check a_foil_held_in_a_stream_has_thrust_and_efficiency panels foil/study.nc mean_thrust mean_power efficiency
-    # two of three levels need more steps than they may take
+    # two of three levels need more steps than permitted
     run study refined.yaml -o lonely -q --set time.end=0.04 --set time.shedding_interval=0.02 --set solver.method=rk4 \
         --set solver.max_steps=3 --set 'sweep=[{key: solver.step, values: [0.01, 0.005, 0.0025], refine: true}]'
     check no_picture_without_errors eval '! draws lonely/study.nc && has check.out "no errors to draw"'
@@ -349,7 +349,7 @@ check it_says_what_is_finished has err 'stopped by a signal: 1 of 4 members are 
 run info stopped/member-0001.nc
 check its_members_stop_cleanly has out 'stopped'
 
-# a signal to the process group reaches each member twice: the study passes it on
+# a signal to the process group reaches each member twice: the study forwards the signal too
 set -m
 "$program" study long.yaml -j 2 -o grouped -q --set "fish[*].nodes=101" --set "fish[*].sheet_points=201" \
     >out 2>err </dev/null &

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Two studies in one folder: they may run different members, and never the same ones.
+# Two studies in one folder: both may run different members, and never the same member.
 #
 #   tests/study/test_study_lock.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -13,7 +13,7 @@ fish: [{nodes: 7, sheet_points: 9}]
 sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.25, 0.3]}]
 end
 
-# Start a study that takes long, and wait until it runs.
+# Start a long study, and wait for the start.
 start() {  # folder, options...
     env --default-signal=TERM "$program" study study.yaml -q -o "$@" >"$1.out" 2>"$1.err" </dev/null &
     pid=$!
@@ -50,7 +50,7 @@ refused which_still_has_its_member 4 'another study runs some of the same member
 end
 check the_last_one_removes_the_lock test "$code" = 75 -a ! -e part/study.lock
 
-# a study that is killed leaves its lock, which locks nothing once its members have stopped
+# a killed study leaves the lock file, which has no effect after the members have stopped
 start killed -j 1
 kill -KILL $pid
 wait $pid 2>/dev/null
