@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Write what bash needs to complete the words of a command line of shoal.
+"""Write the bash completion of shoal.
 
     scripts/make-completion.py <(shoal --describe) <(shoal keys --json) > completions/shoal
 """
@@ -8,8 +8,8 @@ import json
 import sys
 
 SCRIPT = """\
-# bash completion for shoal: commands, options, files, keys of --set and their words.
-# Made by scripts/make-completion.py from what the program says of itself.
+# bash completion for shoal: commands, options, files, keys of --set and words of keys.
+# Made by scripts/make-completion.py from `shoal --describe`.
 # shellcheck shell=bash disable=SC2207,SC2034
 
 _shoal() {{
@@ -45,7 +45,7 @@ complete -F _shoal shoal
 
 
 def keys_of(table):
-    """The paths of all keys as --set takes them, and the words of those that have some."""
+    """The paths of all keys in the format of --set, and the words of keys with words."""
     paths, words = [], []
     for key in table:
         if key["type"] in ("map", "list of files", "list of axes", "list of expectations") or key["path"] == "format":
@@ -62,7 +62,7 @@ def keys_of(table):
 
 
 def files_of(positional):
-    """What compgen takes to complete the file of a command."""
+    """The arguments of compgen for the file of a command."""
     endings = {"CASE": "yaml", "FOLDER": ""}
     if positional is None:
         return ""

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Write a page of the manual from what the program says of itself.
+"""Write a page of the manual from the tables of the program.
 
     shoal --describe            | scripts/make-man.py shoal.1        > shoal.1
     shoal keys --json           | scripts/make-man.py shoal-case.5   > shoal-case.5
@@ -20,7 +20,7 @@ SEE_ALSO = {
 
 
 def text(words):
-    """Text as roff takes it."""
+    """Text in roff syntax."""
     words = words.replace("\\", "\\e").replace("-", "\\-").replace("'", "\\(aq").replace("`", "\\(ga")
     return re.sub(r"(?m)^(?=[.])", r"\\&", words)
 
@@ -42,7 +42,7 @@ def tail(page):
 
 
 def option_lines(option):
-    """One option of a command: its names, and what it means."""
+    """One option of a command: names and meaning."""
     names = [bold("-" + option["letter"])] if option["letter"] else []
     names.append(bold("--" + option["name"]) + (f" \\fI{text(option['argument'])}\\fR" if option["argument"] else ""))
     return [".TP", ", ".join(names), text(option["meaning"])]
@@ -66,7 +66,7 @@ def program_page(page, about):
         code, meaning = item.split(" ", 1)
         lines += [".TP", bold(code), text(meaning)]
     lines += [".SH ENVIRONMENT", ".TP", bold("OMP_WAIT_POLICY, GOMP_SPINCOUNT, OMP_PROC_BIND, OMP_PLACES")]
-    lines += [text("where one of them is set, it decides how threads wait and where they run")]
+    lines += [text("these variables take precedence over the program's choice of waiting and binding of threads")]
     lines += [".SH EXAMPLES", ".EX"]
     lines += [
         text(line)

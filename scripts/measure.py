@@ -6,9 +6,9 @@
     scripts/measure.py --figures FOLDER     draw the pictures of doc/figures again
     scripts/measure.py --list               names of the tables, with a line about each
 
-A table belongs to the line above it that starts with its command, for example "`scripts/measure.py tolerance`". Runs
-build/shoal in a folder of its own and removes the folder afterwards. Counts are exact; seconds are CPU seconds of one
-machine, and ratios of seconds come from the same table.
+The line above a table contains the command of the table, for example "`scripts/measure.py tolerance`". The script runs
+build/shoal in a temporary folder. Counts are exact; seconds are CPU seconds of one machine, and ratios of seconds come
+from the same table.
 """
 
 import argparse
@@ -29,7 +29,7 @@ from shoal._files import Results, np
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CASES = os.path.join(HERE, "cases")
 
-# A default fish from rest: all values that are not written are those of doc/cases.md.
+# A default fish from rest: all other keys have the defaults of doc/cases.md.
 DEFAULT = """\
 format: 1
 time: {end: 8, output_interval: 0.1}
@@ -37,7 +37,7 @@ fish:
   - {name: fish}
 """
 
-# The article's fish with the settings that make it converge.
+# The article's fish with settings that converge.
 ARTICLE = f"""\
 format: 1
 include: [{CASES}/include/article.yaml]
@@ -76,7 +76,7 @@ MODULUS = "fish[*].body.modulus"
 
 
 class Bench:
-    """Runs cases in a folder of its own."""
+    """Runs cases in a temporary folder."""
 
     def __init__(self, program, verbose):
         self.program, self.verbose = program, verbose
@@ -84,7 +84,7 @@ class Bench:
         self.folder = tempfile.mkdtemp(prefix="shoal-measure-")
 
     def call(self, *arguments, may_fail=False):
-        """Run the program; its standard output, or None where it ended with exit code 1 and may."""
+        """Run the program; standard output, or None after a permitted exit code 1."""
         command = [self.program, *arguments]
         if self.verbose:
             print(" ".join(command), file=sys.stderr)
@@ -96,7 +96,7 @@ class Bench:
         return done.stdout
 
     def case(self, text):
-        """The path of a case: of a file in cases/ by its name, else of a new file with this text."""
+        """The path of a case: of a file in cases/ by name, else of a new file with this text."""
         if "\n" not in text:
             return os.path.join(CASES, f"{text}.yaml")
         path = os.path.join(self.folder, "case.yaml")
@@ -112,7 +112,7 @@ class Bench:
         return None if done is None else Results(result)
 
     def steady(self, text, *assignments):
-        """The steady state of a case, as `shoal steady --json` prints it; None where none was found."""
+        """The steady state of a case by `shoal steady --json`; None if the search fails."""
         sets = [word for one in assignments for word in ("--set", one)]
         done = self.call("steady", self.case(text), "--force", "-q", "--json", "-o", "steady.nc", *sets, may_fail=True)
         return None if done is None else json.loads(done)
@@ -242,7 +242,7 @@ def error_bars(bench):
 
 # ---- are true errors below the bars? ----
 
-# Quantities of cases that were not used to choose the rule; those of runs include the judges of an error study.
+# Quantities of cases outside the choice of the rule; quantities of runs include the judges of an error study.
 STEADY = ["steady_speed", "steady_cost_of_transport", "steady_strouhal", "steady_efficiency"]
 RUN = ["speed", "cost_of_transport", "lateral_drift", "mean_heading"]
 HEAVE = ["mean_thrust", "mean_power", "efficiency", "shed_circulation"]
@@ -252,7 +252,7 @@ OTHERS = "[sheet_points, shedding_interval, rtol, tolerance, lifetime]"
 
 
 def coverage_cases():
-    """Kind, quantities, keys that are varied, and text of each case; nodes with a sheet that serves all of their levels."""
+    """Kind, quantities, varied keys, and text of each case; nodes with a sheet for all levels of the nodes."""
 
     def text(nodes, sheet, body, fish=ONE, end=4, more=""):
         return (f"format: 1\ntime: {{end: {end:g}, shedding_interval: 0.02, output_interval: 0.1}}\n{more}"
@@ -348,7 +348,7 @@ def error_coverage(bench):
 
 @table("modulus [Pa]", "speed [m/s]", "cost [m/s2]", "steps", "Newton iterations", "Jacobians")
 def stiff_fish(bench):
-    """the default fish over the stiffness of its body: results and cost of an event (two minutes)"""
+    """the default fish over the stiffness of the body: results and cost of an event (two minutes)"""
     for modulus in (1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11):
         state = bench.steady("swim", f"{MODULUS}={modulus:g}", "steady.multipliers=false")
         run = bench.run(DEFAULT, f"{MODULUS}={modulus:g}")
@@ -361,7 +361,7 @@ def stiff_fish(bench):
 
 @table("nodes", "speed, 1e6 Pa [m/s]", "cost [m/s2]", "speed, 1e8 Pa", "cost", "speed, pressure", "cost")
 def nodes(bench):
-    """speed and cost of the default fish over the number of its nodes (two minutes)"""
+    """speed and cost of the default fish over the number of nodes (two minutes)"""
     for n in (9, 13, 17, 25, 35, 49):
         row = [n]
         for keys in ((f"{MODULUS}=1e6",), (f"{MODULUS}=1e8",), ("fish[*].force=pressure",)):
@@ -372,7 +372,7 @@ def nodes(bench):
 
 
 def error_rows(bench, are_choices):
-    """Keys with their levels and errors, in per cent, of speed and cost of the default fish with both forces."""
+    """Keys with levels and errors, in per cent, of speed and cost of the default fish with both forces."""
     if not bench.errors:
         for force in ("reactive", "pressure"):
             text, folder = DEFAULT.replace("{name: fish}", f"{{name: fish, force: {force}}}"), f"error-{force}"
@@ -519,10 +519,10 @@ def rod(bench):
 @table("layout", "gap [L]", "Newton iterations, not coupled", "coupled", "Jacobians, not coupled", "coupled",
        "CPU time, coupled over not")
 def coupling(bench):
-    """cost of two fish near each other, with and without their coupling blocks in the Jacobian (two minutes)"""
+    """cost of two fish near each other, with and without coupling blocks in the Jacobian (two minutes)"""
     for layout, gaps in (("side by side", (0.1, 0.5, 2)), ("one after the other", (0.1, 1))):
         for gap in gaps:
-            # 0.25: the thickness of two fish, and their approach within four seconds
+            # 0.25: the thickness of two fish, and the approach within four seconds
             place = f"[0, {gap + 0.25:g}]" if layout == "side by side" else f"[{gap + 1:g}, 0]"
             runs, times = [], []
             for reach in (0, 100):
@@ -596,7 +596,7 @@ def impact(bench):
 
 @table("wake.merge", "vortices at the end", "velocity of the centre of mass [m/s]", "position [m]", "CPU time over none")
 def merge(bench):
-    """error and saving of wake.merge: one fish that feels its own wake of 16 s, 20 s from 1 m/s (minutes)"""
+    """error and saving of wake.merge: one fish with force: pressure, a wake of 16 s, 20 s from 1 m/s (minutes)"""
     case = DEFAULT.replace("end: 8", "end: 20")
     case = case.replace("{name: fish}", "{name: fish, force: pressure, start: {speed: 1}}")
     case += "wake: {lifetime: 16}\n"
@@ -616,7 +616,7 @@ def last_beat(results, name, fish=0):
 
 @table("quantity", "case", "the article's model, converged", "case", "default model")
 def article(bench):
-    """results of the article's cases, with its model made to converge and with the defaults (two minutes)"""
+    """results of the article's cases, with the converged model of the article and with the defaults (two minutes)"""
     speeds = [bench.run("single_free", f"fish[0].start.speed={v}")["speed"][-1, 0] for v in (0, 1, 3)]
     swim = bench.run("swim")
     yield ("speed of one fish after the run [m/s]", "single_free", ", ".join(f"{v:.3f}" for v in speeds), "swim",
@@ -641,7 +641,7 @@ COMMAND = re.compile(r"^`scripts/measure\.py ([a-z_]+)`")
 
 
 def write(bench, path):
-    """Replace every table of a document that stands below its command."""
+    """Replace every table of a document below a command."""
     with open(path, encoding="utf-8") as file:
         lines = file.read().split("\n")
     out, at = [], 0

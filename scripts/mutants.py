@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""Change the program in one place at a time and see whether the tests notice.
+"""Change the program in one place at a time and check that the tests fail.
 
     scripts/mutants.py [-j N] [ID...]
     scripts/mutants.py --check
 
-Each mutant of tests/mutants/mutants.txt is built in a copy of this tree, where the tests named with it run. It is killed
-when one of them fails. Without an ID all mutants run. --check only looks whether the table fits the sources.
+Each mutant of tests/mutants/mutants.txt is built in a copy of this tree, and the tests of the mutant run in the copy. A
+mutant is killed when a test fails. Without an ID all mutants run. --check only compares the table with the sources.
 
-Exit codes: 0 at least 9 in 10 are killed, 1 fewer are, 2 the table does not fit the sources, or the tests fail on the
-program as it is.
+Exit codes: 0 at least 9 in 10 are killed, 1 fewer are killed, 2 the table does not fit the sources, or the tests fail on
+the unchanged program.
 """
 
 import argparse
@@ -78,7 +78,7 @@ def path_of_test(name):
 
 
 def faults(mutants):
-    """What does not fit the sources."""
+    """Entries that do not fit the sources."""
     for mutant in mutants:
         path = os.path.join(ROOT, mutant.file)
         if not os.path.exists(path):
@@ -97,7 +97,7 @@ def faults(mutants):
 
 
 class Copy:
-    """A copy of the tree, with what has been built there."""
+    """A copy of the tree, with existing build products."""
 
     def __init__(self, origin, folder):
         self.folder = folder
@@ -124,7 +124,7 @@ class Copy:
     def build(self, tests):
         programs = ["build/" + path[:-2] for path in map(path_of_test, tests) if path.endswith(".c")]
         compiler = ["CC=ccache gcc"] if shutil.which("ccache") else []
-        # what a mutant leaves unused is no error
+        # unused code of a mutant is no error
         return self.run("make", "-s", *compiler, "CFLAGS=-O3 -g -Wno-error", "build/shoal", *programs)
 
     def test(self, name):

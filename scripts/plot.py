@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Make a picture from a result file of shoal. The ending of the picture's name decides its kind: .png .svg .pdf
+"""Make a figure from a result file of shoal. The suffix of the figure selects the format: .png .svg .pdf
 
     plot.py [swim] RUN.nc [PICTURE]    bodies, wakes and the paths of the fish, at the end or at --times 1 2 3
-    plot.py gait   RUN.nc [PICTURE]    the shapes that the muscle asks for, over the last beat
-    plot.py study  STUDY.nc [PICTURE]  what a study or a comparison of methods calls for: orders, costs, maps
+    plot.py gait   RUN.nc [PICTURE]    the natural shapes of the muscle, over the last beat
+    plot.py study  STUDY.nc [PICTURE]  the figure of a study or a comparison of methods: orders, costs, maps
     plot.py time   RUN.nc [PICTURE]    speed, heading, power and forces over time; with --balance the energy balance too;
                                        --each speed: a panel per fish
     plot.py forces RUN.nc [PICTURE]    forces and powers by name over time, one column per fish
@@ -36,7 +36,7 @@ try:
 except ImportError as missing:
     stop(missing, EXIT_FILE)
 
-# What the first word of the command line may be, with a line of help.
+# Permitted first words of the command line, with a line of help.
 PICTURES = {
     "swim": "bodies, wakes and paths (the default)",
     "gait": "the shapes that the muscle asks for, over one beat",
@@ -56,14 +56,14 @@ def implied_kind(arguments):
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose errors are one line."""
+    """A parser with errors of one line."""
 
     def error(self, message):
         stop(message, EXIT_USAGE)
 
 
 def similar(word, words):
-    """The question for a word that is meant, empty where none is near."""
+    """The question for a similar word, empty without a similar word."""
     near = difflib.get_close_matches(word, words, 1, 0.5)
     return f": did you mean {near[0]}?" if near else ""
 
@@ -75,7 +75,7 @@ def check_kind(word):
 
 
 def check_options(kind, options, arguments):
-    """Refuse options that a figure ignores, and say which figures take them."""
+    """Refuse options that a figure ignores, and name the figures with these options."""
     flags = {name: {flag for action in one._actions for flag in action.option_strings} for name, one in options.items()}
     for word in arguments[: arguments.index("--") if "--" in arguments else None]:
         flag = word.split("=")[0]
@@ -136,9 +136,9 @@ def check_folder(path):
 
 
 def save(figure, path):
-    """Write the picture; a message where that fails."""
+    """Write the figure; print a message if writing fails."""
     legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
-    # by this mark `shoal demo --force` knows a picture of its own
+    # this mark identifies figures of shoal for `shoal demo --force`
     mark = {"metadata": {"Source": "shoal plot.py"}} if path.lower().endswith(".png") else {}
     try:
         figure.savefig(path, bbox_extra_artists=[*figure.get_default_bbox_extra_artists(), *legends], **mark)

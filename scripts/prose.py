@@ -4,8 +4,8 @@
     scripts/prose.py [FILE...]     default: src/*/*.[ch], include/*.h, README.md, doc/*.md; the largest counts first
 
 Columns: words; free relatives used as nouns ("what ...", "where ...", "who ..."); pronouns (it, they, them, its,
-their); "that of" and "those of"; blank lines inside C functions in per cent of their lines. The total should stay
-below 2, 11 and 0.2.
+their); "that of" and "those of"; blank lines inside C functions in per cent of all lines. The total should stay below 2,
+11 and 0.2.
 """
 
 import glob
@@ -26,7 +26,7 @@ def comments(text):
 
 
 def prose(path, text):
-    """What a reader reads: comments and messages of C, documents without code and tables."""
+    """The prose of a file: comments and messages of C, documents without code and tables."""
     if path.endswith((".c", ".h")):
         return comments(text)
     text = re.sub(r"```.*?```", "", text, flags=re.DOTALL)

@@ -7,8 +7,8 @@
     data = shoal.open(shoal.run("case.yaml"))
 
 Needs NumPy, and the library libshoal: beside the package, in build/ of the sources, or named by the environment variable
-SHOAL_LIBRARY. check, steady, study and view call the program shoal (SHOAL_PROGRAM). xarray and netCDF4 are for open,
-matplotlib is for plot, Gymnasium is used where it is installed.
+SHOAL_LIBRARY. check, steady, study and view call the program shoal (SHOAL_PROGRAM). open needs xarray and netCDF4, plot
+needs matplotlib; Gymnasium is optional.
 """
 
 import re as _re
@@ -38,7 +38,7 @@ __version__ = _version()
 
 
 def __getattr__(name):
-    """shoal.plot is loaded when it is used: it needs matplotlib."""
+    """shoal.plot is loaded at first use, because plot needs matplotlib."""
     if name == "plot":
         import importlib
 

@@ -10,7 +10,7 @@ RED, BLUE, BODY, EDGE = "#b2182b", "#4393c3", "#d9d9d9", "#222222"
 
 
 def _bodies(run):
-    """The outline of each body as a polygon (2 n, 2), m, from its nodes and the thickness of its edges."""
+    """The outline of each body as a polygon (2 n, 2), m, from the nodes and the thickness of the edges."""
     x, thickness, counts = run.view("x"), run.view("edge_thickness"), run.view("n_nodes")
     for nodes, of_edge, n in zip(x, thickness, counts):
         nodes, of_edge = np.array(nodes[:n]), np.array(of_edge[: n - 1])

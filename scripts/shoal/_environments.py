@@ -20,14 +20,14 @@ from ._run import Run
 
 
 def _from(module, name, otherwise):
-    """A name of a module where that is installed."""
+    """A name of a module, if installed."""
     if importlib.util.find_spec(module.split(".")[0]) is None:
         return otherwise
     return getattr(importlib.import_module(module), name)
 
 
 class _Box:
-    """gymnasium.spaces.Box, as far as it is needed here, where Gymnasium is not installed."""
+    """A replacement of gymnasium.spaces.Box without Gymnasium, with the methods used here."""
 
     def __init__(self, low, high, dtype=np.float32):
         self.low, self.high = np.asarray(low, dtype), np.asarray(high, dtype)
@@ -59,7 +59,7 @@ _RENDER_MODES = ("rgb_array", "html")
 
 
 class _Event:
-    """The variables of a run at its last event, each read once."""
+    """The variables of a run at the last event, each read once."""
 
     def __init__(self, run):
         self.begin(run)
@@ -76,8 +76,8 @@ class _Event:
 
 
 class _Swimmer:
-    """One fish of a run that is led: its actions, observations and rewards. Vectors that it observes are in its own
-    frame, forwards and to the left, in body lengths."""
+    """One controlled fish of a run: actions, observations and rewards. Observed vectors are in the frame of the fish,
+    forwards and to the left, in body lengths."""
 
     def __init__(self, event, fish, actions, observations, reward, goal, course, sensors):
         self.event, self.fish = event, fish
@@ -313,7 +313,7 @@ class _Swimmer:
 
 
 class _Swim:
-    """What the environments share: a run that is begun again and again, and its swimmers."""
+    """The common part of the environments: a run that is restarted for each episode, and the swimmers."""
 
     def __init__(self, case, assignments, act_every, vary, far, render_mode):
         if assignments is not None and not isinstance(assignments, Mapping):
@@ -419,15 +419,15 @@ class _Swim:
 class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
     """One fish that learns, by the protocol of Gymnasium.
 
-    case, assignments: as for shoal.Run; an episode ends (is truncated) at time.end. fish: the one that learns, by number
-    or name. actions: names of bias, amplitude, frequency, or a dict with bounds {"bias": (-0.3, 0.3)}; an action outside
+    case, assignments: as for shoal.Run; an episode ends (is truncated) at time.end. fish: the learning fish, by number or
+    name. actions: names of bias, amplitude, frequency, or a dict with bounds {"bias": (-0.3, 0.3)}; an action outside
     the box is refused. observations: names of velocity, heading, curvature, muscle, flow, goal, closing, neighbours,
     action. reward: weights of speed, cost_of_transport, course, goal, or a function of the swimmer. goal: a point (x, y),
     m, or ("leader", (1.2, 0)), a place beside a fish. course: desired course, degree. sensors: places (n, 2) for flow,
     from the nose, in lengths. act_every: time between actions, s, a multiple of time.shedding_interval. vary: bounds of
     assignments that are drawn at each reset, {"fish[1].start.heading": (170, 190)}. far: distance from the goal, in
-    lengths, at which an episode is over (terminated); a failed integration terminates it too. render_mode: rgb_array,
-    html or None.
+    lengths, at which an episode is over (terminated); a failed integration terminates an episode too. render_mode:
+    rgb_array, html or None.
     """
 
     metadata = {"render_modes": list(_RENDER_MODES), "render_fps": 25}
@@ -471,10 +471,10 @@ def _cores():
 class SwimVectorEnv(_from("gymnasium.vector", "VectorEnv", object)):
     """Several SwimEnv that step together in threads, by the protocol of Gymnasium's vector environments.
 
-    num_envs: how many. threads: how many at once (None: one per processor that this process may use). The other
-    arguments are those of SwimEnv. Observations are (num_envs, n), rewards (num_envs,). An environment whose episode is
-    over begins the next one in the following step, whose action it ignores and whose reward is 0 (autoreset mode
-    NEXT_STEP). Results do not depend on the number of threads.
+    num_envs: number of environments. threads: number of threads (None: one per available processor). The other arguments
+    belong to SwimEnv. Observations are (num_envs, n), rewards (num_envs,). After the end of an episode the following step
+    starts the next episode, ignores the action and has the reward 0 (autoreset mode NEXT_STEP). Results do not depend on
+    the number of threads.
     """
 
     def __init__(self, num_envs: int, case, assignments=None, threads: int | None = None, **arguments):
@@ -501,7 +501,7 @@ class SwimVectorEnv(_from("gymnasium.vector", "VectorEnv", object)):
         return {**self.__dict__, "_pool": None, "_owner": None}
 
     def _map(self, function):
-        """function(i) for all environments, in threads; a fork of the process makes threads of its own."""
+        """function(i) for all environments, in threads; a fork of the process creates new threads."""
         if self._threads == 1:
             return [function(i) for i in range(self.num_envs)]
         if self._pool is None or self._owner != os.getpid():
@@ -604,8 +604,8 @@ class SchoolEnv(_Swim, _from("pettingzoo", "ParallelEnv", object)):
         return dict(self._last), {name: {} for name in self.agents}
 
     def step(self, actions):
-        """All act at once; returns observations, rewards, terminations, truncations, infos by name. The school stays
-        together: when the episode is over for one, it is for all."""
+        """All act at once; returns observations, rewards, terminations, truncations, infos by name. The end of the
+        episode for one fish is the end for all fish."""
         agents = self.agents
         missing = [name for name in agents if name not in actions]
         if missing:

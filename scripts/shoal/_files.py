@@ -17,7 +17,7 @@ except ImportError as missing:
     raise ImportError(f"{missing}: apt install python3-netcdf4 python3-matplotlib, and run this with /usr/bin/python3") from missing
 
 
-# What reading a damaged file ends in.
+# Exceptions of reading a damaged file.
 DAMAGE = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, ArithmeticError, SyntaxError, MemoryError)
 
 
@@ -30,7 +30,7 @@ class Results:
         self.time = self["time"]
         if self.time.size == 0:
             raise FileError(f"{path}: the run has not written a row yet")
-        # what is missing at the end of a file reads as zero; this is the last value of a row and never zero
+        # a missing end of a file reads as zero; this variable is the last value of a row and never zero
         if self.read("wall_time", -1) == 0:
             raise FileError(f"{path}: the end of the file is missing: was it copied completely?")
         self.n_fish = self.data.dimensions["fish"].size

@@ -49,7 +49,7 @@ SPAN = 30  # positive values that span more than this are drawn on a logarithmic
 
 
 class Wall:
-    """A wall along x on axes: a line, and hatching where no fluid is. inward: 1 where the fluid is above it, -1 below."""
+    """A wall along x on axes: a line, and hatching outside the fluid. inward: 1 for fluid above the wall, -1 below."""
 
     def __init__(self, axes, y, inward):
         self.inward = inward
@@ -75,7 +75,7 @@ def unit_text(unit):
 
 
 def with_unit(words, unit):
-    """The label of a quantity: its unit in brackets, none for "1"."""
+    """The label of a quantity: the unit in brackets, none for "1"."""
     return words if unit == "1" else f"{words} [{unit_text(unit)}]"
 
 
@@ -90,7 +90,7 @@ def number_text(value):
 # ---- parts of a panel
 
 ROUNDING = 1e-9  # relative range of values that are constant but for rounding
-NEAR_ZERO = 1e-12  # the same for values around 0, relative to the scale of their unit
+NEAR_ZERO = 1e-12  # the same for values around 0, relative to the scale of the unit
 
 
 def calm(panels, scale=0.0, rounding=ROUNDING):
@@ -132,7 +132,7 @@ BAR_WIDTH = 0.12  # of a colour bar, inches
 
 
 class BesidePanels:
-    """The place of a colour bar: right of panels and exactly as high as they are, also where their aspect is fixed."""
+    """The position of a colour bar: right of the panels, with the exact height of the panels, also for a fixed aspect."""
 
     def __init__(self, panels):
         self.panels = panels

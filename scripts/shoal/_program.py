@@ -1,5 +1,5 @@
-"""What the program does for Python: check, steady, study, view. The library runs cases; the program searches, sweeps and
-draws pages."""
+"""Functions of Python that call the program: check, steady, study, view. The library runs cases; the program searches,
+sweeps and draws pages."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _ERRORS = {1: SolverError, 2: CaseError, 4: FileError}
 
 
 def find_program() -> str:
-    """SHOAL_PROGRAM; beside the modules (a wheel); build/ of the sources; bin/ beside lib/; where the shell finds it."""
+    """SHOAL_PROGRAM; beside the modules (a wheel); build/ of the sources; bin/ beside lib/; PATH."""
     library = getattr(lib.library, "_name", "")
     folder = os.path.dirname(os.path.abspath(library)) if os.path.dirname(library) else str(lib.HERE)
     places = [os.environ.get("SHOAL_PROGRAM"), lib.HERE / "bin/shoal", lib.HERE.parents[1] / "build/shoal",
@@ -51,7 +51,7 @@ def _absolute(include, folder):
 
 
 class _CaseFile:
-    """The path of a case: its own, or that of a file that exists for the time of a call."""
+    """The path of a case: of a case file, or of a temporary file during a call."""
 
     def __init__(self, case, folder):
         self._case, self._folder, self._temporary = case, folder, None
@@ -121,14 +121,14 @@ def _shows(progress) -> bool:
 
 
 class Check(NamedTuple):
-    """What shoal.check states of a case that can be run."""
+    """Result of shoal.check for a valid case."""
 
     summary: str  #: size of the problem, expected time and memory
-    warnings: list[str]  #: what is doubtful
+    warnings: list[str]  #: doubtful values
 
 
 def check(case, assignments=None, folder=None) -> Check:
-    """Check a case. A case with errors is a CaseError that lists all of them with their places.
+    """Check a case. A case with errors raises a CaseError with all errors and places.
 
     case, assignments, folder: as for shoal.Run; a case may hold a sweep.
     """
@@ -142,10 +142,10 @@ def check(case, assignments=None, folder=None) -> Check:
 
 
 class Steady:
-    """The steady state of a case: what `shoal steady` states, and its result file.
+    """The steady state of a case: values of `shoal steady`, and the result file.
 
-    Attributes are the variables steady_* of the file without that prefix, with one value per fish where they are of a
-    fish: speed [m s-1], cost_of_transport [m s-2], efficiency, thrust [N], strouhal, actuation_power [W], ...
+    Attributes are the variables steady_* of the file without the prefix, one value per fish for variables of a fish:
+    speed [m s-1], cost_of_transport [m s-2], efficiency, thrust [N], strouhal, actuation_power [W], ...
     """
 
     def __init__(self, values: dict):
@@ -170,7 +170,7 @@ class Steady:
 
     @property
     def is_stable(self) -> bool:
-        """Whether the slowest disturbance decays: its growth rate, s-1, is negative."""
+        """Whether the slowest disturbance decays: the growth rate, s-1, is negative."""
         return bool(self._values["growth"] < 0)
 
     def open(self):
@@ -191,10 +191,10 @@ class Steady:
 
 def steady(case, assignments=None, path=None, overwrite: bool = False, start=None, progress: bool | None = None,
            folder=None) -> Steady:
-    """Find the steady swimming state of a case and its stability, as `shoal steady` does.
+    """Find the steady swimming state of a case and its stability by `shoal steady`.
 
-    path: of the result file. overwrite: replace a result that exists; else that is a FileError. start: the result of
-    another steady state to begin with. A search that does not converge is a SolverError.
+    path: of the result file. overwrite: replace an existing result; otherwise an existing result is a FileError.
+    start: the result of another steady state as the initial state. A search without convergence is a SolverError.
     """
     arguments = ["--json"] + ([] if _shows(progress) else ["-q"]) + (["--force"] if overwrite else [])
     for word, value in (("-o", path), ("--from", start)):
@@ -235,7 +235,7 @@ def study(case, assignments=None, path=None, overwrite: bool = False, processes:
 
 
 class Page:
-    """A page of a run: a notebook shows it, show() opens it in a browser."""
+    """A page of a run: displayed in a notebook, opened in a browser by show()."""
 
     def __init__(self, path: str):
         self.path = path

@@ -91,7 +91,7 @@ def somebody_looks() -> bool:
 
 
 def report(progress):
-    """What a call reports to: None where to nobody."""
+    """The receiver of progress reports, or None."""
     if progress is None:
         progress = somebody_looks()
     if callable(progress):

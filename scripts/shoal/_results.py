@@ -57,7 +57,7 @@ def open(path: str | os.PathLike):  # noqa: A001 - shoal.open, as gzip.open
         raise FileError(f"{os.fspath(path)}: no such file")
     try:
         data = xarray.open_dataset(path, engine="netcdf4")
-    except Exception as error:  # what a damaged file raises depends on the versions of two libraries
+    except Exception as error:  # the exception of a damaged file depends on the versions of two libraries
         raise FileError(f"{os.fspath(path)}: not a result file of shoal ({error})") from error
     with data:
         if not {"shoal_schema", "shoal_study", "shoal_field"} & set(data.attrs):
@@ -67,7 +67,7 @@ def open(path: str | os.PathLike):  # noqa: A001 - shoal.open, as gzip.open
 
 
 def dataset_of(run):
-    """All variables of a run at its last event."""
+    """All variables of a run at the last event."""
     xarray = _xarray()
     variables = {}
     for name in run.keys():

@@ -21,14 +21,14 @@ from ._progress import report
 Case = "str | os.PathLike | Mapping"
 Assignments = "Mapping[str, object] | Iterable[str] | None"
 
-# what Run.set can set
+# keys of Run.set
 KEYS = ("wave.amplitude", "wave.frequency", "control.bias", "control.desired_heading", "control.waypoints")
 
 # ---- cases
 
 
 def _plain(value):
-    """NumPy's numbers and arrays as JSON has them."""
+    """NumPy's numbers and arrays as JSON."""
     if isinstance(value, (np.ndarray, np.generic)):
         return value.tolist()
     if isinstance(value, os.PathLike):
@@ -37,7 +37,7 @@ def _plain(value):
 
 
 def yaml_of(value) -> str:
-    """A value as a case file has it: JSON is YAML."""
+    """A value in the syntax of a case file: JSON is YAML."""
     try:
         return json.dumps(value, default=_plain, allow_nan=False)
     except ValueError as error:
@@ -64,7 +64,7 @@ def strings_of(assignments) -> list[str]:
 
 
 class _Handle:
-    """The run of the library and its lock. It is closed when neither a Run nor a view of its arrays needs it."""
+    """The run of the library with a lock. The run is closed when neither a Run nor a view of an array refers to it."""
 
     def __init__(self, pointer: int):
         self.pointer = pointer
@@ -81,8 +81,8 @@ _handles: weakref.WeakSet[_Handle] = weakref.WeakSet()
 
 
 def _begin_child():
-    """After a fork: the other threads are gone, with the locks that they held. A run that one of them was stepping is
-    torn: its memory is somewhere between two events."""
+    """After a fork: the other threads and their locks are gone. A run in a step of another thread is torn: the memory is
+    between two events."""
     for handle in list(_handles):
         if not handle.lock.acquire(blocking=False):
             handle.is_torn = True
@@ -93,7 +93,7 @@ os.register_at_fork(after_in_child=_begin_child)
 
 
 class _Memory:
-    """What NumPy makes a view of; it keeps the run that owns the memory."""
+    """The base of a NumPy view, with a reference to the run that owns the memory."""
 
     def __init__(self, handle, address, shape, dtype):
         self.handle = handle
@@ -101,7 +101,7 @@ class _Memory:
 
 
 class Variable(np.ndarray):
-    """The values of a variable at one event, with dims, unit and long_name. Parts and results of arithmetic lose them."""
+    """The values of a variable at one event, with dims, unit and long_name. Slices and results of arithmetic have none."""
 
     dims: tuple[str, ...] | None = None
     unit: str | None = None
@@ -139,7 +139,7 @@ class _Using:
         self.lock = self.run._open().lock
         self.lock.acquire()
         try:
-            return self.run._open().pointer  # it may have been closed meanwhile
+            return self.run._open().pointer  # the run may have been closed meanwhile
         except BaseException:
             self.lock.release()
             raise
@@ -149,13 +149,13 @@ class _Using:
 
 
 class Run:
-    """A case in memory, at its last event.
+    """A case in memory, at the last event.
 
     case: the path of a case file, or a dict with the content of a case file. assignments: {"fish[0].nodes": 9}, changes
-    of the case. folder: where the includes of a dict are found (None: the working directory).
+    of the case. folder: the folder for the includes of a dict (None: the working directory).
 
-    One thread at a time is in a run; a second one waits. copy.copy and copy.deepcopy clone; pickle carries a checkpoint.
-    After a fork the child has its own run. Errors are shoal.CaseError and others, with the message of the program.
+    A run is locked during a call; a second thread waits. copy.copy and copy.deepcopy clone; pickle contains a checkpoint.
+    After a fork the child has a separate run. Errors are shoal.CaseError and others, with the message of the program.
     """
 
     def __init__(self, case: Case, assignments: Assignments = None, folder: str | os.PathLike | None = None):
@@ -196,7 +196,7 @@ class Run:
         self.close()
 
     def close(self):
-        """Close the result file, if there is one, and release the run. Views of its variables stay good."""
+        """Close the result file, if open, and release the run. Views of variables stay valid."""
         if self._handle is None:
             return
         if not self._handle.is_torn:
@@ -231,7 +231,7 @@ class Run:
         return self.clone()
 
     def restore(self, other: Run):
-        """Go back, or forward, to where a copy is, or the run of which this one is a copy."""
+        """Return to the state of a copy, or of the run from which this run was copied."""
         if not isinstance(other, Run):
             raise TypeError(f"restore: a Run, not {kind(other)}")
         first, second = sorted((self._open(), other._open()), key=id)
@@ -303,7 +303,7 @@ class Run:
         """Advance to the first event at or after a time, s, which must not be before the last event.
 
         progress: a function of (time, time to reach), called several times a second; True: a bar on standard error or
-        in a notebook; None: a bar where there is somebody to see it. Ctrl-C stops at an event; the run can continue.
+        in a notebook; None: a bar on a terminal or in a notebook. Ctrl-C stops at an event; the run can continue.
         """
         target = number_of(time, "advance: a time, s,")
         show = report(progress)
@@ -355,11 +355,10 @@ class Run:
         return position, velocity
 
     def set_state(self, fish: int | str = 0, position=None, velocity=None):
-        """Set positions (nodes, 2), m, and velocities (nodes, 2), m s-1, of the nodes of a fish; None: as they are.
+        """Set positions (nodes, 2), m, and velocities (nodes, 2), m s-1, of the nodes of a fish; None: unchanged.
 
-        Bound sheets and forces follow; energy and momentum that this gives to the body count as work and impulse from
-        outside. A fish that is moved continues its wake at the new tail, for which wake.spare_vortices of the case has to
-        be 1 or more (with wake.shedding: sheet).
+        Bound sheets and forces follow; the added energy and momentum count as external work and impulse. The wake of a
+        moved fish continues at the new tail, which requires wake.spare_vortices of 1 or more (with wake.shedding: sheet).
         """
         number = index_of(fish, self.names, "set_state")
         with self._using() as pointer:
@@ -374,10 +373,10 @@ class Run:
             check(lib.library.shoal_set_state(pointer, number, *addresses))
 
     def add_vortex(self, x: float, y: float, circulation: float, fish: int | str = 0):
-        """Add a free vortex at (x, y), m, of a circulation, m2 s-1, counter-clockwise where it is positive.
+        """Add a free vortex at (x, y), m, of a circulation, m2 s-1, positive counter-clockwise.
 
-        It belongs to the wake of a fish: it moves, fades and is removed like the vortices that this fish sheds now. Its
-        opposite is infinitely far away. wake.spare_vortices of the case has to have room: 3 for each with
+        The vortex belongs to the wake of a fish, and moves, decays and is removed like a vortex shed now. A vortex of
+        opposite circulation is infinitely far away. Each vortex needs 3 of the case's wake.spare_vortices with
         wake.shedding: sheet, else 1.
         """
         number = index_of(fish, self.names, "add_vortex")
@@ -433,8 +432,8 @@ class Run:
         return known[2]
 
     def __getitem__(self, name: str) -> Variable:
-        """A copy of a variable at the last event, in C order, with dims, unit and long_name; NaN where a fish has fewer
-        nodes or vortices than the longest."""
+        """A copy of a variable at the last event, in C order, with dims, unit and long_name; NaN beyond the nodes or
+        vortices of a fish."""
         if not isinstance(name, str):
             _refuse_name(name)
         with self._using() as pointer:
@@ -444,8 +443,8 @@ class Run:
         return copy
 
     def view(self, name: str) -> Variable:
-        """A read-only view of a variable, without copying. It shows the event at which view() was called last, and the
-        memory stays good when the run is closed. After a step call view() again."""
+        """A read-only view of a variable, without copying. The view shows the event of the last call of view(), and stays
+        valid after the run is closed. After a step call view() again."""
         if not isinstance(name, str):
             _refuse_name(name)
         with self._using() as pointer:
@@ -473,8 +472,8 @@ class Run:
     # -- files
 
     def write(self, path: str | os.PathLike | None = None, overwrite: bool = False) -> str:
-        """Write a result file from now on, until the end or write_end(); returns its path. None: the path that the
-        program would choose. overwrite: replace a result that exists; else that is a FileError."""
+        """Write a result file from now on, until the end or write_end(); returns the path. None: the default path of the
+        program. overwrite: replace an existing result; otherwise an existing result is a FileError."""
         encoded = None if path is None else text_of(path, "path")
         with self._using() as pointer:
             if encoded is None:
@@ -505,7 +504,7 @@ class Run:
         return f"<shoal.Run of {len(names)} fish ({shown}) at t = {self.time:.6g} of {self.end:.6g} s>"
 
     def _repr_html_(self) -> str:
-        """The page of its result file, of the rows so far; without one its bodies and wakes now."""
+        """The page of the result file with the rows so far; without a result file the current bodies and wakes."""
         from ._draw import snapshot_of
         from ._program import page_of_file
 
@@ -535,16 +534,16 @@ def _load(cls, path):
 
 
 def load(path: str | os.PathLike) -> Run:
-    """A run from a checkpoint: one of Run.save, Run.checkpoint or the program. It writes no result file."""
+    """A run from a checkpoint of Run.save, Run.checkpoint or the program, without a result file."""
     return _load(Run, path)
 
 
 def run(case: Case, assignments: Assignments = None, path: str | os.PathLike | None = None, overwrite: bool = False,
         progress: Callable[[float, float], None] | bool | None = None, folder: str | os.PathLike | None = None) -> str:
-    """Run a case to its end and return the path of its result file, the same file as of `shoal run`.
+    """Run a case to the end and return the path of the result file, the same file as of `shoal run`.
 
-    path: of the result (None: output.file of the case, or its name with .nc). overwrite: replace a result that exists,
-    as --force does; else that is a FileError. progress: as in Run.advance.
+    path: of the result (None: output.file of the case, or the name of the case with .nc). overwrite: replace an existing
+    result, like --force; otherwise an existing result is a FileError. progress: as in Run.advance.
     """
     with Run(case, assignments, folder) as this:
         path = this.write(path, overwrite)
