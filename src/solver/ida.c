@@ -318,7 +318,7 @@ static enum status ida_failed(const struct ida *solver, int code, long steps) {
     if (steps > 0) snprintf(last, sizeof last, ", the last of %.3g s", step);
     return status_fail(
         STATUS_SOLVER,
-        "integration ida_failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
+        "integration failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
         "event%s%s",
         now, ida_reason(code), seen, error, solver->options.order, steps, last, message);
 }

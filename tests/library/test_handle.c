@@ -1,0 +1,168 @@
+/* test_handle.c: fish that are set from outside while they swim. */
+#include <stdio.h>
+#include <string.h>
+
+#include "fish/fish_gait.h"
+#include "library/handle.h"
+#include "school.h"
+
+#define TIME "time: {end: 2, shedding_interval: 0.02}\n"
+
+static void set(const struct simulation *simulation, const char *key, double value) {
+    school_ok(handle_set_key(simulation, 0, key, 1, &value));
+}
+
+static void the_phase_of_the_beat_is_continuous(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME "fish: [{control: {ramp: 0.2}}]\n");
+    school_run(simulation, 0.6);
+    const struct fish *const fish = simulation->school->fish;
+    const struct control_memory *const memory = simulation->state->control;
+    const struct fish_gait before = control_gait(fish, memory, 0.6);
+    set(simulation, "wave.frequency", 2);
+    const struct fish_gait after = control_gait(fish, memory, 0.6), later = control_gait(fish, memory, 1);
+    const double pi = acos(-1);
+    NEAR(after.angle, before.angle, 1e-14, 0);
+    NEAR(after.omega, before.omega, 1e-14, 0);
+    NEAR(later.omega, 2 * pi * 2, 1e-13, 0);
+    // half of the ramp counts with the new frequency
+    NEAR(later.angle, 2 * pi * (0.6 + 0.1 + 2 * 0.3), 1e-13, 0);
+    simulate_free(simulation);
+}
+
+static void amplitude_and_bias_get_there_within_the_ramp(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(TIME "fish: [{wave: {amplitude: 0.4, ramp: 0}, control: {ramp: 0.2, bias: 0.1}}]\n");
+    school_run(simulation, 0.6);
+    const struct fish *const fish = simulation->school->fish;
+    set(simulation, "wave.amplitude", 0.2);
+    set(simulation, "control.bias", -0.3);
+    NEAR(control_gait(fish, simulation->state->control, 0.6).amplitude, 1, 0, 0);
+    NEAR(control_gait(fish, simulation->state->control, 0.7).amplitude, 0.75, 1e-14, 0);
+    NEAR(control_gait(fish, simulation->state->control, 0.8).amplitude, 0.5, 0, 1e-15);
+    school_run(simulation, 0.7);
+    NEAR(simulation->state->y[fish->at.phi0], -0.1, 1e-12, 0);
+    school_run(simulation, 0.8);
+    NEAR(simulation->state->y[fish->at.phi0], -0.3, 1e-12, 0);
+    simulate_free(simulation);
+}
+
+// the nose after a swim in which everything is set, three times within one ramp; or nothing
+static double led_swim(const char *solver, int is_led, long *steps) {
+    char text[512];
+    snprintf(text, sizeof text, "%ssolver: %s\nfish: [{control: {ramp: 0.2}, body: {modulus: 1.0e+5}}]\n", TIME,
+             solver);
+    struct simulation *const simulation = school_simulation(text);
+    static const struct {
+        double t;
+        const char *key;
+        double value;
+    } changes[] = {{0.5, "wave.amplitude", 0.6},
+                   {0.5, "wave.frequency", 1.5},
+                   {0.56, "control.bias", 0.3},
+                   {0.56, "wave.frequency", 0.8},
+                   {0.62, "wave.amplitude", 0.3}};
+    for (size_t i = 0; is_led && i < sizeof changes / sizeof *changes; i++) {
+        school_run(simulation, changes[i].t);
+        set(simulation, changes[i].key, changes[i].value);
+    }
+    school_run(simulation, 1.2);
+    struct integrator_counts counts;
+    simulation->integrator->count(simulation->solver, &counts);
+    *steps = counts.steps;
+    const double nose = simulation->state->y[simulation->school->fish[0].at.x];
+    simulate_free(simulation);
+    return nose;
+}
+
+static void every_method_integrates_the_same_led_swim(void **state) {
+    (void)state;
+    long steps, steps_alone;
+    const double exact = led_swim("{method: rk4, step: 2.5e-4}", 1, &steps);
+    const double tight = led_swim("{rtol: 1e-8}", 1, &steps), usual = led_swim("{rtol: 1e-5}", 1, &steps);
+    led_swim("{rtol: 1e-5}", 0, &steps_alone);
+    NEAR(tight, exact, 2e-7, 0);
+    NEAR(usual, exact, 3e-4, 0);
+    // the integrator does not start again, and a change costs a few steps
+    print_message("%ld steps, %ld where nothing is set\n", steps, steps_alone);
+    assert_true(2 * steps < 3 * steps_alone);
+}
+
+static void a_desired_heading_is_taken_up_the_short_way(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(TIME "fish: [{control: {law: heading, ramp: 0.2, desired_heading: [[0, 170], [2, 178]]}}]\n");
+    school_run(simulation, 0.5);
+    const struct fish *const fish = simulation->school->fish;
+    const struct control_memory *const memory = simulation->state->control;
+    const double degree = acos(-1) / 180;
+    set(simulation, "control.desired_heading", -170);
+    NEAR(control_desired_heading(fish, memory, 0.5, NULL), 172 * degree, 1e-14, 0);
+    NEAR(control_desired_heading(fish, memory, 0.7, NULL), 190 * degree, 1e-14, 0);
+    school_run(simulation, 0.6);
+    set(simulation, "control.desired_heading", 150);
+    NEAR(control_desired_heading(fish, memory, 0.9, NULL), 150 * degree, 1e-14, 0);
+    simulate_free(simulation);
+}
+
+static void waypoints_are_taken_up(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(TIME "fish: [{control: {law: course, waypoints: [[-9, 0]], acceptance_radius: 0.3}}]\n");
+    school_run(simulation, 0.1);
+    const struct fish *const fish = simulation->school->fish;
+    const double *const y = simulation->state->y;
+    const struct control_memory *const memory = simulation->state->control;
+    const double nose[2] = {y[fish->at.x], y[fish->at.y]};
+    const double points[] = {nose[0], nose[1] + 0.1, nose[0], nose[1] + 2};
+    school_ok(handle_set_key(simulation, 0, "control.waypoints", 4, points));
+    NEAR(control_desired_heading(fish, memory, 0.1, y), acos(-1) / 2, 1e-12, 0);
+    // the first one is near enough to be passed at once
+    school_run(simulation, 0.12);
+    assert_int_equal(memory->waypoint, 1);
+    simulate_free(simulation);
+}
+
+static void refused(const struct simulation *simulation, const char *key, int n, double value, const char *words) {
+    double values[66];
+    for (int i = 0; i < 66; i++) values[i] = value;
+    const struct control_memory before = simulation->state->control[0];
+    assert_int_equal(handle_set_key(simulation, 0, key, n, values), STATUS_CASE);
+    if (!strstr(status_message(), words)) fail_msg("'%s' is not in: %s", words, status_message());
+    assert_memory_equal(&before, &simulation->state->control[0], sizeof before);
+}
+
+static void what_has_no_use_is_refused(void **state) {
+    (void)state;
+    struct simulation *simulation = school_simulation(TIME "fish: [{}]\n");
+    refused(simulation, "wave.number", 1, 1, "'wave.number' cannot be set");
+    refused(simulation, "wave.amplitude", 1, NAN, "is not finite");
+    refused(simulation, "wave.amplitude", 1, 40, "below 3.14");
+    refused(simulation, "control.bias", 1, 40, "below 3.14");
+    refused(simulation, "wave.amplitude", 2, 0.1, "2 numbers: give one");
+    refused(simulation, "wave.frequency", 0, 0.1, "0 numbers: give one");
+    refused(simulation, "wave.frequency", 1, -0.1, "cannot be negative");
+    refused(simulation, "control.desired_heading", 1, 90, "has no control law");
+    refused(simulation, "control.waypoints", 2, 1, "needs 'law: course'");
+    simulate_free(simulation);
+    simulation = school_simulation(TIME "fish: [{wave: {amplitude: 0}, control: {waypoints: [[-3, 0]]}}]\n");
+    refused(simulation, "wave.amplitude", 1, 0.1, "in the case is 0: give an initial amplitude");
+    refused(simulation, "control.bias", 1, 0.1, "sets the bias: use");
+    refused(simulation, "control.desired_heading", 1, 90, "follows waypoints");
+    refused(simulation, "control.waypoints", 3, 1, "3 numbers: give 1 to 32 pairs");
+    refused(simulation, "control.waypoints", 66, 1, "66 numbers: give 1 to 32 pairs");
+    simulate_free(simulation);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_phase_of_the_beat_is_continuous),
+        cmocka_unit_test(amplitude_and_bias_get_there_within_the_ramp),
+        cmocka_unit_test(every_method_integrates_the_same_led_swim),
+        cmocka_unit_test(a_desired_heading_is_taken_up_the_short_way),
+        cmocka_unit_test(waypoints_are_taken_up),
+        cmocka_unit_test(what_has_no_use_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
