@@ -3,8 +3,8 @@
 #define STEADY_SETUP_H
 
 #include "school.h"
-#include "steady/steady_multipliers.h"
-#include "steady/steady_search.h"
+#include "steady/steady_modes.h"
+#include "steady/steady_problem.h"
 
 // coarse, so that a beat takes some milliseconds: 20 events, 7 nodes, 13 points of the sheet
 #define COARSE SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"

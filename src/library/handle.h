@@ -1,6 +1,6 @@
 /* handle.h: struct shoal, a run of the public interface, and the checks common to the public functions. The functions
- * of include/shoal.h are in shoal.c (the life of a run, result files), shoal_change.c, shoal_copy.c and shoal_read.c.
- * Tested by tests/library/test_shoal.c. */
+ * of include/shoal.h are in shoal.c (the life of a run, reading, result files), shoal_change.c and shoal_copy.c. Tested
+ * by tests/library/test_shoal.c and test_handle.c. */
 #ifndef HANDLE_H
 #define HANDLE_H
 
@@ -70,5 +70,16 @@ enum status handle_evaluate(const struct simulation *simulation);
 
 /* Restart the integrator. On failure the run is marked as failed. */
 enum status handle_renew(struct shoal *run);
+
+/* Create the simulation of a run from a new state, which fill sets. Fails as simulate_take_up or fill. */
+enum status handle_take_up(struct shoal *run,
+                           enum status (*fill)(struct state *state, const struct school *school, const void *from),
+                           const void *from, const struct integrator_counts *totals);
+
+/* Change gait or goal of a fish at an event (doc/model.md, section 11): set the value of a key: "wave.amplitude",
+ * "wave.frequency", "control.bias", "control.desired_heading" (one number, in the unit of the case file) or
+ * "control.waypoints" (pairs, m). Fails with STATUS_CASE for an invalid value, or if the control law of the fish
+ * ignores the key; the fish is then unchanged. */
+enum status handle_set_key(const struct simulation *simulation, int fish, const char *key, int n, const double *values);
 
 #endif

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "contact/clearance.h"
 #include "contact/self_crossing.h"
 #include "library/handle.h"
@@ -117,8 +118,8 @@ static void change_samples(const struct simulation *simulation, const struct cha
 static enum status change_images(const struct simulation *simulation) {
     struct state *const state = simulation->state;
     const int n = simulation->school->n_fish;
-    double(*const external)[3] = calloc((size_t)n, sizeof *external);
-    if (!external) return status_fail(STATUS_MEMORY, "out of memory: impulses of %d fish", n);
+    double(*external)[3];
+    TRY(MEMORY_NEW(external, n, "the impulses of the fish"));
 
     for (int f = 0; f < n; f++) memcpy(external[f], state->momentum[f].external, sizeof *external);
     const enum status status = diagnostics_momentum_event(simulation->residual, state);

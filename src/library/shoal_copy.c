@@ -2,32 +2,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "case/case.h"
-#include "fish/fish_school.h"
 #include "library/handle.h"
 #include "result/checkpoint.h"
 #include "result/target.h"
 #include "run/record.h"
 #include "state/state.h"
 
-static enum status copy_simulation(struct shoal *copy, const struct shoal *run) {
-    const struct simulation *const from = run->simulation;
-    const struct case_values *const values = &copy->shared->values;
-    struct school *school;
-    struct state *state;
-    TRY(fish_school_create(&school, &values->school));
-
-    enum status status = state_create(&state, school);
-    if (status == STATUS_OK) status = state_table_copy(state, from->state, school);
-    if (status != STATUS_OK) {
-        state_free(state, school);
-        fish_school_free(school);
-        return status;
-    }
-
-    // the simulation owns school and state
-    TRY(simulate_take_up(&copy->simulation, values, school, state, &from->totals));
-    return handle_evaluate(copy->simulation);
+static enum status copy_state(struct state *state, const struct school *school, const void *from) {
+    return state_table_copy(state, from, school);
 }
 
 int shoal_clone(struct shoal **copy, struct shoal *run) {
@@ -37,17 +21,17 @@ int shoal_clone(struct shoal **copy, struct shoal *run) {
     if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
     TRY(handle_renew(run));
 
-    struct shoal *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a run");
+    struct shoal *new;
+    TRY(MEMORY_NEW(new, 1, "a run"));
     new->shared = run->shared;
     atomic_fetch_add(&new->shared->n_users, 1);
-    new->is_renewed = 1;
     new->lock.descriptor = -1;
-    new->when_reached = run->when_reached;
 
-    new->result_path = strdup(run->result_path);
-    const enum status status =
-        new->result_path ? copy_simulation(new, run) : status_fail(STATUS_MEMORY, "out of memory: a path");
+    enum status status = memory_copy_string(&new->result_path, run->result_path, "a path");
+    if (status == STATUS_OK) {
+        status = handle_take_up(new, copy_state, run->simulation->state, &run->simulation->totals);
+        new->when_reached = run->when_reached;
+    }
     if (status == STATUS_OK) {
         *copy = new;
     } else {
@@ -107,24 +91,8 @@ int shoal_save(struct shoal *run, const char *path) {
     return status;
 }
 
-static enum status load_simulation(struct shoal *run, const struct checkpoint *checkpoint) {
-    const struct case_values *const values = &run->shared->values;
-    struct school *school;
-    struct state *state;
-    TRY(fish_school_create(&school, &values->school));
-
-    enum status status = state_create(&state, school);
-    if (status == STATUS_OK) status = checkpoint_set_state(checkpoint, state, school);
-    if (status != STATUS_OK) {
-        state_free(state, school);
-        fish_school_free(school);
-        return status;
-    }
-
-    TRY(simulate_take_up(&run->simulation, values, school, state, &checkpoint->totals));
-    run->is_renewed = 1;
-    run->when_reached = checkpoint->totals;
-    return handle_evaluate(run->simulation);
+static enum status load_state(struct state *state, const struct school *school, const void *from) {
+    return checkpoint_set_state(from, state, school);
 }
 
 static enum status load_checkpoint(struct shoal *run, const struct checkpoint *checkpoint) {
@@ -133,7 +101,7 @@ static enum status load_checkpoint(struct shoal *run, const struct checkpoint *c
     TRY(case_parse(&run->shared->values, text, strlen(text), "case", NULL, 0, NULL));
     run->result_path = record_path(&run->shared->values);
     if (!run->result_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
-    return load_simulation(run, checkpoint);
+    return handle_take_up(run, load_state, checkpoint, &checkpoint->totals);
 }
 
 int shoal_load(struct shoal **run, const char *path) {

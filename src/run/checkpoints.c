@@ -7,16 +7,16 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "case/case.h"
 #include "result/durable.h"
 
 // ---- names
 
 static char *path_with_ending(const char *path, size_t length, const char *ending) {
-    const size_t size = length + strlen(ending) + 1;
-    char *const name = malloc(size);
-    if (name) snprintf(name, size, "%.*s%s", (int)length, path, ending);
-    return name;
+    struct text name = {0};
+    text_add(&name, "%.*s%s", (int)length, path, ending);
+    return name.text;
 }
 
 // file name without folders
@@ -38,31 +38,26 @@ char *checkpoints_previous(const char *path) {
 
 // ---- the plan
 
-static enum status checkpoint_time_refuse(const char *word, const struct case_values *values) {
-    return status_fail(STATUS_CASE,
-                       "--checkpoint-at: '%s' is not the time of an event: an integer multiple of "
-                       "time.shedding_interval, %.9g s, up to time.end, %.9g s",
-                       word, values->school.shedding_interval, values->time.end);
-}
-
 // read "0.3,1.25"
 static enum status checkpoint_places_read(struct checkpoints *checkpoints, const struct case_values *values,
                                           const char *at) {
     const double interval = values->school.shedding_interval;
-    checkpoints->at = calloc(strlen(at) / 2 + 1, sizeof *checkpoints->at);
-    if (!checkpoints->at) return status_fail(STATUS_MEMORY, "out of memory: the times of checkpoints");
+    TRY(MEMORY_NEW(checkpoints->at, strlen(at) / 2 + 1, "the times of checkpoints"));
 
     while (*at) {
         char word[64];
         const size_t length = strcspn(at, ",");
         double time;
         snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), at);
-        if (!text_number(word, &time)) return checkpoint_time_refuse(word, values);
-
-        const double event = round(time / interval);
-        const int is_event = fabs(time - event * interval) <= 1e-9 * time;
-        if (!is_event || time < 0 || time > values->time.end + interval / 2)
-            return checkpoint_time_refuse(word, values);
+        const int is_number = text_number(word, &time);
+        const double event = is_number ? round(time / interval) : 0;
+        if (!is_number || !(fabs(time - event * interval) <= 1e-9 * time) || time < 0 ||
+            time > values->time.end + interval / 2) {
+            return status_fail(STATUS_CASE,
+                               "--checkpoint-at: '%s' is not the time of an event: an integer multiple of "
+                               "time.shedding_interval, %.9g s, up to time.end, %.9g s",
+                               word, interval, values->time.end);
+        }
         checkpoints->at[checkpoints->n_at++] = (long)event;
         at += length + (at[length] == ',');
     }
@@ -130,18 +125,6 @@ int checkpoints_are_due(const struct checkpoints *checkpoints, long event) {
 
 // ---- writing
 
-static enum status checkpoint_write_marked(struct checkpoints *checkpoints, const struct simulation *simulation,
-                                           const struct record *record) {
-    const struct checkpoint all = {.effective = checkpoints->effective,
-                                   .result = (char *)file_name_of(record->path),
-                                   .places = checkpoints->places.text ? checkpoints->places.text : "",
-                                   .totals = simulation->totals,
-                                   .wall_time = simulate_wall_time(simulation)};
-    struct checkpoint marked = all;
-    TRY(result_file_mark(record->file, &marked.rows));
-    return checkpoint_write(checkpoints->path, checkpoints->previous, &marked, simulation->state, simulation->school);
-}
-
 enum status checkpoints_write(struct checkpoints *checkpoints, const struct simulation *simulation,
                               const struct record *record) {
     const long event = simulation->state->event;
@@ -154,7 +137,13 @@ enum status checkpoints_write(struct checkpoints *checkpoints, const struct simu
         result_file_note(record->file, RESULT_CHECKPOINT_AT, checkpoints->places.text);
     }
 
-    TRY(checkpoint_write_marked(checkpoints, simulation, record));
+    struct checkpoint marked = {.effective = checkpoints->effective,
+                                .result = (char *)file_name_of(record->path),
+                                .places = checkpoints->places.text ? checkpoints->places.text : "",
+                                .totals = simulation->totals,
+                                .wall_time = simulate_wall_time(simulation)};
+    TRY(result_file_mark(record->file, &marked.rows));
+    TRY(checkpoint_write(checkpoints->path, checkpoints->previous, &marked, simulation->state, simulation->school));
     checkpoints->last = event;
     return STATUS_OK;
 }

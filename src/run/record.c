@@ -6,14 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "case/case.h"
+#include "school/warnings.h"
 
 char *record_path(const struct case_values *values) {
     const char *const name = values->output.file ? values->output.file : values->name;
     const char *const ending = values->output.file ? "" : ".nc";
-    char *const path = malloc(strlen(name) + strlen(ending) + 1);
-    if (path) sprintf(path, "%s%s", name, ending);
-    return path;
+    struct text path = {0};
+    text_add(&path, "%s%s", name, ending);
+    return path.text;
 }
 
 static void record_begin(struct record *record, const struct case_values *values, long n_events, const char *path) {
@@ -69,18 +71,15 @@ enum status record_publish(const struct record *record, int is_complete) {
     return result_file_publish(record->file, is_complete ? "complete" : "running");
 }
 
-// the end is a row even if the end is not a multiple of the output interval
-static int record_is_last(const struct record *record, long event) {
-    return event == record->n_events;
-}
-
 int record_is_due(const struct record *record, long event) {
-    return record->file && ((event - record->first) % record->events_per_row == 0 || record_is_last(record, event));
+    if (!record->file) return 0;
+    // the end is a row even if the end is not a multiple of the output interval
+    return (event - record->first) % record->events_per_row == 0 || event == record->n_events;
 }
 
 enum status record_row(const struct record *record, struct result_row *row) {
     const long event = row->state->event;
-    row->with_wake = (event - record->first) % record->events_per_wake == 0 || record_is_last(record, event);
+    row->with_wake = (event - record->first) % record->events_per_wake == 0 || event == record->n_events;
     return result_file_row(record->file, row);
 }
 
@@ -102,4 +101,40 @@ enum status record_close(struct record *record, enum status status) {
     *record = (struct record){0};
     if (status == STATUS_OK) return closed;
     return status_fail(status, "%s", reason);
+}
+
+// ---- notes about the whole run
+
+void record_notes_write(struct result_file *file, const struct simulation *simulation,
+                        void (*warn)(const char *line, void *data), void *data) {
+    char line[WARNING_BYTES], lines[N_WARNINGS * (WARNING_BYTES + 1)];
+    size_t length = 0;
+    for (enum warning w = 0; w < N_WARNINGS; w++) {
+        if (!warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
+                           simulation->residual->scratch, line))
+            continue;
+        length += (size_t)snprintf(lines + length, sizeof lines - length, "%s%s", length > 0 ? "\n" : "", line);
+        if (warn) warn(line, data);
+    }
+
+    if (length > 0) result_file_note(file, RESULT_WARNINGS, lines);
+
+    const struct school *const school = simulation->school;
+    const struct closest *const closest = simulation->state->closest;
+    char text[256];
+    if (!isinf(closest->distance)) {
+        snprintf(text, sizeof text, "%.4f m between %.60s and %.60s at t = %.4g s", closest->distance,
+                 school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t);
+        result_file_note(file, RESULT_CLOSEST_APPROACH, text);
+    }
+
+    if (school->wake_merge <= 0) return;
+    long n_merged = 0, n_vortices = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        n_merged += simulation->state->wake[f].n_merged;
+        n_vortices += simulation->state->wake[f].n_vortex;
+    }
+    snprintf(text, sizeof text, "%ld merged with a neighbour; %ld vortices in the wakes at the end", n_merged,
+             n_vortices);
+    result_file_note(file, RESULT_MERGED, text);
 }

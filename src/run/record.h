@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "case/case.h"
 #include "result/result_file.h"
+#include "run/simulate.h"
 
 /* A zeroed record has no file. */
 struct record {
@@ -49,5 +50,10 @@ enum status record_row(const struct record *record, struct result_row *row);
  * message. Returns the given status with the given message; if the given status is STATUS_OK, fails with STATUS_FILE
  * when closing fails. */
 enum status record_close(struct record *record, enum status status);
+
+/* Write all warnings about the last row and the closest approach of two bodies into the file. Call warn, which may be
+ * NULL, for each warning with data. */
+void record_notes_write(struct result_file *file, const struct simulation *simulation,
+                        void (*warn)(const char *line, void *data), void *data);
 
 #endif

@@ -49,10 +49,8 @@ static enum status simulation_set_order(struct simulation *simulation, const str
 
 // an empty simulation of a case
 static enum status simulation_begin(struct simulation **simulation, const struct case_values *values) {
-    struct simulation *const new = calloc(1, sizeof *new);
-    *simulation = new;
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a simulation");
-
+    TRY(MEMORY_NEW(*simulation, 1, "a simulation"));
+    struct simulation *const new = *simulation;
     new->started = wall_clock();
     new->n_events = lround(values->time.end / values->school.shedding_interval);
     new->integrator = integrator_of(values->solver.method);

@@ -1,18 +1,22 @@
-/* simulate_run.c: the loop over events, with rows and checkpoints. */
+/* simulate_run.c: the loop over events, with rows and checkpoints; checks of a checkpoint and its result before a run
+ * is resumed. */
 #include "run/simulate_run.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/text.h"
 #include "base/version.h"
 #include "fish/fish_school.h"
+#include "result/checkpoint.h"
+#include "result/netcdf.h"
+#include "result/result_lock.h"
 #include "result/target.h"
 #include "run/checkpoints.h"
 #include "run/record.h"
-#include "run/record_notes.h"
-#include "run/resume.h"
 #include "run/simulate.h"
 #include "state/state.h"
 
@@ -107,13 +111,25 @@ static void run_release(struct run *run) {
 
 // ---- a new run
 
-static enum status run_refuse_unfinished(const char *path, const struct checkpoints *checkpoints) {
-    double t;
-    if (!resume_is_possible(path, checkpoints->path, checkpoints->effective, &t)) return STATUS_OK;
-    return status_fail(STATUS_FILE,
-                       "%s is an unfinished result of this case: continue from t = %.6g s with 'shoal resume %s', or "
-                       "start again with --force",
-                       path, t, checkpoints->path);
+static int result_is_unfinished(const char *result, const char *path, const char *effective, double *t) {
+    struct checkpoint checkpoint;
+    struct result_checksum checksum;
+    int is_complete = 1;
+    if (checkpoint_read(&checkpoint, path) != STATUS_OK) return 0;
+    *t = checkpoint.t;
+    const int is_good = strcmp(checkpoint.effective, effective) == 0 &&
+                        checkpoint_check_program(&checkpoint) == STATUS_OK &&
+                        result_mark_check(result, &checkpoint.rows, effective, &checksum, &is_complete) == STATUS_OK;
+    checkpoint_free(&checkpoint);
+    return is_good && !is_complete;
+}
+
+int simulate_can_resume(const char *result, const char *checkpoint, const char *effective, double *t) {
+    char *const previous = checkpoints_previous(checkpoint);
+    const int is_possible = result_is_unfinished(result, checkpoint, effective, t) ||
+                            (previous && result_is_unfinished(result, previous, effective, t));
+    free(previous);
+    return is_possible;
 }
 
 static enum status run_start(struct run *run) {
@@ -121,7 +137,13 @@ static enum status run_start(struct run *run) {
     struct checkpoints *const checkpoints = &run->checkpoints;
     TRY(checkpoints_create(checkpoints, run->values, options->path, options->checkpoint_at));
     if (!options->overwrite) {
-        TRY(run_refuse_unfinished(options->path, checkpoints));
+        double t;
+        if (simulate_can_resume(options->path, checkpoints->path, checkpoints->effective, &t)) {
+            return status_fail(STATUS_FILE,
+                               "%s is an unfinished result of this case: continue from t = %.6g s with 'shoal resume "
+                               "%s', or start again with --force",
+                               options->path, t, checkpoints->path);
+        }
         TRY(target_check(options->path, TARGET_NETCDF, false));
     }
 
@@ -159,6 +181,98 @@ enum status simulate_run(const struct case_values *values, const struct simulate
 }
 
 // ---- a run that is resumed
+
+struct resume {
+    struct checkpoint checkpoint;
+    char *result; /* path of the result */
+    struct result_lock lock;
+    struct result_checksum checksum; /* of the rows of the result */
+    int is_complete;                 /* the run of the result has reached the end */
+    char *note;                      /* reason for not using the newest checkpoint; NULL: used */
+};
+
+static enum status resume_try(struct resume *resume, const char *path) {
+    struct checkpoint *const checkpoint = &resume->checkpoint;
+    TRY(checkpoint_read(checkpoint, path));
+    enum status status = checkpoint_check_program(checkpoint);
+    if (status != STATUS_OK) status_fail(status, "%s: cannot be used: %s", path, status_message());
+
+    // the result is in the folder of the checkpoint
+    if (status == STATUS_OK && !resume->result) {
+        const char *const slash = strrchr(path, '/');
+        struct text result = {0};
+        text_add(&result, "%.*s%s", slash ? (int)(slash + 1 - path) : 0, path, checkpoint->result);
+        resume->result = result.text;
+        if (!result.text) status = status_fail(STATUS_MEMORY, "out of memory: a file name");
+    }
+
+    if (status == STATUS_OK && !resume->lock.path) status = result_lock_take(&resume->lock, resume->result);
+    if (status == STATUS_OK) {
+        status = result_mark_check(resume->result, &checkpoint->rows, checkpoint->effective, &resume->checksum,
+                                   &resume->is_complete);
+    }
+    if (status != STATUS_OK) checkpoint_free(checkpoint);
+    return status;
+}
+
+/* Open the checkpoint at path or, if this checkpoint cannot be used, the previous checkpoint, and lock the result.
+ * Fails with STATUS_FILE and the reason, or with STATUS_MEMORY. resume_close releases everything, including the lock,
+ * also after a failure. */
+static enum status resume_open(struct resume *resume, const char *path) {
+    *resume = (struct resume){.lock = {.descriptor = -1}};
+    const enum status status = resume_try(resume, path);
+    if (status != STATUS_FILE) return status;
+    char reason[4096];
+    snprintf(reason, sizeof reason, "%s", status_message());
+
+    // fall back to the previous checkpoint
+    char *const previous = checkpoints_previous(path);
+    if (!previous) return status_fail(STATUS_MEMORY, "out of memory: a file name");
+    if (access(previous, F_OK) == 0 && resume_try(resume, previous) == STATUS_OK) {
+        struct text note = {0};
+        text_add(&note, "%s; resuming from %s", reason, previous);
+        resume->note = note.text;
+    }
+
+    free(previous);
+    return resume->note ? STATUS_OK : status_fail(STATUS_FILE, "%s", reason);
+}
+
+static void resume_close(struct resume *resume) {
+    checkpoint_free(&resume->checkpoint);
+    result_lock_release(&resume->lock);
+    free(resume->result);
+    free(resume->note);
+    *resume = (struct resume){.lock = {.descriptor = -1}};
+}
+
+/* Read the case of the checkpoint with assignments, as case_read does. The values include the text of the case file and
+ * the study of the result. Fails with STATUS_CASE, STATUS_FILE or STATUS_MEMORY; *values then owns nothing. */
+static enum status resume_case(const struct resume *resume, int n_assignments, const char *const *assignments,
+                               struct case_values *values) {
+    const char *const text = resume->checkpoint.effective;
+    TRY(case_parse(values, text, strlen(text), resume->checkpoint.result, NULL, n_assignments, assignments));
+
+    // the complete case of the checkpoint contains neither text nor study
+    struct netcdf_reader reader;
+    enum status status = netcdf_open(&reader, resume->result);
+    if (status == STATUS_OK) {
+        free(values->text);
+        values->text = NULL;
+        status = netcdf_read_string(&reader, "case_text", &values->text);
+        if (status == STATUS_OK) status = netcdf_read_string(&reader, "study_case", &values->study);
+        if (status == STATUS_OK) status = netcdf_read_integer(&reader, "study_member", 0, &values->member);
+        netcdf_close(&reader);
+    }
+
+    // a run outside a study has an empty text
+    if (values->study && !*values->study) {
+        free(values->study);
+        values->study = NULL;
+    }
+    if (status != STATUS_OK) case_free(values);
+    return status;
+}
 
 static enum status run_take_up(struct run *run, const struct resume *resume) {
     struct school *school = NULL;
@@ -202,13 +316,6 @@ static enum status run_extend_record(struct run *run, const struct resume *resum
     return record_publish(&run->record, 0);
 }
 
-// the existing result, without the rows after the checkpoint
-static enum status run_continue_record(struct run *run, const struct resume *resume) {
-    const struct simulation *const simulation = run->simulation;
-    return record_continue(&run->record, run->values, simulation->school, simulation->n_events, resume->result,
-                           &resume->checkpoint.rows, &resume->checksum);
-}
-
 static enum status run_resume_at(struct run *run, const struct resume *resume, int with_other_end) {
     const struct simulate_options *const options = run->options;
     TRY(checkpoints_create(&run->checkpoints, run->values, resume->result, options->checkpoint_at));
@@ -223,44 +330,45 @@ static enum status run_resume_at(struct run *run, const struct resume *resume, i
     }
 
     if (resume->note) checkpoints_fall_back(&run->checkpoints);
-    const enum status status = with_other_end ? run_extend_record(run, resume) : run_continue_record(run, resume);
+    // the existing result, without the rows after the checkpoint
+    const enum status status =
+        with_other_end ? run_extend_record(run, resume)
+                       : record_continue(&run->record, run->values, simulation->school, simulation->n_events,
+                                         resume->result, &resume->checkpoint.rows, &resume->checksum);
     return run->record.file ? run_finish(run, status) : status;
-}
-
-// notes for the user before a run is resumed
-static void run_report_notes(const struct resume *resume, const struct simulate_options *options) {
-    char here[VERSION_LENGTH], line[4 * VERSION_LENGTH];
-    version_processor(here);
-    if (!options->note) return;
-    if (resume->note) options->note(resume->note, options->data);
-    if (strcmp(here, resume->checkpoint.processor) == 0) return;
-    snprintf(line, sizeof line,
-             "this processor, %s, differs from the processor of the checkpoint, %s: last bits may differ", here,
-             resume->checkpoint.processor);
-    options->note(line, options->data);
-}
-
-static enum status resume_run(const struct resume *resume, const struct simulate_changes *changes,
-                              const struct simulate_options *options) {
-    run_report_notes(resume, options);
-    if (resume->is_complete && !changes->has_other_end) {
-        return status_fail(STATUS_CASE, "%s is complete: give a later --end to extend the result", resume->result);
-    }
-
-    struct case_values values;
-    TRY(resume_case(resume, changes->n_assignments, changes->assignments, &values));
-    struct run run = {.values = &values, .options = options};
-    const enum status status = run_resume_at(&run, resume, changes->has_other_end);
-    run_release(&run);
-    case_free(&values);
-    return status;
 }
 
 enum status simulate_resume(const char *checkpoint, const struct simulate_changes *changes,
                             const struct simulate_options *options) {
     struct resume resume;
+    struct case_values values;
     enum status status = resume_open(&resume, checkpoint);
-    if (status == STATUS_OK) status = resume_run(&resume, changes, options);
+    if (status != STATUS_OK) goto close;
+
+    // notes for the user
+    char here[VERSION_LENGTH], line[4 * VERSION_LENGTH];
+    version_processor(here);
+    if (options->note && resume.note) options->note(resume.note, options->data);
+    if (options->note && strcmp(here, resume.checkpoint.processor) != 0) {
+        snprintf(line, sizeof line,
+                 "this processor, %s, differs from the processor of the checkpoint, %s: last bits may differ", here,
+                 resume.checkpoint.processor);
+        options->note(line, options->data);
+    }
+
+    if (resume.is_complete && !changes->has_other_end) {
+        status = status_fail(STATUS_CASE, "%s is complete: give a later --end to extend the result", resume.result);
+        goto close;
+    }
+
+    status = resume_case(&resume, changes->n_assignments, changes->assignments, &values);
+    if (status == STATUS_OK) {
+        struct run run = {.values = &values, .options = options};
+        status = run_resume_at(&run, &resume, changes->has_other_end);
+        run_release(&run);
+        case_free(&values);
+    }
+close:
     resume_close(&resume);
     return status;
 }

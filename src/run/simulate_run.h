@@ -42,6 +42,10 @@ struct simulate_options {
  * holds an unfinished result of the case, or if another run writes the file. */
 enum status simulate_run(const struct case_values *values, const struct simulate_options *options);
 
+/* Whether a case (effective) has an unfinished result with a usable checkpoint, or previous checkpoint, of this
+ * program; *t: time of the checkpoint, s. */
+int simulate_can_resume(const char *result, const char *checkpoint, const char *effective, double *t);
+
 /* Changes to the case of a resumed run. */
 struct simulate_changes {
     int n_assignments;

@@ -316,11 +316,10 @@ static enum status ida_failed(const struct ida *solver, int code, long steps) {
     tell_crushed(solver, sizeof seen, seen);
     if (code == IDA_CONV_FAIL && !*seen) tell_uncoupled(solver, sizeof seen, seen);
     if (steps > 0) snprintf(last, sizeof last, ", the last of %.3g s", step);
-    return status_fail(
-        STATUS_SOLVER,
-        "integration failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
-        "event%s%s",
-        now, ida_reason(code), seen, error, solver->options.order, steps, last, message);
+    return status_fail(STATUS_SOLVER,
+                       "integration failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
+                       "event%s%s",
+                       now, ida_reason(code), seen, error, solver->options.order, steps, last, message);
 }
 
 // The latest end of the next step: equal parts of the rest of the interval. Steps then keep their size from event to

@@ -1,4 +1,4 @@
-/* steady.c: see steady.h. */
+/* steady.c: search, correction by the multipliers, last beats and result of a steady state. */
 #include "steady/steady.h"
 
 #include <math.h>
@@ -7,15 +7,13 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "result/result_lock.h"
 #include "result/target.h"
 #include "run/record.h"
-#include "run/record_notes.h"
 #include "school/diagnostics_energy.h"
 #include "steady/steady_modes.h"
-#include "steady/steady_multipliers.h"
-#include "steady/steady_reason.h"
-#include "steady/steady_search.h"
+#include "steady/steady_problem.h"
 #include "steady/steady_start.h"
 #include "steady/steady_static.h"
 
@@ -53,18 +51,11 @@ static void report_progress(const struct steady_problem *problem, void *data) {
 // ---- the values of the steady state
 
 static enum status values_allocate(struct run *run) {
-    const size_t n_fish = (size_t)run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;
-    run->found.fish = calloc(n_fish, sizeof *run->found.fish);
-    run->found.real = calloc(n, sizeof *run->found.real);
-    run->found.imaginary = calloc(n, sizeof *run->found.imaginary);
-    run->found.rate = calloc(n, sizeof *run->found.rate);
-    run->found.omega = calloc(n, sizeof *run->found.omega);
+    const int n_fish = run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;
+    double **const arrays[] = {&run->found.real, &run->found.imaginary, &run->found.rate, &run->found.omega, &run->way};
     run->found.growth = run->found.growth_frequency = NAN;
-    run->way = calloc(n, sizeof *run->way);
-    const int has_all = run->found.real && run->found.imaginary && run->found.rate && run->found.omega;
-    if (run->found.fish && has_all && run->way) return STATUS_OK;
-
-    return status_fail(STATUS_MEMORY, "out of memory: the steady state of %zu fish", n_fish);
+    TRY(MEMORY_NEW(run->found.fish, n_fish, "the steady state"));
+    return memory_arrays(arrays, 5, n, "the steady state");
 }
 
 // distance between the speed and the speed of the fixed point, lengths per beat; 0 for a formation, which is solved for
@@ -166,19 +157,6 @@ static enum status write_beats(struct run *run) {
     return STATUS_OK;
 }
 
-// the integrator restarts at the first row; a restart error can exceed a small tolerance
-static void warn_of_change(const struct run *run) {
-    const double tolerance = run->values->steady.tolerance;
-    if (!(run->found.residual > tolerance) || !run->options->warn) return;
-    char line[256];
-    snprintf(line, sizeof line,
-             "the beats of the result change by %.2g per beat, more than steady.tolerance, %g: the state is unstable, "
-             "or the "
-             "integrator restarts with this error: lower solver.rtol",
-             run->found.residual, tolerance);
-    run->options->warn(line, run->options->data);
-}
-
 // ---- a run
 
 static enum status find_fixed_point(struct run *run) {
@@ -190,7 +168,17 @@ static enum status find_fixed_point(struct run *run) {
     steady_modes_of_multipliers(&run->found, run->problem.map.period);
     run->found.n_beats = run->problem.map.n_beats;
     TRY(write_beats(run));
-    warn_of_change(run);
+
+    // the integrator restarts at the first row; a restart error can exceed a small tolerance
+    const double tolerance = run->values->steady.tolerance;
+    if (!(run->found.residual > tolerance) || !run->options->warn) return STATUS_OK;
+    char line[256];
+    snprintf(line, sizeof line,
+             "the beats of the result change by %.2g per beat, more than steady.tolerance, %g: the state is unstable, "
+             "or the "
+             "integrator restarts with this error: lower solver.rtol",
+             run->found.residual, tolerance);
+    run->options->warn(line, run->options->data);
     return STATUS_OK;
 }
 
@@ -202,46 +190,27 @@ static enum status find_equilibrium(struct run *run) {
     return write_if_due(run);
 }
 
-// start from the initial values of the case, or from another steady state
-static enum status create_simulation(struct run *run) {
-    if (!run->options->from) return simulate_create(&run->simulation, run->values);
-    struct case_values values = *run->values;
-    struct fish_parameters *fish;
-    TRY(steady_start_read(run->options->from, &values.school, &fish));
-    values.school.fish = fish;
-    const enum status status = simulate_create(&run->simulation, &values);
-    free(fish);
-    return status;
-}
-
-static enum status pose_problem(struct run *run) {
-    TRY(steady_problem_create(&run->problem, &run->values->steady, run->simulation));
-    run->problem.progress = report_progress;
-    run->problem.data = run;
-    return STATUS_OK;
-}
-
-/* Rename the temporary file to the result file and close the file. A failed search keeps an earlier result. */
-static enum status result_finish(struct run *run, enum status status) {
-    char reason[4096];
-    snprintf(reason, sizeof reason, "%s", status_message());
-    if (status == STATUS_OK) {
-        status = record_publish(&run->record, 1);
-    } else {
-        if (access(run->options->path, F_OK) != 0) record_publish(&run->record, 0);
-        status_fail(status, "%s", reason);
-    }
-    return record_close(&run->record, status);
-}
-
 static enum status find_and_write(struct run *run) {
     const struct steady_options *const options = run->options;
     TRY(target_check(options->path, TARGET_NETCDF, options->overwrite));
     if (options->from) TRY(target_refuse_input(options->path, options->from));
-    TRY(create_simulation(run));
+
+    // start from the initial values of the case, or from another steady state
+    if (options->from) {
+        struct case_values values = *run->values;
+        TRY(steady_start_read(options->from, &run->values->school, &values.school.fish));
+        const enum status created = simulate_create(&run->simulation, &values);
+        free(values.school.fish);
+        TRY(created);
+    } else {
+        TRY(simulate_create(&run->simulation, run->values));
+    }
     run->simulation->stop = options->stop;
     const int is_static = steady_static_applies(run->simulation->school);
-    TRY(is_static ? steady_static_refuse(run->simulation->school) : pose_problem(run));
+    TRY(is_static ? steady_static_refuse(run->simulation->school)
+                  : steady_problem_create(&run->problem, &run->values->steady, run->simulation));
+    run->problem.progress = report_progress;
+    run->problem.data = run;
     TRY(values_allocate(run));
 
     // the largest number of events bounds the number of vortices in the file
@@ -261,7 +230,13 @@ static enum status find_and_write(struct run *run) {
         record_notes_write(run->record.file, run->simulation, options->warn, options->data);
     }
 
-    return result_finish(run, status);
+    // rename the temporary file to the result file and close the file; a failed search keeps an earlier result
+    char reason[4096];
+    snprintf(reason, sizeof reason, "%s", status_message());
+    if (status == STATUS_OK) return record_close(&run->record, record_publish(&run->record, 1));
+    if (access(options->path, F_OK) != 0) record_publish(&run->record, 0);
+    status_fail(status, "%s", reason);
+    return record_close(&run->record, status);
 }
 
 static void run_release(struct run *run) {

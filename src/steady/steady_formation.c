@@ -1,12 +1,11 @@
-/* steady_formation.c: see steady_formation.h. */
-#include "steady/steady_formation.h"
-
+/* steady_formation.c: Newton's method for all slow quantities of a formation. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "solver/newton.h"
-#include "steady/steady_reason.h"
+#include "steady/steady_problem.h"
 
 /* Largest change of a slow quantity in one step, in lengths and in the other scales; largest distance of a place from
  * the initial place, in lengths, beyond which Newton's method has failed. */
@@ -241,14 +240,10 @@ static enum status solve_or_follow(struct formation *formation, double *scale, d
 enum status steady_formation_solve(struct steady_problem *problem, double tolerance) {
     const struct school *const school = problem->map.simulation->school;
     const size_t n = (size_t)problem->n_unknowns;
-    double *const memory = calloc(9 * n, sizeof *memory);
     const int is_new = !problem->jacobian;
-
-    if (is_new) problem->jacobian = calloc(n * n, sizeof *problem->jacobian);
-    if (!memory || !problem->jacobian) {
-        free(memory);
-        return status_fail(STATUS_MEMORY, "out of memory: a formation of %d fish", school->n_fish);
-    }
+    double *memory;
+    if (is_new) TRY(MEMORY_NEW(problem->jacobian, n * n, "a formation"));
+    TRY(MEMORY_NEW(memory, 9 * n, "a formation"));
 
     struct formation formation = {.problem = problem,
                                   .tolerance = tolerance,

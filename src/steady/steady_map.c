@@ -1,10 +1,11 @@
-/* steady_map.c: see steady_map.h. */
+/* steady_map.c: the beat, and the slow quantities. */
 #include "steady/steady_map.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "contact/clearance.h"
 #include "flow/flow_external.h"
 #include "school/diagnostics_energy.h"
@@ -69,13 +70,10 @@ enum status steady_map_create(struct steady_map *map, struct simulation *simulat
     TRY(check_events(map));
     TRY(check_gust(map));
 
-    const size_t n_fish = (size_t)simulation->school->n_fish;
-    map->last = calloc(n_fish, sizeof *map->last);
-    map->before = calloc(n_fish, sizeof *map->before);
-    if (map->last && map->before) return STATUS_OK;
-    steady_map_free(map);
-
-    return status_fail(STATUS_MEMORY, "out of memory: the beats of %zu fish", n_fish);
+    enum status status = MEMORY_NEW(map->last, simulation->school->n_fish, "the beats of the fish");
+    if (status == STATUS_OK) status = MEMORY_NEW(map->before, simulation->school->n_fish, "the beats of the fish");
+    if (status != STATUS_OK) steady_map_free(map);
+    return status;
 }
 
 void steady_map_free(struct steady_map *map) {

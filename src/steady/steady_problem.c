@@ -1,9 +1,12 @@
-/* steady_problem.c: see steady_problem.h. */
+/* steady_problem.c: unknowns and beats of the search, and the reason of a search without a result. */
 #include "steady/steady_problem.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+#include "base/memory.h"
+#include "school/diagnostics_energy.h"
 
 // ---- which quantities are slow
 
@@ -37,13 +40,11 @@ static void list_fish_unknowns(struct steady_problem *problem, int f, const stru
 static enum status list_unknowns(struct steady_problem *problem) {
     const struct school *const school = problem->map.simulation->school;
     const size_t most = STEADY_QUANTITIES * (size_t)school->n_fish;
-    problem->unknown = calloc(most, sizeof *problem->unknown);
-    problem->pin = calloc(most, sizeof *problem->pin);
-    problem->pinned = calloc(most, sizeof *problem->pinned);
-    problem->scratch = calloc(4 * most, sizeof *problem->scratch);
-    if (!problem->unknown || !problem->pin || !problem->pinned || !problem->scratch) {
-        return status_fail(STATUS_MEMORY, "out of memory: the slow quantities of %d fish", school->n_fish);
-    }
+    static const char what[] = "the slow quantities of the fish";
+    TRY(MEMORY_NEW(problem->unknown, most, what));
+    TRY(MEMORY_NEW(problem->pin, most, what));
+    TRY(MEMORY_NEW(problem->pinned, most, what));
+    TRY(MEMORY_NEW(problem->scratch, 4 * most, what));
 
     for (int f = 0; f < school->n_fish; f++) list_fish_unknowns(problem, f, &school->fish[f]);
     steady_map_read(&problem->map, problem->n_pins, problem->pin, problem->pinned);
@@ -122,37 +123,35 @@ static double largest_difference(const struct steady_problem *problem, int apart
     return most;
 }
 
-// describe the last beats: period of a repetition, or largest difference
-static void format_rhythm(const struct steady_problem *problem, size_t size, char *words) {
-    const struct steady_map *const map = &problem->map;
-    const double speed = map->last[0].speed;
-    const double equal = problem->settings->tolerance * map->simulation->school->fish[0].length / map->period;
-    double most = 0;
-
-    words[0] = 0;
-    if (map->n_beats < STEADY_RECENT) return;
-    for (int apart = 1; apart < STEADY_RECENT; apart++) most = fmax(most, largest_difference(problem, apart));
-    for (int apart = 2; apart <= STEADY_RECENT / 4 && largest_difference(problem, 1) > equal; apart++) {
-        if (largest_difference(problem, apart) > equal) continue;
-        snprintf(words, size, ", and the speed repeats every %d beats", apart);
-        return;
-    }
-
-    snprintf(words, size, ", and the speed differs by %.2g %% between the last %d beats", 100 * most / fabs(speed),
-             STEADY_RECENT);
-}
-
 static enum status no_steady_state(const struct steady_problem *problem) {
-    char rhythm[128];
-    format_rhythm(problem, sizeof rhythm, rhythm);
     const struct steady_map *const map = &problem->map;
     const struct fish *const first = map->simulation->school->fish;
+    const double speed = map->last[0].speed, equal = problem->settings->tolerance * first->length / map->period;
+
+    // describe the last beats: period of a repetition, or largest difference
+    char rhythm[128] = "";
+    if (map->n_beats >= STEADY_RECENT) {
+        double most = 0;
+        int period = 0;
+        for (int apart = 1; apart < STEADY_RECENT; apart++) most = fmax(most, largest_difference(problem, apart));
+        for (int apart = 2; apart <= STEADY_RECENT / 4 && period == 0; apart++) {
+            const int repeats = largest_difference(problem, 1) > equal && largest_difference(problem, apart) <= equal;
+            period = repeats ? apart : 0;
+        }
+        if (period > 0) {
+            snprintf(rhythm, sizeof rhythm, ", and the speed repeats every %d beats", period);
+        } else {
+            snprintf(rhythm, sizeof rhythm, ", and the speed differs by %.2g %% between the last %d beats",
+                     100 * most / fabs(speed), STEADY_RECENT);
+        }
+    }
+
     return status_fail(STATUS_SOLVER,
                        "no steady state in %d beats (steady.beats): residual change per beat %.2g, more than "
                        "steady.tolerance, %.2g; speed of %s %.4g m/s, %.2g lengths per beat%s; if the residual no "
                        "longer falls from beat to beat, reduce solver.rtol",
-                       map->n_beats, steady_map_residual(map), problem->settings->tolerance, first->name,
-                       map->last[0].speed, map->last[0].speed * map->period / first->length, rhythm);
+                       map->n_beats, steady_map_residual(map), problem->settings->tolerance, first->name, speed,
+                       speed * map->period / first->length, rhythm);
 }
 
 enum status steady_problem_beat(struct steady_problem *problem) {
@@ -193,4 +192,90 @@ enum status steady_problem_put_pins(struct steady_problem *problem, double speed
         if (problem->pin[i].quantity == STEADY_SPEED) problem->pinned[i] = speed;
     }
     return put_quantities(problem, problem->n_pins, problem->pin, problem->pinned);
+}
+
+// ---- the free motion of a formation
+
+/* Largest number of beats of free motion. */
+enum { BEATS = 15 };
+
+/* A drift above this multiple of the tolerance is distinct from the variation of the wake between beats. */
+static const double clear = 3;
+
+/* Displacement, in lengths, that must change the beat by more than the tolerance. */
+static const double longest_place = 0.25;
+
+// displacement in the frame of the first fish, ahead and to the left, lengths per beat
+static void fish_drift(const struct steady_map *map, int f, double drift[2]) {
+    const double length = map->simulation->school->fish[f].length;
+    for (int i = 0; i < 2; i++) drift[i] = (map->last[f].place[i] - map->before[f].place[i]) / length;
+}
+
+static enum status report_drift(const struct steady_problem *problem, const char *first) {
+    const struct steady_map *const map = &problem->map;
+    const struct school *const school = map->simulation->school;
+    int fastest = 0;
+    double most = 0, drift[2];
+
+    for (int f = 1; f < school->n_fish; f++) {
+        fish_drift(map, f, drift);
+        if (hypot(drift[0], drift[1]) <= most) continue;
+        most = hypot(drift[0], drift[1]);
+        fastest = f;
+    }
+
+    const double change = steady_map_residual(map), tolerance = problem->settings->tolerance;
+    if (most <= clear * tolerance) {
+        return status_fail(STATUS_SOLVER,
+                           "%s: after release, the fish stay together with a residual change per beat of %.2g, %s "
+                           "steady.tolerance, %.2g",
+                           first, change, change > tolerance ? "more than" : "visible only with a smaller", tolerance);
+    }
+
+    fish_drift(map, fastest, drift);
+    const int is_along = fabs(drift[0]) >= fabs(drift[1]);
+    const char *const ahead = drift[0] > 0 ? "ahead" : "back", *const aside =
+                                                                   drift[1] > 0 ? "to the left" : "to the right";
+    return status_fail(STATUS_SOLVER,
+                       "%s: drift: after release, %s drifts %s relative to %s by %.2g lengths per beat, %.2g m/s",
+                       first, school->fish[fastest].name, is_along ? ahead : aside, school->fish[0].name, most,
+                       most * school->fish[fastest].length / map->period);
+}
+
+static enum status release_fish(struct steady_problem *problem, const char *first) {
+    struct simulation *const simulation = problem->map.simulation;
+    diagnostics_restart(simulation->residual, simulation->state);
+    for (int i = 0; i < BEATS; i++) {
+        TRY(steady_map_beat(&problem->map, NULL, NULL));
+        const double distance = simulation->state->closest->distance;
+        if (distance >= simulation->school->contact_range) continue;
+        const struct closest *const closest = simulation->state->closest;
+        const struct fish *const fish = simulation->school->fish;
+        return status_fail(STATUS_SOLVER,
+                           "%s: collision: after release, %s and %s approach to %.2g m in beat %d, within "
+                           "contact.range",
+                           first, fish[closest->fish[0]].name, fish[closest->fish[1]].name, closest->distance, i + 1);
+    }
+    return report_drift(problem, first);
+}
+
+enum status steady_reason_find(struct steady_problem *problem) {
+    const int n_beats = problem->map.n_beats;
+    const int is_late = n_beats >= problem->settings->beats;
+    char first[64];
+    snprintf(first, sizeof first, "no steady state in %d beats%s", n_beats,
+             is_late ? " (steady.beats)" : " near the start");
+    const enum status status = release_fish(problem, first);
+    problem->map.n_beats = n_beats;
+    return status;
+}
+
+enum status steady_reason_check(const struct steady_problem *problem, double in_a_length) {
+    const double tolerance = problem->settings->tolerance;
+    if (!problem->map.is_formation || in_a_length * longest_place > tolerance) return STATUS_OK;
+    return status_fail(
+        STATUS_SOLVER,
+        "no equilibrium: the fish hardly interact: a displacement of %g lengths changes a beat by at most "
+        "steady.tolerance, %.2g, too",
+        longest_place, tolerance);
 }

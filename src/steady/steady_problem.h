@@ -1,5 +1,5 @@
-/* steady_problem.h: unknowns of a steady state (the slow quantities of a case) and beats of the search. doc/steady.md.
- * Tested by tests/steady/test_steady.c. */
+/* steady_problem.h: unknowns of a steady state (the slow quantities of a case), beats of the search, and the search.
+ * doc/steady.md. Tested by tests/steady/test_steady.c and test_steady_formation.c. */
 #ifndef STEADY_PROBLEM_H
 #define STEADY_PROBLEM_H
 
@@ -46,5 +46,34 @@ enum status steady_problem_put(struct steady_problem *problem, const double *to)
 
 /* Set all pinned speeds to this speed, m s-1, and all other pins to the initial values. Fails as steady_map_add. */
 enum status steady_problem_put_pins(struct steady_problem *problem, double speed);
+
+// ---- why no formation was found, from the free motion of the fish
+
+/* Release all fish for some beats and fail with STATUS_SOLVER and the observed motion: two fish within contact.range of
+ * each other; else the fish with the fastest drift relative to the first fish; else no drift. Or fail as
+ * steady_map_beat. These beats are not counted. */
+enum status steady_reason_find(struct steady_problem *problem);
+
+/* Check that interaction determines the places of a formation: fail with STATUS_SOLVER if a displacement of 0.25
+ * lengths changes a beat by less than the tolerance. in_a_length: change per length of displacement, for example the
+ * distance between 1 and the nearest multiplier. */
+enum status steady_reason_check(const struct steady_problem *problem, double in_a_length);
+
+// ---- steady_formation.c: Newton's method for all slow quantities of a formation, with a difference Jacobian
+
+/* Solve for values of all slow quantities that one beat changes by at most the tolerance, in the scales of the
+ * quantities, near the current values. If Newton's method fails, restart and follow the motion of the fish in time
+ * (implicit Euler steps). Fails with STATUS_SOLVER, or as steady_problem_beat. */
+enum status steady_formation_solve(struct steady_problem *problem, double tolerance);
+
+// ---- steady_search.c: the search for the fixed point of the map from beat to beat
+
+/* Advance the simulation to a state that repeats with the beat. Fails with STATUS_SOLVER and the reason after
+ * steady.beats beats (for a formation: the motion of the released fish), or as simulate_step. */
+enum status steady_search_run(struct steady_problem *problem);
+
+/* Take the step way of steady_multipliers_find to the fixed point (n_unknowns), or a Newton step if way is NULL; then
+ * advance the simulation to a state that repeats with the beat. Fails as steady_search_run. */
+enum status steady_search_correct(struct steady_problem *problem, const double *way);
 
 #endif

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/mathematics.h"
+#include "base/memory.h"
 #include "fish/fish_prescribed.h"
 #include "result/netcdf.h"
 
@@ -73,10 +74,9 @@ enum status steady_start_read(const char *path, const struct school_parameters *
     struct reading reading;
     *fish = NULL;
     TRY(start_open(&reading, path, school->n_fish));
-    const size_t bytes = (size_t)school->n_fish * sizeof **fish;
-    struct fish_parameters *const copy = malloc(bytes);
-    enum status status = copy ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: %d fish", school->n_fish);
-    if (copy) memcpy(copy, school->fish, bytes);
+    struct fish_parameters *copy;
+    enum status status = MEMORY_NEW(copy, school->n_fish, "the fish at the start");
+    if (copy) memcpy(copy, school->fish, (size_t)school->n_fish * sizeof *copy);
 
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         status = read_fish(&reading, (size_t)f, school->fish, &copy[f]);
@@ -142,9 +142,9 @@ enum status steady_start_shapes(const char *path, const struct school *school, d
     enum status status = STATUS_OK;
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         const struct fish *const fish = &school->fish[f];
-        double *const places = calloc(2 * (size_t)fish->n_nodes, sizeof *places);
-        status = places ? read_nodes(&reading, (size_t)f, fish, places)
-                        : status_fail(STATUS_MEMORY, "out of memory: a body of %d nodes", fish->n_nodes);
+        double *places;
+        status = MEMORY_NEW(places, 2 * fish->n_nodes, "the nodes of a body");
+        if (status == STATUS_OK) status = read_nodes(&reading, (size_t)f, fish, places);
         if (status == STATUS_OK) place_nodes(fish, places, y);
         free(places);
     }

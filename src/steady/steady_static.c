@@ -1,4 +1,4 @@
-/* steady_static.c: see steady_static.h. */
+/* steady_static.c: the equilibrium of passive bodies in a stream. */
 #include "steady/steady_static.h"
 
 #include <math.h>
@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "body/edge.h"
 #include "fish/fish_gait.h"
 #include "fish/fish_prescribed.h"
@@ -115,25 +116,21 @@ static const double least_step = 1e-4;
 static enum status growth_create(struct growth *growth) {
     const struct school *const school = growth->simulation->school;
     struct state *const state = growth->simulation->state;
-    const size_t n_fish = (size_t)school->n_fish, n = (size_t)school->n_unknowns;
     double **const arrays[] = {&growth->last, &growth->before, &growth->kept};
-    int has_all = 1;
-
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-        has_all &= !!(*arrays[i] = calloc(n, sizeof **arrays[i]));
     growth->school = *school;
-    growth->school.fish = malloc(n_fish * sizeof *school->fish);
-    if (!has_all || !growth->school.fish)
-        return status_fail(STATUS_MEMORY, "out of memory: the equilibrium of %zu bodies", n_fish);
-    memcpy(growth->school.fish, school->fish, n_fish * sizeof *school->fish);
+    growth->school.fish = NULL;
+    TRY(memory_arrays(arrays, 3, school->n_unknowns, "the equilibrium of the bodies"));
+    TRY(MEMORY_NEW(growth->school.fish, school->n_fish, "the equilibrium of the bodies"));
+    memcpy(growth->school.fish, school->fish, (size_t)school->n_fish * sizeof *school->fish);
     TRY(residual_create(&growth->residual, &growth->school, state));
 
     return equilibrium_create(&growth->equilibrium, growth->residual, state);
 }
 
 static void growth_free(struct growth *growth) {
-    double *const owned[] = {growth->last, growth->before, growth->kept};
-    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    free(growth->last);
+    free(growth->before);
+    free(growth->kept);
     equilibrium_free(growth->equilibrium);
     residual_free(growth->residual);
     free(growth->school.fish);

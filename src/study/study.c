@@ -19,7 +19,6 @@
 #include "case/sweep.h"
 #include "result/result_lock.h"
 #include "run/checkpoints.h"
-#include "run/resume.h"
 #include "run/simulate_run.h"
 #include "steady/steady.h"
 #include "study/study_folder.h"
@@ -84,7 +83,7 @@ static enum status run_or_resume(const struct case_values *values, const struct 
     enum status status;
     if (!checkpoint) {
         status = status_fail(STATUS_MEMORY, "out of memory: a file name");
-    } else if (resume_is_possible(options->path, checkpoint, effective, &t)) {
+    } else if (simulate_can_resume(options->path, checkpoint, effective, &t)) {
         status = simulate_resume(checkpoint, &(struct simulate_changes){0}, options);
     } else {
         status = simulate_run(values, options);

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "steady/steady_search.h"
+#include "steady/steady_problem.h"
 #include "verify.h"
 
 struct swim {

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "steady/steady_multipliers.h"
-#include "steady/steady_search.h"
+#include "steady/steady_modes.h"
+#include "steady/steady_problem.h"
 #include "verify.h"
 
 // ---- one fish, against a run of two hundred beats

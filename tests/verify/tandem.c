@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "linear_theory.h"
-#include "steady/steady_multipliers.h"
-#include "steady/steady_search.h"
+#include "steady/steady_modes.h"
+#include "steady/steady_problem.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;
