@@ -62,7 +62,9 @@ class Study:
         """The last word of a key or the name of a quantity, with its unit."""
         variable = self.data.variables[name]
         word = variable.long_name.split(".")[-1] if hasattr(variable, "axis") else name
-        return with_unit(NAMES.get(word, word.replace("_", " ")), getattr(variable, "units", "1"))
+        of = word.removeprefix("steady_")
+        word = ("steady " if of != word else "") + NAMES.get(of, of.replace("_", " "))
+        return with_unit(word, getattr(variable, "units", "1"))
 
 
 def style(i):
