@@ -558,6 +558,21 @@ static void heading_is_unwrapped(void **state) {
     school_clear(&setup);
 }
 
+static void the_desired_heading_is_unwrapped_next_to_the_heading(void **state) {
+    (void)state;
+    const double desired[] = {160, -150, 100}, want[] = {160, 210, 100};
+    for (int i = 0; i < 3; i++) {
+        char text[256];
+        snprintf(text, sizeof text,
+                 TIME "fish: [{start: {heading: 170}, control: {law: heading, desired_heading: %g}}]\n", desired[i]);
+        struct simulation *const simulation = school_simulation(text);
+        simulate_measure(simulation);
+        NEAR(simulation->diagnostics->fish->heading, 170, 1e-10, 0);
+        NEAR(simulation->diagnostics->fish->desired_heading, want[i], 1e-10, 0);
+        simulate_free(simulation);
+    }
+}
+
 static void polarisation_and_least_distance_are_those_of_the_school(void **state) {
     (void)state;
     struct simulation *simulation =
@@ -600,6 +615,7 @@ int main(void) {
         cmocka_unit_test(vortices_inside_an_outline_are_counted),
         cmocka_unit_test(a_body_that_sweeps_over_a_wake_loses_no_circulation),
         cmocka_unit_test(heading_is_unwrapped),
+        cmocka_unit_test(the_desired_heading_is_unwrapped_next_to_the_heading),
         cmocka_unit_test(polarisation_and_least_distance_are_those_of_the_school),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
