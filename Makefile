@@ -133,7 +133,7 @@ python_modules = $(shell $(PYTHON) -c 'import site, sys; \
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers gallery soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -171,6 +171,11 @@ numbers: deps  ## measure all tables of README.md and doc/*.md again, and draw d
 	@$(parallel) all
 	@scripts/measure.py --write README.md doc/*.md
 	@scripts/measure.py --figures doc/figures
+
+gallery: deps  ## draw every kind of figure by its command, and write doc/gallery.md (minutes; results are kept)
+	@scripts/install-deps.sh python3-pil
+	@$(parallel) all
+	@scripts/make-gallery.py --data $(B)/gallery
 
 valgrind: deps  ## let valgrind watch the tests in C (TEST="..."), and a run of the program (an hour)
 	@scripts/install-deps.sh valgrind
@@ -246,11 +251,12 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
 	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/measure.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
-	$(quiet)install -d '$(DESTDIR)$(python_modules)/shoal' '$(DESTDIR)$(prefix)/share/shoal/doc/'{examples,figures}
+	$(quiet)install -d '$(DESTDIR)$(python_modules)/shoal' '$(DESTDIR)$(prefix)/share/shoal/doc/'{examples,figures/gallery}
 	$(quiet)rm -f '$(DESTDIR)$(python_modules)/shoal.py'
 	$(quiet)install -m 644 scripts/shoal/*.py '$(DESTDIR)$(python_modules)/shoal'
 	$(quiet)install -m 755 doc/examples/*.py '$(DESTDIR)$(prefix)/share/shoal/doc/examples'
 	$(quiet)install -m 644 doc/figures/*.png '$(DESTDIR)$(prefix)/share/shoal/doc/figures'
+	$(quiet)install -m 644 doc/figures/gallery/*.png '$(DESTDIR)$(prefix)/share/shoal/doc/figures/gallery'
 	$(quiet)ln -sfn '$(patsubst $(prefix)/%,../../../%,$(python_modules))/shoal' '$(DESTDIR)$(prefix)/share/shoal/scripts/shoal'
 	$(quiet)install -m 644 $(filter %.1,$(manual)) '$(DESTDIR)$(prefix)/share/man/man1'
 	$(quiet)install -m 644 $(filter %.5,$(manual)) '$(DESTDIR)$(prefix)/share/man/man5'

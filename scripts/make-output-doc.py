@@ -36,7 +36,8 @@ Octave (`pkg load netcdf`) and MATLAB list the dimensions in the opposite order:
 
 `shoal view demo.nc` writes demo.html, one page that plays bodies, wakes and traces in any browser without a network.
 `shoal export demo.nc --vtk demo` writes files for ParaView. Figures and films: `scripts/plot.py demo.nc`, `scripts/plot.py
-time demo.nc`, `scripts/plot.py forces demo.nc`, `scripts/animate.py demo.nc demo.mp4`.
+time demo.nc`, `scripts/plot.py forces demo.nc`, `scripts/animate.py demo.nc demo.mp4`
+([gallery.md](gallery.md)).
 
 ## Dimensions
 

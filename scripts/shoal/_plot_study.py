@@ -121,7 +121,7 @@ def draw_design(axes, size, drawn, design):
     place = {"textcoords": "offset points", "size": 8}
     axes.annotate("1", (np.sqrt(left * right), foot), (0, -2), ha="center", va="top", **place)
     axes.annotate(f"order {design:g}", (right, foot * np.sqrt(rise)), (3, 0), va="center", **place)
-    axes.set_ylim(foot / 2, None)
+    axes.set_ylim(min(foot / 2, np.nanmin(drawn) / 1.3), None)
 
 
 def quantities_of(study):

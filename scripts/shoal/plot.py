@@ -170,10 +170,8 @@ def label_panels(all_axes, n_columns, x, y):
     n_rows = math.ceil(len(all_axes) / n_columns)
     for axes in all_axes[(n_rows - 1) * n_columns :]:
         axes.set_xlabel(x)
-    if n_rows % 2:
-        all_axes[n_rows // 2 * n_columns].set_ylabel(y)
-    else:
-        all_axes[0].figure.supylabel(y, size=9)
+    middle = all_axes[(n_rows - 1) // 2 * n_columns]  # of an even number of rows at its foot
+    middle.set_ylabel(y, **({} if n_rows % 2 else {"y": -0.15, "ha": "center"}))
 
 
 def place_clock(snapshot, row, window):
@@ -275,7 +273,7 @@ def chosen(results, options, most=None):
 def panel_per_fish(of):
     """The fish that get a panel of a grid, a few of many, shared out evenly; and the columns that leave the fewest gaps."""
     shown = [of[i] for i in np.unique(np.linspace(0, len(of) - 1, min(len(of), MOST_PANELS)).round().astype(int))]
-    n_columns = min(len(shown), 3)
+    n_columns = 2 if len(shown) == 4 else min(len(shown), 3)
     if len(shown) > 6:
         n_columns = min((4, 5, 3, 6), key=lambda n: -len(shown) % n)
     return shown, n_columns
@@ -389,6 +387,7 @@ def unwrapped(heading):
     first = np.array([column[np.isfinite(column)][0] if np.isfinite(column).any() else np.nan for column in values.T])
     angle = np.radians(first[np.isfinite(first)])
     mean = np.degrees(np.arctan2(np.sin(angle).sum(), np.cos(angle).sum()))
+    mean += 360 * (mean < -90)  # 180 degrees, the heading of a start, is not -180
     return values + 360 * np.round((mean - first) / 360)
 
 

@@ -183,7 +183,7 @@ titles = [axes.get_title() for axes in plot.plot_time(results, over_time).axes i
 assert titles == results.names, "a panel per fish"
 
 # headings on both sides of 180 degrees are next to each other, and a turn goes on
-assert np.allclose(plot.unwrapped([[-178, 179], [178, 184], [170, 190]]), [[-178, -181], [-182, -176], [-190, -170]])
+assert np.allclose(plot.unwrapped([[-178, 179], [178, 184], [170, 190]]), [[182, 179], [178, 184], [170, 190]])
 turned = plot.time("turned.nc", fish=["number 1", "number 2"])[1]
 assert np.ptp([np.mean(line.get_ydata()) for line in turned.lines]) < 3, "182 and 180 degrees are near"
 
@@ -332,6 +332,45 @@ end
 code=0
 timeout "$time_limit" /usr/bin/python3 open.py >out 2>err || code=$?
 check "names are coordinates in xarray" test "$code" = 0
+
+# ---- the gallery
+
+cat >gallery.py <<'end'
+"""The page is that of its script; each kind of figure is in it, with a picture that is small."""
+import importlib.util, os, re, sys
+root = sys.argv[1]
+sys.path.insert(0, os.path.join(root, "scripts"))
+import plot
+spec = importlib.util.spec_from_file_location("gallery", os.path.join(root, "scripts", "make-gallery.py"))
+gallery = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(gallery)
+text = open(os.path.join(root, "doc", "gallery.md"), encoding="utf-8").read()
+assert text == gallery.page(), "doc/gallery.md is out of date: run scripts/make-gallery.py"
+missing = set(plot.PICTURES) - set(re.findall(r"plot\.py (\w+) ", text))
+assert not missing, missing
+pictures = re.findall(r"!\[[^]]*\]\(([^)]*)\)", text)
+sizes = [os.path.getsize(os.path.join(root, "doc", name)) for name in pictures]
+assert len(sizes) > 20 and max(sizes) <= gallery.MOST_BYTES and sum(sizes) < 1.5e6, sizes
+there = set(os.listdir(os.path.join(root, "doc", "figures", "gallery")))
+assert there == {os.path.basename(name) for name in pictures}, there
+end
+code=0
+timeout "$time_limit" /usr/bin/python3 gallery.py "$root" >out 2>err || code=$?
+check "the gallery has every figure" test "$code" = 0
+# one of its figures by its commands
+code=0
+(cd "$root" && timeout "$time_limit" /usr/bin/python3 - "$folder/gallery" "$program" <<'end') >out 2>err || code=$?
+import importlib.util, os, sys
+spec = importlib.util.spec_from_file_location("gallery", "scripts/make-gallery.py")
+gallery = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(gallery)
+folder = sys.argv[1]
+os.mkdir(folder)
+open(os.path.join(folder, "gaits.yaml"), "w").write(gallery.CASES["gaits.yaml"])
+gallery.PICTURES, gallery.PROGRAM = folder, sys.argv[2]
+gallery.draw("gait", {n: c for _, _, some in gallery.CHAPTERS for n, _, c in some}["gait"], folder)
+end
+check "a figure of the gallery is drawn by its commands" test "$code" = 0 -a -s gallery/gait.png
 
 # ---- files without a figure
 
