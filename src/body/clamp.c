@@ -1,8 +1,8 @@
 /* clamp.c: a joint of the rod with one given edge direction. */
 #include "body/clamp.h"
 
-#include "body/edge.h"
-#include "fish/fish_prescribed.h"
+#include "body/rod.h"
+#include "fish/fish_motion.h"
 
 // state of the clamp: edge 0, the angle with the given direction, and the rate of the angle
 struct clamp {

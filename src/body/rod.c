@@ -3,7 +3,82 @@
 
 #include <math.h>
 
-#include "body/edge.h"
+#include "fish/fish_motion.h"
+
+// ---- from the unknowns of two nodes to the edge between these nodes
+
+struct edge edge_at(const struct fish *fish, int k, const double *y) {
+    const double *const x = y + fish->at.x + k, *const z = y + fish->at.y + k;
+    const double *const vx = y + fish->at.vx + k, *const vy = y + fish->at.vy + k;
+    const double *const ax = y + fish->at.ax + k, *const ay = y + fish->at.ay + k;
+    const double e[2] = {x[1] - x[0], z[1] - z[0]};
+
+    struct edge edge = {.length = sqrt(e[0] * e[0] + e[1] * e[1]),
+                        .middle = {(x[0] + x[1]) / 2, (z[0] + z[1]) / 2},
+                        .velocity = {(vx[0] + vx[1]) / 2, (vy[0] + vy[1]) / 2},
+                        .acceleration = {(ax[0] + ax[1]) / 2, (ay[0] + ay[1]) / 2},
+                        .rate = {vx[1] - vx[0], vy[1] - vy[0]}};
+
+    edge.t[0] = e[0] / edge.length;
+    edge.t[1] = e[1] / edge.length;
+    edge.n[0] = -edge.t[1];
+    edge.n[1] = edge.t[0];
+
+    return edge;
+}
+
+double edge_turn_rate(const struct edge *edge) {
+    return edge_dot(edge->n, edge->rate) / edge->length;
+}
+
+double edge_dot(const double a[2], const double b[2]) {
+    return a[0] * b[0] + a[1] * b[1];
+}
+
+struct bend edge_bend(const double before[2], const double after[2]) {
+    const double sine = before[0] * after[1] - before[1] * after[0];
+    const double angle = atan2(sine, edge_dot(before, after));
+    struct bend bend = {.curvature = 2 * tan(angle / 2), .slope = 2 / (1 + cos(angle))};
+    bend.second = bend.slope * bend.curvature / 2;
+    return bend;
+}
+
+int edge_place(const struct fish *fish, int i, int node) {
+    return (i == 0 ? fish->at.x : fish->at.y) + node;
+}
+int edge_velocity(const struct fish *fish, int i, int node) {
+    return (i == 0 ? fish->at.vx : fish->at.vy) + node;
+}
+int edge_acceleration(const struct fish *fish, int i, int node) {
+    return (i == 0 ? fish->at.ax : fish->at.ay) + node;
+}
+
+// ---- phibar = a(t) A (lbar/l_ref) (c0 + c1 sigma + c2 sigma^2) (sin(beta sigma + omega t + phase) + phi0), or
+// a table instead of the sine
+
+struct actuation actuation_from(const struct actuation *all, int first) {
+    return (struct actuation){all->curvature + first, all->rate + first, all->curvature_by_phi0 + first,
+                              all->rate_by_phi0 + first};
+}
+
+void actuation_find(const struct fish *fish, struct fish_gait gait, double phi0, double phi0_rate,
+                    const struct actuation *to) {
+    const double ramp = gait.amplitude, rate_of_ramp = gait.amplitude_rate;
+    for (int j = 0; j < fish->n_joints; j++) {
+        const double half_tangent = tan(fish_natural_angle(fish, j, &gait, phi0) / 2);
+        const double slope = 1 + half_tangent * half_tangent;  // of the curvature by the angle
+        to->curvature[j] = 2 * half_tangent;
+        to->curvature_by_phi0[j] = ramp * fish->wave_amplitude[j] * slope;
+
+        const struct fish_demand demand = fish_demand(fish, j, &gait);
+        const double angle_rate =
+            fish->wave_amplitude[j] * (rate_of_ramp * (demand.sine + phi0) + ramp * (demand.sine_rate + phi0_rate)) +
+            rate_of_ramp * demand.angle + ramp * demand.angle_rate;
+        to->rate[j] = angle_rate * slope;
+        to->rate_by_phi0[j] =
+            fish->wave_amplitude[j] * rate_of_ramp * slope + angle_rate * half_tangent * to->curvature_by_phi0[j];
+    }
+}
 
 // a joint: gradient and rate of the turning angle, curvature and derivatives of the curvature by the angle
 enum { N_LOCAL = 6 };  // coordinates of the joint's three nodes: x, y of each in turn
@@ -250,4 +325,85 @@ double rod_damping_power(const struct fish *fish, const double *rate) {
     }
 
     return power;
+}
+
+// ---- running sums from the tail; an exponential integrator for every joint and edge
+
+void rod_stress_balance(const struct fish *fish, const double *residue, const double *y, double *stress) {
+    double *const moment = stress, *const tension = stress + fish->n_joints;
+    double force[2] = {0, 0}, couple = 0;
+    struct edge edge = edge_at(fish, fish->n_edges - 1, y);
+    for (int k = fish->n_edges - 1; k + 1 >= fish_n_prescribed(fish); k--) {
+        // sum over all nodes behind node k, and moment about node k
+        for (int i = 0; i < 2; i++) force[i] += residue[edge_acceleration(fish, i, k + 1)];
+        couple += edge.length * edge_dot(edge.n, force);
+        tension[k] -= edge_dot(edge.t, force);
+        if (k == 0) return;
+
+        const struct edge ahead = edge_at(fish, k - 1, y);
+        moment[k - 1] -= couple / edge_bend(ahead.t, edge.t).slope;
+        edge = ahead;
+    }
+}
+
+// stiffness and damping of one strain: EI/lbar and d_b of a joint, EA and d_s lbar of an edge
+struct material {
+    double stiffness, damping;
+};
+static struct material material_of(const struct fish *fish, int i) {
+    const int edge = i - fish->n_joints;
+    if (edge < 0) return (struct material){fish->bending_stiffness[i] / fish->edge_length, fish->bending_damping[i]};
+    return (struct material){fish->axial_stiffness[edge], fish->axial_damping[edge] * fish->edge_length};
+}
+
+// phi[k] = integral over q from 0 to 1 of exp(-r (1 - q)) q^k/k!
+static void exponential_integrals(double r, double phi[3]) {
+    if (r > 0.5) {
+        phi[0] = -expm1(-r) / r;
+        phi[1] = (1 - phi[0]) / r;
+        phi[2] = (0.5 - phi[1]) / r;
+        return;
+    }
+
+    // the series of phi[2], sum over i of (-r)^i/(i + 3)!, then phi[1] and phi[0] by recursion
+    double term = 1.0 / 6;
+    phi[2] = 0;
+
+    for (int i = 0; i < 12; i++) {
+        phi[2] += term;
+        term *= -r / (i + 4);
+    }
+
+    phi[1] = 0.5 - r * phi[2];
+    phi[0] = 1 - r * phi[1];
+}
+
+void rod_stress_creep(const struct fish *fish, double h, double g, const double *oldest, const double *before,
+                      const double *now, double *strain) {
+    for (int i = 0; i < fish->n_joints + fish->n_edges; i++) {
+        const struct material material = material_of(fish, i);
+        if (material.damping <= 0) {
+            strain[i] = now[i] / material.stiffness;
+            continue;
+        }
+
+        // the stress at the part q of the step is before + linear q + square q (q - 1)
+        const double linear = now[i] - before[i];
+        const double square = g > 0 ? (linear - (before[i] - oldest[i]) * h / g) * h / (h + g) : 0;
+        const double r = h * material.stiffness / material.damping;
+        double phi[3];
+        exponential_integrals(r, phi);
+        const double stress = before[i] * phi[0] + (linear - square) * phi[1] + 2 * square * phi[2];
+        strain[i] = exp(-r) * strain[i] + r * stress / material.stiffness;
+    }
+}
+
+void rod_stress_rates(const struct fish *fish, const double *strain, const double *stress, double *rate) {
+    for (int i = 0; i < fish->n_joints + fish->n_edges; i++) {
+        const struct material material = material_of(fish, i);
+        const double damped = stress[i] - material.stiffness * strain[i];
+        rate[i] = material.damping > 0 ? damped / material.damping : 0;
+        // the rate of an edge is in m s-1
+        if (i >= fish->n_joints) rate[i] *= fish->edge_length;
+    }
 }

@@ -1,5 +1,5 @@
-/* rod.h: the elastic body: forces of bending, stretching and internal damping, derivatives of the forces, energies and
- * powers. doc/model.md, sections 2 and 3. Tested by tests/body/test_rod.c.
+/* rod.h: the elastic body: edges, muscle (actuation), forces of bending, stretching and internal damping, derivatives
+ * of the forces, energies and powers. doc/model.md, sections 2 and 3. Tested by tests/body/test_rod.c.
  *
  * Joint j stands at node j+1 between the edges j and j+1 and depends on the nodes j, j+1, j+2:
  *
@@ -10,8 +10,54 @@
 #define ROD_H
 
 #include "base/sparse.h"
-#include "body/actuation.h"
 #include "fish/fish.h"
+#include "fish/fish_motion.h"
+
+/* Frame and motion of an edge of a body. doc/model.md, sections 2 and 9. */
+
+/* From node k to node k+1. */
+struct edge {
+    double length, t[2], n[2];                      /* m; unit tangent and normal, n = E3 x t */
+    double middle[2], velocity[2], acceleration[2]; /* of the midpoint: m, m s-1, m s-2 */
+    double rate[2];                                 /* velocity of node k+1 minus velocity of node k, m s-1 */
+};
+
+/* Edge k of a fish for the unknowns y. */
+struct edge edge_at(const struct fish *fish, int k, const double *y);
+
+/* The rate at which the edge turns, rad s-1. */
+double edge_turn_rate(const struct edge *edge);
+
+double edge_dot(const double a[2], const double b[2]);
+
+/* The curvature kappa = 2 tan(angle/2) of a joint between the unit vectors before and after, with first and second
+ * derivative by the angle from before to after. */
+struct bend {
+    double curvature, slope, second;
+};
+struct bend edge_bend(const double before[2], const double after[2]);
+
+/* Index of component i (0: x, 1: y) of the position, velocity or acceleration of a node among all unknowns. */
+int edge_place(const struct fish *fish, int i, int node);
+int edge_velocity(const struct fish *fish, int i, int node);
+int edge_acceleration(const struct fish *fish, int i, int node);
+
+/* The muscle: a travelling wave or a table of natural curvature. doc/model.md, section 4. */
+
+/* Natural curvature of every joint; all arrays (n_joints). */
+struct actuation {
+    double *curvature;         /* kbar, dimensionless: 2 tan of half the natural turning angle */
+    double *rate;              /* rate of kbar, s-1 */
+    double *curvature_by_phi0; /* derivatives of both by the bias phi0, at a constant rate of the bias */
+    double *rate_by_phi0;
+};
+
+/* The part of arrays for the joints of all fish that starts at joint `first`. */
+struct actuation actuation_from(const struct actuation *all, int first);
+
+/* Fill all four arrays for the bias phi0 and the rate of the bias, s-1. */
+void actuation_find(const struct fish *fish, struct fish_gait gait, double phi0, double phi0_rate,
+                    const struct actuation *to);
 
 /* Curvature kappa = 2 tan(phi/2) of every joint, dimensionless (n_joints). */
 void rod_curvature(const struct fish *fish, const double *y, double *curvature);
@@ -52,5 +98,29 @@ double rod_actuation_power(const struct fish *fish, const struct actuation *musc
 
 /* Power of the internal damping, W: never positive. */
 double rod_damping_power(const struct fish *fish, const double *rate);
+
+/* The stresses of a rod from the balance of momentum, and the strains from the material law, for the
+ * powers and energies of section 13. doc/model.md, section 13; doc/numerics.md, section 9.
+ *
+ * In a stiff body strains are tiny, and stiffness times a position error gives a spurious moment. Accelerations do not
+ * have this error. The momentum balance of the free part of the body behind a joint gives the moment of the joint:
+ *
+ *     node k ==M_k==> node k+1 ---- ... ---- node N-1        M_k dkappa/dphi = - sum over j > k: (x_j - x_k) x r_j
+ *
+ * with r_j = m_j a_j minus all forces on the node except the rod forces. */
+
+/* Correct the stresses of rod_strains, computed from positions, to the stresses of the momentum balance; residue: m a
+ * minus all forces including the rod forces, N, in the rows ax, ay. The stress of a joint or edge is unchanged if a
+ * node behind has a prescribed motion. */
+void rod_stress_balance(const struct fish *fish, const double *residue, const double *y, double *stress);
+
+/* Advance the strains by a step of h seconds: stress = stiffness strain + damping dstrain/dt. The stress is the
+ * parabola through oldest, before and now; the step from oldest to before took g seconds. g = 0: the line through
+ * before and now. */
+void rod_stress_creep(const struct fish *fish, double h, double g, const double *oldest, const double *before,
+                      const double *now, double *strain);
+
+/* The rates of the strains from strains and stresses, as in rod_strains. */
+void rod_stress_rates(const struct fish *fish, const double *strain, const double *stress, double *rate);
 
 #endif

@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
-#include "fish/fish_sheet.h"
+#include "fish/fish_school.h"
 
 static const double pi = 3.14159265358979323846;
 static const double max_events = 1e9, max_vortices = 1e7 /* of one fish */;

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "fish/fish_sheet.h"
+#include "fish/fish_school.h"
 
 #define AT(field) offsetof(struct case_values, field)
 #define IN_FISH(field) offsetof(struct fish_parameters, field)

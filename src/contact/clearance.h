@@ -3,9 +3,35 @@
 #ifndef CLEARANCE_H
 #define CLEARANCE_H
 
-#include "contact/neighbours.h"
+#include "base/mathematics.h"
+#include "base/status.h"
 #include "fish/fish.h"
 #include "state/state.h"
+
+/* Overlapping pairs of boxes: boxes in a list sorted by x are compared in y if the x ranges overlap.
+ * Boxes widened by half a distance find all bodies closer than this distance. */
+
+struct neighbours {
+    int n;
+    struct box *box; /* set by the caller                                                        (n) */
+    int *order;      /* boxes sorted by low x, from the last call                                    (n) */
+
+    /* Each overlap is listed for both boxes: the boxes that overlap box i are other[first[i]] .. other[first[i + 1] -
+     * 1], in ascending order. */
+    int *first; /* (n + 1) */
+    int *other; /* (first[n]) */
+    int capacity;
+    int *pair;   /* scratch: pairs in sweep order                                            (capacity) */
+    int *filled; /* scratch: number of overlaps of each box entered so far; then free               (n) */
+};
+
+/* Allocate n boxes. Fails with STATUS_MEMORY; neighbours_free accepts NULL. */
+enum status neighbours_create(struct neighbours **neighbours, int n);
+void neighbours_free(struct neighbours *neighbours);
+
+/* Find all overlaps of the present boxes. The cost is proportional to the overlaps in x, plus the changes of order
+ * since the last call. Fails with STATUS_MEMORY; there are then no overlaps. */
+enum status neighbours_find(struct neighbours *neighbours);
 
 /* The box of a body on straight node paths from the positions in before to the positions in y, widened by half the
  * thickness and half a distance, m: bodies with disjoint boxes stay further apart than this distance. */
@@ -34,5 +60,23 @@ struct passage clearance_passage(const struct fish *a, const struct fish *b, con
  * straight: a collision within the step is found for any distance at both ends. Workspace as above. */
 void clearance_step(const struct school *school, struct state *state, double t, const double *y,
                     struct neighbours *neighbours, double *between);
+
+/* Test for a body that crosses itself, which is unphysical. A body does not repel itself
+ * (doc/model.md, section 16), so a limp body may cross itself.
+ *
+ *     crossed line          crossed outline        folded: the radius of a bend is less than half the thickness
+ *        ___                   .-----.
+ *       /   \                 ( (===. )                 _
+ *       \___/____              '-'===================  | |\
+ *           \                                          | '-`====
+ */
+
+/* Whether the centre line or the outline of a fish crosses itself. The outline follows both sides of the nodes at half
+ * the thickness and ends in a point at nose and tail. The cost is linear in n_nodes unless the body turns by more than
+ * half a turn. scratch: (4 n_nodes). */
+int self_crossing(const struct fish *fish, const double *y, double *scratch);
+
+/* Record the first crossing of any body in state->crossed and state->crossed_t. scratch: (n_unknowns). */
+void self_crossing_remember(const struct school *school, struct state *state, double *scratch);
 
 #endif

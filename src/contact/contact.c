@@ -7,9 +7,8 @@
 
 #include "base/memory.h"
 #include "contact/clearance.h"
-#include "contact/neighbours.h"
-#include "fish/fish_distance.h"
-#include "fish/fish_prescribed.h"
+#include "fish/fish.h"
+#include "fish/fish_motion.h"
 
 struct contact {
     const struct school *school;

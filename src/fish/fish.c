@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/mathematics.h"
 #include "base/parallel.h"
 
 int fish_threads(const struct school *school) {
@@ -53,4 +54,84 @@ double fish_rate(const struct school *school, const struct fish *fish) {
     const double drift = hypot(school->velocity[0], school->velocity[1]);
     const double speed = fmax(fmax(fabs(fish->start_speed), fabs(fish->motion.speed)), drift);
     return speed > 0 ? speed / fish->length : 1;
+}
+
+// ---- distances of points and segments
+
+// distance of the point p from the segment a b
+static double point_to_segment(const double p[2], const double a[2], const double b[2]) {
+    const double e[2] = {b[0] - a[0], b[1] - a[1]}, r[2] = {p[0] - a[0], p[1] - a[1]};
+    const double square = e[0] * e[0] + e[1] * e[1];
+    double q = square > 0 ? (r[0] * e[0] + r[1] * e[1]) / square : 0;
+    q = fmin(1, fmax(0, q));
+    return hypot(r[0] - q * e[0], r[1] - q * e[1]);
+}
+
+double fish_point_distance(const struct fish *fish, const double *y, const double p[2]) {
+    double min = INFINITY;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double a[2] = {y[fish->at.x + k], y[fish->at.y + k]};
+        const double b[2] = {y[fish->at.x + k + 1], y[fish->at.y + k + 1]};
+        min = fmin(min, point_to_segment(p, a, b) - fish->thickness[k] / 2);
+    }
+
+    return min;
+}
+
+double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y, int *wall) {
+    const struct walls *const walls = &school->walls;
+    double min = INFINITY;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        // the thicker edge at the node
+        const double before = k > 0 ? fish->thickness[k - 1] : 0, after = k < fish->n_edges ? fish->thickness[k] : 0;
+        for (int w = 0; w < walls->n; w++) {
+            const double gap = walls->inward[w] * (y[fish->at.y + k] - walls->y[w]) - fmax(before, after) / 2;
+            if (!(gap < min)) continue;
+            min = gap;
+            if (wall) *wall = w;
+        }
+    }
+
+    return min;
+}
+
+static double cross(const double a[2], const double b[2], const double c[2]) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static double segment_to_segment(const double a[2], const double b[2], const double c[2], const double d[2]) {
+    if (cross(a, b, c) * cross(a, b, d) < 0 && cross(c, d, a) * cross(c, d, b) < 0) return 0;
+    return fmin(fmin(point_to_segment(a, c, d), point_to_segment(b, c, d)),
+                fmin(point_to_segment(c, a, b), point_to_segment(d, a, b)));
+}
+
+static double max_half_thickness(const struct fish *fish) {
+    double max = 0;
+    for (int k = 0; k < fish->n_edges; k++) max = fmax(max, fish->thickness[k] / 2);
+    return max;
+}
+
+double fish_distance(const struct fish *a, const struct fish *b, const double *y, double limit) {
+    // the boxes around the bodies exclude most pairs of a school
+    const struct box box = box_around(a->n_nodes, y + a->at.x, y + a->at.y),
+                     other = box_around(b->n_nodes, y + b->at.x, y + b->at.y);
+
+    if (box_gap(&box, &other) - max_half_thickness(a) - max_half_thickness(b) > limit) return INFINITY;
+    double min = INFINITY;
+    for (int i = 0; i < a->n_edges; i++) {
+        const double p[2] = {y[a->at.x + i], y[a->at.y + i]}, q[2] = {y[a->at.x + i + 1], y[a->at.y + i + 1]};
+        const double length = fabs(q[0] - p[0]) + fabs(q[1] - p[1]);
+        for (int j = 0; j < b->n_edges; j++) {
+            const double r[2] = {y[b->at.x + j], y[b->at.y + j]}, s[2] = {y[b->at.x + j + 1], y[b->at.y + j + 1]};
+            const double thickness = (a->thickness[i] + b->thickness[j]) / 2;
+
+            // every point of an edge is within the edge length of the first node
+            const double reach = min + thickness + length + fabs(s[0] - r[0]) + fabs(s[1] - r[1]);
+            const double dx = r[0] - p[0], dy = r[1] - p[1];
+            if (dx * dx + dy * dy > reach * reach) continue;
+            min = fmin(min, segment_to_segment(p, q, r, s) - thickness);
+        }
+    }
+
+    return fmax(0, min);
 }

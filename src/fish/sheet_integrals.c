@@ -6,7 +6,7 @@
 
 #include "base/mathematics.h"
 #include "base/memory.h"
-#include "fish/curve.h"
+#include "fish/shape.h"
 
 static const double pi = 3.14159265358979323846;
 

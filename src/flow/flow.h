@@ -1,6 +1,6 @@
 /* flow.h: positions of the evaluation points of all bodies, and positions and strengths of the sources. The velocities
- * are in flow_at_bodies.h, flow_derivative.h, flow_at_wake.h, flow_at_markers.h and flow_field.h. doc/model.md,
- * sections 6 to 9, 17. Tested by tests/flow/test_flow.c.
+ * are in flow_at_bodies.h, flow_derivative.h and flow_at_wake.h. doc/model.md, sections 6 to 9, 17. Tested by
+ * tests/flow/test_flow.c.
  *
  * The points of one fish, in this order, and the bound sheets that act at each point:
  *
@@ -20,12 +20,50 @@
 
 #include "base/status.h"
 #include "fish/fish.h"
-#include "flow/ring_sources.h"
 #include "state/state.h"
+#include "vortex/ring.h"
 #include "vortex/velocity_sum.h"
 #include "vortex/vortices.h"
 #include "wake/free_sheet.h"
+#include "wake/ring_sheet.h"
 #include "wake/wake_interpolation.h"
+
+/* The external flow at height y at time t: a stream with shear and gusts. doc/model.md, sections 8 and 9. */
+void flow_external(const struct school *school, double t, double y, double *u, double *v);
+
+/* Acceleration Du/Dt of a particle of the external flow at time t, uniform in space, m s-2. */
+void flow_external_acceleration(const struct school *school, double t, double acceleration[2]);
+
+// ---- positions and strengths of the vortex rings of bodies and wakes of finite depth. doc/model.md, section 18
+
+enum { N_LEG_SUMS = 7 };
+
+/* The rings of one fish. */
+struct fish_rings {
+    struct ring_sheet graded, middles; /* the wake for the own control points; the wake for all other targets */
+    struct rings own;     /* own body at the own control points: bound vortices, then legs of control points */
+    struct rings body;    /* control points, each with the circulation of its interval and its leg */
+    double *line[2];      /* dx of the control points, m                        (n_control) */
+    double newest[3];     /* label of the newest marker, m2 s-1; position of the marker relative to the tail, m */
+    struct rings markers; /* at the last event */
+    struct rings body_image, middles_image, markers_image;
+};
+
+struct flow_rings {
+    struct fish_rings *fish; /* (n_fish) */
+    /* with the velocity at points: div u, gradient of div u; a, gradient of a, one component after the other
+     * (n_points) */
+    double *div, *div_x, *div_y, *edge, *edge_gradient;
+    double *image_div;        /* after flow_rings_images                                       (n_points) */
+    double *legs[N_LEG_SUMS]; /* workspace: velocities of the own legs at control points   (n_points) */
+    /* at markers, after flow_rings_at_markers: rates of labels; div u of images; velocity and div u of the own legs
+     * (n_markers) */
+    int wake_capacity;
+    double *wake_div, *wake_rate, *wake_image_div, *wake_leg_u, *wake_leg_v, *wake_leg_div;
+};
+
+/* The image of a source at y lies at flow_mirror - y (one wall). */
+double flow_mirror(const struct school *school);
 
 /* Points of one fish that a thread evaluates at once. */
 struct chunk {
@@ -39,7 +77,7 @@ struct flow_class {
     double smoothing, sheet_smoothing; /* delta and e of these fish, m */
     struct range points, markers;      /* ranges of the class; markers: at the last flow_at_wake */
     struct vortices sheet;             /* the bound vortices with the smoothing of this class: a view of flow.sheet */
-    struct vortex_group *group; /* groups of this view and of flow_at_markers.c        (n_fish + n_classes + 1) */
+    struct vortex_group *group;        /* groups of this view and of flow_at_wake.c        (n_fish + n_classes + 1) */
     int sheet_by_tree, images_by_many; /* whether one sum covers all points, in this evaluation */
 };
 
@@ -84,7 +122,7 @@ struct flow {
     struct range *sheet_range; /* of each fish                                   (n_fish) */
     double *opposite;          /* opposite circulations of the bound vortices     (sheet.n) */
 
-    struct flow_rings *rings;                 /* only for a school with `finite`: ring_sources.h; else NULL */
+    struct flow_rings *rings;                 /* only for a school with `finite`: flow.h; else NULL */
     struct velocity_sum *velocity_sum;        /* tree sums of wakes and sheets */
     struct wake_interpolation *interpolation; /* interpolation of the released vortices; NULL: never interpolated */
     int is_interpolated;                      /* whether the interpolation was built for the wakes of this version: */

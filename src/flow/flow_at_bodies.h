@@ -40,4 +40,11 @@ void flow_relative_velocity(const struct fish *fish, int edge, const double velo
 /* Velocity of the fluid relative to the tail of fish f, u - v_tail. After flow_velocity. */
 void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]);
 
+/* Velocity of the fluid at any point. */
+
+/* Velocity of the fluid and velocity gradient at any points, at the event of the state: every wake and every bound
+ * sheet with the full smoothing, as for another body; NaN beyond the walls. Many points are summed by the tree, to 1e-7
+ * (velocity_sum.h). No result of the run depends on this function. Fails with STATUS_MEMORY. */
+enum status flow_field(struct flow *flow, const struct state *state, const struct induced *at);
+
 #endif

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "flow/flow_external.h"
+#include "flow/flow.h"
 #include "wake/free_sheet.h"
 
 static const double two_pi = 6.28318530717958647692;
@@ -214,7 +214,7 @@ static enum status rings_place_markers(struct flow *flow, const struct state *st
                                flow->nascent.circulation[f]));
         flow->wake_range[f] = (struct range){flow->n_markers, of->markers.n};
         flow->n_markers += of->markers.n;
-        if (school->walls.n > 0) TRY(ring_mirror(&of->markers, ring_sources_mirror(flow->school), &of->markers_image));
+        if (school->walls.n > 0) TRY(ring_mirror(&of->markers, flow_mirror(flow->school), &of->markers_image));
     }
 
     return STATUS_OK;

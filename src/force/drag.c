@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "body/edge.h"
+#include "body/rod.h"
 #include "flow/flow_at_bodies.h"
 
 static double drag_speed_law(const struct fish *fish, double speed) {

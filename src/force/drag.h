@@ -3,7 +3,7 @@
 #ifndef DRAG_H
 #define DRAG_H
 
-#include "body/edge.h"
+#include "body/rod.h"
 #include "fish/fish.h"
 #include "flow/flow.h"
 

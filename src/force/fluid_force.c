@@ -2,10 +2,9 @@
  * the derivatives. */
 #include "force/fluid_force.h"
 
-#include "body/edge.h"
+#include "body/rod.h"
 #include "force/drag.h"
 #include "force/reactive.h"
-#include "force/tail_flux.h"
 
 // forces of one edge: the drag on the edge, the reactive force on each node, and the tail flux on the tail node (last
 // edge only)

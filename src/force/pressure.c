@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "body/edge.h"
-#include "fish/fish_prescribed.h"
+#include "body/rod.h"
+#include "fish/fish_motion.h"
 #include "vortex/kernel.h"
 
 static const double pi = 3.14159265358979323846;

@@ -4,6 +4,138 @@
 #include <math.h>
 #include <string.h>
 
+#include "body/rod.h"
+
+// ---- m_L (min(w_t, 0) w_n n - w_n^2/2 t) with direction and velocity of the fluid at the tail
+
+/* Extrapolation weights to the tail, half an edge behind the midpoint of the last edge; the last edge comes first.
+ * Angle: parabola through three edges. Velocity: line through two midpoints. */
+enum { N_ANGLES = 3, N_MIDPOINTS = 2 };
+static const double angle_weight[N_ANGLES] = {15.0 / 8, -10.0 / 8, 3.0 / 8};
+static const double flow_weight[N_MIDPOINTS] = {1.5, -0.5};
+
+// the last edges (last edge first); direction of the body at the tail; velocity of the tail relative to the fluid
+struct tail {
+    struct edge edge[N_ANGLES];
+    double t[2], n[2];
+    double w[2], wt, wn;
+};
+
+static double angle_between(const struct edge *before, const struct edge *after) {
+    return atan2(edge_dot(before->n, after->t), edge_dot(before->t, after->t));
+}
+
+static struct tail tail_at(const struct fish *fish, const struct flow_at_body *flow, const double *y) {
+    struct tail tail;
+    const int last = fish->n_edges - 1;
+    for (int i = 0; i < N_ANGLES; i++) tail.edge[i] = edge_at(fish, last - i, y);
+
+    // extrapolate the direction: the weights sum to 1, so the turn depends only on the angles of the last two joints
+    const double turn = (angle_weight[0] - 1) * angle_between(&tail.edge[1], &tail.edge[0]) -
+                        angle_weight[2] * angle_between(&tail.edge[2], &tail.edge[1]);
+
+    const double c = cos(turn), s = sin(turn);
+    for (int i = 0; i < 2; i++) {
+        tail.t[i] = c * tail.edge[0].t[i] + s * tail.edge[0].n[i];
+        tail.n[i] = c * tail.edge[0].n[i] - s * tail.edge[0].t[i];
+    }
+
+    // extrapolate the velocity of the fluid
+    const double *const u[2] = {flow->u, flow->v};
+    for (int i = 0; i < 2; i++) {
+        tail.w[i] = y[edge_velocity(fish, i, last + 1)];
+        for (int k = 0; k < N_MIDPOINTS; k++) tail.w[i] -= flow_weight[k] * u[i][flow_midpoint(fish, last - k)];
+    }
+
+    tail.wt = edge_dot(tail.w, tail.t);
+    tail.wn = edge_dot(tail.w, tail.n);
+    return tail;
+}
+
+int tail_flux_exists(const struct fish *fish) {
+    return fish->tail_added_mass > 0;
+}
+
+static void tail_force(const struct fish *fish, const struct tail *tail, double force[2]) {
+    const double leaving = fmin(tail->wt, 0), wn = tail->wn;
+    for (int i = 0; i < 2; i++) {
+        force[i] = fish->tail_added_mass * (leaving * wn * tail->n[i] - wn * wn / 2 * tail->t[i]);
+    }
+}
+
+// derivatives of the force: by w [component][component of w], and by a rotation of the tail (dt = n, dn = -t)
+static void tail_slope(const struct fish *fish, const struct tail *tail, double by_velocity[2][2], double by_turn[2]) {
+    const double *const t = tail->t, *const n = tail->n, mass = fish->tail_added_mass;
+    const double wt = tail->wt, wn = tail->wn, leaving = fmin(wt, 0), leaves = wt < 0;
+
+    for (int i = 0; i < 2; i++) {
+        for (int j = 0; j < 2; j++) {
+            by_velocity[i][j] = mass * (leaves * wn * n[i] * t[j] + (leaving * n[i] - wn * t[i]) * n[j]);
+        }
+        by_turn[i] = mass * ((leaves * wn * wn - leaving * wt - wn * wn / 2) * n[i] + (wn * wt - leaving * wn) * t[i]);
+    }
+}
+
+void tail_flux_force(const struct fish *fish, const struct flow_at_body *flow, const double *y, double force[2]) {
+    force[0] = force[1] = 0;
+    if (!tail_flux_exists(fish)) return;
+    const struct tail tail = tail_at(fish, flow, y);
+    tail_force(fish, &tail, force);
+}
+
+void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow, const double *y,
+                        struct sparse *jacobian) {
+    if (!tail_flux_exists(fish)) return;
+    const struct tail tail = tail_at(fish, flow, y);
+    const int node = fish->n_nodes - 1;
+    double by_velocity[2][2], by_turn[2];
+    tail_slope(fish, &tail, by_velocity, by_turn);
+
+    for (int i = 0; i < 2; i++) {
+        const int row = edge_acceleration(fish, i, node);
+        for (int j = 0; j < 2; j++) {
+            sparse_add(jacobian, row, edge_velocity(fish, j, node), -by_velocity[i][j] / fish->mass[node]);
+
+            // an edge turns by n/l per displacement of its end
+            for (int k = 0; k < N_ANGLES; k++) {
+                const struct edge *const edge = &tail.edge[k];
+                const double by_end = by_turn[i] * angle_weight[k] * edge->n[j] / edge->length / fish->mass[node];
+                sparse_add(jacobian, row, edge_place(fish, j, node - k), -by_end);
+                sparse_add(jacobian, row, edge_place(fish, j, node - k - 1), by_end);
+            }
+        }
+    }
+}
+
+void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body *flow,
+                             const struct influence_block *block, const double *y, struct coupling_block *rows) {
+    if (!tail_flux_exists(fish)) return;
+    const struct tail tail = tail_at(fish, flow, y);
+    const int node = fish->n_nodes - 1, last = fish->n_edges - 1;
+    double by_velocity[2][2], by_turn[2];
+    tail_slope(fish, &tail, by_velocity, by_turn);
+
+    for (int k = 0; k < N_MIDPOINTS; k++) {
+        const double *const du = block->u + flow_midpoint(fish, last - k);
+        const double *const dv = block->v + flow_midpoint(fish, last - k);
+        const double weight = flow_weight[k] / fish->mass[node];
+        for (long c = 0; c < block->n_columns; c++) {
+            double *const ax = rows->value + c * rows->n_rows + node, *const ay = ax + fish->n_nodes;
+            const double by_u = du[c * block->n_points], by_v = dv[c * block->n_points];
+            *ax += weight * (by_velocity[0][0] * by_u + by_velocity[0][1] * by_v);
+            *ay += weight * (by_velocity[1][0] * by_u + by_velocity[1][1] * by_v);
+        }
+    }
+}
+
+double tail_flux_power(const struct fish *fish, const struct flow_at_body *flow, const double *y) {
+    if (!tail_flux_exists(fish)) return 0;
+    const struct tail tail = tail_at(fish, flow, y);
+    double force[2];
+    tail_force(fish, &tail, force);
+    return force[0] * y[fish->at.vx + fish->n_nodes - 1] + force[1] * y[fish->at.vy + fish->n_nodes - 1];
+}
+
 // components of w and of the relative acceleration a - b in the frame of the edge, and the coefficients of the force
 struct frame {
     double wt, wn, at, an;

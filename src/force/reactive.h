@@ -1,4 +1,4 @@
-/* reactive.h: reactive force on the edges of a body (added mass). tail_flux.h: the momentum flux at the tail.
+/* reactive.h: reactive force on the edges of a body (added mass), and momentum flux at the tail.
  * doc/model.md, section 9. Tested by tests/force/test_reactive.c.
  *
  * fish->force selects Lagrange's equations of the kinetic energy of the fluid (reactive) or the force of the article
@@ -8,8 +8,33 @@
 #ifndef REACTIVE_H
 #define REACTIVE_H
 
-#include "body/edge.h"
+#include "base/sparse.h"
+#include "body/rod.h"
 #include "fish/fish.h"
+#include "flow/flow_at_bodies.h"
+#include "flow/flow_derivative.h"
+
+/* Momentum flux into the wake at the tail (Lighthill), as a force on the tail node. doc/model.md, section
+ * 9.
+ *
+ *     node N-4 -- edge N-4 -- node N-3 -- edge N-3 -- node N-2 -- edge N-2 -- node N-1
+ *                  angle                   angle, u                angle, u    tail: angle and u by extrapolation */
+
+/* Whether the fish has a tail flux. Without tail flux the functions below return 0 and add nothing. */
+int tail_flux_exists(const struct fish *fish);
+
+/* The force on the tail node, N. */
+void tail_flux_force(const struct fish *fish, const struct flow_at_body *flow, const double *y, double force[2]);
+
+/* Add the derivatives of the rows ax, ay of the tail node, divided by the mass of the node: by the unknowns of the
+ * fish, and through the velocity of the fluid. */
+void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow, const double *y,
+                        struct sparse *jacobian);
+void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body *flow,
+                             const struct influence_block *block, const double *y, struct coupling_block *rows);
+
+/* Power of the force, W; never positive in still fluid. */
+double tail_flux_power(const struct fish *fish, const struct flow_at_body *flow, const double *y);
 
 /* Derivatives of the forces on the two nodes of an edge: first index node, second index component. */
 struct reactive_slope {

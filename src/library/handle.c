@@ -10,7 +10,7 @@
 
 #include "base/mathematics.h"
 #include "base/memory.h"
-#include "fish/fish_gait.h"
+#include "fish/fish_motion.h"
 #include "fish/fish_school.h"
 
 pthread_mutex_t handle_netcdf_lock = PTHREAD_MUTEX_INITIALIZER;

@@ -11,7 +11,7 @@
 #include "base/memory.h"
 #include "base/version.h"
 #include "case/sweep.h"
-#include "flow/flow_field.h"
+#include "flow/flow_at_bodies.h"
 #include "library/handle.h"
 #include "result/target.h"
 #include "run/record.h"

@@ -5,11 +5,9 @@
 
 #include "base/memory.h"
 #include "contact/clearance.h"
-#include "contact/self_crossing.h"
 #include "library/handle.h"
 #include "run/event.h"
 #include "school/diagnostics_energy.h"
-#include "school/diagnostics_history.h"
 #include "school/diagnostics_momentum.h"
 #include "state/impulse.h"
 #include "state/state.h"

@@ -4,13 +4,13 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/self_crossing.h"
+#include "contact/clearance.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_at_wake.h"
 #include "flow/flow_rings.h"
 #include "force/drag.h"
+#include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
-#include "school/diagnostics_history.h"
 #include "school/diagnostics_momentum.h"
 #include "state/impulse.h"
 #include "state/wake_merge.h"

@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "body/bending_mode.h"
 #include "body/rod.h"
-#include "fish/fish_distance.h"
+#include "fish/fish.h"
 #include "fish/fish_school.h"
 #include "flow/flow_at_bodies.h"
 #include "result/result_table.h"

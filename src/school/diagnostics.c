@@ -2,19 +2,227 @@
 #include "school/diagnostics.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mathematics.h"
 #include "contact/clearance.h"
 #include "control/control.h"
-#include "fish/fish_distance.h"
+#include "fish/fish.h"
+#include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
 #include "force/bound_sheet.h"
 #include "force/fluid_force.h"
 #include "school/diagnostics_energy.h"
-#include "school/diagnostics_forces.h"
-#include "school/diagnostics_history.h"
 #include "school/diagnostics_momentum.h"
+
+// ---- differences and means of samples
+
+// displacement through the water between two samples, m
+static void way_through_water(const struct sample *new, const struct sample *old, double way[2]) {
+    for (int i = 0; i < 2; i++) way[i] = new->com[i] - old->com[i] - (new->drifted[i] - old->drifted[i]);
+}
+
+// values of a sample that continue from the sample before: the drift of the stream, by trapezoids, and the unwrapped
+// heading
+static void continue_sample(const struct history *history, double interval, struct sample *sample) {
+    if (history->n == 0) return;
+
+    const struct sample *before = state_recall(history, 0);
+    sample->heading = before->heading + angle_wrap(sample->heading - before->heading);
+    for (int i = 0; i < 2; i++) {
+        sample->drifted[i] = before->drifted[i] + interval * (before->stream[i] + sample->stream[i]) / 2;
+    }
+}
+
+void diagnostics_remember(struct residual *residual, struct state *state) {
+    const double interval = residual->school->interval;
+    const int threads = fish_threads(residual->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        const struct fish *fish = &residual->school->fish[f];
+        const double *const y = state->y;
+        struct history *history = &state->history[f];
+        const int tail = fish->n_nodes - 1;
+        struct sample sample = {
+            .com = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)},
+            .velocity = {fish_mass_mean(fish, y + fish->at.vx), fish_mass_mean(fish, y + fish->at.vy)},
+            .tail = {y[fish->at.x + tail], y[fish->at.y + tail]},
+            .speed = NAN,
+            .heading = control_heading(fish, y)};
+        flow_external(residual->school, state->t, sample.com[1], &sample.stream[0], &sample.stream[1]);
+
+        // forces
+        const struct flow_at_body flow = flow_at_body(residual->flow, f);
+        const struct fluid_forces forces = fluid_force_sum(fish, &flow, sample.com, y);
+        const struct pressure_forces pressure = diagnostics_pressure(residual, f, sample.com, y);
+        memcpy(sample.friction, forces.friction, sizeof sample.friction);
+        diagnostics_fluid_force(forces.resistive, forces.reactive, &pressure, sample.force);
+        sample.leading_edge = pressure.leading_edge_a0;
+        memcpy(sample.work, state->balance[f].work, sizeof sample.work);
+
+        continue_sample(history, interval, &sample);
+
+        // mean speed over one period; the sample capacity - 2 events ago is one period older than the new sample
+        if (history->capacity > 1 && history->n >= history->capacity - 1) {
+            double way[2];
+            way_through_water(&sample, state_recall(history, history->capacity - 2), way);
+            sample.speed = hypot(way[0], way[1]) / ((history->capacity - 1) * interval);
+        }
+        state_remember(history, &sample);
+    }
+}
+
+int diagnostics_course(const struct history *history, double *course, double *rate) {
+    if (history->n < 2 || history->n < history->capacity) return 0;
+
+    const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
+    const double way[2] = {new->com[0] - old->com[0], new->com[1] - old->com[1]};
+    const double change[2] = {new->velocity[0] - old->velocity[0], new->velocity[1] - old->velocity[1]};
+    const double square = way[0] * way[0] + way[1] * way[1];
+    if (square <= 0) return 0;
+
+    *course = atan2(way[1], way[0]);
+    *rate = (way[0] * change[1] - way[1] * change[0]) / square;
+    return 1;
+}
+
+double diagnostics_mean_heading(const struct history *history) {
+    if (history->n == 1) return state_recall(history, 0)->heading;
+
+    double sum = 0;
+    for (int age = 0; age < history->n; age++) {
+        sum += (age == 0 || age == history->n - 1 ? 0.5 : 1) * state_recall(history, age)->heading;
+    }
+    return sum / (history->n - 1);
+}
+
+// position of the tail in the frame of the water, across the path of the fish
+static double tail_across(const struct history *history, int age, const double way[2], double distance) {
+    const struct sample *const sample = state_recall(history, age);
+    const double x = sample->tail[0] - sample->drifted[0], y = sample->tail[1] - sample->drifted[1];
+    return (way[0] * y - way[1] * x) / distance;
+}
+
+/* Peak-to-peak amplitude of the tail across the path of the fish. A crest is the vertex of the parabola through three
+ * samples: fourth order in the interval; the largest sample is second order. */
+static double peak_to_peak(const struct history *history, const double way[2], double distance) {
+    double least = INFINITY, most = -INFINITY;
+    for (int age = 0; age < history->n; age++) {
+        const double here = tail_across(history, age, way, distance);
+
+        double crest = here;
+        if (age > 0 && age + 1 < history->n) {
+            const double newer = tail_across(history, age - 1, way, distance);
+            const double older = tail_across(history, age + 1, way, distance);
+            const double slope = (newer - older) / 2, bend = newer - 2 * here + older;
+            const int is_crest = (here - newer) * (here - older) >= 0 && fabs(bend) > 0;
+            if (is_crest) crest -= slope * slope / (2 * bend);
+        }
+
+        least = fmin(least, crest);
+        most = fmax(most, crest);
+    }
+    return most - least;
+}
+
+// relative change of the mean speed between the last two periods
+static double speed_drift(const struct history *history) {
+    const double now = state_recall(history, 0)->speed, before = state_recall(history, history->n - 1)->speed;
+    return (now - before) / now;
+}
+
+// mean of a force of the samples against the direction of the path, by trapezoids; which: offset in struct sample
+static double mean_against(const struct history *history, size_t which, const double way[2], double distance) {
+    double sum = 0;
+    for (int age = 0; age < history->n; age++) {
+        const double *const force = (const double *)state_recall(history, age) + which / sizeof(double);
+        const double weight = age == 0 || age == history->n - 1 ? 0.5 : 1;
+        sum -= weight * (force[0] * way[0] + force[1] * way[1]) / distance;
+    }
+    return sum / (history->n - 1);
+}
+
+// largest magnitude of A_0; NaN unless force: pressure, and without flow past the nose
+static double leading_edge_most(const struct history *history) {
+    double most = NAN;
+    for (int age = 0; age < history->n; age++) most = fmax(most, fabs(state_recall(history, age)->leading_edge));
+    return most;
+}
+
+// fraction of the period with A_0 above the limit, by trapezoids
+static double separation_share(const struct history *history, double limit) {
+    if (history->n == 1) return fabs(state_recall(history, 0)->leading_edge) > limit;
+
+    double sum = 0;
+    for (int age = 0; age < history->n; age++) {
+        const double weight = age == 0 || age == history->n - 1 ? 0.5 : 1;
+        sum += fabs(state_recall(history, age)->leading_edge) > limit ? weight : 0;
+    }
+    return sum / (history->n - 1);
+}
+
+/* Mean thrust, power and efficiency of a held body (doc/model.md, section 13): the drive of the body also takes the
+ * thrust, whose work is no part of the power of the motion. */
+static void thrust_of_held(const struct fish *fish, const struct history *history, const double way[2], double distance,
+                           struct diagnostics_fish *to) {
+    // in water at rest a body that does not travel has the direction of the heading
+    const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)};
+    const int travels = distance > 1e-9 * fish->length;
+    to->mean_thrust =
+        -mean_against(history, offsetof(struct sample, force), travels ? way : ahead, travels ? distance : 1);
+    to->mean_power += to->mean_thrust * to->speed;
+    to->efficiency = to->mean_thrust * to->speed / to->mean_power;
+}
+
+static void means_over_period(const struct fish *fish, const struct history *history, double interval,
+                              struct diagnostics_fish *to) {
+    const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
+
+    // instantaneous values, until the second sample
+    to->ground_speed = hypot(to->com_velocity[0], to->com_velocity[1]);
+    to->speed = hypot(to->com_velocity[0] - new->stream[0], to->com_velocity[1] - new->stream[1]);
+    to->drift = to->heading_error = to->strouhal = NAN;
+    to->cost_of_transport = to->cost_of_transport_fluid = to->cost_of_transport_body = to->efficiency = NAN;
+    to->mean_thrust = to->mean_power = to->mean_actuation_power = NAN;
+    if (history->n < 2) return;
+
+    // speeds and powers
+    const double duration = (history->n - 1) * interval;
+    double way[2];
+    way_through_water(new, old, way);
+    const double distance = hypot(way[0], way[1]);
+    to->ground_speed = hypot(new->com[0] - old->com[0], new->com[1] - old->com[1]) / duration;
+    to->speed = distance / duration;
+    to->drift = speed_drift(history);
+    to->mean_actuation_power = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / duration;
+    const double drive = (new->work[WORK_DRIVING_ON_WATER] - old->work[WORK_DRIVING_ON_WATER]) / duration;
+    to->mean_power = to->mean_actuation_power + drive;
+    const int is_held = fish->motion.is_held;
+    if (is_held) thrust_of_held(fish, history, way, distance, to);
+    if (distance <= 0) return;
+
+    // quantities along the path
+    to->heading_error = angle_degrees(angle_wrap(atan2(way[1], way[0]) - angle_radians(to->desired_heading)));
+    const double momentum = fish->total_mass * to->speed;
+    to->cost_of_transport = (to->mean_actuation_power + drive) / momentum;
+    to->cost_of_transport_fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / duration / momentum;
+    to->cost_of_transport_body = (old->work[WORK_DAMPING] - new->work[WORK_DAMPING]) / duration / momentum;
+    to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
+    if (is_held) return;
+
+    const double into_water = old->work[WORK_FLUID] - new->work[WORK_FLUID];
+    to->mean_thrust = -mean_against(history, offsetof(struct sample, force), way, distance);
+    to->efficiency = mean_against(history, offsetof(struct sample, friction), way, distance) * distance / into_water;
+}
+
+void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
+                        struct diagnostics_fish *to) {
+    means_over_period(fish, history, interval, to);
+    to->leading_edge_most = leading_edge_most(history);
+    to->separation_share = fish->suction_limit > 0 ? separation_share(history, fish->suction_limit) : 0;
+}
 
 enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school) {
     *diagnostics = NULL;

@@ -3,9 +3,27 @@
 #ifndef DIAGNOSTICS_H
 #define DIAGNOSTICS_H
 
-#include "school/diagnostics_values.h"
+#include "school/diagnostics_momentum.h"
 #include "school/residual.h"
 #include "state/state.h"
+
+/* Samples of every fish at the events of the last period, and quantities over the period: means,
+ * course, amplitude of the tail. doc/model.md, section 13. */
+
+/* Add a sample to the history of every fish; call at every event, before diagnostics_event. */
+void diagnostics_remember(struct residual *residual, struct state *state);
+
+/* Course: direction of the displacement of the centre of mass over the last period, rad, and rate of the course, rad
+ * s-1. Returns 0 in the first period, or without displacement, else 1. */
+int diagnostics_course(const struct history *history, double *course, double *rate);
+
+/* Mean of the headings in a history, rad, unwrapped. */
+double diagnostics_mean_heading(const struct history *history);
+
+/* Fill the quantities of *to over the last period, or since the start within the first period; com_velocity and
+ * desired_heading of *to are input. */
+void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
+                        struct diagnostics_fish *to);
 
 /* Fails with STATUS_MEMORY. diagnostics_free accepts NULL. */
 enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school);

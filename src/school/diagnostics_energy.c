@@ -8,14 +8,11 @@
 #include "base/parallel.h"
 #include "body/clamp.h"
 #include "body/rod.h"
-#include "body/rod_stress.h"
 #include "contact/clearance.h"
-#include "contact/self_crossing.h"
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
+#include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
-#include "flow/flow_external.h"
 #include "force/fluid_force.h"
-#include "school/diagnostics_forces.h"
 #include "school/diagnostics_momentum.h"
 
 // power of the constraint forces of prescribed nodes, of the moment on a clamped head, and of the load at the tip;

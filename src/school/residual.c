@@ -9,9 +9,184 @@
 #include "base/parallel.h"
 #include "body/clamp.h"
 #include "body/rod.h"
-#include "fish/fish_prescribed.h"
+#include "contact/clearance.h"
+#include "fish/fish.h"
+#include "fish/fish_motion.h"
 #include "flow/flow_at_bodies.h"
+#include "flow/flow_derivative.h"
 #include "force/fluid_force.h"
+#include "force/pressure.h"
+
+// ---- unknowns by slices of the layout
+
+int residual_component(enum unknown kind) {
+    return kind == UNKNOWN_Y || kind == UNKNOWN_VY || kind == UNKNOWN_PY || kind == UNKNOWN_AY;
+}
+
+struct unknown_place residual_place(const struct school *school, int i) {
+    // bisection: the first fish with at.end above i
+    int f = 0, last = school->n_fish - 1;
+    while (f < last) {
+        const int middle = (f + last) / 2;
+        if (i >= school->fish[middle].at.end) {
+            f = middle + 1;
+        } else {
+            last = middle;
+        }
+    }
+
+    // the slice that contains i, from the last slice to the first
+    const struct layout *at = &school->fish[f].at;
+    const struct {
+        int first;
+        enum unknown kind;
+        const char *name;
+    } slices[] = {{at->phi0, UNKNOWN_PHI0, "phi0"},
+                  {at->circulation, UNKNOWN_CIRCULATION, "circulation"},
+                  {at->gamma, UNKNOWN_GAMMA, "gamma"},
+                  {at->ay, UNKNOWN_AY, "ay"},
+                  {at->ax, UNKNOWN_AX, "ax"},
+                  {at->py, UNKNOWN_PY, "py"},
+                  {at->px, UNKNOWN_PX, "px"},
+                  {at->vy, UNKNOWN_VY, "vy"},
+                  {at->vx, UNKNOWN_VX, "vx"},
+                  {at->y, UNKNOWN_Y, "y"},
+                  {at->x, UNKNOWN_X, "x"}};
+
+    int s = 0;
+    while (i < slices[s].first) s++;
+    return (struct unknown_place){
+        .fish = f, .index = i - slices[s].first, .kind = slices[s].kind, .name = slices[s].name};
+}
+
+double residual_scale(const struct school *school, int i) {
+    const struct unknown_place place = residual_place(school, i);
+    const struct fish *fish = &school->fish[place.fish];
+    const double f = fish_rate(school, fish);
+    const double length = fish->length;
+
+    switch (place.kind) {
+        case UNKNOWN_X:
+        case UNKNOWN_Y: return 0.01 * length;
+        case UNKNOWN_VX:
+        case UNKNOWN_VY: return 300 * length * f;
+        case UNKNOWN_PX:
+        case UNKNOWN_PY: return 300 * length * f * pressure_momentum_ratio(fish, place.index);
+        case UNKNOWN_AX:
+        case UNKNOWN_AY: return 1e5 * length * f * f;
+        case UNKNOWN_GAMMA: return 3 * length * f;
+        case UNKNOWN_CIRCULATION: return length * length * f;
+        case UNKNOWN_PHI0: return 1;
+    }
+    return 1;
+}
+
+double residual_undamped(const struct school *school, int i) {
+    const enum unknown kind = residual_place(school, i).kind;
+    return kind >= UNKNOWN_VX && kind <= UNKNOWN_PY ? 1.0 / 3000 : 1;
+}
+
+// ---- neighbours by boxes, then by the distance of outlines
+
+enum status residual_couplings_fill(struct residual_couplings *couplings, const struct school *school,
+                                    struct neighbours *neighbours) {
+    const size_t n_fish = (size_t)school->n_fish;
+    *couplings =
+        (struct residual_couplings){.school = school, .neighbours = neighbours, .reach = school->coupling_distance};
+    return MEMORY_NEW(couplings->coupled, n_fish * n_fish, "the couplings of fish");
+}
+
+void residual_couplings_free(struct residual_couplings *couplings) {
+    free(couplings->coupled);
+}
+
+// couple exactly the fish within a distance of each other; returns whether any pair has changed
+static int couple_neighbours(struct residual_couplings *couplings, const double *y, double distance) {
+    const struct school *school = couplings->school;
+    const struct neighbours *const neighbours = couplings->neighbours;
+    int changed = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        unsigned char *const before = couplings->coupled + (size_t)f * (size_t)school->n_fish;
+        int i = neighbours->first[f];
+        for (int g = 0; g < school->n_fish; g++) {
+            const int overlaps = i < neighbours->first[f + 1] && neighbours->other[i] == g;
+            i += overlaps;
+
+            // ordered pair: the same bits for (f, g) and (g, f)
+            const int a = f > g ? f : g, b = f > g ? g : f;
+            const int couple =
+                f == g || (overlaps && fish_distance(&school->fish[a], &school->fish[b], y, distance) <= distance);
+            changed |= before[g] != couple;
+            before[g] = (unsigned char)couple;
+        }
+    }
+    return changed;
+}
+
+enum status residual_couple(struct residual_couplings *couplings, const double *y) {
+    const struct school *school = couplings->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        couplings->neighbours->box[f] = clearance_box(&school->fish[f], couplings->reach, y, y);
+    }
+
+    TRY(neighbours_find(couplings->neighbours));
+    couplings->pattern += (unsigned)couple_neighbours(couplings, y, couplings->reach);
+    return STATUS_OK;
+}
+
+// upper bound of all distances between bodies, m
+static double extent(const struct school *school, const double *y) {
+    struct box all = clearance_box(&school->fish[0], 0, y, y);
+    for (int f = 1; f < school->n_fish; f++) {
+        all = box_union(all, clearance_box(&school->fish[f], 0, y, y));
+    }
+    return hypot(all.high[0] - all.low[0], all.high[1] - all.low[1]);
+}
+
+// number of values in the blocks of all coupled pairs
+static double n_block_values(const struct residual_couplings *couplings) {
+    const struct school *school = couplings->school;
+    double n = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const unsigned char *const coupled = couplings->coupled + (size_t)f * (size_t)school->n_fish;
+        for (int g = 0; g < school->n_fish; g++) {
+            if (g != f && coupled[g]) n += (double)flow_n_rows(&school->fish[f]) * flow_n_columns(&school->fish[g]);
+        }
+    }
+    return n;
+}
+
+int residual_couple_more(struct residual_couplings *couplings, const double *y) {
+    const double max_values = 5e7, before = couplings->reach, all = extent(couplings->school, y);
+    const unsigned pattern = couplings->pattern;
+    while (!couplings->couples_most && couplings->pattern == pattern && couplings->reach < all) {
+        couplings->reach = fmax(2 * couplings->reach, 0.5 * couplings->school->fish[0].length);
+        if (residual_couple(couplings, y) == STATUS_OK && n_block_values(couplings) <= max_values) continue;
+
+        // back to the reach before
+        couplings->reach = before;
+        couplings->couples_most = 1;
+        if (residual_couple(couplings, y) == STATUS_OK) return 0;
+    }
+    return couplings->pattern != pattern;
+}
+
+int residual_couple_contacts(struct residual_couplings *couplings, const struct contact *contact) {
+    const int n_fish = couplings->school->n_fish;
+    int n_contacts = 0;
+    for (int f = 0; f < n_fish; f++) {
+        const int *other;
+        const int n = contact_partners(contact, f, &other);
+        for (int i = 0; i < n; i++) {
+            unsigned char *const coupled = &couplings->coupled[f * n_fish + other[i]];
+            if (!*coupled) couplings->pattern++;
+            *coupled = 1;
+        }
+
+        n_contacts += n;
+    }
+    return n_contacts > 0;
+}
 
 // for every thread a block that fits any pair of fish; one array of n_unknowns
 static enum status allocate_scratch(struct residual *residual, int most_points, int most_columns, int most_rows) {

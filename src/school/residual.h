@@ -4,15 +4,80 @@
 #define RESIDUAL_H
 
 #include "base/status.h"
-#include "body/actuation.h"
+#include "body/rod.h"
+#include "contact/clearance.h"
 #include "contact/contact.h"
+#include "fish/fish.h"
 #include "flow/flow.h"
 #include "flow/flow_derivative.h"
 #include "force/bound_sheet.h"
 #include "force/pressure.h"
-#include "school/residual_couplings.h"
-#include "school/residual_unknowns.h"
 #include "state/state.h"
+
+/* Fish, node, name and scale of every unknown. doc/model.md, section 10;
+ * doc/numerics.md, section 3. */
+
+/* The kind of an unknown, for tolerances, names in messages, and the choice of algebraic equations. */
+enum unknown {
+    UNKNOWN_X,
+    UNKNOWN_Y,
+    UNKNOWN_VX,
+    UNKNOWN_VY,
+    UNKNOWN_PX,
+    UNKNOWN_PY,
+    UNKNOWN_AX,
+    UNKNOWN_AY,
+    UNKNOWN_GAMMA,
+    UNKNOWN_CIRCULATION,
+    UNKNOWN_PHI0
+};
+struct unknown_place {
+    int fish, index; /* index: node or point of the sheet */
+    enum unknown kind;
+    const char *name; /* "x", "sheet", ... */
+};
+
+/* The vector component of an unknown of a node: 0: x, 1: y. */
+int residual_component(enum unknown kind);
+
+/* Fish, kind and index of unknown i. */
+struct unknown_place residual_place(const struct school *school, int i);
+
+/* The scale of unknown i, in the unit of the unknown; error tolerances are relative to the scale. */
+double residual_scale(const struct school *school, int i);
+
+/* The factor on the scale of unknown i for methods that do not damp the vibrations of a stiff body: velocities and
+ * momenta then have the scale 0.1 L f, about the scale of positions times 2 pi f; the scale without this factor never
+ * limits the step. 1 for other unknowns. */
+double residual_undamped(const struct school *school, int i);
+
+/* Pairs of fish with a coupling block in the Jacobian: outlines closer than the reach, or in
+ * contact. doc/numerics.md, section 6. */
+
+struct residual_couplings {
+    const struct school *school;
+    struct neighbours *neighbours; /* workspace of the residual                         (n_fish) */
+    unsigned pattern;              /* changes with every change of coupled */
+    double reach;                  /* fish couple if the distance of the outlines is at most this, m */
+    int couples_most;              /* memory limit reached */
+    unsigned char *coupled; /* whether the Jacobian holds the block of fish g in the rows of fish f (n_fish, n_fish) */
+};
+
+/* Fill *couplings without coupled pairs. The neighbours must outlive the couplings. Fails with STATUS_MEMORY; call
+ * residual_couplings_free also after a failure. */
+enum status residual_couplings_fill(struct residual_couplings *couplings, const struct school *school,
+                                    struct neighbours *neighbours);
+void residual_couplings_free(struct residual_couplings *couplings);
+
+/* Couple fish by the positions in y. Fails with STATUS_MEMORY; the coupled pairs are then unchanged. */
+enum status residual_couple(struct residual_couplings *couplings, const double *y);
+
+/* Double the reach until more fish couple at the positions in y; the new reach is kept. Returns whether more fish
+ * couple: 0 if the blocks would exceed 400 MB, or without memory. */
+int residual_couple_more(struct residual_couplings *couplings, const double *y);
+
+/* Couple all fish in contact, for any reach; returns whether any fish are in contact. */
+int residual_couple_contacts(struct residual_couplings *couplings, const struct contact *contact);
 
 /* The equation for the circulation shed: the law of the case; the Kutta condition, during the solution of an impulsive
  * event; a given circulation, before the first marker of a free sheet; the Kutta condition with all shed circulation

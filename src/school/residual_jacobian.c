@@ -8,10 +8,10 @@
 #include "base/parallel.h"
 #include "body/clamp.h"
 #include "body/rod.h"
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "force/bound_sheet.h"
 #include "force/fluid_force.h"
-#include "force/tail_flux.h"
+#include "force/reactive.h"
 
 // zero the last column: circulation infinitely far away induces no velocity
 static void zero_nascent_column(struct influence_block *block) {

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 
 // two translations and a rotation
 enum { N_RIGID = 3 };

@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "school/jacobian.h"
-#include "school/residual_couplings.h"
+#include "school/residual.h"
 #include "school/residual_jacobian.h"
 #include "solver/newton.h"
 

@@ -10,10 +10,10 @@
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "flow/flow_at_bodies.h"
 #include "school/jacobian.h"
-#include "school/residual_couplings.h"
+#include "school/residual.h"
 #include "school/residual_jacobian.h"
 
 /* Gauss points of the interval. */

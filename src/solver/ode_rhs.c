@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "body/rod.h"
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_derivative.h"
 #include "force/bound_sheet.h"

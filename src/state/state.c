@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "body/rod.h"
-#include "fish/fish_start.h"
+#include "fish/fish_motion.h"
 
 static enum status state_fill(struct state *state, const struct school *school) {
     const int n_fish = school->n_fish, n_unknowns = school->n_unknowns;

@@ -7,9 +7,9 @@
 
 #include "base/memory.h"
 #include "contact/clearance.h"
-#include "flow/flow_external.h"
+#include "flow/flow.h"
 #include "school/diagnostics_energy.h"
-#include "school/diagnostics_forces.h"
+#include "school/diagnostics_momentum.h"
 #include "state/state.h"
 
 enum steady_freedom steady_map_freedom(const struct fish *fish) {

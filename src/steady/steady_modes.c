@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "fish/fish_prescribed.h"
-#include "flow/flow_external.h"
+#include "fish/fish_motion.h"
+#include "flow/flow.h"
 #include "run/event.h"
 #include "solver/modes.h"
 #include "solver/newton.h"

@@ -8,7 +8,7 @@
 
 #include "base/mathematics.h"
 #include "base/memory.h"
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "result/netcdf.h"
 
 struct reading {

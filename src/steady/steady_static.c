@@ -7,13 +7,12 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "body/edge.h"
-#include "fish/fish_gait.h"
-#include "fish/fish_prescribed.h"
-#include "flow/flow_external.h"
+#include "body/rod.h"
+#include "fish/fish_motion.h"
+#include "flow/flow.h"
+#include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
-#include "school/diagnostics_forces.h"
-#include "school/diagnostics_history.h"
+#include "school/diagnostics_momentum.h"
 #include "school/rigid.h"
 #include "solver/equilibrium.h"
 #include "steady/steady_start.h"

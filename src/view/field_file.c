@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "flow/flow.h"
-#include "flow/flow_field.h"
+#include "flow/flow_at_bodies.h"
 #include "result/netcdf.h"
 #include "result/target.h"
 

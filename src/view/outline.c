@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "fish/curve.h"
+#include "fish/shape.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -7,7 +7,7 @@
 
 #include "base/mathematics.h"
 #include "base/memory.h"
-#include "body/edge.h"
+#include "body/rod.h"
 
 /* Gauss-Legendre on [0, 1]: eta = 0.0694318, 0.3300095, 0.6699905, 0.9305682 with weights w; xi = eta^2, part = 2 eta
  * w. */

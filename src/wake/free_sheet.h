@@ -13,7 +13,7 @@
  *   other bodies, and edge midpoints of the own body: the middle of every stretch, with the smoothing of the wake;
  *   control points of the own body: points of the newest stretches, graded towards the tail, and the middles of older
  *   stretches, with a smoothing that tapers to 0 at the tail. The velocity of the own body at the markers has the same
- *   tapered smoothing (flow_at_markers.h). */
+ *   tapered smoothing (flow_at_wake.h). */
 #ifndef FREE_SHEET_H
 #define FREE_SHEET_H
 

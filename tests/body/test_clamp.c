@@ -3,9 +3,8 @@
 #include <stdlib.h>
 
 #include "body/clamp.h"
-#include "body/edge.h"
 #include "body/rod.h"
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "school.h"
 #include "school/residual_jacobian.h"
 

@@ -1,5 +1,5 @@
 /* test_edge.c: frame and motion of an edge: doc/model.md, section 2. */
-#include "body/edge.h"
+#include "body/rod.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"

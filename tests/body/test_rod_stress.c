@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "body/rod.h"
-#include "body/rod_stress.h"
 #include "school.h"
 
 #define TIME "time: {end: 8, shedding_interval: 0.02}\n"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "contact/contact.h"
-#include "fish/fish_distance.h"
+#include "fish/fish.h"
 #include "school.h"
 #include "school/diagnostics_energy.h"
 

@@ -1,7 +1,7 @@
 /* test_neighbours.c: the overlaps of boxes against a comparison of all pairs. */
 #include <stdlib.h>
 
-#include "contact/neighbours.h"
+#include "contact/clearance.h"
 #include "near.h"
 
 static double random_number(uint64_t *seed) {

@@ -2,7 +2,7 @@
  * crossing in a run. */
 #include <stdio.h>
 
-#include "contact/self_crossing.h"
+#include "contact/clearance.h"
 #include "school.h"
 
 #define TIME "time: {end: 2, shedding_interval: 0.02}\n"

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "failing_malloc.h"
+#include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_at_wake.h"
-#include "flow/flow_external.h"
 #include "school.h"
 #include "vortex/images.h"
 #include "vortex/kernel.h"

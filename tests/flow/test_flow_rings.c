@@ -1,7 +1,6 @@
 /* test_flow_rings.c: sheets of finite span: velocity at points and markers, ring by ring. doc/model.md, section 18. */
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_at_wake.h"
-#include "flow/flow_field.h"
 #include "flow/flow_rings.h"
 #include "school.h"
 

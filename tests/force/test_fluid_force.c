@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "body/edge.h"
+#include "body/rod.h"
 #include "flow/flow_at_bodies.h"
 #include "force/fluid_force.h"
 #include "school.h"

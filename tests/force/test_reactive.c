@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "flow/flow_at_bodies.h"
 #include "force/fluid_force.h"
 #include "force/reactive.h"

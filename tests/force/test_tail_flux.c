@@ -2,8 +2,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "body/edge.h"
-#include "force/tail_flux.h"
+#include "body/rod.h"
+#include "force/reactive.h"
 #include "school.h"
 
 #define TIME "time: {end: 4, shedding_interval: 0.02}\n"

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "fish/fish_gait.h"
+#include "fish/fish_motion.h"
 #include "library/handle.h"
 #include "school.h"
 

@@ -5,7 +5,6 @@
 #include "school.h"
 #include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
-#include "school/diagnostics_history.h"
 
 #define TIME "time: {end: 2, shedding_interval: 0.01}\n"
 

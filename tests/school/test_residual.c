@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "school.h"
 #include "school/residual_jacobian.h"
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "school.h"
 #include "solver/initial_conditions.h"
 

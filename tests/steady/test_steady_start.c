@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "school.h"
 #include "steady/steady_start.h"
 

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "body/edge.h"
-#include "fish/fish_prescribed.h"
+#include "body/rod.h"
+#include "fish/fish_motion.h"
 #include "verify.h"
 
 #define STILL "format: 1\nwake: {smoothing: 1.0e+6}\n"

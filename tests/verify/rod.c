@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "school/diagnostics_energy.h"
 #include "school/residual_jacobian.h"
 #include "verify.h"

@@ -7,8 +7,6 @@
 #include "failing_malloc.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
-#include "flow/flow_external.h"
-#include "flow/flow_field.h"
 #include "run/simulate_run.h"
 #include "school.h"
 #include "view/field_file.h"

@@ -1,12 +1,13 @@
-/* curve.h: points and directions on the line of a body, as weighted sums over the nodes. doc/model.md,
- * section 6. Tested by tests/fish/test_curve.c.
+/* shape.h: the shape of a body: points and directions on its line, as weighted sums over the nodes, and the profiles of
+ * thickness and depth. doc/model.md, section 6. Tested by tests/fish/test_shape.c.
  *
  * u = 0 is the nose, u = k node k, u = n_nodes - 1 the tail. Two lines lead through the nodes: the polygon of straight
  * edges, and a smooth curve. */
-#ifndef CURVE_H
-#define CURVE_H
+#ifndef SHAPE_H
+#define SHAPE_H
 
 #include "base/status.h"
+#include "fish/parameters.h"
 
 /* A weighted sum over nodes. Point of the body: the weights add to 1. Vector along the body: the weights add to 0. */
 struct stencil {
@@ -40,5 +41,25 @@ struct stencil curve_edge_middle(const struct curve *curve, int edge);
 /* The point u of the smooth curve, and the derivative of the position by u: all nodes. */
 struct stencil curve_smooth_point(struct curve *curve, double u);
 struct stencil curve_smooth_slope(struct curve *curve, double u);
+
+/* The outline of a body: thickness h in the plane of motion, depth w normal to the plane of motion.
+ * doc/model.md, section 1.
+ *
+ *     nose  <------- s ------->               half thickness r(s), h = 2 r
+ *        ___-----------___
+ *     <_____________________==========>  tail
+ */
+
+/* The section of one edge. */
+struct profile_edge {
+    double h, w;         /* thickness and depth, m */
+    double square, cube; /* mean of h^2 over h^2, mean of h^3 over h^3 */
+};
+
+/* Edge k of a fish. body.section mean: means over the edge; nodes: the mean of both ends, square and cube are 1. */
+struct profile_edge profile_edge(const struct fish_parameters *fish, int k);
+
+/* Thickness at the tail, m: body.tail_thickness for a joukowski outline, otherwise the thickness of the last edge. */
+double profile_tail_thickness(const struct fish_parameters *fish);
 
 #endif

@@ -1,5 +1,5 @@
 /* test_fish_prescribed.c: the prescribed straight motion: doc/model.md, section 5. */
-#include "fish/fish_prescribed.h"
+#include "fish/fish_motion.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
