@@ -1,5 +1,5 @@
-/* school.h: what the tests of the physics share: a school from the text of a case, a state in which nothing is zero or
- * symmetric by chance, a comparison of derivatives with differences, and short runs. */
+/* school.h: common functions of the tests of the physics: a school from the text of a case, a state without accidental
+ * zeros and symmetries, a comparison of derivatives with differences, and short runs. */
 #ifndef SCHOOL_H
 #define SCHOOL_H
 
@@ -18,7 +18,7 @@ struct setup {
     struct jacobian *jacobian; /* empty, rows of given motions masked */
     struct sparse *term;       /* empty, of all unknowns: for the derivatives of one term */
     double *value;             /* a residual                                        (n_unknowns) */
-    double t;                  /* that of the state; after school_stir in the middle of an interval, s */
+    double t;                  /* time of the state; after school_stir in the middle of an interval, s */
     uint64_t seed;             /* of the random numbers */
 };
 
@@ -26,7 +26,7 @@ struct setup {
 #define SCHOOL_DEFAULTS "# defaults\n"
 
 /* "format: 1", a name and, without SCHOOL_DEFAULTS or a preset, the defaults of the article's model (a small fish:
- * tests/data/small.yaml) go before the text. Fails the test with the message where there is one. */
+ * tests/data/small.yaml) go before the text. Fails the test with the message of an error. */
 void school_settings(struct case_values *values, const char *text);
 void school_build(struct setup *setup, const char *text);
 void school_clear(struct setup *setup);
@@ -41,33 +41,32 @@ void school_stir(struct setup *setup);
 /* The fluid's velocity (and gradient) everywhere for the unknowns y at setup->t. */
 void school_flow(struct setup *setup, const double *y);
 
-/* Compare, entry by entry, the matrix that jacobian adds up with the differences of what value computes. No jacobian:
- * with residual_jacobian. */
+/* Compare the matrix of jacobian, entry by entry, with the differences of value. No jacobian: residual_jacobian. */
 typedef void school_value(struct setup *setup, const double *y, const double *yp, double *value);
 typedef void school_jacobian(struct setup *setup, double cj, const double *y, struct sparse *term);
 void school_compare(struct setup *setup, school_value *value, school_jacobian *jacobian, const char *name);
 
-/* For derivatives of what comes through the flow: the derivative of the velocity at fish f by the unknowns of fish g,
- * and empty rows for it; adding those rows to the term. */
+/* For derivatives through the flow: the derivative of the velocity at fish f by the unknowns of fish g, with empty
+ * rows; adding these rows to the term. */
 struct jacobian_scratch *school_influence(struct setup *setup, int f, int g);
 void school_add_rows(struct setup *setup, int f, int g, struct sparse *term);
 
-/* The matrix as a dense one, row after row; the caller frees it. */
+/* The matrix as a dense matrix, row after row; the caller frees the array. */
 double *school_dense(const struct sparse *matrix);
 double *school_dense_jacobian(const struct jacobian *jacobian);
 
-/* A simulation at its first event, and on to a time. Fails the test with the message where there is one. */
+/* A simulation at the first event, and advanced to a time. Fails the test with the message of an error. */
 struct simulation *school_simulation(const char *text);
 void school_run(struct simulation *simulation, double t);
 
-/* Fail the test, with the text of the case, unless two runs of it have the same bits in every field of their states and
- * the same totals. */
+/* Fail the test, with the text of the case, unless two runs of the case have the same bits in every field of the state
+ * and the same totals. */
 void school_same_bits(const struct simulation *got, const struct simulation *want, const char *text);
 
 /* The integration fails within 50 events, and the message has this text. */
 void school_fails(struct simulation *simulation, const char *message);
 
-/* A fish with one step in each interval: the rate of its circulation is the difference over the step. */
+/* A fish with one step in each interval: the rate of circulation is the difference over the step. */
 void school_shed_step_by_step(struct simulation *simulation);
 
 /* Fail the test with the message unless the status is STATUS_OK. */

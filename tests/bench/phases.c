@@ -1,18 +1,17 @@
-/* phases.c: where the time of a run goes, and how it grows with the school. `make bench` prints it.
+/* phases.c: the phases of a run, and the growth of the time with the school, for `make bench`.
  *
- *   phases CASES           single_free and diamond, with one thread and with two: time per event, simulated time per
+ * phases CASES           single_free and diamond, with one thread and with two: time per event, simulated time per
  *                          second of wall clock, the ratio to the lower bound, the parts of the time
- *   phases CASES --schools schools of 1 to 1024 fish with full wakes: time and memory per event, on one thread and on
+ * phases CASES --schools schools of 1 to 1024 fish with full wakes: time and memory per event, on one thread and on
  *       two in turn
- *   phases CASES --schools THREADS N... the same for other schools and more threads
+ * phases CASES --schools THREADS N... the same for other schools and more threads
  *
- * Schools take turns, event by event, and their ratios are those of the least times: what else the machine does makes
- * some events slower, one of the cores or both, but hardly all of them.
+ * Schools take turns, event by event, and the ratios use the least times, because other processes slow some events, on
+ * one core or both, but hardly all events.
  *
  * CASES is the folder of the cases. The linker wraps the functions below in a clock, which is not in the program. The
- * lower bound is the CPU time of the interactions of an event that no method of this accuracy can avoid, at the best
- * rate that one core reached in the same run; the ratio is that of the CPU time of all threads, which a busy machine
- * changes least:
+ * lower bound is the CPU time of all pairwise interactions of an event at the best rate of one core in the same run;
+ * the ratio uses the CPU time of all threads, which depends least on the load of the machine:
  *
  *     wake on wake (n^2), sheets on wake (n M), wake on bodies once (n P), sheets on bodies at every residual (P M)
  *
@@ -44,8 +43,8 @@ static double now(void) {
     return read_clock(CLOCK_MONOTONIC);
 }
 
-/* Of all threads together, or of the one that works: a busy machine changes it least, so all but "wall ms" and "x real"
- * is made of it. */
+/* CPU time of all threads together, or of the working thread: depends least on the load of the machine, so all numbers
+ * except "wall ms" and "x real" use the CPU time. */
 static clockid_t cpu_clock = CLOCK_PROCESS_CPUTIME_ID;
 static double cpu_time(void) {
     return read_clock(cpu_clock);
@@ -131,7 +130,7 @@ static void must(enum status status) {
     exit(status_exit_code(status));
 }
 
-// interactions per second of wakes like those of the diamond at themselves, on one core
+// interactions per second of wakes on themselves, with the size of the wakes of the diamond, on one core
 static double best_rate(void) {
     enum { N = 1600, RUNS = 20 };
     struct vortices vortices = {0};
@@ -190,7 +189,7 @@ static void print_row(const char *name, int threads, int n_vortices, long n_even
     fflush(stdout);
 }
 
-// ---- whole runs with their output
+// ---- whole runs with output
 
 static void whole_run(const char *cases, const char *name, int threads) {
     char path[4096];
@@ -270,7 +269,7 @@ static void school_event(struct school_run *run, int all, int threads, int event
     run->simulation->school->threads = threads;
 }
 
-// that of an event during which the machine did nothing else
+// the time of an undisturbed event
 static double least(const double *value) {
     double found = value[0];
     for (int i = 1; i < EVENTS; i++) found = fmin(found, value[i]);

@@ -1,4 +1,4 @@
-/* test_netcdf.c: NetCDF files: how they get their name, and that nothing in a file of somebody else does harm. */
+/* test_netcdf.c: NetCDF files: the sequence of renaming, and that foreign files do no harm. */
 #include <fcntl.h>
 #include <netcdf.h>
 #include <stdint.h>
@@ -14,7 +14,7 @@
 #include "result/netcdf.h"
 #include "result/target.h"
 
-// ---- what happens on disk: every fsync, link and rename is noted in one line
+// ---- operations on the disk: one line for every fsync, link and rename
 
 static char deeds[4096];
 
@@ -69,7 +69,7 @@ static int set_up(void **state) {
 static int tear_down(void **state) {
     const struct fixture *const f = *state;
     unlink(f->path);
-    assert_int_equal(rmdir(f->folder), 0);  // nothing else is left in it
+    assert_int_equal(rmdir(f->folder), 0);  // the folder has no other files
     return 0;
 }
 
@@ -145,7 +145,7 @@ static void a_file_is_on_disk_before_its_name_and_the_name_before_the_rows(void 
     const struct fixture *const f = *state;
     const char *const folder = strrchr(f->folder, '/') + 1;
     char want[512];
-    // the rows come within a second of the last fsync; the descriptor still has the name of its opening
+    // the rows come within a second of the last fsync; the descriptor still has the name of the opened file
     snprintf(want, sizeof want, "fsync of a part; link to a.nc; fsync of folder %s; ", folder);
     deeds[0] = '\0';
     assert_int_equal(write_file(f->path, false), STATUS_OK);
@@ -196,7 +196,7 @@ static void every_failing_allocation_leaves_what_was_there(void **state) {
     }
 }
 
-// ---- reading what somebody else wrote
+// ---- reading foreign files
 
 static int dimension(int file, const char *name, size_t length) {
     int number;
@@ -346,8 +346,8 @@ static void write_rows(const char *path, int format, int n_growing) {
     assert_int_equal(nc_close(file), NC_NOERR);
 }
 
-/* A file of five rows with so many growing variables of three bytes each, which was cut: it has its whole rows, or is
- * refused where a value that does not grow, or a part of the header, is missing. */
+/* A truncated file of five rows with so many growing variables of three bytes each: the file has the whole rows, or is
+ * refused if a value that does not grow, or a part of the header, is missing. */
 static void cut_everywhere(const char *path, int n_growing) {
     const off_t whole = length_of_data(path), per_row = n_growing == 1 ? 3 : 4 * n_growing,
                 first = n_growing == 0 ? whole : whole - 4 * per_row - (4 * (n_growing - 1) + 3),
@@ -364,7 +364,7 @@ static void cut_everywhere(const char *path, int n_growing) {
         assert_int_equal(netcdf_read_length(&reader, "rows", 0, 100, &n_rows), STATUS_OK);
         assert_int_equal(n_rows, want);
         assert_int_equal(reader.n_missing, 5 - want);
-        // what is missing is not read as zeros
+        // missing values are not read as zeros
         double values[15];
         const struct netcdf_slice all[] = {{"rows", 0, want}, {"three", 0, 3}, {NULL}},
                                   more[] = {{"rows", 0, want + 1}, {"three", 0, 3}, {NULL}};
@@ -457,7 +457,7 @@ static void no_damage_of_a_header_does_harm(void **state) {
         netcdf_close(&reader);
     }
     close(descriptor);
-    // most bytes are those of strings
+    // most bytes belong to strings
     print_message("%d of %d damaged files could be read\n", n_read, N_DAMAGES);
     assert_in_range(n_read, 1, N_DAMAGES - 1);
 }

@@ -1,4 +1,4 @@
-/* test_corotation.c: what a vector field on a body keeps when it is mapped from one configuration to another. */
+/* test_corotation.c: invariants of a vector field on a body under the map from one configuration to another. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ static const char *const text =
 
 enum { MAX_NODES = 9 };
 
-/* A school in its reference and in its current configuration, and a field with its image. */
+/* A school in the reference and in the current configuration, and a field with its image. */
 struct configurations {
     struct setup setup;
     struct corotation *corotation;
@@ -101,7 +101,7 @@ static void each_map_is_the_inverse_of_the_other(void **state) {
     corotation_to_current(both.corotation, both.image);
     assert_true(fabs(both.image[0] - both.field[0]) > 1e-3);
     corotation_to_reference(both.corotation, both.image);
-    // rounding of three rotations and their inverses
+    // rounding of three rotations and the inverse rotations
     NEAR_ARRAY(both.n, both.image, both.field, 1e-14, 0);
     clear(&both);
 }
@@ -163,7 +163,7 @@ static void a_rigid_motion_is_mapped_to_a_rigid_motion(void **state) {
     clear(&both);
 }
 
-// clear the end nodes of a, make it orthogonal to n fields that are orthonormal, and normalise it
+// clear the end nodes of a, make a orthogonal to n orthonormal fields, and normalise a
 static void orthonormalise(const struct fish *fish, int n, double basis[][2 * MAX_NODES], double *a) {
     const int last = fish->n_nodes - 1;
     a[0] = a[last] = a[last + 1] = a[2 * last + 1] = 0;
@@ -191,8 +191,7 @@ static void a_node_rotates_by_the_mean_of_its_edges(void **state) {
         y[k + 1] = y[k] + sin(angle) * ex + cos(angle) * ey;
     }
     corotation_set_current(both.corotation, both.current);
-    // a field on inner nodes that is orthogonal to the rigid motions of both bodies: nothing maps it but these
-    // rotations
+    // a field on inner nodes that is orthogonal to the rigid motions of both bodies: only these rotations map the field
     double basis[4][2 * MAX_NODES], want[2 * MAX_NODES];
     for (int i = 0; i < 4; i++) {
         rigid(fish, (i < 3 ? both.reference : both.current) + fish->at.x, i < 3 ? i : 2, basis[i]);
@@ -304,8 +303,8 @@ static void an_elastic_matrix_rotates_with_the_body(void **state) {
             stiffness(&both, f, both.current, new);
             memcpy(mapped, old, sizeof old);
             map_stiffness(&both, f, mapped);
-            // after a rotation it is the matrix itself; after bending the error is half the rotation of an edge
-            // relative to its neighbours
+            // exact after a rotation; after bending the error is half the rotation of an edge relative to the
+            // neighbouring edges
             const double error = largest_difference(n, mapped, new), without = largest_difference(n, old, new);
             assert_true(error < (bends[i] > 0 ? 0.1 : 1e-12) * without);
             clear(&both);
@@ -320,7 +319,7 @@ static void a_mapped_elastic_force_has_no_net_force_and_moment(void **state) {
         set_up(&both, 0.3, 0.3);
         const struct fish *fish = &both.setup.school->fish[f];
         const int n = 2 * fish->n_nodes;
-        // a straight body at rest: its own elastic matrix gives neither net force nor moment
+        // a straight body at rest: the elastic matrix gives neither net force nor moment
         memset(both.reference, 0, (size_t)both.n * sizeof(double));
         for (int k = 0; k < fish->n_nodes; k++) {
             both.reference[fish->at.x + k] = k * fish->edge_length;

@@ -1,4 +1,4 @@
-/* test_equilibrium.c: bodies at rest in a stream: no force is left on them, and the stiffness is that of differences.
+/* test_equilibrium.c: bodies at rest in a stream: the total force vanishes, and the stiffness agrees with differences.
  * doc/steady.md, "Without a beat". */
 #include <stdlib.h>
 
@@ -12,7 +12,7 @@
     " body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e5}," \
     " start: {heading: 170, speed: 0}, motion: {prescribed: head, speed: 0}"
 
-// two plates, one behind the other, so that the couplings are in it
+// two plates, one behind the other, with couplings
 static const char pair[] = SCHOOL_DEFAULTS STREAM "defaults: {fish: {" PLATE
                                                   "}}\n"
                                                   "fish: [{}, {start: {position: [1.2, 0.1]}}]\n";
@@ -33,7 +33,7 @@ static void clear(struct rig *rig) {
     simulate_free(rig->simulation);
 }
 
-// the equations of a run, at the state as it is
+// the equations of a run, at the current state
 static void run_value(const struct rig *rig, double *value) {
     const struct state *const state = rig->simulation->state;
     school_ok(residual_evaluate(rig->simulation->residual, state->t, state->y, state->yp, value));
@@ -72,7 +72,7 @@ static void bodies_that_go_on_together_are_at_rest_in_their_frame(void **state) 
     struct rig goes = rig_of(SCHOOL_DEFAULTS TIME
                              "fluid: {density: 1, velocity: [1.5, 0.2], viscosity: 0}\n"
                              "fish: [{" PLATE "}]\n");
-    // the frame goes at half a metre per second along x, where the heading of the second is
+    // the frame moves at half a metre per second along x, the heading of the second plate
     for (int i = 0; i < 2; i++) {
         struct fish *const fish = &(i == 0 ? &held : &goes)->simulation->school->fish[0];
         fish->motion.pitch = 0.1;
@@ -95,8 +95,8 @@ static void bodies_that_go_on_together_are_at_rest_in_their_frame(void **state) 
 
 enum { MOST = 32 };
 
-// the logarithm of the determinant of the last n - first rows and columns, by elimination from the last one on, which
-// leaves those before untouched where it stops
+// the logarithm of the determinant of the last n - first rows and columns, by elimination from the last row on, which
+// leaves the rows before the stop untouched
 static double log_determinant(int n, int first, double matrix[MOST][MOST]) {
     double sum = 0;
     for (int i = n - 1; i >= first; i--) {
@@ -118,7 +118,7 @@ static double log_determinant(int n, int first, double matrix[MOST][MOST]) {
     return sum;
 }
 
-// places of free nodes and sheets, and their equations, by differences; what is shed is far away
+// positions of free nodes and sheets, and the equations, by differences; the shed vortex is far away
 static int differences(const struct rig *rig, double matrix[MOST][MOST]) {
     const struct simulation *const simulation = rig->simulation;
     const struct fish *const fish = &simulation->school->fish[0];
@@ -159,7 +159,7 @@ static void the_stiffness_is_that_of_differences_with_sheets_that_follow(void **
     school_ok(equilibrium_solve(rig.equilibrium));
     school_ok(equilibrium_stiffness(rig.equilibrium, &stiffness));
     const int n_places = 6, n = differences(&rig, matrix);
-    // once the sheets are eliminated what is left are the places
+    // after elimination of the sheets the positions remain
     log_determinant(n, n_places, matrix);
     NEAR(stiffness.log_determinant, log_determinant(n_places, 0, matrix), 1e-4, 0);
     assert_int_equal(stiffness.n_negative, 0);

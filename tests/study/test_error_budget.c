@@ -1,5 +1,5 @@
 /* test_error_budget.c: errors of a value by levels of refinement. The sequences are steady speeds [m s-1] and costs of
- * transport [m s-2] of the default fish, measured with several forms of its tail. */
+ * transport [m s-2] of the default fish, measured with several forms of the tail. */
 #include <string.h>
 
 #include "near.h"
@@ -7,7 +7,7 @@
 
 enum { MOST = 6, SPEED = 0, COST = 1 };
 
-/* A key whose levels are given as numbers of points, from fine to coarse, or as sizes where a number is below 1. */
+/* A key with levels as numbers of points, from fine to coarse, or as sizes for numbers below 1. */
 struct key {
     int n, base;
     double level[MOST];
@@ -21,7 +21,7 @@ struct judged {
     struct error_budget_result of[2];
 };
 
-/* Judge speed and, where it is given, cost at the levels of a key. */
+/* Judge speed and, if given, cost at the levels of a key. */
 static struct judged judge(const struct key *key, const double *speed, const double *cost, double noise) {
     double size[MOST], value[2][MOST][2] = {{{0}}};
     for (int i = 0; i < key->n; i++) {
@@ -59,7 +59,8 @@ static void orders_of_powers_are_found(void **state) {
     assert_true(isnan(error_budget_order(sizes, same)));
 }
 
-/* f = 2 + 0.3 h^2: the finest error is 1.25 times the true one, and the base adds its distance from the finest. */
+/* f = 2 + 0.3 h^2: the finest error is 1.25 times the true error, and the base adds the distance from the finest
+ * level. */
 static void a_power_is_accepted_and_its_error_is_that_of_richardson(void **state) {
     (void)state;
     const struct key key = {4, 1, {0.05, 0.1, 0.2, 0.4}, 2, NULL};
@@ -129,8 +130,8 @@ static void what_is_known_before_flags_whatever_the_levels_say(void **state) {
     NEAR(judged.of[SPEED].error, 0.32, 0.005, 0);
 }
 
-/* Points of the sheet with `force: pressure`: the changes grow, -0.11 % and -0.13 %, towards a limit of about -0.4 %:
- * the largest difference alone would not reach it. */
+/* Sheet points with `force: pressure`: the changes grow, -0.11 % and -0.13 %, towards a limit of about -0.4 %, which
+ * the largest difference alone does not reach. */
 static void differences_that_do_not_fall_are_flagged(void **state) {
     (void)state;
     const struct key key = {3, 2, {97, 69, 49}, 1, NULL};
@@ -148,7 +149,7 @@ static void differences_below_the_noise_are_none(void **state) {
     const struct judged judged = judge(&key, speed, NULL, 2.5e-5);
     assert_int_equal(judged.verdict, ERROR_BUDGET_NONE);
     NEAR(judged.of[SPEED].error, 2e-5, 0, 1e-6);
-    // a quantity that says nothing does not stop another one, and is not widened by it
+    // a quantity without information neither rejects another quantity nor is widened by the other quantity
     const struct judged both = judge(&key, speed, cost, 2.5e-5);
     assert_int_equal(both.verdict, ERROR_BUDGET_GROWS);
     assert_int_equal(both.culprit, COST);
@@ -159,7 +160,7 @@ static void differences_below_the_noise_are_none(void **state) {
 
 static void orders_decide(void **state) {
     (void)state;
-    // differences 1, 2, 4 and so on at spacings that halve: orders p, p' of log2 of their ratios
+    // differences 1, 2, 4 and so on at halved spacings: orders p, p' by log2 of the ratios
     const struct {
         double differences[3], design;
         enum error_budget_verdict verdict;
@@ -186,7 +187,7 @@ static void orders_decide(void **state) {
         for (int k = 0; k < 3; k++) value[k + 1] = value[k] + examples[i].differences[k];
         const struct judged judged = judge(&key, value, NULL, 1e-9);
         if (judged.verdict != examples[i].verdict) fail_msg("example %zu: %s", i, error_budget_words(judged.verdict));
-        // a flag has a culprit; the largest difference counts once where there are four levels
+        // a flag names a quantity; the largest difference counts once with four levels
         assert_int_equal(judged.culprit, error_budget_is_flagged(judged.verdict) ? 0 : -1);
         if (judged.verdict > ERROR_BUDGET_ACCEPTED && judged.verdict < ERROR_BUDGET_UNKNOWN) {
             NEAR(judged.of[0].error, fabs(value[3] - value[0]), 0, 1e-12);
@@ -250,8 +251,8 @@ static void points_are_judged_by_the_angle_between_differences(void **state) {
     assert_int_equal(error_budget_judge(&levels, 1, &sequence, &result, &culprit), ERROR_BUDGET_TURNS);
 }
 
-/* Steady speed and cost over the nodes, of fish with other moduli and tails; the limits are those of 49 nodes and of
- * extrapolation. An error that is stated has to cover the distance from the limit. */
+/* Steady speed and cost over the nodes, of fish with other moduli and tails; the limits come from 49 nodes and from
+ * extrapolation. A stated error has to cover the distance from the limit. */
 static void errors_cover_the_limits_of_tails_with_a_floor(void **state) {
     (void)state;
     enum { N = 7 };

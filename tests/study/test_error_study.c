@@ -1,5 +1,5 @@
-/* test_error_study.c: the plan of an error study, and what it makes of members whose values are given by formulas. With
- * members that are run: test_error.sh. */
+/* test_error_study.c: the plan of an error study, and the judgement of members with values by formulas. With real
+ * members: test_error.sh. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,7 @@
 #include "study/error_plan.h"
 #include "study/error_report.h"
 
-/* A fish whose tail is no cusp, and long waves: nothing flags its keys before. */
+/* A fish without a cusp at the tail, and long waves: no key is flagged in advance. */
 #define UNIFORM                                                           \
     "format: 1\nname: uniform\ntime: {end: 4, shedding_interval: 0.01}\n" \
     "fish: [{nodes: 25, sheet_points: 49, body: {profile: uniform, modulus: 1e8}}]\n"
@@ -36,7 +36,7 @@ static const struct error_study_key *key_of(const struct error_study *study, con
     return NULL;
 }
 
-/* What a member sets a key of the first fish to, a duration without its unit. */
+/* The value of a key of the first fish in a member, a duration without unit. */
 static double setting(const struct error_study *study, int m, const char *path) {
     const struct sweep_axis *const axis = &study->study.sweep[0];
     double number = strcmp(path, "time.shedding_interval") == 0 ? study->study.school.shedding_interval
@@ -72,7 +72,7 @@ static void the_keys_of_the_table_have_the_levels_of_the_table(void **state) {
     assert_null(key_of(&study, "solver.step"));
     assert_null(key_of(&study, "wake.merge"));
 
-    // each changes one key and what belongs to it; one sheet serves all nodes, and is a level of the sheet
+    // each member changes one key and dependent keys; one sheet serves all nodes, and is a level of the sheet
     const struct error_study_key *const nodes = key_of(&study, "fish.nodes");
     for (int i = 0; i < 4; i++) NEAR(setting(&study, nodes->member[i], "fish.sheet_points"), 69, 0, 0);
     assert_int_equal(nodes->member[1], key_of(&study, "fish.sheet_points")->member[0]);
@@ -80,7 +80,7 @@ static void the_keys_of_the_table_have_the_levels_of_the_table(void **state) {
     NEAR(setting(&study, shorter, "wake.decay") / setting(&study, 0, "wake.decay"), 0.5, 0, 1e-12);
     NEAR(setting(&study, key_of(&study, "solver.rtol")->member[2], "wake.tolerance"), 1e-7, 0, 1e-12);
 
-    // every member is a valid case, whose search begins with that of a neighbour; the case alone has multipliers
+    // every member is a valid case, and the search starts from a neighbour; the case alone has multipliers
     const int n = sweep_n_members(&study.study);
     assert_int_equal(n, 20);
     for (int m = 0; m < n; m++) {
@@ -179,7 +179,7 @@ static void a_duration_keeps_the_unit_of_the_case(void **state) {
         case_free(&member);
         error_plan_free(&study);
     }
-    // a run that ends before does not lose its wake
+    // a run with an earlier end keeps the whole wake
     struct error_study study =
         open_study("format: 1\ntime: {end: 1}\nfish: [{}]\n", "{of: speed, keys: [lifetime, rtol]}");
     assert_null(key_of(&study, "wake.lifetime"));
@@ -220,7 +220,7 @@ static void an_equilibrium_has_points_only(void **state) {
     assert_true(study.is_static);
     assert_int_equal(study.n_keys, 2);
     error_plan_free(&study);
-    // its modes shed wakes, and are found for every member
+    // the modes shed wakes, and are computed for every member
     study = open_study(
         "format: 1\ntime: {end: 4, shedding_interval: 0.02}\nfluid: {velocity: [1, 0]}\n"
         "fish: [{nodes: 9, force: pressure, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: head, speed: "
@@ -263,7 +263,7 @@ static void quantities_that_are_not_known_are_refused(void **state) {
     }
 }
 
-// ---- what members say
+// ---- values of members
 
 /* The values of members: speed and cost with errors of second order in the nodes, of first order in the sheet and in
  * the interval; an integrator without errors. */
@@ -317,7 +317,7 @@ static void the_error_is_the_sum_over_the_keys_and_covers_the_true_one(void **st
     NEAR(study.error[1], 2 * cost * study.error[0], 0, 1e-6);
     assert_true(study.error[0] > study.value[0] - speed);
     NEAR(study.value[0], setting(&study, 0, "fish.nodes") > 0 ? members[0].value[2 * study.quantity[0]] : 0, 0, 0);
-    // the search of the case is 5 times its residual away, and so are those of the others
+    // the distance of every search is 5 times the residual
     NEAR(study.noise, 1e-5 + 1e-7, 0, 1e-9);
 
     struct error_study_next next;
@@ -331,7 +331,7 @@ static void the_error_is_the_sum_over_the_keys_and_covers_the_true_one(void **st
     error_plan_free(&study);
 }
 
-/* Follow a study to its end, as a run does; and again, with the members that there are then. */
+/* Follow a study to the end, as a run does; and again, with the members at that time. */
 static struct member_file *follow(struct error_study *study, int *n_rounds) {
     struct member_file *members = NULL;
     int n_new = 1;
@@ -359,7 +359,7 @@ static void refinement_ends_where_the_error_is_within_the_bound(void **state) {
     assert_true(study.is_reached && n > n_planned && n_rounds > 1);
     assert_true(study.error[0] <= 2e-3 * study.value[0]);
     assert_true(study.error[0] >= study.value[0] - speed);
-    // the stated value is that of all refined keys together, whose errors add up here but for the points of the sheet
+    // the stated value has all refined keys together; the errors add up here except the error of the sheet points
     assert_true(setting(&study, study.stated, "time.shedding_interval") < 0.01);
     NEAR(study.together[0], 0, 2e-4, 0);
     assert_true(study.cost > 1);
