@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# All failing calls of the system, one at a time (tests/faults/faults.py): about 1500 runs.
+# All failing calls of the system, one at a time (tests/faults/faults.py): about 2100 runs.
 #
 #   tests/soak/faults.sh PROGRAM
 set -euo pipefail

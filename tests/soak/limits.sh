@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Little memory for every command, in steps of 200 kB (tests/faults/limits.py): about 1500 runs.
+# Little memory for every command, in steps of 200 kB (tests/faults/limits.py): about 1200 runs.
 #
 #   tests/soak/limits.sh PROGRAM
 set -euo pipefail

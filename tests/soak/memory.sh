@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# All failing allocations of all commands, one at a time (tests/faults/memory.py): about 10,000 runs.
+# All failing allocations of all commands, one at a time (tests/faults/memory.py): about 18,000 runs.
 #
 #   tests/soak/memory.sh PROGRAM
 set -euo pipefail
