@@ -46,6 +46,26 @@ static void a_marker_is_born_at_the_tail_at_every_event(void **state) {
     simulate_free(simulation);
 }
 
+static void a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME SHEET "fish: [{start: {speed: -1}}]\n");
+    const struct fish *fish = simulation->school->fish;
+    const struct wake *wake = &simulation->state->wake[0];
+    const double *const y = simulation->state->y;
+    for (int n = 1; n <= 3; n++) {
+        school_ok(simulate_step(simulation));
+        const struct direction tail = fish_direction(fish, &fish->tail_tangent, y);
+        const double relative[2] = {wake->u[n] - y[fish->at.vx + fish->n_nodes - 1],
+                                    wake->v[n] - y[fish->at.vy + fish->n_nodes - 1]};
+        assert_true(wake->slip[0] * tail.t[0] + wake->slip[1] * tail.t[1] < -0.5);
+        NEAR(relative[0] * tail.t[0] + relative[1] * tail.t[1], 0, 1e-12, 0);
+        // across the body the marker moves with the fluid
+        NEAR(relative[1] * tail.t[0] - relative[0] * tail.t[1], wake->slip[1] * tail.t[0] - wake->slip[0] * tail.t[1],
+             1e-12, 0);
+    }
+    simulate_free(simulation);
+}
+
 static void stretches_lie_between_markers_and_markers_have_half_of_both(void **state) {
     (void)state;
     struct setup setup;
@@ -199,6 +219,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_panel_integrates_the_inverse_square_root),
         cmocka_unit_test(a_marker_is_born_at_the_tail_at_every_event),
+        cmocka_unit_test(a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail),
         cmocka_unit_test(stretches_lie_between_markers_and_markers_have_half_of_both),
         cmocka_unit_test(the_own_body_sees_the_same_circulation_as_others),
         cmocka_unit_test(the_smoothing_tapers_to_nothing_at_the_tail),
