@@ -31,6 +31,7 @@ const struct sweep_error_key *sweep_error_find(const char *path) {
 
 double sweep_error_order(const struct case_values *values, const struct sweep_error_key *key) {
     if (strcmp(key->path, "solver.step") == 0) return methods_table[values->solver.method].order;
+
     // continuous shedding is of second order, towards a wake that is wrong next to the edge (doc/numerics.md, 5)
     const int is_interval = strcmp(key->path, "time.shedding_interval") == 0;
     if (is_interval && values->school.wake.shedding == SHEDDING_CONTINUOUS) return 2;
@@ -141,6 +142,7 @@ static enum status read_keys(struct sweep_error *error, const struct yaml_node *
 
 enum status sweep_error_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
     const struct yaml_node *const map = yaml_tree_find(root, "error");
+
     // as for a member of such a study
     const int is_none = map && map->kind == YAML_SCALAR && strcmp(map->text, "none") == 0;
     if (!map || is_none || (map->kind == YAML_MAP && map->n == 0)) return STATUS_OK;

@@ -214,6 +214,7 @@ static enum status read_expectation(const struct reading *reading) {
 
 enum status sweep_expect_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
     const struct yaml_node *const list = yaml_tree_find(root, "expect");
+
     // a member, or a run with --set 'sweep=[]', expects nothing
     if (!list || (values->n_axes == 0 && yaml_tree_find(root, "sweep"))) return STATUS_OK;
 

@@ -287,14 +287,6 @@ static const char *remedy(const char *problem) {
     return "this is not valid YAML";
 }
 
-/* True if the indentation of the line of a mark contains a tab. */
-static bool is_tab_indented(struct yaml_mark mark) {
-    const char *place = mark.source->text, *const end = place + mark.source->length;
-    for (int line = 1; line < mark.line && place < end; place++) line += *place == '\n';
-    while (place < end && *place == ' ') place++;
-    return place < end && *place == '\t';
-}
-
 /* Add the error of libyaml to the list. */
 static enum status report_parser(struct reader *reader) {
     const yaml_parser_t *const parser = &reader->parser;
@@ -302,7 +294,11 @@ static enum status report_parser(struct reader *reader) {
     const char *const problem = parser->problem ? parser->problem : "not readable";
     struct yaml_mark mark = mark_at(reader, parser->problem_mark);
 
-    if (is_tab_indented(mark)) {
+    // a tab in the indentation of the line
+    const char *place = mark.source->text, *const end = place + mark.source->length;
+    for (int line = 1; line < mark.line && place < end; place++) line += *place == '\n';
+    while (place < end && *place == ' ') place++;
+    if (place < end && *place == '\t') {
         mark.column = 1;
         yaml_errors_add(reader->errors, mark, "the line is indented with a tab; use blanks");
         return STATUS_CASE;

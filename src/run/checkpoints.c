@@ -28,6 +28,7 @@ static const char *file_name_of(const char *path) {
 char *checkpoints_path(const char *result) {
     const size_t length = strlen(result), n = strlen(".nc");
     const int has_ending = length > n && strcmp(result + length - n, ".nc") == 0 && result[length - n - 1] != '/';
+
     // the results "a" and "a.nc" have different checkpoints
     return has_ending ? path_with_ending(result, length - n, ".ckpt") : path_with_ending(result, length, ".checkpoint");
 }
@@ -98,13 +99,13 @@ enum status checkpoints_resume(struct checkpoints *checkpoints, const struct che
         free(checkpoints->effective);
         checkpoints->effective = strdup(from->effective);
     }
-    return checkpoints->effective && !checkpoints->places.failed
-               ? STATUS_OK
-               : status_fail(STATUS_MEMORY, "out of memory: the checkpoints of a run");
+
+    if (checkpoints->effective && !checkpoints->places.failed) return STATUS_OK;
+    return status_fail(STATUS_MEMORY, "out of memory: the checkpoints of a run");
 }
 
 void checkpoints_fall_back(const struct checkpoints *checkpoints) {
-    // after a failed rename, resume_open refuses the newest checkpoint again
+    // after a failed rename, simulate_resume refuses the newest checkpoint again
     rename(checkpoints->previous, checkpoints->path);
 }
 

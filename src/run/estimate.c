@@ -86,13 +86,6 @@ static enum status event_cost(struct simulation *simulation, double evaluations,
     return STATUS_OK;
 }
 
-// cost of an event of which a part is completed
-static double event_whole_cost(const struct simulation *simulation, double spent) {
-    struct integrator_counts now;
-    simulation->integrator->count(simulation->solver, &now);
-    return spent * fmax(1, usual_evaluations / fmax(1, (double)now.residual_evaluations));
-}
-
 // the first events of the run; what one costs, and how often it evaluates the equations
 static enum status measure_first_events(struct simulation *simulation, double patience, struct estimate *estimate,
                                         double *seconds, double *evaluations) {
@@ -113,19 +106,19 @@ static enum status measure_first_events(struct simulation *simulation, double pa
 
     estimate->n_events = n;
     *evaluations = usual_evaluations;
-    *seconds = event_whole_cost(simulation, processor_time() - start);
-    if (n == 0) return STATUS_OK;
+    if (n == 0) {
+        // extrapolate from the completed part of the first event
+        struct integrator_counts now;
+        simulation->integrator->count(simulation->solver, &now);
+        *seconds = (processor_time() - start) * fmax(1, usual_evaluations / fmax(1, (double)now.residual_evaluations));
+        return STATUS_OK;
+    }
 
     // the first event costs more than the following events
     *seconds = n > 1 ? (spent - first) / (double)(n - 1) : first;
     const long rest = simulation->totals.residual_evaluations - (n > 1 ? after_first.residual_evaluations : 0);
     *evaluations = (double)rest / (double)(n > 1 ? n - 1 : 1);
     return STATUS_OK;
-}
-
-// remaining CPU time of the estimate, s
-static double estimate_time_left(const struct simulation *simulation, double end) {
-    return simulation->stop && *simulation->stop ? 0 : end - processor_time();
 }
 
 // Measure events with synthetic wakes of doubling length while time remains for the next wake: doubling the number of
@@ -142,8 +135,9 @@ static enum status measure_synthetic_wakes(struct simulation *simulation, double
     TRY(event_cost(simulation, evaluations, &costs->seconds[0]));
     costs->bytes[0] = bytes_so_far();
 
-    while (n < most && costs->n <= MAX_WAKES &&
-           estimate_time_left(simulation, end) > 4 * costs->seconds[costs->n - 1]) {
+    while (n < most && costs->n <= MAX_WAKES) {
+        const double left = simulation->stop && *simulation->stop ? 0 : end - processor_time();
+        if (!(left > 4 * costs->seconds[costs->n - 1])) break;
         n = (int)fmin(most, fmax(FIRST_WAKE, 2.0 * n));
         for (int f = 0; f < school->n_fish; f++) TRY(synthetic_wake(school, state, f, n));
         costs->vortices[costs->n] = n;
@@ -153,13 +147,6 @@ static enum status measure_synthetic_wakes(struct simulation *simulation, double
     }
 
     return STATUS_OK;
-}
-
-// the cost of the velocity sum grows as n log n by tree, else as n^2
-static double velocity_sum_power(const struct school *school, const struct costs *costs) {
-    const double all = costs->vortices[costs->n - 1] * school->n_fish;
-    const struct vortices wakes = {.n = (int)fmin(all, 1e9)};
-    return velocity_sum_by_tree(&wakes, wakes.n, school->wake_tolerance) ? 1.1 : 2;
 }
 
 // added cost of an event with so many vortices per fish, relative to entry 0
@@ -196,9 +183,15 @@ enum status estimate_run(struct simulation *simulation, double patience, struct 
     double each, evaluations;
     struct costs costs = {.n = 1, .vortices = {1}};
     TRY(measure_first_events(simulation, patience / 2, estimate, &each, &evaluations));
+
     // a synthetic wake does not match the body: a solver failure with this wake predicts no failure of the run
     if (measure_synthetic_wakes(simulation, end, evaluations, &costs) == STATUS_MEMORY) return STATUS_MEMORY;
-    costs.power = velocity_sum_power(simulation->school, &costs);
+
+    // the cost of the velocity sum grows as n log n by tree, else as n^2
+    const struct school *const school = simulation->school;
+    const struct vortices wakes = {.n = (int)fmin(costs.vortices[costs.n - 1] * school->n_fish, 1e9)};
+    costs.power = velocity_sum_by_tree(&wakes, wakes.n, school->wake_tolerance) ? 1.1 : 2;
+
     estimate->seconds = run_seconds(simulation, &costs, each);
     estimate->bytes = run_bytes(simulation, &costs);
     return STATUS_OK;

@@ -73,6 +73,7 @@ enum status record_publish(const struct record *record, int is_complete) {
 
 int record_is_due(const struct record *record, long event) {
     if (!record->file) return 0;
+
     // the end is a row even if the end is not a multiple of the output interval
     return (event - record->first) % record->events_per_row == 0 || event == record->n_events;
 }

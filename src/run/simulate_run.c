@@ -96,6 +96,7 @@ static enum status run_loop(struct run *run) {
 /* Run to the end and close the record. */
 static enum status run_finish(struct run *run, enum status status) {
     if (status == STATUS_OK) status = run_loop(run);
+
     // no notes for a run that was stopped or could not be renewed
     if (status != STATUS_STOPPED && run->simulation->residual) {
         record_notes_write(run->record.file, run->simulation, run->options->warn, run->options->data);
@@ -330,6 +331,7 @@ static enum status run_resume_at(struct run *run, const struct resume *resume, i
     }
 
     if (resume->note) checkpoints_fall_back(&run->checkpoints);
+
     // the existing result, without the rows after the checkpoint
     const enum status status =
         with_other_end ? run_extend_record(run, resume)

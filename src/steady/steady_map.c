@@ -19,7 +19,7 @@ enum steady_freedom steady_map_freedom(const struct fish *fish) {
 
 // ---- the beat
 
-// the common beat period of all fish
+/* Find the common beat period of all fish, and check that a beat has an integer number of events and gusts. */
 static enum status find_period(struct steady_map *map) {
     const struct school *const school = map->simulation->school;
     const struct fish *first = NULL;
@@ -33,29 +33,23 @@ static enum status find_period(struct steady_map *map) {
                            first->name, 1 / first->period, fish->name, 1 / fish->period);
     }
 
-    map->period = first ? first->period : 0;
-    return STATUS_OK;
-}
-
-static enum status check_events(struct steady_map *map) {
-    const struct school *const school = map->simulation->school;
+    if (!first) return status_fail(STATUS_CASE, "no fish beats, so there is no beat to repeat");
+    map->period = first->period;
     const double events = map->period / school->interval;
     map->events = lround(events);
-    if (map->events >= 1 && fabs(events - (double)map->events) <= 1e-6 * events) return STATUS_OK;
-    return status_fail(STATUS_CASE,
-                       "a beat of %.10g s has %.6g events, not an integer: set time.shedding_interval to %.10g, and "
-                       "time.end and time.output_interval to multiples of it",
-                       map->period, events, map->period / ceil(events));
-}
+    if (map->events < 1 || !(fabs(events - (double)map->events) <= 1e-6 * events)) {
+        return status_fail(STATUS_CASE,
+                           "a beat of %.10g s has %.6g events, not an integer: set time.shedding_interval to %.10g, "
+                           "and time.end and time.output_interval to multiples of it",
+                           map->period, events, map->period / ceil(events));
+    }
 
-static enum status check_gust(const struct steady_map *map) {
-    const struct school *const school = map->simulation->school;
     const double gusts = school->gust_omega * map->period / (2 * M_PI);
-    if (!(fabs(school->gust[0]) + fabs(school->gust[1]) > 0)) return STATUS_OK;
-    if (fabs(gusts - nearbyint(gusts)) <= 1e-9 * gusts) return STATUS_OK;
+    const int has_gust = fabs(school->gust[0]) + fabs(school->gust[1]) > 0;
+    if (!has_gust || fabs(gusts - nearbyint(gusts)) <= 1e-9 * gusts) return STATUS_OK;
     return status_fail(STATUS_CASE,
-                       "a beat has %g gusts, not an integer: set fluid.gust.frequency to a multiple "
-                       "of the frequency of the beat",
+                       "a beat has %g gusts, not an integer: set fluid.gust.frequency to a multiple of the frequency "
+                       "of the beat",
                        gusts);
 }
 
@@ -66,10 +60,6 @@ enum status steady_map_create(struct steady_map *map, struct simulation *simulat
     }
 
     TRY(find_period(map));
-    if (map->period <= 0) return status_fail(STATUS_CASE, "no fish beats, so there is no beat to repeat");
-    TRY(check_events(map));
-    TRY(check_gust(map));
-
     enum status status = MEMORY_NEW(map->last, simulation->school->n_fish, "the beats of the fish");
     if (status == STATUS_OK) status = MEMORY_NEW(map->before, simulation->school->n_fish, "the beats of the fish");
     if (status != STATUS_OK) steady_map_free(map);

@@ -1,4 +1,4 @@
-/* error_budget.c: the rule. */
+/* error_budget.c: the rule for the error of a sequence of levels. */
 #include "study/error_budget.h"
 
 #include <math.h>
@@ -50,28 +50,18 @@ double error_budget_order(const double *size, const double (*value)[2]) {
 
 // ---- one sequence
 
-// the scalar product of two neighbouring differences
-static double product(const double (*value)[2]) {
-    return (value[0][0] - value[1][0]) * (value[1][0] - value[2][0]) +
-           (value[0][1] - value[1][1]) * (value[1][1] - value[2][1]);
-}
-
-static double largest_difference(const struct error_budget_levels *levels, const double (*value)[2]) {
-    double most = 0;
-    for (int i = 0; i < levels->n; i++) {
-        const double difference = distance(value[i], value[levels->base]);
-        if (isnan(difference)) return NAN;
-        most = fmax(most, difference);
-    }
-    return most;
-}
-
 static enum error_budget_verdict judge_one(const struct error_budget_levels *levels,
                                            const struct error_budget_sequence *sequence,
                                            struct error_budget_result *result) {
     const int n = levels->n;
     const double(*const f)[2] = sequence->value;
-    const double largest = largest_difference(levels, f), design = levels->design_order;
+    const double design = levels->design_order;
+    double largest = 0;
+    for (int i = 0; i < n; i++) {
+        const double difference = distance(f[i], f[levels->base]);
+        largest = isnan(difference) ? NAN : isnan(largest) ? largest : fmax(largest, difference);
+    }
+
     *result = (struct error_budget_result){.error = largest, .finest_error = NAN, .order = NAN, .coarse_order = NAN};
     if (isnan(largest)) return ERROR_BUDGET_UNKNOWN;
     if (n >= 3) result->order = error_budget_order(levels->size, f);
@@ -79,14 +69,20 @@ static enum error_budget_verdict judge_one(const struct error_budget_levels *lev
 
     if (largest <= of_noise * sequence->noise * hypot(f[levels->base][0], f[levels->base][1])) return ERROR_BUDGET_NONE;
     if (n < 3) return ERROR_BUDGET_FEW;
+
+    // two neighbouring differences turn if their scalar product is negative
     for (int i = 0; i + 2 < n; i++) {
-        if (product(f + i) < 0) return ERROR_BUDGET_TURNS;
+        const double x = (f[i][0] - f[i + 1][0]) * (f[i + 1][0] - f[i + 2][0]);
+        const double y = (f[i][1] - f[i + 1][1]) * (f[i + 1][1] - f[i + 2][1]);
+        if (x + y < 0) return ERROR_BUDGET_TURNS;
     }
+
     // compare orders, because spacings are not halved; equal values have no order and are acceptable
     const double least = 1e-6;
     if (result->order < least || result->coarse_order < least) return ERROR_BUDGET_GROWS;
     if (isnan(design)) return ERROR_BUDGET_NO_ORDER;
     if (result->order < design - slack || result->coarse_order < design - slack) return ERROR_BUDGET_LOW;
+
     // the rule uses the design order, so an order that rises above the design order is acceptable
     const int is_far_above = !(result->order <= design + far_above);
     const int is_rising = result->coarse_order >= design && result->order >= result->coarse_order;
@@ -97,15 +93,6 @@ static enum error_budget_verdict judge_one(const struct error_budget_levels *lev
 }
 
 // ---- all sequences
-
-// the error of an accepted key
-static void extrapolate(const struct error_budget_levels *levels, const double (*f)[2],
-                        struct error_budget_result *result) {
-    const double p = fmin(result->order, levels->design_order);  // fmin ignores NaN
-    const double part = 1 / (pow(levels->size[1] / levels->size[0], p) - 1);
-    result->finest_error = safety * distance(f[0], f[1]) * part;
-    result->error = result->finest_error + distance(f[0], f[levels->base]);
-}
 
 enum error_budget_verdict error_budget_judge(const struct error_budget_levels *levels, int n,
                                              const struct error_budget_sequence *sequences,
@@ -118,6 +105,7 @@ enum error_budget_verdict error_budget_judge(const struct error_budget_levels *l
         const enum error_budget_verdict one = judge_one(&judged, &sequences[q], &results[q]);
         results[q].verdict = one;
         if (one == ERROR_BUDGET_ACCEPTED && all == ERROR_BUDGET_NONE) all = one;
+
         // a missing level takes precedence over any flag
         const int is_first = error_budget_is_flagged(one) && !error_budget_is_flagged(all);
         if (!is_first && !(one == ERROR_BUDGET_UNKNOWN && all != ERROR_BUDGET_UNKNOWN)) continue;
@@ -135,7 +123,12 @@ enum error_budget_verdict error_budget_judge(const struct error_budget_levels *l
         struct error_budget_result *const result = &results[q];
         if (result->verdict == ERROR_BUDGET_UNKNOWN) continue;
         if (all == ERROR_BUDGET_ACCEPTED && result->verdict == ERROR_BUDGET_ACCEPTED) {
-            extrapolate(&judged, sequences[q].value, result);
+            // extrapolate with the order, at most the design order; fmin ignores NaN
+            const double(*const f)[2] = sequences[q].value;
+            const double p = fmin(result->order, judged.design_order);
+            const double part = 1 / (pow(judged.size[1] / judged.size[0], p) - 1);
+            result->finest_error = safety * distance(f[0], f[1]) * part;
+            result->error = result->finest_error + distance(f[0], f[judged.base]);
         } else if (error_budget_is_flagged(all) && result->verdict != ERROR_BUDGET_NONE) {
             result->error *= factor;
         }

@@ -58,6 +58,7 @@ static double number_of(const struct case_values *values, const char *path, int 
     const struct key *const key = case_table_row(path);
     const void *const field = field_of(values, path, fish);
     if (is_in_beats(values, path)) return ((const struct duration *)field)->beats;
+
     // a duration begins with its seconds
     return key->type == REAL || key->type == DURATION ? *(const double *)field : *(const int *)field;
 }
@@ -131,6 +132,7 @@ static void row_set(struct row *row, const char *path, int fish, double value) {
     const int column = error_plan_column(row->study, path);
     if (column < 0) return;
     const int c = are_fish_alike(&row->study->study, path) ? column : column + fish;
+
     // if two refined keys set the same points, the finer value counts
     double now;
     const int are_points = strcmp(path, "fish.sheet_points") == 0;

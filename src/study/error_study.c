@@ -295,6 +295,7 @@ enum status error_study_find_next(struct error_study *study, const struct member
     }
 
     if (next->key < 0) return STATUS_OK;
+
     // the error decreases if the stated value of a key without a flag moves to a finer level
     struct error_study_key *const key = &study->key[next->key];
     const int is_movable = !error_budget_is_flagged(key->verdict);

@@ -150,6 +150,7 @@ static enum status run_member(const struct study *study, const struct job *job) 
 static void be_member(const struct study *study, const struct job *job, pid_t parent, const sigset_t *mask) {
     // the members stop if the study is killed
     prctl(PR_SET_PDEATHSIG, SIGTERM);
+
     // a study that is stopping has no signal handlers any more
     if (is_stopped(study) || getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
 
@@ -322,6 +323,7 @@ static enum status lock_members(struct study *study) {
 
 static enum status plan_and_run(struct study *study) {
     const struct study_options *const options = study->options;
+
     // a refused plan creates no folder
     const int exists = access(options->folder, F_OK) == 0;
     if (exists) TRY(lock_members(study));

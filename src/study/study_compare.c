@@ -27,14 +27,6 @@ static int list_next_word(const char **list, char word[WORD_BYTES]) {
     return 1;
 }
 
-/* Add all methods with adaptive steps. */
-static void add_standard_methods(struct text *text) {
-    text_add(text, "ida2,ida%d", methods_table[METHOD_IDA].order);
-    for (int i = 0; i < methods_n; i++) {
-        if (i != METHOD_IDA && methods_table[i].has_adaptive_steps) text_add(text, ",%s", methods_table[i].word);
-    }
-}
-
 void study_compare_words(struct text *text) {
     text_add(text, "ida1 to ida%d (ida with this highest order)", methods_table[METHOD_IDA].order);
     for (int i = 0; i < methods_n; i++) {
@@ -74,20 +66,19 @@ static void sweep_add_member(struct text *sweep, int method, int order, const ch
     text_add(sweep, "%s[%s, %d, %s, %s]", is_first ? "" : ", ", methods_table[method].word, order, rtol, step);
 }
 
-static enum status refuse_method(const char *word) {
-    struct text known = {0};
-    study_compare_words(&known);
-    status_fail(STATUS_CASE, "--methods: '%s' is unknown: choose from %s", word, known.text ? known.text : "");
-    text_free(&known);
-    return STATUS_CASE;
-}
-
 /* Add a method with each tolerance or step. rtol: tolerance of members with fixed steps. */
 static enum status sweep_add_method(struct text *sweep, const char *word, const struct study_compare_options *options,
                                     const char *rtol) {
     int order;
     const int method = find_method(word, &order);
-    if (method < 0) return refuse_method(word);
+    if (method < 0) {
+        struct text known = {0};
+        study_compare_words(&known);
+        status_fail(STATUS_CASE, "--methods: '%s' is unknown: choose from %s", word, known.text ? known.text : "");
+        text_free(&known);
+        return STATUS_CASE;
+    }
+
     const int by_step = options->steps && method != METHOD_IDA;
     const char *list = by_step ? options->steps : options->rtols ? options->rtols : standard_rtols;
     char value[WORD_BYTES];
@@ -102,27 +93,29 @@ static enum status sweep_add_method(struct text *sweep, const char *word, const 
     return STATUS_OK;
 }
 
-/* Add the reference, and a second reference with ten times the tolerance. */
-static void sweep_add_references(struct text *sweep, double rtol) {
-    for (int i = 0; i < STUDY_COMPARISON_N_REFERENCES; i++) {
-        struct text number = {0};
-        text_add_number(&number, i == 0 ? rtol : 10 * rtol);
-        sweep_add_member(sweep, METHOD_IDA, methods_table[METHOD_IDA].order, number.text ? number.text : "", "0");
-        sweep->failed = sweep->failed || number.failed;
-        text_free(&number);
-    }
-}
-
 /* Write the assignment of the sweep: the references and all rounds of repeats. */
 static enum status add_sweep(struct text *sweep, const struct case_values *values,
                              const struct study_compare_options *options) {
     struct text standard = {0}, rtol = {0};
-    add_standard_methods(&standard);
+
+    // all methods with adaptive steps
+    text_add(&standard, "ida2,ida%d", methods_table[METHOD_IDA].order);
+    for (int i = 0; i < methods_n; i++) {
+        if (i != METHOD_IDA && methods_table[i].has_adaptive_steps) text_add(&standard, ",%s", methods_table[i].word);
+    }
     text_add_number(&rtol, values->school.rtol);
     enum status status = STATUS_OK;
     if (standard.failed || rtol.failed) status = status_fail(STATUS_MEMORY, "out of memory: a comparison");
     text_add(sweep, "sweep=[{keys: [solver.method, solver.order, solver.rtol, solver.step], values: [");
-    sweep_add_references(sweep, options->reference_rtol);
+
+    // the reference, and a second reference with ten times the tolerance
+    for (int i = 0; i < STUDY_COMPARISON_N_REFERENCES; i++) {
+        struct text number = {0};
+        text_add_number(&number, (i == 0 ? 1 : 10) * options->reference_rtol);
+        sweep_add_member(sweep, METHOD_IDA, methods_table[METHOD_IDA].order, number.text ? number.text : "", "0");
+        sweep->failed = sweep->failed || number.failed;
+        text_free(&number);
+    }
 
     for (int repeat = 0; repeat < options->repeats; repeat++) {
         char word[WORD_BYTES];

@@ -69,8 +69,8 @@ void study_table_print(const struct study_table *table, FILE *stream) {
 
 enum { MAX_FISH_SHOWN = 4, MAX_WARNINGS_SHOWN = 20 };
 
-/* The printed quantities, those of steady states only where a member has a value, those of held bodies only with a held
- * body; study.nc contains all quantities. */
+/* The printed quantities. A quantity of steady states needs a member with a value, a quantity of held bodies a held
+ * body. study.nc contains all quantities. */
 static const struct shown {
     const char *quantity, *head, *format;
     int of_held;

@@ -94,13 +94,6 @@ static enum status write_gather(const struct case_values *study, const char *fol
     return plain_file_close(&script.file, STATUS_OK);
 }
 
-static enum status write_case(const struct case_values *study, const char *folder) {
-    struct script script;
-    TRY(script_open(&script, folder, "study.yaml", 0));
-    fputs(study->merged, script.file.stream);
-    return plain_file_close(&script.file, STATUS_OK);
-}
-
 enum status study_slurm(const struct case_values *study, const char *folder, int bundle, FILE *stream) {
     const int n = sweep_n_members(study);
     if (bundle < 1) bundle = (n + MAX_TASKS - 1) / MAX_TASKS;
@@ -125,7 +118,10 @@ enum status study_slurm(const struct case_values *study, const char *folder, int
             place);
     }
 
-    TRY(write_case(study, place));
+    struct script script;
+    TRY(script_open(&script, place, "study.yaml", 0));
+    fputs(study->merged, script.file.stream);
+    TRY(plain_file_close(&script.file, STATUS_OK));
     TRY(write_array(study, place, program, n_tasks, bundle));
     TRY(write_gather(study, place, program));
     fprintf(stream, "%d members in %d tasks; start them with %s/submit.sh\n", n, n_tasks, folder);
