@@ -2,6 +2,7 @@
  * dimensions. Length L = 1 m, density 1. */
 #include <math.h>
 
+#include "solver/initial_conditions.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;
@@ -30,6 +31,97 @@ static void check_slender(void) {
     const struct diagnostics_fish *const of = simulation->diagnostics->fish;
     verify_relative("plate in heave, w/L = 0.25: mean thrust", "Lighthill", mass * square / 2, of->mean_thrust, 0.03);
     verify_relative("plate in heave, w/L = 0.25: mean power", "Lighthill", mass * square, of->mean_power, 0.03);
+    simulate_free(simulation);
+}
+
+/* Steady lift over that of two dimensions, pi rho U^2 w L alpha, at a small incidence, D lengths after the start. */
+static double lift_part(double depth, int n_sheet, double interval, double end) {
+    const double angle = 0.01;
+    struct simulation *const simulation =
+        verify_open(VERIFY_DEFAULTS
+                    "format: 1\n"
+                    "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "fluid: {density: 1, viscosity: 0, velocity: [1, %.17g]}\n"
+                    "wake: {lifetime: 1000, decay: 0}\n"
+                    "fish: [{nodes: 9, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+                    "        pressure: {span: finite, suction_limit: 0}, motion: {prescribed: all},\n"
+                    "        body: {profile: uniform, thickness: 0.02, depth: %.17g}}]\n",
+                    end, interval, interval, tan(angle), n_sheet, depth);
+    verify_run(simulation, end);
+    simulate_measure(simulation);
+    const struct pressure_forces *const of = &simulation->diagnostics->fish[0].pressure;
+    const double force[2] = {of->pressure[0] + of->suction[0], of->pressure[1] + of->suction[1]};
+    const double lift = force[1] * cos(angle) - force[0] * sin(angle), speed = 1 / cos(angle);
+    simulate_free(simulation);
+    return lift / (pi * speed * speed * depth * angle);
+}
+
+/* A slender wing has the aspect ratio over 4 (Jones); a wing of large aspect ratio AR/(AR + 2) (Prandtl, elliptic load);
+ * Helmbold's formula lies between: AR/(2 + sqrt(AR^2 + 4)). At AR 1 the ring and Helmbold differ by 1.4 per cent. */
+static void check_lift(void) {
+    static const struct {
+        double depth;
+        int n_sheet;
+        double interval, end, bound;
+        const char *source;
+    } wings[] = {{0.05, 129, 0.01, 2, 0.01, "slender wing"}, {0.1, 65, 0.02, 3, 0.01, "slender wing"},
+                 {0.25, 49, 0.02, 4, 0.01, "Helmbold"},      {0.5, 49, 0.02, 5, 0.01, "Helmbold"},
+                 {1, 49, 0.02, 8, 0.015, "Helmbold"},        {2, 49, 0.04, 16, 0.01, "Helmbold"},
+                 {4, 49, 0.05, 30, 0.01, "Helmbold"},        {20, 49, 0.1, 120, 0.01, "lifting line"}};
+    for (size_t i = 0; i < sizeof wings / sizeof *wings; i++) {
+        const double w = wings[i].depth;
+        const double reference = w < 0.2 ? w / 4 : w < 10 ? w / (2 + sqrt(w * w + 4)) : w / (w + 2);
+        verify_relative(verify_text("wing of aspect ratio %g: lift over that of two dimensions", w), wings[i].source,
+                        reference, lift_part(w, wings[i].n_sheet, wings[i].interval, wings[i].end), wings[i].bound);
+    }
+}
+
+/* Added mass of a plate that heaves, over pi rho L^2 w/4 of two dimensions, without shed circulation. */
+static double added_mass_part(double depth, int n_sheet) {
+    struct simulation *const simulation =
+        verify_open(VERIFY_DEFAULTS
+                    "format: 1\n"
+                    "time: {end: 1}\n"
+                    "fluid: {density: 1, viscosity: 0}\n"
+                    "fish: [{nodes: 17, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+                    "        pressure: {span: finite}, start: {speed: 0},\n"
+                    "        body: {profile: uniform, thickness: 0.1, depth: %.17g}}]\n",
+                    n_sheet, depth);
+    struct residual *const residual = simulation->residual;
+    const struct fish *const fish = &simulation->school->fish[0];
+    double *const y = simulation->state->y, mass = 0;
+    for (int k = 0; k < fish->n_nodes; k++) y[fish->at.vy + k] = 1;
+    struct initial_conditions *initial = NULL;
+    residual->at_start = 1;
+    residual->shed_now = SHED_IS_GIVEN;
+    verify_ok(initial_conditions_create(&initial, residual));
+    verify_ok(initial_conditions_solve(initial, 0, y, simulation->state->yp));
+    for (int k = 0; k < fish->n_nodes; k++) mass += residual->pressure[0]->momentum[fish->n_nodes + k];
+    initial_conditions_free(initial);
+    simulate_free(simulation);
+    return mass / (pi / 4 * depth);
+}
+
+static void check_added_mass(void) {
+    verify_relative("plate, w/L = 0.02: added mass over that of two dimensions", "slender body, w/L", 0.02,
+                    added_mass_part(0.02, 401), 0.01);
+    verify_relative("plate, w/L = 20: added mass over that of two dimensions", "two dimensions", 1,
+                    added_mass_part(20, 65), 0.01);
+}
+
+// the energy balance of a free fish over the work of its muscle
+static void check_energy(void) {
+    struct simulation *const simulation = verify_open(VERIFY_DEFAULTS
+                                                      "format: 1\n"
+                                                      "time: {end: 4}\n"
+                                                      "solver: {rtol: 1e-6}\n"
+                                                      "fish: [{force: pressure, start: {speed: 0.5},\n"
+                                                      "        pressure: {span: finite}}]\n");
+    verify_run(simulation, 4);
+    simulate_measure(simulation);
+    const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+    verify_zero("a fish, w/L = 0.25: energy balance after 4 s over work", "first law",
+                of->energy_balance / of->actuation_work, 3e-5);
     simulate_free(simulation);
 }
 
@@ -99,7 +191,10 @@ static void check_slow_start(void) {
 
 void verify_depth(void) {
     check_slender();
+    check_lift();
+    check_added_mass();
     check_deep();
+    check_energy();
     check_momentum("a fish, w/L = 0.25: momentum lost", "{}", 1e-3);
     check_momentum("two fish, w = 0.25 and 0.4 m: momentum lost",
                    "{}, {body: {depth: 0.4}, start: {position: [0.3, 0.4]}}", 1e-3);

@@ -107,6 +107,8 @@ static const struct swimmer swimmers[] = {
      VERIFY_DEFAULTS TIME "wake: {lifetime: 8}\n"
                           "fish: [{force: pressure, start: {speed: 0.5}, body: {depth: 1}}]\n",
      20, 30},
+    {"fish of finite span",
+     VERIFY_DEFAULTS TIME "fish: [{force: pressure, start: {speed: 0.5}, pressure: {span: finite}}]\n", 20, 30},
     {"heaving plate",
      VERIFY_DEFAULTS TIME "solver: {rtol: 1e-6}\n"
                           "fluid: {density: 1, viscosity: 4.536e-4}\nwake: {lifetime: 8, smoothing: 0.1}\n"
