@@ -356,6 +356,28 @@ static bool has_moment(const struct control_parameters *control) {
     return is_of_heading && fabs(control->feedforward) > 0;
 }
 
+/* Check the vortices in the fluid at the start. */
+static void check_vortices(const struct check *check) {
+    const struct school_parameters *const school = &check->values->school;
+    const struct number_list *const vortices = &school->wake.vortices;
+    static const char path[] = "wake.vortices";
+    if (vortices->n == 0) return;
+    complain_if(vortices->width != 3, check, path, "needs rows of 3 numbers, x, y and circulation, not of %d",
+                vortices->width);
+    complain_if(school->wake.removed_circulation == REMOVED_DROPPED, check, path,
+                "the removal of a vortex would add its circulation to the body: use "
+                "'wake.removed_circulation: retained'");
+    complain_if(
+        school->fish[0].force == FORCE_REACTIVE, check, path,
+        "belongs to the wake of the first fish, and with 'force: reactive' that fish is not affected by its own "
+        "wake: use 'force: pressure'");
+    for (int f = 0; f < school->n_fish; f++) {
+        if (school->fish[f].force != FORCE_PRESSURE || school->fish[f].span != SPAN_FINITE) continue;
+        complain_if(true, check, path, "a single vortex is not a ring: use 'pressure.span: infinite'");
+        return;
+    }
+}
+
 /* Check the requirements of a finite span. */
 static void check_span(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
@@ -472,6 +494,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
     check_swept_interval(&check, "time.end", values->time.end);
     check_swept_interval(&check, "time.output_interval", values->time.output_interval);
     check_solver(&check);
+    check_vortices(&check);
     check_wake(&check);
     check_shedding(&check);
     check_fluid(&check);

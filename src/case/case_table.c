@@ -290,6 +290,11 @@ const struct key case_table[] = {
      .meaning = "number of vortices that a program can add to each wake: doc/python.md, section 2",
      .synonyms = "extra_vortices added_vortices"},
 
+    {"wake.vortices", ROWS, AT(school.wake.vortices), "[]", ANY, "",
+     .meaning = "vortices in the fluid at the start: rows of x and y in m, and circulation in m2 s-1; they belong to "
+                "the wake of the first fish, and are removed at the age wake.lifetime",
+     .synonyms = "dipole encounter"},
+
     {"sheet.smoothing", REAL, AT(school.sheet.smoothing), "0.05", ABOVE(0), "",
      .meaning =
          "smoothing radius of a bound vortex for the velocity induced at the wake and at other fish, in body lengths",

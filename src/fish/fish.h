@@ -155,6 +155,9 @@ struct fish {
 };
 
 /* Constants of a run. */
+/* Vortices of a wake that a vortex from outside takes: markers of a sheet, src/wake/wake.c. */
+enum { WAKE_PER_VORTEX = 3 };
+
 struct school {
     int n_fish;
     struct fish *fish;
@@ -176,6 +179,8 @@ struct school {
 
     double wake_merge; /* velocity error at a body by merging in one wake, lengths per beat; 0: no merging */
     int wake_spare;    /* vortices of each wake that may be added from outside: wake_add_vortex, wake_break */
+    int n_vortices;    /* vortices in the fluid at the start, in the wake of the first fish */
+    double *vortices;  /* position, m, and circulation, m2 s-1, of each                    (n_vortices, 3) */
 
     enum contact_action contact; /* of bodies with a gap below contact_range */
     double contact_range;        /* m */

@@ -497,7 +497,7 @@ static void fluid_set(struct school *school, const struct school_parameters *par
     for (int f = 0; f < parameters->n_fish; f++) school->finite |= fish_is_strip(&parameters->fish[f]);
     school->wake_tolerance = parameters->wake.tolerance;
     school->wake_merge = parameters->wake.merge;
-    school->wake_spare = parameters->wake.spare;
+    school->wake_spare = parameters->wake.spare + WAKE_PER_VORTEX * parameters->wake.vortices.n;
     school->contact = parameters->contact.action;
     school->rtol = parameters->rtol;
     school->threads = parameters->threads;
@@ -505,6 +505,14 @@ static void fluid_set(struct school *school, const struct school_parameters *par
     for (int f = 0; f < parameters->n_fish; f++) longest = fmax(longest, parameters->fish[f].length);
     school->coupling_distance = parameters->coupling_distance * longest;
     school->contact_range = parameters->contact.range * longest;
+}
+
+static enum status vortices_set(struct school *school, const struct number_list *vortices) {
+    if (vortices->n == 0) return STATUS_OK;
+    TRY(MEMORY_NEW(school->vortices, 3 * vortices->n, "vortices at the start"));
+    memcpy(school->vortices, vortices->value, 3 * (size_t)vortices->n * sizeof *school->vortices);
+    school->n_vortices = vortices->n;
+    return STATUS_OK;
 }
 
 static enum status refuse_overlap(const struct school *school) {
@@ -543,6 +551,7 @@ enum status fish_school_create(struct school **school, const struct school_param
     if (!new->fish) goto no_memory;
     new->n_fish = parameters->n_fish;
     fluid_set(new, parameters);
+    if (vortices_set(new, &parameters->wake.vortices) != STATUS_OK) goto failed;
     for (int f = 0; f < new->n_fish; f++) {
         if (fish_fill(&new->fish[f], parameters, &parameters->fish[f]) != STATUS_OK) goto failed;
         struct fish *const fish = &new->fish[f];
@@ -615,6 +624,7 @@ void fish_school_free(struct school *school) {
         sheet_integrals_free(fish->integrals);
     }
 
+    free(school->vortices);
     free(school->fish);
     free(school);
 }

@@ -53,9 +53,10 @@ struct wake_parameters {
     struct duration lifetime, decay;
     enum shedding shedding;
     enum removed_circulation removed_circulation;
-    double tolerance; /* lengths per beat; 0: exact */
-    double merge;     /* lengths per beat; 0: never */
-    int spare;        /* vortices of each wake that may be added from outside */
+    double tolerance;            /* lengths per beat; 0: exact */
+    double merge;                /* lengths per beat; 0: never */
+    int spare;                   /* vortices of each wake that may be added from outside */
+    struct number_list vortices; /* in the fluid at the start: rows of position [m] and circulation [m2 s-1] */
 };
 
 struct sheet_parameters {

@@ -197,13 +197,27 @@ static enum status event_finish(struct state *state, struct residual *residual, 
     return STATUS_OK;
 }
 
+// the vortices of the case, in the wake of the first fish
+static enum status event_add_vortices(struct state *state, const struct school *school) {
+    for (int i = 0; i < school->n_vortices; i++) {
+        const double *const vortex = school->vortices + 3 * (long)i;
+        TRY(wake_add_vortex(&state->wake[0], school, state->t, vortex[0], vortex[1], vortex[2]));
+    }
+
+    return STATUS_OK;
+}
+
 // release the first markers, in the flow without shed circulation
 static enum status event_start_sheets(struct state *state, struct residual *residual,
                                       struct initial_conditions *initial) {
     residual->shed_now = SHED_IS_GIVEN;
     enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
     if (status == STATUS_OK) status = event_release_markers(state, residual->school);
-    if (status == STATUS_OK) status = event_wake_velocities(state, residual, 1);
+    if (status == STATUS_OK) status = event_add_vortices(state, residual->school);
+    if (status == STATUS_OK && residual->school->n_vortices > 0) {
+        status = initial_conditions_solve(initial, state->t, state->y, state->yp);
+    }
+    if (status == STATUS_OK) status = event_wake_velocities(state, residual, ALL);
     residual->shed_now = SHED_BY_LAW;
     return status;
 }
@@ -211,14 +225,21 @@ static enum status event_start_sheets(struct state *state, struct residual *resi
 enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
     int jumped;
     residual->at_start = 1;
-    if (residual->school->shedding == SHEDDING_SHEET) TRY(event_start_sheets(state, residual, initial));
-    TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+    if (residual->school->shedding == SHEDDING_SHEET) {
+        TRY(event_start_sheets(state, residual, initial));
+        TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+    } else {
+        TRY(event_add_vortices(state, residual->school));
+        TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+        if (residual->school->n_vortices > 0) TRY(event_wake_velocities(state, residual, ALL));
+    }
+
     residual->at_start = 0;
 
     if (residual->school->shedding == SHEDDING_IMPULSIVE) {
         TRY(event_release_impulse(state, residual, initial));
         TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-        TRY(event_wake_velocities(state, residual, 1));
+        TRY(event_wake_velocities(state, residual, ALL));
     }
 
     TRY(event_finish(state, residual, initial, 1, &jumped));

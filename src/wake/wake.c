@@ -230,10 +230,7 @@ static enum status wake_make_spare(struct wake *wake, const struct school *schoo
 
 enum status wake_add_vortex(struct wake *wake, const struct school *school, double t, double x, double y,
                             double circulation) {
-    enum {
-        BEHIND = 5,
-        N_MARKERS = 3
-    }; /* newest markers stay consecutive: the sources of their stretches are graded points */
+    enum { BEHIND = 5, N_MARKERS = WAKE_PER_VORTEX };  // newest markers stay consecutive: graded points
     if (school->removed == REMOVED_DROPPED) {
         return status_fail(
             STATUS_CASE,
@@ -297,6 +294,17 @@ void wake_set_velocity(struct wake *wake, const double *u, const double *v, cons
         memcpy(before[i], now[i], (size_t)n_old * sizeof *u);
         memcpy(before[i] + n_old, from[i] + n_old, (size_t)n_new * sizeof *u);
         memcpy(now[i], from[i], (size_t)wake->n_vortex * sizeof *u);
+    }
+
+    // both markers of a vortex from outside move together: rounding would let them rotate about each other
+    for (int i = 0; i + 2 < wake->n_vortex && wake->has_markers; i++) {
+        const int is_vortex = !(fabs(wake->x[i + 1] - wake->x[i]) > 0) && !(fabs(wake->y[i + 1] - wake->y[i]) > 0) &&
+                              fabs(wake->circulation[i + 1] - wake->circulation[i]) > 0;
+        if (!is_vortex) continue;
+        for (int k = 0; k < 2; k++) {
+            now[k][i + 1] = now[k][i];
+            before[k][i + 1] = before[k][i];
+        }
     }
 }
 

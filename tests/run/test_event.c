@@ -244,6 +244,49 @@ static void a_fish_reaches_its_waypoints(void **state) {
     simulate_free(simulation);
 }
 
+// The vortices of the case are in the fluid from the start: the sheet of a fish has a stretch for each vortex, and both
+// ends of the stretch move together; the total circulation of fish and wake is the circulation of the vortices.
+static void vortices_of_the_case_meet_the_fish(void **state) {
+    (void)state;
+    static const char *const wakes[] = {"", "shedding: continuous, "};
+    static const char *const fish[] = {"nodes: 9, force: pressure", "force: published"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "%s" TIME
+                 "wake: {%slifetime: 10, decay: 0, vortices: [[-1, 0.5, 0.02], [-1, -0.5, -0.03]]}\n"
+                 "fish: [{%s}]\n",
+                 i == 0 ? SCHOOL_DEFAULTS : "", wakes[i], fish[i]);
+        struct simulation *const simulation = school_simulation(text);
+        const struct wake *const wake = &simulation->state->wake[0];
+        const double circulation[] = {0.02, -0.03};
+        for (int n = 0; n < 20; n++) {
+            int found = 0;
+            for (int k = 0; k < wake_n_sources(wake); k++) {
+                for (int v = 0; v < 2; v++) {
+                    if (fabs(wake_source(wake, k) - circulation[v]) > 1e-15) continue;
+                    found++;
+                    if (n == 0) NEAR(wake->x[k], -1, 0, 0);
+                    if (n == 0) NEAR(wake->y[k], v == 0 ? 0.5 : -0.5, 0, 0);
+                    if (!wake->has_markers) continue;
+                    NEAR(wake->x[k + 1], wake->x[k], 0, 0);
+                    NEAR(wake->y[k + 1], wake->y[k], 0, 0);
+                }
+            }
+
+            assert_int_equal(found, 2);
+            school_ok(simulate_step(simulation));
+        }
+
+        simulate_measure(simulation);
+        double sum = simulation->state->y[simulation->school->fish[0].at.circulation] - wake->shed_before;
+        for (int k = 0; k < wake_n_sources(wake); k++) sum += wake_source(wake, k);
+        sum += bound_sheet_circulation(&simulation->school->fish[0], simulation->state->y);
+        NEAR(sum, -0.01, 0, 1e-12);
+        simulate_free(simulation);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(events_are_at_exact_multiples_of_the_interval),
@@ -256,6 +299,7 @@ int main(void) {
         cmocka_unit_test(an_event_without_finite_velocities_is_final),
         cmocka_unit_test(averaged_heading_changes_the_bias_at_a_bounded_rate),
         cmocka_unit_test(a_fish_reaches_its_waypoints),
+        cmocka_unit_test(vortices_of_the_case_meet_the_fish),
         cmocka_unit_test(feedforward_does_not_depend_on_the_integrator),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

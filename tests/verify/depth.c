@@ -56,8 +56,8 @@ static double lift_part(double depth, int n_sheet, double interval, double end) 
     return lift / (pi * speed * speed * depth * angle);
 }
 
-/* A slender wing has the aspect ratio over 4 (Jones); a wing of large aspect ratio AR/(AR + 2) (Prandtl, elliptic load);
- * Helmbold's formula lies between: AR/(2 + sqrt(AR^2 + 4)). At AR 1 the ring and Helmbold differ by 1.4 per cent. */
+/* Lift over 2 pi angle: AR/4 of a slender wing (Jones); AR/(AR + 2) of a wing of large aspect ratio with an elliptic
+ * load (Prandtl); between them AR/(2 + sqrt(AR^2 + 4)) (Helmbold). At AR 1 ring and Helmbold differ by 1.4 per cent. */
 static void check_lift(void) {
     static const struct {
         double depth;

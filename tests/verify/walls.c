@@ -116,7 +116,49 @@ static void check_energy(const char *force) {
     simulate_free(simulation);
 }
 
+// ---- a dipole at a wall
+
+/* Two opposite vortices approach the wall y = 0 and part there: 1/x^2 + 1/y^2 is constant on the way of each (Lamb,
+ * Hydrodynamics, section 155). The fish is far away. The error is of second order in the interval. */
+static double dipole_error(double interval, double *parted) {
+    struct simulation *const simulation =
+        verify_open(VERIFY_DEFAULTS
+                    "format: 1\n"
+                    "time: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "fluid: {density: 1, viscosity: 0, walls: [0]}\n"
+                    "wake: {lifetime: 1000, decay: 0, smoothing: 0.001, tolerance: 0,\n"
+                    "       vortices: [[-0.5, 2, -6.283185307179586], [0.5, 2, 6.283185307179586]]}\n"
+                    "fish: [{nodes: 5, sheet_points: 33, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+                    "        motion: {prescribed: all, speed: 0}, start: {position: [1000, 1]}}]\n",
+                    interval, interval);
+    double most = 0;
+    for (int i = 1; i <= 20; i++) {
+        verify_run(simulation, 0.25 * i);
+        const struct wake *const wake = &simulation->state->wake[0];
+        for (int k = 0; k < wake->n_vortex - 1; k++) {
+            if (fabs(wake->circulation[k + 1] - wake->circulation[k]) < 1) continue;
+            const double x = (wake->x[k] + wake->x[k + 1]) / 2, y = (wake->y[k] + wake->y[k + 1]) / 2;
+            most = fmax(most, fabs((1 / (x * x) + 1 / (y * y)) / 4.25 - 1));
+            *parted = x;
+        }
+    }
+
+    simulate_free(simulation);
+    return most;
+}
+
+static void check_dipole(void) {
+    double parted = 0, not_used;
+    const double coarse = dipole_error(0.02, &not_used), fine = dipole_error(0.01, &parted);
+    verify_zero("dipole at a wall: 1/x^2 + 1/y^2 on the way of a vortex", "Lamb, section 155", fine, 1e-4);
+    verify_ratio("dipole at a wall: distance of a vortex from the middle", "half the distance at the start", 0.5,
+                 fabs(parted), 4, 10);
+    verify_order("dipole at a wall: order in the shedding interval", "order of the motion of a vortex",
+                 verify_order_of_errors(coarse, fine), 1.7, 2.6);
+}
+
 void verify_walls(void) {
+    check_dipole();
     check_mirror("reactive", 1e-8);
     if (verify_is_fast()) return;
     check_mirror("pressure", 1e-8);
