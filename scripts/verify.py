@@ -287,6 +287,8 @@ FIGURE = {
                       "speed: relative error", {"scale": "semilog"}),
     "steady_fish with pressure": ("A fish with force: pressure: the way to a steady state", "beats",
                       "speed: relative error", {"scale": "semilog"}),
+    "steady_fish of finite span": ("A fish of finite span: the way to a steady state", "beats",
+                      "speed: relative error", {"scale": "semilog"}),
     "steady_heaving plate": ("A heaving plate: the way to a steady state", "beats",
                       "speed: relative error", {"scale": "semilog"}),
     "reconfiguration": ("A plate across the stream", "Cauchy number", "drag over that of a stiff plate",
