@@ -179,12 +179,13 @@ curvature 5 (0.2 + 0.8 s) sin(2 pi (t - s)) (mass 0.1 rho L, E I = rho f^2 L^5, 
 the other. The speeds are compared with a prototype of the method, another program with another body (a polygon) and
 another solver."""),
     "depth": ("Finite depth", """\
-`pressure.span: finite` (model.md 18): sheets of vortex rings, between Lighthill's slender body and two dimensions; the
-fluid receives the momentum of fish of one and of two depths."""),
+`pressure.span: finite` (model.md 18): sheets of vortex rings, between Lighthill's slender body and two dimensions: lift
+of wings, added mass, thrust and power of a heaving plate; the fluid receives the momentum of fish of one and of two depths;
+the wake of a slow slender fish stays whole."""),
     "walls": ("Walls", """\
 Bodies beside straight walls, model.md 17: a fish beside a wall moves like a fish beside the mirror image, a plate between
 two walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to
-the wall."""),
+the wall. A vortex pair (`wake.vortices`) parts at a wall as in potential flow."""),
     "validation": ("Against experiment and Navier-Stokes", """\
 `force: pressure` with the limit of suction and the boundary-layer friction (model.md 9 and 15) against real fluids: the
 cases foil_anderson, foil_heave and swimmer_navier_stokes of cases/, with other keys at defaults. The references are in
