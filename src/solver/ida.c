@@ -258,7 +258,7 @@ static const char *ida_reason(int code) {
     switch (code) {
         case IDA_TOO_MUCH_WORK: return "more steps between two events than solver.max_steps: raise it, or solver.rtol";
         case IDA_TOO_MUCH_ACC: return "the tolerance is below rounding errors: raise solver.rtol";
-        case IDA_ERR_FAIL: return "the error test ida_failed too often, or with the minimum step: lower solver.rtol";
+        case IDA_ERR_FAIL: return "the error test failed too often, or with the minimum step: lower solver.rtol";
         case IDA_CONV_FAIL:
             return "Newton's iteration did not converge, down to the minimum step: lower solver.rtol or "
                    "time.shedding_interval, and check that the motion at that time is physical";
