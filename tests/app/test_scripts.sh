@@ -245,6 +245,30 @@ assert isinstance(mesh, plot.matplotlib.collections.QuadMesh) and len(axes.colle
 written = sorted(float(text.get_text()) for text in axes.texts)
 values = np.sort(Study("map/study.nc")["shed_circulation"].ravel())
 assert len(written) == 6 and np.allclose(written, values, atol=0.02 * np.ptp(values)), (written, values)
+# contours through many members; a quantity without differences says so and has no colour bar
+from shoal import _plot_study
+class Members:
+    """A study of two axes of seven and six numbers, of one fish."""
+    path, x, y = "members", *(a.ravel() for a in np.meshgrid(np.linspace(1, 2, 7), np.linspace(3, 5, 6)))
+    complete = np.ones(42, dtype=bool)
+    def __init__(self, values):
+        self.values = values
+    def __getitem__(self, name):
+        return np.array(["one"]) if name == "fish_name" else self.values[:, None]
+    def label(self, name):
+        return name
+for values, n_axes in ((Members.x * Members.y, 2), (1 + 1e-9 * Members.x, 1)):
+    figure = plot.pyplot.figure(layout="constrained")
+    _plot_study.plot_map(Members(values), Members.x, Members.y, ["x", "y"], "speed", figure)
+    figure.canvas.draw()
+    assert len(figure.axes) == n_axes, "a colour bar where there are colours"
+    said = [text.get_text() for text in figure.axes[0].texts]
+    if n_axes == 1:
+        assert "speed is constant: 1" in said, said
+    else:
+        isolines = [float(text) for text in said]
+        assert len(isolines) > 3 and all(3 <= value <= 10 for value in isolines), said
+        assert not any(isinstance(c, plot.matplotlib.collections.QuadMesh) for c in figure.axes[0].collections)
 assert np.allclose(edges_between(np.array([1.0, 2, 4]), "linear"), [0.5, 1.5, 3, 5])
 assert np.allclose(edges_between(np.array([1.0, 4, 16]), "log"), [0.5, 2, 8, 32])
 
