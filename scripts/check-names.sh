@@ -22,7 +22,7 @@ complain() {
 # Modules of several subjects, and the prefixes of the names
 declare -A beginnings=(
     [mathematics]='angle_|ramp_|quadrature_|box_' [shape]='curve_|profile_' [rod]='rod_|edge_|actuation_'
-    [reactive]='reactive_|tail_flux_' [clearance]='clearance_|neighbours_|self_crossing' [control]='control_|lead_'
+    [reactive]='reactive_|tail_flux_' [clearance]='clearance_|neighbours_|self_crossing' [control]='control_|lead_' [durable]='durable_|plain_file_'
 )
 
 # Names with a dot or two leading underscores are the compiler's own.

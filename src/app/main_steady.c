@@ -7,7 +7,6 @@
 #include "app/say.h"
 #include "base/parallel.h"
 #include "result/steady_info.h"
-#include "result/steady_json.h"
 #include "steady/steady.h"
 
 static void tell_progress(const struct steady_progress *now, void *data) {

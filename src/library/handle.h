@@ -8,8 +8,8 @@
 #include <stdatomic.h>
 
 #include "case/case.h"
+#include "result/result_file.h"
 #include "result/result_lock.h"
-#include "result/result_values.h"
 #include "run/checkpoints.h"
 #include "run/record.h"
 #include "run/simulate.h"

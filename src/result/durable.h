@@ -13,8 +13,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "base/status.h"
+#include "result/target.h"
 
 /* A file in the making. */
 struct durable_part {
@@ -64,5 +66,24 @@ enum status durable_replace(const char *path, const char *previous, const void *
 /* Read a whole regular file into memory that the caller frees. Fails with STATUS_FILE, also for anything but a regular
  * file (without waiting for a pipe), or with STATUS_MEMORY. */
 enum status durable_read(const char *path, unsigned char **bytes, size_t *n);
+
+/* A text file that gets the final name only when complete. */
+
+struct plain_file {
+    FILE *stream; /* write here */
+    struct durable_part part;
+    const char *path;
+    enum target_kind kind;
+    bool overwrite;
+};
+
+/* Open a file for writing, with these permissions (0777 of a script). The path must live until plain_file_close. Fails
+ * with STATUS_FILE (target_check) or STATUS_MEMORY; no file is then left. */
+enum status plain_file_open(struct plain_file *file, const char *path, enum target_kind kind, bool overwrite,
+                            unsigned permissions);
+
+/* Close the file and rename the file to the path; after a failure of the caller (status) or of writing, remove the
+ * file. Returns status, or STATUS_FILE. */
+enum status plain_file_close(struct plain_file *file, enum status status);
 
 #endif

@@ -1,14 +1,253 @@
 /* result_file.c: writing the file of a run, variable by variable of the table. */
 #include "result/result_file.h"
 
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
+#include <unistd.h>
+#include <zlib.h>
 
 #include "result/netcdf.h"
-#include "result/result_values.h"
 #include "result/target.h"
 #include "school/warnings.h"
+
+// ---- copy values from the structs of a run to the slots of an array
+
+void result_values_lengths(const struct school *school, int n_vortices, size_t length[RESULT_N_DIMENSIONS]) {
+    for (int d = 0; d < RESULT_N_DIMENSIONS; d++) length[d] = 1;
+    length[FISH] = (size_t)school->n_fish;
+    length[VORTEX] = (size_t)n_vortices;
+    length[XY] = 2;
+    length[WALL] = (size_t)school->walls.n;
+    length[MULTIPLIER] = STEADY_QUANTITIES * (size_t)school->n_fish;
+
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        for (enum result_dimension d = NODE; d <= CONTROL; d++) {
+            const size_t of_fish = (size_t)result_table_length(fish, d);
+            if (of_fish > length[d]) length[d] = of_fish;
+        }
+        const size_t n_name = strlen(fish->name);
+        if (n_name > length[NAME]) length[NAME] = n_name;
+    }
+}
+
+size_t result_values_n(const struct result_variable *variable, const size_t *length) {
+    size_t n = 1;
+    for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) n *= length[*d];
+    return n;
+}
+
+size_t result_values_size(enum result_type type) {
+    switch (type) {
+        case RESULT_INTEGER: return sizeof(int);
+        case RESULT_COUNT: return sizeof(long);
+        case RESULT_TEXT: return sizeof(char);
+        default: return sizeof(double);
+    }
+}
+
+/* Write the n_slots values of the school or of fish f. */
+static void fill_slots(const struct result_variable *variable, const struct result_row *row, int f, size_t n_slots,
+                       void *slots) {
+    if (variable->gather) {
+        variable->gather(row, f, slots);
+        return;
+    }
+
+    const char *value = result_table_owner(row, variable->owner, f);
+    if (!value) return;
+    value += variable->offset;
+    size_t n = n_slots;
+
+    if (variable->is_pointer) {
+        memcpy(&value, value, sizeof(const char *));
+        const enum result_dimension last = variable->dimension[1];
+        n = last == NAME ? strlen(value) : (size_t)result_table_length(&row->school->fish[f], last);
+    }
+
+    memcpy(slots, value, n * result_values_size(variable->type));
+}
+
+void result_values_fill(const struct result_variable *variable, const size_t *length, const struct result_row *row,
+                        void *buffer) {
+    const size_t n = result_values_n(variable, length), size = result_values_size(variable->type);
+    memset(buffer, 0, n * size);
+    if (variable->type == RESULT_REAL || variable->type == RESULT_BULK) {
+        for (size_t k = 0; k < n; k++) ((double *)buffer)[k] = NAN;
+    }
+    const size_t n_fish = result_table_has(variable, FISH) ? length[FISH] : 1;
+    const size_t n_owners = variable->owner == OF_AXIS ? length[XY] : n_fish, n_slots = n / n_owners;
+    for (size_t f = 0; f < n_owners; f++) {
+        fill_slots(variable, row, (int)f, n_slots, (char *)buffer + f * n_slots * size);
+    }
+}
+
+// ---- row by row, variable by variable
+
+struct copying {
+    const struct result_source *source;
+    const struct result_target *target;
+    struct netcdf_reader reader;
+    size_t n_vortices; /* slots in the file that is read */
+    double *read;      /* one row of the largest variable there */
+};
+
+/* The number of values of a variable per row and fish; to_read: with the vortices of the source only. */
+static size_t n_of_fish(const struct copying *copying, const struct result_variable *variable, bool to_read) {
+    size_t n = 1;
+    for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) {
+        if (*d == TIME || *d == FISH) continue;
+        n *= to_read && *d == VORTEX ? copying->n_vortices : copying->target->length[*d];
+    }
+    return n;
+}
+
+static enum status read_row(const struct copying *copying, const struct result_variable *variable, long row) {
+    struct netcdf_slice slice[RESULT_MAX_DIMENSIONS + 1] = {0};
+    for (int d = 0; variable->dimension[d] != NONE; d++) {
+        const enum result_dimension dimension = variable->dimension[d];
+        slice[d].dimension = result_table_dimension(dimension);
+        slice[d].first = dimension == TIME ? (size_t)row : 0;
+        slice[d].n = dimension == VORTEX ? copying->n_vortices : copying->target->length[dimension];
+    }
+    return netcdf_read_doubles(&copying->reader, variable->name, slice, copying->read);
+}
+
+static void write_row(const struct copying *copying, int i, long row) {
+    const struct result_variable *const variable = &result_table[i];
+    const struct result_target *const target = copying->target;
+    size_t start[RESULT_MAX_DIMENSIONS] = {(size_t)row}, count[RESULT_MAX_DIMENSIONS];
+    for (int d = 0; variable->dimension[d] != NONE; d++) count[d] = target->length[variable->dimension[d]];
+    netcdf_write_doubles(target->writer, target->number[i], start, count, target->buffer);
+}
+
+static enum status copy_row(const struct copying *copying, int i, long row) {
+    const struct result_variable *const variable = &result_table[i];
+    const struct result_source *const source = copying->source;
+    const size_t from = n_of_fish(copying, variable, true), to = n_of_fish(copying, variable, false);
+    const size_t n_fish = result_table_has(variable, FISH) ? copying->target->length[FISH] : 1;
+    const bool drop = source->drop_last_wake && row == source->n_rows - 1 && result_table_has(variable, VORTEX);
+    TRY(read_row(copying, variable, row));
+    for (size_t k = 0; k < n_fish * to; k++) copying->target->buffer[k] = NAN;
+    for (size_t f = 0; f < n_fish && !drop; f++) {
+        memcpy(copying->target->buffer + f * to, copying->read + f * from, (from < to ? from : to) * sizeof(double));
+    }
+    write_row(copying, i, row);
+    return STATUS_OK;
+}
+
+static enum status copy_all(struct copying *copying) {
+    const struct result_target *const target = copying->target;
+    TRY(netcdf_read_length(&copying->reader, result_table_dimension(VORTEX), 1, SIZE_MAX / 64, &copying->n_vortices));
+    size_t most = 1;
+
+    for (int i = 0; i < result_table_n; i++) {
+        const size_t n = n_of_fish(copying, &result_table[i], true) * target->length[FISH];
+        if (n > most) most = n;
+    }
+
+    copying->read = calloc(most, sizeof *copying->read);
+    if (!copying->read) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", copying->source->path);
+
+    for (long row = 0; row < copying->source->n_rows; row++) {
+        for (int i = 0; i < result_table_n; i++) {
+            const struct result_variable *const variable = &result_table[i];
+            if (variable->forces > target->forces || !result_table_has(variable, TIME)) continue;
+            TRY(copy_row(copying, i, row));
+        }
+    }
+
+    return STATUS_OK;
+}
+
+enum status result_copy_rows(const struct result_source *source, const struct result_target *target) {
+    struct copying copying = {.source = source, .target = target};
+    TRY(netcdf_open(&copying.reader, source->path));
+    const enum status status = copy_all(&copying);
+    netcdf_close(&copying.reader);
+    free(copying.read);
+    return status;
+}
+
+// ---- the checksum of a result file's bytes, brought up to date as the file grows
+
+enum { BLOCK = 1 << 16 };
+
+// add the bytes of a file up to a place; errno or 0
+static int add_bytes(int descriptor, uint64_t begin, uint64_t end, struct result_checksum *checksum) {
+    unsigned char block[BLOCK];
+    if (checksum->done == 0) *checksum = (struct result_checksum){begin, (uint32_t)crc32_z(0, NULL, 0)};
+
+    while (checksum->done < end) {
+        const uint64_t left = end - checksum->done;
+        const ssize_t n = pread(descriptor, block, left < BLOCK ? (size_t)left : BLOCK, (off_t)checksum->done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return n < 0 ? errno : EIO;
+        checksum->value = (uint32_t)crc32_z(checksum->value, block, (size_t)n);
+        checksum->done += (uint64_t)n;
+    }
+
+    return 0;
+}
+
+enum status result_mark_take(const char *path, long n_rows, struct result_checksum *checksum,
+                             struct result_mark *mark) {
+    struct netcdf_rows rows;
+    TRY(netcdf_read_rows(path, &rows));
+
+    if (rows.bytes == 0 || n_rows < 0 || rows.n < (uint64_t)n_rows) {
+        return status_fail(STATUS_FILE, "%s: has %llu rows, but the checkpoint requires %ld", path,
+                           (unsigned long long)rows.n, n_rows);
+    }
+
+    const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    int code = descriptor < 0 ? errno : 0;
+
+    if (code == 0) {
+        code = add_bytes(descriptor, rows.begin, rows.begin_of_rows + (uint64_t)n_rows * rows.bytes, checksum);
+        close(descriptor);
+    }
+
+    *mark = (struct result_mark){n_rows, checksum->value};
+    return code == 0 ? STATUS_OK : status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(code));
+}
+
+// Read the case and the run_status of a result.
+static enum status check_attributes(const char *path, const char *effective, int *is_complete) {
+    struct netcdf_reader reader;
+    char *found = NULL, *run_status = NULL;
+    TRY(netcdf_open(&reader, path));
+    enum status status = netcdf_read_string(&reader, "case_effective", &found);
+    if (status == STATUS_OK) status = netcdf_read_string(&reader, "run_status", &run_status);
+    const size_t n_missing = reader.n_missing;
+    netcdf_close(&reader);
+
+    if (status == STATUS_OK) {
+        *is_complete = strcmp(run_status, "complete") == 0 && n_missing == 0;
+        if (strcmp(found, effective) != 0) {
+            status = status_fail(STATUS_FILE, "%s is the result of another case than the checkpoint", path);
+        }
+    }
+
+    free(found);
+    free(run_status);
+    return status;
+}
+
+enum status result_mark_check(const char *path, const struct result_mark *mark, const char *effective,
+                              struct result_checksum *checksum, int *is_complete) {
+    struct result_mark found;
+    TRY(check_attributes(path, effective, is_complete));
+    *checksum = (struct result_checksum){0};
+    TRY(result_mark_take(path, mark->n_rows, checksum, &found));
+    if (found.check == mark->check) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: the rows do not match the checkpoint: changed or damaged since", path);
+}
 
 /* Reserved bytes of attributes that are rewritten in place without moving the rest of the file. */
 enum { STATUS_LENGTH = 256, MAX_NOTE_LENGTH = N_WARNINGS * WARNING_BYTES };

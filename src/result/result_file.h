@@ -3,12 +3,75 @@
 #ifndef RESULT_FILE_H
 #define RESULT_FILE_H
 
+#include <stdbool.h>
+#include <stdint.h>
+
 #include "base/status.h"
 #include "case/case.h"
 #include "fish/fish.h"
-#include "result/result_copy.h"
-#include "result/result_mark.h"
+#include "result/netcdf.h"
 #include "result/result_table.h"
+
+/* ---- the values of the variables of the table at one event, as arrays in memory for the result file and the public
+ * interface: in C order, unused slots of a fish NaN or zero */
+
+/* The length of each dimension for this school, with n_vortex vortices per fish; the length of TIME is 1. */
+void result_values_lengths(const struct school *school, int n_vortices, size_t length[RESULT_N_DIMENSIONS]);
+
+/* The number of values of a variable at one event. */
+size_t result_values_n(const struct result_variable *variable, const size_t *length);
+
+/* The bytes of one value. */
+size_t result_values_size(enum result_type type);
+
+/* Write all values of a variable to a buffer of result_values_n of them. No fish has more vortices than the length. */
+void result_values_fill(const struct result_variable *variable, const size_t *length, const struct result_row *row,
+                        void *buffer);
+
+// ---- copy of the rows of one result file into another with room for more vortices
+
+/* Where rows come from. */
+struct result_source {
+    const char *path;
+    long n_rows;
+    bool drop_last_wake; /* the last row gets no record of the wake */
+};
+
+/* The target: for each variable of the table the number, presence in the file and lengths, and a buffer for one row of
+ * any variable. */
+struct result_target {
+    struct netcdf_writer *writer;
+    const int *number;
+    enum output_forces forces;
+    const size_t *length;
+    double *buffer;
+};
+
+/* Copy all rows. Fails with STATUS_FILE or STATUS_MEMORY if rows cannot be read; the writer stores failures of writing.
+ * */
+enum status result_copy_rows(const struct result_source *source, const struct result_target *target);
+
+// ---- the rows of a result file before a checkpoint: number and checksum
+
+struct result_mark {
+    long n_rows;
+    uint32_t check; /* CRC-32 of the bytes in the file: all variables without rows, and these rows */
+};
+
+/* The state of the checksum of a growing file. Zero to begin. */
+struct result_checksum {
+    uint64_t done; /* bytes of the file, 0: none */
+    uint32_t value;
+};
+
+/* Mark the first n_rows of a file. Bytes in the checksum are not read again. Fails with STATUS_FILE if rows are missing
+ * or unreadable. */
+enum status result_mark_take(const char *path, long n_rows, struct result_checksum *checksum, struct result_mark *mark);
+
+/* Fail with STATUS_FILE, and the reason, unless the file at path has the rows of a mark and the same case (effective).
+ * *is_complete: the run has reached time.end. *checksum: of the mark. */
+enum status result_mark_check(const char *path, const struct result_mark *mark, const char *effective,
+                              struct result_checksum *checksum, int *is_complete);
 
 struct result_file; /* an open result file */
 

@@ -5,10 +5,46 @@
 
 #include <stdbool.h>
 
-#include "result/steady_values.h"
 #include "school/diagnostics.h"
 #include "school/residual.h"
 #include "solver/integrator.h"
+
+/* The results of a search for a steady state (steady/steady.h): the variables steady_... */
+
+/* A fish has at most so many slow quantities, and multipliers. */
+enum { STEADY_QUANTITIES = 6 };
+
+/* One fish: means over the last beat; without a beat the values at equilibrium. */
+struct steady_fish {
+    double speed;      /* of the centre of mass through the water, m s-1 */
+    double turn;       /* of the heading in a beat, degree */
+    double place[2];   /* of the centre of mass relative to the first fish: ahead and to the left, m */
+    double force[2];   /* of the fluid on the body, N */
+    double thrust;     /* of the fluid on the body, along the direction of travel, N */
+    double drag, lift; /* along the oncoming stream, and to the left of the stream, N; without a beat only, */
+    double deflection; /* and of the tail, to the left of the heading of a stiff body, m; else NaN */
+    double actuation_power, damping_power, constraint_power; /* W */
+    double fluid_power;                                      /* that goes into the fluid, W */
+    double power;                                            /* of muscle and drive without the work of the thrust, W */
+    double cost_of_transport;                                /* m s-2 */
+    double efficiency, strouhal;
+};
+
+struct steady_values {
+    int n_beats;              /* of the search, without the beats of the multipliers */
+    int n_multiplier_beats;   /* and those */
+    double residual;          /* largest relative change from one beat to the next: doc/steady.md; without a beat the
+                             * largest residual over the scale of the equation */
+    double stiffness;         /* static stiffness over the stiffness at rest; NaN with a beat or for a rigid body */
+    double error;             /* estimate of how far that is from the fixed point; NaN without multipliers */
+    int n_multipliers;        /* 0: none were asked for, or there is no slow quantity */
+    double *real, *imaginary; /* by falling absolute value                         (n_multipliers) */
+    int n_exponents;      /* of small disturbances, of a pair one: of the multipliers, or without a beat of the modes
+                                 of the bodies */
+    double *rate, *omega; /* growth rate, s-1, and angular frequency, rad s-1, by falling rate (n_exponents) */
+    double growth, growth_frequency; /* of the first, s-1 and Hz; NaN: there is none */
+    struct steady_fish *fish;        /* (n_fish) */
+};
 
 /* All that a row is made of; for the constants school is enough. */
 struct result_row {

@@ -11,4 +11,10 @@
  * STATUS_FILE or STATUS_MEMORY. */
 enum status steady_info(const struct netcdf_reader *reader, FILE *stream);
 
+/* A steady state as JSON, from the result file: an object with "file", "fish_name", and every variable
+ * steady_... as a number or as lists over the dimensions. NaN becomes null; unused slots of multipliers are omitted. */
+
+/* Print the object; the file must have a steady state. Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status steady_json(const struct netcdf_reader *reader, FILE *stream);
+
 #endif

@@ -3,7 +3,7 @@
 #ifndef STEADY_MAP_H
 #define STEADY_MAP_H
 
-#include "result/steady_values.h"
+#include "result/result_row.h"
 #include "run/simulate.h"
 #include "school/rigid.h"
 

@@ -4,7 +4,7 @@
 #ifndef STEADY_MODES_H
 #define STEADY_MODES_H
 
-#include "result/steady_values.h"
+#include "result/result_row.h"
 #include "run/simulate.h"
 #include "steady/steady_problem.h"
 

@@ -3,7 +3,7 @@
 #ifndef STEADY_STATIC_H
 #define STEADY_STATIC_H
 
-#include "result/steady_values.h"
+#include "result/result_row.h"
 #include "run/simulate.h"
 
 /* 1 if no fish beats, neither by a wave nor by prescribed motion. */

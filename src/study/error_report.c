@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "case/case.h"
 #include "case/sweep.h"
-#include "result/plain_file.h"
+#include "result/durable.h"
 #include "run/estimate.h"
 #include "study/study_print.h"
 

@@ -7,7 +7,7 @@
 
 #include "case/case.h"
 #include "case/sweep.h"
-#include "result/plain_file.h"
+#include "result/durable.h"
 #include "study/study.h"
 #include "study/study_folder.h"
 

@@ -10,7 +10,7 @@
 
 #include "base/text.h"
 #include "base/version.h"
-#include "result/plain_file.h"
+#include "result/durable.h"
 #include "result/result_reader.h"
 #include "view/outline.h"
 #include "wake/wake.h"

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 
 #include "base/text.h"
-#include "result/plain_file.h"
+#include "result/durable.h"
 #include "result/result_reader.h"
 #include "view/outline.h"
 #include "wake/wake.h"

@@ -1,6 +1,6 @@
 /* test_result_mark.c: rows are marked, found again, cut and continued, and no other rows pass for them. */
 #include "result/netcdf.h"
-#include "result/result_mark.h"
+#include "result/result_file.h"
 #include "result_fixture.h"
 
 static void are_equal(const struct result_mark *got, const struct result_mark *want) {
