@@ -163,13 +163,18 @@ static double separation_share(const struct history *history, double limit) {
     return sum / (history->n - 1);
 }
 
+/* Whether a body has travelled further than rounding: below that the direction and all numbers per speed are noise. */
+static int has_travelled(const struct fish *fish, double distance) {
+    return distance > 1e-9 * fish->length;
+}
+
 /* Mean thrust, power and efficiency of a held body (doc/model.md, section 13): the drive of the body also takes the
  * thrust, whose work is no part of the power of the motion. */
 static void thrust_of_held(const struct fish *fish, const struct history *history, const double way[2], double distance,
                            struct diagnostics_fish *to) {
     // in water at rest a body that does not travel has the direction of the heading
     const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)};
-    const int travels = distance > 1e-9 * fish->length;
+    const int travels = has_travelled(fish, distance);
     to->mean_thrust =
         -mean_against(history, offsetof(struct sample, force), travels ? way : ahead, travels ? distance : 1);
     to->mean_power += to->mean_thrust * to->speed;
@@ -201,7 +206,7 @@ static void means_over_period(const struct fish *fish, const struct history *his
     to->mean_power = to->mean_actuation_power + drive;
     const int is_held = fish->motion.is_held;
     if (is_held) thrust_of_held(fish, history, way, distance, to);
-    if (distance <= 0) return;
+    if (!has_travelled(fish, distance)) return;
 
     // quantities along the path
     to->heading_error = angle_degrees(angle_wrap(atan2(way[1], way[0]) - angle_radians(to->desired_heading)));
