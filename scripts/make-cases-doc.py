@@ -45,7 +45,8 @@ fish:
 ```
 
 `shoal check CASE` checks a case and estimates time and memory of the run, `shoal show CASE` prints every key, value and
-unit of the case, and `shoal keys` prints the tables below. All errors of a case are listed at once, each with a place and
+unit of the case, `shoal keys` prints the tables below, and `shoal keys WORD` the keys with a word in name or meaning.
+`shoal new CASE` writes a commented case to start from. All errors of a case are listed at once, each with a place and
 a remedy:
 
 ```
@@ -80,7 +81,9 @@ Maps are merged key by key; lists (`fish`, `sweep`, points) replace each other a
 ### include
 
 `include: [water.yaml, gaits/slow.yaml]` reads other case files first, which need not be complete. Names are relative to
-the including file. Included files may include others, up to 8 deep.
+the including file; a file that is not there is taken from the cases of the installation (share/shoal/cases, or cases of
+the source tree). Included files may include others, up to 8 deep. The `name` of an included case does not count: results
+have the name of the case that includes it.
 
 ### preset
 

@@ -61,8 +61,12 @@ def keys_of(table):
     return paths, words
 
 
-def files_of(positional):
-    """The arguments of compgen for the file of a command."""
+def files_of(positional, commands):
+    """The arguments of compgen for the file of a command, or for the command of help."""
+    if positional == "[COMMAND]":
+        return f' $(compgen -W "{" ".join(command["name"] for command in commands)}" -- "$cur")'
+    if positional == "[WORD]":
+        return ""
     endings = {"CASE": "yaml", "FOLDER": ""}
     if positional is None:
         return ""
@@ -78,7 +82,7 @@ def main(about, table):
     options, arguments = [], []
     for command in commands:
         names = " ".join("--" + option["name"] for option in command["options"])
-        files = files_of(command["positional"])
+        files = files_of(command["positional"], commands)
         options.append(
             f"        {command['name']})\n            if [[ $cur == -* ]]; then COMPREPLY=($(compgen -W \"{names}\" -- \"$cur\"))\n"
             f"            else COMPREPLY=({files.strip()}); fi ;;"

@@ -19,6 +19,7 @@ for pictures.
     shoal info demo.nc                 # a summary: status, fish, last values, work of the solver
     shoal info demo-study/study.nc     # of a study: axes, members, orders of convergence; of a comparison: the table
     shoal info demo-field.nc           # of a field: time, grid
+    shoal info demo.nc --json          # for programs: the last row, values of fish and members without nodes and vortices
     ncdump -v speed,heading demo.nc    # ncdump -h: dimensions, variables and attributes
 
 Python (`apt install python3-xarray python3-netcdf4`):

@@ -7,6 +7,7 @@
 #include "app/main_options.h"
 #include "app/main_signals.h"
 #include "app/say.h"
+#include "base/text.h"
 #include "base/version.h"
 
 // Let waiting threads spin for microseconds and then sleep, unless the environment sets a policy. The default of OpenMP
@@ -18,6 +19,8 @@ __attribute__((constructor(101))) static void limit_spinning(void) {
 }
 
 // ---- the commands
+
+static enum status main_help(const struct request *request);
 
 static const struct command commands[] = {
     {"run",
@@ -45,19 +48,19 @@ static const struct command commands[] = {
      "run all members of a sweep and gather the results",
      {'o', 'j', OPTION_LIMIT, OPTION_MEMBERS, OPTION_PLAN, OPTION_SLURM, OPTION_BUNDLE, OPTION_FORCE, OPTION_STRICT,
       OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
-     "folder of the study (default: the name of the case with -study)",
+     "folder of the study (default: the name of the case file with -study)",
      main_study},
     {"error",
      "CASE",
      "estimate the errors of quantities: vary each numerical key of a case and compare the levels",
      {'o', 'j', OPTION_OF, OPTION_WITHIN, OPTION_NO_CONFIRM, OPTION_PLAN, OPTION_LIMIT, OPTION_FORCE, OPTION_STRICT,
       OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
-     "folder of the members (default: the name of the case with -error)",
+     "folder of the members (default: the name of the case file with -error)",
      main_error},
     {"gather",
      "FOLDER",
      "write study.nc and its table again from the files of the members",
-     {OPTION_STRICT, 'h'},
+     {OPTION_STRICT, 'q', 'h'},
      NULL,
      main_gather},
     {"compare",
@@ -69,9 +72,10 @@ static const struct command commands[] = {
      main_compare},
     {"check", "CASE", "check a case and list all errors", {OPTION_SET, OPTION_THREADS, 'q', 'h'}, NULL, main_check},
     {"show", "CASE", "print a case with the values of all keys", {OPTION_SET, OPTION_THREADS, 'h'}, NULL, main_show},
+    {"new", "CASE", "write a commented case to start from; never overwrites a file", {'q', 'h'}, NULL, main_new},
     {"keys",
-     NULL,
-     "list all keys of cases, or all variables of result files",
+     "[WORD]",
+     "list all keys of cases, or all variables of result files, or those with a word in name or meaning",
      {OPTION_JSON, OPTION_SCHEMA, OPTION_OUTPUT, 'h'},
      NULL,
      main_keys},
@@ -84,7 +88,7 @@ static const struct command commands[] = {
     {"info",
      "FILE",
      "summarise the file of a run, a study or a field, or a checkpoint",
-     {OPTION_CASE, 'h'},
+     {OPTION_CASE, OPTION_JSON, 'h'},
      NULL,
      main_info},
     {"view",
@@ -105,6 +109,7 @@ static const struct command commands[] = {
      {OPTION_FORCE, 'q', 'h'},
      NULL,
      main_demo},
+    {"help", "[COMMAND]", "list the commands, or the options of one", {'h'}, NULL, main_help},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
@@ -117,16 +122,45 @@ static const char exit_codes[] =
 static void print_help(FILE *stream) {
     fprintf(stream, "shoal: %s\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", summary);
     for (int i = 0; i < N_COMMANDS; i++) {
-        fprintf(stream, "  %-8s%-11s%s\n", commands[i].name, commands[i].positional ? commands[i].positional : "",
+        fprintf(stream, "  %-8s%-12s%s\n", commands[i].name, commands[i].positional ? commands[i].positional : "",
                 commands[i].summary);
     }
 
     fputs(
-        "\n  shoal COMMAND --help    the options of a command\n"
+        "\n  shoal help COMMAND      the options of a command; also shoal COMMAND --help\n"
         "  shoal --version         versions of the program and its libraries\n"
         "  shoal --describe        commands and options as JSON, the source of manual and completion\n\n",
         stream);
     fprintf(stream, "Exit codes: %s\n", exit_codes);
+}
+
+static enum status refuse_command(const char *name) {
+    // a slip of one or two letters: the nearest command
+    const struct command *nearest = NULL;
+    int least = 3;
+    for (int i = 0; i < N_COMMANDS; i++) {
+        const int distance = text_distance(name, strlen(name), commands[i].name, strlen(commands[i].name));
+        if (distance >= least || distance >= (int)strlen(name)) continue;
+        least = distance;
+        nearest = &commands[i];
+    }
+
+    return status_fail(STATUS_CASE, "unknown command '%.60s'%s%s%s; see shoal --help", name,
+                       nearest ? "; did you mean '" : "", nearest ? nearest->name : "", nearest ? "'?" : "");
+}
+
+static enum status main_help(const struct request *request) {
+    if (!request->positional) {
+        print_help(stdout);
+        return STATUS_OK;
+    }
+
+    for (int i = 0; i < N_COMMANDS; i++) {
+        if (strcmp(request->positional, commands[i].name) != 0) continue;
+        main_print_help(&commands[i], stdout);
+        return STATUS_OK;
+    }
+    return refuse_command(request->positional);
 }
 
 /* Print all commands with their options as JSON. */
@@ -201,7 +235,7 @@ static enum status choose(int argc, char **argv) {
     for (int i = 0; i < N_COMMANDS; i++) {
         if (strcmp(argv[1], commands[i].name) == 0) return dispatch(&commands[i], argc, argv);
     }
-    return main_usage(NULL, "unknown command '%s'", argv[1]);
+    return refuse_command(argv[1]);
 }
 
 // Errors of a case begin with file, line and column, so only other messages get the prefix.

@@ -1,4 +1,5 @@
 /* main_case.c: show cases and results, list keys and variables. */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 #include "case/case.h"
 #include "result/checkpoint.h"
 #include "result/result_info.h"
+#include "result/result_json.h"
 #include "result/result_kind.h"
 #include "result/result_table.h"
 #include "result/target.h"
@@ -48,24 +50,57 @@ enum status main_show(const struct request *request) {
 }
 
 enum status main_keys(const struct request *request) {
-    if (request->of_output) {
-        result_kind_variables(N_LISTS, kinds, request->json, stdout);
-    } else if (request->schema) {
+    const char *const word = request->positional;
+    if (request->schema) {
         case_schema(stdout);
-    } else {
-        case_keys(stdout, request->json);
+        return STATUS_OK;
     }
+
+    const int n = request->of_output ? result_kind_variables(N_LISTS, kinds, request->json, word, stdout)
+                                     : case_keys(stdout, request->json, word);
+    if (n > 0 || request->json) return STATUS_OK;
+    return status_fail(STATUS_CASE, "no %s has '%.60s' in name or meaning%s", request->of_output ? "variable" : "key",
+                       word, request->of_output ? "" : "; see shoal keys, or shoal keys --output for results");
+}
+
+enum status main_new(const struct request *request) {
+    const char *const path = request->positional;
+    // a file that appears in the meantime is not overwritten either
+    FILE *const file = fopen(path, "wx");
+    if (!file) {
+        return status_fail(STATUS_FILE, errno == EEXIST ? "%s exists: choose another name" : "%s: %s", path,
+                           strerror(errno));
+    }
+
+    const int failed = fputs(case_template, file) == EOF;
+    if (fclose(file) != 0 || failed)
+        return status_fail(STATUS_FILE, "%s: cannot be written: %s", path, strerror(errno));
+    if (!request->quiet) say_line(stdout, "%s\n", path);
     return STATUS_OK;
 }
 
 enum status main_info(const struct request *request) {
-    return main_print_info(request->positional, request->case_only);
+    const char *const path = request->positional;
+    if (!request->json) return main_print_info(path, request->case_only);
+    if (request->case_only) return status_fail(STATUS_CASE, "info: --case prints a case file, which is not JSON");
+    if (target_is(path, TARGET_CHECKPOINT)) {
+        return status_fail(STATUS_CASE, "info: %s is a checkpoint; --json needs the file of a run, a study or a field",
+                           path);
+    }
+
+    const char *kind;
+    struct netcdf_reader reader;
+    TRY(result_kind_name(N_KINDS, kinds, path, &kind));
+    TRY(netcdf_open(&reader, path));
+    const enum status status = result_json_summary(&reader, kind, stdout);
+    netcdf_close(&reader);
+    return status;
 }
 
 enum status main_print_info(const char *path, int case_only) {
     struct say_page page;
     TRY(say_begin(&page));
-    return say_end(&page, target_is(path, TARGET_CHECKPOINT)
-                              ? checkpoint_info(path, case_only, page.stream)
-                              : result_kind_info(N_KINDS, kinds, path, case_only, page.stream));
+    return say_end(&page, stdout,
+                   target_is(path, TARGET_CHECKPOINT) ? checkpoint_info(path, case_only, page.stream)
+                                                      : result_kind_info(N_KINDS, kinds, path, case_only, page.stream));
 }

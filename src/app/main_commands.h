@@ -6,7 +6,7 @@
  *     main_study.c    study, error, gather, compare
  *     main_field.c    field
  *     main_check.c    check
- *     main_case.c     show, keys, info
+ *     main_case.c     show, new, keys, info
  *     main_view.c     view, export */
 #ifndef MAIN_COMMANDS_H
 #define MAIN_COMMANDS_H
@@ -26,6 +26,7 @@ enum status main_compare(const struct request *request);
 enum status main_field(const struct request *request);
 enum status main_check(const struct request *request);
 enum status main_show(const struct request *request);
+enum status main_new(const struct request *request);
 enum status main_keys(const struct request *request);
 enum status main_info(const struct request *request);
 enum status main_view(const struct request *request);

@@ -96,7 +96,7 @@ static void write_meaning(const struct command *command, const struct option_hel
     if (option->code == OPTION_METHODS) study_compare_words(meaning);
 }
 
-static void print_command_help(const struct command *command, FILE *stream) {
+void main_print_help(const struct command *command, FILE *stream) {
     fprintf(stream, "shoal %s: %s\n\nUsage: shoal %s [OPTIONS]%s%s\n\n", command->name, command->summary, command->name,
             command->positional ? " " : "", command->positional ? command->positional : "");
 
@@ -216,7 +216,7 @@ int main_parse(const struct command *command, int argc, char **argv, struct requ
     opterr = 0;
     for (int code; (code = getopt_long(argc, argv, letters, options, NULL)) != -1;) {
         if (code == 'h') {
-            print_command_help(command, stdout);
+            main_print_help(command, stdout);
             return -1;
         }
         if (code == '?' || code == ':') {
@@ -229,7 +229,8 @@ int main_parse(const struct command *command, int argc, char **argv, struct requ
 
     // check the positional argument
     const int n_left = argc - optind;
-    if (command->positional && n_left == 0) *status = main_usage(command, "%s is missing", command->positional);
+    if (command->positional && *command->positional != '[' && n_left == 0)
+        *status = main_usage(command, "%s is missing", command->positional);
     if (n_left > (command->positional ? 1 : 0)) {
         *status = main_usage(command, "unexpected argument '%s'", argv[optind + (command->positional ? 1 : 0)]);
     }

@@ -63,8 +63,8 @@ struct request {
     const char *positional;
 };
 
-/* One command: name, positional argument (NULL: none), summary, codes of the options, meaning of --output, and the
- * function that runs the command. */
+/* One command: name, positional argument (NULL: none; "[WORD]": optional), summary, codes of the options, meaning of
+ * --output, and the function that runs the command. */
 struct command {
     const char *name, *positional, *summary;
     int options[20]; /* 0 at the end */
@@ -76,6 +76,9 @@ struct command {
  * for argc strings. Returns -1 after printing the help of the command, else 0; *status is STATUS_CASE for wrong
  * options. */
 int main_parse(const struct command *command, int argc, char **argv, struct request *request, enum status *status);
+
+/* Print usage and options of a command. */
+void main_print_help(const struct command *command, FILE *stream);
 
 /* Print a command as a JSON object: name, positional, summary, and options with letter, name, argument and meaning. */
 void main_describe(const struct command *command, FILE *stream);

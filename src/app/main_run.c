@@ -12,6 +12,7 @@
 #include "app/progress.h"
 #include "app/say.h"
 #include "base/parallel.h"
+#include "base/version.h"
 #include "result/target.h"
 #include "run/simulate_run.h"
 #include "view/page.h"
@@ -46,7 +47,7 @@ static enum status run_with_reports(const struct case_values *values, const stru
                                              .begin = tell_begin,
                                              .progress = request->quiet ? NULL : tell_progress,
                                              .warn = main_tell_warning,
-                                             .note = tell_note,
+                                             .note = request->quiet ? NULL : tell_note,
                                              .data = teller,
                                              .stop = main_stop_signal()};
     const struct simulate_changes changes = {request->n_assignments, request->assignments, *request->end != '\0'};
@@ -80,30 +81,6 @@ enum status main_resume(const struct request *request) {
 
 // ---- demo
 
-// Find the folder of cases and scripts: the source tree, or share/shoal of an installation.
-static enum status find_share(char share[PATH_MAX]) {
-    char program[PATH_MAX];
-    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length <= 0) return status_fail(STATUS_FILE, "cannot find the folder of this program");
-    program[length] = '\0';
-    char *const slash = strrchr(program, '/');
-    if (slash) *slash = '\0';
-    static const char *const places[] = {"..", "../share/shoal"};
-
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-        char file[PATH_MAX];
-        if (snprintf(share, PATH_MAX, "%s/%s", program, places[i]) >= PATH_MAX) continue;
-        if (snprintf(file, PATH_MAX, "%s/cases/demo.yaml", share) >= PATH_MAX) continue;
-        char *const found = access(file, R_OK) == 0 ? realpath(share, NULL) : NULL;
-        if (!found) continue;
-        snprintf(share, PATH_MAX, "%s", found);
-        free(found);
-        return STATUS_OK;
-    }
-
-    return status_fail(STATUS_FILE, "cases/demo.yaml is neither in %s/.. nor in %s/../share/shoal", program, program);
-}
-
 static enum status draw_demo(const char *share, const char *result, const char *picture) {
     char script[PATH_MAX + 32];
     snprintf(script, sizeof script, "%s/scripts/plot.py", share);
@@ -133,7 +110,10 @@ static enum status check_demo_target(const char *path, enum target_kind kind, in
 
 enum status main_demo(const struct request *request) {
     char share[PATH_MAX], path[PATH_MAX + 32];
-    TRY(find_share(share));
+    if (!version_share(share)) {
+        return status_fail(STATUS_FILE,
+                           "cases/demo.yaml is neither in the source tree nor in share/shoal of the program");
+    }
     TRY(check_demo_target("demo.nc", TARGET_NETCDF, request->force));
     TRY(check_demo_target("demo.png", TARGET_PICTURE, request->force));
     TRY(check_demo_target("demo.html", TARGET_PAGE, request->force));

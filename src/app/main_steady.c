@@ -6,6 +6,7 @@
 #include "app/main_teller.h"
 #include "app/say.h"
 #include "base/parallel.h"
+#include "result/result_json.h"
 #include "result/steady_info.h"
 #include "steady/steady.h"
 
@@ -34,12 +35,12 @@ static enum status find_steady_state(const struct case_values *values, const str
     progress_end(&teller.progress);
     TRY(status);
     if (request->json) {
-        TRY(netcdf_print(path, steady_json, stdout));
+        TRY(netcdf_print(path, result_json_steady, stdout));
     } else if (!request->quiet) {
         struct say_page page;
         say_line(stdout, "%s\n", path);
         TRY(say_begin(&page));
-        TRY(say_end(&page, netcdf_print(path, steady_info, page.stream)));
+        TRY(say_end(&page, stdout, netcdf_print(path, steady_info, page.stream)));
     }
 
     return main_refuse_warnings(request, &teller, path);

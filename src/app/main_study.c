@@ -1,7 +1,9 @@
 /* main_study.c: shoal study, error, gather and compare: many runs of one case. */
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "app/main_commands.h"
 #include "app/main_signals.h"
@@ -60,6 +62,25 @@ static enum status study_options_from(const struct request *request, const char 
     return STATUS_OK;
 }
 
+/* Tables and warnings of a study. */
+struct report {
+    struct say_page tables, warnings;
+};
+
+static enum status report_begin(struct report *report) {
+    TRY(say_begin(&report->tables));
+    const enum status status = say_begin(&report->warnings);
+    if (status != STATUS_OK) say_end(&report->tables, NULL, status);
+    return status;
+}
+
+/* Print tables and warnings to standard output; if quiet, to standard error, and the tables only after a failure, whose
+ * message refers to them. */
+static enum status report_end(struct report *report, int is_quiet, enum status status) {
+    status = say_end(&report->tables, !is_quiet ? stdout : status == STATUS_OK ? NULL : stderr, status);
+    return say_end(&report->warnings, is_quiet ? stderr : stdout, status);
+}
+
 static enum status run_study(const struct case_values *values, const struct request *request, const char *folder) {
     struct progress progress;
     struct study_options options;
@@ -72,9 +93,12 @@ static enum status run_study(const struct case_values *values, const struct requ
     TRY(status);
 
     if (options.last < 0) {
-        struct say_page page;
-        TRY(say_begin(&page));
-        return say_end(&page, study_report(values, folder, NULL, request->command_line, request->strict, page.stream));
+        if (!request->quiet) say_line(stdout, "%s\n", folder);
+        struct report report;
+        TRY(report_begin(&report));
+        return report_end(&report, request->quiet,
+                          study_report(values, folder, NULL, request->command_line, request->strict,
+                                       report.tables.stream, report.warnings.stream));
     }
 
     if (n_failed == 0) return STATUS_OK;
@@ -91,10 +115,19 @@ static enum status run_errors(const struct case_values *values, const struct req
         progress_start(&progress);
         TRY(study_options_from(request, folder, &progress, &options));
         main_catch_signals();
-        const enum status status =
-            study_errors(values, &options, request->plan ? 2 : !request->quiet, request->strict, stdout);
-        progress_end(&progress);
-        return status;
+        if (!request->quiet && !request->plan) say_line(stdout, "%s\n", folder);
+        if (!request->quiet || request->plan) {
+            // the plan appears before the members run
+            const enum status status =
+                study_errors(values, &options, request->plan ? 2 : 1, request->strict, stdout, stdout);
+            progress_end(&progress);
+            return status;
+        }
+        struct report report;
+        TRY(report_begin(&report));
+        return report_end(
+            &report, 1,
+            study_errors(values, &options, 0, request->strict, report.tables.stream, report.warnings.stream));
     }
 
     struct error_study study;
@@ -112,12 +145,14 @@ static enum status run_errors(const struct case_values *values, const struct req
 static enum status write_scripts(const struct case_values *values, const char *folder, int bundle) {
     struct say_page page;
     TRY(say_begin(&page));
-    return say_end(&page, study_slurm(values, folder, bundle, page.stream));
+    return say_end(&page, stdout, study_slurm(values, folder, bundle, page.stream));
 }
 
 static enum status run_in_folder(const struct case_values *values, const struct request *request, const char *ending) {
     char folder[512];
-    snprintf(folder, sizeof folder, "%s%s", values->name, ending);
+    const char *const slash = strrchr(request->positional, '/'), *const file = slash ? slash + 1 : request->positional,
+                      *const dot = strrchr(file, '.');
+    snprintf(folder, sizeof folder, "%.*s%s", (int)(dot && dot > file ? dot - file : (long)strlen(file)), file, ending);
     const char *const place = request->output ? request->output : folder;
     main_print_notes(request, values);
     int bundle = 0;
@@ -190,9 +225,11 @@ enum status main_error(const struct request *request) {
 }
 
 enum status main_gather(const struct request *request) {
-    struct say_page page;
-    TRY(say_begin(&page));
-    return say_end(&page, study_gather(request->positional, request->command_line, request->strict, page.stream));
+    struct report report;
+    TRY(report_begin(&report));
+    return report_end(&report, request->quiet,
+                      study_gather(request->positional, request->command_line, request->strict, report.tables.stream,
+                                   report.warnings.stream));
 }
 
 // ---- compare
@@ -211,7 +248,7 @@ static enum status run_comparison(const struct case_values *values, const struct
     TRY(say_begin(&page));
     const enum status status = study_compare(values, options, &run, page.stream);
     progress_end(&progress);
-    return say_end(&page, status);
+    return say_end(&page, request->quiet ? NULL : stdout, status);
 }
 
 enum status main_compare(const struct request *request) {

@@ -1,28 +1,49 @@
 /* progress.c: one line, at most five times a second. */
+#define _DEFAULT_SOURCE  // winsize
 #include "app/progress.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
+
+enum { PART_BYTES = 48 };
 
 void progress_start(struct progress *progress) {
     *progress = (struct progress){.terminal = isatty(STDERR_FILENO), .drawn_at = -1};
 }
 
-static void progress_print_run(const struct simulate_progress *now) {
-    const double done = now->t / now->end;
-    const double left = done > 0 ? now->wall_time * (1 - done) / done : 0;
-    fprintf(stderr, "t %8.3f s  %3.0f %%  %4.1f steps/event  %6d vortices  %6.2f x real time  %.0f s left", now->t,
-            100 * done, (double)now->steps / (double)now->event, now->n_vortices, now->t / now->wall_time, left);
+/* The columns of the terminal; 80 if unknown. */
+static int terminal_width(void) {
+    struct winsize size;
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-/* True if a line is due; on a terminal the cursor is then at its start. */
+/* Print the parts of a line, the most important first: on a terminal as many as fit into its width, without the last
+ * column, where some terminals begin a new line; all in a log. */
+static void progress_print(struct progress *progress, int n, char part[][PART_BYTES]) {
+    const int width = progress->terminal ? terminal_width() - 1 : INT_MAX;
+    int column = 0;
+    if (progress->terminal) fputc('\r', stderr);
+
+    for (int i = 0; i < n; i++) {
+        const int length = (int)strlen(part[i]), gap = i > 0 ? 2 : 0;
+        if (i > 0 && column + gap + length > width) break;
+        fprintf(stderr, "%*s%.*s", gap, "", width, part[i]);
+        column += gap + length;
+    }
+
+    fputs(progress->terminal ? "\033[K" : "\n", stderr);
+}
+
+/* True if a line is due. */
 static int progress_is_due(struct progress *progress, double part, double wall_time) {
     if (progress->terminal) {
         if (wall_time - progress->drawn_at < 0.2) return 0;
         progress->drawn_at = wall_time;
         progress->drawn = 1;
-        fputs("\r", stderr);
         return 1;
     }
 
@@ -33,33 +54,42 @@ static int progress_is_due(struct progress *progress, double part, double wall_t
     return 1;
 }
 
-static void progress_end_line(const struct progress *progress) {
-    fputs(progress->terminal ? "\033[K" : "\n", stderr);
-}
-
 void progress_show(const struct simulate_progress *now, void *data) {
     struct progress *const progress = data;
-    if (!progress_is_due(progress, now->t / now->end, now->wall_time)) return;
-    progress_print_run(now);
-    progress_end_line(progress);
+    const double done = now->t / now->end;
+    if (!progress_is_due(progress, done, now->wall_time)) return;
+    char part[6][PART_BYTES];
+    snprintf(part[0], PART_BYTES, "t %8.3f s", now->t);
+    snprintf(part[1], PART_BYTES, "%3.0f %%", 100 * done);
+    snprintf(part[2], PART_BYTES, "%.0f s left", done > 0 ? now->wall_time * (1 - done) / done : 0);
+    snprintf(part[3], PART_BYTES, "%6.2f x real time", now->t / now->wall_time);
+    snprintf(part[4], PART_BYTES, "%4.1f steps/event", (double)now->steps / (double)now->event);
+    snprintf(part[5], PART_BYTES, "%6d vortices", now->n_vortices);
+    progress_print(progress, 6, part);
 }
 
 void progress_steady(const struct steady_progress *now, void *data) {
     struct progress *const progress = data;
     // few searches take more than 50 beats, so a log reports every fifth beat
     if (!progress_is_due(progress, fmin(1, now->n_beats / 50.0), now->wall_time)) return;
-    fprintf(stderr, "beat %4d  speed %8.4f m/s  residual %.1e, target %.0e  %.1f s", now->n_beats, now->speed,
-            now->residual, now->tolerance, now->wall_time);
-    progress_end_line(progress);
+    char part[4][PART_BYTES];
+    snprintf(part[0], PART_BYTES, "beat %4d", now->n_beats);
+    snprintf(part[1], PART_BYTES, "residual %.1e, target %.0e", now->residual, now->tolerance);
+    snprintf(part[2], PART_BYTES, "%.1f s", now->wall_time);
+    snprintf(part[3], PART_BYTES, "speed %8.4f m/s", now->speed);
+    progress_print(progress, 4, part);
 }
 
 void progress_study(const struct study_progress *now, void *data) {
     struct progress *const progress = data;
     if (!progress_is_due(progress, now->part, now->wall_time)) return;
-    const double left = now->part > 0 ? now->wall_time * (1 - now->part) / now->part : 0;
-    fprintf(stderr, "%d of %d members done, %d failed, %d running  %3.0f %%  %.0f s left", now->n_done, now->n_members,
-            now->n_failed, now->n_running, 100 * now->part, left);
-    progress_end_line(progress);
+    char part[5][PART_BYTES];
+    snprintf(part[0], PART_BYTES, "%d of %d members done", now->n_done, now->n_members);
+    snprintf(part[1], PART_BYTES, "%3.0f %%", 100 * now->part);
+    snprintf(part[2], PART_BYTES, "%.0f s left", now->part > 0 ? now->wall_time * (1 - now->part) / now->part : 0);
+    snprintf(part[3], PART_BYTES, "%d failed", now->n_failed);
+    snprintf(part[4], PART_BYTES, "%d running", now->n_running);
+    progress_print(progress, 5, part);
 }
 
 void progress_end(struct progress *progress) {

@@ -1,4 +1,5 @@
-/* progress.h: progress of a run or a study on stderr: on a terminal one line, redrawn; in a log one line per tenth. */
+/* progress.h: progress of a run or a study on stderr: on a terminal one line, redrawn and not
+ * wider than the terminal; in a log one line per tenth. Tested by tests/app/test_command.sh. */
 #ifndef PROGRESS_H
 #define PROGRESS_H
 

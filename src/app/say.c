@@ -33,9 +33,9 @@ enum status say_begin(struct say_page *page) {
     return page->stream ? STATUS_OK : page_out_of_memory();
 }
 
-enum status say_end(struct say_page *page, enum status status) {
+enum status say_end(struct say_page *page, FILE *stream, enum status status) {
     const int failed = fclose(page->stream) != 0;
-    if (page->text) text_print_clean(stdout, page->text);
+    if (page->text && stream) text_print_clean(stream, page->text);
     free(page->text);
     *page = (struct say_page){0};
     return status == STATUS_OK && failed ? page_out_of_memory() : status;

@@ -10,7 +10,7 @@
 /* Print to a stream (printf format): text_print_clean. */
 void say_line(FILE *stream, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Collect text in a stream and print the text to standard output at the end. */
+/* Collect text in a stream and print the text at the end. */
 struct say_page {
     FILE *stream; /* write here */
     char *text;
@@ -20,8 +20,8 @@ struct say_page {
 /* Begin a page; fails with STATUS_MEMORY. */
 enum status say_begin(struct say_page *page);
 
-/* Print the page, even after a failure of the writer with this status. Returns the status of the writer, or
- * STATUS_MEMORY. */
-enum status say_end(struct say_page *page, enum status status);
+/* Print the page to a stream (NULL: nowhere), even after a failure of the writer with this status. Returns the status
+ * of the writer, or STATUS_MEMORY. */
+enum status say_end(struct say_page *page, FILE *stream, enum status status);
 
 #endif

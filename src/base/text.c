@@ -1,6 +1,7 @@
 /* text.c: growing strings, and numbers without a locale. */
 #include "base/text.h"
 
+#include <limits.h>
 #include <locale.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -146,4 +147,41 @@ void text_print_base64(FILE *stream, size_t n, const void *bytes) {
         fputc(i + 1 < n ? letters[all >> 6 & 63] : '=', stream);
         fputc(i + 2 < n ? letters[all & 63] : '=', stream);
     }
+}
+
+static char lower_case(char c) {
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+static int smaller(int a, int b) {
+    return a < b ? a : b;
+}
+
+int text_distance(const char *a, size_t n, const char *b, size_t m) {
+    enum { WORD = 40 };
+    if (n > WORD || m > WORD) return INT_MAX;
+    int d[WORD + 1][WORD + 1];
+    for (size_t i = 0; i <= n; i++) d[i][0] = (int)i;
+    for (size_t j = 0; j <= m; j++) d[0][j] = (int)j;
+
+    for (size_t i = 1; i <= n; i++) {
+        for (size_t j = 1; j <= m; j++) {
+            const int change = d[i - 1][j - 1] + (lower_case(a[i - 1]) != lower_case(b[j - 1]));
+            d[i][j] = smaller(change, smaller(d[i - 1][j], d[i][j - 1]) + 1);
+            const bool is_swap = i > 1 && j > 1 && lower_case(a[i - 1]) == lower_case(b[j - 2]) &&
+                                 lower_case(a[i - 2]) == lower_case(b[j - 1]);
+            if (is_swap) d[i][j] = smaller(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    }
+
+    return d[n][m];
+}
+
+bool text_contains(const char *text, const char *word) {
+    for (; *text; text++) {
+        size_t i = 0;
+        while (word[i] && lower_case(text[i]) == lower_case(word[i])) i++;
+        if (!word[i]) return true;
+    }
+    return !*word;
 }

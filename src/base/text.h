@@ -30,6 +30,13 @@ void text_print_clean(FILE *stream, const char *string);
 /* Release the string and zero it. */
 void text_free(struct text *text);
 
+/* Number of insertions, deletions, changes and swaps of neighbours between a word of n and one of m characters,
+ * whatever the case of the letters; INT_MAX if a word has more than 40 characters. */
+int text_distance(const char *a, size_t n, const char *b, size_t m);
+
+/* Whether a text contains a word, whatever the case of the letters. */
+bool text_contains(const char *text, const char *word);
+
 /* Read a decimal number; the number must be the whole string. A number too large becomes an infinity. False if the
  * string is not a number; nan, inf and hexadecimal digits are no numbers. */
 bool text_number(const char *text, double *number);

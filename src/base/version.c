@@ -1,12 +1,16 @@
 /* version.c: see version.h. The Makefile gives SHOAL_VERSION and SHOAL_COMMIT to this file only. */
+#define _GNU_SOURCE  // dladdr
 #include "base/version.h"
 
+#include <dlfcn.h>
 #include <klu.h>
 #include <lapacke.h>
 #include <netcdf.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sundials/sundials_version.h>
+#include <unistd.h>
 #include <yaml.h>
 
 const char *version_short(void) {
@@ -41,4 +45,33 @@ void version_libraries(char text[VERSION_LENGTH]) {
              "SUNDIALS %s, KLU %d.%d.%d (SuiteSparse %d.%d.%d), LAPACK %d.%d.%d, NetCDF %.*s, libyaml %s", sundials,
              KLU_MAIN_VERSION, KLU_SUB_VERSION, KLU_SUBSUB_VERSION, suitesparse[0], suitesparse[1], suitesparse[2],
              (int)lapack[0], (int)lapack[1], (int)lapack[2], netcdf_length, netcdf, yaml_get_version_string());
+}
+
+/* The folder with cases/demo.yaml near a program or library. */
+static bool share_near(const char *binary, char share[PATH_MAX]) {
+    static const char *const places[] = {"..", "../share/shoal", "../../share/shoal"};
+    const char *const slash = strrchr(binary, '/');
+    if (!slash) return false;
+
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        char folder[PATH_MAX], file[PATH_MAX];
+        if (snprintf(folder, sizeof folder, "%.*s/%s", (int)(slash - binary), binary, places[i]) >= PATH_MAX) continue;
+        if (snprintf(file, sizeof file, "%s/cases/demo.yaml", folder) >= PATH_MAX) continue;
+        if (access(file, R_OK) == 0 && realpath(folder, share)) return true;
+    }
+    return false;
+}
+
+bool version_share(char share[PATH_MAX]) {
+    char program[PATH_MAX];
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length > 0) {
+        program[length] = '\0';
+        if (share_near(program, share)) return true;
+    }
+
+    // the library in another program
+    Dl_info library;
+    return dladdr((const void *)version_short, &library) != 0 && library.dli_fname &&
+           share_near(library.dli_fname, share);
 }

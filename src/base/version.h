@@ -1,7 +1,10 @@
-/* version.h: the versions of the program and the libraries. Tested by tests/result/test_result_file.c. */
+/* version.h: the versions of the program and the libraries, and the folder of the installation. Tested by
+ * tests/result/test_result_file.c. */
 #ifndef VERSION_H
 #define VERSION_H
 
+#include <limits.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 enum { VERSION_LENGTH = 256 }; /* bytes of the longest string below */
@@ -16,5 +19,9 @@ void version_libraries(char text[VERSION_LENGTH]);
 /* Write "x86-64 with fma avx2": instruction sets of the processor that select code in libraries. On another processor
  * the last bits of a sine may differ. */
 void version_processor(char text[VERSION_LENGTH]);
+
+/* The folder with the cases and scripts that belong to this program or library: the top of the source tree, or
+ * share/shoal of the installation. False if there is none. */
+bool version_share(char share[PATH_MAX]);
 
 #endif

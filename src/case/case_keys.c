@@ -19,9 +19,22 @@ static void describe_method(const struct method_properties *method, char *text, 
              method == &methods_table[METHOD_IDA] ? "1 to " : "", method->order, steps, method->help);
 }
 
-static void print_text(FILE *stream) {
+/* Whether a word is in path, synonyms, words or meaning of a key. */
+static bool is_about(const struct key *key, const char *word) {
+    if (!word || text_contains(key->path, word) || text_contains(key->meaning, word)) return true;
+    if (key->synonyms && text_contains(key->synonyms, word)) return true;
+    for (int i = 0; (key->words || key->type == METHOD) && case_table_word(key, i); i++) {
+        if (text_contains(case_table_word(key, i), word)) return true;
+    }
+    return false;
+}
+
+static int print_text(FILE *stream, const char *about) {
+    int n = 0;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
+        if (!is_about(key, about)) continue;
+        n++;
         const bool is_of_fish = case_table_is_of_fish(key);
         struct text range = {0};
         case_table_range(key, &range);
@@ -42,6 +55,7 @@ static void print_text(FILE *stream) {
         }
         text_free(&range);
     }
+    return n;
 }
 
 /* Print a member of an object of JSON: a string, or null. */
@@ -50,12 +64,14 @@ static void print_string(FILE *stream, const char *before, const char *name, con
     text_print_json(stream, text);
 }
 
-static void print_json(FILE *stream) {
+static int print_json(FILE *stream, const char *about) {
+    int n = 0;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
+        if (!is_about(key, about)) continue;
         struct text range = {0};
         case_table_range(key, &range);
-        fprintf(stream, "%s{\"path\": \"%s\"", k > 0 ? ",\n " : "[", key->path);
+        fprintf(stream, "%s{\"path\": \"%s\"", n++ > 0 ? ",\n " : "[", key->path);
         print_string(stream, ", ", "type", case_table_type(key));
         print_string(stream, ", ", "default", key->initial);
         print_string(stream, ", ", "derived", key->derived);
@@ -83,15 +99,12 @@ static void print_json(FILE *stream) {
         text_free(&range);
     }
 
-    fprintf(stream, "]\n");
+    fprintf(stream, n > 0 ? "]\n" : "[]\n");
+    return n;
 }
 
-void case_keys(FILE *stream, int as_json) {
-    if (as_json) {
-        print_json(stream);
-    } else {
-        print_text(stream);
-    }
+int case_keys(FILE *stream, int as_json, const char *word) {
+    return as_json ? print_json(stream, word) : print_text(stream, word);
 }
 
 // ---- JSON schema: sections become objects, keys become properties

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +11,8 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "base/text.h"
+#include "base/version.h"
 #include "case/case_path.h"
 #include "case/case_table.h"
 
@@ -90,8 +93,31 @@ close_file:
 static enum status read_source(struct case_tree *tree, const struct yaml_source *source, const char *folder,
                                const struct open_file *self, struct yaml_errors *errors, struct yaml_node **root);
 
-/* Read the file of an entry of an include list, relative to the folder, which ends at the last slash; merge the file
- * over *base. */
+/* Use the file of the same name among the cases of the installation if the path does not exist. */
+static void use_shared(const char *name, struct text *path) {
+    char share[PATH_MAX];
+    if (name[0] == '/' || path->failed || access(path->text, F_OK) == 0 || !version_share(share)) return;
+    struct text shared = {0};
+    text_add(&shared, "%s/cases/%s", share, name);
+    if (shared.failed || access(shared.text, F_OK) != 0) {
+        text_free(&shared);
+        return;
+    }
+    text_free(path);
+    *path = shared;
+}
+
+/* Remove the name of an included case: results are named after the case that includes it. */
+static void remove_name(struct yaml_node *root) {
+    struct yaml_entry *const entry = yaml_tree_entry(root, "name", strlen("name"));
+    if (!entry) return;
+    yaml_tree_free(entry->value);
+    free(entry->key);
+    memmove(entry, entry + 1, (size_t)(&root->entry[--root->n] - entry) * sizeof *entry);
+}
+
+/* Read the file of an entry of an include list, relative to the folder, which ends at the last slash, or to the cases
+ * of the installation; merge the file over *base. */
 static enum status include_file(struct case_tree *tree, const struct yaml_node *node, const char *folder,
                                 const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
     if (node->kind != YAML_SCALAR || node->text[0] == '\0') {
@@ -108,6 +134,7 @@ static enum status include_file(struct case_tree *tree, const struct yaml_node *
     struct text path = {0};
     const char *const slash = node->text[0] == '/' ? NULL : strrchr(folder, '/');
     text_add(&path, "%.*s%s", slash ? (int)(slash - folder) + 1 : 0, folder, node->text);
+    use_shared(node->text, &path);
     struct yaml_source *source = NULL;
     const enum status added =
         path.failed ? status_fail(STATUS_MEMORY, "out of memory: %s", what) : add_source(tree, path.text, &source);
@@ -130,6 +157,7 @@ static enum status include_file(struct case_tree *tree, const struct yaml_node *
 
     struct yaml_node *root = NULL;
     TRY(read_source(tree, source, source->name, &self, errors, &root));
+    if (root) remove_name(root);
     return root ? yaml_tree_merge(base, root) : STATUS_OK;
 }
 

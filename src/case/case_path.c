@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "case/case_table.h"
 
 // ---- suggestions: the key of the table with the smallest edit distance
@@ -29,32 +30,8 @@ static const struct {
      "'laminar'"},
 };
 
-static char lower_case(char c) {
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-}
-
 static int smaller(int a, int b) {
     return a < b ? a : b;
-}
-
-/* Number of insertions, deletions, changes and swaps of neighbours between a word of n and one of m characters. */
-static int edit_distance(const char *a, size_t n, const char *b, size_t m) {
-    if (n > WORD || m > WORD) return INT_MAX;
-    int d[WORD + 1][WORD + 1];
-    for (size_t i = 0; i <= n; i++) d[i][0] = (int)i;
-    for (size_t j = 0; j <= m; j++) d[0][j] = (int)j;
-
-    for (size_t i = 1; i <= n; i++) {
-        for (size_t j = 1; j <= m; j++) {
-            const int change = d[i - 1][j - 1] + (lower_case(a[i - 1]) != lower_case(b[j - 1]));
-            d[i][j] = smaller(change, smaller(d[i - 1][j], d[i][j - 1]) + 1);
-            const bool is_swap = i > 1 && j > 1 && lower_case(a[i - 1]) == lower_case(b[j - 2]) &&
-                                 lower_case(a[i - 2]) == lower_case(b[j - 1]);
-            if (is_swap) d[i][j] = smaller(d[i][j], d[i - 2][j - 2] + 1);
-        }
-    }
-
-    return d[n][m];
 }
 
 /* The smallest distance of a word to any of some words separated by blanks. */
@@ -62,7 +39,7 @@ static int distance_to_any(const char *word, const char *words) {
     int distance = INT_MAX;
     while (words && *words) {
         const size_t length = strcspn(words, " ");
-        distance = smaller(distance, edit_distance(word, strlen(word), words, length));
+        distance = smaller(distance, text_distance(word, strlen(word), words, length));
         words += length + strspn(words + length, " ");
     }
     return distance;
@@ -91,7 +68,7 @@ static void keep_nearer(struct candidate *best, const struct key *key, size_t en
     memcpy(one.word, key->path + begin, end - begin);
     if (begin > 0) memcpy(one.section, key->path, begin - 1);
 
-    one.distance = edit_distance(word, strlen(word), one.word, strlen(one.word));
+    one.distance = text_distance(word, strlen(word), one.word, strlen(one.word));
     const bool is_leaf = key->path[end] == '\0';
     if (is_leaf) one.distance = smaller(one.distance, distance_to_any(word, key->synonyms));
     one.remoteness = remoteness_of(one.section, section);

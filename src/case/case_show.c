@@ -225,3 +225,38 @@ enum status case_show(const struct case_values *values, char **text) {
     *text = list.text;
     return STATUS_OK;
 }
+
+// ---- a case to start from
+
+const char case_template[] =
+    "# A case of shoal: one fish that swims from rest. `shoal keys` explains all keys, `shoal keys WORD` those about "
+    "a\n"
+    "# word; a key that is not given has its default, which `shoal show` prints.\n"
+    "#\n"
+    "#   shoal check FILE     errors, warnings, cost        shoal view RESULT.nc   a page for the browser\n"
+    "#   shoal run FILE       run it                        shoal steady FILE      its steady state\n"
+    "format: 1\n"
+    "time:\n"
+    "  end: 5                 # s\n"
+    "  output_interval: 0.1   # s, between two rows of the result\n"
+    "fluid:\n"
+    "  density: 1000          # kg m-3\n"
+    "  velocity: [0, 0]       # m s-1, of the stream\n"
+    "fish:\n"
+    "  - name: fish\n"
+    "    length: 1            # m\n"
+    "    force: reactive      # or pressure: a bound vortex sheet, slower\n"
+    "    start:\n"
+    "      position: [0, 0]   # m, of the nose\n"
+    "      heading: 180       # degree: 0 is along x, 180 to the left\n"
+    "      speed: 0           # m s-1\n"
+    "    wave:\n"
+    "      amplitude: 0.4     # rad, of the angle by which the muscle bends the body\n"
+    "      frequency: 1       # Hz\n"
+    "    body:\n"
+    "      modulus: 1e6       # Pa, Young's modulus: stiffer or softer body\n"
+    "  # a second fish half a length to the side:\n"
+    "  # - {name: other, start: {position: [0, 0.5]}}\n"
+    "\n"
+    "# a study instead of one run (`shoal study FILE`): a member for each value\n"
+    "# sweep: [{key: \"fish[*].wave.frequency\", values: [0.5, 1, 2]}]\n";

@@ -602,6 +602,28 @@ bool netcdf_has(const struct netcdf_reader *reader, const char *name) {
     return nc_inq_varid(reader->file, name, &number) == NC_NOERR;
 }
 
+bool netcdf_read_shape(const struct netcdf_reader *reader, int i, struct netcdf_shape *shape) {
+    char name[NC_MAX_NAME + 1];
+    int n_variables, dimension[NC_MAX_VAR_DIMS];
+    nc_type type;
+    *shape = (struct netcdf_shape){.n_dimensions = 0};
+    if (nc_inq_nvars(reader->file, &n_variables) != NC_NOERR || i >= n_variables) return false;
+    if (nc_inq_var(reader->file, i, name, &type, &shape->n_dimensions, dimension, NULL) != NC_NOERR) return false;
+    if (shape->n_dimensions > NETCDF_MAX_DIMENSIONS || strlen(name) >= sizeof shape->name) return true;
+
+    for (int d = 0; d < shape->n_dimensions; d++) {
+        char dimension_name[NC_MAX_NAME + 1];
+        if (nc_inq_dimname(reader->file, dimension[d], dimension_name) != NC_NOERR) return false;
+        if (read_length(reader, dimension[d], &shape->length[d]) != NC_NOERR) return false;
+        if (strlen(dimension_name) >= sizeof *shape->dimension) return true;
+        strcpy(shape->dimension[d], dimension_name);
+    }
+
+    strcpy(shape->name, name);
+    shape->is_text = type == NC_CHAR;
+    return true;
+}
+
 /* Whether a variable has exactly the dimensions of a slice, so long. */
 static bool has_slice(const struct netcdf_reader *reader, int n, const int *dimensions,
                       const struct netcdf_slice *slice) {

@@ -132,6 +132,18 @@ enum status netcdf_read_integer(const struct netcdf_reader *reader, const char *
 enum status netcdf_read_length(const struct netcdf_reader *reader, const char *name, size_t min, size_t max,
                                size_t *length);
 
+/* Name and dimensions of a variable. */
+struct netcdf_shape {
+    char name[80], dimension[NETCDF_MAX_DIMENSIONS][80];
+    size_t length[NETCDF_MAX_DIMENSIONS];
+    int n_dimensions;
+    bool is_text;
+};
+
+/* Describe variable i, from 0, of the file: false beyond the last one. A variable with longer names or more dimensions
+ * has the name "". */
+bool netcdf_read_shape(const struct netcdf_reader *reader, int i, struct netcdf_shape *shape);
+
 /* Whether the file has a variable of this name. */
 bool netcdf_has(const struct netcdf_reader *reader, const char *name);
 

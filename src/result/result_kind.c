@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/text.h"
 #include "result/netcdf.h"
 
 // ---- the summary
@@ -66,6 +67,16 @@ enum status result_kind_info(int n_kinds, const struct result_kind *kinds, const
     return status == STATUS_OK && !case_only ? kind->info(path, stream) : status;
 }
 
+enum status result_kind_name(int n_kinds, const struct result_kind *kinds, const char *path, const char **name) {
+    struct netcdf_reader reader;
+    const struct result_kind *kind = NULL;
+    TRY(netcdf_open(&reader, path));
+    const enum status status = find_kind(&reader, n_kinds, kinds, &kind);
+    if (status == STATUS_OK) *name = kind->name;
+    netcdf_close(&reader);
+    return status;
+}
+
 // ---- the list of variables
 
 static void print_text(const struct result_listed *listed, FILE *stream) {
@@ -84,23 +95,30 @@ static void print_json(const char *kind, const struct result_listed *listed, FIL
             listed->meaning);
 }
 
-void result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_json, FILE *stream) {
+int result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_json, const char *word, FILE *stream) {
     struct result_listed listed;
+    int n = 0;
     for (int k = 0; k < n_kinds; k++) {
         const int is_file = kinds[k].schema_name != NULL;
-        if (k > 0 && !as_json)
-            fprintf(stream, is_file ? "\nIn the file of a %s:\n\n" : "\nThe %ss about a result:\n\n", kinds[k].name);
+        int n_of_kind = 0;
         for (int i = 0; kinds[k].listed(i, &listed); i++) {
+            if (word && !text_contains(listed.name, word) && !text_contains(listed.meaning, word)) continue;
+            if (k > 0 && n_of_kind == 0 && !as_json)
+                fprintf(stream, is_file ? "\nIn the file of a %s:\n\n" : "\nThe %ss about a result:\n\n",
+                        kinds[k].name);
+            n_of_kind++;
             if (as_json) {
-                fputs(k == 0 && i == 0 ? "[" : ",", stream);
+                fputs(n == 0 ? "[" : ",", stream);
                 print_json(kinds[k].name, &listed, stream);
             } else if (is_file) {
                 print_text(&listed, stream);
             } else {
                 fprintf(stream, "%s: %s\n", listed.name, listed.meaning);
             }
+            n++;
         }
     }
 
-    if (as_json) fprintf(stream, "\n]\n");
+    if (as_json) fprintf(stream, n > 0 ? "\n]\n" : "[]\n");
+    return n;
 }

@@ -32,8 +32,12 @@ struct result_kind {
 enum status result_kind_info(int n_kinds, const struct result_kind *kinds, const char *path, int case_only,
                              FILE *stream);
 
+/* The name of the kind of a file; the string belongs to the table. Fails as result_kind_info. */
+enum status result_kind_name(int n_kinds, const struct result_kind *kinds, const char *path, const char **name);
+
 /* Print the variables of all kinds: name, dimensions, unit, meaning; as aligned text, or as JSON; and the lists in
- * words. */
-void result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_json, FILE *stream);
+ * words. With a word, print only rows whose name or meaning contains the word (NULL: all). Returns the number of rows.
+ * */
+int result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_json, const char *word, FILE *stream);
 
 #endif

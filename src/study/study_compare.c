@@ -182,7 +182,7 @@ static enum status run_in_folder(const char *folder, const struct case_values *s
 
     if (status == STATUS_STOPPED) return status_fail(STATUS_STOPPED, "stopped by a signal");
     TRY(status);
-    const enum status reported = study_report(study, folder, options->path, run->command, 0, stream);
+    const enum status reported = study_report(study, folder, options->path, run->command, 0, stream, stream);
 
     // a method that fails on a case is a valid result
     return reported == STATUS_SOLVER ? STATUS_OK : reported;

@@ -54,14 +54,14 @@ static enum status print_warnings(const struct case_values *study, const struct 
 
 /* Print all tables and write study.nc before a missed expectation ends the report. */
 static enum status report_study(const struct case_values *study, const struct member_file *members, const char *path,
-                                const char *command, int strict, FILE *stream) {
+                                const char *command, int strict, FILE *stream, FILE *warnings) {
     struct study_orders orders;
     enum status status = study_orders_create(&orders, study, members);
     if (status == STATUS_OK) status = print_members(study, members, stream);
     if (status == STATUS_OK) status = study_file_write(path, study, members, &orders, NULL, command);
     if (status == STATUS_OK) {
         status = print_expected(study, members, &orders, stream);
-        const enum status warned = print_warnings(study, members, strict && status == STATUS_OK, stream);
+        const enum status warned = print_warnings(study, members, strict && status == STATUS_OK, warnings);
         if (status == STATUS_OK) status = warned;
     }
 
@@ -70,14 +70,14 @@ static enum status report_study(const struct case_values *study, const struct me
 }
 
 enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
-                         int strict, FILE *stream) {
+                         int strict, FILE *stream, FILE *warnings) {
     struct member_file *members;
     char *const standard = study_folder_path(folder, "study.nc");
     if (!standard) return STATUS_MEMORY;
     enum status status = study_folder_read_members(&members, study, folder);
     if (status == STATUS_OK) {
         study_comparison_fill_errors(study, members);
-        status = report_study(study, members, path ? path : standard, command, strict, stream);
+        status = report_study(study, members, path ? path : standard, command, strict, stream, warnings);
         if (status == STATUS_OK) status = test_completeness(study, members, folder);
         study_folder_free_members(members, sweep_n_members(study));
     }
@@ -119,7 +119,7 @@ static enum status run_and_refine(struct error_study *study, const char *folder,
 
 /* Print the budget and write study.nc and error.csv before a missed bound ends the report. */
 static enum status report_errors(struct error_study *study, const struct member_file *members, const char *folder,
-                                 const char *command, int strict, FILE *stream) {
+                                 const char *command, int strict, FILE *stream, FILE *warnings) {
     char *const path = study_folder_path(folder, "study.nc"), *const csv = study_folder_path(folder, "error.csv");
     const struct study_orders none = {0};
     enum status status = path && csv ? STATUS_OK : STATUS_MEMORY;
@@ -129,7 +129,7 @@ static enum status report_errors(struct error_study *study, const struct member_
     if (status == STATUS_OK) {
         status = error_report_print(study, members, stream);
         // deliberately coarse levels have separate warnings, which are not printed
-        const int n = study_print_warnings(&members[study->stated], 1, stream);
+        const int n = study_print_warnings(&members[study->stated], 1, warnings);
         if (status == STATUS_OK && strict && n > 0) {
             status =
                 status_fail(STATUS_MISSED, "%d warning%s about the stated value, with --strict", n, n > 1 ? "s" : "");
@@ -144,16 +144,16 @@ static enum status report_errors(struct error_study *study, const struct member_
 }
 
 static enum status refine_and_report(struct error_study *study, const char *folder, const struct study_options *options,
-                                     const char *command, int strict, FILE *stream) {
+                                     const char *command, int strict, FILE *stream, FILE *warnings) {
     struct member_file *members = NULL;
     enum status status = run_and_refine(study, folder, options, &members);
-    if (status == STATUS_OK) status = report_errors(study, members, folder, command, strict, stream);
+    if (status == STATUS_OK) status = report_errors(study, members, folder, command, strict, stream, warnings);
     study_folder_free_members(members, sweep_n_members(&study->study));
     return status;
 }
 
 enum status study_errors(const struct case_values *values, const struct study_options *options, int plan, int strict,
-                         FILE *stream) {
+                         FILE *stream, FILE *warnings) {
     struct error_study study;
     enum status status = error_plan_create(&study, values);
     if (status == STATUS_OK && plan > 0) {
@@ -164,14 +164,14 @@ enum status study_errors(const struct case_values *values, const struct study_op
 
     if (status == STATUS_OK && plan < 2) {
         fflush(stream);
-        status = refine_and_report(&study, options->folder, options, options->command, strict, stream);
+        status = refine_and_report(&study, options->folder, options, options->command, strict, stream, warnings);
     }
 
     error_plan_free(&study);
     return status;
 }
 
-enum status study_gather(const char *folder, const char *command, int strict, FILE *stream) {
+enum status study_gather(const char *folder, const char *command, int strict, FILE *stream, FILE *warnings) {
     char *text;
     TRY(study_folder_find_study(folder, &text));
     struct case_values study;
@@ -181,10 +181,10 @@ enum status study_gather(const char *folder, const char *command, int strict, FI
     if (study.error) {
         struct error_study errors;
         status = error_plan_create(&errors, &study);
-        if (status == STATUS_OK) status = refine_and_report(&errors, folder, NULL, command, strict, stream);
+        if (status == STATUS_OK) status = refine_and_report(&errors, folder, NULL, command, strict, stream, warnings);
         error_plan_free(&errors);
     } else {
-        status = study_report(&study, folder, NULL, command, strict, stream);
+        status = study_report(&study, folder, NULL, command, strict, stream, warnings);
     }
     case_free(&study);
     return status;

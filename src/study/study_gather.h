@@ -11,20 +11,20 @@
 #include "study/study.h"
 
 /* Write study.nc from the member files in a folder, to FOLDER/study.nc if path is NULL. Print the members (or the
- * comparison of methods), orders and expectations. Fails with STATUS_FILE (a file belongs to another study, or study.nc
- * cannot be written), STATUS_SOLVER (incomplete members), STATUS_MISSED (an expectation is not met, or, if strict, a
- * result has a warning) or STATUS_MEMORY. */
+ * comparison of methods), orders and expectations to stream, the warnings about the members to warnings. Fails with
+ * STATUS_FILE (a file belongs to another study, or study.nc cannot be written), STATUS_SOLVER (incomplete members),
+ * STATUS_MISSED (an expectation is not met, or, if strict, a result has a warning) or STATUS_MEMORY. */
 enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
-                         int strict, FILE *stream);
+                         int strict, FILE *stream, FILE *warnings);
 
 /* Run the study of a case with `error` (error_plan.h) in a folder, including all members that the error bound
  * requires, and report: budget, FOLDER/study.nc, FOLDER/error.csv. plan: 1: print the plan first; 2: print the plan
  * only. Fails as study_run and study_report, and with STATUS_MISSED if the errors exceed the bound. */
 enum status study_errors(const struct case_values *values, const struct study_options *options, int plan, int strict,
-                         FILE *stream);
+                         FILE *stream, FILE *warnings);
 
 /* Report as study_report the study of the members in a folder. */
-enum status study_gather(const char *folder, const char *command, int strict, FILE *stream);
+enum status study_gather(const char *folder, const char *command, int strict, FILE *stream, FILE *warnings);
 
 /* Print the contents of a study.nc: axes, members and orders. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status study_info(const char *path, FILE *stream);

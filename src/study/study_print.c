@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "case/sweep.h"
 #include "case/sweep_expect.h"
 #include "case/sweep_quantity.h"
@@ -179,18 +180,87 @@ enum status study_print(const struct case_values *study, const struct member_fil
     return STATUS_OK;
 }
 
+/* Whether two warnings differ at most in numbers: kind of the warning and fish agree. */
+static int warnings_agree(const char *a, int n, const char *b, int m) {
+    static const char digits[] = "0123456789.";
+    const char *const end_a = a + n, *const end_b = b + m;
+    while (a < end_a && b < end_b) {
+        const int is_number = *a >= '0' && *a <= '9' && *b >= '0' && *b <= '9';
+        if (!is_number && *a != *b) return 0;
+        a += is_number ? (long)strspn(a, digits) : 1;
+        b += is_number ? (long)strspn(b, digits) : 1;
+        // exponents: 4e+03 and 27
+        if (is_number && a < end_a && *a == 'e') a += 1 + strspn(a + 1, "+-0123456789");
+        if (is_number && b < end_b && *b == 'e') b += 1 + strspn(b + 1, "+-0123456789");
+    }
+    return a >= end_a && b >= end_b;
+}
+
+/* A warning of several members. */
+struct warning_group {
+    const char *line;  /* of the first member, without the line break */
+    int length, shown; /* and its number */
+    int first, last, n;
+    int differs;         /* the numbers of another member are others */
+    struct text members; /* "0-2, 5" up to the last range, which is first to last */
+};
+
+static void group_add_range(struct warning_group *group, int first, int last) {
+    text_add(&group->members, group->members.length > 0 ? ", %d" : "%d", first);
+    if (last > first) text_add(&group->members, "-%d", last);
+}
+
+/* Add a warning of a member to the group of its kind, or to a new group. */
+static enum status groups_add(struct warning_group **groups, int *n_groups, const char *line, int length, int member) {
+    for (int g = 0; g < *n_groups; g++) {
+        struct warning_group *const group = &(*groups)[g];
+        if (!warnings_agree(group->line, group->length, line, length)) continue;
+        group->differs |= length != group->length || memcmp(group->line, line, (size_t)length) != 0;
+        if (member > group->last + 1) {
+            group_add_range(group, group->first, group->last);
+            group->first = member;
+        }
+        group->last = member;
+        group->n++;
+        return STATUS_OK;
+    }
+
+    TRY(MEMORY_RESIZE(*groups, *n_groups + 1, "the warnings of a study"));
+    (*groups)[(*n_groups)++] = (struct warning_group){
+        .line = line, .length = length, .shown = member, .first = member, .last = member, .n = 1};
+    return STATUS_OK;
+}
+
+static void group_print(struct warning_group *group, FILE *stream) {
+    group_add_range(group, group->first, group->last);
+    fprintf(stream, "member%s %s: warning: %.*s", group->n > 1 ? "s" : "",
+            group->members.text ? group->members.text : "", group->length, group->line);
+    if (group->differs) fprintf(stream, " (numbers of member %d)", group->shown);
+    fprintf(stream, "\n");
+}
+
 int study_print_warnings(const struct member_file *members, int n, FILE *stream) {
-    int n_warnings = 0;
+    struct warning_group *groups = NULL;
+    int n_warnings = 0, n_groups = 0;
+    enum status status = STATUS_OK;
+
     for (int m = 0; m < n; m++) {
         for (const char *line = members[m].warnings; line && *line; line += *line == '\n') {
             const int length = (int)strcspn(line, "\n");
-            if (n_warnings++ < MAX_WARNINGS_SHOWN) fprintf(stream, "member %d: warning: %.*s\n", m, length, line);
+            n_warnings++;
+            if (status == STATUS_OK) status = groups_add(&groups, &n_groups, line, length, m);
             line += length;
         }
     }
 
-    if (n_warnings > MAX_WARNINGS_SHOWN)
-        fprintf(stream, "The first %d of %d warnings; study.nc has all.\n", MAX_WARNINGS_SHOWN, n_warnings);
+    for (int g = 0; g < n_groups; g++) {
+        if (g < MAX_WARNINGS_SHOWN) group_print(&groups[g], stream);
+        text_free(&groups[g].members);
+    }
+
+    if (n_groups > MAX_WARNINGS_SHOWN)
+        fprintf(stream, "The first %d of %d kinds of warnings; study.nc has all.\n", MAX_WARNINGS_SHOWN, n_groups);
+    free(groups);
     return n_warnings;
 }
 

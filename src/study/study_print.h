@@ -38,7 +38,8 @@ void study_table_print(const struct study_table *table, FILE *stream);
 /* Print swept values, final values and status of the members, in columns. Fails with STATUS_MEMORY. */
 enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream);
 
-/* Print the first warnings about the results of n members; returns the number of all warnings. */
+/* Print the warnings about the results of n members, one line per kind of warning with its members: warnings that
+ * differ only in numbers are of one kind. Returns the number of all warnings. */
 int study_print_warnings(const struct member_file *members, int n, FILE *stream);
 
 /* Print the expectations and the actual values. Fails with STATUS_MISSED if an expectation is not met. */

@@ -49,8 +49,11 @@ wrong_words() {
     run swim
     check "unknown command: exit 2" ended 2
     check "unknown command is named" says swim
-    run runn "$demo"
-    check "mistyped command: the nearest one is named" says "run"
+    run rnu "$demo"
+    check "mistyped command: exit 2" ended 2
+    check "mistyped command: the nearest one is named" says "unknown command 'rnu'; did you mean 'run'?"
+    run swim "$demo"
+    check "no command is near: none is named" test "$(grep -c 'did you mean' err)" = 0
     run run --colour "$demo"
     check "unknown option: exit 2" ended 2
     check "unknown option is named" says colour
@@ -179,11 +182,147 @@ warnings() {
     check "--strict without a warning: silent" silent
     run study crossing.yaml -q --strict --set 'sweep=[{key: "fish[0].motion.speed", values: [15, 16]}]'
     check "study --strict: exit 3" ended 3
-    check "study: the warning of each member" grep -q '^member 1: warning: .*touch or cross' out
+    check "study -q: no tables" test ! -s out
+    local warned='^members 0-1: warning: .*a and b touch or cross at t = 0.2 s: later results are invalid$'
+    check "study: one line per warning, with its members" grep -q "$warned" err
+    check "study: no other line about it" test "$(grep -c 'touch or cross' err)" = 1
     run gather crossing-study
-    check "gather: the warnings" grep -q '^member 0: warning: .*touch or cross' out
+    check "gather: the warnings" grep -q "$warned" out
+    run gather crossing-study -q
+    check "gather -q: no tables" test ! -s out
     run info crossing-study/study.nc
-    check "info of a study: the warnings" grep -q '^member 1: warning: .*touch or cross' out
+    check "info of a study: the warnings" grep -q "$warned" out
+    run study crossing.yaml -q --force --set 'sweep=[{key: "fish[1].start.heading", values: [0, 180, 0, 1]}]'
+    check "study: the members of a warning, as ranges" grep -q '^members 0, 2-3: warning: .*touch or cross' err
+    run study crossing.yaml -q --force --set 'sweep=[{key: "fish[0].motion.speed", values: [15, 5]}]'
+    check "study: other numbers, the same warning" grep -q '^members 0-1: .* at t = 0.2 s: .* (numbers of member 0)$' err
+}
+
+# ---- help, keys, new, includes, names
+
+helpers() {
+    run help
+    check "help lists the commands" grep -q '^  run  ' out
+    run help study
+    cp out help
+    run study --help
+    check "help COMMAND is COMMAND --help" cmp help out
+    run help stuyd
+    check "help of a mistyped command: the nearest one is named" says "did you mean 'study'?"
+
+    run keys YOUNG
+    check "keys WORD: words of the explanation, whatever their case" grep -q '^fish\[i\].body.modulus:' out
+    check "keys WORD: no other keys" test "$(grep -c '^wake' out)" = 0
+    run keys young --json
+    check "keys WORD --json" /usr/bin/python3 -c 'import json; assert [k["path"] for k in json.load(open("out"))] == ["fish.body.modulus"]'
+    run keys --output separat
+    check "keys --output WORD: variables" grep -q '^separation_share' out
+    check "keys --output WORD: warnings" grep -q '^separation at the nose:' out
+    run keys nonsense
+    check "keys WORD without a match: exit 2" ended 2
+    check "keys WORD without a match: says so" says "no key has 'nonsense'"
+
+    run new mine.yaml
+    check "new: exit 0" ended 0
+    check "new: the name of the file" test "$(cat out)" = mine.yaml
+    run check mine.yaml
+    check "new: a case without errors and warnings" eval 'ended 0 && test ! -s err'
+    check "new: comments" grep -q '# s$\|# s,' mine.yaml
+    run show mine.yaml
+    grep -v '^name: ' out >shown
+    printf 'format: 1\ntime: {end: 5, output_interval: 0.1}\nfish: [{name: fish}]\n' >plain.yaml
+    run show plain.yaml
+    check "new: its values are the defaults" cmp shown <(grep -v '^name: ' out)
+    echo kept >mine.yaml
+    refused "new: no file is overwritten" 4 'mine.yaml exists' new mine.yaml
+    check "new: the file is unchanged" test "$(cat mine.yaml)" = kept
+    refused "new: a folder that is not there" 4 'No such file' new no/where.yaml
+
+    # the case of the source tree, from elsewhere; its name does not count
+    printf '%s\n' 'format: 1' 'include: [demo.yaml]' "time: {end: 0.1}" \
+        'sweep: [{key: "fish[*].wave.amplitude", values: [0.3, 0.4]}]' >other.yaml
+    run study other.yaml
+    check "an include is found among the cases of the source tree" ended 0
+    check "a study prints its folder" test "$(head -1 out)" = other-study
+    check "a study has the name of the case file" test -e other-study/study.nc
+    run run other.yaml --set 'sweep=[]' -q
+    check "so has a run" test -e other.nc
+    run error other.yaml --set 'sweep=[]' --set 'error={of: speed, confirm: false, keys: {rtol: [1e-4, 1e-5]}}' -q
+    check "error -q is quiet" test "$code" != 2 -a ! -s out
+    check "the folder of error has the name of the case file" test -e other-error/study.nc
+    mkdir -p installed/bin installed/share/shoal/cases
+    cp "$program" installed/bin/shoal
+    echo 'time: {end: 0.1, shedding_interval: 0.05}' >installed/share/shoal/cases/demo.yaml
+    printf '%s\n' 'format: 1' 'include: [demo.yaml]' 'fish: [{name: a}]' >there.yaml
+    check "an installed program has its own cases" eval 'installed/bin/shoal check there.yaml | grep -q "0.1 s in 2 events"'
+    echo 'time: {end: 0.2, shedding_interval: 0.05}' >demo.yaml
+    check "a file beside the case comes first" eval 'installed/bin/shoal check there.yaml | grep -q "0.2 s in 4 events"'
+    rm demo.yaml
+}
+
+# `shoal info --json` of a run and a study against their files.
+summaries() {
+    run run "$demo" -q -o summary.nc --set "$short"
+    run info summary.nc --json
+    cp out run.json
+    run info other-study/study.nc --json
+    cp out study.json
+    cat >summary.py <<'EOF'
+import json, netCDF4, numpy as np
+run, data = json.load(open("run.json")), netCDF4.Dataset("summary.nc")
+data.set_auto_mask(False)
+assert run["kind"] == "run" and run["status"] == "complete" and run["rows"] == len(data["time"]) and run["warnings"] == []
+assert run["fish_name"] == ["fish"] and run["case"] == "demo"
+for name, variable in data.variables.items():
+    if {"node", "edge", "joint", "sheet", "control", "vortex"} & set(variable.dimensions):
+        assert name not in run, name
+    elif variable.dtype != "S1":
+        values = variable[-1] if variable.dimensions[:1] == ("time",) else variable[...]
+        assert np.array_equal(np.array(run[name], float), np.array(values, float), equal_nan=True), name
+study, data = json.load(open("study.json")), netCDF4.Dataset("other-study/study.nc")
+assert study["kind"] == "study" and study["status"] == ["complete"] * 2
+assert np.array_equal(study["speed"], data["speed"][:]) and study["fish_wave_amplitude"] == [0.3, 0.4]
+EOF
+    check "info --json says what is in the file" /usr/bin/python3 summary.py
+    run run "$demo" -q -o marked.nc --set "$short" --checkpoint-at 0.1
+    refused "info --json of a checkpoint" 2 'is a checkpoint' info marked.ckpt --json
+}
+
+# ---- progress on a terminal of 60 columns
+
+progress() {
+    cat >terminal.py <<'EOF'
+"""Run a command in a terminal of some columns, and print what the terminal got."""
+import fcntl, os, pty, re, struct, sys, termios
+child, terminal = pty.fork()
+if child == 0:
+    fcntl.ioctl(2, termios.TIOCSWINSZ, struct.pack("HHHH", 24, int(sys.argv[1]), 0, 0))
+    os.execv(sys.argv[2], sys.argv[2:])
+got = b""
+while True:
+    try:
+        more = os.read(terminal, 4096)
+    except OSError:
+        break
+    if not more:
+        break
+    got += more
+os.waitpid(child, 0)
+lines = got.decode().replace("\x1b[K", "").replace("\r\n", "\n")
+progress = re.compile(r"t +[0-9.]+ s  |beat +[0-9]+|[0-9]+ of [0-9]+ members")
+drawn = [part for line in lines.split("\n") for part in line.split("\r") if progress.match(part)]
+assert len(drawn) >= 2, (drawn, lines)
+assert max(map(len, drawn)) < int(sys.argv[1]), drawn
+assert max(map(len, drawn)) > int(sys.argv[1]) // 2, drawn
+# one line, redrawn: no line of progress ends with a line feed
+assert not any(progress.match(line.split("\r")[-1]) for line in lines.split("\n")), lines
+EOF
+    check "a run draws one line within 60 columns" /usr/bin/python3 terminal.py 60 "$program" run "$demo" --force -o drawn.nc
+    check "a run draws one line within 35 columns" /usr/bin/python3 terminal.py 35 "$program" run "$demo" --force -o drawn.nc
+    check "so does a study" /usr/bin/python3 terminal.py 60 "$program" study other.yaml -o drawn -j 1 --set time.end=5
+    printf '%s\n' 'format: 1' 'time: {end: 3, shedding_interval: 0.05, output_interval: 0.1}' \
+        'fish: [{name: a, nodes: 9, sheet_points: 17}]' >search.yaml
+    check "and a search" /usr/bin/python3 terminal.py 60 "$program" steady search.yaml --force
 }
 
 # Two results hold the same bits in all variables but the wall clock.
@@ -331,6 +470,7 @@ limits() {
 
 help_and_versions
 wrong_words
+helpers
 output_paths
 failures
 warnings
@@ -340,4 +480,6 @@ signals
 limits
 explicit
 notes
+summaries
+progress
 finish

@@ -57,6 +57,7 @@ completes() {  # line, completions
     [[ $got == "$2 " ]] || { echo "'$1' is completed to '$got'"; false; }
 }
 check commands_are_completed completes 'shoal ch' 'check'
+check commands_are_completed_for_help completes 'shoal help st' 'steady study'
 check options_are_completed completes 'shoal study --s' '--set --slurm --strict'
 check options_of_this_command_only completes 'shoal info --s' ''
 check cases_are_completed completes 'shoal run swim' 'swim.yaml swimming/'

@@ -55,7 +55,7 @@ check the_result_is_there test -s part.nc -a ! -L part.nc
 mkdir linked
 ln -s ../precious linked/member-0000.failed
 ln -s ../precious linked/member-0001.failed
-run study study/case.yaml -q -o linked --set solver.max_steps=1
+run study study/case.yaml -o linked --set solver.max_steps=1
 check reasons_are_not_written_through_links precious
 check reasons_are_written grep -q 'integration failed' linked/member-0001.failed
 rm linked/member-0000.failed && mkfifo linked/member-0000.failed
@@ -82,12 +82,12 @@ for foreign in text netcdf; do
     check "that is found before a member runs ($foreign)" test ! -e foreign/member-0000.nc
     rm foreign/study.nc
 done
-run study study/case.yaml -q -o foreign
+run study study/case.yaml -o foreign
 truncate -s -100 foreign/member-0000.nc
-run study study/case.yaml -q -o foreign
+run study study/case.yaml -o foreign
 check a_cut_member_runs_again test "$code" = 0
 mkdir gathers && ln -s ../precious gathers/study.nc
-refused study_nc_that_is_a_link 4 'is a link' study study/case.yaml -q -o gathers
+refused study_nc_that_is_a_link 4 'is a link' study study/case.yaml -o gathers
 check and_its_target_stays precious
 
 # ---- scripts of Slurm

@@ -230,13 +230,13 @@ time: {end: 4, shedding_interval: 0.01, output_interval: 0.02}
 fish: [{}]
 sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.3]}]
 CASE
-run study study.yaml -q -j 1 -o whole
+run study study.yaml -j 1 -o whole
 env --default-signal=TERM "$program" study study.yaml -q -j 1 -o parts >out 2>err </dev/null &
 pid=$!
 wait_for test -s parts/member-0000.nc
 end TERM
 check a_study_is_stopped test "$code" = 75 -a -e parts/member-0000.ckpt
-run study study.yaml -q -j 1 -o parts
+run study study.yaml -j 1 -o parts
 check the_study_goes_on test "$code" = 0
 place=$(places parts/member-0000.nc)
 check a_stopped_member_is_resumed test -n "$place"

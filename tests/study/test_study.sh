@@ -30,7 +30,7 @@ check the_reason_is_printed has out 'member 2 failed: unstable at t = '
 check the_reason_is_kept has small-study/member-0002.failed 'unstable at t = '
 check members_are_numbered_from_0 test -e small-study/member-0000.nc -a -e small-study/member-0005.nc -a \
     ! -e small-study/member-0006.nc
-check progress_counts_members has err '4 of 6 members done, 2 failed, 0 running  100 %'
+check progress_counts_members has err '4 of 6 members done  100 %  0 s left  2 failed  0 running'
 check quantities_of_steady_states_are_not_in_the_table_of_runs eval '! grep -q growth out'
 check a_line_per_member test "$(grep -cE '^ +[0-5] +0\.[23] ' out)" = 6
 check results_are_gathered test -s small-study/study.nc
@@ -39,18 +39,18 @@ check the_last_axis_is_fastest has out 'amplitude: 0.3'
 check zipped_keys_change_together has out 'method: rk4'
 
 finished=$(changed small-study/member-0001.nc) failed=$(changed small-study/member-0002.nc)
-run study small.yaml -q
+run study small.yaml
 check finished_members_are_passed_over test "$(changed small-study/member-0001.nc)" = "$finished"
 check failed_members_run_again test "$(changed small-study/member-0002.nc)" != "$failed"
 
 # the same text of the case, but other defaults: a member of another version of the program
 sed -i 's/modulus: 1000000 /modulus: 2000000 /' small-study/member-0001.nc
 finished=$(changed small-study/member-0001.nc)
-run study small.yaml -q
+run study small.yaml
 check a_member_of_other_defaults_runs_again test "$(changed small-study/member-0001.nc)" != "$finished"
 finished=$(changed small-study/member-0001.nc)
 
-cp out table
+sed 1d out >table
 run info small-study/study.nc
 check info_lists_the_axes has out '  axis 1      3 values of solver.method, solver.max_steps'
 check info_counts_members has out '  members     6, 4 of them complete'
@@ -69,7 +69,7 @@ check a_missing_member_is_reported grep -qE '^ +3 .* missing$' out
 check an_unreadable_member_is_reported has out 'member 0 failed: ./alone/member-0000.nc: cannot be read'
 
 mkdir parts
-run study small.yaml -o parts --members 0-1 -q
+run study small.yaml -o parts --members 0-1
 check a_part_ends_with_0 test "$code" = 0 -a ! -s out
 check a_part_runs_its_members_only test -e parts/member-0001.nc -a ! -e parts/member-0002.nc -a ! -e parts/study.nc
 
@@ -99,7 +99,7 @@ refused another_study_is_refused 4 'small-study/member-0000.nc is a result of an
     study small.yaml --set fish[0].nodes=9 -o small-study
 check nothing_was_changed test "$(changed small-study/member-0001.nc)" = "$finished"
 sed 's/0.2, 0.3/0.2/' small.yaml >shorter.yaml
-run study shorter.yaml -o small-study --force -q
+run study shorter.yaml -o small-study --force
 check force_replaces_it has out 'euler'
 check force_removes_the_rest test ! -e small-study/member-0003.nc
 cp alone/member-0001.nc small-study/
@@ -108,7 +108,7 @@ mkdir gathered
 cp alone/study.nc gathered
 refused the_table_of_another_study_is_refused 4 './gathered/study.nc was gathered from another study' \
     study shorter.yaml -o gathered -q
-run study shorter.yaml -o gathered -q --force
+run study shorter.yaml -o gathered --force
 check force_replaces_it_too test -e gathered/member-0000.nc
 mkdir empty
 refused gather_of_nothing 4 'empty contains no readable member of a study' gather empty
@@ -137,10 +137,10 @@ refused members_backwards 2 '--members 3-1: expects the number of a member' stud
 refused members_of_words 2 '--members all: expects' study small.yaml -o parts --members all
 refused processes_of_words 2 '-j two: expects an integer' study small.yaml -o parts -j two
 refused run_refuses_a_sweep 2 'use `shoal study`' run small.yaml -o never.nc
-run study small.yaml --limit 0.4 -o slow -q --set time.end=2000 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
+run study small.yaml --limit 0.4 -o slow --set time.end=2000 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
 check a_member_that_takes_too_long_has_failed eval 'test "$code" = 1 && has out "member 0 failed: too slow: at t = "'
 refused limit_of_nothing 2 '--limit 0: expects a number above 0' study small.yaml --limit 0
-run study small.yaml --set 'sweep=[]' -o single -q
+run study small.yaml --set 'sweep=[]' -o single
 check without_a_sweep_there_is_one_member test "$code" = 0 -a -e single/member-0000.nc -a ! -e single/member-0001.nc
 
 # ---- convergence
@@ -154,7 +154,7 @@ fish: [{body: {modulus: 1e5}}]
 sweep:
   - {key: time.shedding_interval, values: [0.01, 0.04, 0.02], refine: true, expect: {order: 2, within: 0.6}}
 end
-run study refined.yaml -q
+run study refined.yaml
 check the_expected_order_gives_exit_code_0 test "$code" = 0
 check orders_are_printed grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- +- +[12]\.[0-9]+ ' out
 check three_levels_have_wider_bounds grep -qE '^ +nose .* 3 levels \(wider bounds\)$' out
@@ -165,7 +165,7 @@ refused another_order_gives_exit_code_3 3 \
                    expect: {order: 3, within: 0.1}}]'
 check then_everything_is_written_all_the_same test -s third/study.nc
 # a speed not reached by any level: all errors are equal to the distance, and there is no order
-run study refined.yaml -o given -q \
+run study refined.yaml -o given \
     --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100}}]'
 check errors_are_against_the_reference grep -qE \
     '^ +speed\* +fish1 +m s-1 +9\.9.e\+01 +9\.9.e\+01 +9\.9.e\+01 +-?0\.00 ' out
@@ -179,11 +179,11 @@ refused the_order_of_any_quantity_can_be_expected 3 'speed of fish1: observed or
                    expect: {order: 2, within: 0.6, of: speed}}]'
 run info given/study.nc
 check info_prints_what_was_missed eval 'test "$code" = 0 && has out "missed: speed of fish1: observed order"'
-run study refined.yaml -o groups -q --set time.end=0.08 \
+run study refined.yaml -o groups --set time.end=0.08 \
     --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5, 1e-6], refine: true}, {key: solver.order, values: [1, 2]}]'
 check other_axes_make_groups has out 'Refinement of solver.rtol, from member 1 (solver.rtol=1e-4, solver.order=2) on'
 
-run study refined.yaml -o swimming -q --set solver.rtol=1e-5 --set time.shedding_interval=0.05 \
+run study refined.yaml -o swimming --set solver.rtol=1e-5 --set time.shedding_interval=0.05 \
     --set steady.multipliers=false --set steady.tolerance=1e-4 --set 'sweep=[{
     keys: [time.shedding_interval, wake.smoothing, "fish[*].sheet_points"], steady: true, refine: true,
     values: [[0.1, 0.2, 17], [0.05, 0.14, 25], [0.025, 0.1, 33], [0.0125, 0.07, 47]],
@@ -198,7 +198,7 @@ format: 1
 include: ["$root/cases/flag.yaml"]
 sweep: [{key: "fish[*].body.modulus", values: [5e4, 1e5], steady: true}]
 end
-run study flag.yaml -q -o flag --set 'fish[*].nodes=13' --set 'fish[*].sheet_points=33'
+run study flag.yaml -o flag --set 'fish[*].nodes=13' --set 'fish[*].sheet_points=33'
 check the_growth_rate_of_equilibria_is_in_the_table eval 'grep -qE "^member +modulus .* growth +drift " out &&
     grep -qE "^ +0 +5e4 .* \+0\.[0-9]{4} " out && grep -qE "^ +1 +1e5 .* -0\.[0-9]{4} " out'
 
@@ -217,7 +217,7 @@ expect:
   - {of: [nose, tail], fish: two, where: ["fish[*].wave.amplitude=0.30"], spread: 1e-3}
   - {of: steps, where: [solver.method=rk4], ratio: 3}
 end
-run study stated.yaml -q
+run study stated.yaml
 check statements_that_hold_give_exit_code_0 test "$code" = 0
 check each_is_printed grep -qx 'nose of two, 2 values' out
 check with_what_is_and_what_should_be grep -qE '^  met      the smallest is 0\.9[0-9]*, expected at least 0\.9$' out
@@ -225,29 +225,29 @@ check values_of_all_members_and_fish_count grep -qx 'speed, 8 values' out
 check the_same_number_is_the_same_value grep -qx 'tail of two, 2 values' out
 refused a_statement_that_does_not_hold_gives_exit_code_3 3 'expect[0]: speed: expectation not met' \
     study stated.yaml -q -o unstated --set 'expect=[{of: speed, most: 0.5}, {of: nose, fish: one, spread: 0}]'
-check what_is_missed_is_printed grep -qE '^  MISSED   the largest is [01]\.[0-9]*, expected at most 0\.5$' out
-check all_expectations_are_tested grep -qE '^  MISSED   the spread is [0-9.e-]+, expected at most 0$' out
+check what_is_missed_is_printed grep -qE '^  MISSED   the largest is [01]\.[0-9]*, expected at most 0\.5$' err
+check all_expectations_are_tested grep -qE '^  MISSED   the spread is [0-9.e-]+, expected at most 0$' err
 refused a_quantity_that_is_missing_misses 3 'expect[0]: tail_error: expectation not met' \
     study stated.yaml -q -o unstated --force --set 'expect=[{of: tail_error, most: 1}]'
-check that_it_is_missing_is_printed has out '  MISSED   member 3 has no such value'
+check that_it_is_missing_is_printed has err '  MISSED   member 3 has no such value'
 run info unstated/study.nc
 check info_reports_it_too eval 'test "$code" = 0 && has out "missed: expect[0]"'
 refused a_member_that_is_not_complete_misses 3 'expect[0]: speed: expectation not met: see the output' \
     study small.yaml -q -o failing --set 'sweep=[{key: solver.max_steps, values: [1000, 2]}]' \
     --set solver.method=euler \
     --set 'expect=[{of: speed, least: 0}]'
-check which_member_it_is_is_printed has out '  MISSED   member 1 is not complete'
-run study small.yaml -q -o doomed --set 'expect=[{fails: unstable at, where: [solver.method=euler]},
+check which_member_it_is_is_printed has err '  MISSED   member 1 is not complete'
+run study small.yaml -o doomed --set 'expect=[{fails: unstable at, where: [solver.method=euler]},
     {of: speed, least: 0, where: [solver.method=ida, solver.method=rk4]}]'
 check failures_that_are_expected_give_exit_code_0 eval 'test "$code" = 0 && grep -q "^member 2 failed" out'
 check they_are_counted grep -qx 'failures, 2 members' out
 check several_values_of_a_key_are_alternatives grep -qx 'speed, 4 values' out
-refused a_failure_that_does_not_come_misses 3 'expect[0]: failures: expectation not met' study small.yaml -q -o doomed --force \
+refused a_failure_that_does_not_come_misses 3 'expect[0]: failures: expectation not met' study small.yaml -o doomed --force \
     --set 'expect=[{fails: unstable, where: [solver.method=euler, solver.method=rk4]}]'
 check which_member_does_not_fail_is_printed has out "  MISSED   member 4 has not failed with 'unstable'"
-refused other_words_of_the_reason_miss_too 3 'expect[0]: failures: expectation not met' study small.yaml -q -o doomed --force \
+refused other_words_of_the_reason_miss_too 3 'expect[0]: failures: expectation not met' study small.yaml -o doomed --force \
     --set 'expect=[{fails: out of memory, where: [solver.method=euler]}]'
-run study stated.yaml -q -o plain --set 'sweep=[]'
+run study stated.yaml -o plain --set 'sweep=[]'
 check without_a_sweep_nothing_is_expected eval 'test "$code" = 0 && ! grep -q Expected out'
 
 # ---- pictures
@@ -260,10 +260,10 @@ if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     check a_picture_of_orders draws refined-study/study.nc
     check a_picture_of_groups draws groups/study.nc
     check a_picture_of_methods draws small-study/study.nc
-    run study small.yaml -o map -q --set time.end=0.04 --set \
+    run study small.yaml -o map --set time.end=0.04 --set \
         'sweep=[{key: "fish[*].body.modulus", values: [1e4, 1e6]}, {key: "fish[*].wave.frequency", values: [1, 2]}]'
     check a_map_over_two_axes draws map/study.nc
-    run study stated.yaml -o places -q --set time.end=0.04 --set expect=[] --set \
+    run study stated.yaml -o places --set time.end=0.04 --set expect=[] --set \
         'sweep=[{key: "fish[1].start.position", values: [[1, 0.5], [2, 0.5]]}]'
     check a_map_of_places draws places/study.nc
     cat >held.yaml <<'end'
@@ -283,12 +283,12 @@ found = panels_of(study, study.axes[0][0])
 sys.exit(0 if found == sys.argv[3:] else str(found))
 end
     panels() { /usr/bin/python3 panels.py "$scripts" "$@"; }
-    run study held.yaml -q -o held
+    run study held.yaml -o held
     check a_picture_of_a_held_fish draws held/study.nc
     check it_shows_what_holding_takes panels held/study.nc mean_thrust mean_power efficiency
-    run study held.yaml -q -o free --set 'fish[0].motion.prescribed=none'
+    run study held.yaml -o free --set 'fish[0].motion.prescribed=none'
     check a_free_fish_that_starts_at_a_speed_is_not_held panels free/study.nc speed cost_of_transport strouhal
-    run study held.yaml -q -o heaving --set 'fish[0].wave={amplitude: 0, frequency: 0}' --set \
+    run study held.yaml -o heaving --set 'fish[0].wave={amplitude: 0, frequency: 0}' --set \
         'fish[0].motion={prescribed: head, surge: free, heave: 0.1, frequency: 1}'
     check a_heaving_fish_has_cost_and_efficiency_of_its_heave panels heaving/study.nc speed cost_of_transport efficiency
     run study held.yaml -q -o foil --set 'fish[0].wave={amplitude: 0, frequency: 0}' --set 'fluid.velocity=[1, 0]' --set \
@@ -296,10 +296,10 @@ end
         'sweep=[{key: "fish[*].body.modulus", values: [1e5, 1e6]}]'
     check a_foil_held_in_a_stream_has_thrust_and_efficiency panels foil/study.nc mean_thrust mean_power efficiency
     # two of three levels need more steps than permitted
-    run study refined.yaml -o lonely -q --set time.end=0.04 --set time.shedding_interval=0.02 --set solver.method=rk4 \
+    run study refined.yaml -o lonely --set time.end=0.04 --set time.shedding_interval=0.02 --set solver.method=rk4 \
         --set solver.max_steps=3 --set 'sweep=[{key: solver.step, values: [0.01, 0.005, 0.0025], refine: true}]'
     check no_picture_without_errors eval '! draws lonely/study.nc && has check.out "no errors to draw"'
-    run study refined.yaml -o costs -q --set time.end=0.08 --set time.shedding_interval=0.01 \
+    run study refined.yaml -o costs --set time.end=0.08 --set time.shedding_interval=0.01 \
         --set 'fish[0].wave.ramp=0' --set 'sweep=[{
         keys: ["fish[*].body.modulus", solver.method, solver.step, solver.rtol],
         values: [[1e5, ida, 0, 1e-8], [1e5, ida, 0, 1e-4], [1e5, rk4, 1e-3, 1e-5], [1e5, euler, 1e-2, 1e-5]]}]'
@@ -307,7 +307,7 @@ end
     check the_reference_does_not_compete has drawn '| 100000 | ida | rtol 0.0001 |'
     check a_fixed_step_is_a_setting has drawn '| 100000 | rk4 | step 0.001 |'
     check a_method_without_an_accurate_member_is_named has drawn '| 100000 | euler | none within 0.0001 m |'
-    run compare refined.yaml --set 'sweep=[]' --set time.end=0.08 --repeats 1 -q -o compare.nc
+    run compare refined.yaml --set 'sweep=[]' --set time.end=0.08 --repeats 1 -o compare.nc
     check a_picture_of_a_comparison draws compare.nc
     check no_picture_of_one_run eval \
         '! draws single/member-0000.nc && has check.out "the file of a run, not of a study"'
@@ -372,7 +372,7 @@ check a_study_sees_its_members_end_all_the_same eval 'test "$code" = 1 && has er
 # a processor for each thread of each member, of the processors that the program may use
 running() {  # arguments: the most members that run at once
     run study long.yaml --force --set 'sweep=[{key: time.end, values: [16, 16.02, 16.04]}]' "$@"
-    sed -n 's/.* failed, \([0-9]*\) running .*/\1/p' err | sort -n | tail -1
+    sed -n 's/.* failed  \([0-9]*\) running$/\1/p' err | sort -n | tail -1
 }
 processor=$(taskset -cp $$ | sed 's/.*: \([0-9]*\).*/\1/')
 taskset -p $$ >mask
@@ -393,7 +393,7 @@ kill -KILL "$study"
 wait "$study" 2>/dev/null
 check members_end_with_a_killed_study wait_for_end_of "${members[@]}"
 before=$(changed killed/member-0000.nc)
-run study long.yaml -o killed --members 0 -q
+run study long.yaml -o killed --members 0
 check what_a_killed_study_finished_stays test "$code" = 0 -a "$(changed killed/member-0000.nc)" = "$before"
 
 start_long shot
@@ -415,17 +415,17 @@ fish: [{}]
 sweep:
   - {keys: ["fish[*].nodes", "fish[*].sheet_points"], values: [[7, 21], [25, 81], [8, 21]]}
 end
-run study disk.yaml -o roomy -q
+run study disk.yaml -o roomy
 largest=$(stat -c %s roomy/member-0001.nc) other=$(stat -c %s roomy/member-0002.nc)
 (
     ulimit -f $(((largest + other) / 2 / 1024))
-    timeout "$time_limit" "$program" study disk.yaml -o disk -q >out 2>err </dev/null
+    timeout "$time_limit" "$program" study disk.yaml -o disk >out 2>err </dev/null
     echo $? >code
 )
 check a_full_disk_is_a_failed_member test "$(<code)" = 1
 check it_says_what_could_not_be_written has out 'member 1 failed: ./disk/member-0001.nc: cannot be written at t = '
 check the_other_members_are_complete test "$(grep -c ' complete$' out)" = 2
-run study disk.yaml -o disk -q
+run study disk.yaml -o disk
 check with_room_the_next_call_completes_it test "$code" = 0
 
 finish

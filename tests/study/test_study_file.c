@@ -213,11 +213,11 @@ static enum status run_small(const struct attempt *attempt) {
     const struct study_options options = {.folder = attempt->folder, .command = "test", .last = -1, .n_processes = 2};
     int n_failed;
     TRY(study_run(&attempt->study, &options, &n_failed));
-    return study_report(&attempt->study, attempt->folder, NULL, "test", 0, attempt->nowhere);
+    return study_report(&attempt->study, attempt->folder, NULL, "test", 0, attempt->nowhere, attempt->nowhere);
 }
 
 static enum status gather_small(const struct attempt *attempt) {
-    return study_gather(attempt->folder, "test", 0, attempt->nowhere);
+    return study_gather(attempt->folder, "test", 0, attempt->nowhere, attempt->nowhere);
 }
 
 static enum status inform_of_small(const struct attempt *attempt) {
