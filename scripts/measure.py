@@ -203,6 +203,30 @@ def steady_states(bench):
                short(state["steady_residual"]), state["steady_beats"], f"{largest:.2f}")
 
 
+def turn_of(path):
+    """Settling time [beats] of the course within 5 degrees, and overshoot [degrees], of a member of step_response."""
+    member = netCDF4.Dataset(path)
+    time, place, beat = member["time"][:], member["com"][:, 0], 1 / float(member["frequency"][0])
+    n = round(beat / (time[1] - time[0]))
+    way, begin, turn = place[n:] - place[:-n], 4.1, -90
+    course = np.degrees(np.unwrap(np.arctan2(way[:, 1], way[:, 0])))
+    error, time = course - course[0] - turn, time[n:]
+    return (time[np.abs(error) > 5].max() - begin) / beat, max(0, -error[time > begin].min())
+
+
+@table("modulus [Pa]", "beats per s, amplitude", "gain 2, damping 1", "1, 1", "1.5, 1", "1.5, 1.5", "1.25, 0.75")
+def step_response(bench):
+    """settling time and overshoot of turns of 90 degrees (a quarter of an hour)"""
+    folder = os.path.join(bench.folder, "step_response")
+    bench.call("study", os.path.join(CASES, "studies/step_response.yaml"), "-q", "-o", folder)
+    study = open_study(os.path.join(folder, "study.nc"))
+    for first in range(0, study["member"].size, 5):
+        turns = [turn_of(os.path.join(folder, f"member-{first + i:04d}.nc")) for i in range(5)]
+        yield (power(study["fish_body_modulus"][first]),
+               f"{study['fish_wave_frequency'][first]:g}, {study['fish_wave_amplitude'][first]:g}",
+               *(f"{settling:.1f}, {overshoot:.0f}" for settling, overshoot in turns))
+
+
 def with_bar(value, bar):
     """0.9364 +- 0.0019"""
     decimals = max(0, 1 - math.floor(math.log10(bar))) if bar > 0 else 4

@@ -433,8 +433,7 @@ static void check_pressure(const struct check *check) {
 static const struct {
     const char *path;
     unsigned laws; /* bits 1 << enum control_law */
-} law_keys[] = {{"fish.control.gain", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE},
-                {"fish.control.limit", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE},
+} law_keys[] = {{"fish.control.limit", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE},
                 {"fish.control.feedforward", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING},
                 {"fish.control.damping", 1U << CONTROL_COURSE},
                 {"fish.control.rate", 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE}};
@@ -466,6 +465,9 @@ static void check_control(const struct check *check) {
                     law_keys[i].path, "has no effect with 'law: %s': remove the key", law);
     }
 
+    const double free_gain = 2;  // the derived default with law none
+    complain_if(is_free && fabs(control->gain - free_gain) > 0, check, "fish.control.gain",
+                "has no effect with 'law: none': remove the key");
     const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
     complain_if(!has_moment(control) && fabs(control->filter - period) > 0, check, "fish.control.filter",
                 "has no effect without feedforward: remove the key");

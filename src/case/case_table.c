@@ -189,6 +189,13 @@ static enum status derive_control_law(const struct key_place *at) {
     return STATUS_OK;
 }
 
+// doc/model.md, section 11: cases/studies/step_response.yaml
+static enum status derive_control_gain(const struct key_place *at) {
+    struct control_parameters *const control = &at->fish->control;
+    if (isnan(control->gain)) control->gain = control->law == CONTROL_COURSE ? 1 : 2;
+    return STATUS_OK;
+}
+
 static enum status derive_desired_heading(const struct key_place *at) {
     struct number_list *const heading = &at->fish->control.desired_heading;
     if (heading->n > 0) return STATUS_OK;
@@ -548,8 +555,9 @@ const struct key case_table[] = {
     {"fish.control.acceptance_radius", REAL, IN_FISH(control.acceptance_radius), "0.5", ABOVE(0), "",
      .meaning = "acceptance radius of a waypoint, in body lengths", .synonyms = "radius",
      .former = "fish.control.arrival"},
-    {"fish.control.gain", REAL, IN_FISH(control.gain), "2", ANY, "",
-     .meaning = "proportional gain: weight of the error of the heading", .synonyms = "k_p kp proportional"},
+    {"fish.control.gain", REAL, IN_FISH(control.gain), NULL, ANY, "",
+     .meaning = "proportional gain: weight of the error of the heading or course",
+     .derived = "1 with law course, else 2", .derive = derive_control_gain, .synonyms = "k_p kp proportional"},
     {"fish.control.damping", REAL, IN_FISH(control.damping), "1", ANY, "",
      .meaning = "course: weight of the rate of change of the course, in rad per period",
      .synonyms = "k_d kd derivative"},

@@ -60,6 +60,7 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         memcpy(sample.friction, forces.friction, sizeof sample.friction);
         diagnostics_fluid_force(forces.resistive, forces.reactive, &pressure, sample.force);
         sample.leading_edge = pressure.leading_edge_a0;
+        sample.bias = y[fish->at.phi0];
         memcpy(sample.work, state->balance[f].work, sizeof sample.work);
 
         continue_sample(history, interval, &sample);
@@ -181,6 +182,26 @@ static void thrust_of_held(const struct fish *fish, const struct history *histor
     to->efficiency = to->mean_thrust * to->speed / to->mean_power;
 }
 
+/* The reversals of the steering bias over the last period: turning points between moves of at least a share of the
+ * limit, so that the settling and the rounding of a bias do not count. */
+static int bias_reversals(const struct history *history, double limit) {
+    const double least = 0.01 * limit;
+    double turn = state_recall(history, 0)->bias; /* the last turning point, or the farthest value since */
+    int direction = 0, n = 0;
+
+    for (int age = 1; age < history->n; age++) {
+        const double bias = state_recall(history, age)->bias, move = bias - turn;
+        if (direction * move >= 0 && direction != 0) {
+            turn = bias;
+        } else if (fabs(move) >= least) {
+            n += direction != 0;
+            direction = move > 0 ? 1 : -1;
+            turn = bias;
+        }
+    }
+    return n;
+}
+
 static void means_over_period(const struct fish *fish, const struct history *history, double interval,
                               struct diagnostics_fish *to) {
     const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
@@ -226,6 +247,7 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
                         struct diagnostics_fish *to) {
     means_over_period(fish, history, interval, to);
     to->leading_edge_most = leading_edge_most(history);
+    to->bias_reversals = fish->control.law == CONTROL_NONE ? 0 : bias_reversals(history, fish->control.limit);
     to->separation_share = fish->suction_limit > 0 ? separation_share(history, fish->suction_limit) : 0;
 }
 

@@ -207,6 +207,23 @@ static void edge_say(const struct subject *subject, const char *who, char line[W
              who, 100 * now->separation_share, now->leading_edge_most, subject->fish->suction_limit);
 }
 
+// ---- the controller
+
+// a bias that follows the beat or its second harmonic reverses up to four times in a period
+static double chatter_size(const struct subject *subject) {
+    const double most = 4;
+    return subject->diagnostics->fish[subject->f].bias_reversals / most;
+}
+
+static void chatter_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(
+        line, WARNING_BYTES,
+        "the steering bias of %s reverses %d times in a period, faster than the beat: reduce control.damping (%.3g) or "
+        "control.gain (%.3g)",
+        who, subject->diagnostics->fish[subject->f].bias_reversals, subject->fish->control.damping,
+        subject->fish->control.gain);
+}
+
 // ---- the tail
 
 // whether forces of the fluid bend the tail
@@ -272,6 +289,7 @@ static const struct kind kinds[N_WARNINGS] = {
     [WARNING_SHEET] = {sheet_size, sheet_say},
     [WARNING_MODES] = {modes_size, modes_say},
     [WARNING_EDGE] = {edge_size, edge_say},
+    [WARNING_CHATTER] = {chatter_size, chatter_say},
     [WARNING_CUSP] = {cusp_size, cusp_say},
     [WARNING_TAIL] = {tail_size, tail_say},
     [WARNING_FORCE] = {force_size, force_say},
@@ -313,6 +331,9 @@ const struct warning_words warnings_words[N_WARNINGS] = {
         {"separation at the nose",
          "separation_share is above 0.1, with a change of speed below 10 % per beat: the suction limit acts for more "
          "than 10 % of the last period"},
+    [WARNING_CHATTER] = {"a controller chatters",
+                         "the steering bias of a control law reverses more than four times in the last period, by at "
+                         "least 1 % of control.limit"},
     [WARNING_CUSP] = {"a cusp", "a Joukowski body that bends, with 'tail_thickness: 0'"},
     [WARNING_TAIL] = {"few nodes at the tail",
                       "twice the length of an edge is more than (EI/(m_L omega^2))^(1/4), with EI of the last edge and "

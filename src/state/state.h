@@ -25,6 +25,7 @@ struct sample {
     double speed;           /* mean speed through the water over the last period, m s-1; NaN in the first period */
     double heading;         /* rad, unwrapped */
     double leading_edge;    /* A_0; NaN unless force: pressure */
+    double bias;            /* phi0 */
     double work[N_WORKS];   /* since the start, J */
 };
 struct history {

@@ -11,7 +11,8 @@
 // ---- which warnings a run has
 
 // the warnings of a simulation, one character each: contact c, a body crosses itself x, divergence i, energy e,
-// momentum o, drift d, events v, sheet s, modes m, leading edge l, cusp u, few nodes at the tail t, published force p
+// momentum o, drift d, events v, sheet s, modes m, leading edge l, controller h, cusp u, few nodes at the
+// tail t, published force p
 static void expect_of(struct simulation *simulation, const char *expected) {
     simulate_measure(simulation);
     char line[WARNING_BYTES], found[N_WARNINGS + 1] = "";
@@ -21,7 +22,7 @@ static void expect_of(struct simulation *simulation, const char *expected) {
             continue;
         print_message("%s\n", line);
         assert_null(strchr(line, '\n'));
-        strncat(found, &"cxieodvsmlutp"[w], 1);
+        strncat(found, &"cxieodvsmlhutp"[w], 1);
     }
     assert_string_equal(found, expected);
 }
@@ -70,6 +71,20 @@ static void few_nodes_at_the_tail_are_told(void **state) {
                  n);
         expect_warnings(text, 0.01, n < enough ? "t" : "");
     }
+}
+
+static void a_controller_that_chatters_is_told(void **state) {
+    (void)state;
+    // a stiff body under a large damping: each beat of the course has more than four reversals
+#define STEERED(keys)                                                                 \
+    SCHOOL_DEFAULTS                                                                   \
+    "time: {end: 8, shedding_interval: 0.02}\n"                                       \
+    "fish: [{start: {speed: 0.9}, wave: {amplitude: 0.7}, body: {modulus: 1.0e+7},\n" \
+    "  control: {law: course, " keys "desired_heading: [[0, 180], [3, 180], [3.1, 120]]}}]\n"
+    expect_warnings(STEERED("damping: 2, "), 7, "dh");
+    // the defaults turn and hold the course without
+    expect_warnings(STEERED(""), 4, "d");
+    expect_warnings(STEERED(""), 7, "d");
 }
 
 static void the_published_force_is_told_and_nothing_else(void **state) {
@@ -280,6 +295,7 @@ int main(void) {
         cmocka_unit_test(a_fish_that_gathers_speed_drifts),
         cmocka_unit_test(a_tail_without_a_limit_is_told),
         cmocka_unit_test(few_nodes_at_the_tail_are_told),
+        cmocka_unit_test(a_controller_that_chatters_is_told),
         cmocka_unit_test(the_published_force_is_told_and_nothing_else),
         cmocka_unit_test(few_events_in_a_beat_are_told),
         cmocka_unit_test(a_soft_body_is_slower_than_its_beat),
