@@ -264,7 +264,7 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 LICENSE CITATION.cff CHANGES.md doc/*.md doc/case.schema.json '$(DESTDIR)$(prefix)/share/shoal/doc'
 	$(quiet)printf '%s\n' 'prefix=$(prefix)' 'libdir=$(libdir)' 'Name: shoal' 'Description: Swimming of fish and schools with their wakes' \
 	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${libdir} -lshoal' \
-	    'Libs.private: $(libraries) -fopenmp' \
+	    'Libs.private: $(libraries) $(if $(is_clang),$(shell $(CC) -print-file-name=libomp.so),-fopenmp)' \
 	    >'$(DESTDIR)$(libdir)/pkgconfig/shoal.pc'
 	@$(if $(DESTDIR),,$(PYTHON) -c 'import sys; sys.exit("$(python_modules)" not in sys.path)' || \
 	    echo "for 'import shoal': export PYTHONPATH=$(python_modules)")

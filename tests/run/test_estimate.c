@@ -8,8 +8,8 @@
 #include "school.h"
 
 /* The sanitizers change the cost of a loop by its memory, so that the parts of a run no longer add up. An emulator
- * translates the first passes of a loop, so that a short measurement has no relation to a long run; scripts/platforms.sh
- * sets EMULATED. */
+ * translates the first passes of a loop: a short measurement has no relation to a long run. scripts/platforms.sh sets
+ * EMULATED. */
 #ifdef __SANITIZE_ADDRESS__
 #define NEEDS_TRUE_COSTS() skip()
 #else
