@@ -86,10 +86,10 @@ static void waypoints(void) {
 
 static void course_in_a_wake(void) {
     if (verify_is_fast()) return;
-    struct simulation *const simulation =
-        verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: 20, shedding_interval: 0.02}\n"
-                    "fish: [{control: {law: course}}, {start: {position: [2, 0.3]}, control: {law: course}}]\n");
+    struct simulation *const simulation = verify_open(
+        VERIFY_DEFAULTS
+        "format: 1\ntime: {end: 20, shedding_interval: 0.02}\n"
+        "fish: [{control: {law: course, gain: 2}}, {start: {position: [2, 0.3]}, control: {law: course, gain: 2}}]\n");
     double most = 0;
     for (double t = 10; t < 20.01; t += 1) {
         verify_run(simulation, t);
