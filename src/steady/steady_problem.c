@@ -228,8 +228,11 @@ static enum status report_drift(const struct steady_problem *problem, const char
     if (most <= clear * tolerance) {
         return status_fail(STATUS_SOLVER,
                            "%s: after release, the fish stay together with a residual change per beat of %.2g, %s "
-                           "steady.tolerance, %.2g",
-                           first, change, change > tolerance ? "more than" : "visible only with a smaller", tolerance);
+                           "steady.tolerance, %.2g%s",
+                           first, change, change > tolerance ? "more than" : "visible only with a smaller", tolerance,
+                           change > tolerance ? "; set steady.tolerance to 1e-3, as the wake behind a fish that cuts "
+                                                "another wake is less periodic"
+                                              : "");
     }
 
     fish_drift(map, fastest, drift);
