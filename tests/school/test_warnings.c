@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "body/bending_mode.h"
 #include "school.h"
 #include "school/warnings.h"
 
@@ -289,6 +290,184 @@ static void bodies_that_pass_through_each_other_are_told(void **state) {
                     0.2, "c");
 }
 
+// ---- the limits, with values of the diagnostics that no run gave
+
+static int line_of(const struct simulation *simulation, enum warning warning, char line[WARNING_BYTES]) {
+    *line = 0;
+    return warnings_line(warning, simulation->school, simulation->state, simulation->diagnostics,
+                         simulation->residual->scratch, line);
+}
+
+static void expect_line(const struct simulation *simulation, enum warning warning, const char *part) {
+    char line[WARNING_BYTES];
+    assert_int_equal(line_of(simulation, warning, line), part != NULL);
+    if (part && !strstr(line, part)) fail_msg("'%s' without '%s'", line, part);
+}
+
+static void the_limits_are_those_of_the_manual(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_DEFAULTS TIME "fish: [{force: pressure}, {start: {position: [0, 2]}, wave: {frequency: 0.5}}]\n");
+    school_run(simulation, 0.02);
+    simulate_measure(simulation);
+    struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
+    // 1 %, of a gain and of a loss
+    static const double drift[] = {0.0099, -0.0099, 0.0101, -0.0101};
+    for (int i = 0; i < 4; i++) {
+        now->drift = drift[i];
+        expect_line(simulation, WARNING_DRIFT, i < 2 ? NULL : "changes by");
+    }
+    // a tenth of a period, at a change of the speed below 10 %
+    now->separation_share = 0.099;
+    expect_line(simulation, WARNING_EDGE, NULL);
+    now->separation_share = 0.101;
+    expect_line(simulation, WARNING_EDGE, "for 10 % of the last period");
+    now->drift = 0.099;
+    expect_line(simulation, WARNING_EDGE, "for 10 % of the last period");
+    now->drift = -0.101;
+    expect_line(simulation, WARNING_EDGE, NULL);
+    now->bias_reversals = 4;
+    expect_line(simulation, WARNING_CHATTER, NULL);
+    now->bias_reversals = 5;
+    expect_line(simulation, WARNING_CHATTER, "reverses 5 times");
+    // 1 % of the largest term, after a beat of the slowest fish, of 2 s
+    struct diagnostics *const all = simulation->diagnostics;
+    all->momentum_size = 3;
+    all->momentum_balance[0] = all->momentum_balance[1] = 0.0301 / sqrt(2);
+    simulation->state->t = 2.01;
+    expect_line(simulation, WARNING_MOMENTUM, "0.03 N s for 3 N s");
+    simulation->state->t = 1.99;
+    expect_line(simulation, WARNING_MOMENTUM, NULL);
+    simulation->state->t = 2.01;
+    all->momentum_balance[0] = all->momentum_balance[1] = 0.0299 / sqrt(2);
+    expect_line(simulation, WARNING_MOMENTUM, NULL);
+    simulate_free(simulation);
+}
+
+static void the_energy_balance_is_compared_with_the_largest_work(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}]\n");
+    simulate_measure(simulation);
+    struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
+    double *const work = simulation->state->balance[0].work;
+    simulation->state->t = 1.5;
+    now->kinetic_energy = 100;
+    work[WORK_FLUID] = 1;
+    work[WORK_DRIVING] = -3;
+    now->energy_balance = -0.0299;
+    expect_line(simulation, WARNING_ENERGY, NULL);
+    now->energy_balance = -0.0301;
+    expect_line(simulation, WARNING_ENERGY, "-0.03 J for 3 J of work");
+    // rounding of the energy of a body that does no work
+    for (int i = 0; i < N_WORKS; i++) work[i] = 0;
+    now->energy_balance = 0.5e-10;
+    expect_line(simulation, WARNING_ENERGY, NULL);
+    simulate_free(simulation);
+}
+
+static void the_advice_is_enough(void **state) {
+    (void)state;
+    // 3.2/sqrt(U Dt/L) = 32: 33 points are enough, 0.9 of 32 edges are allowed, and 29 edges are the first such number
+    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{sheet_points: 29}]\n");
+    school_run(simulation, 0.02);
+    simulate_measure(simulation);
+    struct fish *const fish = &simulation->school->fish[0];
+    struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
+    now->speed = 0.999999;
+    now->drift = 0.099;
+    expect_line(simulation, WARNING_SHEET, "use 34 sheet_points");
+    now->drift = -0.101;
+    expect_line(simulation, WARNING_SHEET, NULL);
+    now->drift = 0;
+    now->speed = 1.000001;
+    expect_line(simulation, WARNING_SHEET, "use 33 sheet_points");
+    fish->n_sheet = 30;
+    expect_line(simulation, WARNING_SHEET, NULL);
+    fish->n_sheet = 29;
+    // a fish that needs more than 1000 points does not swim
+    now->speed = 1e-3;
+    expect_line(simulation, WARNING_SHEET, NULL);
+
+    // edges of half the bending length, over 1 m
+    const double length = warnings_bending_length(fish), enough = ceil(2 / length);
+    char words[64];
+    snprintf(words, sizeof words, "use at least %.0f nodes", enough + 1);
+    fish->edge_length = 1 / (enough - 1);
+    expect_line(simulation, WARNING_TAIL, words);
+    fish->edge_length = 1 / enough;
+    expect_line(simulation, WARNING_TAIL, NULL);
+
+    // 16 events in a beat of 0.16 s, of which 20 take 0.008 s each
+    fish->period = 0.16;
+    expect_line(simulation, WARNING_EVENTS, "only 16 events: reduce time.shedding_interval to 0.008 s for 20 events");
+    simulate_free(simulation);
+}
+
+static void a_mode_is_slow_below_the_frequency_of_the_beat(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}]\n");
+    simulate_measure(simulation);
+    struct fish *const fish = &simulation->school->fish[0];
+    const double slowest = bending_mode_frequency(fish, simulation->residual->scratch);
+    fish->frequency = 0.99 * slowest;
+    expect_line(simulation, WARNING_MODES, NULL);
+    fish->frequency = 1.01 * slowest;
+    expect_line(simulation, WARNING_MODES, "the slowest bending mode of fish1");
+    simulate_free(simulation);
+}
+
+static void a_small_gap_is_told_where_nothing_repels(void **state) {
+    (void)state;
+    static const char *const actions[] = {"repel", "warn"};
+    for (int warns = 0; warns < 2; warns++) {
+        char text[256];
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS TIME
+                 "contact: {action: %s}\nfish: [{name: a}, {start: {position: [0, 2]}, name: b}]\n",
+                 actions[warns]);
+        struct simulation *const simulation = school_simulation(text);
+        struct closest *const closest = simulation->state->closest;
+        closest->fish[0] = 1;
+        closest->fish[1] = 0;
+        closest->t = 0.7;
+        closest->distance = 0.99 * simulation->school->contact_range;
+        expect_line(simulation, WARNING_CONTACT, warns ? "b and a come within" : NULL);
+        closest->distance = 1.01 * simulation->school->contact_range;
+        expect_line(simulation, WARNING_CONTACT, NULL);
+        closest->distance = 0;
+        expect_line(simulation, WARNING_CONTACT,
+                    warns ? "b and a touch or cross at t = 0.7 s: later results are invalid; set contact.action: repel"
+                          : "b and a touch or cross at t = 0.7 s: later results are invalid");
+        simulate_free(simulation);
+    }
+}
+
+static void divergence_is_a_hundred_times_the_speeds_of_the_case(void **state) {
+    (void)state;
+    // a length of 2 m: a pitch of 90 degrees at 3 Hz, and the free acceleration by a load of 50 N for 8 s
+    static const char *const texts[] = {
+        "fish: [{length: 2, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all, speed: 0, pitch: 90, "
+        "frequency: 3}}]\n",
+        "fish: [{length: 2, wave: {amplitude: 0, frequency: 0}, load: {tip: [30, 40]}}]\n"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "fluid: {density: 0}\n%s", texts[i]);
+        struct simulation *const simulation = school_simulation(text);
+        simulate_measure(simulation);
+        simulation->state->t = 8;
+        const struct fish *const fish = &simulation->school->fish[0];
+        const double pi = acos(-1), beat = 2 * pi * 2 * fish_rate(simulation->school, fish);
+        const double more = i == 0 ? 6 * pi * pi / 2 * 2 : 50 * 8 / fish->total_mass;
+        double *const circulation = &simulation->state->y[fish->at.circulation];
+        // over the length
+        *circulation = -0.999 * 100 * (beat + more) * 2;
+        expect_line(simulation, WARNING_DIVERGENCE, NULL);
+        *circulation = -1.001 * 100 * (beat + more) * 2;
+        expect_line(simulation, WARNING_DIVERGENCE, "fish1 has diverged");
+        simulate_free(simulation);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_short_run_of_a_default_fish_has_none),
@@ -309,6 +488,12 @@ int main(void) {
         cmocka_unit_test(a_body_that_crosses_itself_is_told_without_a_fluid_too),
         cmocka_unit_test(separation_at_the_nose_is_told),
         cmocka_unit_test(bodies_that_pass_through_each_other_are_told),
+        cmocka_unit_test(the_limits_are_those_of_the_manual),
+        cmocka_unit_test(the_energy_balance_is_compared_with_the_largest_work),
+        cmocka_unit_test(the_advice_is_enough),
+        cmocka_unit_test(a_mode_is_slow_below_the_frequency_of_the_beat),
+        cmocka_unit_test(a_small_gap_is_told_where_nothing_repels),
+        cmocka_unit_test(divergence_is_a_hundred_times_the_speeds_of_the_case),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
