@@ -260,6 +260,34 @@ static void a_signal_stops_a_run_at_the_next_event(void **state) {
     assert_non_null(strstr(status_message(), "t = 0.1"));
 }
 
+static void a_result_with_only_the_previous_checkpoint_is_unfinished_too(void **state) {
+    const char *const text = TIME "fish: [{}]\n";
+    char *const path = checkpoints_path(*state), *const previous = path ? checkpoints_previous(path) : NULL;
+    assert_non_null(previous);
+    struct simulate_options options = {.path = *state,
+                                       .overwrite = 1,
+                                       .command = "test",
+                                       .checkpoint_at = "0.04",
+                                       .progress = stop_at_the_fifth,
+                                       .stop = &stop};
+    stop = 0;
+    run_into(text, &options, STATUS_STOPPED);
+    stop = 0;
+    options.overwrite = 0;
+    run_into(text, &options, STATUS_FILE);
+    assert_non_null(strstr(status_message(), "continue from t = 0.1 s with"));
+    assert_int_equal(truncate(path, 100), 0);
+    run_into(text, &options, STATUS_FILE);
+    assert_non_null(strstr(status_message(), "is an unfinished result of this case: continue from t = 0.04 s with"));
+    // without checkpoints it is only a file that exists
+    assert_int_equal(unlink(previous), 0);
+    run_into(text, &options, STATUS_FILE);
+    assert_null(strstr(status_message(), "unfinished"));
+    assert_non_null(strstr(status_message(), "exists"));
+    free(previous);
+    free(path);
+}
+
 // number of the KINSOL call, from 0, at which a signal arrives; -1: no signal
 static int n_until_signal = -1;
 
@@ -451,6 +479,7 @@ int main(void) {
         cmocka_unit_test(a_run_tells_its_progress_at_every_event),
         cmocka_unit_test(the_wake_is_written_at_its_own_interval_and_at_the_end),
         cmocka_unit_test(a_signal_stops_a_run_at_the_next_event),
+        cmocka_unit_test(a_result_with_only_the_previous_checkpoint_is_unfinished_too),
         cmocka_unit_test(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one),
         cmocka_unit_test(a_signal_during_the_start_leaves_nothing),
         cmocka_unit_test(a_failing_run_says_when_and_keeps_its_file),
