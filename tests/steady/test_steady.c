@@ -205,6 +205,24 @@ static void a_held_fish_is_steady_when_its_forces_repeat(void **state) {
     steady_setup_close(&setup);
 }
 
+static void two_beats_in_a_row_are_steady(void **state) {
+    (void)state;
+    // a tolerance that every beat meets
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE
+                      "fluid: {velocity: [1, 0]}\nsteady: {tolerance: 0.1}\n"
+                      "fish: [{" FISH
+                      ", wave: {amplitude: 0}, body: {modulus: 1e9},"
+                      " motion: {prescribed: all, heave: 0.001, frequency: 1, speed: 0}}]\n");
+    assert_int_equal(setup.problem.n_unknowns, 0);
+    school_ok(steady_search_run(&setup.problem));
+    print_message("%d beats\n", (int)setup.problem.map.n_beats);
+    // the ramp, two more beats, and two that are steady
+    const int ramp = (int)ceil(setup.simulation->school->fish[0].ramp / setup.problem.map.period * (1 - 1e-9));
+    assert_int_equal(setup.problem.map.n_beats, ramp + 4);
+    steady_setup_close(&setup);
+}
+
 static void mean_powers_are_the_works_of_a_beat(void **state) {
     (void)state;
     static const char *const fish[] = {
@@ -384,6 +402,7 @@ int main(void) {
         cmocka_unit_test(a_law_of_control_brings_the_heading_to_where_a_run_has_it),
         cmocka_unit_test(the_state_stays_where_its_multipliers_are_taken),
         cmocka_unit_test(a_held_fish_is_steady_when_its_forces_repeat),
+        cmocka_unit_test(two_beats_in_a_row_are_steady),
         cmocka_unit_test(mean_powers_are_the_works_of_a_beat),
         cmocka_unit_test(mean_forces_are_trapezoids_over_the_events_of_a_beat),
         cmocka_unit_test(a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without),
