@@ -97,10 +97,12 @@ static void forces_and_powers_of_all_add_up_to_nothing(void **state) {
         largest = fmax(largest, fabs(contact_power(contact, f, y)));
         memset(setup.value, 0, (size_t)setup.school->n_unknowns * sizeof *setup.value);
         contact_residual(contact, f, y, setup.value);
+        double own = 0;
         for (int k = 0; k < fish->n_nodes; k++) {
-            moment +=
-                y[fish->at.x + k] * setup.value[fish->at.ay + k] - y[fish->at.y + k] * setup.value[fish->at.ax + k];
+            own += y[fish->at.x + k] * setup.value[fish->at.ay + k] - y[fish->at.y + k] * setup.value[fish->at.ax + k];
         }
+        NEAR(on.moment, -own, 1e-12, 1e-12);
+        moment += own;
     }
     assert_true(size > 1 && largest > 0.1);
     NEAR_ARRAY(2, sum, ((double[]){0, 0}), 1e-14 * size, 0);
@@ -124,7 +126,7 @@ static void walls_push_with_the_gradient_of_the_energy(void **state) {
     int n = 0;
     for (int f = 0; f < 2; f++) {
         const struct fish *const fish = &setup.school->fish[f];
-        double sum[2] = {0, 0}, force[2];
+        double sum[2] = {0, 0}, force[2], moment = 0;
         for (int i = 0; i < 2 * fish->n_nodes; i++) {
             double *const place = &y[fish->at.x + i], here = *place;
             *place = here + h;
@@ -133,6 +135,7 @@ static void walls_push_with_the_gradient_of_the_energy(void **state) {
             const double gradient = (after - energy_of_school(&setup, y)) / (2 * h);
             *place = here;
             NEAR(setup.value[fish->at.ax + i], gradient, 1e-5, 1e-6);
+            if (i < fish->n_nodes) moment -= y[fish->at.x + i] * setup.value[fish->at.ay + i];
             sum[i / fish->n_nodes] -= setup.value[fish->at.ax + i];
             n += fabs(gradient) > 0.1;
         }
@@ -140,11 +143,58 @@ static void walls_push_with_the_gradient_of_the_energy(void **state) {
         memcpy(force, on.force, sizeof force);
         NEAR_ARRAY(2, force, sum, 1e-13, 1e-13);
         NEAR(force[0], 0, 0, 0);
+        NEAR(on.moment, moment, 1e-12, 1e-12);
         // a wall is at rest: no power
         NEAR(contact_power(contact, f, y), 0, 0, 0);
     }
     assert_true(n > 5);
     school_clear(&setup);
+}
+
+// doc/model.md, section 16: half of phi of every end of each edge above each wall
+static void the_energy_above_walls_is_that_of_all_ends(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5}\nfish: [{sheet_points: 9}]\n");
+    school_stir(&setup);
+    const struct fish *const fish = &setup.school->fish[0];
+    const double *const y = setup.state->y, r = setup.school->contact_range;
+    double want = 0;
+    for (int i = 0; i < fish->n_edges; i++) {
+        for (int end = 0; end < 2; end++) {
+            const double place = y[fish->at.y + i + end];
+            const double gap[] = {place + 0.5 - fish->thickness[i] / 2, 0.6 - place - fish->thickness[i] / 2};
+            for (int wall = 0; wall < 2; wall++) {
+                const double s = gap[wall] / r;
+                if (s < 1) want += fish->contact_strength * r * pow(1 - s, 3) / s / 2;
+            }
+        }
+    }
+    assert_true(want > 1e-3);
+    NEAR(contact_energy(setup.residual->contact, 0, y), want, 0, 1e-12);
+    school_clear(&setup);
+}
+
+static void two_bodies_with_given_motions_pass_through_each_other(void **state) {
+    (void)state;
+    static const char *const motions[] = {"all", "head"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 TIME
+                 "defaults: {fish: {sheet_points: 9, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1},"
+                 " motion: {prescribed: all}}}\nfish: [{motion: {prescribed: %s}}, {start: {position: [0, 0.2]}}]\n",
+                 motions[i]);
+        struct setup setup;
+        school_build(&setup, text);
+        double *const y = setup.state->y;
+        const struct fish *const fish = &setup.school->fish[1];
+        for (int k = 0; k < fish->n_nodes; k++) y[fish->at.y + k] -= 0.15;
+        assert_int_equal(contact_find(setup.residual->contact, setup.state, 0.1, y), i == 0 ? STATUS_OK : STATUS_RETRY);
+        const int *other;
+        if (i == 0) assert_int_equal(contact_partners(setup.residual->contact, 0, &other), 0);
+        school_clear(&setup);
+    }
 }
 
 static void who_is_beyond_a_wall_asks_for_a_smaller_step(void **state) {
@@ -603,6 +653,8 @@ int main(void) {
         cmocka_unit_test(forces_are_the_gradient_of_the_energy),
         cmocka_unit_test(forces_and_powers_of_all_add_up_to_nothing),
         cmocka_unit_test(walls_push_with_the_gradient_of_the_energy),
+        cmocka_unit_test(the_energy_above_walls_is_that_of_all_ends),
+        cmocka_unit_test(two_bodies_with_given_motions_pass_through_each_other),
         cmocka_unit_test(who_is_beyond_a_wall_asks_for_a_smaller_step),
         cmocka_unit_test(walls_throw_bodies_back),
         cmocka_unit_test(what_crosses_on_its_way_asks_for_a_smaller_step),
