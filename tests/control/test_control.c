@@ -388,6 +388,100 @@ static void it_can_begin_with_a_value_and_a_rate(void **state) {
     NEAR(lead_value(&lead, 2.5), 1, 0, 0);
 }
 
+// ---- values set from outside
+
+static void values_that_are_set_are_reached_after_the_ramp(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{wave: {amplitude: 0.8, frequency: 1.5}, control: {bias: 0.2, ramp: 0.5}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    struct control_memory *const memory = &setup.state->control[0];
+    control_set_amplitude(fish, memory, 3, 0.6);
+    control_set_frequency(fish, memory, 3, 2);
+    control_set_bias(fish, memory, 3, -0.1);
+    const struct fish_gait before = control_gait(fish, memory, 3), half = control_gait(fish, memory, 3.25),
+                           after = control_gait(fish, memory, 3.5), later = control_gait(fish, memory, 3.7);
+    // parts of wave.amplitude
+    NEAR(before.amplitude, 1, 1e-14, 0);
+    NEAR(half.amplitude, 0.875, 1e-14, 0);
+    NEAR(after.amplitude, 0.75, 1e-14, 0);
+    NEAR(before.omega, 3 * pi, 1e-13, 0);
+    NEAR(half.omega, 3.5 * pi, 1e-13, 0);
+    NEAR(after.omega, 4 * pi, 1e-13, 0);
+    // the phase: half of the change of the frequency during the ramp
+    NEAR(after.angle - before.angle, 3.5 * pi * 0.5, 1e-12, 0);
+    NEAR(later.angle - after.angle, 4 * pi * 0.2, 1e-12, 0);
+    setup.state->y[fish->at.phi0] = 0;
+    control_residual(fish, memory, 3.25, 0, setup.state->y, setup.value);
+    NEAR(setup.value[fish->at.phi0], -0.05, 1e-14, 0);
+    control_residual(fish, memory, 3.5, 0, setup.state->y, setup.value);
+    NEAR(setup.value[fish->at.phi0], 0.1, 1e-14, 0);
+    NEAR(control_largest_bias(fish, memory), 0.1, 1e-15, 0);
+    school_clear(&setup);
+}
+
+static void rates_of_a_gait_that_changes_are_those_of_its_values(void **state) {
+    (void)state;
+    // during the ramp of the start, too
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{wave: {amplitude: 0.8, ramp: 6}, control: {ramp: 0.5}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    struct control_memory *const memory = &setup.state->control[0];
+    control_set_amplitude(fish, memory, 3, 0.4);
+    control_set_frequency(fish, memory, 3, 2);
+    const double h = 1e-5;
+    const struct fish_gait left = control_gait(fish, memory, 3.2 - h), right = control_gait(fish, memory, 3.2 + h),
+                           gait = control_gait(fish, memory, 3.2);
+    assert_true(gait.amplitude < 0.7 && gait.amplitude_rate < -0.1);
+    NEAR(gait.amplitude_rate, (right.amplitude - left.amplitude) / (2 * h), 1e-7, 0);
+    NEAR(gait.omega, (right.angle - left.angle) / (2 * h), 1e-7, 0);
+    school_clear(&setup);
+}
+
+static void a_heading_that_is_set_is_reached_the_short_way(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{control: {law: heading, ramp: 0.5, limit: 0.3, "
+                 "desired_heading: [[0, 100], [10, 200]]}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    struct control_memory *const memory = &setup.state->control[0];
+    const double *const y = setup.state->y, degree = pi / 180;
+    // 120 degrees at 2 s, 10 degrees per second
+    control_set_heading(fish, memory, 2, -80 * degree);
+    NEAR(control_desired_heading(fish, memory, 2, y), 120 * degree, 1e-13, 0);
+    NEAR((control_desired_heading(fish, memory, 2 + 1e-6, y) - 120 * degree) / 1e-6, 10 * degree, 1e-4, 0);
+    NEAR(control_desired_heading(fish, memory, 2.5, y), 280 * degree, 1e-13, 0);
+    // from there to 30 degrees, over 360
+    control_set_heading(fish, memory, 3, 30 * degree);
+    NEAR(control_desired_heading(fish, memory, 3.25, y), 335 * degree, 1e-13, 0);
+    NEAR(control_desired_heading(fish, memory, 4, y), 390 * degree, 1e-13, 0);
+    NEAR(control_largest_bias(fish, memory), 0.3, 0, 0);
+    school_clear(&setup);
+}
+
+static void waypoints_that_are_set_begin_where_the_fish_is(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup,
+                 TIME "fish: [{control: {law: heading, waypoints: [[-2, 0], [-3, 0]], acceptance_radius: 0.4}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    struct control_memory *const memory = &setup.state->control[0];
+    double *const y = setup.state->y;
+    memory->waypoint = 2;
+    y[fish->at.x] = 1;
+    y[fish->at.y] = -2;
+    control_set_waypoints(fish, memory, 1, (const double[]){5, 1}, y);
+    assert_int_equal(control_n_waypoints(fish, memory), 1);
+    NEAR(control_desired_heading(fish, memory, 0, y), atan2(3, 4), 1e-14, 0);
+    y[fish->at.x] = 5.1;
+    y[fish->at.y] = 0.7;
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.1, .interval = 0.02}, y), 1);
+    // the course of the leg from the place of the fish at that time
+    NEAR(control_desired_heading(fish, memory, 0, y), atan2(3, 4), 1e-14, 0);
+    school_clear(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(heading_points_from_a_third_of_the_length_to_the_nose),
@@ -410,6 +504,10 @@ int main(void) {
         cmocka_unit_test(the_same_target_again_changes_nothing),
         cmocka_unit_test(changes_at_every_event_do_not_run_away),
         cmocka_unit_test(it_can_begin_with_a_value_and_a_rate),
+        cmocka_unit_test(values_that_are_set_are_reached_after_the_ramp),
+        cmocka_unit_test(rates_of_a_gait_that_changes_are_those_of_its_values),
+        cmocka_unit_test(a_heading_that_is_set_is_reached_the_short_way),
+        cmocka_unit_test(waypoints_that_are_set_begin_where_the_fish_is),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
