@@ -607,6 +607,36 @@ static void polarisation_and_least_distance_are_those_of_the_school(void **state
     simulate_free(simulation);
 }
 
+static void powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass(void **state) {
+    (void)state;
+    static const char *const forces[] = {"reactive", "pressure"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS
+                 "time: {end: 1, shedding_interval: 0.02}\nfluid: {velocity: [0.5, 0.2], shear: 0.3}\n"
+                 "fish: [{force: %s, load: {tip: [3, 4]}, start: {position: [0, 2], speed: 1}}]\n",
+                 forces[i]);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 0.1);
+        simulate_measure(simulation);
+        const struct fish *const fish = simulation->school->fish;
+        const double *const y = simulation->state->y;
+        const struct diagnostics_power power = diagnostics_power(simulation->residual, 0, simulation->state->t, y);
+        const double stream[] = {0.5 + 0.3 * fish_mass_mean(fish, y + fish->at.y), 0.2};
+        const int tail = fish->n_nodes - 1;
+        NEAR(power.driving, 3 * y[fish->at.vx + tail] + 4 * y[fish->at.vy + tail], 1e-12, 1e-12);
+        NEAR(power.driving_on_water, power.driving - 3 * stream[0] - 4 * stream[1], 1e-12, 1e-12);
+        const struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
+        double force[2];
+        diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, force);
+        assert_true(fabs(force[0]) > 0.1 && fabs(force[1]) > 0.1);
+        const double all = power.drag + power.added_mass + power.wake + power.pressure + power.suction;
+        NEAR(power.on_water, all - force[0] * stream[0] - force[1] * stream[1], 1e-9, 1e-9);
+        simulate_free(simulation);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(energy_audit_closes_within_ten_times_the_tolerance),
@@ -634,6 +664,7 @@ int main(void) {
         cmocka_unit_test(heading_is_unwrapped),
         cmocka_unit_test(the_desired_heading_is_unwrapped_next_to_the_heading),
         cmocka_unit_test(polarisation_and_least_distance_are_those_of_the_school),
+        cmocka_unit_test(powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
