@@ -185,6 +185,8 @@ const struct result_variable result_table[] = {
      .long_name = "direction of the way through the water over the last period, less the desired heading"},
     {"phi0",                  {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(phi0),
      .long_name = "steering bias of the gait: positive turns right"},
+    {"bias_reversals",        {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(bias_reversals),
+     .long_name = "reversals of the steering bias of a control law in the last period"},
     {"wave_amplitude",        {TIME, FISH},           RESULT_REAL,    "rad",    IN_FISH_DIAGNOSTICS(wave_amplitude),
      .long_name = "amplitude of the wave now: ramped, and as set from outside"},
     {"wave_frequency",        {TIME, FISH},           RESULT_REAL,    "Hz",     IN_FISH_DIAGNOSTICS(wave_frequency),

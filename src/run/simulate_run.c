@@ -347,10 +347,10 @@ enum status simulate_resume(const char *checkpoint, const struct simulate_change
     enum status status = resume_open(&resume, checkpoint);
     if (status != STATUS_OK) goto close;
 
-    // notes for the user
+    // tell the user of a damaged checkpoint and of another processor
     char here[VERSION_LENGTH], line[4 * VERSION_LENGTH];
     version_processor(here);
-    if (options->note && resume.note) options->note(resume.note, options->data);
+    if (options->warn && resume.note) options->warn(resume.note, options->data);
     if (options->note && strcmp(here, resume.checkpoint.processor) != 0) {
         snprintf(line, sizeof line,
                  "this processor, %s, differs from the processor of the checkpoint, %s: last bits may differ", here,

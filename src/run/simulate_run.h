@@ -28,9 +28,10 @@ struct simulate_options {
      * NULL */
     enum status (*begin)(const struct case_values *values, const char *path, void *data);
     void (*progress)(const struct simulate_progress *progress, void *data); /* may be NULL */
-    /* called with each warning about the result before the run returns; may be NULL */
+    /* called with each warning: about the result before the run returns, about a damaged checkpoint at the start; may
+     * be NULL */
     void (*warn)(const char *line, void *data);
-    /* called with each note for the user, such as a damaged checkpoint that is not used; may be NULL */
+    /* called with each note for the user, such as another processor at the checkpoint; may be NULL */
     void (*note)(const char *line, void *data);
     void *data;
     /* the run stops with a checkpoint when *stop is not 0; SIGALRM: --max-wall has elapsed; may be NULL */

@@ -41,7 +41,7 @@ struct diagnostics_fish {
     double resistive_moment, friction_moment, reactive_moment, constraint_moment;
     struct pressure_forces pressure; /* force: pressure, else 0 */
     double leading_edge_most;        /* largest magnitude of A_0 over the last period; NaN unless force: pressure */
-    int bias_reversals;              /* of the steering bias of a control law, in the last period */
+    double bias_reversals;           /* reversals of the steering bias of a control law in the last period */
     double separation_share;         /* fraction of the last period with A_0 above the suction limit */
     double thrust;                   /* force of the fluid along the heading; prescribed motion: along the travel, N */
     double mean_thrust;              /* mean force of the fluid along the path, N, last period: 0 in steady swimming */

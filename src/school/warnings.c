@@ -216,12 +216,12 @@ static double chatter_size(const struct subject *subject) {
 }
 
 static void chatter_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    snprintf(
-        line, WARNING_BYTES,
-        "the steering bias of %s reverses %d times in a period, faster than the beat: reduce control.damping (%.3g) or "
-        "control.gain (%.3g)",
-        who, subject->diagnostics->fish[subject->f].bias_reversals, subject->fish->control.damping,
-        subject->fish->control.gain);
+    snprintf(line, WARNING_BYTES,
+             "the steering bias of %s reverses %.0f times in a period, faster than the beat: reduce control.damping "
+             "(%.3g) or "
+             "control.gain (%.3g)",
+             who, subject->diagnostics->fish[subject->f].bias_reversals, subject->fish->control.damping,
+             subject->fish->control.gain);
 }
 
 // ---- the tail
