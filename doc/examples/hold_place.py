@@ -26,7 +26,7 @@ CASE = {
     "solver": {"rtol": 1e-4},
     "defaults": {"fish": FISH},
     "fish": [
-        {"name": "leader", "control": {"law": "course", "desired_heading": 180}},
+        {"name": "leader", "control": {"law": "course", "desired_heading": 180, "gain": 2}},
         {"name": "follower", "start": {"position": [1.8, 0.6]}},
     ],
 }
