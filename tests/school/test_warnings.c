@@ -196,7 +196,7 @@ static void a_run_that_diverges_in_its_first_beat_says_so(void **state) {
     expect_of(simulation, "i");
     y[at->circulation] = kept[0];
     // the circulation shed is small again, but the wake contains a large circulation
-    simulation->state->wake[1].circulation[2] = 3e5;
+    simulation->state->wake[1].circulation[2] = -3e5;
     expect_of(simulation, "i");
     simulation->state->wake[1].circulation[2] = 0;
     expect_of(simulation, "");
@@ -360,7 +360,14 @@ static void the_energy_balance_is_compared_with_the_largest_work(void **state) {
     expect_line(simulation, WARNING_ENERGY, "-0.03 J for 3 J of work");
     // rounding of the energy of a body that does no work
     for (int i = 0; i < N_WORKS; i++) work[i] = 0;
+    work[WORK_FLUID] = 1e-9;
     now->energy_balance = 0.5e-10;
+    expect_line(simulation, WARNING_ENERGY, NULL);
+    now->energy_balance = 1.5e-10;
+    expect_line(simulation, WARNING_ENERGY, "energy balance of fish1");
+    work[WORK_FLUID] = 0;
+    // no part of nothing
+    now->energy_balance = 1;
     expect_line(simulation, WARNING_ENERGY, NULL);
     simulate_free(simulation);
 }
