@@ -231,7 +231,7 @@ static void rate_is_that_of_the_bias_of_a_moving_fish(void **state) {
     (void)state;
     const char *const texts[] = {
         TIME "fish: [{control: {bias: 0.2}}]\n",
-        TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150}}]\n",
+        TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150, feedforward: 2}}]\n",
         TIME "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n",
         TIME "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n",
         TIME "fish: [{control: {law: averaged_heading}}]\n",
@@ -257,6 +257,38 @@ static void rate_is_that_of_the_bias_of_a_moving_fish(void **state) {
         NEAR(rate, (phi0[1] - phi0[0]) / (2 * h), 1e-8, 1e-8);
         school_clear(&setup);
     }
+}
+
+static void the_rate_of_a_table_is_that_of_what_follows(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{start: {heading: 150}, control: {law: heading, "
+                 "desired_heading: [[1, 150], [2, 160], [4, 150]]}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    const double times[] = {0.9, 1, 1.9, 2, 3.9, 4, 5}, degrees[] = {0, 10, 10, -5, -5, 0, 0};
+    for (int i = 0; i < 7; i++) {
+        const double *const y = setup.state->y;
+        const double error = pi * 150 / 180 - control_desired_heading(fish, &setup.state->control[0], times[i], y);
+        const double tangent = tanh(fish->control.gain * error);
+        NEAR(control_rate(fish, &setup.state->control[0], times[i], 0, y),
+             -fish->control.limit * (1 - tangent * tangent) * fish->control.gain * degrees[i] * pi / 180, 1e-13, 0);
+    }
+    school_clear(&setup);
+}
+
+static void a_law_falls_as_fast_as_it_rises(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 2, limit: 0.5}}]\n");
+    struct control_memory *const memory = &setup.state->control[0];
+    for (int side = -1; side <= 1; side += 2) {
+        memory->phi0 = 0;
+        const struct control_view view = {.t = 0, .interval = 0.02, .mean_heading = pi / 2 + side};
+        control_event(setup.school->fish, memory, &view, setup.state->y);
+        NEAR(memory->phi0_rate, 2 * side, 0, 0);
+    }
+    school_clear(&setup);
 }
 
 static void value_of_control(struct setup *setup, const double *y, const double *yp, double *value) {
@@ -508,6 +540,8 @@ int main(void) {
         cmocka_unit_test(rates_of_a_gait_that_changes_are_those_of_its_values),
         cmocka_unit_test(a_heading_that_is_set_is_reached_the_short_way),
         cmocka_unit_test(waypoints_that_are_set_begin_where_the_fish_is),
+        cmocka_unit_test(the_rate_of_a_table_is_that_of_what_follows),
+        cmocka_unit_test(a_law_falls_as_fast_as_it_rises),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
