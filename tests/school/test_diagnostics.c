@@ -637,6 +637,32 @@ static void powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass(v
     }
 }
 
+static void balances_that_begin_again_are_closed(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_DEFAULTS
+                          "time: {end: 1, shedding_interval: 0.02}\ndefaults: {fish: {force: pressure}}\n"
+                          "fish: [{}, {start: {position: [0, 2]}}]\n");
+    school_run(simulation, 0.1);
+    struct state *const now = simulation->state;
+    double work[2];
+    now->crossed = 1;
+    for (int f = 0; f < 2; f++) {
+        work[f] = now->balance[f].work[WORK_ALL] += 3 + f;
+        now->balance[f].initial_energy += 1;
+    }
+    diagnostics_restart(simulation->residual, now);
+    simulate_measure(simulation);
+    for (int f = 0; f < 2; f++) {
+        // the works go on
+        NEAR(now->balance[f].work[WORK_ALL], work[f], 0, 0);
+        NEAR(simulation->diagnostics->fish[f].energy_balance, 0, 1e-12, 0);
+    }
+    NEAR(simulation->diagnostics->momentum_balance[0], 0, 1e-12, 0);
+    assert_int_equal(now->crossed, -1);
+    simulate_free(simulation);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(energy_audit_closes_within_ten_times_the_tolerance),
@@ -665,6 +691,7 @@ int main(void) {
         cmocka_unit_test(the_desired_heading_is_unwrapped_next_to_the_heading),
         cmocka_unit_test(polarisation_and_least_distance_are_those_of_the_school),
         cmocka_unit_test(powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass),
+        cmocka_unit_test(balances_that_begin_again_are_closed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
