@@ -1,4 +1,6 @@
 /* test_wake.c: queue of free vortices. doc/model.md, sections 7 and 8. */
+#include <string.h>
+
 #include "base/mathematics.h"
 #include "school.h"
 #include "wake/wake.h"
@@ -197,6 +199,106 @@ static void what_was_shed_long_ago_changes_no_vortex(void **state) {
     }
 }
 
+// a queue of n markers with the labels i^2
+static struct wake *queue(const struct setup *setup, int n) {
+    struct wake *const wake = &setup->state->wake[0];
+    wake->has_markers = 1;
+    wake->n_vortex = 0;
+    for (int i = 0; i < n; i++) school_ok(wake_release(wake, i, -i, i * i, 0.02 * i));
+    return wake;
+}
+
+static void a_vortex_from_outside_is_a_stretch_between_two_without_circulation(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {shedding: sheet, taper: 0.1, spare_vortices: 3}\nfish: [{}]\n");
+    struct wake *const wake = queue(&setup, 10);
+    wake->removed = 0.5;
+    const unsigned long version = wake->version;
+    school_ok(wake_add_vortex(wake, setup.school, 0.2, 7, 8, 100));
+    assert_int_equal(wake->n_vortex, 13);
+    assert_true(wake->version > version);
+    // behind the five newest stretches: four stretches before, then nothing, the vortex, nothing
+    const double circulation[] = {1, 3, 5, 7, 0, 100, 0, 9, 11, 13, 15, 17};
+    const double x[] = {0, 1, 2, 3, 4, 7, 7, 4, 5, 6, 7, 8, 9}, y[] = {0, -1, -2, -3, -4, 8, 8, -4, -5, -6, -7, -8, -9};
+    assert_int_equal(wake_n_sources(wake), 12);
+    for (int i = 0; i < 12; i++) NEAR(wake_source(wake, i), circulation[i], 1e-13, 0);
+    NEAR_ARRAY(13, wake->x, x, 0, 0);
+    NEAR_ARRAY(13, wake->y, y, 0, 0);
+    // the newest label is what was shed; the opposite circulation is at infinite distance
+    NEAR(wake->circulation[12], 81, 0, 0);
+    NEAR(wake->circulation[0], -100, 0, 0);
+    NEAR(wake->removed, -99.5, 0, 0);
+    for (int i = 4; i <= 7; i++) NEAR(wake->birth[i], 0.08, 1e-15, 0);
+
+    // no room for another one: nothing changes
+    assert_int_equal(wake_add_vortex(wake, setup.school, 0.2, 7, 8, 1), STATUS_CASE);
+    assert_non_null(strstr(status_message(), "wake.spare_vortices: 3, of which 3 are used; 3 more are required"));
+    assert_int_equal(wake->n_vortex, 13);
+    NEAR(wake->removed, -99.5, 0, 0);
+    school_clear(&setup);
+}
+
+static void a_vortex_from_outside_among_vortices_is_the_newest(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {spare_vortices: 1}\nfish: [{}]\n");
+    struct wake *const wake = &setup.state->wake[0];
+    for (int i = 0; i < 3; i++) school_ok(wake_release(wake, i, -i, 1, 0.02 * i));
+    school_ok(wake_add_vortex(wake, setup.school, 0.2, 7, 8, 100));
+    assert_int_equal(wake->n_vortex, 4);
+    const double got[] = {wake->x[3], wake->y[3], wake->circulation[3], wake->birth[3], wake->removed};
+    NEAR_ARRAY(5, got, ((double[]){7, 8, 100, 0.2, -100}), 0, 0);
+    assert_int_equal(wake_add_vortex(wake, setup.school, 0.2, 7, 8, 1), STATUS_CASE);
+    school_clear(&setup);
+}
+
+static void a_queue_goes_on_at_a_tail_that_was_moved(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {shedding: sheet, taper: 0.1, spare_vortices: 1}\nfish: [{}]\n");
+    struct wake *const wake = queue(&setup, 4);
+    // the tail is at the newest marker: no break
+    school_ok(wake_break(wake, setup.school, 0.1, (const double[]){3, -3}));
+    assert_int_equal(wake->n_vortex, 4);
+    school_ok(wake_break(wake, setup.school, 0.1, (const double[]){3, 5}));
+    assert_int_equal(wake->n_vortex, 5);
+    const double got[] = {wake->x[4], wake->y[4], wake_source(wake, 3), wake->circulation[4], wake->birth[4]};
+    NEAR_ARRAY(5, got, ((double[]){3, 5, 0, 9, 0.1}), 0, 0);
+    assert_int_equal(wake_break(wake, setup.school, 0.1, (const double[]){4, 5}), STATUS_CASE);
+    school_clear(&setup);
+}
+
+static void markers_at_one_place_move_together(void **state) {
+    (void)state;
+    struct wake wake;
+    school_ok(wake_create(&wake, 4));
+    wake.has_markers = 1;
+    const double x[] = {0, 1, 1, 2}, label[] = {0, 0, 5, 5}, u[] = {1, 2, 3, 4}, v[] = {5, 6, 7, 8};
+    for (int i = 0; i < 4; i++) school_ok(wake_release(&wake, x[i], 0, label[i], i));
+    wake_set_velocity(&wake, u, v, NULL, 4);
+    NEAR_ARRAY(4, wake.u, ((double[]){1, 2, 2, 4}), 0, 0);
+    NEAR_ARRAY(4, wake.v, ((double[]){5, 6, 6, 8}), 0, 0);
+    NEAR_ARRAY(4, wake.u_before, ((double[]){1, 2, 2, 4}), 0, 0);
+    wake_free(&wake);
+}
+
+static void the_oldest_label_is_what_was_removed(void **state) {
+    (void)state;
+    struct wake wake;
+    school_ok(wake_create(&wake, 2));
+    wake.has_markers = 1;
+    wake.removed = 3;
+    const double zero[] = {0, 0}, rate[] = {4, 6};
+    for (int i = 0; i < 2; i++) school_ok(wake_release(&wake, i, 0, 3 + i, i));
+    wake_set_velocity(&wake, zero, zero, rate, 2);
+    wake_advance(&wake, 0.5);
+    NEAR(wake.circulation[0], 5, 1e-15, 0);
+    NEAR(wake.circulation[1], 7, 1e-15, 0);
+    NEAR(wake.removed, 5, 1e-15, 0);
+    wake_free(&wake);
+}
+
 static void most_is_enough_and_not_too_much(void **state) {
     (void)state;
     struct setup setup;
@@ -229,6 +331,11 @@ int main(void) {
         cmocka_unit_test(what_was_shed_long_ago_changes_no_vortex),
         cmocka_unit_test(most_is_enough_and_not_too_much),
         cmocka_unit_test(nascent_vortex_is_the_centroid_of_what_was_shed),
+        cmocka_unit_test(a_vortex_from_outside_is_a_stretch_between_two_without_circulation),
+        cmocka_unit_test(a_vortex_from_outside_among_vortices_is_the_newest),
+        cmocka_unit_test(a_queue_goes_on_at_a_tail_that_was_moved),
+        cmocka_unit_test(markers_at_one_place_move_together),
+        cmocka_unit_test(the_oldest_label_is_what_was_removed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
