@@ -36,6 +36,94 @@ static void info_sums_up(void **state) {
     assert_null(strstr(text, "nan"));
 }
 
+/* The summary of a steady state, on a page of its own. */
+static const char *steady_summary(struct fixture *f, const struct steady_values *values) {
+    struct result_file *file;
+    enum status status;
+    unlink(f->path);
+    assert_int_equal(result_file_create_steady(&file, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10), STATUS_OK);
+    assert_int_equal(append(f, file, 0, 0), STATUS_OK);
+    result_file_steady(file, f->school, values);
+    assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);
+    assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
+    const char *const text = info(f->path, 0, &status);
+    assert_int_equal(status, STATUS_OK);
+    return text;
+}
+
+static void has_lines(const char *text, int n, const char *const *lines) {
+    for (int i = 0; i < n; i++)
+        if (strstr(text, lines[i]) == NULL) fail_msg("\"%s\" is not in\n%s", lines[i], text);
+}
+
+static void info_shows_the_multipliers_of_a_steady_state_and_a_table(void **state) {
+    struct fixture *f = *state;
+    struct steady_fish fish[N_FISH] = {{.speed = 0.5, .place = {0, 0}, .force = {4, 5}, .lift = NAN, .drag = NAN},
+                                       {.speed = 0.25, .place = {-3, 2}, .force = {7, 8}, .lift = NAN, .drag = 6}};
+    double real[] = {0.6, 0.6, 0.4}, imaginary[] = {0.6, -0.6, 0};
+    struct steady_values values = {.n_beats = 12,
+                                   .n_multiplier_beats = 30,
+                                   .residual = 2e-6,
+                                   .error = 3e-5,
+                                   .stiffness = NAN,
+                                   .n_multipliers = 3,
+                                   .real = real,
+                                   .imaginary = imaginary,
+                                   .fish = fish};
+    static const char *const lines[] = {
+        "  steady state after 12 beats: change from beat to beat 2.0e-06, about 3.0e-05 from the fixed point\n"
+        "  multipliers in 30 more beats: 0.6000 +- 0.6000 i, 0.4000: stable\n",
+        "  speed                        0.50000       0.25000  m s-1\n",
+        "  place, ahead                 0.00000      -3.00000  m\n"
+        "  place, aside                 0.00000       2.00000  m\n"
+        "  force of the fluid, x              4             7  N\n"
+        "  force of the fluid, y              5             8  N\n",
+        "  drag                               -             6  N\n"};
+    const char *text = steady_summary(f, &values);
+    has_lines(text, 4, lines);
+    assert_null(strstr(text, "lift"));
+    // by the absolute value
+    real[0] = real[1] = 0.81;
+    values.error = NAN;
+    static const char *const unstable[] = {"from beat to beat 2.0e-06\n", ": 0.8100 +- 0.6000 i, 0.4000: unstable\n"};
+    has_lines(steady_summary(f, &values), 2, unstable);
+}
+
+static void info_says_how_bodies_without_a_beat_lose_their_stability(void **state) {
+    struct fixture *f = *state;
+    const double two_pi = 6.283185307179586;
+    static const struct {
+        double stiffness, rate[2], turns[2]; /* turns: Hz */
+        const char *line[2];
+    } of[] = {
+        {0.5,
+         {-0.25, -2},
+         {3, 0},
+         {"over that at rest: 0.5000: does not diverge\n",
+          "  growth of disturbances: -0.2500 s-1 at 3 Hz, -2.0000 s-1 at 0 Hz: stable\n"}},
+        {0.5,
+         {0.25, -2},
+         {3, 0},
+         {"does not diverge\n", "+0.2500 s-1 at 3 Hz, -2.0000 s-1 at 0 Hz: unstable: flutters\n"}},
+        {-0.5,
+         {0.25, -2},
+         {0, 3},
+         {"-0.5000: diverges\n", "+0.2500 s-1 at 0 Hz, -2.0000 s-1 at 3 Hz: unstable: diverges\n"}},
+        // rounding
+        {0.5, {9e-6, -2}, {3, 0}, {"does not diverge\n", ": +0.0000 s-1 at 3 Hz, -2.0000 s-1 at 0 Hz: stable\n"}}};
+    for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
+        struct steady_fish fish[N_FISH] = {{.speed = 1}, {.speed = 1}};
+        double rate[] = {of[i].rate[0], of[i].rate[1]}, omega[] = {two_pi * of[i].turns[0], two_pi * of[i].turns[1]};
+        const struct steady_values values = {.stiffness = of[i].stiffness,
+                                             .residual = 1e-9,
+                                             .n_exponents = 2,
+                                             .rate = rate,
+                                             .omega = omega,
+                                             .fish = fish};
+        has_lines(steady_summary(f, &values), 2, of[i].line);
+    }
+}
+
 static void info_of_a_file_without_rows_says_so(void **state) {
     struct fixture *f = *state;
     write_file(f, 0);
@@ -179,6 +267,8 @@ static void version_names_every_library(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         WITH_FILE(info_sums_up),
+        WITH_FILE(info_shows_the_multipliers_of_a_steady_state_and_a_table),
+        WITH_FILE(info_says_how_bodies_without_a_beat_lose_their_stability),
         WITH_FILE(info_of_a_file_without_rows_says_so),
         WITH_FILE(info_prints_the_case_exactly),
         WITH_FILE(info_refuses_other_files),
