@@ -256,13 +256,15 @@ static void mean_powers_are_the_works_of_a_beat(void **state) {
 // the thrust at the events of a beat
 struct thrusts {
     const struct simulation *simulation;
-    double value[21];
+    double value[21], power[21];
     int n;
 };
 
 static enum status note_thrust(void *data) {
     struct thrusts *const thrusts = data;
-    thrusts->value[thrusts->n++] = thrusts->simulation->diagnostics->fish[0].thrust;
+    const struct diagnostics_fish *const now = &thrusts->simulation->diagnostics->fish[0];
+    thrusts->power[thrusts->n] = now->actuation_power + now->constraint_power;
+    thrusts->value[thrusts->n++] = now->thrust;
     return STATUS_OK;
 }
 
@@ -278,15 +280,18 @@ static void mean_forces_are_trapezoids_over_the_events_of_a_beat(void **state) {
     note_thrust(&thrusts);
     school_ok(steady_map_beat(&setup.problem.map, note_thrust, &thrusts));
     assert_int_equal(thrusts.n, 21);
-    double mean = 0, square = 0;
+    double mean = 0, square = 0, square_of_power = 0;
     for (int i = 0; i < 21; i++) {
         const double share = (i == 0 || i == 20 ? 0.5 : 1) / 20;
         mean += share * thrusts.value[i];
         square += share * thrusts.value[i] * thrusts.value[i];
+        square_of_power += share * thrusts.power[i] * thrusts.power[i];
     }
     const struct steady_beat *const beat = &setup.problem.map.last[0];
     NEAR(beat->thrust, mean, 1e-12 * beat->rms_thrust, 0);
     NEAR(beat->rms_thrust, sqrt(square), 0, 1e-12);
+    NEAR(beat->rms_power, sqrt(square_of_power), 0, 1e-12);
+    assert_true(beat->rms_power > 1e-3);
     assert_true(fabs(thrusts.value[0]) > 1e-6 && fabs(thrusts.value[20]) > 1e-6);
     steady_setup_close(&setup);
 }
@@ -302,6 +307,81 @@ static void a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without(void **s
         NEAR(steady_map_residual(&setup.problem.map), 0.2 / (2 * acos(-1)) / (has_bias ? 1 : 10), 0, 1e-12);
         steady_setup_close(&setup);
     }
+}
+
+static void of_a_held_fish_thrust_and_power_must_repeat(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE
+                      "fluid: {velocity: [1, 0]}\nfish: [{" FISH
+                      ", length: 2, wave: {amplitude: 0}, motion: {prescribed: all, heave: 0.1, frequency: 1, speed: "
+                      "0}}]\n");
+    struct steady_map *const map = &setup.problem.map;
+    const struct steady_beat before = {.thrust = 3, .rms_thrust = 7, .actuation = 5, .driving = 6, .rms_power = 70};
+    const struct {
+        double thrust, actuation, driving, speed, residual;
+    } changes[] = {{0.5, 0, 0, 0, 0.05}, {-0.5, 0, 0, 0, 0.05}, {0, 3, 0, 0, 0.15},
+                   {0, 0, -3, 0, 0.15},  {0, 3, -3, 0, 0},      {0, 0, 0, 0.4, 0.2}};
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+        map->before[0] = before;
+        map->last[0] = (struct steady_beat){.thrust = 3 + changes[i].thrust,
+                                            .rms_thrust = 10,
+                                            .actuation = 5 + changes[i].actuation,
+                                            .driving = 6 + changes[i].driving,
+                                            .rms_power = 20,
+                                            .speed = changes[i].speed};
+        // speeds in lengths per beat of 1 s
+        NEAR(steady_map_residual(map), changes[i].residual, 1e-14, 0);
+    }
+    steady_setup_close(&setup);
+}
+
+static void headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is_steered(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        COARSE "defaults: {fish: {" FISH
+               "}}\n"
+               "fish: [{start: {heading: 20}}, {start: {position: [0, 3], heading: 50}, control: {law: heading, "
+               "desired_heading: 15}}, {start: {position: [0, 6], heading: -170}, control: {law: heading, "
+               "desired_heading: 100}}]\n");
+    struct steady_map map;
+    school_ok(steady_map_create(&map, simulation));
+    assert_int_equal(map.steered, 1);
+    const struct steady_unknown unknown[] = {{0, STEADY_HEADING}, {1, STEADY_HEADING}, {2, STEADY_HEADING}};
+    double heading[3], from[3];
+    for (int f = 0; f < 3; f++) from[f] = rigid_of(&simulation->school->fish[f], simulation->state->y).heading;
+    steady_map_read(&map, 3, unknown, heading);
+    const double turn = 2 * acos(-1);
+    NEAR(heading[0], remainder(from[0] - 15 * turn / 360, turn), 1e-12, 0);
+    NEAR(heading[1], remainder(from[1] - from[0], turn), 1e-12, 0);
+    NEAR(heading[2], remainder(from[2] - from[0], turn), 1e-12, 0);
+    assert_true(fabs(heading[0]) > 0.05);
+    steady_map_free(&map);
+    simulate_free(simulation);
+}
+
+static void a_formation_turns_with_its_first_fish(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        COARSE "defaults: {fish: {" FISH "}}\nfish: [{}, {start: {position: [1, 2], heading: 150}}]\n");
+    struct steady_map map;
+    school_ok(steady_map_create(&map, simulation));
+    const struct steady_unknown turned = {0, STEADY_HEADING},
+                                seen[] = {{1, STEADY_HEADING}, {1, STEADY_AHEAD}, {1, STEADY_ASIDE}};
+    double before[3], after[3];
+    const double heading = rigid_of(&simulation->school->fish[0], simulation->state->y).heading;
+    steady_map_read(&map, 3, seen, before);
+    school_ok(steady_map_add(&map, 1, &turned, (const double[]){0.7}));
+    steady_map_read(&map, 3, seen, after);
+    NEAR_ARRAY(3, after, before, 1e-10, 0);
+    const double now = rigid_of(&simulation->school->fish[0], simulation->state->y).heading;
+    NEAR(remainder(now - heading, 2 * acos(-1)), 0.7, 1e-10, 0);
+    // and a place is changed along the heading of the first fish
+    school_ok(steady_map_add(&map, 2, seen + 1, (const double[]){0.3, -0.2}));
+    steady_map_read(&map, 3, seen, after);
+    NEAR_ARRAY(3, after, ((double[]){before[0], before[1] + 0.3, before[2] - 0.2}), 1e-10, 0);
+    steady_map_free(&map);
+    simulate_free(simulation);
 }
 
 static void speed_and_slip_are_those_through_the_water(void **state) {
@@ -406,6 +486,9 @@ int main(void) {
         cmocka_unit_test(mean_powers_are_the_works_of_a_beat),
         cmocka_unit_test(mean_forces_are_trapezoids_over_the_events_of_a_beat),
         cmocka_unit_test(a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without),
+        cmocka_unit_test(of_a_held_fish_thrust_and_power_must_repeat),
+        cmocka_unit_test(headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is_steered),
+        cmocka_unit_test(a_formation_turns_with_its_first_fish),
         cmocka_unit_test(speed_and_slip_are_those_through_the_water),
         cmocka_unit_test(what_can_have_no_steady_state_is_refused_with_the_reason),
         cmocka_unit_test(a_search_that_takes_too_long_says_how_far_it_came),
