@@ -78,6 +78,36 @@ static void an_egg_stays_one(void **state) {
     outline_free(&outline);
 }
 
+// a parabola over the angle, which is the ratio of half thickness to sine at the middle of every edge, stays one
+// between the second edge and the last but one
+static void a_ratio_that_is_a_parabola_stays_one(void **state) {
+    (void)state;
+    enum { N = 9 };
+    double nodes[2 * N], thickness[N - 1], knot[N - 1], polygon[2 * OUTLINE_SIDES];
+    for (int k = 0; k < N; k++) {
+        nodes[2 * k] = (double)k / (N - 1);
+        nodes[2 * k + 1] = 0;
+    }
+    for (int k = 0; k < N - 1; k++) {
+        const double from = acos(1 - 2 * nodes[2 * k]), to = acos(1 - 2 * nodes[2 * k + 2]);
+        knot[k] = acos((cos(from) + cos(to)) / 2);
+        thickness[k] = 0.1 * (1 + 0.3 * knot[k] - 0.2 * knot[k] * knot[k]) * (sin(from) + sin(to));
+    }
+    struct outline outline;
+    assert_int_equal(outline_create(&outline, N, thickness, false), STATUS_OK);
+    outline_polygon(&outline, nodes, polygon);
+    int n = 0;
+    for (int i = 0; i < OUTLINE_POINTS; i++) {
+        const double angle = acos(1 - 2 * polygon[2 * i]);
+        if (angle < knot[1] || angle > knot[N - 3]) continue;
+        NEAR(polygon[2 * i + 1], 0.1 * sin(angle) * (1 + 0.3 * angle - 0.2 * angle * angle), 1e-12, 0);
+        n++;
+    }
+    print_message("%d of %d points\n", n, OUTLINE_POINTS);
+    assert_true(n >= 8);
+    outline_free(&outline);
+}
+
 static void the_middle_line_is_the_smooth_curve(void **state) {
     (void)state;
     // nodes on an arc of one radian: the curve of order 4 through 17 nodes is the circle to 1e-6
@@ -119,6 +149,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_ellipse_stays_one),
         cmocka_unit_test(an_egg_stays_one),
+        cmocka_unit_test(a_ratio_that_is_a_parabola_stays_one),
         cmocka_unit_test(the_middle_line_is_the_smooth_curve),
         cmocka_unit_test(a_body_in_one_point_has_an_outline),
     };
