@@ -156,6 +156,9 @@ static void differences_below_the_noise_are_none(void **state) {
     assert_int_equal(both.of[SPEED].verdict, ERROR_BUDGET_NONE);
     NEAR(both.of[SPEED].error, 2e-5, 0, 1e-6);
     assert_int_equal(judge(&key, speed, NULL, 1e-6).verdict, ERROR_BUDGET_TURNS);
+    // a difference of 2e-5 in 0.94 against three times the noise
+    assert_int_equal(judge(&key, speed, NULL, 0.75e-5).verdict, ERROR_BUDGET_NONE);
+    assert_int_equal(judge(&key, speed, NULL, 0.69e-5).verdict, ERROR_BUDGET_TURNS);
 }
 
 static void orders_decide(void **state) {

@@ -139,6 +139,14 @@ static void the_cost_at_equal_error_is_that_of_a_power_law(void **state) {
     assert_has(printed, "\n  ida2       200   1    2.000  0.010  between rtol 1e-5 and rtol 1e-3\n");
     assert_has(printed, "\n   rk4       358   2    3.578  0.018  between step 0.005 and step 0.01\n");
     assert_has(printed, "\n  heun        70   0    0.700      -  at most: error 1.0e-04 with rtol 1e-3\n");
+    // 10 ms for an evaluation
+    assert_has(printed, " 10000.0  complete\n");
+    // at ten times the error of the reference; where all settings are below, the cheapest is the bound
+    *at(&members[1], "actuation_work", 0, 0) = 5 * (1 - 3e-4);
+    study_comparison_fill_errors(&study, members);
+    const char *const rough = print(&study, members);
+    assert_has(rough, "Cost at an error of 1e-02 in nose, tail (lengths) and power (part), known to 3.0e-04:");
+    assert_has(rough, "\n  ida2       100   0    1.000      -  at most: error 4.0e-03 with rtol 1e-3\n");
     study_folder_free_members(members, N);
     case_free(&study);
 }
