@@ -231,7 +231,7 @@ static void a_vortex_from_outside_is_a_stretch_between_two_without_circulation(v
     NEAR(wake->removed, -99.5, 0, 0);
     for (int i = 4; i <= 7; i++) NEAR(wake->birth[i], 0.08, 1e-15, 0);
 
-    // no room for another one: nothing changes
+    // the spare vortices are used: nothing changes
     assert_int_equal(wake_add_vortex(wake, setup.school, 0.2, 7, 8, 1), STATUS_CASE);
     assert_non_null(strstr(status_message(), "wake.spare_vortices: 3, of which 3 are used; 3 more are required"));
     assert_int_equal(wake->n_vortex, 13);
