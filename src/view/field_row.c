@@ -175,10 +175,13 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
         wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = wake->rate[i] = wake->rate_before[i] = 0;
     }
     if (wake->has_markers) label_markers(wake);
-    // the newest label is all that has been shed: legs of rings have whole labels
-    const double newest =
-        to->school->finite && n > 0 ? to->state->y[to->school->fish[f].at.circulation] - wake->circulation[n - 1] : 0;
-    for (int i = 0; i < n; i++) wake->circulation[i] += newest;
+
+    // a row follows the release of an event: the newest label is the shed circulation
+    double shed;
+    TRY(netcdf_read_doubles(&reading->file, "shed_circulation", slice, &shed));
+    to->state->y[to->school->fish[f].at.circulation] = wake->shed_before = shed;
+    const double oldest = wake->has_markers && n > 0 ? shed - wake->circulation[n - 1] : 0;
+    for (int i = 0; i < n; i++) wake->circulation[i] += oldest;
     wake->version++;
     return STATUS_OK;
 }

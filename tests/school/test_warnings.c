@@ -307,7 +307,7 @@ static void expect_line(const struct simulation *simulation, enum warning warnin
 static void the_limits_are_those_of_the_manual(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS TIME "fish: [{force: pressure}, {start: {position: [0, 2]}, wave: {frequency: 0.5}}]\n");
+        SCHOOL_DEFAULTS TIME "fish: [{force: pressure, wave: {frequency: 0.5}}, {start: {position: [0, 2]}}]\n");
     school_run(simulation, 0.02);
     simulate_measure(simulation);
     struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];

@@ -15,8 +15,10 @@ enum { N_POINTS = 60 };
 
 static char folder[] = "/tmp/test_field.XXXXXX", path[64], field_path[64];
 
-/* Two fish whose wakes decay during the run, in an external flow with all its terms. */
-static const char *school_of(const char *shedding) {
+#define SEVENTEEN "sheet_points: 17"
+
+/* Two fish whose wakes decay during the run, in an external flow with all its terms; keys: of both fish. */
+static const char *school_with(const char *shedding, const char *keys) {
     static char text[1024];
     snprintf(text, sizeof text,
              SCHOOL_DEFAULTS
@@ -24,10 +26,14 @@ static const char *school_of(const char *shedding) {
              "output: {wake_interval: 0.3}\n"
              "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
              "wake: {shedding: %s, lifetime: 0.4, decay: 0.2}\nsolver: {rtol: 1e-3}\n"
-             "defaults: {fish: {nodes: 5, sheet_points: 17, start: {speed: 0.5}}}\n"
+             "defaults: {fish: {nodes: 5, %s, start: {speed: 0.5}}}\n"
              "fish: [{name: one}, {name: another, nodes: 7, length: 0.8, start: {position: [0.2, 0.5]}}]\n",
-             shedding);
+             shedding, keys);
     return text;
+}
+
+static const char *school_of(const char *shedding) {
+    return school_with(shedding, SEVENTEEN);
 }
 
 static void write_run(const char *text) {
@@ -61,10 +67,14 @@ static void place_points(struct points *points) {
 
 static void the_flow_of_a_row_is_that_of_the_run(void **state) {
     (void)state;
-    static const char *const shedding[] = {"sheet", "continuous", "impulsive"};
-    for (int s = 0; s < 3; s++) {
-        write_run(school_of(shedding[s]));
-        struct simulation *const run = school_simulation(school_of(shedding[s]));
+    static const char *const schools[][2] = {{"sheet", SEVENTEEN},
+                                             {"continuous", SEVENTEEN},
+                                             {"impulsive", SEVENTEEN},
+                                             {"sheet", "sheet_points: 21, force: pressure, pressure: {span: finite}"}};
+    for (int s = 0; s < 4; s++) {
+        const char *const text = school_with(schools[s][0], schools[s][1]);
+        write_run(text);
+        struct simulation *const run = school_simulation(text);
         school_run(run, 0.6);
         struct field_row row;
         struct flow *flow;
@@ -222,6 +232,18 @@ static void other_times_are_refused(void **state) {
     school_ok(field_row_read(&row, path, 0.3, 0, NULL));
     NEAR(row.state->t, 0.3, 1e-12, 0);
     field_row_free(&row);
+
+    // a time may be off by a millionth of an interval of 0.02 s
+    static const double close[] = {0.3 - 1.9e-8, 0.3 + 1.9e-8, 0.6 + 1.9e-8, -1.9e-8};
+    for (int i = 0; i < 4; i++) {
+        school_ok(field_row_read(&row, path, close[i], 0, NULL));
+        NEAR(row.state->t, close[i], 1.95e-8, 0);
+        field_row_free(&row);
+    }
+    refused(0.3 + 2.1e-8, STATUS_CASE, "no row at t = 0.3 s: the nearest are at 0.3 s and 0.4 s");
+    refused(0.3 - 2.1e-8, STATUS_CASE, "no row at t = 0.3 s: the nearest are at 0.2 s and 0.3 s");
+    refused(0.6 + 2.1e-8, STATUS_CASE, "outside of the rows");
+    refused(-2.1e-8, STATUS_CASE, "outside of the rows");
 }
 
 static void damaged_rows_are_refused(void **state) {

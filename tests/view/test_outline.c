@@ -108,6 +108,20 @@ static void a_ratio_that_is_a_parabola_stays_one(void **state) {
     outline_free(&outline);
 }
 
+// thicknesses in reverse order give the half thickness in reverse order
+static void nose_and_tail_are_interpolated_alike(void **state) {
+    (void)state;
+    static const double thickness[] = {0.02, 0.09, 0.16, 0.11, 0.05}, reversed[] = {0.05, 0.11, 0.16, 0.09, 0.02};
+    for (int is_mean = 0; is_mean < 2; is_mean++) {
+        struct outline one, other;
+        assert_int_equal(outline_create(&one, 6, thickness, is_mean), STATUS_OK);
+        assert_int_equal(outline_create(&other, 6, reversed, is_mean), STATUS_OK);
+        for (int i = 0; i < OUTLINE_POINTS; i++) NEAR(other.half[i], one.half[OUTLINE_POINTS - 1 - i], 1e-14, 0);
+        outline_free(&one);
+        outline_free(&other);
+    }
+}
+
 static void the_middle_line_is_the_smooth_curve(void **state) {
     (void)state;
     // nodes on an arc of one radian: the curve of order 4 through 17 nodes is the circle to 1e-6
@@ -150,6 +164,7 @@ int main(void) {
         cmocka_unit_test(an_ellipse_stays_one),
         cmocka_unit_test(an_egg_stays_one),
         cmocka_unit_test(a_ratio_that_is_a_parabola_stays_one),
+        cmocka_unit_test(nose_and_tail_are_interpolated_alike),
         cmocka_unit_test(the_middle_line_is_the_smooth_curve),
         cmocka_unit_test(a_body_in_one_point_has_an_outline),
     };
