@@ -287,23 +287,24 @@ static int has_circling_fish(const struct school *school) {
     return circles;
 }
 
-// simulate beats without increments until two successive beats are steady
+// simulate beats without increments until the changes of the last two beats meet the tolerance
 static enum status swim_freely(struct search *search, int *is_steady) {
     struct steady_problem *const problem = search->problem;
     const double tolerance = problem->settings->tolerance;
-    int n_good = 0;
-    double change = 0;
+    double change = INFINITY;
+    int is_lost = 0;
+    *is_steady = 0;
 
-    for (int i = 0; i < PATIENCE && n_good < 2 && (!search->found || change <= lost * tolerance); i++) {
+    for (int i = 0; i < PATIENCE && !*is_steady && !is_lost; i++) {
+        const double before = change;
         TRY(steady_problem_beat(problem));
         change = steady_map_residual(&problem->map);
-        n_good = change <= tolerance ? n_good + 1 : 0;
+        *is_steady = fmax(before, change) <= tolerance;
         // the change from a beat with held quantities to the first free beat has no meaning
-        if (i == 0 && search->found) change = 0;
+        is_lost = search->found && i > 0 && change > lost * tolerance;
     }
 
-    *is_steady = n_good == 2;
-    if (*is_steady || !search->found || change <= lost * tolerance) return STATUS_OK;
+    if (!is_lost) return STATUS_OK;
     search->margin *= sharper;
 
     return steady_map_return(&problem->map, search->found);

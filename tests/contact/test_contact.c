@@ -502,6 +502,30 @@ static void a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap(void 
     }
 }
 
+static void of_many_contacts_the_least_gap_is_named(void **state) {
+    (void)state;
+    // gaps of 0.08, 0.04 and 0.06 m above the wall, and of e above d
+    static const char *const height[] = {"1.18", "1.12"},
+                             *const named[] = {"; b was in contact with the wall at y = 0, with a gap of 0.04 m",
+                                               "; d and e were in contact, with a gap of 0.02 m"};
+    for (int i = 0; i < 2; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "time: {end: 1, shedding_interval: 0.02}\nfluid: {walls: [0]}\nsolver: {max_steps: 1}\n"
+                 "contact: {range: 0.1}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
+                 "defaults: {fish: {" PASSIVE
+                 ", body: {profile: uniform, thickness: 0.1}}}\n"
+                 "fish: [{name: a, start: {position: [0, 0.13]}}, {name: b, start: {position: [5, 0.09]}},\n"
+                 "    {name: c, start: {position: [10, 0.11]}}, {name: d, start: {position: [15, 1]}},\n"
+                 "    {name: e, start: {position: [15, %s]}}]\n",
+                 height[i]);
+        struct simulation *const simulation = school_simulation(text);
+        assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
+        if (!strstr(status_message(), named[i])) fail_msg("%s", status_message());
+        simulate_free(simulation);
+    }
+}
+
 enum { CROWD = 256 };
 
 // 256 fish in colliding pairs, each pair at a different angle
@@ -665,6 +689,7 @@ int main(void) {
         cmocka_unit_test(a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap),
         cmocka_unit_test(every_integrator_keeps_bodies_apart),
         cmocka_unit_test(a_fixed_step_that_is_too_long_fails_and_says_so),
+        cmocka_unit_test(of_many_contacts_the_least_gap_is_named),
         cmocka_unit_test(of_256_fish_no_two_get_through_each_other),
         cmocka_unit_test(stop_does_not_wait_until_bodies_touch),
         cmocka_unit_test(the_energy_is_that_of_all_ends_above_all_edges),

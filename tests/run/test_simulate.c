@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "result/checkpoint.h"
@@ -288,6 +289,33 @@ static void a_result_with_only_the_previous_checkpoint_is_unfinished_too(void **
     free(path);
 }
 
+static double wall_time, first_resumed;
+static void take_a_tenth_of_a_second(const struct simulate_progress *progress, void *data) {
+    (void)data;
+    if (progress->event == 1) nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
+    stop = progress->event >= 2;
+    wall_time = progress->wall_time;
+}
+
+static void note_the_first(const struct simulate_progress *progress, void *data) {
+    (void)data;
+    if (progress->event == 3) first_resumed = progress->wall_time;
+}
+
+static void wall_time_of_a_resumed_run_continues(void **state) {
+    char *const path = checkpoints_path(*state);
+    struct simulate_options options = {
+        .path = *state, .overwrite = 1, .command = "test", .progress = take_a_tenth_of_a_second, .stop = &stop};
+    stop = 0;
+    run_into(TIME "fish: [{}]\n", &options, STATUS_STOPPED);
+    assert_true(wall_time > 0.1);
+    stop = 0;
+    options.progress = note_the_first;
+    school_ok(simulate_resume(path, &(struct simulate_changes){0}, &options));
+    assert_true(first_resumed > 0.1);
+    free(path);
+}
+
 // number of the KINSOL call, from 0, at which a signal arrives; -1: no signal
 static int n_until_signal = -1;
 
@@ -480,6 +508,7 @@ int main(void) {
         cmocka_unit_test(the_wake_is_written_at_its_own_interval_and_at_the_end),
         cmocka_unit_test(a_signal_stops_a_run_at_the_next_event),
         cmocka_unit_test(a_result_with_only_the_previous_checkpoint_is_unfinished_too),
+        cmocka_unit_test(wall_time_of_a_resumed_run_continues),
         cmocka_unit_test(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one),
         cmocka_unit_test(a_signal_during_the_start_leaves_nothing),
         cmocka_unit_test(a_failing_run_says_when_and_keeps_its_file),

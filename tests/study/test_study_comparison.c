@@ -1,5 +1,6 @@
 /* test_study_comparison.c: the table of a comparison, and comparisons without memory. What processes do:
  * test_compare.sh. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -151,6 +152,40 @@ static void the_cost_at_equal_error_is_that_of_a_power_law(void **state) {
     case_free(&study);
 }
 
+/* One method with fixed steps, twice, and with adaptive steps: two rows of costs. The bar of the wall time has half the
+ * range of the repeats of the less repeatable setting. */
+static void steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar(void **state) {
+    (void)state;
+    static const char text[] = CASE
+        "fish: [{}]\n"
+        "sweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step],\n"
+        "    values: [[ida, 5, 1e-9, 0], [ida, 5, 1e-8, 0], " ROW_A ", [rk4, 4, 1e-5, 0.005], [rk4, 4, 1e-4, 0], " ROW_A
+        ", [rk4, 4, 1e-5, 0.005]]}]\n";
+    static const double error[] = {0, 1e-9, 4e-3, 4e-5, 2e-4, 4e-3, 4e-5}, wall_time[] = {90, 80, 2, 10, 5, 2.4, 11};
+    struct case_values study = parse(text);
+    enum { N = 7 };
+    struct member_file *const members = calloc(N, sizeof *members);
+    assert_non_null(members);
+    for (int m = 0; m < N; m++) {
+        members[m].status = strdup("complete");
+        assert_int_equal(member_file_create_values(&members[m], 1), STATUS_OK);
+        for (int k = 0; k < 2; k++) *at(&members[m], "tail", 0, k) = *at(&members[m], "nose", 0, k) = 3;
+        *at(&members[m], "tail", 0, 1) += error[m];
+        *at(&members[m], "wall_time", 0, 0) = wall_time[m];
+        *at(&members[m], "residual_evaluations", 0, 0) = 100 * wall_time[m];
+    }
+    study_comparison_fill_errors(&study, members);
+    const char *const printed = print(&study, members);
+    // at 1e-3 a power law between 10.5 s for 4e-5 and 2.2 s for 4e-3
+    char row[128];
+    snprintf(row, sizeof row, "  %.3f  0.500  between step 0.005 and step 0.01\n",
+             10.5 * pow(2.2 / 10.5, log(25) / log(100)));
+    assert_has(printed, row);
+    assert_has(printed, "\n   rk4       500   0    5.000      -  at most: error 2.0e-04 with rtol 1e-4\n");
+    study_folder_free_members(members, N);
+    case_free(&study);
+}
+
 static void only_a_sweep_of_these_keys_is_a_comparison(void **state) {
     (void)state;
     static const char *const sweeps[] = {
@@ -226,6 +261,7 @@ int main(void) {
         cmocka_unit_test(errors_are_distances_from_the_first_member_in_lengths),
         cmocka_unit_test(the_wall_time_is_the_median_of_the_repeats),
         cmocka_unit_test(the_cost_at_equal_error_is_that_of_a_power_law),
+        cmocka_unit_test(steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar),
         cmocka_unit_test(only_a_sweep_of_these_keys_is_a_comparison),
         cmocka_unit_test(every_failing_allocation_is_reported_and_leaves_nothing),
     };
