@@ -45,8 +45,8 @@ done
 # ---- dependencies: "from to", both as room/module
 
 # by includes
-grep -noE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"[^"]+"' src/*/*.[ch] |
-    sed -E 's/^src\/([^:]*)\.[ch]:([0-9]+):.*"([^"]+)\.h"/\1 \3 src\/\1/' >"$folder/includes"
+grep -noE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"[^"]+"' src/*/*.[ch] >"$folder/headers"
+sed -E 's/^src\/([^:]*)\.[ch]:([0-9]+):.*"([^"]+)\.h"/\1 \3 src\/\1/' "$folder/headers" >"$folder/includes"
 # by symbols: definitions and uses
 for object in $(printf "$build/%s/*.o " "${rooms[@]}"); do
     module=${object#"$build"/}
@@ -71,10 +71,12 @@ while read -r from to how; do
     fi
 done < <(sort -u -k1,2 "$folder/edges")
 
-# ---- no circles
+# ---- no circles: of the calls between the sources of a folder, of the includes between the headers of a folder
 for room in "${rooms[@]}"; do
-    awk -v room="$room/" 'index($1, room) == 1 && index($2, room) == 1 { print $1, $2 }' "$folder/edges" | sort -u \
-        >"$folder/room"
+    {
+        awk '{ print $1, $2 }' "$folder/uses"
+        sed -nE 's/^src\/([^:]*)\.h:[0-9]+:.*"([^"]+)"/\1.h \2/p' "$folder/headers"
+    } | awk -v room="$room/" 'index($1, room) == 1 && index($2, room) == 1 && $1 != $2' | sort -u >"$folder/room"
     if ! tsort "$folder/room" >/dev/null 2>"$folder/circle"; then
         complain "src/$room: error: files need each other in a circle: $(sed -n 's/^tsort: \([a-z]*\/\)/\1/p' \
             "$folder/circle" | tr '\n' ' ')"

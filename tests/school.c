@@ -8,7 +8,7 @@
 #include "fish/fish_school.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_derivative.h"
-#include "school/residual_jacobian.h"
+#include "school/residual.h"
 #include "state/state.h"
 
 void school_ok(enum status status) {

@@ -9,7 +9,6 @@
 #include "case/case.h"
 #include "result/checkpoint.h"
 #include "result/result_info.h"
-#include "result/result_json.h"
 #include "result/result_kind.h"
 #include "result/result_table.h"
 #include "result/target.h"

@@ -1,13 +1,11 @@
 /* main_commands.h: the commands of the program. Each command gets the parsed command line, prints results to stdout and
  * progress to stderr, and can fail with any status. Tested by tests/app/test_command.sh and tests/study.
  *
- *     main_run.c      run, resume, demo
- *     main_steady.c   steady
+ *     main_run.c      run, resume, demo, steady
  *     main_study.c    study, error, gather, compare
- *     main_field.c    field
  *     main_check.c    check
  *     main_case.c     show, new, keys, info
- *     main_view.c     view, export */
+ *     main_view.c     view, export, field */
 #ifndef MAIN_COMMANDS_H
 #define MAIN_COMMANDS_H
 

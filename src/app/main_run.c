@@ -1,4 +1,4 @@
-/* main_run.c: shoal run, resume and demo. */
+/* main_run.c: commands that make one result: shoal run, resume, demo and steady. */
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,14 +8,56 @@
 
 #include "app/main_commands.h"
 #include "app/main_signals.h"
-#include "app/main_teller.h"
-#include "app/progress.h"
 #include "app/say.h"
 #include "base/parallel.h"
 #include "base/version.h"
+#include "case/case.h"
+#include "case/sweep.h"
+#include "result/result_info.h"
 #include "result/target.h"
+#include "run/record.h"
 #include "run/simulate_run.h"
-#include "view/page.h"
+#include "steady/steady.h"
+#include "view/export.h"
+
+struct teller {
+    struct progress progress; /* first, as say_progress_run expects */
+    int n_warnings;
+    char *path; /* of the result; owned */
+};
+
+/* Print and count a warning; clear the progress line first. data: struct teller. */
+static void tell_warning(const char *line, void *data) {
+    struct teller *const teller = data;
+    teller->n_warnings++;
+    say_progress_end(&teller->progress);
+    say_line(stderr, "shoal: warning: %s\n", line);
+}
+
+/* Fail with STATUS_MISSED if the result has warnings and --strict turns warnings into errors. */
+static enum status refuse_warnings(const struct request *request, const struct teller *teller, const char *path) {
+    if (!request->strict || teller->n_warnings == 0) return STATUS_OK;
+    return status_fail(STATUS_MISSED, "%s: with --strict its %d warning%s", path, teller->n_warnings,
+                       teller->n_warnings > 1 ? "s are errors" : " is an error");
+}
+
+/* Read the case of a request, refuse a sweep, print the notes, and call make with the output path of the request or, by
+ * default, of the case. */
+static enum status with_case(const struct request *request,
+                             enum status (*make)(const struct case_values *values, const struct request *request,
+                                                 const char *path)) {
+    struct case_values values;
+    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
+    enum status status = sweep_refuse(&values);
+    main_print_notes(request, &values);
+    if (status == STATUS_OK) {
+        char *const path = request->output ? strdup(request->output) : record_path(&values);
+        status = path ? make(&values, request, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
+        free(path);
+    }
+    case_free(&values);
+    return status;
+}
 
 // ---- run
 
@@ -32,11 +74,6 @@ static void tell_note(const char *line, void *data) {
     say_line(stderr, "shoal: note: %s\n", line);
 }
 
-static void tell_progress(const struct simulate_progress *now, void *data) {
-    struct teller *const teller = data;
-    progress_show(now, &teller->progress);
-}
-
 /* Run a case, or resume if values is NULL, and report progress, notes and warnings. */
 static enum status run_with_reports(const struct case_values *values, const struct request *request, const char *path,
                                     struct teller *teller) {
@@ -45,18 +82,18 @@ static enum status run_with_reports(const struct case_values *values, const stru
                                              .command = request->command_line,
                                              .checkpoint_at = request->checkpoint_at,
                                              .begin = tell_begin,
-                                             .progress = request->quiet ? NULL : tell_progress,
-                                             .warn = main_tell_warning,
+                                             .progress = request->quiet ? NULL : say_progress_run,
+                                             .warn = tell_warning,
                                              .note = request->quiet ? NULL : tell_note,
                                              .data = teller,
                                              .stop = main_stop_signal()};
     const struct simulate_changes changes = {request->n_assignments, request->assignments, *request->end != '\0'};
     if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
     main_catch_signals();
-    progress_start(&teller->progress);
+    say_progress_start(&teller->progress);
     const enum status status =
         values ? simulate_run(values, &options) : simulate_resume(request->positional, &changes, &options);
-    progress_end(&teller->progress);
+    say_progress_end(&teller->progress);
     return status;
 }
 
@@ -66,13 +103,13 @@ static enum status run_case(const struct case_values *values, const struct reque
     const char *const result = teller.path ? teller.path : "";
     if (status == STATUS_OK && request->verbose) status = main_print_info(result, 0);
     if (status == STATUS_OK && !request->quiet && !request->verbose) say_line(stdout, "%s\n", result);
-    if (status == STATUS_OK) status = main_refuse_warnings(request, &teller, result);
+    if (status == STATUS_OK) status = refuse_warnings(request, &teller, result);
     free(teller.path);
     return status;
 }
 
 enum status main_run(const struct request *request) {
-    return main_with_case(request, run_case);
+    return with_case(request, run_case);
 }
 
 enum status main_resume(const struct request *request) {
@@ -128,4 +165,41 @@ enum status main_demo(const struct request *request) {
     if (!request->quiet)
         say_line(stdout, "\nPicture: demo.png. Movie: demo.html (open in a browser). Case: %s.\n", path);
     return STATUS_OK;
+}
+
+// ---- steady
+
+static enum status find_steady_state(const struct case_values *values, const struct request *request,
+                                     const char *path) {
+    struct teller teller = {0};
+    const struct steady_options options = {.path = path,
+                                           .from = request->from,
+                                           .overwrite = request->force,
+                                           .command = request->command_line,
+                                           .progress = request->quiet ? NULL : say_progress_steady,
+                                           .warn = tell_warning,
+                                           .data = &teller,
+                                           .stop = main_stop_signal()};
+    TRY(parallel_try_threads(values->school.threads));
+    parallel_choice_spread(values->school.threads);
+    if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
+    main_catch_signals();
+    say_progress_start(&teller.progress);
+    const enum status status = steady_run(values, &options);
+    say_progress_end(&teller.progress);
+    TRY(status);
+    if (request->json) {
+        TRY(netcdf_print(path, result_json_steady, stdout));
+    } else if (!request->quiet) {
+        struct say_page page;
+        say_line(stdout, "%s\n", path);
+        TRY(say_begin(&page));
+        TRY(say_end(&page, stdout, netcdf_print(path, result_info_steady, page.stream)));
+    }
+
+    return refuse_warnings(request, &teller, path);
+}
+
+enum status main_steady(const struct request *request) {
+    return with_case(request, find_steady_state);
 }

@@ -7,7 +7,6 @@
 
 #include "app/main_commands.h"
 #include "app/main_signals.h"
-#include "app/progress.h"
 #include "app/say.h"
 #include "case/case.h"
 #include "case/sweep_error.h"
@@ -52,7 +51,7 @@ static enum status study_options_from(const struct request *request, const char 
                                       .command = request->command_line,
                                       .last = -1,
                                       .force = request->force,
-                                      .progress = request->quiet ? NULL : progress_study,
+                                      .progress = request->quiet ? NULL : say_progress_study,
                                       .data = progress,
                                       .stop = main_stop_signal()};
     if (request->processes) TRY(read_count("-j", request->processes, &options->n_processes));
@@ -85,11 +84,11 @@ static enum status run_study(const struct case_values *values, const struct requ
     struct progress progress;
     struct study_options options;
     int n_failed;
-    progress_start(&progress);
+    say_progress_start(&progress);
     TRY(study_options_from(request, folder, &progress, &options));
     main_catch_signals();
     const enum status status = study_run(values, &options, &n_failed);
-    progress_end(&progress);
+    say_progress_end(&progress);
     TRY(status);
 
     if (options.last < 0) {
@@ -112,7 +111,7 @@ static enum status run_errors(const struct case_values *values, const struct req
     if (!request->slurm && !request->members) {
         struct progress progress;
         struct study_options options;
-        progress_start(&progress);
+        say_progress_start(&progress);
         TRY(study_options_from(request, folder, &progress, &options));
         main_catch_signals();
         if (!request->quiet && !request->plan) say_line(stdout, "%s\n", folder);
@@ -120,7 +119,7 @@ static enum status run_errors(const struct case_values *values, const struct req
             // the plan appears before the members run
             const enum status status =
                 study_errors(values, &options, request->plan ? 2 : 1, request->strict, stdout, stdout);
-            progress_end(&progress);
+            say_progress_end(&progress);
             return status;
         }
         struct report report;
@@ -237,17 +236,17 @@ enum status main_gather(const struct request *request) {
 static enum status run_comparison(const struct case_values *values, const struct request *request,
                                   const struct study_compare_options *options, double limit) {
     struct progress progress;
-    progress_start(&progress);
+    say_progress_start(&progress);
     const struct study_options run = {.command = request->command_line,
                                       .limit = limit,
-                                      .progress = request->quiet ? NULL : progress_study,
+                                      .progress = request->quiet ? NULL : say_progress_study,
                                       .data = &progress,
                                       .stop = main_stop_signal()};
     main_catch_signals();
     struct say_page page;
     TRY(say_begin(&page));
     const enum status status = study_compare(values, options, &run, page.stream);
-    progress_end(&progress);
+    say_progress_end(&progress);
     return say_end(&page, request->quiet ? NULL : stdout, status);
 }
 

@@ -1,4 +1,5 @@
-/* main_view.c: shoal view and export: results for other programs. */
+/* main_view.c: shoal view, export and field: results for other programs, and the flow of a result on a grid. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,8 +9,8 @@
 #include "base/text.h"
 #include "result/netcdf.h"
 #include "result/target.h"
-#include "view/page.h"
-#include "view/vtk.h"
+#include "view/export.h"
+#include "view/field_file.h"
 
 /* Add the name of a file without folders and ending. */
 static void add_stem(struct text *text, const char *path) {
@@ -53,4 +54,101 @@ enum status main_export(const struct request *request) {
     if (!request->quiet) say_line(stdout, "%s\n", list);
     free(list);
     return STATUS_OK;
+}
+
+// ---- the flow of a result on a grid
+
+/* Default number of points along the longer side. */
+enum { STANDARD_POINTS = 400 };
+
+/* Read the n comma-separated numbers of an option. */
+static enum status read_numbers(const char *option, const char *text, const char *expected, int n, double *number) {
+    const char *at = text;
+    for (int i = 0; i < n; i++) {
+        char word[64];
+        const size_t length = strcspn(at, ",");
+        const int is_last = i + 1 == n;
+        snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), at);
+        if ((at[length] == ',') == is_last || !text_number(word, &number[i]) || !isfinite(number[i])) {
+            return status_fail(STATUS_CASE, "%s %s: expects %s", option, text, expected);
+        }
+        at += length + !is_last;
+    }
+
+    return STATUS_OK;
+}
+
+static enum status read_time(const char *text, double *t) {
+    *t = NAN;
+    return text ? read_numbers("--at", text, "a time in s", 1, t) : STATUS_OK;
+}
+
+static enum status read_box(const char *text, const struct field_row *row, struct field_grid *grid) {
+    double corner[4];
+    field_file_box(row, grid->low, grid->high);
+    if (!text) return STATUS_OK;
+    TRY(read_numbers("--box", text, "X0,Y0,X1,Y1 in m", 4, corner));
+
+    for (int i = 0; i < 2; i++) {
+        grid->low[i] = corner[i];
+        grid->high[i] = corner[i + 2];
+        if (corner[i] < corner[i + 2]) continue;
+        return status_fail(STATUS_CASE, "--box %s: expects the lower left corner before the upper right one", text);
+    }
+
+    return STATUS_OK;
+}
+
+/* Read the numbers of points. The box must be set: the default number depends on the sides. */
+static enum status read_grid(const char *text, struct field_grid *grid) {
+    const double side[2] = {grid->high[0] - grid->low[0], grid->high[1] - grid->low[1]};
+    double n[2];
+    for (int i = 0; i < 2; i++) n[i] = fmax(2, 1 + round((STANDARD_POINTS - 1) * side[i] / fmax(side[0], side[1])));
+    if (text) TRY(read_numbers("--grid", text, "NX,NY, integers", 2, n));
+
+    for (int i = 0; i < 2; i++) {
+        if (n[i] != floor(n[i]) || n[i] < 2) {
+            return status_fail(STATUS_CASE, "--grid %s: expects NX,NY, integers from 2 on", text);
+        }
+    }
+
+    if (n[0] * n[1] > FIELD_FILE_POINTS) {
+        return status_fail(STATUS_CASE, "--grid %s: more than %d points", text, FIELD_FILE_POINTS);
+    }
+    grid->nx = (int)n[0];
+    grid->ny = (int)n[1];
+    return STATUS_OK;
+}
+
+/* RUN-field.nc of RUN.nc; the caller frees it. */
+static char *default_path(const char *run) {
+    static const char ending[] = ".nc", field[] = "-field.nc";
+    const size_t length = strlen(run), cut = strlen(ending);
+    const int has_ending = length > cut && strcmp(run + length - cut, ending) == 0;
+    char *const path = malloc(length + sizeof field);
+    if (path) sprintf(path, "%.*s%s", (int)(has_ending ? length - cut : length), run, field);
+    return path;
+}
+
+static enum status write_field(const struct request *request, const struct field_row *row, const char *path) {
+    struct field_grid grid;
+    TRY(read_box(request->box, row, &grid));
+    TRY(read_grid(request->grid, &grid));
+    TRY(field_file_write(path, request->force, request->positional, request->command_line, row, &grid));
+    if (!request->quiet) say_line(stdout, "%s: %d x %d points at t = %g s\n", path, grid.nx, grid.ny, row->state->t);
+    return STATUS_OK;
+}
+
+enum status main_field(const struct request *request) {
+    struct field_row row;
+    double t;
+    TRY(read_time(request->at, &t));
+    if (request->output) TRY(target_refuse_input(request->output, request->positional));
+    TRY(field_row_read(&row, request->positional, t, request->n_assignments, request->assignments));
+    char *const path = request->output ? strdup(request->output) : default_path(request->positional);
+    const enum status status =
+        path ? write_field(request, &row, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
+    free(path);
+    field_row_free(&row);
+    return status;
 }

@@ -1,8 +1,15 @@
 /* say.c: see say.h. */
+#define _DEFAULT_SOURCE  // winsize
 #include "app/say.h"
 
+#include <limits.h>
+#include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include "base/text.h"
 
@@ -39,4 +46,94 @@ enum status say_end(struct say_page *page, FILE *stream, enum status status) {
     free(page->text);
     *page = (struct say_page){0};
     return status == STATUS_OK && failed ? page_out_of_memory() : status;
+}
+
+// ---- one line, at most five times a second
+
+enum { PART_BYTES = 48 };
+
+void say_progress_start(struct progress *progress) {
+    *progress = (struct progress){.terminal = isatty(STDERR_FILENO), .drawn_at = -1};
+}
+
+/* The columns of the terminal; 80 if unknown. */
+static int terminal_width(void) {
+    struct winsize size;
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+/* Print the parts of a line, the most important first: on a terminal as many as fit into its width, without the last
+ * column, where some terminals begin a new line; all in a log. */
+static void progress_print(struct progress *progress, int n, char part[][PART_BYTES]) {
+    const int width = progress->terminal ? terminal_width() - 1 : INT_MAX;
+    int column = 0;
+    if (progress->terminal) fputc('\r', stderr);
+
+    for (int i = 0; i < n; i++) {
+        const int length = (int)strlen(part[i]), gap = i > 0 ? 2 : 0;
+        if (i > 0 && column + gap + length > width) break;
+        fprintf(stderr, "%*s%.*s", gap, "", width, part[i]);
+        column += gap + length;
+    }
+
+    fputs(progress->terminal ? "\033[K" : "\n", stderr);
+}
+
+/* True if a line is due. */
+static int progress_is_due(struct progress *progress, double part, double wall_time) {
+    if (progress->terminal) {
+        if (wall_time - progress->drawn_at < 0.2) return 0;
+        progress->drawn_at = wall_time;
+        progress->drawn = 1;
+        return 1;
+    }
+
+    // add 1e-9 so that rounding does not delay a report
+    const int tenth = (int)(10 * part + 1e-9);
+    if (tenth <= progress->tenth) return 0;
+    progress->tenth = tenth;
+    return 1;
+}
+
+void say_progress_run(const struct simulate_progress *now, void *data) {
+    struct progress *const progress = data;
+    const double done = now->t / now->end;
+    if (!progress_is_due(progress, done, now->wall_time)) return;
+    char part[6][PART_BYTES];
+    snprintf(part[0], PART_BYTES, "t %8.3f s", now->t);
+    snprintf(part[1], PART_BYTES, "%3.0f %%", 100 * done);
+    snprintf(part[2], PART_BYTES, "%.0f s left", done > 0 ? now->wall_time * (1 - done) / done : 0);
+    snprintf(part[3], PART_BYTES, "%6.2f x real time", now->t / now->wall_time);
+    snprintf(part[4], PART_BYTES, "%4.1f steps/event", (double)now->steps / (double)now->event);
+    snprintf(part[5], PART_BYTES, "%6d vortices", now->n_vortices);
+    progress_print(progress, 6, part);
+}
+
+void say_progress_steady(const struct steady_progress *now, void *data) {
+    struct progress *const progress = data;
+    // few searches take more than 50 beats, so a log reports every fifth beat
+    if (!progress_is_due(progress, fmin(1, now->n_beats / 50.0), now->wall_time)) return;
+    char part[4][PART_BYTES];
+    snprintf(part[0], PART_BYTES, "beat %4d", now->n_beats);
+    snprintf(part[1], PART_BYTES, "residual %.1e, target %.0e", now->residual, now->tolerance);
+    snprintf(part[2], PART_BYTES, "%.1f s", now->wall_time);
+    snprintf(part[3], PART_BYTES, "speed %8.4f m/s", now->speed);
+    progress_print(progress, 4, part);
+}
+
+void say_progress_study(const struct study_progress *now, void *data) {
+    struct progress *const progress = data;
+    if (!progress_is_due(progress, now->part, now->wall_time)) return;
+    char part[5][PART_BYTES];
+    snprintf(part[0], PART_BYTES, "%d of %d members done", now->n_done, now->n_members);
+    snprintf(part[1], PART_BYTES, "%3.0f %%", 100 * now->part);
+    snprintf(part[2], PART_BYTES, "%.0f s left", now->part > 0 ? now->wall_time * (1 - now->part) / now->part : 0);
+    snprintf(part[3], PART_BYTES, "%d failed", now->n_failed);
+    snprintf(part[4], PART_BYTES, "%d running", now->n_running);
+    progress_print(progress, 5, part);
+}
+
+void say_progress_end(struct progress *progress) {
+    if (progress->drawn) fputs("\r\033[K", stderr);
+    progress->drawn = 0;
 }

@@ -1,7 +1,7 @@
 /* bending_mode.c: power iteration on the flexibility of a body (Stodola's method). */
-#include "body/bending_mode.h"
-
 #include <math.h>
+
+#include "body/rod.h"
 
 // mass of a node plus local lateral added mass, kg
 static double moving_mass(const struct fish *fish, int k) {

@@ -11,20 +11,15 @@ struct edge edge_at(const struct fish *fish, int k, const double *y) {
     const double *const x = y + fish->at.x + k, *const z = y + fish->at.y + k;
     const double *const vx = y + fish->at.vx + k, *const vy = y + fish->at.vy + k;
     const double *const ax = y + fish->at.ax + k, *const ay = y + fish->at.ay + k;
-    const double e[2] = {x[1] - x[0], z[1] - z[0]};
+    const struct direction along = fish_direction_of((const double[2]){x[1] - x[0], z[1] - z[0]});
 
-    struct edge edge = {.length = sqrt(e[0] * e[0] + e[1] * e[1]),
-                        .middle = {(x[0] + x[1]) / 2, (z[0] + z[1]) / 2},
-                        .velocity = {(vx[0] + vx[1]) / 2, (vy[0] + vy[1]) / 2},
-                        .acceleration = {(ax[0] + ax[1]) / 2, (ay[0] + ay[1]) / 2},
-                        .rate = {vx[1] - vx[0], vy[1] - vy[0]}};
-
-    edge.t[0] = e[0] / edge.length;
-    edge.t[1] = e[1] / edge.length;
-    edge.n[0] = -edge.t[1];
-    edge.n[1] = edge.t[0];
-
-    return edge;
+    return (struct edge){.length = along.length,
+                         .t = {along.t[0], along.t[1]},
+                         .n = {along.n[0], along.n[1]},
+                         .middle = {(x[0] + x[1]) / 2, (z[0] + z[1]) / 2},
+                         .velocity = {(vx[0] + vx[1]) / 2, (vy[0] + vy[1]) / 2},
+                         .acceleration = {(ax[0] + ax[1]) / 2, (ay[0] + ay[1]) / 2},
+                         .rate = {vx[1] - vx[0], vy[1] - vy[0]}};
 }
 
 double edge_turn_rate(const struct edge *edge) {

@@ -7,13 +7,11 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "case/case_check.h"
 #include "case/case_merge.h"
 #include "case/case_path.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
 #include "case/sweep_error.h"
-#include "case/sweep_expect.h"
 
 /* A case being read. */
 struct reading {

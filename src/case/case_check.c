@@ -1,6 +1,4 @@
 /* case_check.c: relations between keys, and implausible values. */
-#include "case/case_check.h"
-
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -8,6 +6,8 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "case/case.h"
+#include "case/case_merge.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
 #include "fish/fish_school.h"

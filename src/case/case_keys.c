@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "case/case.h"
 #include "case/case_table.h"
-#include "case/sweep_quantity.h"
+#include "case/sweep.h"
 
 enum { METHOD_BYTES = 200 };
 

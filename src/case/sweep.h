@@ -64,4 +64,68 @@ uint64_t sweep_refine_orders(const struct case_values *study);
  * 0 for quantities other than points. */
 double sweep_reference(const struct case_values *study, int axis, int quantity, int fish, int xy);
 
+// ---- sweep_expect.c: expectations of a study on the final states of the members.
+
+/* The condition that a key of the sweep has a value. */
+struct sweep_condition {
+    int axis, key;
+    char *value;
+};
+
+/* An expectation of the ends of members: of all, or of those that have the values of where. */
+struct sweep_expectation {
+    char *fails; /* expected words of the message of failed members, then the only expectation; NULL: must not fail */
+    uint64_t of; /* bit q: of quantity q */
+    int fish;    /* -1: of all */
+    int n_where;
+    struct sweep_condition *where; /* one of each key must hold                (n_where) */
+    double min, max;               /* of each value; NaN: no bound, as below */
+    double spread;                 /* of the values; for points, the diagonal of the bounding box */
+    double ratio; /* of the largest to the smallest absolute value; values of both signs, or 0, have none */
+};
+
+/* Read the expectations of a case, after the sweep. Fails with STATUS_MEMORY only. */
+enum status sweep_expect_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
+
+/* Release the expectations. */
+void sweep_expect_free(struct case_values *values);
+
+/* Whether an expectation is about a member. */
+int sweep_expects_of(const struct case_values *study, const struct sweep_expectation *one, int member);
+
+// ---- sweep_quantity.c: the quantities of studies, for expectations and references. Tested by tests/case/test_sweep.c
+// and tests/study/test_study_file.c.
+
+enum {
+    SWEEP_OF_STEADY = 1, /* of a steady state, or of an equilibrium */
+    SWEEP_JUDGE = 2      /* speed, cost and Strouhal number: also evaluated for the error of any other quantity */
+};
+
+struct sweep_quantity {
+    const char *name;
+    int of_fish, of_xy;         /* one value for every fish; a point in the plane */
+    const char *unit, *meaning; /* NULL: as of the variable of a result file with this name */
+    unsigned traits;
+};
+
+enum {
+    SWEEP_NOSE,
+    SWEEP_TAIL,
+    SWEEP_STEADY_SPEED = 8,
+    SWEEP_N_ORDERS = 19, /* of the first ones orders of convergence are observed: of runs or of steady states */
+    SWEEP_N_QUANTITIES = 36
+};
+
+extern const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES];
+
+/* The number of a quantity among the first n_known; -1 if the name is unknown. */
+int sweep_quantity_find(const char *name, int n_known);
+
+/* The same for a name in a case; -1 after adding an error, with path as the place of the name. */
+int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *path, int n_known,
+                        struct yaml_errors *errors);
+
+/* The same for a name or a list of names under path.of, as a set: bit q is set for quantity q. */
+uint64_t sweep_quantities_read(const struct yaml_node *of, const char *path, int n_known, struct yaml_errors *errors);
+
 #endif

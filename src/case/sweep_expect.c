@@ -5,8 +5,6 @@
  *     - {of: steps, where: ["solver.method=ida"], ratio: 1.5}              of some members
  *     - {fails: unstable, where: ["solver.method=euler"]}                  that are not complete, with reason
  */
-#include "case/sweep_expect.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +13,6 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
-#include "case/sweep_quantity.h"
 
 /* An expectation being read. */
 struct reading {

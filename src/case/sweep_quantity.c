@@ -1,10 +1,9 @@
 /* sweep_quantity.c: the table of quantities. */
-#include "case/sweep_quantity.h"
-
 #include <stdio.h>
 #include <string.h>
 
 #include "base/text.h"
+#include "case/sweep.h"
 
 const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"nose", 1, 1, "m", "position of the nose at the end", 0},

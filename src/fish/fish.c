@@ -22,17 +22,20 @@ double fish_mass_mean(const struct fish *fish, const double *value) {
     return sum / fish->total_mass;
 }
 
+struct direction fish_direction_of(const double vector[2]) {
+    struct direction direction = {.length = sqrt(vector[0] * vector[0] + vector[1] * vector[1])};
+    direction.t[0] = vector[0] / direction.length;
+    direction.t[1] = vector[1] / direction.length;
+    direction.n[0] = -direction.t[1];
+    direction.n[1] = direction.t[0];
+    return direction;
+}
+
 struct direction fish_direction(const struct fish *fish, const struct tangent *tangent, const double *y) {
     const double *const x = y + fish->at.x, *const z = y + fish->at.y;
     const double e[2] = {fish_mean(&tangent->to, x) - fish_mean(&tangent->from, x),
                          fish_mean(&tangent->to, z) - fish_mean(&tangent->from, z)};
-    struct direction direction = {.length = sqrt(e[0] * e[0] + e[1] * e[1])};
-    direction.t[0] = e[0] / direction.length;
-    direction.t[1] = e[1] / direction.length;
-    direction.n[0] = -direction.t[1];
-    direction.n[1] = direction.t[0];
-
-    return direction;
+    return fish_direction_of(e);
 }
 
 int fish_has_momentum(const struct fish *fish) {

@@ -198,10 +198,13 @@ double fish_mean(const struct stencil *point, const double *value);
 /* Mass-weighted mean of a value of the nodes (n_nodes). */
 double fish_mass_mean(const struct fish *fish, const double *value);
 
-/* A vector along the body at the node positions in y: length, unit vector t, and unit normal n = E3 x t. */
+/* Length of a vector, unit vector t, and unit normal n = E3 x t. */
 struct direction {
     double length, t[2], n[2];
 };
+struct direction fish_direction_of(const double vector[2]);
+
+/* The vector along the body at the node positions in y. */
 struct direction fish_direction(const struct fish *fish, const struct tangent *tangent, const double *y);
 
 /* Whether the fish has the slices px, py: force: pressure. */

@@ -7,7 +7,6 @@
 #include <time.h>
 
 #include "base/memory.h"
-#include "body/bending_mode.h"
 #include "body/rod.h"
 #include "fish/fish.h"
 #include "fish/fish_school.h"

@@ -1,4 +1,4 @@
-/* residual.h: the equations of the whole school as one residual F(t, y, y') = 0; its derivatives: residual_jacobian.h.
+/* residual.h: the equations of the whole school as one residual F(t, y, y') = 0, and its derivatives.
  * doc/model.md, section 10. Tested by tests/school/test_residual.c. */
 #ifndef RESIDUAL_H
 #define RESIDUAL_H
@@ -12,6 +12,7 @@
 #include "flow/flow_derivative.h"
 #include "force/bound_sheet.h"
 #include "force/pressure.h"
+#include "school/jacobian.h"
 #include "state/state.h"
 
 /* Fish, node, name and scale of every unknown. doc/model.md, section 10;
@@ -145,5 +146,21 @@ void residual_kinds(const struct residual *residual, double *kind);
 /* The present equation for the circulation shed, and whether this equation is algebraic. */
 enum bound_sheet_law residual_sheet_law(const struct residual *residual);
 int residual_shed_is_algebraic(const struct residual *residual);
+
+// ---- residual_jacobian.c: the derivatives of the residual. doc/numerics.md, section 6.
+
+/* jacobian = dF/dy + cj dF/dyp, with the blocks of the coupled fish; fish in contact couple from this call on. Fails
+ * with STATUS_MEMORY, and as residual_evaluate if bodies touch. */
+enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
+                              struct jacobian *jacobian);
+
+/* Set the derivatives of impermeability at the control points of every fish by the circulation shed by the same fish,
+ * in the impermeability rows of value (n_unknowns); with force: pressure also the derivatives of the equation of
+ * motion. All other rows are unchanged. Uses the flow of the last evaluation, at the unknowns y. While the nascent
+ * stretch of a free sheet grows, these derivatives change more from step to step than all others. */
+void residual_by_shed(struct residual *residual, const double *y, double *value);
+
+/* Mask the rows of prescribed motion in the Jacobian, and unmask all other rows. */
+void residual_mask(const struct residual *residual, struct jacobian *jacobian);
 
 #endif

@@ -1,6 +1,4 @@
 /* residual_jacobian.c: the derivatives in the order of residual.c. */
-#include "school/residual_jacobian.h"
-
 #include <omp.h>
 #include <string.h>
 
@@ -12,6 +10,7 @@
 #include "force/bound_sheet.h"
 #include "force/fluid_force.h"
 #include "force/reactive.h"
+#include "school/residual.h"
 
 // zero the last column: circulation infinitely far away induces no velocity
 static void zero_nascent_column(struct influence_block *block) {

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "body/bending_mode.h"
+#include "body/rod.h"
 
 /* Input of a warning about one fish. */
 struct subject {

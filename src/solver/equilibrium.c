@@ -10,7 +10,6 @@
 #include "fish/fish_motion.h"
 #include "school/jacobian.h"
 #include "school/residual.h"
-#include "school/residual_jacobian.h"
 #include "solver/newton.h"
 
 /* Tolerance of the scaled residual. The scale of a force includes this fraction of the axial force by the rounding of

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "body/rod.h"
 #include "school/diagnostics_energy.h"
-#include "school/residual_jacobian.h"
+#include "school/residual.h"
 #include "solver/ida_newton.h"
 #include "solver/integrator.h"
 #include "solver/linear.h"

@@ -9,7 +9,7 @@
 
 #include "base/memory.h"
 #include "flow/flow_at_bodies.h"
-#include "school/residual_jacobian.h"
+#include "school/residual.h"
 #include "solver/integrator.h"
 #include "solver/linear.h"
 #include "solver/sundials.h"

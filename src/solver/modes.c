@@ -14,7 +14,6 @@
 #include "flow/flow_at_bodies.h"
 #include "school/jacobian.h"
 #include "school/residual.h"
-#include "school/residual_jacobian.h"
 
 /* Gauss points of the interval. */
 enum { N_POINTS = 2 };

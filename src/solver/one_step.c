@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "school/diagnostics_energy.h"
-#include "school/residual_jacobian.h"
+#include "school/residual.h"
 #include "solver/integrator.h"
 #include "solver/linear.h"
 #include "solver/ode_rhs.h"

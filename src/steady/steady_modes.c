@@ -1,6 +1,4 @@
 /* steady_modes.c: modes of an equilibrium and multipliers of a beat. */
-#include "steady/steady_modes.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +10,7 @@
 #include "solver/modes.h"
 #include "solver/newton.h"
 #include "state/state.h"
+#include "steady/steady_problem.h"
 
 /* Wake length, in body lengths: the growth rates agree with an infinite wake to 1e-4 of speed over length. */
 static const double wake_lengths = 12;

@@ -76,4 +76,51 @@ enum status steady_search_run(struct steady_problem *problem);
  * advance the simulation to a state that repeats with the beat. Fails as steady_search_run. */
 enum status steady_search_correct(struct steady_problem *problem, const double *way);
 
+// ---- steady_start.c: the start of a search from the steady state of a similar case. Tested by
+// tests/steady/test_steady_start.c and tests/app/test_steady_command.sh.
+
+/* Copy the fish of a school into a new array *fish, which the caller frees. Free fish get the speeds of the steady
+ * state in the file; free fish other than the first also get the places relative to the first fish. The copies share
+ * the memory of the original fish. Fails with STATUS_FILE if the file contains no steady state of this number of fish,
+ * or with STATUS_MEMORY; *fish is then NULL. */
+enum status steady_start_read(const char *path, const struct school_parameters *school, struct fish_parameters **fish);
+
+/* Set the positions of the free nodes to the shapes of an equilibrium in a file, relative to the nose and to the
+ * prescribed direction, in body lengths. y: all unknowns of the school. Fails with STATUS_FILE if the bodies in the
+ * file have other numbers of nodes, or with STATUS_MEMORY. */
+enum status steady_start_shapes(const char *path, const struct school *school, double *y);
+
+// ---- steady_static.c: the equilibrium of passive bodies in a stream: `shoal steady` of a case without a beat.
+// Tested by tests/steady/test_steady_static.c and tests/app/test_steady_command.sh.
+
+/* 1 if no fish beats, neither by a wave nor by prescribed motion. */
+int steady_static_applies(const struct school *school);
+
+/* STATUS_CASE, with the reason and the remedy, if the bodies can have no equilibrium. */
+enum status steady_static_refuse(const struct school *school);
+
+/* Bring a simulation from the initial state to the equilibrium and fill *found; the caller allocates found->fish. Start
+ * from the shapes of another equilibrium in the file from. If from is NULL, has other bodies or gives no solution,
+ * increase the stream in steps from rest. Fails with STATUS_SOLVER if no equilibrium exists; the message gives the
+ * largest stream with an equilibrium. Fails also with STATUS_MEMORY or STATUS_STOPPED. */
+enum status steady_static_find(struct simulation *simulation, const char *from, struct steady_values *found);
+
+// ---- steady_modes.c: growth and decay of small disturbances: modes of the bodies for an equilibrium, multipliers for
+// a beat. Tested by tests/steady/test_steady_modes.c, test_steady.c and the section "elastic" of `make verify`.
+
+/* Fill the exponents of an equilibrium; the state of the simulation is restored. Hold the bodies while a wake of zero
+ * strength is convected downstream, then find the modes with solver/modes.h. No exponents if the state jumps at events
+ * (wake.shedding: impulsive), without a stream, or without shedding. Fails with STATUS_MEMORY, STATUS_SOLVER or
+ * STATUS_STOPPED. */
+enum status steady_modes_find(struct simulation *simulation, struct steady_values *found);
+
+/* Fill the exponents of a beat from the multipliers and the period, s. */
+void steady_modes_of_multipliers(struct steady_values *found, double period);
+
+/* Find the multipliers at the current state of the simulation, by decreasing absolute value (n_unknowns). The state is
+ * restored on success. way: step to the fixed point of the linearised map, over the scales of the unknowns
+ * (n_unknowns). *n_beats: number of beats simulated. Fails with STATUS_SOLVER or STATUS_MEMORY. */
+enum status steady_multipliers_find(struct steady_problem *problem, double *real, double *imaginary, double *way,
+                                    int *n_beats);
+
 #endif

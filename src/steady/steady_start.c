@@ -1,6 +1,4 @@
-/* steady_start.c: see steady_start.h. */
-#include "steady/steady_start.h"
-
+/* steady_start.c: see steady_problem.h. */
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,6 +8,7 @@
 #include "base/memory.h"
 #include "fish/fish_motion.h"
 #include "result/netcdf.h"
+#include "steady/steady_problem.h"
 
 struct reading {
     struct netcdf_reader reader;

@@ -1,6 +1,4 @@
 /* steady_static.c: the equilibrium of passive bodies in a stream. */
-#include "steady/steady_static.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +13,7 @@
 #include "school/diagnostics_momentum.h"
 #include "school/rigid.h"
 #include "solver/equilibrium.h"
-#include "steady/steady_start.h"
+#include "steady/steady_problem.h"
 
 int steady_static_applies(const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {

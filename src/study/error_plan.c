@@ -11,10 +11,9 @@
 #include "case/case.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
-#include "case/sweep_quantity.h"
 #include "fish/fish_school.h"
 #include "school/warnings.h"
-#include "steady/steady_static.h"
+#include "steady/steady_problem.h"
 
 static const char what[] = "the errors of a study"; /* in messages on memory */
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "case/sweep_quantity.h"
+#include "case/sweep.h"
 #include "result/netcdf.h"
 #include "result/result_table.h"
 

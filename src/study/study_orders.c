@@ -9,7 +9,6 @@
 #include "base/text.h"
 #include "case/sweep.h"
 #include "case/sweep_error.h"
-#include "case/sweep_quantity.h"
 #include "study/study_print.h"
 
 enum { NAME_BYTES = 64, MEANING_BYTES = 160, WORDS_BYTES = 128 };

@@ -20,7 +20,7 @@ struct study_order {
     double error;        /* of the finest level, in the unit of the quantity: error_budget.h, or from a given value */
     int is_known;        /* some level has a value */
     enum error_budget_verdict verdict; /* on the quantity together with speed, cost and Strouhal number */
-    int culprit;                       /* quantity that causes the flag (sweep_quantity.h); -1: none */
+    int culprit;                       /* quantity that causes the flag (sweep.h); -1: none */
 };
 
 /* Convergence along the refined axis of a study. A group: members that differ in the refined axis only. */

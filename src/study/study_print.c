@@ -9,8 +9,6 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
-#include "case/sweep_expect.h"
-#include "case/sweep_quantity.h"
 
 // ---- tables
 

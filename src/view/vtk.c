@@ -1,6 +1,4 @@
 /* vtk.c: VTK's XML files of lines, polygons and points, numbers in base 64. */
-#include "view/vtk.h"
-
 #include <errno.h>
 #include <math.h>
 #include <stdint.h>
@@ -11,6 +9,7 @@
 #include "base/text.h"
 #include "result/durable.h"
 #include "result/result_reader.h"
+#include "view/export.h"
 #include "view/outline.h"
 #include "wake/wake.h"
 

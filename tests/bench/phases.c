@@ -28,7 +28,7 @@
 #include "result/result_file.h"
 #include "run/simulate.h"
 #include "run/simulate_run.h"
-#include "school/residual_jacobian.h"
+#include "school/residual.h"
 #include "solver/linear.h"
 #include "vortex/kernel.h"
 #include "vortex/velocity_sum.h"

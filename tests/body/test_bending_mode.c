@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "body/bending_mode.h"
+#include "body/rod.h"
 #include "school.h"
 
 #define TIME "time: {end: 3, shedding_interval: 0.01}\n"

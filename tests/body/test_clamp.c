@@ -6,7 +6,7 @@
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 #include "school.h"
-#include "school/residual_jacobian.h"
+#include "school/residual.h"
 
 #define TIME "time: {end: 2, shedding_interval: 0.01}\n"
 #define HEAD "motion: {prescribed: head, heave: 0.1, pitch: 20, pitch_phase: 70, frequency: 1.2}"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "body/bending_mode.h"
+#include "body/rod.h"
 #include "failing_malloc.h"
 #include "fish/fish_school.h"
 #include "force/pressure.h"

@@ -6,7 +6,7 @@
 #include "flow/flow_derivative.h"
 #include "school.h"
 #include "school/jacobian.h"
-#include "school/residual_jacobian.h"
+#include "school/residual.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 

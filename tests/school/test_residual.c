@@ -4,7 +4,7 @@
 
 #include "fish/fish_motion.h"
 #include "school.h"
-#include "school/residual_jacobian.h"
+#include "school/residual.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 // stirred bodies may cross

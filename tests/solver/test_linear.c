@@ -8,7 +8,7 @@
 
 #include "failing_malloc.h"
 #include "school.h"
-#include "school/residual_jacobian.h"
+#include "school/residual.h"
 #include "solver/linear.h"
 
 // stirred bodies may cross

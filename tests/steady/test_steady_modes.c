@@ -6,8 +6,7 @@
 
 #include "failing_malloc.h"
 #include "school.h"
-#include "steady/steady_modes.h"
-#include "steady/steady_static.h"
+#include "steady/steady_problem.h"
 
 enum { MOST = 2 * STEADY_QUANTITIES };
 

@@ -6,7 +6,7 @@
 
 #include "fish/fish_motion.h"
 #include "school.h"
-#include "steady/steady_static.h"
+#include "steady/steady_problem.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
 #define BODY                                                          \

@@ -8,7 +8,6 @@
 
 #include "base/text.h"
 #include "case/sweep.h"
-#include "case/sweep_quantity.h"
 #include "crafted_file.h"
 #include "failing_malloc.h"
 #include "near.h"

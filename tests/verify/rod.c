@@ -14,7 +14,7 @@
 
 #include "fish/fish_motion.h"
 #include "school/diagnostics_energy.h"
-#include "school/residual_jacobian.h"
+#include "school/residual.h"
 #include "verify.h"
 
 enum { N_LEVELS = 4 };

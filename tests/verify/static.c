@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "linear_theory.h"
-#include "steady/steady_static.h"
+#include "steady/steady_problem.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;

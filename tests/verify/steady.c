@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "steady/steady_modes.h"
 #include "steady/steady_problem.h"
 #include "verify.h"
 

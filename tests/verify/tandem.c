@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "linear_theory.h"
-#include "steady/steady_modes.h"
 #include "steady/steady_problem.h"
 #include "verify.h"
 

@@ -5,7 +5,7 @@
 #include "crafted_file.h"
 #include "result/result_reader.h"
 #include "result_fixture.h"
-#include "view/page.h"
+#include "view/export.h"
 
 // ---- the reader
 

@@ -1,0 +1,34 @@
+/* export.h: a run for other programs. page.c: a run as one page of HTML: page.html with the data. Tested by
+ * tests/view/test_page.c and, in a browser, tests/app/test_view.sh.
+ *
+ * The page stays below 8 MB: for a long run the page has every n-th row, and for long wakes every m-th vortex, with a
+ * note. */
+#ifndef EXPORT_H
+#define EXPORT_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+
+/* Write the page of the result file at from to the path to. Fails with STATUS_FILE, also for a school too large for a
+ * page, or with STATUS_MEMORY; no file is then left. */
+enum status page_write(const char *from, const char *to, bool overwrite);
+
+// ---- vtk.c: a run as VTK files for ParaView: a list of times with two or three files for each row. Tested by
+// tests/app/test_export.sh, which reads the files with VTK.
+//
+//     FOLDER/NAME.pvd              the times; open this one
+//     FOLDER/NAME-bodies-0000.vtp  each fish as a line of its bound vortices and as an outline
+//     FOLDER/NAME-wakes-0000.vtp   the free vortices, in rows with a wake
+//     FOLDER/NAME-walls-0000.vtp   the walls as lines, in all rows, if the case has fluid.walls
+//
+// Point data of bodies: sheet_strength [m s-1] and, with force: pressure, the pressure jump [Pa], left less right, on
+// the outline the value of the adjacent line. Cell data: fish (number, from 0), outline (1, or 0 for a line), speed [m
+// s-1], heading [degree]. Point data of wakes: circulation [m2 s-1] with decay, age [s], fish.
+
+/* Write all rows of the result file at from to the folder; create a missing folder. Without overwrite existing files
+ * are refused. The list of times is written last. name: NULL, or set to the path of the list, which the caller frees.
+ * Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status vtk_export(const char *from, const char *folder, bool overwrite, char **name);
+
+#endif
