@@ -11,15 +11,12 @@ INTRODUCTION = """\
 <!-- Written by `make docs` from the tables in src/result/result_table.c and src/school/warnings.c and the text in scripts/make-output-doc.py. -->
 
 `shoal run CASE` writes one NetCDF file in the classic format with 64-bit sizes (CDF-5), which every NetCDF library since
-4.4 reads. A run that is killed or fills the disk keeps all rows written before. The file contains the case and all data
-for pictures.
+4.4 reads. A killed run keeps all rows written before.
 
 ## Opening
 
     shoal info demo.nc                 # a summary: status, fish, last values, work of the solver
-    shoal info demo-study/study.nc     # of a study: axes, members, orders of convergence; of a comparison: the table
-    shoal info demo-field.nc           # of a field: time, grid
-    shoal info demo.nc --json          # for programs: the last row, values of fish and members without nodes and vortices
+    shoal info demo.nc --json          # for programs: the last row, without nodes and vortices
     ncdump -v speed,heading demo.nc    # ncdump -h: dimensions, variables and attributes
 
 Python (`apt install python3-xarray python3-netcdf4`):
@@ -35,10 +32,8 @@ Octave (`pkg load netcdf`) and MATLAB list the dimensions in the opposite order:
     x = ncread("demo.nc", "x");                         % (xy, node, fish, time)
     plot(squeeze(x(1, 1, 1, :)), squeeze(x(2, 1, 1, :)))  % path of the nose of the first fish
 
-`shoal view demo.nc` writes demo.html, one page that plays bodies, wakes and traces in any browser without a network.
-`shoal export demo.nc --vtk demo` writes files for ParaView. Figures and films: `scripts/plot.py demo.nc`, `scripts/plot.py
-time demo.nc`, `scripts/plot.py forces demo.nc`, `scripts/animate.py demo.nc demo.mp4`
-([gallery.md](gallery.md)).
+`shoal view demo.nc` writes demo.html, a page that plays bodies and wakes in any browser. `shoal export demo.nc --vtk
+demo` writes files for ParaView. Figures and films: [gallery.md](gallery.md).
 
 ## Dimensions
 
@@ -54,34 +49,29 @@ time demo.nc`, `scripts/plot.py forces demo.nc`, `scripts/animate.py demo.nc dem
 | `wall` | 1, or 2 for a channel; only with `fluid.walls`, like `wall_y` |
 | `multiplier` | six for each fish; only in files of `shoal steady`, like the variables `steady_...` ([steady.md](steady.md)) |
 
-A fish with fewer points uses the first `n_nodes`, `n_edges`, `n_joints`, `n_sheet` slots. All other slots hold NaN, also
-the `_FillValue`. Undefined quantities (a mean over a beat in the first beat, the distance between the bodies of one fish)
-are NaN as well.
+A fish with fewer points uses the first `n_nodes`, `n_edges`, `n_joints`, `n_sheet` slots. All other slots, and undefined
+quantities such as a mean in the first beat, are NaN, also the `_FillValue`.
 
-*Wake.* A fish has `wake_count` free vortices in the first slots, oldest first. A vortex moves to the previous slot when an
-older vortex is removed; `wake_birth` identifies a vortex. With `output.wake_interval` longer than `time.output_interval`
-the rows between hold NaN in `wake_x`, `wake_circulation` and `wake_birth`; every row has `wake_count`. `wake_circulation`
-is the shed circulation; the strength in the flow decays over the last `wake_decay` seconds of `wake_lifetime`
-(doc/model.md, section 8). The vortex that grows at the tail has no slot before the release.
+*Wake.* A fish has `wake_count` free vortices in the first slots, oldest first; `wake_birth` identifies a vortex. Rows
+between two records of the wake (`output.wake_interval`) hold NaN in `wake_x`, `wake_circulation` and `wake_birth`.
+`wake_circulation` has no decay (doc/model.md, section 8). The vortex that grows at the tail has no slot before the
+release.
 
-`output.precision: single` stores the variables marked *single* below as float, which halves the file; time and derived
-quantities stay double.
+`output.precision: single` stores the variables marked *single* below as float, which halves the file.
 
 ## Reading during a run
 
-The file can be opened at any time, by several readers, and shows all complete rows; a reader opens the file again to see
-new rows. The attribute `run_status` is the state of the run:
+Readers can open the file at any time, and again to see new rows. The attribute `run_status` is the state of the run:
 
 | `run_status` | meaning |
 |---|---|
 | `running` | the run continues, or was killed: `shoal resume` continues from a checkpoint |
 | `complete` | the run reached `time.end` |
-| `stopped` | stopped by a signal or `--max-wall`; the rows are valid, and `shoal resume` continues ([reliability.md](reliability.md)) |
+| `stopped` | stopped by a signal or `--max-wall`; `shoal resume` continues ([reliability.md](reliability.md)) |
 | `failed: ...` | the integration or the writing failed, or bodies met with `contact.action: stop`; the rows are valid |
 
-The attribute `warnings` is written at the end: one line for each defect of a result whose integration succeeded, with the
-most affected fish. The program prints warnings at the end of a run, in `shoal info` and in `shoal gather`; with `--strict`
-warnings lead to exit code 3.
+The attribute `warnings` has one line for each defect of a result after a successful integration, with the most affected
+fish. `shoal run`, `shoal info` and `shoal gather` print the warnings; with `--strict` the exit code is 3.
 
 @WARNINGS@
 
@@ -95,7 +85,7 @@ original case file. `source` names the program, the commit and the libraries, `h
     shoal info --case demo.nc > again.yaml
     shoal run again.yaml
 
-reproduces the numbers, with the same program to the bit (only `wall_time` and `history` differ). A run that was stopped and
+reproduces the numbers, with the same program to the bit except `wall_time` and `history`. A run that was stopped and
 resumed also needs the times of the stops: `--checkpoint-at` with the attribute `checkpoint_at`.
 
 ## Attributes
@@ -130,21 +120,15 @@ OTHERS = {
 
 `shoal study` and `shoal gather` make `study.nc` from the files of the members. Attribute `study_case` is the case with the
 sweep, `shoal_study` is 1. Each swept key is a variable over `member`, named like the key with `_` for `.` and without
-brackets; `long_name` is the path, `axis` the number of the axis, and `refine` is 1 on a refined axis. Every variable over
-(time), (time, fish) or (time, fish, xy) of a result file is included with the last row, over (member), (member, fish) or
-(member, fish, xy); for members that are steady states also the variables `steady_...`. A member without rows has NaN.
+brackets; `long_name` is the path, `axis` the number of the axis, and `refine` is 1 on a refined axis. The last row of
+every variable over (time), (time, fish) or (time, fish, xy) of a result file is included, with `member` for `time`; for
+steady states also `steady_...`. A member without rows has NaN.
 
-Studies with a refined axis have `level_value` and the following variables. The six kinds from `difference_Q` on exist for
-each quantity Q: `nose`, `tail`, `com`, `speed`, `mean_heading`, `shed_circulation`, `cost_of_transport`,
-`mean_actuation_power`; for steady states `steady_speed` and the other quantities in [cases.md](cases.md). The order of the
-nose is `order_nose`. A group is a set of members that differ in the refined key only.
-
-Studies with `error` have `key_name` and the following variables, and `stated_Q`, `bar_Q`, `part_Q`, `key_order_Q` for each
-quantity Q of the request.
-
-`shoal compare -o FILE` writes the same file with one axis, which sets `solver.method`, `solver.order`, `solver.rtol` and
-`solver.step`. Member 0 is the reference, member 1 measures the error of the reference; other members with equal values are
-repeats. Only such a study has `nose_error`, `tail_error` and `power_error`.
+A refined axis adds the variables over `level` and `group` (members that differ in the refined key only), for each
+quantity Q with orders ([cases.md](cases.md)): the order of the nose is `order_nose`. `error` adds the variables over
+`key`, `stated_Q` and `bar_Q`. `shoal compare -o FILE` writes one axis, which sets `solver.method`, `solver.order`,
+`solver.rtol` and `solver.step`, with `nose_error`, `tail_error` and `power_error`: member 0 is the reference, member 1
+measures the error of the reference, other members with equal values are repeats.
 """,
     "field": """
 ## The file of a field
@@ -154,13 +138,9 @@ repeats. Only such a study has `nose_error`, `tail_error` and `power_error`.
     scripts/plot.py field field.nc                           # vorticity (--speed: speed), streamlines, bodies: field.png
 
 `shoal field` writes the velocity and the vorticity of the fluid on a grid, at the time of one row: the sum of the external
-flow, every bound sheet and every wake, with the smoothing for another body. Large sums use the tree (error 1e-7 of the sum
-of absolute values). The velocity is the velocity of the flow at a body at that position, to rounding, or to seven digits
-with `output.precision: single`.
-
-The field omits the flow around the thickness of bodies, which are lines in the model, and the smaller smoothing between a
-body and the newest part of the own wake (doc/model.md, section 8). The vorticity is the vorticity of the smoothed sheets
-and wakes less the shear of the stream. A row without a wake (`output.wake_interval`) has no field.
+flow, every bound sheet and every wake, as at another body at that position (doc/model.md, section 8), by the tree with an
+error of 1e-7 of the sum of absolute values. The field omits the flow around the thickness of bodies, which are lines in
+the model. A row without a wake (`output.wake_interval`) has no field.
 
 Attribute `run` names the file of the run, `case_effective` is the case, `shoal_field` is 1.
 """,

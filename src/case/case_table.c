@@ -221,10 +221,8 @@ const struct key case_table[] = {
     {"name", STRING, AT(name), NULL, FROM_TO(1, NAME_BYTES), "", .meaning = "name of the case",
      .derived = "the name of the file without the ending", .derive = derive_case_name, .synonyms = "title case"},
     {"include", FILES, 0, "[]", FROM_TO(1, FILE_BYTES), "",
-     .meaning = "case files to read first, relative to this file; keys in this file override theirs",
-     .synonyms = "import includes"},
-    {"preset", CHOICE, AT(preset), "none", ANY, "",
-     .meaning = "published: take the defaults from the published scheme; keys in the case override these defaults",
+     .meaning = "case files to read first, relative to this file", .synonyms = "import includes"},
+    {"preset", CHOICE, AT(preset), "none", ANY, "", .meaning = "published: defaults of the published scheme",
      .words = WORDS("none", "published"), .synonyms = "variant"},
 
     {"time.end", REAL, AT(time.end), NULL, ABOVE(0), "s", .meaning = "end of the simulation, which starts at time 0",
@@ -235,19 +233,18 @@ const struct key case_table[] = {
                 "output intervals are then rounded to events",
      .derive = derive_shedding_interval, .synonyms = "dt delta_t timestep time_step", .published = "0.01"},
     {"time.output_interval", REAL, AT(time.output_interval), NULL, ABOVE(0), "s",
-     .meaning = "time between two rows of output; an integer multiple of shedding_interval",
+     .meaning = "time between two rows of output, an integer multiple of shedding_interval",
      .derived = "ten shedding intervals", .derive = derive_output_interval,
      .synonyms = "output_every save_interval dt_out"},
     {"time.checkpoint_interval", REAL, AT(time.checkpoint_interval), "0", FROM(0), "s",
-     .meaning = "time between two checkpoints for `shoal resume`; an integer multiple of shedding_interval; 0: a "
-                "checkpoint only when the run is stopped",
+     .meaning = "time between two checkpoints for `shoal resume`, an integer multiple of shedding_interval; 0: only "
+                "when the run is stopped",
      .synonyms = "checkpoint restart_interval checkpoint_every save_every"},
 
     {"fluid.density", REAL, AT(school.fluid.density), "1000", FROM(0), "kg m-3",
      .meaning = "density of the fluid; 0: no fluid forces", .synonyms = "rho rho_f"},
     {"fluid.viscosity", REAL, AT(school.fluid.viscosity), "1e-6", FROM(0), "m2 s-1",
-     .meaning = "kinematic viscosity of the fluid, for the friction with 'drag.skin: laminar' and 'boundary_layer'",
-     .synonyms = "nu"},
+     .meaning = "kinematic viscosity, for drag.skin laminar and boundary_layer", .synonyms = "nu"},
     {"fluid.velocity", PAIR, AT(school.fluid.velocity), "[0, 0]", ANY, "m s-1", .meaning = "uniform background flow",
      .synonyms = "current stream flow wind u_inf"},
     {"fluid.shear", REAL, AT(school.fluid.shear), "0", ANY, "s-1",
@@ -257,63 +254,59 @@ const struct key case_table[] = {
     {"fluid.gust.frequency", REAL, AT(school.fluid.gust_frequency), "0", FROM(0), "Hz",
      .meaning = "frequency of the gust"},
     {"fluid.walls", NUMBERS, AT(school.fluid.walls), "[]", ANY, "m",
-     .meaning = "straight walls along x: y of one wall, or y of both walls of a channel; the bodies start on one side "
-                "of a single wall, or inside the channel",
+     .meaning = "straight walls along x: y of one wall, or of both walls of a channel",
      .synonyms = "wall channel boundary tank ground bottom"},
 
     {"wake.smoothing", REAL, AT(school.wake.smoothing), "0.1", ABOVE(0), "",
-     .meaning = "smoothing radius of a free vortex for the velocity induced at the wake, in body lengths",
-     .synonyms = "delta core blob epsilon", .published = "0.2"},
+     .meaning = "smoothing radius of a free vortex, in body lengths", .synonyms = "delta core blob epsilon",
+     .published = "0.2"},
     {"wake.taper", REAL, AT(school.wake.taper), NULL, FROM(0), "",
-     .meaning = "shedding sheet: distance from the tail over which the smoothing radius of the wake, for the velocity "
-                "induced at the body, grows from 0, in body lengths; 0: no taper",
+     .meaning = "shedding sheet: distance from the tail, in body lengths, over which the smoothing of the wake at the "
+                "body grows from 0; 0: no taper",
      .derived = "0.6 with shedding sheet, else 0", .derive = derive_taper},
     {"wake.taper_beside", REAL, AT(school.wake.taper_beside), NULL, FROM(0), "",
-     .meaning = "shedding sheet: the same distance for vortices beside the body, in body lengths",
-     .derived = "0.07 with shedding sheet, else 0", .derive = derive_taper_beside},
+     .meaning = "shedding sheet: the same for vortices beside the body", .derived = "0.07 with shedding sheet, else 0",
+     .derive = derive_taper_beside},
     {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
-     .meaning = "age at which a vortex is removed, in seconds, or in beats of the slowest fish, such as '3 beats'",
+     .meaning = "age at which a vortex is removed, in s or in beats of the slowest fish, such as '3 beats'",
      .derived = "3 beats; 2 s if no fish beats", .derive = derive_lifetime, .published = "2",
      .synonyms = "life max_age age"},
     {"wake.decay", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
-     .meaning = "last part of the lifetime, in which the circulation of a vortex decays to 0, in seconds or in beats",
-     .derived = "3/4 of the lifetime", .derive = derive_decay, .published = "0", .former = "wake.fade"},
+     .meaning = "last part of the lifetime, in which the circulation decays to 0", .derived = "3/4 of the lifetime",
+     .derive = derive_decay, .published = "0", .former = "wake.fade"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "sheet", ANY, "",
-     .meaning = "sheet: a vortex sheet grows from the tail; continuous: a nascent vortex grows between events; "
-                "impulsive: a vortex of full circulation appears at each event",
+     .meaning = "sheet: a vortex sheet grows from the tail; continuous: a vortex grows between events; impulsive: a "
+                "vortex appears at each event",
      .words = WORDS("continuous", "impulsive", "sheet"), .published = "impulsive"},
     {"wake.removed_circulation", CHOICE, AT(school.wake.removed_circulation), "retained", ANY, "",
-     .meaning = "treatment of the circulation of removed vortices in Kelvin's theorem: retained or dropped",
-     .published = "dropped", .words = WORDS("retained", "dropped"), .former = "wake.dissipated_circulation"},
+     .meaning = "circulation of removed vortices in Kelvin's theorem", .published = "dropped",
+     .words = WORDS("retained", "dropped"), .former = "wake.dissipated_circulation"},
     {"wake.tolerance", REAL, AT(school.wake.tolerance), NULL, FROM_TO(0, 0.01), "",
      .meaning = "estimated error allowed in the velocity that far vortices induce at the bodies, in body lengths per "
                 "beat; 0: direct summation",
      .derived = "solver.rtol/100", .derive = derive_wake_tolerance, .synonyms = "accuracy theta"},
     {"wake.merge", REAL, AT(school.wake.merge), "0", FROM_TO(0, 0.1), "",
-     .meaning = "error allowed in the velocity at the bodies due to merging neighbouring vortices of a wake far from "
-                "all bodies, in body lengths per beat; 0: no merging",
+     .meaning = "error allowed in the velocity at the bodies due to merging of distant vortices, in body lengths per "
+                "beat; 0: no merging",
      .synonyms = "coarsen thin"},
     {"wake.spare_vortices", INTEGER, AT(school.wake.spare), "0", FROM_TO(0, 1000000), "",
      .meaning = "number of vortices that a program can add to each wake: doc/python.md, section 2",
      .synonyms = "extra_vortices added_vortices"},
 
     {"wake.vortices", ROWS, AT(school.wake.vortices), "[]", ANY, "",
-     .meaning = "vortices in the fluid at the start: rows of x and y in m, and circulation in m2 s-1; they belong to "
-                "the wake of the first fish, and are removed at the age wake.lifetime",
+     .meaning = "vortices at the start, in the wake of the first fish: rows of x and y in m, circulation in m2 s-1",
      .synonyms = "dipole encounter"},
 
     {"sheet.smoothing", REAL, AT(school.sheet.smoothing), "0.05", ABOVE(0), "",
-     .meaning =
-         "smoothing radius of a bound vortex for the velocity induced at the wake and at other fish, in body lengths",
-     .published = "0.01", .former = "wake.sheet_smoothing"},
+     .meaning = "smoothing radius of a bound vortex at wakes and other fish, in body lengths", .published = "0.01",
+     .former = "wake.sheet_smoothing"},
     {"sheet.curve", CHOICE, AT(school.sheet.curve), "smooth", ANY, "",
      .meaning = "line of the bound sheet through the nodes: a smooth interpolant, or straight edges",
      .words = WORDS("smooth", "polygon"), .synonyms = "line spline interpolation", .published = "polygon",
      .former = "wake.curve"},
     {"sheet.collocation", CHOICE, AT(school.sheet.collocation), "chebyshev", ANY, "",
-     .meaning =
-         "control points of the impermeability condition: chebyshev points, or midpoints between the bound vortices",
-     .published = "midpoint", .words = WORDS("chebyshev", "midpoint"), .former = "wake.collocation"},
+     .meaning = "control points: Chebyshev points, or midpoints between the bound vortices", .published = "midpoint",
+     .words = WORDS("chebyshev", "midpoint"), .former = "wake.collocation"},
     {"sheet.kutta", CHOICE, AT(school.sheet.kutta), "edge", ANY, "",
      .meaning = "Kutta condition; edge: the sheet strength at the tail vanishes; rate: the slip velocity at the tail "
                 "sets the shedding rate",
@@ -322,25 +315,24 @@ const struct key case_table[] = {
      .meaning = "kutta rate: time over which shedding is ramped up", .published = "0.5", .former = "wake.kutta_ramp"},
 
     {"contact.action", CHOICE, AT(school.contact.action), "repel", ANY, "",
-     .meaning = "action when the outlines of two bodies are closer than contact.range; repel: a repulsive force; warn: "
-                "a warning in the result, no force; stop: the run ends with exit code 3",
+     .meaning = "bodies closer than contact.range; repel: a repulsive force; warn: a warning in the result; stop: the "
+                "run ends with exit code 3",
      .words = WORDS("repel", "warn", "stop"), .synonyms = "law mode collision"},
     {"contact.range", REAL, AT(school.contact.range), "0.02", ABOVE(0), "",
-     .meaning = "distance below which two bodies are in contact; in lengths of the longest fish",
+     .meaning = "distance of outlines below which two bodies are in contact, in lengths of the longest fish",
      .synonyms = "distance gap"},
 
     {"solver.method", METHOD, AT(solver.method), "ida", ANY, "", .meaning = "integration method: see below",
      .synonyms = "integrator scheme"},
     {"solver.rtol", REAL, AT(school.rtol), "1e-5", FROM_TO(1e-14, 0.1), "",
-     .meaning = "error allowed per step, relative to the scale of each unknown (doc/numerics.md, section 3)",
+     .meaning = "error allowed per step, over the scale of each unknown (doc/numerics.md, section 3)",
      .synonyms = "tolerance tol reltol relative_tolerance"},
     {"solver.order", INTEGER, AT(solver.order), NULL, FROM_TO(1, 5), "",
      .meaning = "highest order of ida (doc/numerics.md, section 3)",
      .derived = "3; 5 if the slowest bending mode of every fish is below 0.6 of the beat frequency; 2 if a fish has a "
                 "relaxation_time below 1/1000 of the beat period"},
     {"solver.coupling_distance", REAL, AT(school.coupling_distance), "0.5", FROM(0), "",
-     .meaning = "maximum distance of two fish coupled in the Jacobian, unless Newton's method then converges too "
-                "slowly; in lengths of the longest fish"},
+     .meaning = "distance of two fish up to which the Jacobian couples them, in lengths of the longest fish"},
     {"solver.threads", INTEGER, AT(school.threads), "1", FROM_TO(1, MAX_THREADS), "", .meaning = "number of threads",
      .synonyms = "n_threads cores processes"},
     {"solver.step", REAL, AT(solver.step), "0", FROM(0), "s", .meaning = "fixed step; 0: adaptive steps",
@@ -353,23 +345,21 @@ const struct key case_table[] = {
     {"output.precision", CHOICE, AT(output.precision), "double", ANY, "",
      .meaning = "floating-point precision of the variables in the file", .words = WORDS("double", "single")},
     {"output.forces", CHOICE, AT(output.forces), "totals", ANY, "",
-     .meaning = "forces on the bodies in the file; totals: per fish; edges: also per edge",
-     .words = WORDS("totals", "edges")},
+     .meaning = "forces in the file; totals: per fish; edges: also per edge", .words = WORDS("totals", "edges")},
     {"output.wake_interval", REAL, AT(output.wake_interval), NULL, ABOVE(0), "s",
-     .meaning = "time between two records of the wake; an integer multiple of output_interval",
+     .meaning = "time between two records of the wake, an integer multiple of output_interval",
      .derived = "time.output_interval", .derive = derive_wake_interval},
 
     {"steady.tolerance", REAL, AT(steady.tolerance), "1e-5", FROM_TO(1e-12, 0.1), "",
-     .meaning = "maximum change per beat of a steady state: of the speed, in body lengths per beat, and of the other "
-                "quantities compared (doc/steady.md)",
+     .meaning = "maximum change per beat of a steady state: of the speed in body lengths per beat, and of other "
+                "quantities (doc/steady.md)",
      .synonyms = "residual accuracy"},
     {"steady.beats", INTEGER, AT(steady.beats), "200", FROM_TO(3, MAX_STEPS), "",
      .meaning = "the search fails after this many beats", .synonyms = "max_beats limit"},
     {"steady.output_beats", INTEGER, AT(steady.output_beats), "2", FROM_TO(1, MAX_STEPS), "",
      .meaning = "number of beats in the result, from the steady state on", .synonyms = "last_beats"},
     {"steady.formation", CHOICE, AT(steady.formation), "false", ANY, "",
-     .meaning =
-         "true: also find positions of the other fish relative to the first fish at which the formation is steady",
+     .meaning = "true: also find steady positions of the other fish relative to the first one",
      .words = WORDS("false", "true"), .synonyms = "places school"},
     {"steady.multipliers", CHOICE, AT(steady.multipliers), "true", ANY, "",
      .meaning = "true: compute the Floquet multipliers; without a beat, the modes of the bodies",
@@ -396,7 +386,7 @@ const struct key case_table[] = {
     {"fish.body.thickness", REAL, IN_FISH(body.thickness), "0.2", BETWEEN(0, 1), "",
      .meaning = "joukowski: parameter d of the foil; uniform: thickness over length"},
     {"fish.body.tail_thickness", REAL, IN_FISH(body.tail_thickness), NULL, FROM_BELOW(0, 1), "",
-     .meaning = "joukowski: thickness at the tail over length; 0: a cusp, for which results do not converge with nodes",
+     .meaning = "joukowski: thickness at the tail over length; 0: a cusp, without convergence in the nodes",
      .derived = "0.04 with profile joukowski, else 0", .derive = derive_tail_thickness, .published = "0"},
     {"fish.body.depth", REAL, IN_FISH(body.depth), "0.25", ABOVE(0), "",
      .meaning = "depth of the body (its span, out of the plane of motion) over length", .former = "fish.body.width"},
@@ -405,7 +395,7 @@ const struct key case_table[] = {
     {"fish.body.depth_table", NUMBERS, IN_FISH(body.depth_table), "[]", ABOVE(0), "m",
      .meaning = "profile table: depth of every edge", .synonyms = "widths", .former = "fish.body.w"},
     {"fish.body.section", CHOICE, IN_FISH(body.section), "mean", ANY, "",
-     .meaning = "cross-section of an edge: mean: means over the edge; nodes: from the thickness at its two nodes",
+     .meaning = "section of an edge; mean: means over the edge; nodes: from the thickness at both nodes",
      .words = WORDS("mean", "nodes"), .published = "nodes"},
     {"fish.body.density", REAL, IN_FISH(body.density), "1000", ABOVE(0), "kg m-3", .meaning = "density of the body",
      .synonyms = "rho rho_b", .published = "2000"},
@@ -445,8 +435,8 @@ const struct key case_table[] = {
      .meaning = "wavelength in body lengths of a wave from head to tail; sets number to -2 pi/wavelength",
      .derived = "from wave.number", .derive = derive_wavelength, .synonyms = "lambda"},
     {"fish.wave.table", ROWS, IN_FISH(wave.table), "[]", ANY, "",
-     .meaning = "natural curvature times body length, replaces the wave: rows at equal distances from nose to tail, in "
-                "each row values at equal phases of one period",
+     .meaning = "natural curvature times body length in place of the wave: rows at equal distances from nose to tail, "
+                "of values at equal phases of one period",
      .synonyms = "curvature profile"},
     {"fish.wave.frequency", REAL, IN_FISH(wave.frequency), "1", FROM(0), "Hz", .meaning = "beat frequency",
      .synonyms = "omega freq f beat period"},
@@ -456,28 +446,25 @@ const struct key case_table[] = {
      .derive = derive_wave_ramp, .published = "0"},
 
     {"fish.force", CHOICE, IN_FISH(force), "reactive", ANY, "",
-     .meaning =
-         "force of the fluid besides drag; reactive: from the kinetic energy of the fluid, with the momentum shed at "
-         "the tail; published: added mass across each edge; pressure: the pressure jump across the bound sheet",
+     .meaning = "force of the fluid besides drag; reactive: accelerated fluid, with the flux at the tail; published: "
+                "added mass across each edge; pressure: pressure jump across the bound sheet",
      .words = WORDS("reactive", "published", "pressure"), .published = "published"},
     {"fish.pressure.span", CHOICE, IN_FISH(span), "infinite", ANY, "",
-     .meaning =
-         "force pressure: span of the sheets of body and wake; finite: the depth of the body, the sheets are vortex "
-         "rings; infinite: two-dimensional flow, in which the depth is only a factor of the forces",
+     .meaning = "force pressure: span of the sheets; finite: the depth of the body, with vortex rings; infinite: "
+                "two-dimensional flow",
      .words = WORDS("finite", "infinite")},
     {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
      .meaning = "force pressure: fraction of the leading-edge suction that acts on the body"},
     {"fish.pressure.suction_limit", REAL, IN_FISH(suction_limit), "0.18", FROM(0), "",
-     .meaning = "force pressure: leading-edge suction parameter A_0 above which the flow at the nose separates, 0.11 "
-                "(sharp nose, low Reynolds number) to 0.25 (round nose, high); 0: no limit",
+     .meaning = "force pressure: A_0 above which the flow at the nose separates, 0.11 (sharp nose, low Reynolds "
+                "number) to 0.25 (round nose, high); 0: no limit",
      .synonyms = "lesp critical a0 leading_edge"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},
     {"fish.drag.skin", CHOICE, IN_FISH(drag.skin), NULL, ANY, "",
      .meaning = "law of the tangential drag; quadratic: drag.law with drag.tangential; laminar: laminar boundary layer "
-                "on a flat plate, with fluid.viscosity; boundary_layer: the same with transition, and with factors for "
-                "waving and thick bodies",
+                "of a plate; boundary_layer: the same with transition, and factors for waving and thickness",
      .words = WORDS("quadratic", "laminar", "boundary_layer"),
      .derived = "boundary_layer with force pressure, else quadratic", .derive = derive_skin},
     {"fish.drag.transition", REAL, IN_FISH(drag.transition), "2e5", FROM(0), "",
@@ -516,12 +503,11 @@ const struct key case_table[] = {
      .synonyms = "force"},
 
     {"fish.motion.prescribed", CHOICE, IN_FISH(motion.prescribed), "none", ANY, "",
-     .meaning = "prescribed motion; none; head: of the nose and of the direction of the first edge; all: of the entire "
-                "straight body",
+     .meaning =
+         "prescribed motion; head: of the nose and the direction of the first edge; all: of the entire straight body",
      .words = WORDS("none", "head", "all"), .synonyms = "drive prescribed", .former = "fish.motion.driven"},
     {"fish.motion.surge", CHOICE, IN_FISH(motion.surge), "given", ANY, "",
-     .meaning = "motion along start.heading; given: with motion.speed; free: the motion is prescribed only across the "
-                "heading, and the forces on the body determine the surge",
+     .meaning = "motion along start.heading; given: with motion.speed; free: determined by the forces",
      .words = WORDS("given", "free")},
     {"fish.motion.speed", REAL, IN_FISH(motion.speed), NULL, ANY, "m s-1",
      .meaning = "prescribed speed along start.heading; surge free: at the start", .derived = "start.speed",
@@ -541,17 +527,17 @@ const struct key case_table[] = {
      .meaning = "pitch axis, in body lengths from the nose"},
 
     {"fish.control.law", CHOICE, IN_FISH(control.law), NULL, ANY, "",
-     .meaning = "law of the steering bias; none: the key bias; heading: error of the heading; averaged_heading: error "
-                "of the heading averaged over a period; course: error of the course over the last period",
+     .meaning = "law of the steering bias; none: the key bias; heading: error of the heading; averaged_heading: of its "
+                "mean over a period; course: of the course over the last period",
      .words = WORDS("none", "heading", "averaged_heading", "course"), .synonyms = "controller type",
      .derived = "course with waypoints, else none", .derive = derive_control_law},
     {"fish.control.bias", REAL, IN_FISH(control.bias), "0", ANY, "",
      .meaning = "law none: the steering bias; positive turns right", .synonyms = "phi0 offset"},
     {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANGLE, "degree",
-     .meaning = "desired heading: a number, or a list of [time in s, angle], linear between the times",
+     .meaning = "desired heading: a number, or a list of [time in s, angle] with linear interpolation",
      .derived = "start.heading", .derive = derive_desired_heading, .synonyms = "target h_des target_heading"},
     {"fish.control.waypoints", PAIRS, IN_FISH(control.waypoints), "[]", ANY, "m",
-     .meaning = "points [x, y] to visit in order; the next point sets the desired heading", .synonyms = "route points"},
+     .meaning = "points to visit in order; the next point sets the desired heading", .synonyms = "route points"},
     {"fish.control.acceptance_radius", REAL, IN_FISH(control.acceptance_radius), "0.5", ABOVE(0), "",
      .meaning = "acceptance radius of a waypoint, in body lengths", .synonyms = "radius",
      .former = "fish.control.arrival"},
@@ -571,20 +557,18 @@ const struct key case_table[] = {
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading, course: maximum rate of change of the steering bias"},
     {"fish.control.ramp", REAL, IN_FISH(control.ramp), NULL, ABOVE(0), "s",
-     .meaning = "duration of a change of amplitude, frequency, bias or desired heading by a program (doc/python.md)",
+     .meaning = "duration of a change by a program (doc/python.md)",
      .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_control_ramp},
 
     {"sweep", AXES, 0, "[]", ANY, "",
-     .meaning = "axes of a study, {key: PATH, values: [...]} or {keys: [...], values: [[...], ...]}; `shoal study` "
-                "runs all combinations of the axes",
+     .meaning = "axes of a study, {key: PATH, values: [...]} or {keys: [...], values: [[...], ...]}",
      .synonyms = "study parameters scan"},
     {"expect", EXPECTATIONS, 0, "[]", ANY, "",
-     .meaning = "expectations of the final states of the members of a study, {of: QUANTITY, least: ..., most: ...}, "
-                "checked by `shoal study`",
+     .meaning = "expected final values of the members of a study, {of: QUANTITY, least: ..., most: ...}",
      .synonyms = "expected check assert"},
     {"error", ERRORS, 0, "{}", ANY, "",
-     .meaning = "errors of quantities, {of: [QUANTITY, ...], within: ...}; `shoal study` and `shoal error` vary each "
-                "numerical key separately and print the contribution of each key",
+     .meaning =
+         "requested errors of quantities, {of: [QUANTITY, ...], within: ...}, for `shoal study` and `shoal error`",
      .synonyms = "uncertainty errors accuracy error_bars"},
 };
 

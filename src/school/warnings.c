@@ -301,16 +301,14 @@ static int applies_to_force(enum warning warning, const struct fish *fish) {
 }
 
 const struct warning_words warnings_words[N_WARNINGS] = {
-    [WARNING_CONTACT] =
-        {"bodies touch, cross or come near",
-         "at or between steps of the integrator; near: gap below contact.range without 'contact.action: "
-         "repel'; closest_approach contains distance, fish and time"},
+    [WARNING_CONTACT] = {"bodies touch, cross or come near",
+                         "at or between steps of the integrator; near: gap below contact.range without "
+                         "'contact.action: repel'; see closest_approach"},
     [WARNING_CROSSING] = {"a body crosses itself",
                           "centre line or outline, at an event; contact forces do not act within a body"},
-    [WARNING_DIVERGENCE] =
-        {"a fish has diverged",
-         "at the end the speed of a node, or the circulation of the wake over the length, is above 100 times "
-         "the speeds of the case"},
+    [WARNING_DIVERGENCE] = {"a fish has diverged",
+                            "at the end a node speed, or the circulation of the wake over the length, is above 100 "
+                            "times the speeds of the case"},
     [WARNING_ENERGY] =
         {"the energy balance is open",
          "energy_balance is more than 1 % of the largest work of muscle, fluid, damping, prescribed motion and all "
@@ -325,22 +323,18 @@ const struct warning_words warnings_words[N_WARNINGS] = {
         {"few sheet points",
          "'shedding: sheet' and n_sheet - 1 < 0.9 x 3.2/sqrt(U Dt/L), with a change of speed below 10 % per "
          "beat"},
-    [WARNING_MODES] = {"slow modes",
-                       "the frequency of the slowest bending mode of a body in the fluid is below the beat frequency"},
-    [WARNING_EDGE] =
-        {"separation at the nose",
-         "separation_share is above 0.1, with a change of speed below 10 % per beat: the suction limit acts for more "
-         "than 10 % of the last period"},
+    [WARNING_MODES] = {"slow modes", "the slowest bending mode of a body in the fluid is slower than the beat"},
+    [WARNING_EDGE] = {"separation at the nose",
+                      "separation_share is above 0.1, with a change of speed below 10 % per beat"},
     [WARNING_CHATTER] = {"a controller chatters",
-                         "the steering bias of a control law reverses more than four times in the last period, by at "
-                         "least 1 % of control.limit"},
+                         "the steering bias of a law reverses more than four times in the last period, by at least 1 % "
+                         "of control.limit"},
     [WARNING_CUSP] = {"a cusp", "a Joukowski body that bends, with 'tail_thickness: 0'"},
-    [WARNING_TAIL] = {"few nodes at the tail",
-                      "twice the length of an edge is more than (EI/(m_L omega^2))^(1/4), with EI of the last edge and "
-                      "omega of the beat"},
+    [WARNING_TAIL] =
+        {"few nodes at the tail",
+         "two edges are longer than (EI/(m_L omega^2))^(1/4), with EI of the last edge and omega of the beat"},
     [WARNING_FORCE] = {"the published force",
-                       "the published force can create energy; the other warnings for this fish are contact, crossing "
-                       "and divergence"},
+                       "may create energy; the other warnings for this fish are contact, crossing and divergence"},
 };
 
 static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {
