@@ -2,12 +2,12 @@
 #include "solver/fish_factors.h"
 
 #include <klu.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "solver/dense_factors.h"
 
 /* A diagonal pivot keeps the factors sparse. Use a diagonal pivot of at least diagonal_tolerance (the default of KLU)
  * times the largest entry of the column. If the reciprocal pivot growth is then below min_growth, as in soft rods of
@@ -19,8 +19,9 @@ static const double diagonal_tolerance = 1e-3, min_growth = 1e-6;
  * this fraction of the values when the pivots were chosen. */
 static const double min_quality = 1e-3;
 
-/* Sheets with at least this many points are eliminated by LAPACK. With fewer points KLU is nearly as fast. */
-enum { MIN_POINTS = 100 };
+/* Without momenta, sheets with at least this many points are treated as full. With fewer points KLU is nearly as fast.
+ * Right-hand sides that KLU solves at once. */
+enum { MIN_POINTS = 100, AT_ONCE = 4 };
 
 // ---- factors of a sparse matrix by KLU
 
@@ -103,8 +104,9 @@ static enum status sparse_factors_set_up(struct sparse_factors *factors, const s
     return status == STATUS_OK && factors->rgrowth < min_growth ? sparse_factor(factors, matrix, 1) : status;
 }
 
-static void sparse_factors_solve(struct sparse_factors *factors, double *x) {
-    klu_l_solve(factors->symbolic, factors->numeric, factors->n, 1, x, &factors->common);
+// x: right-hand sides, one after the other (n_sides, n)
+static void sparse_factors_solve(struct sparse_factors *factors, int n_sides, double *x) {
+    klu_l_solve(factors->symbolic, factors->numeric, factors->n, n_sides, x, &factors->common);
 }
 
 // ---- the block of one fish
@@ -115,17 +117,17 @@ struct fish_factors {
     int was_factorised;
     struct sparse_factors *whole;
 
-    /* in parts: the rows of A are the first rows of the block, the columns of A begin with column first */
-    int in_parts;
+    /* in parts, if the block may be divided: the rows of A are the first rows of the block, the columns of A begin with
+     * column first */
+    int may_divide, in_parts;
     struct sparse_factors *a;
     unsigned version; /* version of the divided pattern; 0: none */
     int first, n_rod, n_sheet;
-    int64_t *split;            /* start of the rows of the sheet in each column of the block  (n) */
-    struct sparse_columns rod; /* A; owned */
-    double *schur;             /* S, later the factors of S                  (n_sheet, n_sheet), by columns */
-    lapack_int *pivot;         /* (n_sheet) */
-    double *row_scale;         /* the largest entry of each row of the block                  (n) */
-    double *x_rod, *x_sheet;   /* solutions                                        (n_rod), (n_sheet) */
+    int64_t *split;             /* start of the rows of the sheet in each column of the block  (n) */
+    struct sparse_columns rod;  /* A; owned */
+    struct dense_factors schur; /* S, later the factors of S                         (order n_sheet) */
+    double *row_scale;          /* the largest entry of each row of the block                  (n) */
+    double *x_rod, *x_sheet;    /* solutions                               (AT_ONCE, n_rod), (n_sheet) */
 };
 
 void fish_factors_free(struct fish_factors *factors) {
@@ -136,8 +138,7 @@ void fish_factors_free(struct fish_factors *factors) {
     free(factors->rod.start);
     free(factors->rod.row);
     free(factors->rod.value);
-    free(factors->schur);
-    free(factors->pivot);
+    dense_factors_free(&factors->schur);
     free(factors->row_scale);
     free(factors->x_rod);
     free(factors->x_sheet);
@@ -157,14 +158,14 @@ enum status fish_factors_create(struct fish_factors **factors, const struct fish
     new->n_sheet = block->n - new->n_rod;
 
     enum status status = sparse_factors_create(&new->whole);
-    if (fish->n_sheet >= MIN_POINTS) {
+    new->may_divide = is_full || fish->n_sheet >= MIN_POINTS;
+    if (new->may_divide) {
         if (status == STATUS_OK) status = sparse_factors_create(&new->a);
         if (status == STATUS_OK) status = MEMORY_NEW(new->split, block->n, "factors of a fish");
         if (status == STATUS_OK) status = MEMORY_NEW(new->rod.start, new->n_rod + 1, "factors of a fish");
-        if (status == STATUS_OK) status = MEMORY_NEW(new->schur, new->n_sheet *new->n_sheet, "factors of a fish");
-        if (status == STATUS_OK) status = MEMORY_NEW(new->pivot, new->n_sheet, "factors of a fish");
+        if (status == STATUS_OK) status = dense_factors_create(&new->schur, new->n_sheet);
         if (status == STATUS_OK) status = MEMORY_NEW(new->row_scale, block->n, "factors of a fish");
-        if (status == STATUS_OK) status = MEMORY_NEW(new->x_rod, new->n_rod, "factors of a fish");
+        if (status == STATUS_OK) status = MEMORY_NEW(new->x_rod, AT_ONCE * new->n_rod, "factors of a fish");
         if (status == STATUS_OK) status = MEMORY_NEW(new->x_sheet, new->n_sheet, "factors of a fish");
     }
     if (status == STATUS_OK) {
@@ -224,40 +225,68 @@ static void factors_take_values(struct fish_factors *factors) {
     }
 }
 
+// y -= A x for n rows of a column, with or without gaps between the rows
+static void subtract_column(const struct sparse *block, int64_t start, int64_t end, int64_t first_row, double x,
+                            double *restrict y) {
+    const int64_t *const row = block->row_index;
+    const double *const value = block->value + start;
+    const int64_t n = end - start;
+    if (n > 0 && row[end - 1] - row[start] == n - 1) {
+        double *const to = y + row[start] - first_row;
+        for (int64_t i = 0; i < n; i++) to[i] -= value[i] * x;
+        return;
+    }
+    for (int64_t i = 0; i < n; i++) y[row[start + i] - first_row] -= value[i] * x;
+}
+
 // subtract C x from the rows of the sheet; x: unknowns of the rod
 static void subtract_rod(const struct fish_factors *factors, const double *x, double *rows) {
     const struct sparse *const block = factors->block;
     for (int c = 0; c < factors->n_rod; c++) {
         if (x[c] == 0) continue;
         const int column = factors->first + c;
-        for (int64_t i = factors->split[column]; i < block->column_start[column + 1]; i++)
-            rows[block->row_index[i] - factors->n_rod] -= block->value[i] * x[c];
+        subtract_column(block, factors->split[column], block->column_start[column + 1], factors->n_rod, x[c], rows);
     }
 }
 
-// column k of S; returns the largest entry of that column of the block over the largest of S, in units of the rows
-static double fill_column(struct fish_factors *factors, int k) {
+// largest entry of a column of S, in units of the rows
+static double schur_largest(const struct fish_factors *factors, const double *column) {
+    double most = 0;
+    for (int r = 0; r < factors->n_sheet; r++) {
+        most = fmax(most, fabs(column[r]) / factors->row_scale[factors->n_rod + r]);
+    }
+    return most;
+}
+
+// n columns of S from column first on, n <= AT_ONCE; returns the smallest ratio of the largest entries of a column of
+// the block and of S, in units of the rows
+static double fill_columns(struct fish_factors *factors, int first, int n) {
     const struct sparse *const block = factors->block;
-    const int column = sheet_column(factors, k);
-    const int64_t start = block->column_start[column], split = factors->split[column];
-    double *const s = factors->schur + (size_t)k * (size_t)factors->n_sheet;
-    double before = 0, after = 0;
-    memset(s, 0, (size_t)factors->n_sheet * sizeof *s);
-    memset(factors->x_rod, 0, (size_t)factors->n_rod * sizeof *factors->x_rod);
-    for (int64_t i = start; i < block->column_start[column + 1]; i++) {
-        const int64_t row = block->row_index[i];
-        before = fmax(before, fabs(block->value[i]) / factors->row_scale[row]);
-        if (i < split)
-            factors->x_rod[row] = block->value[i];
-        else
-            s[row - factors->n_rod] = block->value[i];
+    double before[AT_ONCE] = {0}, least = 1;
+    int has_rod = 0;
+    memset(factors->x_rod, 0, (size_t)n * (size_t)factors->n_rod * sizeof *factors->x_rod);
+
+    for (int k = 0; k < n; k++) {
+        const int column = sheet_column(factors, first + k);
+        double *const s = dense_factors_column(&factors->schur, first + k), *const x =
+                                                                                factors->x_rod + k * factors->n_rod;
+        memset(s, 0, (size_t)factors->schur.stride * sizeof *s);
+        for (int64_t i = block->column_start[column]; i < block->column_start[column + 1]; i++) {
+            const int64_t row = block->row_index[i];
+            before[k] = fmax(before[k], fabs(block->value[i]) / factors->row_scale[row]);
+            *(row < factors->n_rod ? x + row : s + row - factors->n_rod) = block->value[i];
+        }
+        has_rod |= factors->split[column] > block->column_start[column];
     }
-    if (split > start) {
-        sparse_factors_solve(factors->a, factors->x_rod);
-        subtract_rod(factors, factors->x_rod, s);
+
+    if (has_rod) sparse_factors_solve(factors->a, n, factors->x_rod);
+    for (int k = 0; k < n; k++) {
+        double *const s = dense_factors_column(&factors->schur, first + k);
+        if (has_rod) subtract_rod(factors, factors->x_rod + k * factors->n_rod, s);
+        const double after = schur_largest(factors, s);
+        if (after > 0) least = fmin(least, before[k] / after);
     }
-    for (int r = 0; r < factors->n_sheet; r++) after = fmax(after, fabs(s[r]) / factors->row_scale[factors->n_rod + r]);
-    return after > 0 ? before / after : 1;
+    return least;
 }
 
 // STATUS_RETRY: A is singular or nearly singular
@@ -266,16 +295,15 @@ static enum status factors_set_up_parts(struct fish_factors *factors) {
     const enum status status = sparse_factors_set_up(factors->a, &factors->rod);
     if (status != STATUS_OK) return status == STATUS_MEMORY ? status : STATUS_RETRY;
     const int n = factors->n_sheet;
-    for (int k = 0; k < n; k++) {
-        if (fill_column(factors, k) < min_growth) return STATUS_RETRY;
+    for (int k = 0; k < n; k += AT_ONCE) {
+        if (fill_columns(factors, k, k + AT_ONCE < n ? AT_ONCE : n - k) < min_growth) return STATUS_RETRY;
     }
-    const int is_singular = LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, factors->schur, n, factors->pivot) != 0;
-    return is_singular ? STATUS_SOLVER : STATUS_OK;
+    return dense_factors_set_up(&factors->schur) ? STATUS_OK : STATUS_SOLVER;
 }
 
 static enum status factors_set_up(struct fish_factors *factors) {
     const struct sparse *const block = factors->block;
-    if (factors->fish->n_sheet >= MIN_POINTS && factors->version != block->version) TRY(factors_divide(factors));
+    if (factors->may_divide && factors->version != block->version) TRY(factors_divide(factors));
     if (factors->in_parts) {
         const enum status status = factors_set_up_parts(factors);
         if (status != STATUS_RETRY) return status;
@@ -300,16 +328,15 @@ static void factors_solve_parts(struct fish_factors *factors, double *x) {
     double *const rod = factors->x_rod, *const sheet = factors->x_sheet;
     memcpy(rod, x, (size_t)factors->n_rod * sizeof *rod);
     memcpy(sheet, x + factors->n_rod, (size_t)n * sizeof *sheet);
-    sparse_factors_solve(factors->a, rod);
+    sparse_factors_solve(factors->a, 1, rod);
     subtract_rod(factors, rod, sheet);
-    LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', n, 1, factors->schur, n, factors->pivot, sheet, n);
+    dense_factors_solve(&factors->schur, sheet);
     memcpy(rod, x, (size_t)factors->n_rod * sizeof *rod);
     for (int k = 0; k < n; k++) {
         const int column = sheet_column(factors, k);
-        for (int64_t i = block->column_start[column]; i < factors->split[column]; i++)
-            rod[block->row_index[i]] -= block->value[i] * sheet[k];
+        subtract_column(block, block->column_start[column], factors->split[column], 0, sheet[k], rod);
     }
-    sparse_factors_solve(factors->a, rod);
+    sparse_factors_solve(factors->a, 1, rod);
     memcpy(x + factors->first, rod, (size_t)factors->n_rod * sizeof *rod);
     for (int k = 0; k < n; k++) x[sheet_column(factors, k)] = sheet[k];
 }
@@ -318,7 +345,7 @@ void fish_factors_solve(struct fish_factors *factors, double *x) {
     if (factors->in_parts)
         factors_solve_parts(factors, x);
     else
-        sparse_factors_solve(factors->whole, x);
+        sparse_factors_solve(factors->whole, 1, x);
 }
 
 void fish_factors_count(const struct fish_factors *factors, struct fish_factors_counts *counts) {

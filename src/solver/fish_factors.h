@@ -1,15 +1,16 @@
-/* fish_factors.h: factors of the diagonal block of one fish: by KLU alone, or, for sheets of many points, by KLU for
- * the rod and LAPACK for the sheet. doc/numerics.md, section 6. Tested by tests/solver/test_linear.c.
+/* fish_factors.h: factors of the diagonal block of one fish: by KLU alone, or, with momenta or for sheets of many
+ * points, by KLU for the rod and a full matrix for the sheet. doc/numerics.md, section 6. Tested by
+ * tests/solver/test_linear.c.
  *
  *              columns:  rod     sheet           A: sparse;  C, D: full, because every bound vortex and every node
  *        rows:  rod    |  A   |    B   |         changes the velocity at every control point;  B: few columns, or full
  *               sheet  |  C   |    D   |
- *                                                LAPACK factorises S = D - C A^-1 B
+ *                                                S = D - C A^-1 B is factorised as a full matrix
  *
- * KLU alone would also fill A, because the columns of A are as full as C, and KLU takes several times as long as LAPACK
- * for a full matrix. With momenta the law of motion belongs to the rows of the sheet, and the positions belong to the
- * columns of the sheet. KLU factorises the whole block if masked rows leave velocities undetermined, or if A is
- * singular or nearly singular. */
+ * KLU alone would also fill A, because the columns of A are as full as C, and KLU takes several times as long for a
+ * full matrix. With momenta the law of motion belongs to the rows of the sheet, and the positions belong to the columns
+ * of the sheet: A then has two entries in a row. KLU factorises the whole block if masked rows leave velocities
+ * undetermined, or if A is singular or nearly singular. */
 #ifndef FISH_FACTORS_H
 #define FISH_FACTORS_H
 

@@ -1,6 +1,5 @@
 /* test_linear.c: linear systems with the Jacobian of a school: factors of blocks, coupled fish, threads, failures. */
 #include <float.h>
-#include <lapacke.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +8,7 @@
 #include "failing_malloc.h"
 #include "school.h"
 #include "school/residual.h"
+#include "solver/dense_factors.h"
 #include "solver/linear.h"
 
 // stirred bodies may cross
@@ -39,16 +39,15 @@
     "  - {force: pressure, start: {position: [1.35, 0]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n" \
     "  - {sheet_points: 9, start: {position: [1.4, 0.4]}}\n"
 
-// matrices that LAPACK has factorised
+// full matrices that have been factorised
 static int n_full;
 
-lapack_int __real_LAPACKE_dgetrf_work(int order, lapack_int m, lapack_int n, double *a, lapack_int lda,
-                                      lapack_int *pivot);
-lapack_int __wrap_LAPACKE_dgetrf_work(int order, lapack_int m, lapack_int n, double *a, lapack_int lda,
-                                      lapack_int *pivot) {
+int __real_dense_factors_set_up(struct dense_factors *factors);
+int __wrap_dense_factors_set_up(struct dense_factors *factors);
+int __wrap_dense_factors_set_up(struct dense_factors *factors) {
 #pragma omp atomic
     n_full++;
-    return __real_LAPACKE_dgetrf_work(order, m, n, a, lda, pivot);
+    return __real_dense_factors_set_up(factors);
 }
 
 struct system {

@@ -1,0 +1,144 @@
+/* dense_factors.c: elimination by panels of columns; tiles of the remaining matrix stay in registers. */
+#include "solver/dense_factors.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "vortex/kernel.h"
+
+/* Columns of a panel and rows of a tile; columns of a tile. */
+enum { PANEL = 16, TILE_COLUMNS = 8 };
+
+enum status dense_factors_create(struct dense_factors *factors, int n) {
+    *factors = (struct dense_factors){.n = n, .stride = (n + PANEL - 1) / PANEL * PANEL};
+    TRY(MEMORY_NEW(factors->value, (size_t)n * (size_t)factors->stride, "a full matrix"));
+    const enum status status = MEMORY_NEW(factors->pivot, n, "a full matrix");
+    if (status != STATUS_OK) dense_factors_free(factors);
+    return status;
+}
+
+void dense_factors_free(struct dense_factors *factors) {
+    free(factors->value);
+    free(factors->pivot);
+    *factors = (struct dense_factors){0};
+}
+
+double *dense_factors_column(const struct dense_factors *factors, int k) {
+    return factors->value + (long)k * factors->stride;
+}
+
+// eliminate the columns first to end - 1 below the diagonal; returns whether every pivot is finite and not 0
+static KERNEL_WIDE(int, factor_panel, (const struct dense_factors *of, int first, int end), (of, first, end)) {
+    const int n = of->n;
+    for (int k = first; k < end; k++) {
+        // pivot: the largest entry
+        double *const column = of->value + (long)k * of->stride;
+        int pivot = k;
+        for (int r = k + 1; r < n; r++) pivot = fabs(column[r]) > fabs(column[pivot]) ? r : pivot;
+        of->pivot[k] = pivot;
+        if (!isfinite(column[pivot]) || !(fabs(column[pivot]) > 0)) return 0;
+
+        for (int j = first; j < end && pivot != k; j++) {
+            double *const other = of->value + (long)j * of->stride, swapped = other[k];
+            other[k] = other[pivot];
+            other[pivot] = swapped;
+        }
+
+        const double inverse = 1 / column[k];
+        for (int r = k + 1; r < n; r++) column[r] *= inverse;
+        for (int j = k + 1; j < end; j++) {
+            double *const restrict other = of->value + (long)j * of->stride;
+            const double factor = other[k];
+            for (int r = k + 1; r < n; r++) other[r] -= factor * column[r];
+        }
+    }
+    return 1;
+}
+
+// apply the row swaps of a panel to another column; to the right of the panel also solve for the rows of the panel
+static KERNEL_WIDE(void, apply_panel, (const struct dense_factors *of, int first, int end, int j),
+                   (of, first, end, j)) {
+    double *const restrict column = of->value + (long)j * of->stride;
+    for (int k = first; k < end; k++) {
+        const double swapped = column[k];
+        column[k] = column[of->pivot[k]];
+        column[of->pivot[k]] = swapped;
+    }
+
+    for (int k = first; k < end && j >= end; k++) {
+        const double *const left = of->value + (long)k * of->stride;
+        for (int r = k + 1; r < end; r++) column[r] -= column[k] * left[r];
+    }
+}
+
+/* Eight rows of a column; the compiler divides the vector into vectors of the instruction set. */
+typedef double eight __attribute__((vector_size(8 * sizeof(double))));
+
+// subtract the products of the rows of the panel and of one tile of columns from eight rows below
+static inline __attribute__((always_inline)) void subtract_tile(const struct dense_factors *of, int first, int row,
+                                                                int column, const int n_columns) {
+    const long stride = of->stride;
+    const double *const left = of->value + first * stride + row, *const top = of->value + column * stride + first;
+    double *const to = of->value + column * stride + row;
+    eight sum[TILE_COLUMNS];
+
+#pragma GCC unroll 8
+    for (int c = 0; c < n_columns; c++) memcpy(&sum[c], to + c * stride, sizeof sum[c]);
+    for (int k = 0; k < PANEL; k++) {
+        eight rows;
+        memcpy(&rows, left + k * stride, sizeof rows);
+#pragma GCC unroll 8
+        for (int c = 0; c < n_columns; c++) sum[c] -= top[c * stride + k] * rows;
+    }
+#pragma GCC unroll 8
+    for (int c = 0; c < n_columns; c++) memcpy(to + c * stride, &sum[c], sizeof sum[c]);
+}
+
+// all rows and columns behind a panel of PANEL columns; the rows up to the stride are 0
+static KERNEL_WIDE(void, subtract_panel, (const struct dense_factors *of, int first), (of, first)) {
+    const int end = first + PANEL;
+    for (int row = end; row < of->stride; row += 8) {
+        int column = end;
+        for (; column + TILE_COLUMNS <= of->n; column += TILE_COLUMNS) {
+            subtract_tile(of, first, row, column, TILE_COLUMNS);
+        }
+        for (; column < of->n; column++) subtract_tile(of, first, row, column, 1);
+    }
+}
+
+int dense_factors_set_up(struct dense_factors *factors) {
+    const int n = factors->n;
+    for (int first = 0; first < n; first += PANEL) {
+        const int end = first + PANEL < n ? first + PANEL : n;
+        if (!factor_panel(factors, first, end)) return 0;
+        for (int j = 0; j < n; j++) {
+            if (j < first || j >= end) apply_panel(factors, first, end, j);
+        }
+        if (end < n) subtract_panel(factors, first);
+    }
+    return 1;
+}
+
+static KERNEL_WIDE(void, substitute, (const struct dense_factors *of, double *restrict x), (of, x)) {
+    const int n = of->n;
+    for (int k = 0; k < n; k++) {
+        const double *const column = of->value + (long)k * of->stride, factor = x[k];
+        for (int r = k + 1; r < n; r++) x[r] -= factor * column[r];
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        const double *const column = of->value + (long)k * of->stride, factor = x[k] / column[k];
+        x[k] = factor;
+        for (int r = 0; r < k; r++) x[r] -= factor * column[r];
+    }
+}
+
+void dense_factors_solve(const struct dense_factors *factors, double *x) {
+    for (int k = 0; k < factors->n; k++) {
+        const double swapped = x[k];
+        x[k] = x[factors->pivot[k]];
+        x[factors->pivot[k]] = swapped;
+    }
+    substitute(factors, x);
+}

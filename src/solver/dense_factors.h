@@ -1,0 +1,30 @@
+/* dense_factors.h: factors of a full matrix by Gaussian elimination with row pivoting. Every operation is rounded as
+ * written: the same bits for any vector width. Tested by tests/solver/test_dense_factors.c.
+ *
+ * LAPACK without an optimised BLAS takes five times as long for the orders of one fish, 50 to 200, and the last bits of
+ * LAPACK depend on the library. */
+#ifndef DENSE_FACTORS_H
+#define DENSE_FACTORS_H
+
+#include "base/status.h"
+
+struct dense_factors {
+    int n, stride; /* order; distance of columns, a multiple of the rows of a tile */
+    double *value; /* by columns: the matrix, later L below the diagonal and U     (n, stride) */
+    int *pivot;    /* row that was swapped with each row                           (n) */
+};
+
+/* Create a matrix of zeros. Fails with STATUS_MEMORY; dense_factors_free accepts an empty struct. */
+enum status dense_factors_create(struct dense_factors *factors, int n);
+void dense_factors_free(struct dense_factors *factors);
+
+/* Column k of the matrix (n). */
+double *dense_factors_column(const struct dense_factors *factors, int k);
+
+/* Replace the matrix by the factors. Returns whether the matrix is regular. */
+int dense_factors_set_up(struct dense_factors *factors);
+
+/* Replace the right-hand side x (n) by the solution. */
+void dense_factors_solve(const struct dense_factors *factors, double *x);
+
+#endif
