@@ -2,9 +2,11 @@
 #include "fish/fish.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/mathematics.h"
 #include "base/parallel.h"
+#include "vortex/kernel.h"
 
 int fish_threads(const struct school *school) {
     return parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
@@ -14,6 +16,11 @@ double fish_mean(const struct stencil *point, const double *value) {
     double mean = 0;
     for (int i = 0; i < point->n; i++) mean += point->weight[i] * value[point->node[i]];
     return mean;
+}
+
+void fish_of_nodes(int n_points, int n_nodes, const double *matrix, const double *of_nodes, double *of_points) {
+    memset(of_points, 0, (size_t)n_points * sizeof *of_points);
+    kernel_multiply(n_points, n_nodes, matrix, of_nodes, of_points);
 }
 
 double fish_mass_mean(const struct fish *fish, const double *value) {

@@ -135,8 +135,11 @@ struct fish {
     struct stencil *control_point;   /* positions of the impermeability condition            (n_control) */
     struct tangent *control_tangent; /* direction of the body at the control points             (n_control) */
     struct tangent tail_tangent;     /* direction of the body at the tail */
-    double *end_correction;          /* E_c of shedding: sheet, else 0, m-1              (n_control) */
-    struct stencil heading_point;    /* the body point at a third of the length */
+    /* weights of the points above as full matrices, by columns: bound vortices (n_nodes, n_sheet); control points, and
+     * X' at the control points, 0 on a polygon (n_nodes, n_control) */
+    double *sheet_by_node, *control_by_node[2];
+    double *end_correction;       /* E_c of shedding: sheet, else 0, m-1              (n_control) */
+    struct stencil heading_point; /* the body point at a third of the length */
 
     double smoothing;    /* delta of the free vortices, m */
     double taper;        /* distance from the tail over which the smoothing for the own body grows from 0 to delta, m */
@@ -194,6 +197,9 @@ int fish_threads(const struct school *school);
 
 /* sum of weight * value over the nodes of the point. */
 double fish_mean(const struct stencil *point, const double *value);
+
+/* Values at points from values of the nodes, by a full matrix of weights (n_nodes, n_points): the bits of fish_mean. */
+void fish_of_nodes(int n_points, int n_nodes, const double *matrix, const double *of_nodes, double *of_points);
 
 /* Mass-weighted mean of a value of the nodes (n_nodes). */
 double fish_mass_mean(const struct fish *fish, const double *value);

@@ -216,6 +216,29 @@ static void sheet_set_on_smooth_curve(struct fish *fish, enum collocation colloc
     fish->nose_tangent.to = curve_smooth_slope(fish->curve, 0);
 }
 
+// add the weights of a point to a matrix by columns
+static void add_weights(const struct stencil *point, int row, int n_rows, double *matrix) {
+    for (int i = 0; i < point->n; i++) matrix[(long)point->node[i] * n_rows + row] += point->weight[i];
+}
+
+static enum status sheet_set_by_node(struct fish *fish) {
+    TRY(MEMORY_NEW(fish->sheet_by_node, fish->n_nodes * fish->n_sheet, "the sheet of a fish"));
+    for (int j = 0; j < fish->n_sheet; j++) {
+        add_weights(&fish->sheet_point[j], j, fish->n_sheet, fish->sheet_by_node);
+    }
+
+    for (int i = 0; i < 2; i++) {
+        TRY(MEMORY_NEW(fish->control_by_node[i], fish->n_nodes * fish->n_control, "the sheet of a fish"));
+        for (int c = 0; c < fish->n_control; c++) {
+            const struct tangent *const tangent = &fish->control_tangent[c];
+            if (i == 1 && tangent->from.n > 0) continue;
+            add_weights(i == 0 ? &fish->control_point[c] : &tangent->to, c, fish->n_control, fish->control_by_node[i]);
+        }
+    }
+
+    return STATUS_OK;
+}
+
 // set E_c, for a sheet with the vortex strength of the wake at the tail
 static void end_correction_set(struct fish *fish) {
     const int last = fish->n_sheet - 1;
@@ -252,6 +275,7 @@ static enum status sheet_set(struct fish *fish, const struct sheet_parameters *s
         sheet_set_on_polygon(fish, sheet->collocation);
     }
 
+    TRY(sheet_set_by_node(fish));
     if (shedding == SHEDDING_SHEET) end_correction_set(fish);
     fish->heading_point = curve_polygon_point(fish->curve, 1.0 / 3.0 * fish->n_edges);
     return STATUS_OK;
@@ -608,6 +632,9 @@ void fish_school_free(struct school *school) {
                                fish->sheet_slope,
                                fish->control_point,
                                fish->control_tangent,
+                               fish->sheet_by_node,
+                               fish->control_by_node[0],
+                               fish->control_by_node[1],
                                fish->end_correction,
                                fish->control_density,
                                fish->control_interval,

@@ -3,10 +3,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mathematics.h"
 #include "base/memory.h"
 #include "fish/shape.h"
+#include "vortex/kernel.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -49,23 +51,23 @@ static void fill_control_points(struct sheet_integrals *to) {
     for (int c = 0; c < to->n_control; c++) {
         const double theta = pi * (c + 0.5) / to->n_control;
         for (int j = 0; j < to->n_sheet; j++) {
-            to->strength[c * to->n_sheet + j] = strength_between(to->n_sheet, j, theta);
-            to->circulation[c * to->n_sheet + j] = sheet_integrals_circulation(to->n_sheet, j, theta);
+            to->strength[j * to->n_control + c] = strength_between(to->n_sheet, j, theta);
+            to->circulation[j * to->n_control + c] = sheet_integrals_circulation(to->n_sheet, j, theta);
         }
     }
 }
 
 // the kink for a vortex strength equal to the position: g = sin(theta) (1 - cos(theta)) minus the series of g
 static void kink_fill(struct sheet_integrals *to) {
-    const int n = to->n_sheet;
+    const int n = to->n_control;
     const double h = pi / to->n_control, scale = sin(pi - h) * (1 - cos(pi - h)) * h;
     for (int c = 0; c < to->n_control; c++) {
         const double theta = h * (c + 0.5), place = 1 - cos(theta);
         double strength = sin(theta) * place * h, circulation = place * place / 2;
         for (int j = 1; j < to->n_control; j++) {
             const double here = sin(j * h) * (1 - cos(j * h)) * h;
-            strength -= to->strength[c * n + j] * here;
-            circulation -= to->circulation[c * n + j] * here;
+            strength -= to->strength[j * n + c] * here;
+            circulation -= to->circulation[j * n + c] * here;
         }
 
         to->kink_strength[c] = strength / scale;
@@ -80,9 +82,8 @@ static void integrals_add_point(struct sheet_integrals *to, double theta, double
     for (int j = 0; j < to->n_sheet; j++) {
         double *const matrix = to->momentum + (long)j * n * n;
         const double value = weight * sheet_integrals_circulation(to->n_sheet, j, theta);
-        for (int k = 0; k < n; k++) {
-            const double of_node = value * point->weight[k];
-            for (int i = 0; i < n; i++) matrix[k * n + i] += of_node * slope->weight[i];
+        for (int i = 0; i < n; i++) {
+            for (int k = 0; k < n; k++) matrix[i * n + k] += value * point->weight[k] * slope->weight[i];
         }
     }
 }
@@ -157,9 +158,16 @@ void sheet_integrals_free(struct sheet_integrals *integrals) {
     free(integrals);
 }
 
-double sheet_integrals_around(const struct sheet_integrals *integrals, int c, const double *circulation) {
-    const double *const weight = integrals->strength + (long)c * integrals->n_sheet;
-    double sum = 0;
-    for (int j = 0; j < integrals->n_sheet; j++) sum += weight[j] * circulation[j];
-    return sum;
+static void integrals_multiply(const struct sheet_integrals *integrals, const double *matrix, const double *circulation,
+                               double *sum) {
+    memset(sum, 0, (size_t)integrals->n_control * sizeof *sum);
+    kernel_multiply(integrals->n_control, integrals->n_sheet, matrix, circulation, sum);
+}
+
+void sheet_integrals_around(const struct sheet_integrals *integrals, const double *circulation, double *around) {
+    integrals_multiply(integrals, integrals->strength, circulation, around);
+}
+
+void sheet_integrals_before(const struct sheet_integrals *integrals, const double *circulation, double *before) {
+    integrals_multiply(integrals, integrals->circulation, circulation, before);
 }

@@ -10,10 +10,10 @@
 
 struct sheet_integrals {
     int n_nodes, n_sheet, n_control;
-    double *momentum;    /* P: integral over u of density C_j b_k b_i'; for each j a matrix (k, i), kg m-2
+    double *momentum;    /* P: integral over u of density C_j b_k b_i'; for each j a matrix (k, i) by columns, kg m-2
                                                                                       (n_sheet, n_nodes, n_nodes) */
-    double *strength;    /* G: circulation of the interval around a control point, 1        (n_control, n_sheet) */
-    double *circulation; /* C_j at the control points, 1                                  (n_control, n_sheet) */
+    double *strength;    /* G: circulation of the interval around a control point, 1        (n_sheet, n_control) */
+    double *circulation; /* C_j at the control points, 1                                  (n_sheet, n_control) */
     /* Corrections of both sums at the control points for a finite strength at the tail, per q_M-2 - 2 q_M-1: g then has
      * a kink at the tail, beyond the cosine series                                               (n_control) */
     double *kink_strength, *kink_circulation;
@@ -24,9 +24,10 @@ struct sheet_integrals {
 enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet, const double *density);
 void sheet_integrals_free(struct sheet_integrals *integrals);
 
-/* Q_c: the circulation of the interval around control point c, of a sheet with the given circulations (n_sheet), m2
- * s-1. */
-double sheet_integrals_around(const struct sheet_integrals *integrals, int c, const double *circulation);
+/* Of a sheet with the given circulations (n_sheet), m2 s-1: Q_c, the circulation of the interval around each control
+ * point (n_control), and the circulation between the nose and each control point (n_control). */
+void sheet_integrals_around(const struct sheet_integrals *integrals, const double *circulation, double *around);
+void sheet_integrals_before(const struct sheet_integrals *integrals, const double *circulation, double *before);
 
 /* C_j(theta) of a sheet of n vortices. */
 double sheet_integrals_circulation(int n, int j, double theta);

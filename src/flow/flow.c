@@ -112,18 +112,18 @@ static void place_body(struct fish_rings *of, const struct fish *fish, const str
     memcpy(of->own.x, body->sheet[0], size);
     memcpy(of->own.y, body->sheet[1], size);
     memcpy(of->own.q, body->circulation, size);
+    sheet_integrals_around(fish->integrals, body->circulation, of->body.q);
+    sheet_integrals_before(fish->integrals, body->circulation, of->body.dx);
+    fish_of_nodes(fish->n_control, fish->n_nodes, fish->control_by_node[1], y + fish->at.x, of->line[0]);
+    fish_of_nodes(fish->n_control, fish->n_nodes, fish->control_by_node[1], y + fish->at.y, of->line[1]);
     for (int c = 0; c < fish->n_control; c++) {
-        const double *const of_point = fish->integrals->circulation + (long)c * n;
-        const struct stencil *const slope = &fish->control_tangent[c].to;
-        double before = 0;
-        for (int j = 0; j < n; j++) before += of_point[j] * body->circulation[j];
-        of->line[0][c] = fish->control_interval[c] * fish_mean(slope, y + fish->at.x);
-        of->line[1][c] = fish->control_interval[c] * fish_mean(slope, y + fish->at.y);
+        const double before = of->body.dx[c];
+        of->line[0][c] *= fish->control_interval[c];
+        of->line[1][c] *= fish->control_interval[c];
         of->body.x[c] = of->own.x[n + c] = body->point[0][c];
         of->body.y[c] = of->own.y[n + c] = body->point[1][c];
         of->body.dx[c] = of->own.dx[n + c] = before * of->line[0][c];
         of->body.dy[c] = of->own.dy[n + c] = before * of->line[1][c];
-        of->body.q[c] = sheet_integrals_around(fish->integrals, c, body->circulation);
     }
 }
 
@@ -351,7 +351,7 @@ void flow_free(struct flow *flow) {
 void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, double *of_points) {
     const struct fish *fish = &flow->school->fish[f];
     double *const to = of_points + flow->points[f].first;
-    for (int c = 0; c < fish->n_control; c++) to[c] = fish_mean(&fish->control_point[c], of_nodes);
+    fish_of_nodes(fish->n_control, fish->n_nodes, fish->control_by_node[0], of_nodes, to);
     for (int k = 0; k < fish->n_edges; k++) to[flow_midpoint(fish, k)] = (of_nodes[k] + of_nodes[k + 1]) / 2;
     to[flow_tail(fish)] = of_nodes[fish->n_nodes - 1];
 }
@@ -359,9 +359,9 @@ void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, dou
 static void flow_place_sheet(struct flow *flow, int f, const double *y) {
     const struct fish *fish = &flow->school->fish[f];
     const int first = flow->sheet_range[f].first;
+    fish_of_nodes(fish->n_sheet, fish->n_nodes, fish->sheet_by_node, y + fish->at.x, flow->sheet.x + first);
+    fish_of_nodes(fish->n_sheet, fish->n_nodes, fish->sheet_by_node, y + fish->at.y, flow->sheet.y + first);
     for (int j = 0; j < fish->n_sheet; j++) {
-        flow->sheet.x[first + j] = fish_mean(&fish->sheet_point[j], y + fish->at.x);
-        flow->sheet.y[first + j] = fish_mean(&fish->sheet_point[j], y + fish->at.y);
         flow->sheet.circulation[first + j] = fish->sheet_weight[j] * y[fish->at.gamma + j];
         flow->opposite[first + j] = -flow->sheet.circulation[first + j];
     }

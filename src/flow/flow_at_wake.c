@@ -47,9 +47,10 @@ static enum status convecting_place_body(struct flow *flow, int f) {
     memcpy(to->y + first, has_control ? flow->y + flow->points[f].first : flow->sheet.y + bound, size);
 
     const double *const circulation = flow->sheet.circulation + bound;
-    for (int c = 0; c < n; c++) {
-        to->circulation[first + c] =
-            has_control ? sheet_integrals_around(fish->integrals, c, circulation) : circulation[c];
+    if (has_control) {
+        sheet_integrals_around(fish->integrals, circulation, to->circulation + first);
+    } else {
+        memcpy(to->circulation + first, circulation, size);
     }
 
     return STATUS_OK;

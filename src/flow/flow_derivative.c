@@ -153,10 +153,10 @@ static void derive_body(const struct pass *pass, struct range points, const stru
     for (int first = points.first; first < end; first += RING_CHUNK) {
         const int n = end - first < RING_CHUNK ? end - first : RING_CHUNK;
         for (int c = 0; c < fish->n_control; c++) {
-            const double *const before = fish->integrals->circulation + (long)c * fish->n_sheet;
-            const double *const around = fish->integrals->strength + (long)c * fish->n_sheet;
+            const double *const before = fish->integrals->circulation + c;
+            const double *const around = fish->integrals->strength + c;
             double along = 0;
-            for (int j = 0; j < fish->n_sheet; j++) along += before[j] * of->own.q[j];
+            for (int j = 0; j < fish->n_sheet; j++) along += before[j * fish->n_control] * of->own.q[j];
 
             struct source source = {.ring = {.x = of->body.x[c],
                                              .y = of->body.y[c],
@@ -181,9 +181,9 @@ static void derive_body(const struct pass *pass, struct range points, const stru
             for (int j = 0; j < fish->n_sheet; j++) {
                 const struct column to = column_of(pass->block, strength + j, first);
                 const double weight = fish->sheet_weight[j];
-                if (!is_own) add_spanwise(&to, n, &values, sign * around[j] * weight);
-                add_leg(&to, n, &values, sign * before[j] * weight * of->line[0][c],
-                        before[j] * weight * of->line[1][c], is_own);
+                if (!is_own) add_spanwise(&to, n, &values, sign * around[j * fish->n_control] * weight);
+                add_leg(&to, n, &values, sign * before[j * fish->n_control] * weight * of->line[0][c],
+                        before[j * fish->n_control] * weight * of->line[1][c], is_own);
             }
             if (pass->with_places) add_places(pass->block, fish, &source, first, n, &values);
         }

@@ -9,6 +9,10 @@
 #include "fish/fish_motion.h"
 #include "vortex/kernel.h"
 
+/* Values at the control points by full matrices: X' in x and y, velocity in x and y, circulation of the interval, and
+ * circulation between nose and point. */
+enum { LINE, VELOCITY = 2, AROUND = 4, BEFORE, N_AT_POINTS };
+
 static const double pi = 3.14159265358979323846;
 
 enum status pressure_create(struct pressure **pressure, const struct fish *fish) {
@@ -23,10 +27,12 @@ enum status pressure_create(struct pressure **pressure, const struct fish *fish)
     new->momentum = calloc(2 * n, sizeof *new->momentum);
     new->momentum_rate = calloc(2 * n, sizeof *new->momentum_rate);
     new->force = calloc(2 * n, sizeof *new->force);
+    new->product = calloc(n, sizeof *new->product);
     new->share = calloc((size_t)fish->n_control * n, sizeof *new->share);
     new->point = calloc((size_t)fish->n_control, sizeof *new->point);
-    if (!new->circulation || !new->matrix || !new->momentum || !new->momentum_rate || !new->force || !new->share ||
-        !new->point) {
+    new->at_points = calloc(N_AT_POINTS * (size_t)fish->n_control, sizeof *new->at_points);
+    if (!new->circulation || !new->matrix || !new->momentum || !new->momentum_rate || !new->force || !new->product ||
+        !new->share || !new->point || !new->at_points) {
         goto no_memory;
     }
 
@@ -51,6 +57,8 @@ void pressure_free(struct pressure *pressure) {
     free(pressure->momentum);
     free(pressure->momentum_rate);
     free(pressure->force);
+    free(pressure->product);
+    free(pressure->at_points);
     free(pressure->share);
     free(pressure->point);
     free(pressure);
@@ -66,15 +74,12 @@ static void pressure_find_matrix(struct pressure *p, const double *strength) {
 }
 
 // add E3 R x to the pairs of all nodes; x: x components of all nodes, then y components
-static void pressure_add_product(const struct pressure *p, const double *x, double *to) {
+static void pressure_add_product(struct pressure *p, const double *x, double *to) {
     const int n = p->fish->n_nodes;
-    for (int k = 0; k < n; k++) {
-        const double *const row = p->matrix + (long)k * n;
-        for (int i = 0; i < n; i++) {
-            to[k] -= row[i] * x[n + i];
-            to[n + k] += row[i] * x[i];
-        }
-    }
+    memset(p->product, 0, (size_t)n * sizeof *p->product);
+    kernel_multiply(n, n, p->matrix, x + n, p->product);
+    for (int k = 0; k < n; k++) to[k] -= p->product[k];
+    kernel_multiply(n, n, p->matrix, x, to + n);
 }
 
 // tau: tangential velocity of the fluid relative to the body
@@ -82,18 +87,33 @@ static double slip_along(const struct pressure_point *point) {
     return edge_dot(point->slip, point->body.t);
 }
 
-static void pressure_convect(struct pressure *p, const struct flow_at_body *flow, const double *y) {
+// values at all control points; with rings also the circulation before each point
+static void pressure_find_points(struct pressure *p, const double *y) {
     const struct fish *fish = p->fish;
-    const int n = fish->n_nodes;
-    for (int c = 0; c < fish->n_control; c++) {
+    const int n = fish->n_control, n_nodes = fish->n_nodes;
+    const double *const place = fish->control_by_node[0], *const slope = fish->control_by_node[1];
+    double *const at = p->at_points;
+    for (int i = 0; i < 2; i++) {
+        fish_of_nodes(n, n_nodes, slope, y + fish->at.x + i * n_nodes, at + (LINE + i) * n);
+        fish_of_nodes(n, n_nodes, place, y + fish->at.vx + i * n_nodes, at + (VELOCITY + i) * n);
+    }
+    sheet_integrals_around(fish->integrals, p->circulation, at + AROUND * n);
+    if (fish->strip_depth > 0) sheet_integrals_before(fish->integrals, p->circulation, at + BEFORE * n);
+}
+
+static void pressure_convect(struct pressure *p, const struct flow_at_body *flow) {
+    const struct fish *fish = p->fish;
+    const int n = fish->n_nodes, n_control = fish->n_control;
+    for (int c = 0; c < n_control; c++) {
         struct pressure_point *const point = &p->point[c];
         const struct stencil *const at = &fish->control_point[c];
 
         // slip, and circulation of the interval
-        point->body = fish_direction(fish, &fish->control_tangent[c], y);
-        point->slip[0] = flow->u[c] - fish_mean(at, y + fish->at.vx);
-        point->slip[1] = flow->v[c] - fish_mean(at, y + fish->at.vy);
-        point->circulation = sheet_integrals_around(fish->integrals, c, p->circulation);
+        const double *const value = p->at_points + c;
+        point->body = fish_direction_of((const double[2]){value[LINE * n_control], value[(LINE + 1) * n_control]});
+        point->slip[0] = flow->u[c] - value[VELOCITY * n_control];
+        point->slip[1] = flow->v[c] - value[(VELOCITY + 1) * n_control];
+        point->circulation = value[AROUND * n_control];
         point->strength = fish->control_density[c] * point->circulation;
 
         // force -rho w gamma tau n, interpolated to the nodes
@@ -103,14 +123,6 @@ static void pressure_convect(struct pressure *p, const struct flow_at_body *flow
             p->force[n + k] += at->weight[k] * size * point->body.n[1];
         }
     }
-}
-
-// circulation between the nose and control point c, from the circulations of the bound vortices
-static double circulation_before(const struct fish *fish, int c, const double *circulation) {
-    const double *const weight = fish->integrals->circulation + (long)c * fish->n_sheet;
-    double sum = 0;
-    for (int j = 0; j < fish->n_sheet; j++) sum += weight[j] * circulation[j];
-    return sum;
 }
 
 // rings: force of the spanwise flow, and force along the side edges (doc/model.md, section 18)
@@ -123,7 +135,7 @@ static void pressure_span(struct pressure *p, const struct flow_at_body *flow) {
         const double length = point->body.length * fish->control_interval[c];
         const double widening = fish->control_widening[c] * fish->control_interval[c];
 
-        point->before = fish->control_density[c] * circulation_before(fish, c, p->circulation);
+        point->before = fish->control_density[c] * p->at_points[BEFORE * fish->n_control + c];
         point->divergence = flow->div[c];
 
         for (int i = 0; i < 2; i++) {
@@ -173,7 +185,8 @@ void pressure_update(struct pressure *p, const struct flow_at_body *flow, const 
     memset(p->force, 0, size);
     pressure_add_product(p, y + fish->at.x, p->momentum);
     pressure_add_product(p, y + fish->at.vx, p->force);
-    pressure_convect(p, flow, y);
+    pressure_find_points(p, y);
+    pressure_convect(p, flow);
     pressure_span(p, flow);
     pressure_suck(p, y);
 }
@@ -207,20 +220,25 @@ void pressure_residual(const struct pressure *p, double *residual) {
     residual[fish->at.ay] -= p->suction[1];
 }
 
-// sum over the nodes i of P_kij x_i, times the weight of vortex j
-static double momentum_by_strength(const struct fish *fish, int k, int j, const double *x) {
-    const double *const row = fish->integrals->momentum + ((long)j * fish->n_nodes + k) * fish->n_nodes;
-    double sum = 0;
-    for (int i = 0; i < fish->n_nodes; i++) sum += row[i] * x[i];
-    return sum * fish->sheet_weight[j];
+// sums over the nodes i of P_kij x_i, times the weight of vortex j, for all nodes k
+static void momentum_by_strength(const struct fish *fish, int j, const double *x, double *momentum) {
+    const int n = fish->n_nodes;
+    memset(momentum, 0, (size_t)n * sizeof *momentum);
+    kernel_multiply(n, n, fish->integrals->momentum + (long)j * n * n, x, momentum);
+    for (int k = 0; k < n; k++) momentum[k] *= fish->sheet_weight[j];
 }
 
 void pressure_momentum_by_strength(const struct fish *fish, int k, int j, const double *x, double momentum[2]) {
-    momentum[0] = -momentum_by_strength(fish, k, j, x + fish->n_nodes);
-    momentum[1] = momentum_by_strength(fish, k, j, x);
+    const int n = fish->n_nodes;
+    const double *const row = fish->integrals->momentum + (long)j * n * n + k;
+    momentum[0] = momentum[1] = 0;
+    for (int i = 0; i < n; i++) {
+        momentum[0] -= fish->sheet_weight[j] * row[i * n] * x[n + i];
+        momentum[1] += fish->sheet_weight[j] * row[i * n] * x[i];
+    }
 }
 
-void pressure_momentum_jacobian(const struct pressure *p, int at_start, const double *y, struct sparse *jacobian) {
+void pressure_momentum_jacobian(struct pressure *p, int at_start, const double *y, struct sparse *jacobian) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
     for (int k = 0; k < n; k++) {
@@ -230,13 +248,21 @@ void pressure_momentum_jacobian(const struct pressure *p, int at_start, const do
             sparse_add(jacobian, row, fish->at.px + node, 1);
             sparse_add(jacobian, row, fish->at.vx + node, -1);
 
-            // by the positions and strengths
+            // by the positions
             for (int m = 0; m < n; m++) {
-                sparse_add(jacobian, row, fish->at.x + other + m, sign * p->matrix[k * n + m]);
+                sparse_add(jacobian, row, fish->at.x + other + m, sign * p->matrix[m * n + k]);
             }
-            for (int j = 0; j < fish->n_sheet; j++) {
-                sparse_add(jacobian, row, fish->at.gamma + j,
-                           sign * momentum_by_strength(fish, k, j, y + fish->at.x + other));
+        }
+    }
+
+    // by the strengths
+    for (int j = 0; j < fish->n_sheet; j++) {
+        for (int i = 0; i < 2; i++) {
+            momentum_by_strength(fish, j, y + fish->at.x + (1 - i) * n, p->product);
+            for (int k = 0; k < n; k++) {
+                const double sign = (i == 0 ? 1 : -1) / fish->mass[k];
+                sparse_add(jacobian, pressure_momentum_row(fish, at_start, i, k), fish->at.gamma + j,
+                           sign * p->product[k]);
             }
         }
     }
@@ -250,7 +276,7 @@ void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
     for (int k = 0; k < n; k++) {
         for (int m = 0; m < n; m++) {
             // convection: n t of every control point; rotation: -E3
-            double sum[2][2] = {{0, p->matrix[k * n + m]}, {-p->matrix[k * n + m], 0}};
+            double sum[2][2] = {{0, p->matrix[m * n + k]}, {-p->matrix[m * n + k], 0}};
             for (int c = 0; c < fish->n_control; c++) {
                 const double *const weight = fish->control_point[c].weight;
                 const struct direction *const body = &p->point[c].body;
@@ -338,7 +364,7 @@ static void suction_jacobian(const struct pressure *p, struct coupling_block *ro
     }
 }
 
-void pressure_own_jacobian(const struct pressure *p, const double *y, struct coupling_block *rows) {
+void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_block *rows) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
     convection_by_places(p, rows);
@@ -350,21 +376,21 @@ void pressure_own_jacobian(const struct pressure *p, const double *y, struct cou
         double *const column = rows->value + (long)(2 * n + j) * rows->n_rows;
         for (int c = 0; c < fish->n_control; c++) {
             const struct pressure_point *const point = &p->point[c];
-            const double size = fish->control_density[c] * fish->integrals->strength[(long)c * fish->n_sheet + j] *
+            const double size = fish->control_density[c] * fish->integrals->strength[(long)j * fish->n_control + c] *
                                 fish->sheet_weight[j] * slip_along(point);
             spread_force(p, c, size * point->body.n[0], size * point->body.n[1], column);
             if (!(fish->strip_depth > 0)) continue;
             const double before = fish->control_density[c] * fish->sheet_weight[j] *
-                                  fish->integrals->circulation[(long)c * fish->n_sheet + j];
+                                  fish->integrals->circulation[(long)j * fish->n_control + c];
             const double across = before * point->divergence * point->body.length * fish->control_interval[c];
             spread_force(p, c, across * point->body.n[0] - before * point->edge[0],
                          across * point->body.n[1] - before * point->edge[1], column);
         }
 
-        for (int k = 0; k < n; k++) {
-            column[k] += momentum_by_strength(fish, k, j, y + fish->at.vy) / fish->mass[k];
-            column[n + k] -= momentum_by_strength(fish, k, j, y + fish->at.vx) / fish->mass[k];
-        }
+        momentum_by_strength(fish, j, y + fish->at.vy, p->product);
+        for (int k = 0; k < n; k++) column[k] += p->product[k] / fish->mass[k];
+        momentum_by_strength(fish, j, y + fish->at.vx, p->product);
+        for (int k = 0; k < n; k++) column[n + k] -= p->product[k] / fish->mass[k];
     }
 }
 
@@ -432,7 +458,7 @@ static double strip_depth_at(const struct fish *fish, int c) {
 
 double pressure_jump(const struct pressure *p, int c, const double *y, const double *yp) {
     const struct fish *fish = p->fish;
-    const double *const circulation = fish->integrals->circulation + (long)c * fish->n_sheet;
+    const double *const circulation = fish->integrals->circulation + c;
     const struct pressure_point *const point = &p->point[c];
 
     // length of the interval around the control point, which contains the circulation of the point
@@ -440,7 +466,7 @@ double pressure_jump(const struct pressure *p, int c, const double *y, const dou
     double rate = fish->integrals->kink_circulation[c] * tail_kink(fish, yp);
 
     for (int j = 0; j < fish->n_sheet; j++) {
-        rate += circulation[j] * fish->sheet_weight[j] * yp[fish->at.gamma + j];
+        rate += circulation[j * fish->n_control] * fish->sheet_weight[j] * yp[fish->at.gamma + j];
     }
 
     const double around = point->circulation + fish->integrals->kink_strength[c] * tail_kink(fish, y);

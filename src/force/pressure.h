@@ -29,7 +29,7 @@ struct pressure_point {
 struct pressure {
     const struct fish *fish;
     double *circulation;   /* of the bound vortices, m2 s-1                                     (n_sheet) */
-    double *matrix;        /* R: I = E3 R x, kg s-1                                      (n_nodes, n_nodes) */
+    double *matrix;        /* R by columns: I = E3 R x, kg s-1                           (n_nodes, n_nodes) */
     double *momentum;      /* I, the added momentum of the nodes, N s                         (2 n_nodes) */
     double *momentum_rate; /* dI/dt, N: set by pressure_update_rate                             (2 n_nodes) */
     double *force;         /* rotation and convection: force of the pressure plus dI/dt, N       (2 n_nodes) */
@@ -40,6 +40,7 @@ struct pressure {
     double by_slip;        /* derivative of the size of the suction by tau, N s m-1 */
     double *share; /* share of a force at a control point in the row of a node, kg-1       (n_control, n_nodes) */
     struct pressure_point *point; /* (n_control) */
+    double *product, *at_points;  /* workspace: a product with R; values at the control points */
 };
 
 /* Suction at the nose over S pi rho_f w L, with its derivatives. full: attached flow, qhat^2; bound: the maximum for
@@ -74,13 +75,12 @@ void pressure_residual(const struct pressure *pressure, double *residual);
 
 /* Add the derivatives of the rows of the momentum; add the derivatives of the rows ax, ay, divided by the mass of the
  * node, by the velocities of the nodes. */
-void pressure_momentum_jacobian(const struct pressure *pressure, int at_start, const double *y,
-                                struct sparse *jacobian);
+void pressure_momentum_jacobian(struct pressure *pressure, int at_start, const double *y, struct sparse *jacobian);
 void pressure_jacobian(const struct pressure *pressure, struct sparse *jacobian);
 
 /* Add the derivatives of the rows ax, ay, divided by the mass of the node: by the positions and strengths of the fish
  * with the velocity of the fluid held constant, and through the velocity of the fluid. */
-void pressure_own_jacobian(const struct pressure *pressure, const double *y, struct coupling_block *rows);
+void pressure_own_jacobian(struct pressure *pressure, const double *y, struct coupling_block *rows);
 void pressure_flow_jacobian(const struct pressure *pressure, const struct influence_block *block,
                             struct coupling_block *rows);
 

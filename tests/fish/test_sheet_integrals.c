@@ -50,14 +50,14 @@ static void control_points_have_the_circulation_of_their_intervals(void **state)
     (void)state;
     struct sheet_integrals *const integrals = make(three);
     for (int m = 0; m < N_SHEET - 1; m++) {
-        double q[N_SHEET];
+        double q[N_SHEET], around[N_SHEET - 1], before[N_SHEET - 1];
         cosine(m, q);
+        sheet_integrals_around(integrals, q, around);
+        sheet_integrals_before(integrals, q, before);
         for (int c = 0; c < N_SHEET - 1; c++) {
             const double theta = pi * (c + 0.5) / (N_SHEET - 1);
-            double before = 0;
-            for (int j = 0; j < N_SHEET; j++) before += integrals->circulation[c * N_SHEET + j] * q[j];
-            NEAR(sheet_integrals_around(integrals, c, q), pi / (N_SHEET - 1) * cos(m * theta), 1e-14, 0);
-            NEAR(before, m == 0 ? theta : sin(m * theta) / m, 1e-13, 0);
+            NEAR(around[c], pi / (N_SHEET - 1) * cos(m * theta), 1e-14, 0);
+            NEAR(before[c], m == 0 ? theta : sin(m * theta) / m, 1e-13, 0);
         }
     }
     sheet_integrals_free(integrals);
@@ -73,8 +73,8 @@ static void a_kink_at_the_tail_is_what_the_series_lacks(void **state) {
         double around = integrals->kink_strength[c] * end, before = integrals->kink_circulation[c] * end;
         for (int j = 0; j < N_SHEET; j++) {
             const double q = h * sin(j * h) * (1 - cos(j * h));
-            around += integrals->strength[c * N_SHEET + j] * q;
-            before += integrals->circulation[c * N_SHEET + j] * q;
+            around += integrals->strength[j * (N_SHEET - 1) + c] * q;
+            before += integrals->circulation[j * (N_SHEET - 1) + c] * q;
         }
         NEAR(around, h * sin(theta) * (1 - cos(theta)), 1e-14, 0);
         NEAR(before, pow(1 - cos(theta), 2) / 2, 1e-13, 0);
@@ -92,7 +92,7 @@ static double integral(const struct sheet_integrals *integrals, const double *we
     for (int j = 0; j < N_SHEET; j++) {
         for (int k = 0; k < N_NODES; k++) {
             for (int i = 0; i < N_NODES; i++) {
-                sum += weight[k] * integrals->momentum[(j * N_NODES + k) * N_NODES + i] * x[i] * q[j];
+                sum += weight[k] * integrals->momentum[(j * N_NODES + i) * N_NODES + k] * x[i] * q[j];
             }
         }
     }

@@ -247,10 +247,12 @@ static void add_fish(const struct setup *setup, int f, int i, int g, double *u, 
     }
 
     const int by_control = other->force == FORCE_PRESSURE, n = by_control ? other->n_control : other->n_sheet;
+    double around[64];
+    if (by_control) sheet_integrals_around(other->integrals, circulation, around);
     for (int c = 0; c < n; c++) {
         const struct stencil *const point = by_control ? &other->control_point[c] : &other->sheet_point[c];
-        add_unit(by_control ? sheet_integrals_around(other->integrals, c, circulation) : circulation[c], at[0], at[1],
-                 fish_mean(point, state->y + other->at.x), fish_mean(point, state->y + other->at.y), smoothing, u, v);
+        add_unit(by_control ? around[c] : circulation[c], at[0], at[1], fish_mean(point, state->y + other->at.x),
+                 fish_mean(point, state->y + other->at.y), smoothing, u, v);
     }
 }
 

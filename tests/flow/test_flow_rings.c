@@ -99,8 +99,8 @@ static void add_body(struct felt *felt, const struct setup *setup, int f, int g,
         double around = 0, before = 0;
         for (int j = 0; j < fish->n_sheet; j++) {
             const double q = fish->sheet_weight[j] * y[fish->at.gamma + j];
-            around += fish->integrals->strength[c * fish->n_sheet + j] * q;
-            before += fish->integrals->circulation[c * fish->n_sheet + j] * q;
+            around += fish->integrals->strength[j * fish->n_control + c] * q;
+            before += fish->integrals->circulation[j * fish->n_control + c] * q;
         }
 
         const double du = fish->control_interval[c] * before;
@@ -176,7 +176,7 @@ static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_str
         for (int c = 0; c < fish->n_control; c++) {
             double before = 0;
             for (int j = 0; j < fish->n_sheet; j++) {
-                before += fish->integrals->circulation[c * fish->n_sheet + j] * flow->sheet.circulation[j];
+                before += fish->integrals->circulation[j * fish->n_control + c] * flow->sheet.circulation[j];
             }
             const double du = fish->control_interval[c] * before, from[2] = {flow->x[c], flow->y[c]};
             const double d[2] = {du * fish_mean(&fish->control_tangent[c].to, y + fish->at.x),
