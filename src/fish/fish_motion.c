@@ -172,15 +172,14 @@ void fish_start(const struct fish *fish, double *y) {
         return;
     }
 
-    // the bias of a controlled fish is not known yet: start with the shape of bias 0
-    const double bias = fish->control.law == CONTROL_NONE ? fish->control.bias : 0;
+    // the bias of a control law is not known yet, and control.bias is 0 then
     const struct fish_gait gait = fish_own_gait(fish, 0);
     double angle = fish->start_heading - M_PI;
     x[0] = fish->start_position[0];
     z[0] = fish->start_position[1];
 
     for (int k = 0; k < fish->n_edges; k++) {
-        if (k > 0) angle += fish_natural_angle(fish, k - 1, &gait, bias);
+        if (k > 0) angle += fish_natural_angle(fish, k - 1, &gait, fish->control.bias);
         x[k + 1] = x[k] + fish->edge_length * cos(angle);
         z[k + 1] = z[k] + fish->edge_length * sin(angle);
     }

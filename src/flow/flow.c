@@ -189,9 +189,9 @@ static enum status flow_find_classes(struct flow *flow) {
         const struct fish *const fish = &school->fish[f];
 
         int c = 0;
+        // both radii are multiples of the length
         while (flow_has_free_sheets(flow) && c < flow->n_classes &&
-               (fabs(flow->class[c].smoothing - fish->smoothing) > 0 ||
-                fabs(flow->class[c].sheet_smoothing - fish->sheet_smoothing) > 0)) {
+               fabs(flow->class[c].smoothing - fish->smoothing) > 0) {
             c++;
         }
 

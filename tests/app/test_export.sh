@@ -136,7 +136,7 @@ cat >channel.yaml <<'end'
 format: 1
 time: {end: 0.1, shedding_interval: 0.02, output_interval: 0.1}
 fluid: {walls: [-0.5, 1.5]}
-fish: [{nodes: 5, length: 0.5}]
+fish: [{nodes: 5, length: 0.5, start: {position: [10, 0]}}]
 end
 run run channel.yaml -q -o channel.nc
 run export channel.nc --vtk channel
@@ -152,7 +152,7 @@ data = reader.GetOutput()
 points = vtk_to_numpy(data.GetPoints().GetData())
 assert data.GetNumberOfLines() == 2 and points.shape == (4, 3), points
 assert points[:, 1].tolist() == [-0.5, -0.5, 1.5, 1.5], points
-assert (abs(points[[0, 2], 0] + 1) < 0.1).all() and (abs(points[[1, 3], 0] - 1.5) < 0.1).all(), points
+assert (abs(points[[0, 2], 0] - 9) < 0.1).all() and (abs(points[[1, 3], 0] - 11.5) < 0.1).all(), points
 assert open("channel/channel.pvd").read().count("channel-walls-0000.vtp") == 2
 end
 check walls_are_lines timeout "$time_limit" /usr/bin/python3 walls.py

@@ -277,11 +277,142 @@ static void markers_are_stretched_and_a_wall_lets_nothing_through(void **state) 
     school_clear(&setup);
 }
 
+// s of marker k, from the length of the sheet between the newest marker and marker k
+static double marker_leg(const struct fish *fish, const struct wake *wake, int k) {
+    const double w = fish->strip_depth;
+    double distance = 0;
+    for (int i = k; i + 1 < wake->n_vortex; i++)
+        distance += hypot(wake->x[i + 1] - wake->x[i], wake->y[i + 1] - wake->y[i]);
+    return w * w / 8 * (1 - exp(-pow(distance / (3 * w), 4)));
+}
+
+// fish g at marker m of fish f: both ends of a leg are at markers, so each marker has half of both stretches
+static void add_at_marker(struct felt *felt, const struct setup *setup, int f, int m, int g, const double at[2],
+                          double mirror) {
+    const struct fish *const fish = &setup->school->fish[f], *const other = &setup->school->fish[g];
+    const struct wake *const own = &setup->state->wake[f], *const wake = &setup->state->wake[g];
+    const int is_own = f == g && !(mirror < 0), newest = wake->n_vortex - 1;
+    const double factor = is_own ? 1 : 4, span = other->strip_depth / (is_own ? 4 : 2);
+    const double one = fish->strip_depth * fish->strip_depth / 32, two = other->strip_depth * other->strip_depth / 32;
+    const double leg = marker_leg(fish, own, m), square = fish->smoothing * fish->smoothing;
+    double label[64];
+    assert_in_range(newest, 2, 62);
+    for (int k = 0; k <= newest; k++) label[k] = wake_ring(wake, setup->school, k, setup->state->t, 0);
+    label[newest + 1] = setup->state->y[other->at.circulation];
+
+    for (int k = 0; k <= newest; k++) {
+        const int older = k > 0 ? k - 1 : k, newer = k < newest ? k + 1 : k;
+        const double released = k < newest ? (label[k + 1] - label[k]) / 2 : label[k + 1] - label[k];
+        const double sign = mirror < 0 ? -1 : 1, q = sign * ((label[k] - label[older]) / 2 + released);
+        const double d[2] = {sign * label[k] * (wake->x[newer] - wake->x[older]) / 2,
+                             label[k] * (wake->y[newer] - wake->y[older]) / 2};
+        const double from[2] = {wake->x[k], mirror < 0 ? mirror - wake->y[k] : wake->y[k]};
+        const double pair = is_own ? square : (square + other->smoothing * other->smoothing) / 2;
+        add_ring(felt, (const double[]){own->x[m], own->y[m]}, from, q, d, span, factor * (one + two),
+                 leg + marker_leg(other, wake, k), pair);
+    }
+
+    // the body: next to the own body with the tapered smoothing, and at the newborn marker without smoothing
+    const struct rings *const body = &setup->residual->flow->rings->fish[g].body;
+    for (int c = 0; c < other->n_control; c++) {
+        const double sign = mirror < 0 ? -1 : 1, d[2] = {sign * body->dx[c], body->dy[c]};
+        const double from[2] = {body->x[c], mirror < 0 ? mirror - body->y[c] : body->y[c]};
+        double pair = square;
+        if (is_own) {
+            const double *const y = setup->state->y;
+            const int tail = fish->n_nodes - 1;
+            const struct direction tangent = fish_direction(fish, &fish->tail_tangent, y);
+            const double place[2] = {own->x[m] - y[fish->at.x + tail], own->y[m] - y[fish->at.y + tail]};
+            const double tapered = free_sheet_smoothing(fish, place, tangent.t);
+            pair = m < newest ? tapered * tapered : 0;
+        }
+        add_ring(felt, is_own ? at : (const double[]){own->x[m], own->y[m]}, from, sign * body->q[c], d, span,
+                 factor * (one + other->point_half[c]), leg, pair);
+    }
+}
+
+static void markers_feel_all_bodies_all_markers_and_all_images(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    setup.t = setup.state->t;
+    struct state *const now = setup.state;
+    for (int f = 0; f < 2; f++) {
+        // the tail moves back: the newborn marker feels the own body at the tail
+        const struct fish *const fish = &setup.school->fish[f];
+        const struct direction tail = fish_direction(fish, &fish->tail_tangent, now->y);
+        for (int i = 0; i < 2; i++) now->wake[f].slip[i] = -0.3 * tail.t[i];
+    }
+    school_flow(&setup, now->y);
+    struct flow *const flow = setup.residual->flow;
+    school_ok(flow_at_wake(flow, now));
+
+    for (int f = 0; f < 2; f++) {
+        const struct fish *const fish = &setup.school->fish[f];
+        const struct wake *const wake = &now->wake[f];
+        for (int m = 0; m < wake->n_vortex; m++) {
+            const int is_newborn = m == wake->n_vortex - 1, n = flow->wake_range[f].first + m, tail = fish->n_nodes - 1;
+            const double at[2] = {is_newborn ? now->y[fish->at.x + tail] : wake->x[m],
+                                  is_newborn ? now->y[fish->at.y + tail] : wake->y[m]};
+            struct felt all = {0}, images = {0};
+            for (int g = 0; g < 2; g++) {
+                add_at_marker(&all, &setup, f, m, g, at, 0);
+                add_at_marker(&images, &setup, f, m, g, at, 2 * -0.9);
+            }
+            NEAR(flow->wake_image_u[n], images.u, 1e-13, 1e-11);
+            NEAR(flow->wake_image_v[n], images.v, 1e-13, 1e-11);
+            NEAR(flow->rings->wake_image_div[n], images.div, 1e-13, 1e-11);
+            NEAR(flow->wake_u[n], all.u + images.u, 1e-12, 1e-11);
+            NEAR(flow->wake_v[n], all.v + images.v, 1e-12, 1e-11);
+            NEAR(flow->rings->wake_div[n], all.div + images.div, 1e-12, 1e-11);
+        }
+    }
+    school_clear(&setup);
+}
+
+// the points of a graded sheet: s by the length of the sheet between tail and point, at both ends of the interval
+static void legs_of_graded_points_begin_at_the_tail(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    struct flow *const flow = setup.residual->flow;
+    const double interval = setup.school->interval;
+    for (int end = 0; end < 2; end++) {
+        setup.t = setup.state->t + end * interval;
+        school_flow(&setup, setup.state->y);
+        for (int f = 0; f < 2; f++) {
+            const struct fish *const fish = &setup.school->fish[f];
+            const struct wake *const wake = &setup.state->wake[f];
+            const struct ring_sheet *const sheet = &flow->rings->fish[f].graded;
+            const int newest = wake->n_vortex - 1;
+            const double w = fish->strip_depth;
+            assert_true(sheet->n_released > 2 * FREE_SHEET_PANEL);
+            for (int i = 0; i < sheet->n_released; i++) {
+                double newer[2] = {wake->x[newest] + end * interval * wake->tail_velocity[0],
+                                   wake->y[newest] + end * interval * wake->tail_velocity[1]},
+                       older[2], distance = 0;
+                for (int k = newest; k >= sheet->stretch[i]; k--) {
+                    wake_marker(wake, k, interval, end * interval, older);
+                    const double length = hypot(newer[0] - older[0], newer[1] - older[1]);
+                    distance += k > sheet->stretch[i] ? length : sheet->xi[i] * length;
+                    for (int j = 0; j < 2; j++) newer[j] = older[j];
+                }
+                NEAR(sheet->rings.leg[i], w * w / 8 * (1 - exp(-pow(distance / (3 * w), 4))), 1e-15, 1e-9);
+            }
+        }
+    }
+    school_clear(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_of_others_feel_bodies_wakes_and_images_with_twice_the_span),
         cmocka_unit_test(control_points_feel_their_own_body_and_wake_with_the_span_of_the_strip),
         cmocka_unit_test(the_newborn_marker_feels_its_body_behind_the_tail),
+        cmocka_unit_test(markers_feel_all_bodies_all_markers_and_all_images),
+        cmocka_unit_test(legs_of_graded_points_begin_at_the_tail),
         cmocka_unit_test(markers_are_stretched_and_a_wall_lets_nothing_through),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

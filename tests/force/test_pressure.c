@@ -256,6 +256,29 @@ static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) 
     simulate_free(simulation);
 }
 
+// the scale of the momenta: 1 + m_L L/m_k for the strip of the deeper end
+static void momenta_scale_with_the_deeper_end(void **state) {
+    (void)state;
+    static const char *const depths[] = {"0.1, 0.2, 0.2, 0.3", "0.3, 0.2, 0.2, 0.1"};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        char text[512];
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS
+                 "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 800}\n"
+                 "fish: [{nodes: 5, sheet_points: 21, length: 2, force: pressure, body: {profile: table,\n"
+                 "    thickness_table: [0.1, 0.1, 0.1, 0.1], depth_table: [%s]}}]\n",
+                 depths[i]);
+        school_build(&setup, text);
+        const struct fish *const fish = setup.school->fish;
+        for (int k = 0; k < 5; k++) {
+            const double per_length = acos(-1) / 4 * 800 * 0.3 * 2;
+            NEAR(pressure_momentum_ratio(fish, k), 1 + per_length * 0.5 / fish->mass[k], 0, 1e-12);
+        }
+        school_clear(&setup);
+    }
+}
+
 // the force on the nodes equals the integral of the jump along the line, and the reactions of a prescribed body balance
 // this force
 static void force_and_reaction_are_those_of_the_jump(void **state) {
@@ -535,6 +558,7 @@ int main(void) {
         cmocka_unit_test(added_mass_of_finite_span_is_symmetric_and_positive),
         cmocka_unit_test(slow_modes_have_the_added_mass_of_the_sheet),
         cmocka_unit_test(a_stream_that_starts_at_once_pushes_by_the_added_mass),
+        cmocka_unit_test(momenta_scale_with_the_deeper_end),
         cmocka_unit_test(force_and_reaction_are_those_of_the_jump),
         cmocka_unit_test(suction_law_has_its_limits_its_bound_and_its_derivatives),
         cmocka_unit_test(suction_law_has_a_value_at_rest),

@@ -868,6 +868,8 @@ static void a_run_that_has_failed_is_whole_when_it_is_put_back(void **state) {
     assert_null(copy);
     assert_int_equal(shoal_restore(kept, run), SHOAL_SOLVER);
     assert_int_equal(shoal_restore(run, kept), SHOAL_OK);
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    shoal_close(copy);
     assert_int_equal(shoal_advance(run, 2), SHOAL_SOLVER);
     NEAR(shoal_time(run), reached, 0, 0);
     shoal_close(run);
@@ -972,7 +974,16 @@ static void a_state_that_is_set_to_itself_stays(void **state) {
     assert_int_equal(shoal_state(run, 1, x, v), SHOAL_OK);
     assert_int_equal(shoal_set_state(run, 1, NULL, NULL), SHOAL_OK);
     same_in_all(run, copy);
-    assert_int_equal(shoal_set_state(run, 1, x, v), SHOAL_OK);
+    // all samples of a period stay with a velocity, and those of other fish with a position
+    static const char *const means[] = {"speed", "ground_speed", "mean_actuation_power", "mean_thrust", "strouhal"};
+    for (int has_position = 0; has_position < 2; has_position++) {
+        assert_int_equal(shoal_set_state(run, 1, has_position ? x : NULL, v), SHOAL_OK);
+        for (int i = 0; i < 5; i++) {
+            for (size_t f = 0; f < (has_position ? 1 : 2); f++) {
+                NEAR(one_of(run, means[i], f), one_of(copy, means[i], f), 0, 1e-3);
+            }
+        }
+    }
     assert_int_equal(shoal_n_vortices(run, 1), shoal_n_vortices(copy, 1));
     assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
     assert_int_equal(shoal_advance(copy, 0.4), SHOAL_OK);
@@ -1001,6 +1012,11 @@ static void a_state_that_no_body_can_have_is_refused(void **state) {
     wrong[17] = x[13];
     assert_int_equal(shoal_set_state(run, 0, wrong, NULL), SHOAL_USAGE);
     assert_non_null(strstr(shoal_message(), "joint 6 of a would turn by"));
+    memcpy(wrong, x, sizeof wrong);
+    wrong[0] = x[4];
+    wrong[1] = x[5];
+    assert_int_equal(shoal_set_state(run, 0, wrong, NULL), SHOAL_USAGE);
+    assert_non_null(strstr(shoal_message(), "joint 0 of a would turn by"));
     // onto the other fish
     double other[18];
     assert_int_equal(shoal_state(run, 1, other, NULL), SHOAL_OK);

@@ -25,12 +25,26 @@ static const char *info(const char *path, int case_only, enum status *status) {
 
 static void info_sums_up(void **state) {
     struct fixture *f = *state;
+    f->diagnostics.momentum_balance[0] = -3e-3;
+    f->diagnostics.momentum_balance[1] = 4e-3;
     write_file(f, 3);
     enum status status;
     const char *text = info(f->path, 0, &status);
     assert_int_equal(status, STATUS_OK);
-    const char *const parts[] = {"result",  "complete",       "3, from t = 0 s to 1 s",          "leader",
-                                 "suédois", "2.10 per event", "28.00 s   0.0357 times real time"};
+    const char *const parts[] = {"momentum balance          5.0e-03 N s",
+                                 "total circulation         1.1e+01 m2 s-1",
+                                 "least distance            12.0000 m",
+                                 "polarisation              13.0000",
+                                 "steps                          21   2.10 per event",
+                                 "a vortex every 0.1 s",
+                                 "convergence_failures           26   2.60 per event",
+                                 "result",
+                                 "complete",
+                                 "3, from t = 0 s to 1 s",
+                                 "leader",
+                                 "suédois",
+                                 "2.10 per event",
+                                 "28.00 s   0.0357 times real time"};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         if (strstr(text, parts[i]) == NULL) fail_msg("\"%s\" is not in\n%s", parts[i], text);
     assert_null(strstr(text, "nan"));

@@ -6,6 +6,7 @@
 #include "force/bound_sheet.h"
 #include "run/event.h"
 #include "school.h"
+#include "school/diagnostics_energy.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
@@ -115,6 +116,38 @@ static void wake_holds_one_lifetime(void **state) {
     simulate_free(simulation);
 }
 
+// the slots of a result, in which every wake has room
+static void the_largest_wake_of_a_run_is_known_before(void **state) {
+    (void)state;
+    static const struct {
+        const char *wake;
+        int most;
+    } wakes[] = {{"shedding: sheet, lifetime: 0.2", 11},
+                 {"shedding: sheet, lifetime: 0.213, decay: 0", 12},
+                 {"shedding: sheet, lifetime: 0.2, decay: 0.1, spare_vortices: 3", 11},
+                 {"shedding: continuous, lifetime: 0.2", 10},
+                 {"shedding: impulsive, lifetime: 0.2", 10}};
+    for (size_t i = 0; i < sizeof wakes / sizeof *wakes; i++) {
+        char text[256];
+        snprintf(text, sizeof text, TIME "solver: {rtol: 1e-2}\nwake: {%s}\nfish: [{nodes: 4, sheet_points: 5}]\n",
+                 wakes[i].wake);
+        struct simulation *const simulation = school_simulation(text);
+        const int spare = simulation->school->wake_spare;
+        int most = simulation->state->wake[0].n_vortex;
+        for (int n = 1; n <= 16; n++) {
+            school_ok(simulate_step(simulation));
+            const int now = simulation->state->wake[0].n_vortex;
+            assert_true(now <= wake_most(simulation->school, n) - spare);
+            most = now > most ? now : most;
+        }
+        assert_int_equal(most, wakes[i].most);
+        // one slot more for a vortex that is released before the oldest is removed
+        assert_in_range(wake_most(simulation->school, 1000) - spare - most, 0, i < 3 ? 0 : 1);
+        assert_int_equal(wake_most(simulation->school, 3) - spare, 4);
+        simulate_free(simulation);
+    }
+}
+
 static void impulses_conserve_circulation_and_meet_kutta(void **state) {
     (void)state;
     struct simulation *const simulation =
@@ -199,6 +232,27 @@ static void averaged_heading_changes_the_bias_at_a_bounded_rate(void **state) {
     // heading too far left: the fish turns right
     assert_true(before > 0.3);
     simulate_free(simulation);
+}
+
+// the powers of a muscle have a kink where the rate of its bias jumps: their integral begins again at such an event
+static void samples_of_the_power_begin_again_where_the_bias_kinks(void **state) {
+    (void)state;
+    static const char *const laws[] = {"none", "averaged_heading"};
+    for (int i = 0; i < 2; i++) {
+        char text[256];
+        snprintf(text, sizeof text, TIME "fish: [{control: {law: %s}, start: {heading: 170}}]\n", laws[i]);
+        struct simulation *const simulation = school_simulation(text);
+        for (int n = 1; n <= 5; n++) {
+            school_ok(simulate_step(simulation));
+            const struct state *const now = simulation->state;
+            const struct energy_balance *const balance = &now->balance[0];
+            assert_int_equal(balance->n, i == 0 ? 2 : 1);
+            NEAR(balance->t[0], now->t, 1e-15, 0);
+            const struct diagnostics_power power = diagnostics_power(simulation->residual, 0, now->t, now->y);
+            if (i == 1) NEAR(balance->power[0][WORK_ACTUATION], power.actuation, 0, 1e-14);
+        }
+        simulate_free(simulation);
+    }
 }
 
 // nodes and phi0 at the end of 0.3 s of a turn across a stream that shears, with a modulus and a method
@@ -293,10 +347,12 @@ int main(void) {
         cmocka_unit_test(one_vortex_is_released_at_every_event_with_what_was_shed),
         cmocka_unit_test(fields_are_continuous_across_a_continuous_event),
         cmocka_unit_test(wake_holds_one_lifetime),
+        cmocka_unit_test(the_largest_wake_of_a_run_is_known_before),
         cmocka_unit_test(impulses_conserve_circulation_and_meet_kutta),
         cmocka_unit_test(impulses_by_rate_are_the_rate_times_the_interval),
         cmocka_unit_test(waypoints_advance_during_a_run),
         cmocka_unit_test(an_event_without_finite_velocities_is_final),
+        cmocka_unit_test(samples_of_the_power_begin_again_where_the_bias_kinks),
         cmocka_unit_test(averaged_heading_changes_the_bias_at_a_bounded_rate),
         cmocka_unit_test(a_fish_reaches_its_waypoints),
         cmocka_unit_test(vortices_of_the_case_meet_the_fish),

@@ -223,6 +223,34 @@ static void a_body_that_does_not_travel_has_no_numbers_per_speed(void **state) {
     simulate_free(simulation);
 }
 
+static double reversals(int n, const double *bias, double limit) {
+    struct sample samples[8];
+    struct history history = {.capacity = 8, .last = -1, .sample = samples};
+    const struct fish fish = {.control = {.law = CONTROL_COURSE, .limit = limit}};
+    for (int i = 0; i < n; i++) {
+        const struct sample sample = {.bias = bias[i], .com = {i, 0}};
+        state_remember(&history, &sample);
+    }
+    struct diagnostics_fish to;
+    diagnostics_period(&fish, &history, 0.1, &to);
+    return to.bias_reversals;
+}
+
+// a hundredth of the limit, in either direction; small moves back count once they add up to that
+static void a_bias_reverses_where_it_moves_back_by_a_hundredth_of_the_limit(void **state) {
+    (void)state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const double small = 0.0199 * sign, large = 0.0201 * sign;
+        NEAR(reversals(7, (double[]){0, small, 0, small, 0, small, 0}, 2), 0, 0, 0);
+        NEAR(reversals(7, (double[]){0, large, 0, large, 0, large, 0}, 2), 5, 0, 0);
+        NEAR(reversals(7, (double[]){0, large, 3 * large, 3 * large, 5 * large, 6 * large, 7 * large}, 2), 0, 0, 0);
+        NEAR(reversals(6, (double[]){0, 4 * large, 4 * large - small, 5 * large, 5 * large, 6 * large}, 2), 0, 0, 0);
+        NEAR(reversals(6, (double[]){0, 4 * large, 4 * large - small / 2, 4 * large - small, 3 * large - small, 0}, 2),
+             1, 0, 0);
+        NEAR(reversals(4, (double[]){5, 5 + large, 5, 5 + large}, 2), 2, 0, 0);
+    }
+}
+
 static void mean_heading_is_the_trapezoidal_mean(void **state) {
     (void)state;
     struct sample samples[5];
@@ -674,6 +702,7 @@ int main(void) {
         cmocka_unit_test(total_circulation_vanishes_at_every_event),
         cmocka_unit_test(momentum_is_constant_without_fluid),
         cmocka_unit_test(a_body_that_does_not_travel_has_no_numbers_per_speed),
+        cmocka_unit_test(a_bias_reverses_where_it_moves_back_by_a_hundredth_of_the_limit),
         cmocka_unit_test(mean_heading_is_the_trapezoidal_mean),
         cmocka_unit_test(course_is_the_direction_of_the_way_in_the_last_period),
         cmocka_unit_test(speed_and_strouhal_number_are_those_of_a_driven_plate),

@@ -100,6 +100,11 @@ static void check_bound(const char *text) {
     const int n_merged = merge_all(&setup);
     assert_true(n_merged > N / 4);
     assert_int_equal(setup.state->wake[0].n_vortex, N - n_merged);
+    // a pair lives as long as its newer vortex, which is nearer to the tail; pairs of both signs lie beside themselves
+    const struct wake *const wake = &setup.state->wake[0];
+    int n_older = 0;
+    for (int i = 0; i < wake->n_vortex; i++) n_older += wake->x[i] - 1 < setup.state->t - wake->birth[i] - 1e-9;
+    assert_true(n_older < n_merged / 10);
     const struct moments is = moments_of(&setup);
     NEAR(is.circulation, was.circulation, 1e-15 * was.size, 0);
     // sixteen lengths, and rounding

@@ -188,6 +188,25 @@ static void the_state_stays_where_its_multipliers_are_taken(void **state) {
     steady_setup_close(&setup);
 }
 
+// the step to the fixed point leaves a small part of the change per beat, a half step would leave half
+static void the_step_of_the_multipliers_leads_to_the_fixed_point(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE "fish: [{" FISH ", start: {speed: 0.8}}]\n");
+    steady_setup_beats(&setup, 8);
+    const double before = steady_map_residual(&setup.problem.map);
+    steady_setup_multipliers(&setup);
+    double to[STEADY_QUANTITIES];
+    steady_problem_read(&setup.problem, to);
+    for (int i = 0; i < setup.problem.n_unknowns; i++) to[i] += setup.way[i];
+    school_ok(steady_problem_put(&setup.problem, to));
+    steady_setup_beats(&setup, 8);
+    const double after = steady_map_residual(&setup.problem.map);
+    print_message("change per beat: %.2e, after the step %.2e\n", before, after);
+    assert_true(after < 0.1 * before);
+    steady_setup_close(&setup);
+}
+
 static void a_held_fish_is_steady_when_its_forces_repeat(void **state) {
     (void)state;
     struct steady_setup setup;
@@ -481,6 +500,7 @@ int main(void) {
         cmocka_unit_test(circulation_that_is_added_changes_nothing_else),
         cmocka_unit_test(a_law_of_control_brings_the_heading_to_where_a_run_has_it),
         cmocka_unit_test(the_state_stays_where_its_multipliers_are_taken),
+        cmocka_unit_test(the_step_of_the_multipliers_leads_to_the_fixed_point),
         cmocka_unit_test(a_held_fish_is_steady_when_its_forces_repeat),
         cmocka_unit_test(two_beats_in_a_row_are_steady),
         cmocka_unit_test(mean_powers_are_the_works_of_a_beat),

@@ -95,6 +95,25 @@ static void a_steady_state_has_its_own_values(void **state) {
     member_file_free(&member);
 }
 
+static void beats_of_a_search_are_those_of_search_multipliers_and_rows(void **state) {
+    struct fixture *const f = *state;
+    struct result_file *file;
+    struct member_file member;
+    struct steady_fish fish[N_FISH] = {{.drag = 3}, {.drag = 6}};
+    const struct steady_values values = {.n_beats = 5, .n_multiplier_beats = 7, .fish = fish};
+    assert_int_equal(
+        result_file_create_steady(&file, f->path, 0, &f->values, EFFECTIVE, "shoal steady case.yaml", f->school, 10),
+        STATUS_OK);
+    for (int i = 0; i < 2; i++) assert_int_equal(append(f, file, 3 + 0.75 * i, 0), STATUS_OK);
+    result_file_steady(file, f->school, &values);
+    assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);
+    assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
+    assert_int_equal(member_file_read(&member, f->path), STATUS_OK);
+    // rows of 0.75 s at 2 Hz; 28 s
+    NEAR(value(&member, "beat_time", 0, 0), 28 / (5 + 7 + 1.5), 0, 1e-14);
+    member_file_free(&member);
+}
+
 static void nose_and_tail_are_the_ends_of_each_body(void **state) {
     struct fixture *const f = *state;
     struct member_file member;
@@ -225,6 +244,7 @@ int main(void) {
         WITH_FILE(quantities_of_the_table_are_those_of_the_last_row),
         WITH_FILE(a_member_that_lacks_rows_is_refused),
         WITH_FILE(a_steady_state_has_its_own_values),
+        WITH_FILE(beats_of_a_search_are_those_of_search_multipliers_and_rows),
         WITH_FILE(nose_and_tail_are_the_ends_of_each_body),
         WITH_FILE(lateral_drift_is_to_the_left_of_the_first_heading),
         WITH_FILE(mean_heading_is_that_of_trapezoids_over_the_last_period),

@@ -289,13 +289,24 @@ static void the_file_has_the_field_on_its_grid(void **state) {
     struct field_grid grid = {.nx = 12, .ny = 5};
     school_ok(field_row_read(&row, path, NAN, 0, NULL));
     field_file_box(&row, grid.low, grid.high);
+    // half a length of the longer fish around all nodes and vortices
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int f = 0; f < 2; f++) {
-        // half a length of the longer fish around everything, but for rounding
         const struct fish *const fish = &row.school->fish[f];
-        for (int k = 0; k < fish->n_nodes; k++) {
-            assert_true(row.state->y[fish->at.x + k] >= grid.low[0] + 0.5 - 1e-12);
-            assert_true(row.state->y[fish->at.y + k] <= grid.high[1] - 0.5 + 1e-12);
+        const struct wake *const wake = &row.state->wake[f];
+        const double *const of[2][2] = {{row.state->y + fish->at.x, row.state->y + fish->at.y}, {wake->x, wake->y}};
+        for (int part = 0; part < 2; part++) {
+            for (int k = 0; k < (part == 0 ? fish->n_nodes : wake->n_vortex); k++) {
+                for (int i = 0; i < 2; i++) {
+                    low[i] = fmin(low[i], of[part][i][k]);
+                    high[i] = fmax(high[i], of[part][i][k]);
+                }
+            }
         }
+    }
+    for (int i = 0; i < 2; i++) {
+        NEAR(grid.low[i], low[i] - 0.5, 1e-14, 0);
+        NEAR(grid.high[i], high[i] + 0.5, 1e-14, 0);
     }
     school_ok(field_file_write(field_path, 1, path, "test", &row, &grid));
     int file;

@@ -1,6 +1,7 @@
 /* test_free_sheet.c: markers, stretches, and sources for the own body. doc/model.md, section 8. */
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "school.h"
 #include "wake/free_sheet.h"
 
@@ -132,6 +133,25 @@ static void the_smoothing_tapers_to_nothing_at_the_tail(void **state) {
     simulate_free(simulation);
 }
 
+// beside the body the taper length falls from the length behind the tail, at right angles, to that beside the body, at
+// an angle of 30 degrees with the normal and beyond
+static void the_taper_is_shorter_beside_the_body(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME SHEET "fish: [{}]\n");
+    const struct fish *const fish = setup.school->fish;
+    const double tangent[] = {0.6, 0.8}, pi = acos(-1);
+    for (int degrees = -180; degrees <= 180; degrees += 5) {
+        const double angle = degrees * pi / 180, r = 0.15;
+        // cosine of the angle between place and tangent
+        const double along = cos(angle),
+                     from[] = {r * (along * 0.6 - sin(angle) * 0.8), r * (along * 0.8 + sin(angle) * 0.6)};
+        const double q = along >= 0 ? 1 : fmax(0, 1 + 2 * along), length = 0.1 + 0.3 * ramp_step(q);
+        NEAR(free_sheet_smoothing(fish, from, tangent), 0.1 * (1 - exp(-pow(r / length, 4))), 1e-14, 1e-11);
+    }
+    school_clear(&setup);
+}
+
 static void a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it(void **state) {
     (void)state;
     struct setup setup;
@@ -223,6 +243,7 @@ int main(void) {
         cmocka_unit_test(stretches_lie_between_markers_and_markers_have_half_of_both),
         cmocka_unit_test(the_own_body_sees_the_same_circulation_as_others),
         cmocka_unit_test(the_smoothing_tapers_to_nothing_at_the_tail),
+        cmocka_unit_test(the_taper_is_shorter_beside_the_body),
         cmocka_unit_test(a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it),
         cmocka_unit_test(far_from_the_tail_the_smoothing_is_full),
         cmocka_unit_test(total_circulation_vanishes),
