@@ -3,8 +3,8 @@
 
     scripts/verify.py FOLDER [DOCUMENT]
 
-FOLDER holds SECTION.tsv of every section and receives report.md and figures/. The table of DOCUMENT that starts with
-"| section | checks |" is replaced. A line of SECTION.tsv, between tabs:
+FOLDER holds SECTION.tsv of every section and receives report.md and figures/. The numbers of checks in the table of
+DOCUMENT that starts with "| section | checks | missed |" are replaced. A line of SECTION.tsv, between tabs:
 
     row    section  quantity  source  reference  obtained  error  bound  order  verdict
     point  figure   series    x       y
@@ -449,14 +449,18 @@ def summary(tables):
 
 
 def replace_summary(document, table):
-    """Put the summary into a document, in place of the table that starts with "| section | checks |"."""
+    """Put the summary into the table of a document; the document's own last column is kept."""
     with open(document, encoding="utf-8") as file:
         text = file.read()
-    text, n_tables = re.subn(r"^\| section \| checks \|.*\n(\|.*\n)*", lambda _: table + "\n", text, flags=re.MULTILINE)
-    if n_tables != 1:
-        sys.exit(f"verify.py: {document} has {n_tables} tables that start with '| section | checks |', not one")
+    found = re.findall(r"^\| section \| checks \| missed \|.*\n(?:\|.*\n)*", text, flags=re.MULTILINE)
+    if len(found) != 1:
+        sys.exit(f"verify.py: {document} has {len(found)} tables that start with '| section | checks | missed |', not one")
+    old = [line.split("|") for line in found[0].splitlines()]
+    last = {cells[1].strip(): cells[4] for cells in old}
+    rows = [line + last.get(line.split("|")[1].strip(), "  ") + "|" for line in table.splitlines()]
+    rows[1] = table.splitlines()[1] + "---|"
     with open(document, "w", encoding="utf-8") as file:
-        file.write(text)
+        file.write(text.replace(found[0], "\n".join(rows) + "\n"))
 
 
 def main():
