@@ -164,11 +164,12 @@ def page():
     """The text of doc/gallery.md."""
     lines = [
         "# Figures", "",
-        "Every kind of figure with the commands that draw it, run in the top folder after `make`. `make gallery` draws all of",
-        "them and writes this page (scripts/make-gallery.py). The same figures are functions of `shoal.plot`",
-        "([python.md](python.md)); a name that ends in .pdf or .svg gives a figure for print. Options of a kind: `plot.py KIND",
-        "--help`; an option that the figure ignores is refused.", "",
+        "Every kind of figure with the commands that draw it, run in this order in the top folder after `make`. `make gallery`",
+        "draws all figures and writes this page (scripts/make-gallery.py). `shoal.plot` has the same figures as functions",
+        "([python.md](python.md)). A name that ends in .pdf or .svg gives a figure for print. Options of a kind: `plot.py KIND",
+        "--help`.", "",
     ]
+    shown = set()
     for heading, words, figures in CHAPTERS:
         lines += [f"## {heading}", "", words, ""]
         for name, sentence, commands in figures:
@@ -176,14 +177,15 @@ def page():
             written = [case for case in CASES if any(case in command for command in commands)]
             for case in written:
                 lines += [f"`{case}`:", "", "```yaml", CASES[case].rstrip("\n"), "```", ""]
-            lines += ["```sh", *map(command_line, commands), "```", "", f"![{name}](figures/gallery/{name}.png)", ""]
+            new = [command for command in map(command_line, commands) if command not in shown]
+            shown.update(new)
+            lines += ["```sh", *new, "```", "", f"![{name}](figures/gallery/{name}.png)", ""]
     lines += [
         "## Movies and pages", "",
-        "`scripts/animate.py RUN.nc MOVIE.mp4` makes a movie of 25 pictures a second that runs as fast as the fish do. Where rows",
-        "are coarser than the pictures, bodies and vortices are interpolated between rows; the last line of output says so. The",
-        "camera follows a school that swims far (`--follow`, `--no-follow`); `--rate 0.5` is slow motion.", "",
+        "`scripts/animate.py RUN.nc MOVIE.mp4` makes a movie in real time with 25 pictures a second, interpolated between coarse",
+        "rows. The camera follows a school that swims far (`--follow`, `--no-follow`); `--rate 0.5` is slow motion.", "",
         "`build/shoal view RUN.nc` writes a page for the browser: bodies and wakes in motion, traces, of many fish median,",
-        "quartiles and range, bodies coloured by speed, heading or power, and the whole school in a corner.",
+        "quartiles and range, bodies coloured by speed, heading or power.",
     ]
     return "\n".join(lines) + "\n"
 
