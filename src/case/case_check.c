@@ -210,12 +210,54 @@ static void check_walls(const struct check *check) {
                 "the gust flows through fluid.walls: remove the gust or the walls");
 }
 
+/* Check the keys of a gust against the profile. */
+static void check_gust(const struct check *check) {
+    const struct school_parameters *const school = &check->values->school;
+    const struct fluid_parameters *const fluid = &school->fluid;
+    const enum gust_profile profile = fluid->gust_profile;
+    static const char frequency[] = "fluid.gust.frequency", wavelength[] = "fluid.gust.wavelength",
+                      amplitude[] = "fluid.gust.amplitude", name[] = "fluid.gust.profile";
+    const bool has_gust = fabs(fluid->gust_amplitude) > 0;
+    if (profile == GUST_UNIFORM) {
+        check_cycles(check, frequency, fluid->gust_frequency);
+        complain_if(has_gust && fluid->gust_frequency == 0, check, amplitude,
+                    "has no effect with fluid.gust.frequency 0");
+    }
+
+    complain_if(profile == GUST_SINE && fluid->gust_wavelength == 0, check, name,
+                "sine needs a fluid.gust.wavelength above 0");
+    if (profile == GUST_SINE && fluid->gust_wavelength > 0) {
+        check_cycles(check, wavelength, fabs(fluid->gust_speed) / fluid->gust_wavelength);
+    }
+
+    // keys of other profiles
+    const struct {
+        const char *path;
+        bool is_given, is_used;
+        const char *profiles;
+    } keys[] = {{frequency, fluid->gust_frequency > 0, profile == GUST_UNIFORM, "uniform"},
+                {wavelength, fluid->gust_wavelength > 0, profile == GUST_SINE, "sine"},
+                {"fluid.gust.speed", !isnan(fluid->gust_speed), profile != GUST_UNIFORM, "sine or step"},
+                {"fluid.gust.position", fabs(fluid->gust_position) > 0, profile != GUST_UNIFORM, "sine or step"},
+                {"fluid.gust.gradient_distance", !isnan(fluid->gust_gradient_distance), profile == GUST_STEP, "step"}};
+    for (size_t i = 0; (int)profile >= 0 && i < sizeof keys / sizeof *keys; i++) {
+        complain_if(keys[i].is_given && !keys[i].is_used, check, keys[i].path,
+                    "has an effect only with 'profile: %s': remove the key", keys[i].profiles);
+    }
+
+    for (int f = 0; f < school->n_fish && (int)profile > GUST_UNIFORM && has_gust; f++) {
+        if (school->fish[f].force != FORCE_REACTIVE) continue;
+        complain_if(true, check, name,
+                    "the reactive force needs a gust that is uniform along the body: use 'force: pressure' for every "
+                    "fish");
+        return;
+    }
+}
+
 /* Refuse a gust and a viscosity without effect. */
 static void check_fluid(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
-    check_cycles(check, "fluid.gust.frequency", school->fluid.gust_frequency);
-    complain_if(fabs(school->fluid.gust_amplitude) > 0 && school->fluid.gust_frequency == 0, check,
-                "fluid.gust.amplitude", "has no effect with fluid.gust.frequency 0");
+    check_gust(check);
     check_walls(check);
 
     double initial;

@@ -99,6 +99,20 @@ static enum status derive_output_interval(const struct key_place *at) {
     return set_default(&at->values->time.output_interval, 10 * at->values->school.shedding_interval);
 }
 
+static enum status derive_gust_speed(const struct key_place *at) {
+    struct fluid_parameters *const fluid = &at->values->school.fluid;
+    if ((int)fluid->gust_profile <= GUST_UNIFORM) return STATUS_OK;
+    return set_default(&fluid->gust_speed, hypot(fluid->velocity[0], fluid->velocity[1]));
+}
+
+static enum status derive_gradient_distance(const struct key_place *at) {
+    const struct school_parameters *const school = &at->values->school;
+    double length = 0;
+    for (int f = 0; f < school->n_fish; f++) length = fmax(length, school->fish[f].length);
+    if (school->fluid.gust_profile != GUST_STEP) return STATUS_OK;
+    return set_default(&at->values->school.fluid.gust_gradient_distance, length / 10);
+}
+
 static enum status derive_taper(const struct key_place *at) {
     struct wake_parameters *const wake = &at->values->school.wake;
     return set_default(&wake->taper, wake->shedding == SHEDDING_SHEET ? 0.6 : 0);
@@ -249,10 +263,23 @@ const struct key case_table[] = {
      .synonyms = "current stream flow wind u_inf"},
     {"fluid.shear", REAL, AT(school.fluid.shear), "0", ANY, "s-1",
      .meaning = "adds shear * y to the x component of the background flow"},
+    {"fluid.gust.profile", CHOICE, AT(school.fluid.gust_profile), "uniform", ANY, "",
+     .meaning = "uniform: oscillates in time; sine, step: a wave or a step that travels along the stream",
+     .words = WORDS("uniform", "sine", "step"), .synonyms = "kuessner sears sharp_edged"},
     {"fluid.gust.amplitude", REAL, AT(school.fluid.gust_amplitude), "0", ANY, "m s-1",
-     .meaning = "amplitude of the gust, a uniform flow in y that oscillates in time"},
+     .meaning = "amplitude of the gust, a flow to the left of the stream, in y without a stream"},
     {"fluid.gust.frequency", REAL, AT(school.fluid.gust_frequency), "0", FROM(0), "Hz",
-     .meaning = "frequency of the gust"},
+     .meaning = "profile uniform: frequency of the gust"},
+    {"fluid.gust.wavelength", REAL, AT(school.fluid.gust_wavelength), "0", FROM(0), "m",
+     .meaning = "profile sine: wavelength of the gust"},
+    {"fluid.gust.speed", REAL, AT(school.fluid.gust_speed), NULL, ANY, "m s-1",
+     .meaning = "profile sine, step: speed of the gust along the stream", .derived = "the speed of the stream",
+     .derive = derive_gust_speed},
+    {"fluid.gust.position", REAL, AT(school.fluid.gust_position), "0", ANY, "m",
+     .meaning = "profile sine, step: place along the stream of a zero, or of the middle of the step, at the start"},
+    {"fluid.gust.gradient_distance", REAL, AT(school.fluid.gust_gradient_distance), NULL, ABOVE(0), "m",
+     .meaning = "profile step: distance over which the gust rises to the amplitude",
+     .derived = "a tenth of the length of the longest fish", .derive = derive_gradient_distance},
     {"fluid.walls", NUMBERS, AT(school.fluid.walls), "[]", ANY, "m",
      .meaning = "straight walls along x: y of one wall, or of both walls of a channel",
      .synonyms = "wall channel boundary tank ground bottom"},

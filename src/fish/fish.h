@@ -168,7 +168,12 @@ struct school {
 
     double density;             /* of the fluid, kg m-3 */
     double velocity[2], shear;  /* m s-1, s-1 */
-    double gust[2], gust_omega; /* m s-1 in x and y, rad s-1 */
+    double gust[2], gust_omega; /* amplitude in x and y, m s-1; rad s-1, 0 for a travelling gust */
+
+    /* travelling gust: direction and speed of travel, m s-1; rad m-1; m */
+    enum gust_profile gust_profile;
+    double gust_along[2], gust_speed, gust_number, gust_position, gust_gradient_distance;
+
     struct walls walls;
 
     double interval;        /* between two events, s */

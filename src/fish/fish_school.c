@@ -510,6 +510,16 @@ static void fluid_set(struct school *school, const struct school_parameters *par
     school->gust[0] = -parameters->fluid.gust_amplitude * along[1];
     school->gust[1] = parameters->fluid.gust_amplitude * along[0];
     school->gust_omega = 2 * M_PI * parameters->fluid.gust_frequency;
+    school->gust_profile = parameters->fluid.gust_profile;
+    if (school->gust_profile != GUST_UNIFORM) {
+        memcpy(school->gust_along, along, sizeof along);
+        school->gust_omega = 0;
+        school->gust_speed = parameters->fluid.gust_speed;
+        school->gust_number = school->gust_profile == GUST_SINE ? 2 * M_PI / parameters->fluid.gust_wavelength : 0;
+        school->gust_position = parameters->fluid.gust_position;
+        school->gust_gradient_distance = parameters->fluid.gust_gradient_distance;
+    }
+
     walls_set(school, parameters);
     school->interval = parameters->shedding_interval;
     school->lifetime = parameters->wake.lifetime.seconds;

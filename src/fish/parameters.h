@@ -20,6 +20,7 @@ enum skin { SKIN_QUADRATIC, SKIN_LAMINAR, SKIN_BOUNDARY_LAYER };
 enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
 enum contact_action { CONTACT_REPEL, CONTACT_WARN, CONTACT_STOP };
+enum gust_profile { GUST_UNIFORM, GUST_SINE, GUST_STEP };
 enum surge { SURGE_GIVEN, SURGE_FREE };
 enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONTROL_COURSE };
 
@@ -32,12 +33,14 @@ struct number_list {
 };
 
 struct fluid_parameters {
-    double density;           /* kg m-3 */
-    double viscosity;         /* kinematic, m2 s-1 */
-    double velocity[2];       /* m s-1 */
-    double shear;             /* s-1 */
-    double gust_amplitude;    /* m s-1 */
-    double gust_frequency;    /* Hz */
+    double density;        /* kg m-3 */
+    double viscosity;      /* kinematic, m2 s-1 */
+    double velocity[2];    /* m s-1 */
+    double shear;          /* s-1 */
+    double gust_amplitude; /* m s-1 */
+    double gust_frequency; /* Hz */
+    enum gust_profile gust_profile;
+    double gust_wavelength, gust_speed, gust_position, gust_gradient_distance; /* m, m s-1 */
     struct number_list walls; /* heights of walls along x: none, one, or two in ascending order, m */
 };
 

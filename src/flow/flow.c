@@ -5,14 +5,60 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "base/memory.h"
 
 // ---- external flow
 
-void flow_external(const struct school *school, double t, double y, double *u, double *v) {
+// distance ahead of the point of the gust that was at gust_position at the start, along the direction of travel, m
+static double gust_ahead(const struct school *school, double t, double x, double y) {
+    const double along = school->gust_along[0] * x + school->gust_along[1] * y;
+    return along - school->gust_position - school->gust_speed * t;
+}
+
+// velocity of a travelling gust over the amplitude
+static double gust_shape(const struct school *school, double ahead) {
+    switch (school->gust_profile) {
+        case GUST_SINE: return sin(school->gust_number * ahead);
+        case GUST_STEP: return ramp_step(0.5 - ahead / school->gust_gradient_distance);
+        default: return 0;
+    }
+}
+
+// derivative of gust_shape, m-1
+static double gust_slope(const struct school *school, double ahead) {
+    const double distance = school->gust_gradient_distance;
+    switch (school->gust_profile) {
+        case GUST_SINE: return school->gust_number * cos(school->gust_number * ahead);
+        case GUST_STEP: return -ramp_step_rate(0.5 - ahead / distance) / distance;
+        default: return 0;
+    }
+}
+
+void flow_gust(const struct school *school, double t, double x, double y, double *u, double *v) {
+    *u = *v = 0;
+    if (school->gust_profile == GUST_UNIFORM) return;
+    const double shape = gust_shape(school, gust_ahead(school, t, x, y));
+    *u = shape * school->gust[0];
+    *v = shape * school->gust[1];
+}
+
+void flow_external(const struct school *school, double t, double x, double y, double *u, double *v) {
     const double gust = sin(school->gust_omega * t);
-    *u = school->velocity[0] + school->shear * y + gust * school->gust[0];
-    *v = school->velocity[1] + gust * school->gust[1];
+    double travelling[2];
+    flow_gust(school, t, x, y, &travelling[0], &travelling[1]);
+    *u = school->velocity[0] + school->shear * y + gust * school->gust[0] + travelling[0];
+    *v = school->velocity[1] + gust * school->gust[1] + travelling[1];
+}
+
+void flow_external_gradient(const struct school *school, double t, double x, double y, double gradient[3]) {
+    gradient[0] = gradient[2] = 0;
+    gradient[1] = school->shear;
+    if (school->gust_profile == GUST_UNIFORM) return;
+    const double slope = gust_slope(school, gust_ahead(school, t, x, y));
+    gradient[0] += slope * school->gust_along[0] * school->gust[0];
+    gradient[1] += slope * school->gust_along[1] * school->gust[0];
+    gradient[2] += slope * school->gust_along[0] * school->gust[1];
 }
 
 void flow_external_acceleration(const struct school *school, double t, double acceleration[2]) {

@@ -28,10 +28,14 @@
 #include "wake/ring_sheet.h"
 #include "wake/wake_interpolation.h"
 
-/* The external flow at height y at time t: a stream with shear and gusts. doc/model.md, sections 8 and 9. */
-void flow_external(const struct school *school, double t, double y, double *u, double *v);
+/* The external flow at time t: a stream with shear and gusts. doc/model.md, sections 8 and 9. flow_gust: the part of a
+ * travelling gust; flow_external_gradient: u_x, u_y, v_x, s-1 (v_y = -u_x). */
+void flow_external(const struct school *school, double t, double x, double y, double *u, double *v);
+void flow_gust(const struct school *school, double t, double x, double y, double *u, double *v);
+void flow_external_gradient(const struct school *school, double t, double x, double y, double gradient[3]);
 
-/* Acceleration Du/Dt of a particle of the external flow at time t, uniform in space, m s-2. */
+/* Acceleration Du/Dt of a particle of the external flow at time t, uniform in space, m s-2: without a travelling gust.
+ */
 void flow_external_acceleration(const struct school *school, double t, double acceleration[2]);
 
 // ---- positions and strengths of the vortex rings of bodies and wakes of finite depth. doc/model.md, section 18

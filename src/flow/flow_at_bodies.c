@@ -189,12 +189,18 @@ static void flow_evaluate_chunk(const struct flow *flow, const struct chunk *chu
     // external flow
     for (int p = 0; p < at.n; p++) {
         double u, v;
-        flow_external(school, flow->t, at.y[p], &u, &v);
+        flow_external(school, flow->t, at.x[p], at.y[p], &u, &v);
         at.u[p] += u;
         at.v[p] += v;
     }
 
-    for (int p = 0; at.u_x && p < at.n; p++) at.u_y[p] += school->shear;
+    for (int p = 0; at.u_x && p < at.n; p++) {
+        double gradient[3];
+        flow_external_gradient(school, flow->t, at.x[p], at.y[p], gradient);
+        at.u_x[p] += gradient[0];
+        at.u_y[p] += gradient[1];
+        at.v_x[p] += gradient[2];
+    }
 
     if (flow->rings) {
         flow_rings_at_chunk(flow, chunk, at.u_x != NULL);
@@ -310,13 +316,21 @@ enum status flow_images(struct flow *flow, const struct state *state) {
 
 // ---- velocity of all sources at any points, for pictures and evaluation of results
 
+// set velocity and gradient to the external flow
+static void field_external(const struct flow *flow, const struct induced *at) {
+    for (int i = 0; i < at->n; i++) {
+        double gradient[3];
+        flow_external(flow->school, flow->t, at->x[i], at->y[i], &at->u[i], &at->v[i]);
+        flow_external_gradient(flow->school, flow->t, at->x[i], at->y[i], gradient);
+        at->u_x[i] = gradient[0];
+        at->u_y[i] = gradient[1];
+        at->v_x[i] = gradient[2];
+    }
+}
+
 // external flow, nascent vortices, and sources that are not summed by the tree, at any points
 static void field_induce(const struct flow *flow, const int *by_tree, const struct induced *at) {
-    for (int i = 0; i < at->n; i++) {
-        flow_external(flow->school, flow->t, at->y[i], &at->u[i], &at->v[i]);
-        at->u_y[i] = flow->school->shear;
-    }
-
+    field_external(flow, at);
     vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, at);
     images_induce(&flow->school->walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
     if (!by_tree[0]) vortices_induce(&flow->released, (struct range){0, flow->released.n}, at);
@@ -341,10 +355,7 @@ enum status flow_field(struct flow *flow, const struct state *state, const struc
 #pragma omp parallel for num_threads(flow->school->threads) schedule(static)
         for (int chunk = 0; chunk < n_parts; chunk++) {
             const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
-            for (int i = 0; i < at.n; i++) {
-                flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
-                at.u_y[i] = flow->school->shear;
-            }
+            field_external(flow, &at);
             flow_rings_at(flow, &at);
         }
 

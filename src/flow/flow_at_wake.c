@@ -100,7 +100,9 @@ static void markers_induce_directly(const struct flow *flow, const struct vortic
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
         const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
-        for (int i = 0; i < at.n; i++) flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
+        for (int i = 0; i < at.n; i++) {
+            flow_external(flow->school, flow->t, at.x[i], at.y[i], &at.u[i], &at.v[i]);
+        }
         if (which.n > 0) vortices_induce(felt, which, &at);
     }
 }
@@ -250,7 +252,9 @@ static void others_at_wake(const struct flow *flow, int sheets_by_tree, int imag
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
         const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
-        for (int i = 0; i < at.n; i++) flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
+        for (int i = 0; i < at.n; i++) {
+            flow_external(flow->school, flow->t, at.x[i], at.y[i], &at.u[i], &at.v[i]);
+        }
         vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
         if (!sheets_by_tree) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, &at);
         images_induce(walls, &flow->nascent, (struct range){0, flow->nascent.n}, &at);

@@ -270,7 +270,7 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
                               .div = rings->wake_div + first};
 
     for (int i = 0; i < which.n; i++) {
-        flow_external(school, flow->t, at.y[i], &at.u[i], &at.v[i]);
+        flow_external(school, flow->t, at.x[i], at.y[i], &at.u[i], &at.v[i]);
         at.leg_u[i] = at.leg_v[i] = at.div[i] = 0;
     }
 

@@ -51,7 +51,7 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
             .tail = {y[fish->at.x + tail], y[fish->at.y + tail]},
             .speed = NAN,
             .heading = control_heading(fish, y)};
-        flow_external(residual->school, state->t, sample.com[1], &sample.stream[0], &sample.stream[1]);
+        flow_external(residual->school, state->t, sample.com[0], sample.com[1], &sample.stream[0], &sample.stream[1]);
 
         // forces
         const struct flow_at_body flow = flow_at_body(residual->flow, f);

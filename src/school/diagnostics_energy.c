@@ -48,7 +48,7 @@ static void powers_on_water(struct residual *residual, int f, double t, const st
     double stream[2];
     power->on_water = power->drag + power->added_mass + power->wake + power->pressure + power->suction;
     power->driving_on_water = power->driving;
-    flow_external(residual->school, t, com[1], &stream[0], &stream[1]);
+    flow_external(residual->school, t, com[0], com[1], &stream[0], &stream[1]);
     if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return;
 
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);

@@ -205,14 +205,18 @@ static void lost_impulse(const struct school *school, const struct state *state,
 
 // ---- external forces
 
-// force of the external flow on all vortices of a fish; the velocity is linear in the position, so moments suffice
+// force of the external flow without a travelling gust on all vortices of a fish; the velocity is linear in the
+// position, so moments suffice
 static void add_stream(const struct residual *residual, int f, double t, const double *y, double force[3]) {
     const struct school *const school = residual->school;
     const struct flow *const flow = residual->flow;
     const struct state *const state = residual->state;
     const struct fish *const fish = &school->fish[f];
-    double u, v, tail[2];
-    flow_external(school, t, 0, &u, &v);
+    double u, v, gust[2], tail[2];
+    flow_external(school, t, 0, 0, &u, &v);
+    flow_gust(school, t, 0, 0, &gust[0], &gust[1]);
+    u -= gust[0];
+    v -= gust[1];
     if (!(fabs(u) + fabs(v) + fabs(school->shear) > 0) || !residual->pressure[f]) return;
 
     // moments of free, nascent and bound vortices
@@ -322,6 +326,37 @@ static void force_of_images(const struct flow *flow, int f, double force[3]) {
                  all->y + wake.first, all->circulation + wake.first, factor, force);
 }
 
+// add the force of a travelling gust on n circulations
+static void add_force_of_gust(const struct school *school, double t, int n, const double *x, const double *y,
+                              const double *circulation, double factor, double force[3]) {
+    for (int i = 0; i < n; i++) {
+        double u, v;
+        flow_gust(school, t, x[i], y[i], &u, &v);
+        add_force_of(&u, &v, 1, x + i, y + i, circulation + i, factor, force);
+    }
+}
+
+// force of a travelling gust at the event on the sheet and the wake of a fish
+static void force_of_gust(const struct flow *flow, int f, double force[3]) {
+    const struct school *const school = flow->school;
+    const double factor = school->density * impulse_depth(&school->fish[f]);
+    memset(force, 0, 3 * sizeof *force);
+    if (flow->rings) {
+        const struct rings *const all[] = {&flow->rings->fish[f].body, &flow->rings->fish[f].markers};
+        for (int i = 0; i < 2; i++) {
+            add_force_of_gust(school, flow->t, all[i]->n, all[i]->x, all[i]->y, all[i]->q, factor, force);
+        }
+        return;
+    }
+
+    const struct range all[] = {flow->body_range[f], flow->wake_range[f]};
+    for (int i = 0; i < 2; i++) {
+        const int first = all[i].first;
+        add_force_of_gust(school, flow->t, all[i].n, flow->convecting.x + first, flow->convecting.y + first,
+                          flow->convecting.circulation + first, factor, force);
+    }
+}
+
 static int any_has_reaction(const struct school *school) {
     int any = 0;
     for (int f = 0; f < school->n_fish; f++) any |= diagnostics_has_reaction(school, &school->fish[f]);
@@ -349,15 +384,20 @@ enum status diagnostics_momentum_event(struct residual *residual, struct state *
         if (diagnostics_has_reaction(school, &school->fish[f])) book_legs(flow, state, f);
     }
 
-    if (school->walls.n == 0 || !(school->density > 0) || !any_has_reaction(school)) return STATUS_OK;
-    TRY(flow_images(flow, state));
+    // walls or a travelling gust, never both
+    const int has_walls = school->walls.n > 0;
+    if ((!has_walls && school->gust_profile == GUST_UNIFORM) || !(school->density > 0) || !any_has_reaction(school)) {
+        return STATUS_OK;
+    }
+
+    if (has_walls) TRY(flow_images(flow, state));
 
     for (int f = 0; f < school->n_fish; f++) {
         struct momentum_balance *const momentum = &state->momentum[f];
         if (!diagnostics_has_reaction(school, &school->fish[f])) continue;
 
         double now[3];
-        force_of_images(flow, f, now);
+        (has_walls ? force_of_images : force_of_gust)(flow, f, now);
         for (int i = 0; i < 3; i++) {
             if (state->event > 0) momentum->external[i] += school->interval / 2 * (momentum->images[i] + now[i]);
             momentum->images[i] = now[i];

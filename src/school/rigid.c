@@ -113,7 +113,7 @@ static void move_history(struct history *history, const double centre[2], double
 // evaluate the stream of the newest sample at the new position: the next event integrates drifted from this value
 static void renew_stream(const struct school *school, double t, struct history *history) {
     struct sample *const newest = &history->sample[history->last];
-    flow_external(school, t, newest->com[1], &newest->stream[0], &newest->stream[1]);
+    flow_external(school, t, newest->com[0], newest->com[1], &newest->stream[0], &newest->stream[1]);
 }
 
 void rigid_change(const struct school *school, struct state *state, int f, const struct rigid *change) {

@@ -50,7 +50,7 @@ struct momentum_balance {
     double lost[3];        /* circulation lost since the start: sums of G x, G y [m3 s-1], G |x|^2 [m4 s-1] */
     double external[3];    /* impulse of the external forces since the start, N s, N m s */
     double force[2][3];    /* external forces at the times energy_balance.t, N, N m */
-    double images[3];      /* forces of images in walls at the last event, N, N m */
+    double images[3];      /* forces of images in walls, or of a travelling gust, at the last event, N, N m */
     double legs[3];        /* loss rate by the lengths s of legs at the last event; units of lost, per s */
     double first_body[3];  /* momentum of the body at the start, N s, N m s */
     double first_fluid[3]; /* impulse of the vortices at the start, N s, N m s */

@@ -187,6 +187,13 @@ static enum status find_equilibrium(struct run *run) {
     return write_if_due(run);
 }
 
+static enum status refuse_gust(const struct school *school) {
+    if (school->gust_profile == GUST_UNIFORM || !(fabs(school->gust[0]) + fabs(school->gust[1]) > 0)) return STATUS_OK;
+    return status_fail(STATUS_CASE,
+                       "a gust that travels past the fish has no steady state: run the case in time, or set "
+                       "fluid.gust.profile to uniform");
+}
+
 static enum status find_and_write(struct run *run) {
     const struct steady_options *const options = run->options;
     TRY(target_check(options->path, TARGET_NETCDF, options->overwrite));
@@ -203,6 +210,7 @@ static enum status find_and_write(struct run *run) {
         TRY(simulate_create(&run->simulation, run->values));
     }
     run->simulation->stop = options->stop;
+    TRY(refuse_gust(run->simulation->school));
     const int is_static = steady_static_applies(run->simulation->school);
     TRY(is_static ? steady_static_refuse(run->simulation->school)
                   : steady_problem_create(&run->problem, &run->values->steady, run->simulation));

@@ -173,7 +173,7 @@ double steady_map_scale(const struct steady_map *map, struct steady_unknown unkn
 static void stream_along(const struct steady_map *map, const struct rigid *rigid, double stream[2]) {
     const struct simulation *const simulation = map->simulation;
     double u, v;
-    flow_external(simulation->school, simulation->state->t, rigid->place[1], &u, &v);
+    flow_external(simulation->school, simulation->state->t, rigid->place[0], rigid->place[1], &u, &v);
     const double c = cos(rigid->heading), s = sin(rigid->heading);
     stream[0] = c * u + s * v;
     stream[1] = c * v - s * u;

@@ -29,7 +29,7 @@ static int count_events(const struct simulation *simulation) {
     const struct fish *const fish = &school->fish[0];
     double stream[2], position[2], velocity[2], acceleration[2];
     fish_prescribed_node(fish, 0, 0, position, velocity, acceleration);
-    flow_external(school, 0, position[1], &stream[0], &stream[1]);
+    flow_external(school, 0, position[0], position[1], &stream[0], &stream[1]);
 
     const double speed = hypot(stream[0] - velocity[0], stream[1] - velocity[1]);
     const double duration = fmin(school->lifetime, wake_lengths * fish->length / speed);

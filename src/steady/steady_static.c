@@ -322,7 +322,7 @@ static void fill_fish(const struct simulation *simulation, int f, struct steady_
     const int tail = fish->n_nodes - 1;
     double stream[2], direction[2], rate;
 
-    flow_external(simulation->school, simulation->state->t, now->com[1], &stream[0], &stream[1]);
+    flow_external(simulation->school, simulation->state->t, now->com[0], now->com[1], &stream[0], &stream[1]);
     fish_prescribed_direction(fish, simulation->state->t, direction, &rate);
     const double way[2] = {y[fish->at.x + tail] - y[fish->at.x], y[fish->at.y + tail] - y[fish->at.y]};
     *found = (struct steady_fish){.speed = now->speed,

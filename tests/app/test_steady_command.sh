@@ -219,6 +219,8 @@ check the_file_says_why has out 'failed: no steady state in 4 beats'
 refused a_beat_without_whole_events 2 'set time.shedding_interval to 0.0495' \
     steady swim.yaml -o none.nc --set fish[0].wave.frequency=1.01
 check leaves_no_file test ! -e none.nc
+refused a_gust_that_travels 2 'a gust that travels past the fish has no steady state' steady swim.yaml -o none.nc \
+    --set fish[0].force=published --set 'fluid.gust={profile: sine, amplitude: 0.1, wavelength: 1, speed: 1}'
 refused a_sweep_is_a_study 2 'shoal study' steady swim.yaml --set 'sweep=[{key: solver.rtol, values: [1e-4]}]'
 refused a_case_is_needed 2 'CASE is missing' steady
 env --default-signal=TERM "$program" steady swim.yaml -o stopped.nc --set steady.tolerance=1e-12 \

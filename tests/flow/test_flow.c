@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "failing_malloc.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
@@ -65,7 +66,7 @@ static void every_point_feels_the_sources_that_the_model_says(void **state) {
         for (int p = 0; p < flow->points[f].n; p++) {
             const int at = flow->points[f].first + p;
             double u, v;
-            flow_external(setup.school, setup.t, flow->y[at], &u, &v);
+            flow_external(setup.school, setup.t, flow->x[at], flow->y[at], &u, &v);
             const double own = p < fish->n_control ? 0 : p == flow_tail(fish) ? fish->sheet_smoothing : -1;
             // with force: reactive the own wake is omitted at the midpoints
             const int feels_own = fish->force != FORCE_REACTIVE || own >= 0;
@@ -107,7 +108,7 @@ static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
                                                                                          flow->released_range[f].first;
         for (int i = 0; i < wake->n_vortex; i++) {
             double want_u, want_v;
-            flow_external(setup.school, setup.t, wake->y[i], &want_u, &want_v);
+            flow_external(setup.school, setup.t, wake->x[i], wake->y[i], &want_u, &want_v);
             for (int g = 0; g < 2; g++) {
                 add_fish(&setup, g, wake->x[i], wake->y[i], setup.school->fish[g].sheet_smoothing, &want_u, &want_v);
             }
@@ -279,10 +280,55 @@ static void external_flow_is_stream_plus_shear_plus_gust(void **state) {
     school_build(&setup, TWO);
     double u, v;
     const double t = 1.0 / 12, gust = 0.2 * 0.5, stream = hypot(0.1, 0.2);
-    flow_external(setup.school, t, 2, &u, &v);
+    flow_external(setup.school, t, 0, 2, &u, &v);
     NEAR(u, 0.1 + 0.6 - gust * 0.2 / stream, 1e-15, 0);
     NEAR(v, 0.2 + gust * 0.1 / stream, 1e-15, 0);
     school_clear(&setup);
+}
+
+// a gust of unit amplitude across a stream along (3, 4)/5
+static void a_travelling_gust_moves_along_the_stream(void **state) {
+    (void)state;
+    static const char *const profiles[] = {"profile: sine, wavelength: 0.7", "profile: step, gradient_distance: 0.4"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 TIME
+                 "fluid: {velocity: [0.6, 0.8], shear: 0.3, gust: {amplitude: 1, position: 0.2, %s}}\n"
+                 "fish: [{nodes: 5, sheet_points: 9, force: published}]\n",
+                 profiles[i]);
+        struct setup setup;
+        school_build(&setup, text);
+        const struct school *const school = setup.school;
+
+        // the zero of the sine and the middle of the step are 0.2 m along the stream at the start, and move at 1 m/s
+        double u, v, later[2];
+        flow_gust(school, 0, 0.12, 0.16, &u, &v);
+        NEAR(hypot(u, v), i == 0 ? 0 : 0.5, 1e-14, 0);
+        const double ahead = 0.07, x = 0.12 + 0.6 * ahead, y = 0.16 + 0.8 * ahead;
+        flow_gust(school, 0, x, y, &u, &v);
+        const double shape = i == 0 ? sin(2 * 3.14159265358979323846 * ahead / 0.7) : ramp_step(0.5 - ahead / 0.4);
+        NEAR(u, -0.8 * shape, 1e-14, 0);
+        NEAR(v, 0.6 * shape, 1e-14, 0);
+        flow_gust(school, 0.3, x + 0.3 * 0.6, y + 0.3 * 0.8, &later[0], &later[1]);
+        NEAR(later[0], u, 1e-14, 0);
+        NEAR(later[1], v, 1e-14, 0);
+
+        // gradient by differences; truncation error: h^2 (2 pi/0.7)^3/6
+        double gradient[3], to[2], from[2];
+        const double h = 1e-5, t = 0.1;
+        flow_external_gradient(school, t, x, y, gradient);
+        flow_external(school, t, x + h, y, &to[0], &to[1]);
+        flow_external(school, t, x - h, y, &from[0], &from[1]);
+        NEAR(gradient[0], (to[0] - from[0]) / (2 * h), 1e-7, 0);
+        NEAR(gradient[2], (to[1] - from[1]) / (2 * h), 1e-7, 0);
+        assert_true(fabs(gradient[0]) > 0.1);
+        flow_external(school, t, x, y + h, &to[0], &to[1]);
+        flow_external(school, t, x, y - h, &from[0], &from[1]);
+        NEAR(gradient[1], (to[0] - from[0]) / (2 * h), 1e-7, 0);
+        NEAR(gradient[0], (from[1] - to[1]) / (2 * h), 1e-7, 0);
+        school_clear(&setup);
+    }
 }
 
 static void external_acceleration_is_that_of_a_particle_of_the_fluid(void **state) {
@@ -291,7 +337,7 @@ static void external_acceleration_is_that_of_a_particle_of_the_fluid(void **stat
     school_build(&setup, TWO);
     const double t = 0.3, h = 1e-5, y = 2;
     double u[3], v[3], acceleration[2];
-    for (int i = 0; i < 3; i++) flow_external(setup.school, t + (i - 1) * h, y, &u[i], &v[i]);
+    for (int i = 0; i < 3; i++) flow_external(setup.school, t + (i - 1) * h, 0, y, &u[i], &v[i]);
     flow_external_acceleration(setup.school, t, acceleration);
 
     // the velocity changes with time, and with the motion of the particle across the shear; truncation error: h^2 (2
@@ -589,6 +635,7 @@ int main(void) {
         cmocka_unit_test(the_tree_is_planned_at_the_event),
         cmocka_unit_test(by_tree_wake_vortices_feel_every_sheet_once),
         cmocka_unit_test(external_flow_is_stream_plus_shear_plus_gust),
+        cmocka_unit_test(a_travelling_gust_moves_along_the_stream),
         cmocka_unit_test(external_acceleration_is_that_of_a_particle_of_the_fluid),
         cmocka_unit_test(derivative_by_every_unknown_agrees_with_differences),
         cmocka_unit_test(beside_a_wall_everything_feels_mirrored_fish),

@@ -280,7 +280,7 @@ static void markers_feel_the_sources_that_the_model_says(void **state) {
         const struct wake *const wake = &setup.state->wake[f];
         for (int i = 0; i < wake->n_vortex; i++) {
             double u, v;
-            flow_external(setup.school, setup.t, wake->y[i], &u, &v);
+            flow_external(setup.school, setup.t, wake->x[i], wake->y[i], &u, &v);
             for (int g = 0; g < 4; g++) add_fish(&setup, f, i, g, &u, &v);
             // rounding of sums of 60 terms, each at most 100 next to the tail
             NEAR(flow->wake_u[flow->wake_range[f].first + i], u, 1e-13, 1e-12);

@@ -60,6 +60,12 @@ static void the_balance_is_closed_with_every_external_force(void **state) {
         {"shear and gust",
          "fluid: {velocity: [0.2, 0], shear: 0.3, gust: {amplitude: 0.1, frequency: 1}}\n"
          "wake: {lifetime: 0.8, decay: 0.6}\nfish: [{" FISH "}]\n"},
+        {"a sine gust",
+         "fluid: {velocity: [0.2, 0], gust: {profile: sine, amplitude: 0.1, wavelength: 0.7}}\n"
+         "wake: {lifetime: 0.8, decay: 0.6}\nfish: [{" FISH "}]\n"},
+        {"finite span, a step gust",
+         "fluid: {velocity: [0.2, 0], shear: 0.3, gust: {profile: step, amplitude: 0.1, position: 0, "
+         "gradient_distance: 0.2}}\nwake: {lifetime: 0.8, decay: 0.6}\nfish: [{" STRIP "}]\n"},
         {"a wall", "fluid: {walls: [-0.3]}\nwake: {lifetime: 0.8, decay: 0.6}\nfish: [{" FISH "}]\n"},
         {"a channel, two lengths",
          "fluid: {walls: [-0.4, 0.8]}\nwake: {lifetime: 0.8, decay: 0.6}\n"

@@ -130,7 +130,7 @@ static void it_is_the_sum_of_all_wakes_and_sheets(void **state) {
     for (int i = 0; i < N_POINTS; i++) {
         const double at[2] = {points.x[i], points.y[i]};
         double sum[3] = {0, 0, -run->school->shear};
-        flow_external(run->school, run->state->t, at[1], &sum[0], &sum[1]);
+        flow_external(run->school, run->state->t, at[0], at[1], &sum[0], &sum[1]);
         for (int f = 0; f < 2; f++) {
             add_fish(&run->school->fish[f], run->school, run->state, &run->state->wake[f], at, sum);
         }
