@@ -139,6 +139,76 @@ static void times_that_fit_stay_to_the_bit(void **state) {
     case_free(&values);
 }
 
+static void is_refused(const char *text, const char *message) {
+    char whole[512];
+    struct case_values values;
+    snprintf(whole, sizeof whole, "format: 1\n%s", text);
+    const enum status status = case_parse(&values, whole, strlen(whole), "test", ".", 0, NULL);
+    if (status == STATUS_OK) case_free(&values);
+    if (status != (message ? STATUS_CASE : STATUS_OK)) {
+        fail_msg("%s\nstatus %d %s", text, (int)status, message ? "" : status_message());
+    }
+    if (message && !strstr(status_message(), message)) fail_msg("%s\nwithout %s", status_message(), message);
+}
+
+// a case just inside of each limit, and one just outside
+static void limits_are_where_the_messages_say(void **state) {
+    (void)state;
+#define SHORT "time: {end: 1, shedding_interval: 0.01}\n"
+#define FINITE(points) SHORT "fish: [{nodes: 5, sheet_points: " points ", force: pressure, pressure: {span: finite}}]\n"
+    static const struct {
+        const char *inside, *outside, *message;
+    } limits[] = {
+        {SHORT "fish: [{length: 0.5, start: {position: [0, -4.99e5]}}]\n",
+         SHORT "fish: [{length: 0.5, start: {position: [0, -5.01e5]}}]\n",
+         "start.position: -501000 m is 1.002e+06 body"},
+        {SHORT "fish: [{length: 2, start: {position: [1.99e6, 0]}}]\n",
+         SHORT "fish: [{length: 2, start: {position: [2.01e6, 0]}}]\n", "start.position: 2.01e+06 m is 1.005e+06 body"},
+        {SHORT "fish: [{length: 0.5, motion: {prescribed: all, heave: 4.99e5, frequency: 1}}]\n",
+         SHORT "fish: [{length: 0.5, motion: {prescribed: all, heave: 5.01e5, frequency: 1}}]\n",
+         "motion.heave: 501000"},
+        {SHORT "fluid: {walls: [-1.99e6]}\nfish: [{}, {length: 2, start: {position: [0, 9]}}]\n",
+         SHORT "fluid: {walls: [-2.01e6]}\nfish: [{}, {length: 2, start: {position: [0, 9]}}]\n",
+         "fluid.walls: -2.01e+06 m is 1.005e+06 body lengths"},
+        {"time: {end: 1e6, shedding_interval: 1}\nwake: {lifetime: 100}\nfish: [{wave: {frequency: 999}}]\n",
+         "time: {end: 1e6, shedding_interval: 1}\nwake: {lifetime: 100}\nfish: [{wave: {frequency: 1001}}]\n",
+         "1.001e+09 cycles until"},
+        {"time: {end: 999e6, shedding_interval: 1}\nwake: {lifetime: 100}\nfish: [{wave: {frequency: 0.5}}]\n",
+         "time: {end: 1001e6, shedding_interval: 1}\nwake: {lifetime: 100}\nfish: [{wave: {frequency: 0.5}}]\n",
+         "1.001e+09 events; the maximum is 1e+09"},
+        {"time: {end: 1e6, shedding_interval: 0.01}\nwake: {lifetime: 99990}\nfish: [{}]\n",
+         "time: {end: 1e6, shedding_interval: 0.01}\nwake: {lifetime: 100010}\nfish: [{}]\n",
+         "1.0001e+07 vortices in the wake of a fish"},
+        {"time: {end: 99990, shedding_interval: 0.01}\nwake: {lifetime: 1e9}\nfish: [{}]\n",
+         "time: {end: 100010, shedding_interval: 0.01}\nwake: {lifetime: 1e9}\nfish: [{}]\n",
+         "1.0001e+07 vortices in the wake of a fish"},
+        {SHORT "wake: {lifetime: 2, decay: 2}\nfish: [{}]\n", SHORT "wake: {lifetime: 1.99, decay: 2}\nfish: [{}]\n",
+         "wake.decay: 2 s is longer than wake.lifetime, 1.99 s"},
+        {SHORT "wake: {lifetime: 0.01, decay: 0}\nfish: [{}]\n",
+         SHORT "wake: {lifetime: 0.0099, decay: 0}\nfish: [{}]\n", "wake.lifetime: 0.0099 s is less than"},
+        {"time: {end: 2.0000000019, shedding_interval: 0.01}\nfish: [{}]\n",
+         "time: {end: 2.0000000021, shedding_interval: 0.01}\nfish: [{}]\n",
+         "time.end: 2 s is not an integer multiple"},
+        {SHORT "fish: [{nodes: 5, wave: {table: [[12.566, -1], [1, 1]]}}]\n",
+         SHORT "fish: [{nodes: 5, wave: {table: [[1, 1], [1, -12.567]]}}]\n", "turns a joint by up to 3.14 rad"},
+        {FINITE("21"), FINITE("20"), "a span of 0.25 lengths needs at least 21 points"},
+        {SHORT "fish: [{nodes: 9, sheet_points: 17, force: pressure}]\n",
+         SHORT "fish: [{nodes: 9, sheet_points: 16, force: pressure}]\n",
+         "of 9 nodes needs at least 17 points, not 16"},
+        {SHORT "fluid: {walls: [-1, 1]}\nfish: [{}]\n", SHORT "fluid: {walls: [-1, -1]}\nfish: [{}]\n",
+         "the second wall must be above the first; -1 is not above -1"},
+        {SHORT "fish: [{control: {law: heading, desired_heading: [[0, 10], [1e-9, 20]]}}]\n",
+         SHORT "fish: [{control: {law: heading, desired_heading: [[-1e-9, 10], [1, 20]]}}]\n",
+         "the first time must be at least 0 s"},
+        {SHORT "fish: [{control: {law: heading, desired_heading: [[0, 10], [1, 20]]}}]\n",
+         SHORT "fish: [{control: {law: heading, desired_heading: [[1, 10], [1, 20]]}}]\n",
+         "the times must increase; 1 follows 1"}};
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
+        is_refused(limits[i].inside, NULL);
+        is_refused(limits[i].outside, limits[i].message);
+    }
+}
+
 static void times_that_do_not_fit_a_given_interval_are_errors(void **state) {
     (void)state;
     static const char text[] = "format: 1\ntime: {end: 2, shedding_interval: 0.007}\nfish: [{}]\n";
@@ -158,6 +228,7 @@ int main(void) {
         cmocka_unit_test(the_fastest_beat_has_a_hundred_events),
         cmocka_unit_test(times_that_do_not_fit_the_default_are_rounded_and_noted),
         cmocka_unit_test(times_that_fit_stay_to_the_bit),
+        cmocka_unit_test(limits_are_where_the_messages_say),
         cmocka_unit_test(times_that_do_not_fit_a_given_interval_are_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
