@@ -1,0 +1,222 @@
+/* test_results.c: every variable of ten short runs, in which all terms of the model act at once, against the values of
+ * tests/data/results.tsv. Independent tests verify the terms; this test notices every change of a result, which
+ * CHANGES.md promises to state. After an intended change:
+ *
+ *     build/tests/library/test_results --write
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "near.h"
+#include "shoal.h"
+
+static const char table[] = "tests/data/results.tsv";
+
+/* Over the sum of the magnitudes: steps of the integrator may differ between machines, and the balances are sums of the
+ * errors of steps. Smaller sums are rounding. */
+static const double tolerance = 3e-5, of_balances = 1e-2, rounding = 1e-9;
+
+#define TIME "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {rtol: 1e-6}\n"
+#define STREAM "fluid: {velocity: [0.2, -0.1], shear: 0.3, gust: {amplitude: 0.15, frequency: 2.2}}\n"
+#define FISH "nodes: 5, sheet_points: 17, wave: {frequency: 4, phase: 20}"
+
+static const struct run {
+    const char *name, *text;
+} runs[] = {
+    {"reactive", TIME STREAM
+     "wake: {lifetime: 0.16, decay: 0.09}\noutput: {forces: edges}\n"
+     "fish: [{" FISH ", start: {heading: 170, speed: 0.8}, control: {bias: 0.3}, drag: {skin: boundary_layer}},\n"
+     "    {nodes: 6, sheet_points: 15, length: 0.7, start: {position: [0.3, 0.5], heading: 200, speed: 0.5},\n"
+     "     wave: {frequency: 3, wavelength: 0.8}, body: {profile: uniform, thickness: 0.1, relaxation_time: 0.02},\n"
+     "     drag: {law: linear_quadratic, linear_speed: 0.3}}]\n"},
+    {"pressure", TIME STREAM
+     "wake: {lifetime: 0.2, spare_vortices: 6, vortices: [[0.5, 0.4, 0.05], [-0.4, -0.3, -0.04]]}\n"
+     "output: {forces: edges}\n"
+     "fish: [{" FISH ", force: pressure, start: {heading: 170, speed: 0.6}, pressure: {suction_limit: 0.12},\n"
+     "     drag: {skin: boundary_layer, transition: 1e5}},\n"
+     "    {nodes: 6, sheet_points: 19, length: 1.2, force: pressure, start: {position: [0.2, 0.7], speed: 0.7},\n"
+     "     wave: {frequency: 3}, drag: {skin: laminar}}]\n"},
+    {"span", TIME
+     "fluid: {walls: [-0.6], velocity: [0.1, 0], shear: 0.2}\nwake: {lifetime: 0.2, decay: 0.1}\n"
+     "fish: [{nodes: 5, sheet_points: 21, wave: {frequency: 4}, force: pressure, pressure: {span: finite}, start: "
+     "{speed: 0.6}},\n"
+     "    {nodes: 5, sheet_points: 27, length: 0.8, force: pressure, pressure: {span: finite}, start: {position: [0.2, "
+     "0.6],\n     heading: 190, speed: 0.9}, wave: {frequency: 4}, body: {profile: table, thickness_table: [0.05, 0.1, "
+     "0.08,\n     0.04], depth_table: [0.16, 0.2, 0.18, 0.22]}}]\n"},
+    {"channel", TIME
+     "fluid: {walls: [-0.5, 0.8], velocity: [0.3, 0]}\nwake: {lifetime: 0.2}\ncontact: {range: 0.05}\n"
+     "fish: [{" FISH ", start: {heading: 160, speed: 0.9}},\n"
+     "    {nodes: 6, sheet_points: 13, length: 0.8, force: pressure, start: {position: [0.3, 0.5], heading: 190},\n"
+     "     wave: {frequency: 3}}]\n"},
+    {"published",
+     "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\npreset: published\n"
+     "fluid: {velocity: [0.2, 0.1]}\nwake: {lifetime: 0.1}\n"
+     "fish: [{sheet_points: 15, wave: {frequency: 4, ramp: 0.2}, start: {speed: 0.7}},\n"
+     "    {sheet_points: 13, length: 0.8, wave: {frequency: 3}, start: {position: [0.2, 0.6], speed: 0.5, heading: "
+     "170},\n"
+     "     control: {law: heading, desired_heading: [[0, 170], [0.3, 150]], feedforward: 0.5, filter: 0.2}}]\n"},
+    {"steered", TIME STREAM
+     "wake: {shedding: continuous, removed_circulation: dropped, lifetime: 0.12, decay: 0.05}\n"
+     "fish: [{" FISH ", start: {speed: 0.8}, control: {law: heading, waypoints: [[-0.3, 0.2], [-1, -1]],\n"
+     "     acceptance_radius: 0.3, gain: 1.5, limit: 0.8}},\n"
+     "    {" FISH ", length: 0.9, start: {position: [0.2, 0.6], speed: 0.6}, control: {law: averaged_heading,\n"
+     "     desired_heading: 150, rate: 2, feedforward: 30, filter: 0.2}},\n"
+     "    {" FISH ", start: {position: [0.1, -0.7], speed: 0.7}, control: {law: course, desired_heading: 200, damping: "
+     "0.1}}]\n"},
+    {"driven", TIME
+     "fluid: {velocity: [0.4, 0.1]}\noutput: {forces: edges}\n"
+     "fish: [{" FISH ", force: pressure, motion: {prescribed: head, heave: 0.05, pitch: 10, pitch_phase: 80,\n"
+     "     frequency: 4, pivot: 0.2}, load: {tip: [3, -8]}, body: {damping: curvature, relaxation_time: 0.01}},\n"
+     "    {" FISH ", start: {position: [0.2, 0.7]}, motion: {prescribed: all, heave: 0.1, pitch: 20, frequency: 4,\n"
+     "     speed: 0.5}},\n"
+     "    {" FISH
+     ", start: {position: [0.1, -0.7], heading: 180, speed: 0.4}, motion: {prescribed: head, surge: free,\n"
+     "     heave: 0.05, frequency: 4}}]\n"},
+    {"contact",
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {rtol: 1e-6}\n"
+     "fluid: {walls: [-0.1]}\nwake: {shedding: continuous, taper: 0, taper_beside: 0, lifetime: 0.1}\n"
+     "contact: {range: 0.06}\n"
+     "fish: [{" FISH ", start: {position: [0, 0.04], speed: 0.6}, body: {modulus: 2e6}},\n"
+     "    {" FISH ", length: 0.8, start: {position: [0.1, 0.34], heading: 176, speed: 0.5}}]\n"},
+    {"explicit",
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\n"
+     "fluid: {density: 800, velocity: [0.1, 0.1]}\nwake: {shedding: impulsive, lifetime: 0.1}\n"
+     "fish: [{" FISH ", start: {speed: 0.8}, control: {bias: -0.2}, body: {modulus: 1e5, density: 1200}},\n"
+     "    {" FISH ", start: {position: [0.2, 0.8], speed: 0.5}, body: {modulus: 1e5}}]\n"},
+    {"changed", TIME STREAM "wake: {lifetime: 0.25, decay: 0.1, spare_vortices: 9}\n"
+                            "fish: [{" FISH ", start: {heading: 170, speed: 0.8}},\n"
+                            "    {" FISH ", force: pressure, start: {position: [0.2, 0.7], speed: 0.6}}]\n"},
+};
+enum { N_RUNS = sizeof runs / sizeof *runs, MAX_VARIABLES = 200 };
+
+/* The values of a variable, as one number: a sum with weights that differ, and the sum of the magnitudes. NaN counts as
+ * a number of its own. */
+struct entry {
+    char run[32], name[64];
+    double sum, size;
+};
+
+static struct entry entry_of(struct shoal *run, const char *name) {
+    struct entry entry = {.size = 0};
+    struct shoal_array array;
+    if (shoal_read(run, name, &array) != SHOAL_OK) fail_msg("%s: %s", name, shoal_message());
+    size_t n = 1;
+    for (int d = 0; d < array.n_dimensions; d++) n *= array.shape[d];
+    for (size_t i = 0; i < n; i++) {
+        const double value = array.type == SHOAL_INT    ? ((const int *)array.values)[i]
+                             : array.type == SHOAL_LONG ? (double)((const long *)array.values)[i]
+                                                        : ((const double *)array.values)[i];
+        const double weight = 1 + 0.5 * cos(1.3 * (double)i), term = weight * (isnan(value) ? 1e-3 : value);
+        entry.sum += term;
+        entry.size += fabs(term);
+    }
+    return entry;
+}
+
+// numbers of the machine, numbers of steps, and sums that are zero but for rounding
+static int is_left_out(const char *name) {
+    static const char *const names[] = {"wall_time",           "steps",     "residual_evaluations",
+                                        "newton_iterations",   "order",     "jacobian_evaluations",
+                                        "error_test_failures", "step_size", "convergence_failures",
+                                        "total_circulation"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        if (strcmp(names[i], name) == 0) return 1;
+    }
+    return 0;
+}
+
+/* The changes of a program, at a third of the run. */
+static void change(struct shoal *run) {
+    double x[10], v[10];
+    assert_int_equal(shoal_set(run, 0, "wave.amplitude", 1, &(double){0.5}), SHOAL_OK);
+    assert_int_equal(shoal_set(run, 0, "wave.frequency", 1, &(double){5}), SHOAL_OK);
+    assert_int_equal(shoal_set(run, 1, "control.bias", 1, &(double){0.2}), SHOAL_OK);
+    assert_int_equal(shoal_state(run, 0, x, v), SHOAL_OK);
+    for (int k = 0; k < 5; k++) {
+        x[2 * k] += 0.02;
+        v[2 * k + 1] -= 0.1;
+    }
+    assert_int_equal(shoal_set_state(run, 0, x, v), SHOAL_OK);
+    assert_int_equal(shoal_add_vortex(run, 1, 0.4, 0.2, 0.05), SHOAL_OK);
+}
+
+static int find_entries(const struct run *of, struct entry *entry) {
+    struct shoal *run;
+    if (shoal_open_text(&run, of->text, NULL, 0, NULL) != SHOAL_OK) fail_msg("%s: %s", of->name, shoal_message());
+    if (strcmp(of->name, "changed") == 0) {
+        assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+        change(run);
+    }
+    if (shoal_advance(run, shoal_end(run)) != SHOAL_OK) fail_msg("%s: %s", of->name, shoal_message());
+    int n = 0;
+    for (int i = 0; shoal_variable(i); i++) {
+        const char *const name = shoal_variable(i);
+        struct shoal_array array;
+        if (is_left_out(name) || strncmp(name, "steady_", 7) == 0) continue;
+        assert_int_equal(shoal_read(run, name, &array), SHOAL_OK);
+        if (array.type == SHOAL_CHAR) continue;
+        assert_in_range(n, 0, MAX_VARIABLES - 1);
+        entry[n] = entry_of(run, name);
+        snprintf(entry[n].run, sizeof entry[n].run, "%s", of->name);
+        snprintf(entry[n++].name, sizeof entry[n].name, "%s", name);
+    }
+    shoal_close(run);
+    return n;
+}
+
+static int write_table(void) {
+    static struct entry entry[MAX_VARIABLES];
+    FILE *const file = fopen(table, "w");
+    assert_non_null(file);
+    fputs("# Sums over the values of each variable at the end of short runs: tests/library/test_results.c --write\n",
+          file);
+    for (int r = 0; r < N_RUNS; r++) {
+        const int n = find_entries(&runs[r], entry);
+        for (int i = 0; i < n; i++) {
+            if (entry[i].size > rounding)
+                fprintf(file, "%s %s %.8g %.3g\n", entry[i].run, entry[i].name, entry[i].sum, entry[i].size);
+        }
+    }
+    return fclose(file);
+}
+
+// variables and runs without a line are new
+static void results_of_short_runs_stay(void **state) {
+    (void)state;
+    static struct entry all[N_RUNS][MAX_VARIABLES];
+    int n[N_RUNS], n_wrong = 0, n_compared = 0;
+    for (int r = 0; r < N_RUNS; r++) n[r] = find_entries(&runs[r], all[r]);
+    FILE *const file = fopen(table, "r");
+    assert_non_null(file);
+    char line[256];
+    double worst = 0;
+    while (fgets(line, sizeof line, file)) {
+        struct entry want;
+        if (sscanf(line, "%31s %63s %lf %lf", want.run, want.name, &want.sum, &want.size) != 4) continue;
+        for (int r = 0; r < N_RUNS; r++) {
+            for (int i = 0; i < n[r]; i++) {
+                const struct entry *const got = &all[r][i];
+                if (strcmp(want.run, got->run) != 0 || strcmp(want.name, got->name) != 0) continue;
+                n_compared++;
+                const double off = fabs(got->sum - want.sum) / want.size;
+                if (!strstr(want.name, "_balance")) worst = fmax(worst, off);
+                if (off <= (strstr(want.name, "_balance") ? of_balances : tolerance)) continue;
+                n_wrong++;
+                print_error("%s: %s changes from %.8g to %.8g\n", want.run, want.name, want.sum, got->sum);
+            }
+        }
+    }
+    fclose(file);
+    print_message("%d values, largest relative difference %.1e\n", n_compared, worst);
+    assert_true(n_compared > 500);
+    assert_int_equal(n_wrong, 0);
+}
+
+int main(int argc, char **argv) {
+    if (argc > 1 && strcmp(argv[1], "--write") == 0) return write_table();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(results_of_short_runs_stay),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
