@@ -77,7 +77,7 @@ endif
 shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include $(file <$(B)/cppflags) $(CPPFLAGS)
 # One set of objects serves the program and the shared library, which exports the names of include/shoal.h.
 shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -fPIC -fvisibility=hidden \
-                 -Wall -Wextra -Wconversion -Wshadow $(if $(WERROR),-Werror) $(warnings) $(sanitize) $(CFLAGS) \
+                 -Wall -Wextra -Wconversion -Wshadow -Wcast-qual $(if $(WERROR),-Werror) $(warnings) $(sanitize) $(CFLAGS) \
                  $(if $(gcc_12_arm64),-fvect-cost-model=very-cheap)
 # clang warns of fields left out of an initialiser with a name too, gcc does not
 warnings = $(if $(is_clang),-Wno-missing-field-initializers)
@@ -359,7 +359,7 @@ $(B)/memory.so: tests/faults/memory.c
 $(B)/power.so: tests/faults/power.c
 $(faults): Makefile | $(folders)
 	$(say) LD $@
-	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow $(if $(WERROR),-Werror) -O2 -shared -fPIC -o $@ $(filter %.c,$^)
+	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow -Wcast-qual $(if $(WERROR),-Werror) -O2 -shared -fPIC -o $@ $(filter %.c,$^)
 
 tests: all $(faults) $(fuzz_programs) $(c_tests) $(verify_program) $(bench_programs)
 

@@ -7,6 +7,7 @@
 #include "app/main_options.h"
 #include "app/main_signals.h"
 #include "app/say.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "base/version.h"
 
@@ -203,7 +204,7 @@ static enum status dispatch(const struct command *command, int argc, char **argv
             status = command->run(&request);
         }
     } else {
-        status = status_fail(STATUS_MEMORY, "out of memory: the command line");
+        status = memory_check(NULL, "the command line");
     }
     free(command_line);
     free(assignments);

@@ -128,8 +128,8 @@ static enum status check_case(struct checked *checked) {
     const struct case_values *const values = checked->values;
     TRY(parallel_try_threads(values->school.threads));
     if (is_study(checked)) return check_members(checked);
-    char *const path = record_path(values);
-    if (!path) return status_fail(STATUS_MEMORY, "out of memory: a file name");
+    char *path;
+    TRY(record_path(values, &path));
     enum status status = target_check(path, TARGET_NETCDF, true);
     if (status == STATUS_OK) status = check_start(checked, 0, values);
 

@@ -9,6 +9,7 @@
 #include "app/main_commands.h"
 #include "app/main_signals.h"
 #include "app/say.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/version.h"
 #include "case/case.h"
@@ -51,8 +52,10 @@ static enum status with_case(const struct request *request,
     enum status status = sweep_refuse(&values);
     main_print_notes(request, &values);
     if (status == STATUS_OK) {
-        char *const path = request->output ? strdup(request->output) : record_path(&values);
-        status = path ? make(&values, request, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
+        char *path;
+        status =
+            request->output ? memory_copy_string(&path, request->output, "a file name") : record_path(&values, &path);
+        if (status == STATUS_OK) status = make(&values, request, path);
         free(path);
     }
     case_free(&values);
@@ -65,8 +68,7 @@ static enum status tell_begin(const struct case_values *values, const char *path
     struct teller *const teller = data;
     TRY(parallel_try_threads(values->school.threads));
     parallel_choice_spread(values->school.threads);
-    teller->path = strdup(path);
-    return teller->path ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a file name");
+    return memory_copy_string(&teller->path, path, "a file name");
 }
 
 static void tell_note(const char *line, void *data) {

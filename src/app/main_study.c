@@ -8,6 +8,7 @@
 #include "app/main_commands.h"
 #include "app/main_signals.h"
 #include "app/say.h"
+#include "base/memory.h"
 #include "case/case.h"
 #include "case/sweep_error.h"
 #include "result/target.h"
@@ -73,8 +74,8 @@ static enum status report_begin(struct report *report) {
     return status;
 }
 
-/* Print tables and warnings to standard output; if quiet, to standard error, and the tables only after a failure, whose
- * message refers to them. */
+/* Print tables and warnings to standard output. If quiet, print warnings to standard error, and after a failure also
+ * the tables, because the message refers to the tables. */
 static enum status report_end(struct report *report, int is_quiet, enum status status) {
     status = say_end(&report->tables, !is_quiet ? stdout : status == STATUS_OK ? NULL : stderr, status);
     return say_end(&report->warnings, is_quiet ? stderr : stdout, status);
@@ -196,7 +197,7 @@ static enum status assign_errors(const struct case_values *values, const struct 
 
     if (text.failed) {
         text_free(&text);
-        return status_fail(STATUS_MEMORY, "out of memory: the command line");
+        return memory_check(NULL, "the command line");
     }
 
     *assignment = text.text;

@@ -6,6 +6,7 @@
 
 #include "app/main_commands.h"
 #include "app/say.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "result/netcdf.h"
 #include "result/target.h"
@@ -37,8 +38,8 @@ enum status main_view(const struct request *request) {
         text_add(&path, ".html");
     }
 
-    const enum status status = path.failed ? status_fail(STATUS_MEMORY, "out of memory: a file name")
-                                           : page_write(request->positional, path.text, request->force);
+    const enum status status =
+        path.failed ? memory_check(NULL, "a file name") : page_write(request->positional, path.text, request->force);
     if (status == STATUS_OK) note_missing(request->positional);
     if (status == STATUS_OK && !request->quiet) say_line(stdout, "%s\n", path.text);
     text_free(&path);
@@ -146,8 +147,8 @@ enum status main_field(const struct request *request) {
     if (request->output) TRY(target_refuse_input(request->output, request->positional));
     TRY(field_row_read(&row, request->positional, t, request->n_assignments, request->assignments));
     char *const path = request->output ? strdup(request->output) : default_path(request->positional);
-    const enum status status =
-        path ? write_field(request, &row, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
+    enum status status = memory_check(path, "a file name");
+    if (status == STATUS_OK) status = write_field(request, &row, path);
     free(path);
     field_row_free(&row);
     return status;

@@ -11,6 +11,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 
 void say_line(FILE *stream, const char *format, ...) {
@@ -30,14 +31,10 @@ void say_line(FILE *stream, const char *format, ...) {
     free(line);
 }
 
-static enum status page_out_of_memory(void) {
-    return status_fail(STATUS_MEMORY, "out of memory: text to print");
-}
-
 enum status say_begin(struct say_page *page) {
     *page = (struct say_page){0};
     page->stream = open_memstream(&page->text, &page->n);
-    return page->stream ? STATUS_OK : page_out_of_memory();
+    return memory_check(page->stream, "text to print");
 }
 
 enum status say_end(struct say_page *page, FILE *stream, enum status status) {
@@ -45,7 +42,7 @@ enum status say_end(struct say_page *page, FILE *stream, enum status status) {
     if (page->text && stream) text_print_clean(stream, page->text);
     free(page->text);
     *page = (struct say_page){0};
-    return status == STATUS_OK && failed ? page_out_of_memory() : status;
+    return status == STATUS_OK && failed ? memory_check(NULL, "text to print") : status;
 }
 
 // ---- one line, at most five times a second

@@ -31,6 +31,10 @@ enum status memory_arrays(double **const *arrays, size_t n_arrays, int n, const 
     return STATUS_OK;
 }
 
+enum status memory_check(const void *object, const char *what) {
+    return object ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: %s", what);
+}
+
 enum status memory_copy_string(char **copy, const char *string, const char *what) {
     *copy = strdup(string);
     return *copy ? STATUS_OK : memory_lack(strlen(string) + 1, 1, what);

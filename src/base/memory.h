@@ -23,6 +23,9 @@ enum status memory_resize(void *pointer, size_t n, size_t size, const char *what
 #define MEMORY_ARRAYS(arrays, n, what) memory_arrays(arrays, sizeof(arrays) / sizeof *(arrays), n, what)
 enum status memory_arrays(double **const *arrays, size_t n_arrays, int n, const char *what);
 
+/* Fail with STATUS_MEMORY and the message "out of memory: WHAT" if an object of a library is NULL. */
+enum status memory_check(const void *object, const char *what);
+
 /* A copy of a string. After a failure *copy is NULL. */
 enum status memory_copy_string(char **copy, const char *string, const char *what);
 

@@ -124,16 +124,16 @@ static int64_t entries_sort(const struct sparse *matrix, int64_t *order, int64_t
 // assign a position in the compressed columns to every distinct entry, and a slot to every recorded addition
 static enum status record_compile(struct sparse *matrix) {
     const size_t n_entries = (size_t)matrix->n_entries + 1;
-    int64_t *order = malloc(n_entries * sizeof *order), *by_row = malloc(n_entries * sizeof *by_row);
-    int64_t *count = malloc(((size_t)matrix->n + 1) * sizeof *count);
-    double *recorded = malloc(n_entries * sizeof *recorded);
-    int64_t *row_index = malloc(n_entries * sizeof *row_index);
-    double *value = calloc(n_entries + 1, sizeof *value);
-    enum status status = STATUS_OK;
-    if (!order || !by_row || !count || !recorded || !row_index || !value) {
+    int64_t *order = NULL, *by_row = NULL, *count = NULL, *row_index = NULL;
+    double *recorded = NULL, *value = NULL;
+    enum status status = MEMORY_NEW(order, n_entries, "the entries of a Jacobian");
+    if (status == STATUS_OK) status = MEMORY_NEW(by_row, n_entries, "the entries of a Jacobian");
+    if (status == STATUS_OK) status = MEMORY_NEW(count, matrix->n + 1, "the entries of a Jacobian");
+    if (status == STATUS_OK) status = MEMORY_NEW(recorded, n_entries, "the entries of a Jacobian");
+    if (status == STATUS_OK) status = MEMORY_NEW(row_index, n_entries, "the entries of a Jacobian");
+    if (status == STATUS_OK) status = MEMORY_NEW(value, n_entries + 1, "the entries of a Jacobian");
+    if (status != STATUS_OK) {
         free(row_index);
-        free(value);
-        status = status_fail(STATUS_MEMORY, "out of memory: %lld entries of a Jacobian", (long long)matrix->n_entries);
         goto done;
     }
     const int64_t n_sorted = entries_sort(matrix, order, by_row, count);
@@ -179,6 +179,6 @@ enum status sparse_end(struct sparse *matrix) {
         assert(matrix->next == matrix->n_entries);
         return STATUS_OK;
     }
-    if (matrix->out_of_memory) return status_fail(STATUS_MEMORY, "out of memory: recording a Jacobian");
+    if (matrix->out_of_memory) return memory_check(NULL, "recording a Jacobian");
     return record_compile(matrix);
 }

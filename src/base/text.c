@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 /* Reserve more bytes and a zero. */
 static bool text_reserve(struct text *text, size_t more) {
     if (text->failed) return false;
@@ -69,6 +71,14 @@ void text_print_clean(FILE *stream, const char *string) {
             fputc(*c, stream);
         }
     }
+}
+
+enum status text_take(struct text *text, char **string, const char *what) {
+    text_add(text, "%s", "");
+    if (text->failed) text_free(text);
+    *string = text->text;
+    *text = (struct text){0};
+    return memory_check(*string, what);
 }
 
 void text_free(struct text *text) {

@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "base/status.h"
+
 /* Initialise to zero. After a failed allocation nothing more is added and failed is true. */
 struct text {
     char *text; /* ends with a zero; NULL before the first addition */
@@ -26,6 +28,10 @@ void text_print_json(FILE *stream, const char *string);
 
 /* Print a string with control characters escaped (\x1b), for terminals. Line breaks and tabs are unchanged. */
 void text_print_clean(FILE *stream, const char *string);
+
+/* Set *string to the string of the text, which the caller frees, and zero the text; "" before the first addition. After
+ * a failed allocation *string is NULL: fails with STATUS_MEMORY and the message "out of memory: WHAT". */
+enum status text_take(struct text *text, char **string, const char *what);
 
 /* Release the string and zero it. */
 void text_free(struct text *text);

@@ -101,7 +101,8 @@ static enum status read_field(struct reading *reading, const struct key *key, in
         }
         status = case_value_read(key, field, node, path, is_default ? &silent : &reading->errors);
     } else if (initial) {
-        const struct yaml_source source = {"default", (char *)initial, strlen(initial), 0, true};
+        const struct yaml_source source = {
+            .name = "default", .text = initial, .length = strlen(initial), .one_line = true};
         struct yaml_node *standard = NULL;
         status = yaml_tree_read(&standard, &source, &silent);
         if (status == STATUS_OK) status = case_value_read(key, field, standard, key->path, &silent);
@@ -184,7 +185,7 @@ static enum status read_values(struct reading *reading, struct case_values *valu
     TRY(sweep_expect_read(values, tree->root, &reading->errors));
     TRY(sweep_error_read(values, tree->root, &reading->errors));
 
-    // skip the relations after an unknown key: it can be a misspelt key, whose value is then missing
+    // skip the relations after an unknown key: a misspelt key has no value
     if (are_keys_known) case_check(values, tree, &reading->errors);
     return STATUS_OK;
 }
@@ -209,15 +210,13 @@ static enum status keep_texts(struct case_values *values, const struct case_tree
         yaml_write_node(&text, tree->root->entry[i].value);
         text_add(&text, "\n");
     }
-    if (text.failed) text_free(&text);
-    values->merged = text.text;
+    TRY(text_take(&text, &values->merged, "the text of the case"));
 
     struct yaml_errors notes = {0};
     case_notes(values, tree, &notes);
-    values->notes = yaml_errors_list(&notes, "note");
+    const enum status status = yaml_errors_list(&notes, "note", &values->notes);
     yaml_errors_free(&notes);
-    if (values->merged && values->notes) return STATUS_OK;
-    return status_fail(STATUS_MEMORY, "out of memory: the texts of the case");
+    return status;
 }
 
 /* Apply the assignments to the tree, and fill the values from the tree. status: of reading the tree. */
@@ -286,12 +285,11 @@ static enum status read_member(struct case_values *values, const struct case_val
     TRY(status);
 
     free(values->text);
-    values->text = strdup(study->text);
-    values->study = strdup(study->merged);
     values->member = member;
-    if (values->text && values->study) return STATUS_OK;
-    case_free(values);
-    return status_fail(STATUS_MEMORY, "out of memory: the case of member %d", member);
+    enum status copied = memory_copy_string(&values->text, study->text, "the case of a member");
+    if (copied == STATUS_OK) copied = memory_copy_string(&values->study, study->merged, "the case of a member");
+    if (copied != STATUS_OK) case_free(values);
+    return copied;
 }
 
 enum status case_member(struct case_values *values, const struct case_values *study, int member) {
@@ -308,9 +306,7 @@ enum status case_member(struct case_values *values, const struct case_values *st
         for (int k = 0; k < study->sweep[a].n_keys && status == STATUS_OK; k++) {
             struct text text = {0};
             sweep_add_assignment(&text, &study->sweep[a], value, k);
-            if (text.failed) text_free(&text);
-            assignments[n++] = text.text;
-            if (!text.text) status = status_fail(STATUS_MEMORY, "out of memory: the values of member %d", member);
+            status = text_take(&text, &assignments[n++], "the values of a member");
         }
     }
     if (status == STATUS_OK) {

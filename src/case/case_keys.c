@@ -145,7 +145,7 @@ static void print_words(FILE *stream, const struct key *key) {
     fputc(']', stream);
 }
 
-/* The form of the axes of a sweep and of the expectations of a study, whose values belong to other keys. */
+/* The form of the keys with nested keys. */
 static const char files[] = "\"type\": [\"string\", \"array\"], \"items\": {\"type\": \"string\"}";
 static const char defaults[] =
     "\"type\": \"object\", \"additionalProperties\": false, \"properties\": {\"fish\": {\"$ref\": "

@@ -36,14 +36,16 @@ static enum status add_source(struct case_tree *tree, const char *name, struct y
     TRY(MEMORY_NEW(*source, 1, what));
     (*source)->rank = tree->n_sources;
     tree->source[tree->n_sources++] = *source;
-    return memory_copy_string(&(*source)->name, name, what);
+    TRY(memory_copy_string(&(*source)->own_name, name, what));
+    (*source)->name = (*source)->own_name;
+    return STATUS_OK;
 }
 
 void case_merge_free(struct case_tree *tree) {
     yaml_tree_free(tree->root);
     for (int i = 0; i < tree->n_sources; i++) {
-        free(tree->source[i]->name);
-        free(tree->source[i]->text);
+        free(tree->source[i]->own_name);
+        free(tree->source[i]->own_text);
         free(tree->source[i]);
     }
     free(tree->source);
@@ -71,18 +73,19 @@ static enum status read_file(const char *path, struct yaml_source *source, struc
         goto close_file;
     }
 
-    status = MEMORY_NEW(source->text, capacity, what);
+    status = MEMORY_NEW(source->own_text, capacity, what);
     if (status != STATUS_OK) goto close_file;
     ssize_t n;
     do {
-        n = read(file, source->text + source->length, capacity - source->length);
+        n = read(file, source->own_text + source->length, capacity - source->length);
         if (n > 0) source->length += (size_t)n;
     } while ((n > 0 && source->length < capacity) || (n < 0 && errno == EINTR));
     if (n < 0) status = status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
 
     // a failure leaves the text as it is
-    char *const fitting = n < 0 ? NULL : realloc(source->text, source->length + 1);
-    if (fitting) source->text = fitting;
+    char *const fitting = n < 0 ? NULL : realloc(source->own_text, source->length + 1);
+    if (fitting) source->own_text = fitting;
+    source->text = source->own_text;
 close_file:
     if (file >= 0) close(file);
     return status;
@@ -136,13 +139,12 @@ static enum status include_file(struct case_tree *tree, const struct yaml_node *
     text_add(&path, "%.*s%s", slash ? (int)(slash - folder) + 1 : 0, folder, node->text);
     use_shared(node->text, &path);
     struct yaml_source *source = NULL;
-    const enum status added =
-        path.failed ? status_fail(STATUS_MEMORY, "out of memory: %s", what) : add_source(tree, path.text, &source);
+    enum status status = path.failed ? memory_check(NULL, what) : add_source(tree, path.text, &source);
     text_free(&path);
-    TRY(added);
+    TRY(status);
 
     struct open_file self = {.depth = by->depth + 1, .by = by};
-    const enum status status = read_file(source->name, source, &self);
+    status = read_file(source->name, source, &self);
     if (status == STATUS_FILE) {
         yaml_errors_add(errors, node->mark, "include: %.200s: %s", source->name, status_message());
         return STATUS_OK;
@@ -242,14 +244,14 @@ enum status case_merge_read_text(struct case_tree *tree, const char *text, size_
                                  const char *folder, struct yaml_errors *errors) {
     struct yaml_source *source;
     TRY(add_source(tree, origin, &source));
-    TRY(MEMORY_NEW(source->text, length + 1, what));
-    memcpy(source->text, text, length);
+    TRY(MEMORY_NEW(source->own_text, length + 1, what));
+    memcpy(source->own_text, text, length);
+    source->text = source->own_text;
     source->length = length;
     struct text place = {0};
     text_add(&place, "%s%s", folder ? folder : "", folder && *folder ? "/" : "");
     const struct open_file self = {0};
-    const enum status status = place.failed ? status_fail(STATUS_MEMORY, "out of memory: %s", what)
-                                            : read_case(tree, place.text, &self, errors);
+    const enum status status = place.failed ? memory_check(NULL, what) : read_case(tree, place.text, &self, errors);
     text_free(&place);
     return status;
 }
@@ -269,9 +271,9 @@ static enum status put_at(struct yaml_node **node, const char *path, struct yaml
     if (path[length] == '\0') return yaml_tree_put(*node, key, mark, value);
 
     if (!yaml_tree_entry(*node, key, length)) {
-        struct yaml_node *const map = yaml_tree_map(mark);
-        const enum status status =
-            map ? yaml_tree_put(*node, key, mark, map) : status_fail(STATUS_MEMORY, "out of memory: %s", what);
+        struct yaml_node *map;
+        enum status status = yaml_tree_map(&map, mark);
+        if (status == STATUS_OK) status = yaml_tree_put(*node, key, mark, map);
         if (status != STATUS_OK) {
             yaml_tree_free(value);
             return status;
@@ -288,9 +290,9 @@ static enum status put_node(struct case_tree *tree, const struct case_path *path
     enum status status = STATUS_OK;
     for (int i = 0; i < case_merge_n_fish(tree) && status == STATUS_OK; i++) {
         if (path->fish != i && path->fish != CASE_EVERY_FISH) continue;
-        struct yaml_node *const copy = yaml_tree_copy(value);
-        status = copy ? put_at(&school->value->entry[i].value, path->below, value->mark, copy)
-                      : status_fail(STATUS_MEMORY, "out of memory: %s", what);
+        struct yaml_node *copy;
+        status = yaml_tree_copy(&copy, value);
+        if (status == STATUS_OK) status = put_at(&school->value->entry[i].value, path->below, value->mark, copy);
     }
 
     yaml_tree_free(value);
@@ -311,7 +313,8 @@ static enum status assign(struct case_tree *tree, char *name, const char *text, 
     }
 
     // nothing after the equals sign is the empty string
-    TRY(memory_copy_string(&source->text, text[strspn(text, " ")] ? text : "\"\"", what));
+    TRY(memory_copy_string(&source->own_text, text[strspn(text, " ")] ? text : "\"\"", what));
+    source->text = source->own_text;
     source->length = strlen(source->text);
     struct yaml_node *value = NULL;
     const enum status status = yaml_tree_read(&value, source, errors);
@@ -328,8 +331,7 @@ enum status case_merge_assign(struct case_tree *tree, const char *assignment, st
     struct text title = {0};
     text_add(&title, "--set %s", assignment);
     struct yaml_source *source = NULL;
-    enum status status =
-        title.failed ? status_fail(STATUS_MEMORY, "out of memory: %s", what) : add_source(tree, title.text, &source);
+    enum status status = title.failed ? memory_check(NULL, what) : add_source(tree, title.text, &source);
     text_free(&title);
     if (status != STATUS_OK) goto free_name;
 

@@ -213,15 +213,7 @@ enum status case_show(const struct case_values *values, char **text) {
     text_add(&list, "\nfish:\n");
     for (int i = 0; i < all.school.n_fish; i++) show_rows(&list, &all, &all.school.fish[i]);
     show_sweep(&list, &all);
-    *text = NULL;
-
-    if (list.failed) {
-        text_free(&list);
-        return status_fail(STATUS_MEMORY, "out of memory: showing the case");
-    }
-
-    *text = list.text;
-    return STATUS_OK;
+    return text_take(&list, text, "the text of the case");
 }
 
 // ---- a case to start from

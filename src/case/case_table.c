@@ -65,7 +65,7 @@ static enum status derive_case_name(const struct key_place *at) {
     const char *const dot = strrchr(from, '.');
     const size_t length = dot && dot > from ? (size_t)(dot - from) : strlen(from);
     at->values->name = length > 0 ? strndup(from, length) : strdup("case");
-    return at->values->name ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the name of the case");
+    return memory_check(at->values->name, "the name of the case");
 }
 
 /* Round a time to a multiple of a unit, up or to the nearest; false if the time is a multiple already. */
@@ -171,7 +171,7 @@ static enum status derive_relaxation_time(const struct key_place *at) {
     return set_default(&at->fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
 }
 
-/* The wavelength is another form of wave.number, whose default is in the table. */
+/* The wavelength is another form of wave.number; the table has the default of wave.number. */
 static enum status derive_wavelength(const struct key_place *at) {
     struct wave_parameters *const wave = &at->fish->wave;
     if (!isnan(wave->wavelength)) wave->number = -2 * 3.14159265358979323846 / wave->wavelength;

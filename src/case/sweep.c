@@ -94,8 +94,6 @@ void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int 
 
 enum status sweep_member_text(const struct case_values *study, int member, char **text) {
     struct text list = {0};
-    text_add(&list, "%s", "");
-
     for (int a = 0; a < study->n_axes; a++) {
         const int value = sweep_member_value(study, member, a);
         for (int k = 0; k < study->sweep[a].n_keys; k++) {
@@ -104,9 +102,7 @@ enum status sweep_member_text(const struct case_values *study, int member, char 
         }
     }
 
-    if (list.failed) text_free(&list);
-    *text = list.text;
-    return *text ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the values of a member");
+    return text_take(&list, text, "the values of a member");
 }
 
 uint64_t sweep_refine_orders(const struct case_values *study) {
@@ -203,9 +199,7 @@ static enum status axis_read_value(struct axis *axis, int index, int k, const st
 
     struct text text = {0};
     yaml_write_node(&text, value);
-    if (text.failed) text_free(&text);
-    axis->into->value[index * axis->n_keys + k] = text.text;
-    return text.text ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the sweep");
+    return text_take(&text, &axis->into->value[index * axis->n_keys + k], "the sweep");
 }
 
 static enum status axis_read_values(struct axis *axis) {

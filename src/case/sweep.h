@@ -45,8 +45,8 @@ int sweep_n_members(const struct case_values *study);
 /* The value of an axis for a member. The last axis runs fastest. */
 int sweep_member_value(const struct case_values *study, int member, int axis);
 
-/* True if the members are steady states: an axis has `steady`. The start of a member is the member from whose result
- * the search starts, with the previous value of that axis; -1 for the first value. */
+/* True if the members are steady states: an axis has `steady`. The search of a member starts from the result of the
+ * member with the previous value of that axis; -1 for the first value. */
 int sweep_is_steady(const struct case_values *study);
 int sweep_member_before(const struct case_values *study, int member);
 
@@ -57,7 +57,7 @@ void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int 
  * Fails with STATUS_MEMORY. */
 enum status sweep_member_text(const struct case_values *study, int member, char **text);
 
-/* The quantities whose orders a study observes, as a set: bit q is set for quantity q. */
+/* The quantities with observed orders in a study, as a set: bit q is set for quantity q. */
 uint64_t sweep_refine_orders(const struct case_values *study);
 
 /* The reference value of a quantity (one with orders) for errors along a refined axis; NaN if the case has none. xy is

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <yaml.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 
 // ---- errors: sorted by place, each with the source line and a caret
@@ -107,23 +108,21 @@ static void add_error(struct text *list, struct yaml_mark mark, const char *word
     }
 }
 
-char *yaml_errors_list(const struct yaml_errors *errors, const char *word) {
+enum status yaml_errors_list(const struct yaml_errors *errors, const char *word, char **text) {
     int order[YAML_ERRORS_KEPT];
     const int n = errors->out_of_memory ? 0 : sort_errors(errors, order);
-    struct text list = {0};
-    text_add(&list, "%s", "");
+    struct text list = {.failed = errors->out_of_memory};
     for (int i = 0; i < n && i < YAML_ERRORS_SHOWN; i++) {
         add_error(&list, errors->kept[order[i]].mark, word, errors->kept[order[i]].text);
     }
     if (errors->n > YAML_ERRORS_SHOWN) text_add(&list, "\n... and %d more", errors->n - YAML_ERRORS_SHOWN);
-    if (errors->out_of_memory || list.failed) text_free(&list);
-    return list.text;
+    return text_take(&list, text, "the list of errors of the case");
 }
 
 enum status yaml_errors_status(const struct yaml_errors *errors) {
     if (errors->n == 0) return STATUS_OK;
-    char *const list = yaml_errors_list(errors, "error");
-    if (!list) return status_fail(STATUS_MEMORY, "out of memory: the list of errors of the case");
+    char *list;
+    TRY(yaml_errors_list(errors, "error", &list));
     const enum status status = status_fail(STATUS_CASE, "%s", list);
     free(list);
     return status;
@@ -135,22 +134,19 @@ struct reader {
     struct yaml_errors *errors;
 };
 
-static enum status yaml_out_of_memory(void) {
-    return status_fail(STATUS_MEMORY, "out of memory: the tree of a case file");
-}
+static const char what[] = "the tree of a case file"; /* in messages on memory */
 
 // ---- the tree
 
-static struct yaml_node *create_node(enum yaml_kind kind, struct yaml_mark mark) {
-    struct yaml_node *const node = calloc(1, sizeof *node);
-    if (!node) return NULL;
-    node->kind = kind;
-    node->mark = mark;
-    return node;
+static enum status create_node(struct yaml_node **node, enum yaml_kind kind, struct yaml_mark mark) {
+    TRY(MEMORY_NEW(*node, 1, what));
+    (*node)->kind = kind;
+    (*node)->mark = mark;
+    return STATUS_OK;
 }
 
-struct yaml_node *yaml_tree_map(struct yaml_mark mark) {
-    return create_node(YAML_MAP, mark);
+enum status yaml_tree_map(struct yaml_node **node, struct yaml_mark mark) {
+    return create_node(node, YAML_MAP, mark);
 }
 
 void yaml_tree_free(struct yaml_node *node) {
@@ -167,39 +163,33 @@ void yaml_tree_free(struct yaml_node *node) {
 /* Append an entry with a copy of the key (NULL in a list). Takes ownership of the value, also on failure. */
 static enum status append_node(struct yaml_node *node, const char *key, struct yaml_mark mark,
                                struct yaml_node *value) {
-    char *const own_key = key ? strdup(key) : NULL;
-    if (key && !own_key) goto failed;
-
-    if (node->n == node->capacity) {
-        const int capacity = 2 * node->capacity + 4;
-        struct yaml_entry *const grown = realloc(node->entry, (size_t)capacity * sizeof *grown);
-        if (!grown) goto failed;
-        node->entry = grown;
-        node->capacity = capacity;
+    char *own_key = NULL;
+    enum status status = key ? memory_copy_string(&own_key, key, what) : STATUS_OK;
+    if (status == STATUS_OK && node->n == node->capacity) {
+        status = MEMORY_RESIZE(node->entry, 2 * node->capacity + 4, what);
+        if (status == STATUS_OK) node->capacity = 2 * node->capacity + 4;
     }
 
-    node->entry[node->n++] = (struct yaml_entry){own_key, mark, value};
-    return STATUS_OK;
-failed:
-    free(own_key);
-    yaml_tree_free(value);
-    return yaml_out_of_memory();
+    if (status == STATUS_OK) {
+        node->entry[node->n++] = (struct yaml_entry){own_key, mark, value};
+    } else {
+        free(own_key);
+        yaml_tree_free(value);
+    }
+    return status;
 }
 
-struct yaml_node *yaml_tree_copy(const struct yaml_node *node) {
-    struct yaml_node *const copy = create_node(node->kind, node->mark);
-    if (!copy) return NULL;
-    if (node->text && !(copy->text = strdup(node->text))) goto failed;
-
-    for (int i = 0; i < node->n; i++) {
-        struct yaml_node *const value = yaml_tree_copy(node->entry[i].value);
-        if (!value || append_node(copy, node->entry[i].key, node->entry[i].mark, value) != STATUS_OK) goto failed;
+enum status yaml_tree_copy(struct yaml_node **copy, const struct yaml_node *node) {
+    TRY(create_node(copy, node->kind, node->mark));
+    enum status status = node->text ? memory_copy_string(&(*copy)->text, node->text, what) : STATUS_OK;
+    for (int i = 0; i < node->n && status == STATUS_OK; i++) {
+        struct yaml_node *value;
+        status = yaml_tree_copy(&value, node->entry[i].value);
+        if (status == STATUS_OK) status = append_node(*copy, node->entry[i].key, node->entry[i].mark, value);
     }
 
-    return copy;
-failed:
-    yaml_tree_free(copy);
-    return NULL;
+    if (status != STATUS_OK) yaml_tree_free(*copy);
+    return status;
 }
 
 struct yaml_entry *yaml_tree_entry(const struct yaml_node *map, const char *key, size_t length) {
@@ -290,7 +280,7 @@ static const char *remedy(const char *problem) {
 /* Add the error of libyaml to the list. */
 static enum status report_parser(struct reader *reader) {
     const yaml_parser_t *const parser = &reader->parser;
-    if (parser->error == YAML_MEMORY_ERROR) return yaml_out_of_memory();
+    if (parser->error == YAML_MEMORY_ERROR) return memory_check(NULL, what);
     const char *const problem = parser->problem ? parser->problem : "not readable";
     struct yaml_mark mark = mark_at(reader, parser->problem_mark);
 
@@ -342,9 +332,8 @@ static enum status read_scalar(struct reader *reader, const yaml_event_t *event,
     if (strlen(text) != event->data.scalar.length) {
         yaml_errors_add(reader->errors, mark, "a string cannot contain a zero byte");
     }
-    *node = create_node(YAML_SCALAR, mark);
-    if (!*node || !((*node)->text = strdup(text))) return yaml_out_of_memory();
-    return STATUS_OK;
+    TRY(create_node(node, YAML_SCALAR, mark));
+    return memory_copy_string(&(*node)->text, text, what);
 }
 
 static enum status read_list(struct reader *reader, int depth, struct yaml_node *list) {
@@ -431,8 +420,7 @@ static enum status read_node(struct reader *reader, const yaml_event_t *event, i
     }
 
     const bool is_map = event->type == YAML_MAPPING_START_EVENT;
-    *node = create_node(is_map ? YAML_MAP : YAML_LIST, mark);
-    if (!*node) return yaml_out_of_memory();
+    TRY(create_node(node, is_map ? YAML_MAP : YAML_LIST, mark));
 
     if (is_map) {
         refuse_extras(reader, mark, event->data.mapping_start.anchor, event->data.mapping_start.tag);
@@ -518,7 +506,7 @@ static enum status check_characters(const struct yaml_source *source, struct yam
 /* Parse a source that has passed the checks of size and characters. */
 static enum status read_text(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors) {
     struct reader reader = {.source = source, .errors = errors};
-    if (!yaml_parser_initialize(&reader.parser)) return yaml_out_of_memory();
+    if (!yaml_parser_initialize(&reader.parser)) return memory_check(NULL, what);
     yaml_parser_set_encoding(&reader.parser, YAML_UTF8_ENCODING);
     const size_t skipped = mark_size(source);
     yaml_parser_set_input_string(&reader.parser, (const unsigned char *)source->text + skipped,

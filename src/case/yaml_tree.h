@@ -27,11 +27,12 @@
 
 /* A file, or an assignment of the command line. */
 struct yaml_source {
-    char *name;    /* in messages */
-    char *text;    /* not terminated by a zero */
-    size_t length; /* bytes */
-    int rank;      /* errors are listed by rank, then by line */
-    bool one_line; /* an assignment: messages show the name, without line and caret */
+    const char *name;          /* in messages */
+    const char *text;          /* not terminated by a zero */
+    size_t length;             /* bytes */
+    int rank;                  /* errors are listed by rank, then by line */
+    bool one_line;             /* an assignment: messages show the name, without line and caret */
+    char *own_name, *own_text; /* name and text of a source that belongs to a case_tree */
 };
 
 /* A place in a source; line and column (in characters) count from 1. */
@@ -59,9 +60,9 @@ void yaml_errors_add(struct yaml_errors *errors, struct yaml_mark mark, const ch
 /* STATUS_OK if nothing was added; else STATUS_CASE with the list as message, or STATUS_MEMORY. */
 enum status yaml_errors_status(const struct yaml_errors *errors);
 
-/* The list with another word than "error", such as "note"; "" for an empty list, NULL if out of memory. The caller
- * frees the text. */
-char *yaml_errors_list(const struct yaml_errors *errors, const char *word);
+/* The list with another word than "error", such as "note"; "" for an empty list. The caller frees *text. Fails with
+ * STATUS_MEMORY. */
+enum status yaml_errors_list(const struct yaml_errors *errors, const char *word, char **text);
 
 /* Release the errors and zero the list. */
 void yaml_errors_free(struct yaml_errors *errors);
@@ -93,9 +94,9 @@ enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *so
 /* Release a node with all nested nodes. Accepts NULL. */
 void yaml_tree_free(struct yaml_node *node);
 
-/* A new empty map, or a copy of a tree; NULL when out of memory. */
-struct yaml_node *yaml_tree_map(struct yaml_mark mark);
-struct yaml_node *yaml_tree_copy(const struct yaml_node *node);
+/* Create an empty map, or a copy of a tree. Both fail with STATUS_MEMORY. */
+enum status yaml_tree_map(struct yaml_node **map, struct yaml_mark mark);
+enum status yaml_tree_copy(struct yaml_node **copy, const struct yaml_node *node);
 
 /* The entry of a map under a key of length bytes; NULL if there is none or the node is NULL or no map. */
 struct yaml_entry *yaml_tree_entry(const struct yaml_node *map, const char *key, size_t length);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "body/rod.h"
 #include "fish/fish.h"
 
@@ -12,22 +13,21 @@
 
 enum status neighbours_create(struct neighbours **neighbours, int n) {
     *neighbours = NULL;
-    struct neighbours *const new = calloc(1, sizeof *new);
-    if (!new) goto no_memory;
-    const size_t size = (size_t)n;
+    struct neighbours *new;
+    TRY(MEMORY_NEW(new, 1, "the neighbours of bodies"));
     new->n = n;
-    new->box = calloc(size, sizeof *new->box);
-    new->order = calloc(size, sizeof *new->order);
-    new->filled = calloc(size, sizeof *new->filled);
-    new->first = calloc(size + 1, sizeof *new->first);
-    if (!new->box || !new->order || !new->filled || !new->first) goto no_memory;
+    enum status status = MEMORY_NEW(new->box, n, "the neighbours of bodies");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->order, n, "the neighbours of bodies");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->filled, n, "the neighbours of bodies");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->first, n + 1, "the neighbours of bodies");
+    if (status != STATUS_OK) {
+        neighbours_free(new);
+        return status;
+    }
+
     for (int i = 0; i < n; i++) new->order[i] = i;
     *neighbours = new;
     return STATUS_OK;
-
-no_memory:
-    neighbours_free(new);
-    return status_fail(STATUS_MEMORY, "out of memory: %d boxes", n);
 }
 
 void neighbours_free(struct neighbours *neighbours) {
@@ -54,17 +54,13 @@ static void order_sort(struct neighbours *neighbours) {
 }
 
 // reserve memory for one more pair
-static int pairs_reserve(struct neighbours *neighbours, int n) {
-    if (n + 2 <= neighbours->capacity) return 1;
+static enum status pairs_reserve(struct neighbours *neighbours, int n) {
+    if (n + 2 <= neighbours->capacity) return STATUS_OK;
     const int capacity = neighbours->capacity > 0 ? 2 * neighbours->capacity : 64;
-    int *const pair = realloc(neighbours->pair, (size_t)capacity * sizeof *pair);
-    if (pair) neighbours->pair = pair;
-    int *const other = realloc(neighbours->other, (size_t)capacity * sizeof *other);
-    if (other) neighbours->other = other;
-    if (!pair || !other) return 0;
+    TRY(MEMORY_RESIZE(neighbours->pair, capacity, "the neighbours of bodies"));
+    TRY(MEMORY_RESIZE(neighbours->other, capacity, "the neighbours of bodies"));
     neighbours->capacity = capacity;
-
-    return 1;
+    return STATUS_OK;
 }
 
 // store the overlapping pairs in sweep order; returns twice the number of pairs, or -1 if out of memory
@@ -78,7 +74,7 @@ static int pairs_sweep(struct neighbours *neighbours) {
             const struct box *const b = &neighbours->box[there];
             if (b->low[0] > a->high[0]) break;
             if (b->low[1] > a->high[1] || b->high[1] < a->low[1]) continue;
-            if (!pairs_reserve(neighbours, n)) return -1;
+            if (pairs_reserve(neighbours, n) != STATUS_OK) return -1;
             neighbours->pair[n++] = here;
             neighbours->pair[n++] = there;
         }
@@ -98,7 +94,7 @@ enum status neighbours_find(struct neighbours *neighbours) {
     memset(first, 0, ((size_t)neighbours->n + 1) * sizeof *first);
     order_sort(neighbours);
     const int n = pairs_sweep(neighbours);
-    if (n < 0) return status_fail(STATUS_MEMORY, "out of memory: the neighbours of %d bodies", neighbours->n);
+    if (n < 0) return STATUS_MEMORY;
     for (int i = 0; i < n; i++) first[neighbours->pair[i] + 1]++;
     for (int i = 0; i < neighbours->n; i++) first[i + 1] += first[i];
     int *const filled = neighbours->filled;

@@ -22,9 +22,8 @@ struct contact {
 
 static enum status contact_allocate(struct contact *contact) {
     const struct school *school = contact->school;
-    contact->first = calloc((size_t)school->n_fish + 1, sizeof *contact->first);
-    contact->between = calloc((size_t)school->n_unknowns, sizeof *contact->between);
-    if (!contact->first || !contact->between) return status_fail(STATUS_MEMORY, "out of memory: contacts");
+    TRY(MEMORY_NEW(contact->first, school->n_fish + 1, "contacts"));
+    TRY(MEMORY_NEW(contact->between, school->n_unknowns, "contacts"));
     if (school->contact != CONTACT_REPEL || school->n_fish == 1) return STATUS_OK;
     return neighbours_create(&contact->neighbours, school->n_fish);
 }
@@ -106,13 +105,9 @@ static unsigned char pair_is_near(const struct contact *contact, int f, int g) {
 
 static enum status partners_reserve(struct contact *contact, int capacity) {
     if (capacity <= contact->capacity) return STATUS_OK;
-    int *const other = realloc(contact->other, (size_t)capacity * sizeof *other);
-    if (other) contact->other = other;
-    unsigned char *const is_near = realloc(contact->is_near, (size_t)capacity);
-    if (is_near) contact->is_near = is_near;
-    if (!other || !is_near) return status_fail(STATUS_MEMORY, "out of memory: contacts");
+    TRY(MEMORY_RESIZE(contact->other, capacity, "contacts"));
+    TRY(MEMORY_RESIZE(contact->is_near, capacity, "contacts"));
     contact->capacity = capacity;
-
     return STATUS_OK;
 }
 

@@ -156,16 +156,10 @@ static enum status sheet_allocate(struct fish *fish) {
     double **const per_control[] = {&fish->end_correction, &fish->control_density, &fish->control_interval};
     TRY(MEMORY_NEW(fish->sheet_weight, fish->n_sheet, "the sheet of a fish"));
     TRY(MEMORY_ARRAYS(per_control, fish->n_control, "the sheet of a fish"));
-    fish->sheet_point = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_point);
-    fish->sheet_slope = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_slope);
-    fish->control_point = calloc((size_t)fish->n_control, sizeof *fish->control_point);
-    fish->control_tangent = calloc((size_t)fish->n_control, sizeof *fish->control_tangent);
-
-    if (!fish->sheet_point || !fish->sheet_slope || !fish->control_point || !fish->control_tangent) {
-        return status_fail(STATUS_MEMORY, "out of memory: %d points of a sheet", fish->n_sheet);
-    }
-
-    return STATUS_OK;
+    TRY(MEMORY_NEW(fish->sheet_point, fish->n_sheet, "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->sheet_slope, fish->n_sheet, "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->control_point, fish->n_control, "the sheet of a fish"));
+    return MEMORY_NEW(fish->control_tangent, fish->n_control, "the sheet of a fish");
 }
 
 // sigma at j intervals of the angle from the nose
@@ -447,8 +441,7 @@ static enum status control_set(struct fish *fish, const struct fish_parameters *
 
 static enum status fish_fill(struct fish *fish, const struct school_parameters *parameters,
                              const struct fish_parameters *from) {
-    fish->name = strdup(from->name);
-    if (!fish->name) return status_fail(STATUS_MEMORY, "out of memory: the name of a fish");
+    TRY(memory_copy_string(&fish->name, from->name, "the name of a fish"));
     fish->n_nodes = from->nodes;
     fish->n_edges = from->nodes - 1;
     fish->n_joints = from->nodes - 2;
@@ -578,16 +571,17 @@ static enum status refuse_overlap(const struct school *school) {
 }
 
 enum status fish_school_create(struct school **school, const struct school_parameters *parameters) {
-    struct school *new = calloc(1, sizeof *new);
+    struct school *new;
     *school = NULL;
-    if (!new) goto no_memory;
-    new->fish = calloc((size_t)parameters->n_fish, sizeof *new->fish);
-    if (!new->fish) goto no_memory;
+    TRY(MEMORY_NEW(new, 1, "a school"));
+    enum status status = MEMORY_NEW(new->fish, parameters->n_fish, "the fish of a school");
+    if (status != STATUS_OK) goto failed;
     new->n_fish = parameters->n_fish;
     fluid_set(new, parameters);
-    if (vortices_set(new, &parameters->wake.vortices) != STATUS_OK) goto failed;
-    for (int f = 0; f < new->n_fish; f++) {
-        if (fish_fill(&new->fish[f], parameters, &parameters->fish[f]) != STATUS_OK) goto failed;
+    status = vortices_set(new, &parameters->wake.vortices);
+    for (int f = 0; f < new->n_fish &&status == STATUS_OK; f++) {
+        status = fish_fill(&new->fish[f], parameters, &parameters->fish[f]);
+        if (status != STATUS_OK) goto failed;
         struct fish *const fish = &new->fish[f];
         const int n_momenta = fish->force == FORCE_PRESSURE ? fish->n_nodes : 0;
         fish->at = layout_after(new->n_unknowns, fish->n_nodes, n_momenta, fish->n_sheet);
@@ -598,19 +592,14 @@ enum status fish_school_create(struct school **school, const struct school_param
         fish->contact_strength = fish->total_mass * fish->length * rate * rate;
         new->n_unknowns = fish->at.end;
     }
-    const enum status overlap = refuse_overlap(new);
-    if (overlap != STATUS_OK) {
-        fish_school_free(new);
-        return overlap;
-    }
+    if (status == STATUS_OK) status = refuse_overlap(new);
+    if (status != STATUS_OK) goto failed;
     *school = new;
     return STATUS_OK;
 
-no_memory:
-    status_fail(STATUS_MEMORY, "out of memory: a school of %d fish", parameters->n_fish);
 failed:
     fish_school_free(new);
-    return STATUS_MEMORY;
+    return status;
 }
 
 void fish_school_free(struct school *school) {

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/mathematics.h"
+#include "base/memory.h"
 
 enum { MOST_OF_POLYGON = 4 }; /* nodes per stencil on the polygon */
 
@@ -31,23 +32,23 @@ static void find_barycentric(struct curve *curve) {
 
 enum status curve_create(struct curve **curve, int n_nodes, int n_polygon, int n_smooth) {
     *curve = NULL;
-    struct curve *const new = calloc(1, sizeof *new);
-    if (!new) goto no_memory;
+    struct curve *new;
+    TRY(MEMORY_NEW(new, 1, "the line of a body"));
     new->n_nodes = n_nodes;
     new->most_weights = (long)MOST_OF_POLYGON *n_polygon + (long)n_nodes *n_smooth;
-    new->every = calloc((size_t)n_nodes, sizeof *new->every);
-    new->list = calloc((size_t)n_polygon * MOST_OF_POLYGON + 1, sizeof *new->list);
-    new->weight = calloc((size_t) new->most_weights + 1, sizeof *new->weight);
-    new->barycentric = calloc((size_t)n_nodes, sizeof *new->barycentric);
-    if (!new->every || !new->list || !new->weight || !new->barycentric) goto no_memory;
+    enum status status = MEMORY_NEW(new->every, n_nodes, "the line of a body");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->list, n_polygon * MOST_OF_POLYGON + 1, "the line of a body");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->weight, new->most_weights + 1, "the line of a body");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->barycentric, n_nodes, "the line of a body");
+    if (status != STATUS_OK) {
+        curve_free(new);
+        return status;
+    }
+
     for (int k = 0; k < n_nodes; k++) new->every[k] = k;
     find_barycentric(new);
     *curve = new;
     return STATUS_OK;
-
-no_memory:
-    curve_free(new);
-    return status_fail(STATUS_MEMORY, "out of memory for the line of a body of %d nodes", n_nodes);
 }
 
 void curve_free(struct curve *curve) {

@@ -112,15 +112,11 @@ static enum status edge_integrate(struct sheet_integrals *to, int edge, double d
 
 static enum status integrals_fill(struct sheet_integrals *to, const double *density) {
     const size_t n_nodes = (size_t)to->n_nodes, n_sheet = (size_t)to->n_sheet, n_control = (size_t)to->n_control;
-    to->momentum = calloc(n_sheet * n_nodes * n_nodes, sizeof *to->momentum);
-    to->strength = calloc(n_control * n_sheet, sizeof *to->strength);
-    to->circulation = calloc(n_control * n_sheet, sizeof *to->circulation);
-    to->kink_strength = calloc(n_control, sizeof *to->kink_strength);
-    to->kink_circulation = calloc(n_control, sizeof *to->kink_circulation);
-
-    if (!to->momentum || !to->strength || !to->circulation || !to->kink_strength || !to->kink_circulation) {
-        return status_fail(STATUS_MEMORY, "out of memory: the integrals over a sheet of %d vortices", to->n_sheet);
-    }
+    TRY(MEMORY_NEW(to->momentum, n_sheet * n_nodes * n_nodes, "the integrals over a sheet"));
+    TRY(MEMORY_NEW(to->strength, n_control * n_sheet, "the integrals over a sheet"));
+    TRY(MEMORY_NEW(to->circulation, n_control * n_sheet, "the integrals over a sheet"));
+    TRY(MEMORY_NEW(to->kink_strength, n_control, "the integrals over a sheet"));
+    TRY(MEMORY_NEW(to->kink_circulation, n_control, "the integrals over a sheet"));
 
     fill_control_points(to);
     kink_fill(to);

@@ -143,7 +143,7 @@ static enum status rings_place_wakes(struct flow_rings *rings, const struct scho
     }
 
     // messages are per thread: write the message on the calling thread
-    return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: free sheets of %d fish", n_failed);
+    return n_failed == 0 ? STATUS_OK : memory_check(NULL, "the free sheets");
 }
 
 /* Positions and circulations of a body. */
@@ -227,9 +227,8 @@ static enum status flow_make_chunks(struct flow *flow) {
 static enum status flow_find_classes(struct flow *flow) {
     const struct school *const school = flow->school;
     const size_t n_fish = (size_t)school->n_fish;
-    flow->class_of = calloc(n_fish, sizeof *flow->class_of);
-    flow->class = calloc(n_fish, sizeof *flow->class);
-    if (!flow->class_of || !flow->class) return status_fail(STATUS_MEMORY, "out of memory: classes of fish");
+    TRY(MEMORY_NEW(flow->class_of, n_fish, "classes of fish"));
+    TRY(MEMORY_NEW(flow->class, n_fish, "classes of fish"));
 
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
@@ -287,19 +286,15 @@ double flow_sheet_smoothing(const struct flow *flow, int f, int g) {
 static enum status flow_fill(struct flow *flow) {
     const struct school *school = flow->school;
     const size_t n_fish = (size_t)school->n_fish;
-    flow->points = calloc(n_fish, sizeof *flow->points);
-    flow->without_own = calloc(n_fish, sizeof *flow->without_own);
-    flow->released_range = calloc(n_fish, sizeof *flow->released_range);
-    flow->sheet_range = calloc(n_fish, sizeof *flow->sheet_range);
-    flow->by_interpolation = calloc(n_fish, sizeof *flow->by_interpolation);
-    flow->wake_range = calloc(n_fish, sizeof *flow->wake_range);
-    flow->body_range = calloc(n_fish, sizeof *flow->body_range);
-    flow->middles = calloc(n_fish, sizeof *flow->middles);
-    flow->free_sheet = calloc(n_fish, sizeof *flow->free_sheet);
-    if (!flow->points || !flow->without_own || !flow->released_range || !flow->sheet_range || !flow->by_interpolation ||
-        !flow->wake_range || !flow->body_range || !flow->middles || !flow->free_sheet) {
-        return status_fail(STATUS_MEMORY, "out of memory: flow around %d fish", school->n_fish);
-    }
+    TRY(MEMORY_NEW(flow->points, n_fish, "the flow"));
+    TRY(MEMORY_NEW(flow->without_own, n_fish, "the flow"));
+    TRY(MEMORY_NEW(flow->released_range, n_fish, "the flow"));
+    TRY(MEMORY_NEW(flow->sheet_range, n_fish, "the flow"));
+    TRY(MEMORY_NEW(flow->by_interpolation, n_fish, "the flow"));
+    TRY(MEMORY_NEW(flow->wake_range, n_fish, "the flow"));
+    TRY(MEMORY_NEW(flow->body_range, n_fish, "the flow"));
+    TRY(MEMORY_NEW(flow->middles, n_fish, "the flow"));
+    TRY(MEMORY_NEW(flow->free_sheet, n_fish, "the flow"));
 
     TRY(flow_find_classes(flow));
     for (int f = 0; f < school->n_fish; f++) {
@@ -477,7 +472,7 @@ static enum status flow_place_free_sheets(struct flow *flow, const struct state 
     }
 
     // messages are per thread: write the message on the calling thread
-    return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: free sheets of %d fish", n_failed);
+    return n_failed == 0 ? STATUS_OK : memory_check(NULL, "the free sheets");
 }
 
 // Set the time, and discard data of other wakes or another time. The released vortices move on known paths, so that

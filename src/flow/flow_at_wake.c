@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "flow/flow.h"
 #include "flow/flow_rings.h"
 #include "vortex/kernel.h"
@@ -271,8 +272,7 @@ static enum status reserve_at_wake(struct flow *flow, int n) {
     flow->wake_capacity = 0;
     for (int i = 0; i < (has_images ? 4 : 2); i++) {
         free(*all[i]);
-        *all[i] = calloc((size_t)capacity, sizeof **all[i]);
-        if (!*all[i]) return status_fail(STATUS_MEMORY, "out of memory: velocities of %d vortices", n);
+        TRY(MEMORY_NEW(*all[i], capacity, "velocities of vortices"));
     }
 
     flow->wake_capacity = capacity;

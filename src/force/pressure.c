@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 #include "vortex/kernel.h"
@@ -17,23 +18,23 @@ static const double pi = 3.14159265358979323846;
 
 enum status pressure_create(struct pressure **pressure, const struct fish *fish) {
     *pressure = NULL;
-    struct pressure *const new = calloc(1, sizeof *new);
-    if (!new) goto no_memory;
+    struct pressure *new;
+    TRY(MEMORY_NEW(new, 1, "the pressure on a fish"));
 
-    const size_t n = (size_t)fish->n_nodes;
+    const int n = fish->n_nodes;
+    double **const per_node[] = {&new->momentum, &new->momentum_rate, &new->force};
     new->fish = fish;
-    new->circulation = calloc((size_t)fish->n_sheet, sizeof *new->circulation);
-    new->matrix = calloc(n * n, sizeof *new->matrix);
-    new->momentum = calloc(2 * n, sizeof *new->momentum);
-    new->momentum_rate = calloc(2 * n, sizeof *new->momentum_rate);
-    new->force = calloc(2 * n, sizeof *new->force);
-    new->product = calloc(n, sizeof *new->product);
-    new->share = calloc((size_t)fish->n_control * n, sizeof *new->share);
-    new->point = calloc((size_t)fish->n_control, sizeof *new->point);
-    new->at_points = calloc(N_AT_POINTS * (size_t)fish->n_control, sizeof *new->at_points);
-    if (!new->circulation || !new->matrix || !new->momentum || !new->momentum_rate || !new->force || !new->product ||
-        !new->share || !new->point || !new->at_points) {
-        goto no_memory;
+    enum status status = MEMORY_ARRAYS(per_node, 2 * n, "the pressure on a fish");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->circulation, fish->n_sheet, "the pressure on a fish");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->matrix, n * n, "the pressure on a fish");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->product, n, "the pressure on a fish");
+    if (status == STATUS_OK)
+        status = MEMORY_NEW(new->at_points, N_AT_POINTS * fish->n_control, "the pressure on a fish");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->share, fish->n_control * n, "the pressure on a fish");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->point, fish->n_control, "the pressure on a fish");
+    if (status != STATUS_OK) {
+        pressure_free(new);
+        return status;
     }
 
     for (int c = 0; c < fish->n_control; c++) {
@@ -44,10 +45,6 @@ enum status pressure_create(struct pressure **pressure, const struct fish *fish)
 
     *pressure = new;
     return STATUS_OK;
-
-no_memory:
-    pressure_free(new);
-    return status_fail(STATUS_MEMORY, "out of memory: pressure on fish %s", fish->name);
 }
 
 void pressure_free(struct pressure *pressure) {

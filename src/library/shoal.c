@@ -45,10 +45,7 @@ static enum status check_can_step(const struct shoal *run, const char *function)
 // create the simulation of a new run, unless reading the case failed; set *run, or release the new run
 static int finish_opening(struct shoal **run, struct shoal *new, enum status status) {
     if (status == STATUS_OK) status = sweep_refuse(&new->shared->values);
-    if (status == STATUS_OK) {
-        new->result_path = record_path(&new->shared->values);
-        if (!new->result_path) status = status_fail(STATUS_MEMORY, "out of memory: a path");
-    }
+    if (status == STATUS_OK) status = record_path(&new->shared->values, &new->result_path);
     if (status == STATUS_OK) status = simulate_create(&new->simulation, &new->shared->values);
     if (status == STATUS_OK) {
         *run = new;
@@ -254,7 +251,7 @@ static enum status reserve_buffer(struct shoal *run, int i) {
     result_values_lengths(school, wake_most(school, run->simulation->n_events), length);
     const size_t n = result_values_n(&result_table[i], length);
     run->buffer[i] = calloc(n + 1, result_values_size(result_table[i].type));
-    return run->buffer[i] ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: %s", result_table[i].name);
+    return memory_check(run->buffer[i], result_table[i].name);
 }
 
 int shoal_read(struct shoal *run, const char *name, struct shoal_array *array) {

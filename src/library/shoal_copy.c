@@ -99,8 +99,7 @@ static enum status load_checkpoint(struct shoal *run, const struct checkpoint *c
     TRY(checkpoint_check_program(checkpoint));
     const char *const text = checkpoint->effective;
     TRY(case_parse(&run->shared->values, text, strlen(text), "case", NULL, 0, NULL));
-    run->result_path = record_path(&run->shared->values);
-    if (!run->result_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
+    TRY(record_path(&run->shared->values, &run->result_path));
     return handle_take_up(run, load_state, checkpoint, &checkpoint->totals);
 }
 

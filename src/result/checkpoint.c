@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "base/version.h"
 #include "result/durable.h"
 #include "result/sections.h"
@@ -44,11 +45,11 @@ static const struct number {
 };
 enum { N_NUMBERS = sizeof numbers / sizeof *numbers };
 
-static char **string_of(const struct checkpoint *checkpoint, int i) {
+static char **string_of(struct checkpoint *checkpoint, int i) {
     return (char **)(void *)((char *)checkpoint + strings[i].offset);
 }
 
-static char *number_of(const struct checkpoint *checkpoint, int i) {
+static char *number_of(struct checkpoint *checkpoint, int i) {
     return (char *)checkpoint + numbers[i].offset;
 }
 
@@ -112,10 +113,10 @@ static enum status unfit(const char *name) {
     return status_fail(STATUS_FILE, "section '%s' is invalid", name);
 }
 
-static enum status read_string(const struct checkpoint *checkpoint, int i) {
+static enum status read_string(struct checkpoint *checkpoint, int i) {
     struct section_reader section = sections_find(checkpoint->bytes, checkpoint->n, strings[i].name);
-    char *const string = calloc(section.left + 1, 1);
-    if (!string) return status_fail(STATUS_MEMORY, "out of memory: a checkpoint");
+    char *string;
+    TRY(MEMORY_NEW(string, section.left + 1, "a checkpoint"));
     sections_take(&section, string, section.left);
     *string_of(checkpoint, i) = string;
     return section.is_short ? unfit(strings[i].name) : STATUS_OK;
@@ -165,7 +166,7 @@ static enum status take_row(const struct checkpoint *checkpoint, const struct st
     struct section_reader section = sections_find(checkpoint->bytes, checkpoint->n, row->name);
     for (int f = 0; f < state_table_n_owners(row, school) && !section.is_short; f++) {
         const size_t bytes = state_table_length(row, state, school, f) * state_table_size(row);
-        if (bytes > 0) sections_take(&section, state_table_values(row, state, f), bytes);
+        if (bytes > 0) sections_take(&section, state_table_place(row, state, f), bytes);
     }
     return section.is_short || section.left > 0 ? unfit(row->name) : STATUS_OK;
 }

@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "result/target.h"
 
 int durable_sync(int descriptor) {
@@ -224,8 +225,7 @@ static enum status read_open(int descriptor, const char *path, unsigned char **b
         return status_fail(STATUS_FILE, "%s: is not an ordinary file", path);
     }
     *n = (size_t)facts.st_size;
-    *bytes = malloc(*n > 0 ? *n : 1);
-    if (!*bytes) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", path);
+    TRY(MEMORY_NEW(*bytes, *n, path));
     const int code = read_all(descriptor, *bytes, *n);
     if (code == 0) return STATUS_OK;
     free(*bytes);

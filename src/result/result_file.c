@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "base/memory.h"
 #include "result/netcdf.h"
 #include "result/target.h"
 #include "school/warnings.h"
@@ -151,8 +152,7 @@ static enum status copy_all(struct copying *copying) {
         if (n > most) most = n;
     }
 
-    copying->read = calloc(most, sizeof *copying->read);
-    if (!copying->read) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", copying->source->path);
+    TRY(MEMORY_NEW(copying->read, most, copying->source->path));
 
     for (long row = 0; row < copying->source->n_rows; row++) {
         for (int i = 0; i < result_table_n; i++) {
@@ -412,9 +412,9 @@ static void result_release(struct result_file *result) {
 }
 
 /* A result without a file yet. */
-static struct result_file *result_allocate(const struct school *school, long n_events) {
-    struct result_file *const result = calloc(1, sizeof *result);
-    if (!result) return NULL;
+static enum status result_allocate(struct result_file **new, const struct school *school, long n_events) {
+    struct result_file *result;
+    TRY(MEMORY_NEW(result, 1, "a result file"));
     result_values_lengths(school, wake_most(school, n_events), result->length);
     size_t max = 1;
 
@@ -423,11 +423,14 @@ static struct result_file *result_allocate(const struct school *school, long n_e
         if (n > max) max = n;
     }
 
-    result->number = calloc((size_t)result_table_n, sizeof *result->number);
-    result->buffer = calloc(max, sizeof *result->buffer);
-    if (result->number && result->buffer) return result;
-    result_release(result);
-    return NULL;
+    enum status status = MEMORY_NEW(result->number, result_table_n, "a result file");
+    if (status == STATUS_OK) status = MEMORY_NEW(result->buffer, max, "a result file");
+    if (status == STATUS_OK) {
+        *new = result;
+    } else {
+        result_release(result);
+    }
+    return status;
 }
 
 /* The arguments of a new file. */
@@ -468,8 +471,8 @@ static enum status write_new(struct result_file *result, const struct origin *or
 static enum status result_create(struct result_file **result, const struct origin *origin, long n_events) {
     *result = NULL;
     TRY(target_check(origin->path, TARGET_NETCDF, origin->overwrite));
-    struct result_file *const new = result_allocate(origin->school, n_events);
-    if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", origin->path);
+    struct result_file *new;
+    TRY(result_allocate(&new, origin->school, n_events));
     new->forces = origin->values->output.forces;
     new->is_steady = origin->is_steady;
     new->overwrite = origin->overwrite;
@@ -537,8 +540,8 @@ enum status result_file_continue(struct result_file **result, const char *path, 
     TRY(netcdf_read_rows(path, &rows));
     TRY(patch_run_status(path));
     TRY(netcdf_cut_rows(path, &rows, (uint64_t)mark->n_rows));
-    struct result_file *const new = result_allocate(school, n_events);
-    if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
+    struct result_file *new;
+    TRY(result_allocate(&new, school, n_events));
     new->forces = values->output.forces;
     new->n_rows = (size_t)mark->n_rows;
     new->checksum = *checksum;

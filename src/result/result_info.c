@@ -444,8 +444,8 @@ static enum status print_json_variable(const struct netcdf_reader *reader, const
         size *= slice[d].n;
     }
 
-    double *const values = calloc(size, sizeof *values);
-    if (!values) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reader->path);
+    double *values;
+    TRY(MEMORY_NEW(values, size, variable->name));
     const enum status status = netcdf_read_doubles(reader, variable->name, slice, values);
 
     if (status == STATUS_OK) {

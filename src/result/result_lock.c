@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "result/durable.h"
 #include "result/target.h"
 
@@ -152,8 +153,8 @@ static void forget(struct result_lock *lock) {
 
 static enum status take_lock(struct result_lock *lock, const struct claim *claim, const char *ending) {
     const size_t size = strlen(claim->path) + strlen(ending) + 1;
-    *lock = (struct result_lock){.path = malloc(size), .descriptor = -1, .owner = getpid()};
-    if (!lock->path) return status_fail(STATUS_MEMORY, "out of memory: a file name");
+    *lock = (struct result_lock){.descriptor = -1, .owner = getpid()};
+    TRY(MEMORY_NEW(lock->path, size, "a file name"));
     snprintf(lock->path, size, "%s%s", claim->path, ending);
 
     for (;;) {

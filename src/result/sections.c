@@ -5,6 +5,8 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "base/memory.h"
+
 static const uint32_t order = 0x01020304;
 enum {
     FORMAT_AT = sizeof SECTIONS_MAGIC - 1,
@@ -66,7 +68,7 @@ void sections_close(struct sections_writer *writer) {
 }
 
 enum status sections_finish(struct sections_writer *writer) {
-    if (writer->failed) return status_fail(STATUS_MEMORY, "out of memory: a checkpoint");
+    if (writer->failed) return memory_check(NULL, "a checkpoint");
     const uint64_t size = writer->n;
     memcpy(writer->bytes + SIZE_AT, &size, sizeof size);
     const uint32_t check = checksum(writer->bytes, CHECK_AT);

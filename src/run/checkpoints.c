@@ -72,11 +72,12 @@ enum status checkpoints_create(struct checkpoints *checkpoints, const struct cas
     checkpoints->interval = lround(values->time.checkpoint_interval / values->school.shedding_interval);
     checkpoints->path = checkpoints_path(result);
     checkpoints->previous = checkpoints->path ? checkpoints_previous(checkpoints->path) : NULL;
-    if (!checkpoints->previous) return status_fail(STATUS_MEMORY, "out of memory: a file name");
+    TRY(memory_check(checkpoints->previous, "a file name"));
+    TRY(memory_copy_string(&checkpoints->result, file_name_of(result), "a file name"));
 
     if (at) TRY(checkpoint_places_read(checkpoints, values, at));
-    TRY(checkpoint_check_target(checkpoints->path, file_name_of(result)));
-    TRY(checkpoint_check_target(checkpoints->previous, file_name_of(result)));
+    TRY(checkpoint_check_target(checkpoints->path, checkpoints->result));
+    TRY(checkpoint_check_target(checkpoints->previous, checkpoints->result));
     durable_sweep(checkpoints->path);
     return case_show(values, &checkpoints->effective);
 }
@@ -84,6 +85,7 @@ enum status checkpoints_create(struct checkpoints *checkpoints, const struct cas
 void checkpoints_free(struct checkpoints *checkpoints) {
     free(checkpoints->path);
     free(checkpoints->previous);
+    free(checkpoints->result);
     free(checkpoints->effective);
     free(checkpoints->at);
     text_free(&checkpoints->places);
@@ -101,7 +103,7 @@ enum status checkpoints_resume(struct checkpoints *checkpoints, const struct che
     }
 
     if (checkpoints->effective && !checkpoints->places.failed) return STATUS_OK;
-    return status_fail(STATUS_MEMORY, "out of memory: the checkpoints of a run");
+    return memory_check(NULL, "the checkpoints of a run");
 }
 
 void checkpoints_fall_back(const struct checkpoints *checkpoints) {
@@ -134,12 +136,12 @@ enum status checkpoints_write(struct checkpoints *checkpoints, const struct simu
         checkpoints->last_place = event;
         const char *const before = checkpoints->places.length > 0 ? "," : "";
         text_add(&checkpoints->places, "%s%.10g", before, simulation->state->t);
-        if (checkpoints->places.failed) return status_fail(STATUS_MEMORY, "out of memory: the times of checkpoints");
+        if (checkpoints->places.failed) return memory_check(NULL, "the times of checkpoints");
         result_file_note(record->file, RESULT_CHECKPOINT_AT, checkpoints->places.text);
     }
 
     struct checkpoint marked = {.effective = checkpoints->effective,
-                                .result = (char *)file_name_of(record->path),
+                                .result = checkpoints->result,
                                 .places = checkpoints->places.text ? checkpoints->places.text : "",
                                 .totals = simulation->totals,
                                 .wall_time = simulate_wall_time(simulation)};

@@ -10,12 +10,12 @@
 #include "case/case.h"
 #include "school/warnings.h"
 
-char *record_path(const struct case_values *values) {
+enum status record_path(const struct case_values *values, char **path) {
     const char *const name = values->output.file ? values->output.file : values->name;
     const char *const ending = values->output.file ? "" : ".nc";
-    struct text path = {0};
-    text_add(&path, "%s%s", name, ending);
-    return path.text;
+    struct text text = {0};
+    text_add(&text, "%s%s", name, ending);
+    return text_take(&text, path, "a file name");
 }
 
 static void record_begin(struct record *record, const struct case_values *values, long n_events, const char *path) {

@@ -16,9 +16,9 @@ struct record {
     long first, n_events; /* the events of the first row and of the end */
 };
 
-/* Path of the result of a case: output.file, or the name of the case with .nc. The caller frees the path; NULL: out of
- * memory. */
-char *record_path(const struct case_values *values);
+/* Path of the result of a case: output.file, or the name of the case with .nc. The caller frees *path. Fails with
+ * STATUS_MEMORY. */
+enum status record_path(const struct case_values *values, char **path);
 
 /* Create the file for path, without a row; the record refers to path until record_close. overwrite, command: as in
  * result_file_create. n_events: of the whole run. Fails with STATUS_FILE or STATUS_MEMORY; no file remains then. */

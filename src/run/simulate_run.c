@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "fish/fish_school.h"
@@ -203,8 +204,7 @@ static enum status resume_try(struct resume *resume, const char *path) {
         const char *const slash = strrchr(path, '/');
         struct text result = {0};
         text_add(&result, "%.*s%s", slash ? (int)(slash + 1 - path) : 0, path, checkpoint->result);
-        resume->result = result.text;
-        if (!result.text) status = status_fail(STATUS_MEMORY, "out of memory: a file name");
+        status = text_take(&result, &resume->result, "a file name");
     }
 
     if (status == STATUS_OK && !resume->lock.path) status = result_lock_take(&resume->lock, resume->result);
@@ -228,7 +228,7 @@ static enum status resume_open(struct resume *resume, const char *path) {
 
     // fall back to the previous checkpoint
     char *const previous = checkpoints_previous(path);
-    if (!previous) return status_fail(STATUS_MEMORY, "out of memory: a file name");
+    TRY(memory_check(previous, "a file name"));
     if (access(previous, F_OK) == 0 && resume_try(resume, previous) == STATUS_OK) {
         struct text note = {0};
         text_add(&note, "%s; resuming from %s", reason, previous);

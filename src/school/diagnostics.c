@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/mathematics.h"
+#include "base/memory.h"
 #include "contact/clearance.h"
 #include "control/control.h"
 #include "fish/fish.h"
@@ -253,18 +254,17 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
 
 enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school) {
     *diagnostics = NULL;
-    struct diagnostics *const new = calloc(1, sizeof *new);
-    if (new) {
-        new->fish = calloc((size_t)school->n_fish, sizeof *new->fish);
-        new->body = calloc((size_t)school->n_fish, sizeof *new->body);
-        new->wake = calloc((size_t)school->n_fish, sizeof *new->wake);
-    }
-    if (!new || !new->fish || !new->body || !new->wake) {
+    struct diagnostics *new;
+    TRY(MEMORY_NEW(new, 1, "the diagnostics"));
+    enum status status = MEMORY_NEW(new->fish, school->n_fish, "the diagnostics");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->body, school->n_fish, "the diagnostics");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->wake, school->n_fish, "the diagnostics");
+    if (status == STATUS_OK) {
+        *diagnostics = new;
+    } else {
         diagnostics_free(new);
-        return status_fail(STATUS_MEMORY, "out of memory: the diagnostics of %d fish", school->n_fish);
     }
-    *diagnostics = new;
-    return STATUS_OK;
+    return status;
 }
 
 void diagnostics_free(struct diagnostics *diagnostics) {

@@ -4,28 +4,28 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "vortex/kernel.h"
 
 enum status jacobian_create(struct jacobian **jacobian, const struct school *school) {
     *jacobian = NULL;
-    struct jacobian *const new = calloc(1, sizeof *new);
-    if (!new) goto no_memory;
+    struct jacobian *new;
+    TRY(MEMORY_NEW(new, 1, "a Jacobian"));
 
     new->school = school;
-    new->own = calloc((size_t)school->n_fish, sizeof *new->own);
-    new->first = calloc((size_t)school->n_fish + 1, sizeof *new->first);
-    if (!new->own || !new->first) goto no_memory;
-
-    for (int f = 0; f < school->n_fish; f++) {
+    enum status status = MEMORY_NEW(new->own, school->n_fish, "a Jacobian");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->first, school->n_fish + 1, "a Jacobian");
+    for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         const struct layout *at = &school->fish[f].at;
-        if (sparse_create(&new->own[f], at->x, at->end - at->x) != STATUS_OK) goto no_memory;
+        status = sparse_create(&new->own[f], at->x, at->end - at->x);
     }
-    *jacobian = new;
-    return STATUS_OK;
 
-no_memory:
-    jacobian_free(new);
-    return status_fail(STATUS_MEMORY, "out of memory: a Jacobian of %d fish", school->n_fish);
+    if (status == STATUS_OK) {
+        *jacobian = new;
+    } else {
+        jacobian_free(new);
+    }
+    return status;
 }
 
 void jacobian_free(struct jacobian *jacobian) {
@@ -56,8 +56,8 @@ enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coup
     memset(jacobian->first, 0, ((size_t)n_fish + 1) * sizeof *jacobian->first);
 
     // list the couplings, fish by fish
-    jacobian->coupling = calloc((size_t)n + 1, sizeof *jacobian->coupling);
-    if (!jacobian->coupling) goto no_memory;
+    jacobian->coupling = NULL;
+    TRY(MEMORY_NEW(jacobian->coupling, n + 1, "the couplings of the Jacobian"));
 
     size_t n_values = 1;
     for (int f = 0, next = 0; f < n_fish; f++) {
@@ -71,8 +71,11 @@ enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coup
     }
 
     // place the blocks in one array
-    jacobian->values = calloc(n_values, sizeof *jacobian->values);
-    if (!jacobian->values) goto no_memory;
+    const enum status status = MEMORY_NEW(jacobian->values, n_values, "the couplings of the Jacobian");
+    if (status != STATUS_OK) {
+        memset(jacobian->first, 0, ((size_t)n_fish + 1) * sizeof *jacobian->first);
+        return status;
+    }
 
     double *value = jacobian->values;
     for (int i = 0; i < n; i++) {
@@ -83,10 +86,6 @@ enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coup
     jacobian->n_couplings = n;
     jacobian->pattern = pattern;
     return STATUS_OK;
-
-no_memory:
-    memset(jacobian->first, 0, ((size_t)n_fish + 1) * sizeof *jacobian->first);
-    return status_fail(STATUS_MEMORY, "out of memory: %d coupling blocks of the Jacobian", n);
 }
 
 void jacobian_mask_couplings(struct jacobian *jacobian, int f) {

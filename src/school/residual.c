@@ -214,11 +214,8 @@ static enum status residual_allocate(struct residual *residual) {
     const struct school *school = residual->school;
     const size_t n_fish = (size_t)school->n_fish;
     int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0;
-    residual->joints = calloc(n_fish, sizeof *residual->joints);
-    residual->pressure = calloc(n_fish, sizeof *residual->pressure);
-    if (!residual->joints || !residual->pressure) {
-        return status_fail(STATUS_MEMORY, "out of memory: the equations of %d fish", school->n_fish);
-    }
+    TRY(MEMORY_NEW(residual->joints, n_fish, "the equations"));
+    TRY(MEMORY_NEW(residual->pressure, n_fish, "the equations"));
 
     // find the sizes of all fish
     for (int f = 0; f < school->n_fish; f++) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/mathematics.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "body/clamp.h"
 #include "body/rod.h"
@@ -145,7 +146,7 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
     }
 
     // messages are per thread: repeat the message in this thread
-    return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the Jacobian of %d fish", n_failed);
+    return n_failed == 0 ? STATUS_OK : memory_check(NULL, "the Jacobian");
 }
 
 void residual_by_shed(struct residual *residual, const double *y, double *value) {

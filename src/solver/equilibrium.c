@@ -280,11 +280,12 @@ enum status equilibrium_stiffness(struct equilibrium *e, struct equilibrium_stif
     *stiffness = (struct equilibrium_stiffness){.n_negative = 0};
     if (e->n_places == 0) return STATUS_OK;
     const size_t n = (size_t)e->n;
-    double *const matrix = calloc(n * n, sizeof *matrix), *const values = calloc(2 * n, sizeof *values);
-    lapack_int *const pivot = calloc(n, sizeof *pivot);
-    enum status status = matrix && values && pivot
-                             ? jacobian_of(e, matrix)
-                             : status_fail(STATUS_MEMORY, "out of memory: the stiffness of %d places", e->n_places);
+    double *matrix = NULL, *values = NULL;
+    lapack_int *pivot = NULL;
+    enum status status = MEMORY_NEW(matrix, n * n, "the static stiffness");
+    if (status == STATUS_OK) status = MEMORY_NEW(values, 2 * n, "the static stiffness");
+    if (status == STATUS_OK) status = MEMORY_NEW(pivot, n, "the static stiffness");
+    if (status == STATUS_OK) status = jacobian_of(e, matrix);
     if (status == STATUS_OK) status = eliminate_sheets(e, matrix, pivot);
     if (status == STATUS_OK) status = take_eigenvalues(e, matrix, values, values + n, stiffness);
     free(matrix);

@@ -169,7 +169,7 @@ static enum status ida_fill(struct ida *solver) {
     TRY(sundials_context_vector(&solver->context, &solver->kinds, solver->kind));
     for (int i = 0; i < 2; i++) {
         solver->scratch[i] = N_VClone(solver->y);
-        if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "out of memory: a vector of %d unknowns", n);
+        TRY(memory_check(solver->scratch[i], "a vector of unknowns"));
     }
     const struct linear_tolerance linear = {linear_relative, linear_absolute * newton_coefficient};
     TRY(linear_sundials_create(&solver->linear, solver->context.context, solver->jacobian, solver->tolerance, linear,
@@ -185,7 +185,7 @@ static enum status ida_fill(struct ida *solver) {
                                            .complete = couple_more};
     TRY(ida_newton_create(&solver->newton, solver->context.context, solver->y, school, rules));
     solver->ida = IDACreate(solver->context.context);
-    if (!solver->ida) return status_fail(STATUS_MEMORY, "out of memory: IDA");
+    TRY(memory_check(solver->ida, "IDA"));
     return ida_set_up(solver);
 }
 

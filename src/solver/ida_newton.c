@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 /* The norms of a correction: of all unknowns, and of the differential unknowns only. In the former the algebraic
  * unknowns hide slow convergence of the positions: with a free sheet the first correction of the circulation is a
  * hundred times larger, and vanishes with the second correction. */
@@ -215,7 +217,7 @@ enum status ida_newton_create(SUNNonlinearSolver *solver, SUNContext context, N_
         !(newton->correction = N_VClone(like)) || !(newton->last = N_VClone(like))) {
         if (!new) free(newton);
         newton_free(new);
-        return status_fail(STATUS_MEMORY, "out of memory: Newton's iteration");
+        return memory_check(NULL, "Newton's iteration");
     }
     newton->rules = rules;
     N_VConst(0, newton->last);

@@ -110,7 +110,7 @@ static double row_scale(const struct residual *residual, int i) {
 
 static enum status initial_set_up_kinsol(struct initial_conditions *c) {
     c->kinsol = KINCreate(c->context.context);
-    if (!c->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
+    TRY(memory_check(c->kinsol, "KINSOL"));
     // full Newton steps, because the equations are nearly linear, with a new Jacobian in each step
     if (KINSetErrHandlerFn(c->kinsol, sundials_context_message, &c->failure) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||

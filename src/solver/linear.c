@@ -100,7 +100,7 @@ enum status linear_setup(struct linear *linear) {
     }
     for (int f = 0; f < school->n_fish; f++) {
         const enum status status = linear->block[f].status;
-        if (status == STATUS_MEMORY) return status_fail(status, "out of memory: factorising the Jacobian");
+        if (status == STATUS_MEMORY) return memory_check(NULL, "factorising the Jacobian");
         if (status != STATUS_OK)
             return status_fail(status, "the Jacobian of fish %s is singular", school->fish[f].name);
     }
@@ -202,8 +202,8 @@ static int gmres_has_memory(int n) {
  * within the noise. */
 static enum status gmres_create(struct linear *linear) {
     const int n = n_unknowns(linear);
-    linear->right = calloc((size_t)n, sizeof *linear->right);
-    if (!linear->right || !gmres_has_memory(n)) return status_fail(STATUS_MEMORY, "out of memory: GMRES");
+    TRY(MEMORY_NEW(linear->right, n, "GMRES"));
+    if (!gmres_has_memory(n)) return memory_check(NULL, "GMRES");
 
     TRY(sundials_context_create(&linear->context, n, 1, &linear->failure));
     TRY(sundials_context_vector(&linear->context, &linear->x, linear->right));
@@ -212,11 +212,11 @@ static enum status gmres_create(struct linear *linear) {
     linear->gmres = SUNLinSol_SPGMR(linear->x, SUN_PREC_NONE, MAX_ITERATIONS, linear->context.context);
     if (!linear->gmres || SUNLinSolSetATimes(linear->gmres, linear, gmres_multiply) != SUN_SUCCESS ||
         SUNLinSolSetScalingVectors(linear->gmres, linear->weights, linear->weights) != SUN_SUCCESS) {
-        return status_fail(STATUS_MEMORY, "out of memory: GMRES");
+        return memory_check(NULL, "GMRES");
     }
     if (SUNLinSolInitialize(linear->gmres) != SUN_SUCCESS) {
         linear->gmres = NULL;  // SUNDIALS has freed the solver
-        return status_fail(STATUS_MEMORY, "out of memory: GMRES");
+        return memory_check(NULL, "GMRES");
     }
     return sundials_context_check(&linear->context);
 }
@@ -299,7 +299,7 @@ enum status linear_sundials_create(struct linear_sundials *linear, SUNContext co
     linear->solver = SUNLinSolNewEmpty(context);
     if (!linear->matrix || !linear->solver) {
         linear_sundials_free(linear);
-        return status_fail(STATUS_MEMORY, "out of memory: a linear solver");
+        return memory_check(NULL, "a linear solver");
     }
     linear->matrix->ops->getid = matrix_id;
     linear->matrix->ops->zero = matrix_zero;

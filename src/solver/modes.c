@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/mathematics.h"
+#include "base/memory.h"
 #include "fish/fish_motion.h"
 #include "flow/flow_at_bodies.h"
 #include "school/jacobian.h"
@@ -47,10 +48,6 @@ struct modes {
     double **label;               /* circulations of the wakes before, oldest first     (n_shed, n_vortex) */
     double *shed;                 /* (n_shed) */
 };
-
-static enum status out_of_memory(const struct modes *modes) {
-    return status_fail(STATUS_MEMORY, "out of memory: the modes of %d unknowns", modes->n_all);
-}
 
 // ---- the wake
 
@@ -219,8 +216,9 @@ static enum status modes_reduce(struct modes *modes, const double *by_value, con
     modes->eliminate = calloc(n_rows * (size_t)n, sizeof *modes->eliminate);
     modes->by_value = calloc(n_rows * (size_t)slow + 1, sizeof *modes->by_value);
     modes->by_rate = calloc(n_rows * (size_t)slow + 1, sizeof *modes->by_rate);
-    enum status status =
-        c && q && tau && modes->eliminate && modes->by_value && modes->by_rate ? STATUS_OK : out_of_memory(modes);
+    enum status status = c && q && tau && modes->eliminate && modes->by_value && modes->by_rate
+                             ? STATUS_OK
+                             : memory_check(NULL, "the modes");
     if (status != STATUS_OK) goto end;
 
     for (int j = 0; j < fast; j++) {
@@ -364,7 +362,7 @@ static enum status find_still(const struct modes *modes, const double complex *s
     double *const a = calloc(2 * size, sizeof *a), *const e = a + size,
                   *const last = calloc((size_t)(shed * (shed + 2 * slow)), sizeof *last);
     lapack_int *const pivot = calloc((size_t)rows, sizeof *pivot);
-    enum status status = a && last && pivot ? STATUS_OK : out_of_memory(modes);
+    enum status status = a && last && pivot ? STATUS_OK : memory_check(NULL, "the modes");
     if (status == STATUS_OK) {
         // circulations by the slow unknowns: -(W + 1)^-1 (B, D)
         double *const by_value = last + shed * shed, *const by_rate = by_value + shed * slow;
@@ -439,7 +437,7 @@ static enum status follow_all(const struct modes *modes, struct following *at, s
     const int slow = modes->n_slow, rows = slow + modes->n_shed;
     double *const values = calloc(2 * (size_t)slow + 1, sizeof *values);
     double *const vectors = calloc((size_t)slow * (size_t)slow + 1, sizeof *vectors);
-    enum status status = values && vectors ? STATUS_OK : out_of_memory(modes);
+    enum status status = values && vectors ? STATUS_OK : memory_check(NULL, "the modes");
     for (int f = 0; f < modes->n_shed && status == STATUS_OK; f++) {
         status = wake_column(modes, f, 0, at->still + (size_t)rows * (size_t)f);
     }
@@ -476,7 +474,8 @@ static enum status modes_find_all(struct modes *modes, int n_most, struct mode *
     double complex *const vectors = calloc((size_t)rows * CANDIDATES + 1, sizeof *vectors);
     const int has_all = at.matrix && at.wake && at.still && at.next && at.pivot && vectors;
     for (int c = 0; c < CANDIDATES && has_all; c++) candidates[c].vector = vectors + (size_t)rows * (size_t)c;
-    const enum status status = has_all ? follow_all(modes, &at, candidates, n_most, mode, n) : out_of_memory(modes);
+    const enum status status =
+        has_all ? follow_all(modes, &at, candidates, n_most, mode, n) : memory_check(NULL, "the modes");
     free(at.matrix);
     free(at.wake);
     free(at.still);
@@ -491,12 +490,12 @@ static enum status keep_labels(struct modes *modes) {
     const int n_fish = modes->residual->school->n_fish;
     modes->label = calloc((size_t)n_fish, sizeof *modes->label);
     modes->shed = calloc((size_t)n_fish, sizeof *modes->shed);
-    if (!modes->label || !modes->shed) return out_of_memory(modes);
+    if (!modes->label || !modes->shed) return memory_check(NULL, "the modes");
     modes->n_shed = n_fish;
     for (int f = 0; f < n_fish; f++) {
         const struct wake *const wake = &modes->state->wake[f];
         modes->label[f] = calloc((size_t)wake->n_vortex + 1, sizeof *modes->label[f]);
-        if (!modes->label[f]) return out_of_memory(modes);
+        if (!modes->label[f]) return memory_check(NULL, "the modes");
         for (int i = 0; i < wake->n_vortex; i++) modes->label[f][i] = wake->circulation[i];
         modes->shed[f] = wake->shed_before;
     }
@@ -511,7 +510,7 @@ static enum status modes_pose(struct modes *modes, struct jacobian **jacobian) {
     modes->shifted = calloc(n, sizeof *modes->shifted);
     double *const by_value = calloc(n * n, sizeof *by_value), *const by_rate = calloc(n * n, sizeof *by_rate);
     const int has_all = modes->unknown && modes->y && modes->plain && modes->shifted && by_value && by_rate;
-    enum status status = has_all ? keep_labels(modes) : out_of_memory(modes);
+    enum status status = has_all ? keep_labels(modes) : memory_check(NULL, "the modes");
     if (status == STATUS_OK) status = residual_couple(&modes->residual->couplings, modes->state->y);
     if (status == STATUS_OK) status = jacobian_create(jacobian, modes->residual->school);
     if (status == STATUS_OK) {

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "solver/sundials.h"
 
 struct solver {
@@ -51,7 +52,7 @@ static enum status newton_set_up(struct solver *solver, double *u, double *inver
     solver->matrix = SUNDenseMatrix(problem->n, problem->n, solver->context.context);
     solver->linear = solver->matrix ? SUNLinSol_Dense(solver->unknowns, solver->matrix, solver->context.context) : NULL;
     solver->kinsol = KINCreate(solver->context.context);
-    if (!solver->linear || !solver->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
+    if (!solver->linear || !solver->kinsol) return memory_check(NULL, "KINSOL");
     // steps of dead_multiplier do not end the iteration
     if (KINSetErrHandlerFn(solver->kinsol, sundials_context_message, &solver->failure) ||
         KINSetUserData(solver->kinsol, solver) || KINInit(solver->kinsol, value_of, solver->unknowns) ||
@@ -95,7 +96,7 @@ static enum status solve(struct solver *solver) {
 enum status newton_solve(const struct newton *problem, double *u) {
     struct solver solver = {.problem = problem};
     double *const inverse = calloc((size_t)problem->n, sizeof *inverse);
-    enum status status = inverse ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: Newton's method");
+    enum status status = memory_check(inverse, "Newton's method");
     if (status == STATUS_OK) status = newton_set_up(&solver, u, inverse);
     if (status == STATUS_OK) status = solve(&solver);
     newton_release(&solver);
@@ -143,10 +144,11 @@ static const double dead_multiplier = 1e-10;
 
 // (I - A) way = change, with the transposed map in the first n rows of images                        (m, n)
 static enum status find_fixed_point(int n, int m, const double *images, const double *change, double *way) {
-    double *const matrix = calloc((size_t)n * (size_t)n, sizeof *matrix);
-    lapack_int *const pivot = calloc((size_t)n, sizeof *pivot);
-    enum status status = STATUS_OK;
-    if (matrix && pivot) {
+    double *matrix = NULL;
+    lapack_int *pivot = NULL;
+    enum status status = MEMORY_NEW(matrix, n * n, "the fixed point of a map");
+    if (status == STATUS_OK) status = MEMORY_NEW(pivot, n, "the fixed point of a map");
+    if (status == STATUS_OK) {
         for (int i = 0; i < n; i++) {
             for (int j = 0; j < n; j++) matrix[i + n * j] = (i == j) - images[j + m * i];
         }
@@ -154,8 +156,6 @@ static enum status find_fixed_point(int n, int m, const double *images, const do
         if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, matrix, n, pivot, way, n) != 0) {
             memset(way, 0, (size_t)n * sizeof *way);
         }
-    } else {
-        status = status_fail(STATUS_MEMORY, "out of memory: the fixed point of %d quantities", n);
     }
     free(matrix);
     free(pivot);
@@ -194,9 +194,10 @@ enum status newton_multipliers(int n, int n_columns, const double *before, const
                                double *real, double *imaginary, double *way) {
     const struct map map = {n, n_columns, before, after, change, real, imaginary, way};
     const size_t size = (size_t)n * (size_t)n_columns;
-    double *const matrix = calloc(size, sizeof *matrix), *const images = calloc(size, sizeof *images);
-    const enum status status = matrix && images ? multipliers_solve(&map, matrix, images)
-                                                : status_fail(STATUS_MEMORY, "out of memory: %d multipliers", n);
+    double *matrix = NULL, *images = NULL;
+    enum status status = MEMORY_NEW(matrix, size, "multipliers");
+    if (status == STATUS_OK) status = MEMORY_NEW(images, size, "multipliers");
+    if (status == STATUS_OK) status = multipliers_solve(&map, matrix, images);
     free(matrix);
     free(images);
     return status;

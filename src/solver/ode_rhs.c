@@ -50,10 +50,9 @@ static enum status ode_allocate(struct ode_rhs *d) {
     const struct school *school = d->residual->school;
     const size_t n_fish = (size_t)school->n_fish;
     int max_nodes = 0;
-    d->first = calloc(n_fish, sizeof *d->first);
-    d->influence = calloc(n_fish * n_fish, sizeof *d->influence);
-    d->no_sheets = calloc((size_t)school->n_unknowns, sizeof *d->no_sheets);
-    if (!d->first || !d->influence || !d->no_sheets) goto no_memory;
+    TRY(MEMORY_NEW(d->first, n_fish, "the sheets of the fish"));
+    TRY(MEMORY_NEW(d->influence, n_fish * n_fish, "the influence of sheets"));
+    TRY(MEMORY_NEW(d->no_sheets, school->n_unknowns, "the sheets of the fish"));
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         d->first[f] = d->n;
@@ -62,22 +61,16 @@ static enum status ode_allocate(struct ode_rhs *d) {
         for (int g = 0; g < school->n_fish; g++) {
             struct influence_block *const block = &d->influence[f * school->n_fish + g];
             const size_t size = (size_t)d->residual->flow->points[f].n * (size_t)(school->fish[g].n_sheet + 1);
-            block->u = calloc(size, sizeof *block->u);
-            block->v = calloc(size, sizeof *block->v);
-            if (!block->u || !block->v) goto no_memory;
+            TRY(MEMORY_NEW(block->u, size, "the influence of sheets"));
+            TRY(MEMORY_NEW(block->v, size, "the influence of sheets"));
         }
     }
     const size_t n = (size_t)d->n;
-    d->matrix = calloc(n * n, sizeof *d->matrix);
-    d->pivot = calloc(n, sizeof *d->pivot);
-    d->solution = calloc(n, sizeof *d->solution);
-    d->band = calloc(2 * (size_t)max_nodes * BANDWIDTH, sizeof *d->band);
-    d->force = calloc(2 * (size_t)max_nodes, sizeof *d->force);
-    if (!d->matrix || !d->pivot || !d->solution || !d->band || !d->force) goto no_memory;
-    return STATUS_OK;
-
-no_memory:
-    return status_fail(STATUS_MEMORY, "out of memory: the sheets of %d fish", school->n_fish);
+    TRY(MEMORY_NEW(d->matrix, n * n, "the sheets of the fish"));
+    TRY(MEMORY_NEW(d->pivot, n, "the sheets of the fish"));
+    TRY(MEMORY_NEW(d->solution, n, "the sheets of the fish"));
+    TRY(MEMORY_NEW(d->band, 2 * max_nodes * BANDWIDTH, "the sheets of the fish"));
+    return MEMORY_NEW(d->force, 2 * max_nodes, "the sheets of the fish");
 }
 
 enum status ode_rhs_create(struct ode_rhs **rhs, struct residual *residual) {

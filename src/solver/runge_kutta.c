@@ -74,12 +74,21 @@ static int rates_callback(sunrealtype t, N_Vector y, N_Vector rates, void *data)
     return solver->failure;
 }
 
-// ARKODE only reads the coefficients, although the arguments are not const
 static ARKodeButcherTable tableau_of(enum method method, int adaptive) {
     const struct method_properties *const properties = &methods_table[method];
     const struct butcher_tableau *const t = adaptive ? properties->adaptive : properties->fixed;
-    return ARKodeButcherTable_Create(t->n_stages, t->order, t->embedded_order, (double *)t->c, (double *)t->a,
-                                     (double *)t->b, (double *)t->embedded);
+    const ARKodeButcherTable table = ARKodeButcherTable_Alloc(t->n_stages, t->embedded != NULL);
+    if (!table) return NULL;
+
+    table->q = t->order;
+    table->p = t->embedded_order;
+    for (int i = 0; i < t->n_stages; i++) {
+        table->c[i] = t->c[i];
+        table->b[i] = t->b[i];
+        if (t->embedded) table->d[i] = t->embedded[i];
+        for (int j = 0; j < t->n_stages; j++) table->A[i][j] = t->a[i * t->n_stages + j];
+    }
+    return table;
 }
 
 static void runge_kutta_free(void *data) {
@@ -102,7 +111,7 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     void *const arkode = solver->arkode;
     const double step = solver->options.step;
     const ARKodeButcherTable table = tableau_of(solver->options.method, step <= 0);
-    if (!table) return status_fail(STATUS_MEMORY, "out of memory: the tableau of a Runge-Kutta method");
+    TRY(memory_check(table, "the tableau of a Runge-Kutta method"));
     // 6.4 interpolates at the stop time, for order one by a constant: Hermite's interpolant is the mean of both ends of
     // the step, Lagrange's interpolant the solution at the end
     const int order = table->q;
@@ -144,7 +153,7 @@ static enum status runge_kutta_fill(struct runge_kutta *solver) {
     TRY(sundials_context_vector(&solver->context, &solver->y, solver->state->y));
     TRY(sundials_context_vector(&solver->context, &solver->tolerances, solver->tolerance));
     solver->arkode = ARKStepCreate(rates_callback, NULL, solver->state->t, solver->y, solver->context.context);
-    if (!solver->arkode) return status_fail(STATUS_MEMORY, "out of memory: ARKODE");
+    TRY(memory_check(solver->arkode, "ARKODE"));
     return set_up_arkode(solver);
 }
 

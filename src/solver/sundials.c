@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 
 /* The content of a vector begins with the content that the operations of the library expect. */
@@ -87,7 +88,7 @@ enum status sundials_context_vector(struct sundials_context *context, N_Vector *
     *vector = give_context(is_shared(context) ? N_VMake_OpenMP(context->n, values, context->threads, context->context)
                                               : N_VMake_Serial(context->n, values, context->context),
                            context);
-    if (!*vector) return status_fail(STATUS_MEMORY, "out of memory: a vector of %d unknowns", context->n);
+    TRY(memory_check(*vector, "a vector of unknowns"));
     const N_Vector_Ops ops = (*vector)->ops;
     ops->nvclone = clone;
     ops->nvdestroy = destroy;
@@ -109,7 +110,7 @@ enum status sundials_context_create(struct sundials_context *context, int n, int
         sundials_context_vector(context, &context->spare, values) != STATUS_OK) {
         free(values);
         sundials_context_free(context);
-        return status_fail(STATUS_MEMORY, "out of memory: a context of SUNDIALS for %d unknowns", n);
+        return memory_check(NULL, "a context of SUNDIALS");
     }
     return STATUS_OK;
 }
@@ -126,8 +127,7 @@ void sundials_context_free(struct sundials_context *context) {
 }
 
 enum status sundials_context_check(const struct sundials_context *context) {
-    if (!context->lacked_memory) return STATUS_OK;
-    return status_fail(STATUS_MEMORY, "out of memory: the solver of %d unknowns", context->n);
+    return context->lacked_memory ? memory_check(NULL, "the solver") : STATUS_OK;
 }
 
 void sundials_context_message(SUNDIALS_ERROR_ARGUMENTS) {

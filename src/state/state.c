@@ -231,7 +231,8 @@ size_t state_table_length(const struct state_row *row, const struct state *state
     return row->length ? row->length(state, school, f) : row->bytes / state_table_size(row);
 }
 
-static const void *field_owner(const struct state_row *row, const struct state *state, int f) {
+/* The struct that contains a field; NULL: the state itself. */
+static void *field_owner(const struct state_row *row, const struct state *state, int f) {
     switch (row->owner) {
         case STATE_WAKE: return &state->wake[f];
         case STATE_CONTROL: return &state->control[f];
@@ -241,16 +242,26 @@ static const void *field_owner(const struct state_row *row, const struct state *
         case STATE_CLOSEST: return state->closest;
         case STATE_ITSELF: break;
     }
-    return state;
+    return NULL;
 }
 
-void *state_table_values(const struct state_row *row, const struct state *state, int f) {
-    char *const field = (char *)field_owner(row, state, f) + row->offset;
-    if (!row->length) return field;
-
+/* The array that a field points to. */
+static void *field_array(const void *field) {
     void *array;
     memcpy(&array, field, sizeof array);
     return array;
+}
+
+const void *state_table_values(const struct state_row *row, const struct state *state, int f) {
+    const void *const owner = field_owner(row, state, f);
+    const char *const field = (const char *)(owner ? owner : state) + row->offset;
+    return row->length ? field_array(field) : field;
+}
+
+void *state_table_place(const struct state_row *row, struct state *state, int f) {
+    void *const owner = field_owner(row, state, f);
+    char *const field = (char *)(owner ? owner : state) + row->offset;
+    return row->length ? field_array(field) : field;
 }
 
 enum status state_table_make_room(struct state *state, const struct school *school) {
@@ -270,7 +281,7 @@ enum status state_table_copy(struct state *to, const struct state *from, const s
         const struct state_row *const row = &state_table[i];
         for (int f = 0; f < state_table_n_owners(row, school) && row->type != STATE_UNKEPT; f++) {
             const size_t bytes = state_table_length(row, from, school, f) * state_table_size(row);
-            memcpy(state_table_values(row, to, f), state_table_values(row, from, f), bytes);
+            memcpy(state_table_place(row, to, f), state_table_values(row, from, f), bytes);
         }
     }
     return STATUS_OK;

@@ -134,10 +134,12 @@ extern const int state_table_n;
 /* The number of instances of a field in a state: 1, or n_fish. */
 int state_table_n_owners(const struct state_row *row, const struct school *school);
 
-/* For the values of fish f: number of values, size of a value in bytes, address of the values. */
+/* For the values of fish f: number of values, size of a value in bytes, address of the values
+ * to read or to write. */
 size_t state_table_length(const struct state_row *row, const struct state *state, const struct school *school, int f);
 size_t state_table_size(const struct state_row *row);
-void *state_table_values(const struct state_row *row, const struct state *state, int f);
+const void *state_table_values(const struct state_row *row, const struct state *state, int f);
+void *state_table_place(const struct state_row *row, struct state *state, int f);
 
 /* Resize the arrays of all wakes to n_vortex. Code that reads a state calls this function between the numbers and the
  * arrays. Fails with STATUS_MEMORY. */

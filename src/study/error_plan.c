@@ -102,7 +102,7 @@ static enum status add_columns(struct error_study *study, const struct case_valu
         axis->value[axis->n_keys] = text_of(values, key, number_of(values, path, f));
         axis->key[axis->n_keys++] = (struct sweep_key){
             .path = text.text, .row = key->path, .unit = key->unit, .is_number = key->type != CHOICE};
-        if (!axis->value[axis->n_keys - 1] || !text.text) return status_fail(STATUS_MEMORY, "out of memory: %s", what);
+        if (!axis->value[axis->n_keys - 1] || !text.text) return memory_check(NULL, what);
     }
 
     return STATUS_OK;
@@ -213,7 +213,7 @@ static enum status make_row(const struct error_study *study, int n, const struct
     if (!row->failed) return STATUS_OK;
 
     row_free(row);
-    return status_fail(STATUS_MEMORY, "out of memory: %s", what);
+    return memory_check(NULL, what);
 }
 
 /* The member with the values of a row, except for multipliers; -1: none. */

@@ -447,7 +447,7 @@ static const struct of_quantity {
 } of_quantity[N_OF_QUANTITY] = {
     {"stated_%s", "stated value of %s", 0, 1},
     {"bar_%s", "error of the stated value of %s: the sum over the keys", 0, 1},
-    {"part_%s", "error of %s by each key; of a choice of the model, what it changes", 1, 1},
+    {"part_%s", "error of %s by each key; for a choice of the model, the change by the choice", 1, 1},
     {"key_order_%s", "observed order of %s in each key", 1, 0},
 };
 

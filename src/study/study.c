@@ -82,7 +82,7 @@ static enum status run_or_resume(const struct case_values *values, const struct 
     double t;
     enum status status;
     if (!checkpoint) {
-        status = status_fail(STATUS_MEMORY, "out of memory: a file name");
+        status = memory_check(NULL, "a file name");
     } else if (simulate_can_resume(options->path, checkpoint, effective, &t)) {
         status = simulate_resume(checkpoint, &(struct simulate_changes){0}, options);
     } else {
@@ -291,7 +291,7 @@ static enum status run_jobs(struct study *study) {
     study->report = mmap(NULL, (size_t)study->n_jobs * sizeof *study->report, PROT_READ | PROT_WRITE,
                          MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (study->report == MAP_FAILED) study->report = NULL;
-    if (!study->report) return status_fail(STATUS_MEMORY, "out of memory: the processes of a study");
+    TRY(memory_check(study->report, "the processes of a study"));
     for (int j = 0; j < study->n_jobs; j++) study->job[j].report = &study->report[j];
 
     // a blocked signal stays pending, so the end of a process is never missed

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/methods.h"
 #include "case/case.h"
 #include "case/sweep.h"
@@ -105,7 +106,7 @@ static enum status add_sweep(struct text *sweep, const struct case_values *value
     }
     text_add_number(&rtol, values->school.rtol);
     enum status status = STATUS_OK;
-    if (standard.failed || rtol.failed) status = status_fail(STATUS_MEMORY, "out of memory: a comparison");
+    if (standard.failed || rtol.failed) status = memory_check(NULL, "a comparison");
     text_add(sweep, "sweep=[{keys: [solver.method, solver.order, solver.rtol, solver.step], values: [");
 
     // the reference, and a second reference with ten times the tolerance
@@ -141,7 +142,7 @@ static enum status create_study(struct case_values *study, const struct case_val
     text_add_number(&wake, values->time.end);
     enum status status = add_sweep(&sweep, values, options);
     if (status == STATUS_OK && (sweep.failed || row.failed || wake.failed)) {
-        status = status_fail(STATUS_MEMORY, "out of memory: a comparison");
+        status = memory_check(NULL, "a comparison");
     }
 
     if (status == STATUS_OK) {

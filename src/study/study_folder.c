@@ -83,7 +83,7 @@ enum status study_folder_set_reason(const char *folder, int member, const char *
     durable_end(&part);
     free(path);
     if (code != ENOMEM) return STATUS_OK;
-    return status_fail(STATUS_MEMORY, "out of memory: the failure of member %d (%s)", member, reason);
+    return memory_check(NULL, "the failure of a member");
 }
 
 /* Read the reason of a failed member; 0: no reason. */

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
 #include "result/netcdf.h"
@@ -98,14 +99,15 @@ int field_file_listed(int i, struct result_listed *listed) {
 /* A field that is being made. */
 struct field {
     const struct field_row *row;
-    struct induced at;     /* the points, row after row of the grid, and the induced velocity and vorticity (n) */
+    double *x, *y;         /* the points, row after row of the grid                   (n) */
+    struct induced at;     /* the induced velocity at these points                    (n) */
     double *vorticity;     /* (n) */
     size_t length[N_AXES]; /* of the dimensions */
 };
 
 static void free_field(struct field *field) {
-    double *const of_points[] = {(double *)field->at.x, (double *)field->at.y, field->at.u,   field->at.v,
-                                 field->at.u_x,         field->at.u_y,         field->at.v_x, field->vorticity};
+    double *const of_points[] = {field->x,      field->y,      field->at.u,   field->at.v,
+                                 field->at.u_x, field->at.u_y, field->at.v_x, field->vorticity};
     for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++) free(of_points[i]);
 }
 
@@ -116,24 +118,17 @@ static double coordinate(const struct field_grid *grid, int axis, int i) {
 
 static enum status make_points(struct field *field, const struct field_grid *grid) {
     const size_t n = (size_t)grid->nx * (size_t)grid->ny;
-    double *x = NULL, *y = NULL;
-    double **const of_points[] = {
-        &x, &y, &field->at.u, &field->at.v, &field->at.u_x, &field->at.u_y, &field->at.v_x, &field->vorticity};
-    int is_whole = 1;
-
-    for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++) {
-        *of_points[i] = calloc(n, sizeof(double));
-        is_whole &= *of_points[i] != NULL;
-    }
-
+    double **const of_points[] = {&field->x,      &field->y,      &field->at.u,   &field->at.v,
+                                  &field->at.u_x, &field->at.u_y, &field->at.v_x, &field->vorticity};
+    const enum status status = MEMORY_ARRAYS(of_points, (int)n, "the points of the grid");
     field->at.n = (int)n;
-    field->at.x = x;
-    field->at.y = y;
-    if (!is_whole) return status_fail(STATUS_MEMORY, "out of memory: a grid of %d x %d points", grid->nx, grid->ny);
+    field->at.x = field->x;
+    field->at.y = field->y;
+    TRY(status);
 
     for (int i = 0; i < field->at.n; i++) {
-        x[i] = coordinate(grid, 0, i % grid->nx);
-        y[i] = coordinate(grid, 1, i / grid->nx);
+        field->x[i] = coordinate(grid, 0, i % grid->nx);
+        field->y[i] = coordinate(grid, 1, i / grid->nx);
     }
 
     return STATUS_OK;

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "case/case.h"
 #include "fish/fish_school.h"
 #include "force/bound_sheet.h"
@@ -217,11 +218,8 @@ static enum status read_row(struct reading *reading, double t, struct field_row 
 
     TRY(netcdf_read_length(&reading->file, "time", 0, INT_MAX, &n_rows));
     reading->n_rows = (long)n_rows;
-    reading->time = calloc(n_rows + 1, sizeof *reading->time);
-    reading->buffer = calloc(2 * longest, sizeof *reading->buffer);
-    if (!reading->time || !reading->buffer) {
-        return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reading->file.path);
-    }
+    TRY(MEMORY_NEW(reading->time, n_rows + 1, reading->file.path));
+    TRY(MEMORY_NEW(reading->buffer, 2 * longest, reading->file.path));
     const struct netcdf_slice rows[] = {{"time", 0, n_rows}, {NULL, 0, 0}};
     if (n_rows > 0) TRY(netcdf_read_doubles(&reading->file, "time", rows, reading->time));
     TRY(find_row(reading, school, t, &row));

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "fish/shape.h"
 
 static const double pi = 3.14159265358979323846;
@@ -58,14 +59,10 @@ static void interpolate_half(const struct outline *outline, const double *thickn
     outline->half[0] = outline->half[OUTLINE_POINTS - 1] = 0;
 }
 
-static enum status outline_out_of_memory(int n_nodes) {
-    return status_fail(STATUS_MEMORY, "out of memory: the outline of a body of %d nodes", n_nodes);
-}
-
 static enum status fill_half(const struct outline *outline, const double *thickness, bool is_mean) {
     const size_t n = (size_t)outline->n_nodes + 3;
-    double *const scratch = calloc(3 * n, sizeof *scratch);
-    if (!scratch) return outline_out_of_memory(outline->n_nodes);
+    double *scratch;
+    TRY(MEMORY_NEW(scratch, 3 * n, "the outline of a body"));
     interpolate_half(outline, thickness, is_mean, scratch, scratch + n, scratch + 2 * n);
     free(scratch);
     return STATUS_OK;
@@ -93,11 +90,9 @@ static enum status fill_weights(const struct outline *outline) {
 
 enum status outline_create(struct outline *outline, int n_nodes, const double *thickness, bool is_mean) {
     *outline = (struct outline){.n_nodes = n_nodes};
-    outline->weight = calloc((size_t)n_nodes * OUTLINE_POINTS, sizeof *outline->weight);
-    outline->slope = calloc((size_t)n_nodes * OUTLINE_POINTS, sizeof *outline->slope);
-    outline->half = calloc(OUTLINE_POINTS, sizeof *outline->half);
-    enum status status =
-        outline->weight && outline->slope && outline->half ? STATUS_OK : outline_out_of_memory(n_nodes);
+    enum status status = MEMORY_NEW(outline->weight, n_nodes * OUTLINE_POINTS, "the outline of a body");
+    if (status == STATUS_OK) status = MEMORY_NEW(outline->slope, n_nodes * OUTLINE_POINTS, "the outline of a body");
+    if (status == STATUS_OK) status = MEMORY_NEW(outline->half, OUTLINE_POINTS, "the outline of a body");
     if (status == STATUS_OK) status = fill_weights(outline);
     if (status == STATUS_OK) status = fill_half(outline, thickness, is_mean);
     if (status != STATUS_OK) outline_free(outline);

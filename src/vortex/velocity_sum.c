@@ -208,14 +208,14 @@ static enum status sorted_fill(struct sorted *sorted, const struct vortices *vor
     const int n = sorted->n_vortices = vortices->n;
     sorted->index = malloc((size_t)(n + 1) * sizeof *sorted->index);
     sorted->tile = malloc((size_t)(n / KERNEL_TILE + vortices->n_groups + 1) * sizeof *sorted->tile);
-    if (!sorted->index || !sorted->tile) goto no_memory;
+    if (!sorted->index || !sorted->tile) return memory_check(NULL, "pairwise velocities");
     tiles_sort(sorted, vortices->n_groups, vortices->group);
     sorted->n_shares = n_shares(sorted->n_tiles);
     // the array length is a multiple of BLOCK, so every array is aligned
     const size_t n_sorted = (size_t)sorted->n_sorted, n_sums = n_sorted * (size_t)sorted->n_shares;
     sorted->memory = malloc((3 * n_sorted + 2 * n_sums) * sizeof(double) + ALIGNMENT);
     sorted->has = calloc((size_t)sorted->n_shares * (size_t)sorted->n_tiles + 1, sizeof *sorted->has);
-    if (!sorted->memory || !sorted->has) goto no_memory;
+    if (!sorted->memory || !sorted->has) return memory_check(NULL, "pairwise velocities");
     double *const aligned = (double *)(((uintptr_t)sorted->memory + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
     sorted->x = aligned;
     sorted->y = aligned + n_sorted;
@@ -229,9 +229,6 @@ static enum status sorted_fill(struct sorted *sorted, const struct vortices *vor
         sorted->circulation[sorted->index[i]] = vortices->circulation[i];
     }
     return STATUS_OK;
-
-no_memory:
-    return status_fail(STATUS_MEMORY, "out of memory: pairwise velocities of %d vortices", n);
 }
 
 // add the mutually induced velocities of tiles a and b to the sum of a share

@@ -26,7 +26,7 @@ static enum status values_grow(double **values, int n, int capacity) {
     enum { LINE = 64 };
     const size_t bytes = ((size_t)capacity * sizeof **values + LINE - 1) / LINE * LINE;
     double *const more = aligned_alloc(LINE, bytes);
-    if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d vortices", capacity);
+    TRY(memory_check(more, "vortices"));
     if (n > 0) memcpy(more, *values, (size_t)n * sizeof *more);
     free(*values);
     *values = more;

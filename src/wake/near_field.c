@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "vortex/tolerance.h"
 
 static const double two_pi = 6.28318530717958647692;
@@ -128,9 +129,7 @@ static double box_distance(const struct near_field_bounds *bounds, const struct 
 static enum status near_field_add_near(struct near_field *near_field, const struct near_field_vortex *near) {
     if (near_field->n_near == near_field->capacity) {
         const int capacity = 2 * near_field->capacity + 64;
-        struct near_field_vortex *const more = realloc(near_field->near, (size_t)capacity * sizeof *more);
-        if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d near vortices", capacity);
-        near_field->near = more;
+        TRY(MEMORY_RESIZE(near_field->near, capacity, "near vortices"));
         near_field->capacity = capacity;
     }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mathematics.h"
+#include "base/memory.h"
 
 enum { N_ARRAYS = 10 };
 
@@ -19,9 +20,7 @@ static enum status wake_reserve(struct wake *wake, int capacity) {
     double **array[N_ARRAYS];
     wake_list_arrays(wake, array);
     for (int i = 0; i < N_ARRAYS; i++) {
-        double *const more = realloc(*array[i], (size_t)capacity * sizeof *more);
-        if (!more) return status_fail(STATUS_MEMORY, "out of memory: a wake of %d vortices", capacity);
-        *array[i] = more;
+        TRY(MEMORY_RESIZE(*array[i], capacity, "the vortices of a wake"));
     }
 
     wake->capacity = capacity;

@@ -46,13 +46,9 @@ static enum status allocate_at_points(double **values, int n) {
 static enum status wake_interpolation_allocate(struct wake_interpolation *interpolation) {
     TRY(velocity_sum_create(&interpolation->velocity_sum));
     const size_t n_fish = (size_t)interpolation->school->n_fish;
-    interpolation->near_field = calloc(n_fish, sizeof *interpolation->near_field);
-    interpolation->wake = calloc(n_fish, sizeof *interpolation->wake);
-    interpolation->bounds = calloc(n_fish, sizeof *interpolation->bounds);
-    if (!interpolation->near_field || !interpolation->wake || !interpolation->bounds) {
-        return status_fail(STATUS_MEMORY, "out of memory: velocity of the wakes at %d fish",
-                           interpolation->school->n_fish);
-    }
+    TRY(MEMORY_NEW(interpolation->near_field, n_fish, "velocity of the wakes at the fish"));
+    TRY(MEMORY_NEW(interpolation->wake, n_fish, "velocity of the wakes at the fish"));
+    TRY(MEMORY_NEW(interpolation->bounds, n_fish, "velocity of the wakes at the fish"));
 
     const int n = interpolation->n_points;
     for (int i = 0; i < 6; i++) TRY(allocate_at_points(&interpolation->motion[i], n));
@@ -311,7 +307,7 @@ static enum status wake_interpolation_try_build(struct wake_interpolation *inter
     }
 
     // messages are per thread: write the message on the calling thread
-    if (n_failed > 0) return status_fail(STATUS_MEMORY, "out of memory: near vortices of %d fish", n_failed);
+    if (n_failed > 0) return memory_check(NULL, "near vortices");
 
     if (is_whole) return STATUS_OK;
     TRY(sum_by_tree(interpolation, by_tree, threads));

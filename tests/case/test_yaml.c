@@ -19,7 +19,7 @@ struct fixture {
 
 /* Parse some bytes as the file "x.yaml". */
 static void read_bytes(struct fixture *fixture, const char *text, size_t length) {
-    *fixture = (struct fixture){.source = {"x.yaml", (char *)text, length, 0, false}};
+    *fixture = (struct fixture){.source = {.name = "x.yaml", .text = text, .length = length}};
     fixture->status = yaml_tree_read(&fixture->root, &fixture->source, &fixture->errors);
 }
 
@@ -209,7 +209,8 @@ static void a_copy_is_equal_and_its_own(void **state) {
     (void)state;
     struct fixture f;
     read_text(&f, "a: [1, {b: c}]\n");
-    struct yaml_node *const copy = yaml_tree_copy(f.root);
+    struct yaml_node *copy;
+    assert_int_equal(yaml_tree_copy(&copy, f.root), STATUS_OK);
     release(&f);
     assert_string_equal(flow(copy), "{a: [1, {b: c}]}");
     yaml_tree_free(copy);
@@ -270,7 +271,7 @@ static void of_a_long_line_the_neighbourhood_is_shown(void **state) {
     static char text[3000];
     memset(text, 'x', sizeof text - 1);
     text[1500] = 'Y';
-    struct yaml_source source = {"x.yaml", text, sizeof text - 1, 0, false};
+    struct yaml_source source = {"x.yaml", text, sizeof text - 1, 0, false, NULL, NULL};
     struct yaml_errors errors = {0};
     yaml_errors_add(&errors, (struct yaml_mark){&source, 1, 1501}, "here");
     yaml_errors_status(&errors);
@@ -283,7 +284,7 @@ static void of_a_long_line_the_neighbourhood_is_shown(void **state) {
 
 static void a_place_after_the_end_is_harmless(void **state) {
     (void)state;
-    struct yaml_source source = {"x.yaml", (char *)"a", 1, 0, false};
+    struct yaml_source source = {"x.yaml", "a", 1, 0, false, NULL, NULL};
     struct yaml_errors errors = {0};
     yaml_errors_add(&errors, (struct yaml_mark){&source, 9, 900}, "here");
     assert_int_equal(yaml_errors_status(&errors), STATUS_CASE);

@@ -187,7 +187,7 @@ static void fill_with(struct state *to, const struct school *school, double firs
         const struct state_row *const row = &state_table[i];
         if (row->type != STATE_REAL) continue;
         for (int f = 0; f < state_table_n_owners(row, school); f++) {
-            double *const values = state_table_values(row, to, f);
+            double *const values = state_table_place(row, to, f);
             const size_t n = state_table_length(row, to, school, f);
             for (size_t k = 0; k < n; k++) values[k] = number++;
         }
