@@ -152,14 +152,14 @@ def section_of(variable):
     return next(title for title, takes in SECTIONS if takes(variable["dimensions"]))
 
 
-TYPES = {"double": "", "double or float": " *(single)*", "int": " *(integer)*", "char": " *(string)*"}
+TYPES = {"double or float": " *(single)*"}
 
 # Variables with the same dimensions have their own table from this number on.
 LARGE = 5
 
 
 def row(variable, *dimensions):
-    meaning = variable["meaning"] + TYPES.get(variable["type"], f" *({variable['type']})*")
+    meaning = variable["meaning"] + TYPES.get(variable["type"], "")
     return "| " + " | ".join([f"`{variable['name']}`", *dimensions, variable["unit"], meaning]) + " |"
 
 

@@ -430,10 +430,10 @@ static const struct of_key {
     int by_level;
 } of_key[N_OF_KEY] = {
     {"key_name", "numerical key that is varied alone", NETCDF_TEXT, 0},
-    {"key_reason", "why the levels of the key are flagged; empty where they are not", NETCDF_TEXT, 0},
+    {"key_reason", "reason why the levels of the key are flagged, or empty", NETCDF_TEXT, 0},
     {"key_levels", "levels of the key", NETCDF_INT, 0},
     {"key_stated", "level of the stated value, from 0, the finest", NETCDF_INT, 0},
-    {"key_is_choice", "1: a choice of the model, which is not in the sum", NETCDF_INT, 0},
+    {"key_is_choice", "1: choice of the model, not in the sum", NETCDF_INT, 0},
     {"key_design_order", "order that the key has by design; NaN: none", NETCDF_DOUBLE, 0},
     {"key_value", "value of the key at each level, from fine to coarse", NETCDF_DOUBLE, 1},
     {"key_member", "member of each level; -1: none", NETCDF_INT, 1},
@@ -447,7 +447,7 @@ static const struct of_quantity {
 } of_quantity[N_OF_QUANTITY] = {
     {"stated_%s", "stated value of %s", 0, 1},
     {"bar_%s", "error of the stated value of %s: the sum over the keys", 0, 1},
-    {"part_%s", "error of %s by each key; for a choice of the model, the change by the choice", 1, 1},
+    {"part_%s", "error of %s by each key, or change by a choice of the model", 1, 1},
     {"key_order_%s", "observed order of %s in each key", 1, 0},
 };
 

@@ -364,7 +364,7 @@ static const struct single {
 } singles[N_SINGLE] = {
     {"level_value", "value of the refined key, from coarse to fine", LEVEL},
     {"level_size", "grid spacing: the value, or 1/(n - 1) of n points", LEVEL},
-    {"group_member", "first member of each group: members that differ in the refined key only", GROUP},
+    {"group_member", "first member of each group", GROUP},
     {"group_design_order", "order that the refined key has by design; NaN: none", GROUP},
 };
 
@@ -375,12 +375,13 @@ static const struct kind {
     const char *name, *unit, *meaning; /* unit NULL: unit of the quantity */
     enum orders_dimension last;        /* a third dimension; GROUP: none */
 } kinds[N_KINDS] = {
-    {"difference_%s", NULL, "distance of %s from the finest level, or from the reference that the case gives", LEVEL},
+    {"difference_%s", NULL, "distance of %s from the finest level, or from the reference of the case", LEVEL},
     {"order_before_%s", "1", "observed order of %s of the next coarser levels", GROUP},
     {"order_%s", "1", "observed order of %s of the finest levels", GROUP},
-    {"limit_%s", NULL, "%s extrapolated to zero spacing by Richardson's method (xy: of positions only)", ORDERS_XY},
-    {"error_%s", NULL, "error of %s at the finest level, as the levels state it (doc/studies.md)", GROUP},
-    {"objection_%s", "", "why the levels of %s state no order, so that the error is a largest difference", ORDERS_TEXT},
+    {"limit_%s", NULL, "%s extrapolated to zero spacing by Richardson's method (xy: positions only)", ORDERS_XY},
+    {"error_%s", NULL, "error of %s at the finest level (doc/studies.md)", GROUP},
+    {"objection_%s", "", "reason why the levels of %s have no order, and the error is a largest difference",
+     ORDERS_TEXT},
 };
 
 int study_orders_listed(int i, struct result_listed *listed) {
