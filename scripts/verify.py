@@ -182,6 +182,12 @@ another solver."""),
 `pressure.span: finite` (model.md 18): sheets of vortex rings, between Lighthill's slender body and two dimensions: lift
 of wings, added mass, thrust and power of a heaving plate; the fluid receives the momentum of fish of one and of two depths;
 the wake of a slow slender fish stays whole."""),
+    "encounters": ("Encounters", """\
+Bodies in an unsteady inflow, model.md 8. *Gusts*: a fixed plate in a gust that travels with the stream, with full suction,
+U Dt = 0.005 to 0.02 L and 65 sheet points. The lift in a sine gust is Sears' function; the pressure of Sears' solution has
+the form of an incidence, so the suction, the only force along the plate, is the square of the lift. The lift in a step
+gust is Kuessner's function; s is the way of the middle of the step from the nose, in half lengths, and the step rises over
+a tenth of the length."""),
     "walls": ("Walls", """\
 Bodies beside straight walls, model.md 17: a fish beside a wall moves like a fish beside the mirror image, a plate between
 two walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to

@@ -110,7 +110,7 @@ static enum status derive_gradient_distance(const struct key_place *at) {
     double length = 0;
     for (int f = 0; f < school->n_fish; f++) length = fmax(length, school->fish[f].length);
     if (school->fluid.gust_profile != GUST_STEP) return STATUS_OK;
-    return set_default(&at->values->school.fluid.gust_gradient_distance, length / 10);
+    return set_default(&at->values->school.fluid.gust_gradient_distance, length / 5);
 }
 
 static enum status derive_taper(const struct key_place *at) {
@@ -279,7 +279,7 @@ const struct key case_table[] = {
      .meaning = "profile sine, step: place along the stream of a zero, or of the middle of the step, at the start"},
     {"fluid.gust.gradient_distance", REAL, AT(school.fluid.gust_gradient_distance), NULL, ABOVE(0), "m",
      .meaning = "profile step: distance over which the gust rises to the amplitude",
-     .derived = "a tenth of the length of the longest fish", .derive = derive_gradient_distance},
+     .derived = "a fifth of the length of the longest fish", .derive = derive_gradient_distance},
     {"fluid.walls", NUMBERS, AT(school.fluid.walls), "[]", ANY, "m",
      .meaning = "straight walls along x: y of one wall, or of both walls of a channel",
      .synonyms = "wall channel boundary tank ground bottom"},

@@ -295,7 +295,7 @@ static void a_travelling_gust_moves_along_the_stream(void **state) {
         snprintf(text, sizeof text,
                  TIME
                  "fluid: {velocity: [0.6, 0.8], shear: 0.3, gust: {amplitude: 1, position: 0.2, %s}}\n"
-                 "fish: [{nodes: 5, sheet_points: 9, force: published}]\n",
+                 "fish: [{nodes: 5, sheet_points: 21, force: published}]\n",
                  profiles[i]);
         struct setup setup;
         school_build(&setup, text);

@@ -47,7 +47,7 @@ static const char *const cases[] = {
     "fluid: {velocity: [0.1, 0], shear: 0.3, gust: {amplitude: 0.2, frequency: 3}}\n"
     "fish: [{motion: {prescribed: head, heave: 0.1, frequency: 2}, force: reactive, load: {tip: [0.1, 0]}}]\n",
     TIME
-    "fluid: {velocity: [0.1, 0], gust: {profile: sine, amplitude: 0.2, wavelength: 0.5}}\n"
+    "fluid: {velocity: [0.1, 0], gust: {profile: sine, amplitude: 0.2, wavelength: 0.6}}\n"
     "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{force: pressure}]\n",
 };
 enum { N_CASES = sizeof cases / sizeof *cases, N_BEFORE = 8, N_AFTER = 6 };

@@ -163,7 +163,7 @@ static const struct variant {
      "  - {nodes: 4, sheet_points: 11, force: pressure, pressure: {span: finite}, start: {position: [0, 1.2]},\n"
      "     body: {depth: 0.5}, motion: {prescribed: head, surge: free, heave: 0.1, frequency: 1}}\n"},
     {"two fish with pressure, a sine gust",
-     PRESSURE FAR "fluid: {velocity: [0.3, -0.2], gust: {profile: sine, amplitude: 0.4, wavelength: 0.9, speed: 0.5}}\n"
+     PRESSURE FAR "fluid: {velocity: [0.3, -0.2], gust: {profile: sine, amplitude: 0.4, wavelength: 1.6, speed: 0.5}}\n"
                   "fish:\n"
                   "  - {nodes: 5, sheet_points: 9, force: pressure, drag: {normal: 0.7}}\n"
                   "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0.2, 0.6], heading: 190}}\n"},
@@ -172,7 +172,7 @@ static const struct variant {
               "        gust: {profile: step, amplitude: 0.4, position: 0.1, gradient_distance: 0.6}}\n"
               "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}]\n"},
     {"force published, a sine gust",
-     TIME "fluid: {velocity: [0.3, 0], gust: {profile: sine, amplitude: 0.4, wavelength: 1.1}}\n"
+     TIME "fluid: {velocity: [0.3, 0], gust: {profile: sine, amplitude: 0.4, wavelength: 1.6}}\n"
           "fish: [{sheet_points: 9, force: published, control: {law: heading}}]\n"},
     {"two fish of finite span beside a wall, driven",
      TIME FAR "fluid: {walls: [1.5]}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\n"

@@ -39,6 +39,23 @@ double linear_theory_wagner(double s) {
     return 0.5 + 2 / pi * sum;
 }
 
+double complex linear_theory_sears(double k) {
+    return (j0(k) - I * j1(k)) * linear_theory_theodorsen(k) + I * j1(k);
+}
+
+// downwash at three quarters of the chord with Wagner's lift; added mass of the part in the gust
+double linear_theory_kuessner(double s) {
+    enum { N = 32 };
+    const double front = s < 2 ? acos(1 - s) : pi;
+    double node[N], weight[N], sum = sin(front);
+    quadrature_legendre(N, node, weight);
+    for (int i = 0; i < N; i++) {
+        const double c = cos(front * node[i]);
+        sum += weight[i] * front * (1 - c) * linear_theory_wagner(s - 1 + c);
+    }
+    return sum / pi;
+}
+
 // Wagner's integral equation int_0^s G'(q) sqrt((2 + s - q)/(s - q)) dq = 1 for G'(q) = f(q)/sqrt(q) with a smooth f:
 // linear between n + 1 points of [0, last], computed one after another. With q = s (1 - cos phi)/2 the integrand
 // becomes f sqrt(2 + s - q) over phi, for which equal steps are most accurate.

@@ -17,6 +17,14 @@
 double complex linear_theory_theodorsen(double k);
 double linear_theory_wagner(double s);
 
+/* A fixed plate in a gust v across the stream that moves with the stream. Sears' function: lift over pi density U L v
+ * for a sine gust, v its phase at the middle of the plate. Kuessner's function: the same for a step, whose front has
+ * moved s > 0 half lengths from the nose; with theta = acos(1 - s) of the front, pi beyond the tail, and Wagner's
+ * function,
+ * (1/pi) (int_0^theta wagner(s - 1 + cos a) (1 - cos a) da + sin theta). */
+double complex linear_theory_sears(double k);
+double linear_theory_kuessner(double s);
+
 /* A plate that starts suddenly, after s half lengths, over the final values: shed circulation, and lift once more, from
  * Wagner's integral equation of the wake. */
 struct linear_theory_growth {

@@ -37,6 +37,28 @@ static void published_functions(void) {
     }
 }
 
+// Sears' function in its other closed form, 1/(i k (K_0(i k) + K_1(i k))), K_n by Hankel's functions; Kuessner's
+// function as the integral over Sears' function of all frequencies, (2/pi) int Re(S exp(-i k)) sin(k s)/k dk
+static void gusts(void) {
+    static const double k[] = {0.1, 1, 5}, s[] = {0.5, 1, 2, 5, 20};
+    for (int i = 0; i < 3; i++) {
+        const double complex h0 = j0(k[i]) - I * y0(k[i]), h1 = j1(k[i]) - I * y1(k[i]);
+        verify_zero(verify_text("Sears' function, k = %g: relative difference of two closed forms", k[i]),
+                    "Sears (1941)", relative(linear_theory_sears(k[i]), 2 / (pi * k[i] * (h0 - I * h1))), 1e-12);
+    }
+    for (int i = 0; i < 5; i++) {
+        enum { N = 400000 };
+        const double step = 1e-3;
+        double sum = 0;
+        for (int n = 0; n < N; n++) {
+            const double at = (n + 0.5) * step;
+            sum += step * creal(linear_theory_sears(at) * cexp(-I * at)) * sin(at * s[i]) / at;
+        }
+        verify_value(verify_text("Kuessner's function, s = %g", s[i]), "Sears' function of all frequencies",
+                     2 / pi * sum, linear_theory_kuessner(s[i]), 2e-4);
+    }
+}
+
 static void limits(void) {
     const struct linear_theory_plate slow = {1.7, 1.3, 2, 1e-7}, fast = {1.7, 1e-7, 2, 1.9};
     const double b = 0.85;
@@ -208,6 +230,7 @@ static void follower(void) {
 
 void verify_theory(void) {
     published_functions();
+    gusts();
     limits();
     series_of_rigid_motions();
     heaving_plate();

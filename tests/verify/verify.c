@@ -30,6 +30,7 @@ static const struct {
                 {"control", verify_control},
                 {"pressure", verify_pressure},
                 {"depth", verify_depth},
+                {"encounters", verify_encounters},
                 {"elastic", verify_elastic},
                 {"coupled", verify_coupled},
                 {"steady", verify_steady},

@@ -1,0 +1,103 @@
+/* encounters.c: the section "encounters": plates in gusts that travel with the stream, vortex streets, and plates in
+ * vortex streets, against linear theory and von Karman. Length L, speed and density of the fluid 1 and span 1 m. */
+#include <complex.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "linear_theory.h"
+#include "verify.h"
+
+static const double pi = 3.14159265358979323846;
+static const double amplitude = 0.005; /* of gusts, m s-1 */
+
+// ---- a fixed plate in a gust
+
+/* A plate from x = 0 to 1 in the stream 1 along x; gust: keys of the gust. */
+static struct simulation *open_plate(int n_sheet, double interval, double end, const char *gust) {
+    return verify_open(VERIFY_DEFAULTS
+                       "format: 1\n"
+                       "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                       "fluid: {density: 1, viscosity: 0, velocity: [1, 0], gust: {amplitude: %.17g, %s}}\n"
+                       "wake: {lifetime: 1000}\n"
+                       "fish:\n"
+                       "  - {nodes: 17, sheet_points: %d, " VERIFY_ATTACHED
+                       ", wave: {amplitude: 0, frequency: 0},\n"
+                       "     start: {speed: 0}, motion: {prescribed: all},\n"
+                       "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1}}\n",
+                       end, interval, interval, amplitude, gust, n_sheet);
+}
+
+/* The force of the fluid at an event, N: pressure across the stream, suction along the stream. */
+static void measure(struct simulation *simulation, double force[2]) {
+    simulate_measure(simulation);
+    const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+    for (int i = 0; i < 2; i++) force[i] = of->pressure.pressure[i] + of->pressure.suction[i];
+}
+
+// lift over pi density U L v; mean thrust over pi density L v^2/2
+struct response {
+    double complex lift;
+    double thrust;
+};
+
+/* The last of n_periods in a sine gust, whose phase is 0 at the middle of the plate: v = amplitude cos(omega t). */
+static struct response sine(double k, int n_sheet, int per_period, int n_periods) {
+    const double omega = 2 * k, period = 2 * pi / omega, interval = period / per_period;
+    char gust[160];
+    snprintf(gust, sizeof gust, "profile: sine, wavelength: %.17g, position: %.17g", period, 0.5 - period / 4);
+    struct simulation *const simulation = open_plate(n_sheet, interval, n_periods * period, gust);
+    struct response response = {0};
+    verify_run(simulation, (n_periods - 1) * period);
+    for (int n = 0; n < per_period; n++) {
+        double force[2];
+        verify_run(simulation, (n_periods - 1) * period + (n + 1) * interval);
+        measure(simulation, force);
+        response.lift += force[1] * 2 / per_period * cexp(-I * omega * simulation->state->t) / (pi * amplitude);
+        response.thrust -= force[0] / per_period / (pi * amplitude * amplitude / 2);
+    }
+    simulate_free(simulation);
+    return response;
+}
+
+static void sears(void) {
+    const struct {
+        double k;
+        int n_periods;
+        double lift, phase, thrust;
+    } cases[] = {
+        {1, 4, 0.005, 0.3, 0.005}, {0.1, 2, 0.003, 0.2, 0.003}, {0.5, 3, 0.003, 0.2, 0.003}, {2, 6, 0.005, 0.3, 0.003}};
+    for (int i = 0; i < (verify_is_fast() ? 1 : 4); i++) {
+        const double k = cases[i].k;
+        const struct response response =
+            sine(k, verify_is_fast() ? 33 : 65, verify_is_fast() ? 100 : 300, cases[i].n_periods);
+        const double complex theory = linear_theory_sears(k);
+        verify_relative(verify_text("sine gust, k = %g: amplitude of lift", k), "Sears (1941)", cabs(theory),
+                        cabs(response.lift), cases[i].lift);
+        verify_value(verify_text("sine gust, k = %g: phase of lift, degree", k), "Sears (1941)",
+                     carg(theory) * 180 / pi, carg(response.lift) * 180 / pi, cases[i].phase);
+        verify_relative(verify_text("sine gust, k = %g: mean thrust", k), "the suction of Sears' pressure, |S|^2",
+                        cabs(theory) * cabs(theory), response.thrust, cases[i].thrust);
+    }
+}
+
+/* A step whose front starts 0.3 ahead of the nose. */
+static void kuessner(void) {
+    const double s[] = {0.5, 1, 2, 4, 10}, ahead = 0.3;
+    const int n = verify_is_fast() ? 3 : 5;
+    struct simulation *const simulation =
+        verify_is_fast() ? open_plate(33, 0.01, 6, "profile: step, position: -0.3, gradient_distance: 0.2")
+                         : open_plate(65, 0.005, 6, "profile: step, position: -0.3, gradient_distance: 0.1");
+    for (int i = 0; i < n; i++) {
+        double force[2];
+        verify_run(simulation, ahead + s[i] / 2);
+        measure(simulation, force);
+        verify_relative(verify_text("step gust: lift over the final value, s = %g", s[i]), "Kuessner (1936)",
+                        linear_theory_kuessner(s[i]), force[1] / (pi * amplitude), 0.01);
+    }
+    simulate_free(simulation);
+}
+
+void verify_encounters(void) {
+    sears();
+    kuessner();
+}
