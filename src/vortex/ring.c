@@ -1,9 +1,14 @@
-/* ring.c: one square root and one division per pair. */
+/* ring.c: one square root per pair, one division for two pairs. */
 #include "vortex/ring.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
 
 #include "base/memory.h"
 #include "vortex/kernel.h"
@@ -13,7 +18,7 @@ static const double inverse_two_pi = 0.159154943091895335769;
 /* Avoids 0/0 in the spanwise part of a source at a target, and changes no bit at relevant distances. */
 static const double no_square = 1e-150;
 
-enum { N_ARRAYS = 8, BLOCK = 16 };
+enum { N_ARRAYS = 8, HALF = RING_BLOCK / 2 };
 
 static void ring_arrays(struct rings *rings, double **array[N_ARRAYS]) {
     double **const all[N_ARRAYS] = {&rings->x,  &rings->y,    &rings->q,   &rings->dx,
@@ -65,31 +70,67 @@ struct ring_targets ring_targets_part(const struct ring_targets *all, struct ran
     return part;
 }
 
-/* Targets of a block, with sums. */
-struct block {
-    double x[BLOCK], y[BLOCK], half[BLOCK], square[BLOCK];
-    double u[BLOCK], v[BLOCK], leg_u[BLOCK], leg_v[BLOCK], div[BLOCK];
-    double u_x[BLOCK], u_y[BLOCK], v_x[BLOCK], div_x[BLOCK], div_y[BLOCK];
-    double edge[2][BLOCK], edge_gradient[4][BLOCK];
-};
+// ---- velocity and divergence
 
-/* The sources of a sum, with the factors of the pair. */
-struct block_sources {
-    int n;
-    const double *x, *y, *q, *dx, *dy, *half, *leg, *square;
-    double span, factor, add;
-};
+#if defined(__x86_64__)
 
-// velocity and divergence, and optionally the gradients of both
-static inline __attribute__((always_inline)) void block_add(struct block *at, const struct block_sources *from,
-                                                            const int with_gradient) {
+#define VARIANT(name) name##_avx512
+#define TARGET __attribute__((target("avx512f")))
+#define lanes __m512d
+#define FUSED(a, b, c) _mm512_fmadd_pd(a, b, c)
+#define ROOT(a) _mm512_sqrt_pd(a)
+#include "vortex/ring_loops.h"
+
+#define VARIANT(name) name##_avx2
+#define TARGET __attribute__((target("avx2,fma")))
+#define lanes __m256d
+#define FUSED(a, b, c) _mm256_fmadd_pd(a, b, c)
+#define ROOT(a) _mm256_sqrt_pd(a)
+#include "vortex/ring_loops.h"
+
+#elif defined(__aarch64__)
+
+#define VARIANT(name) name##_neon
+#define TARGET
+#define lanes float64x2_t
+#define FUSED(a, b, c) vfmaq_f64(c, a, b)
+#define ROOT(a) vsqrtq_f64(a)
+#include "vortex/ring_loops.h"
+
+#endif
+
+// any processor: vectors of two doubles, products without fusion
+typedef double two __attribute__((vector_size(2 * sizeof(double))));
+#define VARIANT(name) name##_baseline
+#define TARGET
+#define lanes two
+#define FUSED(a, b, c) ((a) * (b) + (c))
+#define ROOT(a) ((two){sqrt((a)[0]), sqrt((a)[1])})
+#include "vortex/ring_loops.h"
+
+ring_loops *ring_variant(int i) {
+    ring_loops *found[3];
+    int n = 0;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f")) found[n++] = velocity_avx512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found[n++] = velocity_avx2;
+#elif defined(__aarch64__)
+    found[n++] = velocity_neon;
+#endif
+    found[n++] = velocity_baseline;
+    return i < n ? found[i] : NULL;
+}
+
+// ---- with gradients
+
+static KERNEL_WIDE(void, block_gradient, (struct ring_block * at, const struct ring_sources *from), (at, from)) {
     const double scale = from->span * inverse_two_pi;
     for (int n = 0; n < from->n; n++) {
         const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, dx = from->dx[n] * scale;
         const double dy = from->dy[n] * scale, half = from->factor * from->half[n] + from->leg[n];
         const double square = from->square[n] + from->add;
 
-        for (int i = 0; i < BLOCK; i++) {
+        for (int i = 0; i < RING_BLOCK; i++) {
             const double rx = at->x[i] - x, ry = at->y[i] - y, r2 = rx * rx + ry * ry;
             const double r = r2 + (at->square[i] + square), t = r2 + (at->half[i] + half), root = sqrt(t);
             const double inverse = 1 / (r * t * root), f = q * (inverse * t), g = inverse * r;
@@ -97,11 +138,6 @@ static inline __attribute__((always_inline)) void block_add(struct block *at, co
             at->v[i] += f * rx;
             at->leg_u[i] -= g * dy;
             at->leg_v[i] += g * dx;
-            if (!with_gradient) {
-                at->div[i] += g * g * root * (rx * dy - ry * dx);
-                continue;
-            }
-
             // 1/T^(5/2), and the slopes of f and g over r
             const double fifth = g * g * root, by_f = -f * (2 * inverse * t * root + g * root), by_g = -3 * fifth;
             const double across = ry * dx - rx * dy, h = by_g, k = 15 * fifth * g * root;
@@ -115,20 +151,12 @@ static inline __attribute__((always_inline)) void block_add(struct block *at, co
     }
 }
 
-static KERNEL_WIDE(void, block_velocity, (struct block * at, const struct block_sources *from), (at, from)) {
-    block_add(at, from, 0);
-}
-
-static KERNEL_WIDE(void, block_gradient, (struct block * at, const struct block_sources *from), (at, from)) {
-    block_add(at, from, 1);
-}
-
-static KERNEL_WIDE(void, block_edge, (struct block * at, const struct block_sources *from), (at, from)) {
+static KERNEL_WIDE(void, block_edge, (struct ring_block * at, const struct ring_sources *from), (at, from)) {
     const double scale = from->span * inverse_two_pi;
     for (int n = 0; n < from->n; n++) {
         const double x = from->x[n], y = from->y[n], dx = from->dx[n] * scale, dy = from->dy[n] * scale;
         const double half = from->factor * from->half[n] + from->leg[n];
-        for (int i = 0; i < BLOCK; i++) {
+        for (int i = 0; i < RING_BLOCK; i++) {
             const double rx = at->x[i] - x, ry = at->y[i] - y, t = rx * rx + ry * ry + (at->half[i] + half);
             const double factor = -1.5 / (t * t * sqrt(t)), slope = -5 * factor / t;
             at->edge[0][i] += factor * dx;
@@ -141,19 +169,20 @@ static KERNEL_WIDE(void, block_edge, (struct block * at, const struct block_sour
     }
 }
 
-static void fill_block(struct block *block, const struct ring_pair *pair, const struct ring_targets *at, int first,
+static void fill_block(struct ring_block *block, const struct ring_pair *pair, const struct ring_targets *at, int first,
                        int n) {
     memset(block, 0, sizeof *block);
-    for (int i = 0; i < BLOCK; i++) {
+    for (int i = 0; i < RING_BLOCK; i++) {
+        // the padding has another position than the last target, so that no two targets of a division are at one source
         const int p = first + (i < n ? i : n - 1);
-        block->x[i] = at->x[p];
+        block->x[i] = at->x[p] + (i < n ? 0 : 1);
         block->y[i] = at->y[p];
         block->half[i] = (at->half ? pair->factor * at->half[p] : 0) + (at->leg ? at->leg[p] : 0);
         block->square[i] = (at->square ? at->square[p] : 0) + no_square;
     }
 }
 
-static void add_block(const struct block *block, const struct ring_targets *at, int first, int n) {
+static void add_block(const struct ring_block *block, const struct ring_targets *at, int first, int n) {
     for (int i = 0; i < n; i++) {
         const int p = first + i;
         at->u[p] += block->u[i] + block->leg_u[i];
@@ -181,28 +210,28 @@ static void add_block(const struct block *block, const struct ring_targets *at, 
 void ring_induce(const struct ring_pair *pair, const struct rings *rings, struct range which,
                  const struct ring_targets *at) {
     if (which.n <= 0) return;
-    const struct block_sources from = {.n = which.n,
-                                       .x = rings->x + which.first,
-                                       .y = rings->y + which.first,
-                                       .q = rings->q + which.first,
-                                       .dx = rings->dx + which.first,
-                                       .dy = rings->dy + which.first,
-                                       .half = rings->half + which.first,
-                                       .leg = rings->leg + which.first,
-                                       .square = rings->square + which.first,
-                                       .span = pair->span,
-                                       .factor = pair->factor,
-                                       .add = pair->square};
+    const struct ring_sources from = {.n = which.n,
+                                      .x = rings->x + which.first,
+                                      .y = rings->y + which.first,
+                                      .q = rings->q + which.first,
+                                      .dx = rings->dx + which.first,
+                                      .dy = rings->dy + which.first,
+                                      .half = rings->half + which.first,
+                                      .leg = rings->leg + which.first,
+                                      .square = rings->square + which.first,
+                                      .span = pair->span,
+                                      .factor = pair->factor,
+                                      .add = pair->square};
 
-    for (int first = 0; first < at->n; first += BLOCK) {
-        const int n = at->n - first < BLOCK ? at->n - first : BLOCK;
-        struct block block;
+    for (int first = 0; first < at->n; first += RING_BLOCK) {
+        const int n = at->n - first < RING_BLOCK ? at->n - first : RING_BLOCK;
+        struct ring_block block;
         fill_block(&block, pair, at, first, n);
 
         if (at->u_x) {
             block_gradient(&block, &from);
         } else {
-            block_velocity(&block, &from);
+            ring_variant(0)(&block, &from);
         }
 
         if (at->edge) block_edge(&block, &from);

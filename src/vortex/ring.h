@@ -11,8 +11,9 @@
  *
  * The `half` of a position is b^2/2; for targets outside the strip b is twice as large, and `half` four times as large.
  *
- * The sum at a target runs over the sources in array order, with operations rounded as written: the same bits on all
- * processors. */
+ * The sum at a target runs over the sources in array order, and every operation is rounded as written, with explicit
+ * fused products: the same bits on all processors of a family, as in kernel.h. Targets i and i + 8 of a block of 16
+ * share a division: the last bits of one target depend on the other target. */
 #ifndef RING_H
 #define RING_H
 
@@ -82,5 +83,26 @@ struct ring_values {
 };
 void ring_unit(const struct ring_pair *pair, const struct ring_source *source, int n, const double *x, const double *y,
                const double *half, struct ring_values *values);
+
+/* A block of targets, with sums. */
+enum { RING_BLOCK = 16 };
+struct ring_block {
+    double x[RING_BLOCK], y[RING_BLOCK], half[RING_BLOCK], square[RING_BLOCK];
+    double u[RING_BLOCK], v[RING_BLOCK], leg_u[RING_BLOCK], leg_v[RING_BLOCK], div[RING_BLOCK];
+    double u_x[RING_BLOCK], u_y[RING_BLOCK], v_x[RING_BLOCK], div_x[RING_BLOCK], div_y[RING_BLOCK];
+    double edge[2][RING_BLOCK], edge_gradient[4][RING_BLOCK];
+};
+
+/* The sources of a sum, with the constants of the pairs. */
+struct ring_sources {
+    int n;
+    const double *x, *y, *q, *dx, *dy, *half, *leg, *square;
+    double span, factor, add;
+};
+
+/* The loops of ring_induce for one vector width: u, v, leg_u, leg_v and a third of div. Variant i of this processor,
+ * the fastest first; NULL after the last variant. */
+typedef void ring_loops(struct ring_block *at, const struct ring_sources *from);
+ring_loops *ring_variant(int i);
 
 #endif

@@ -180,6 +180,52 @@ static void a_ring_and_its_image_cause_no_flow_through_the_wall(void **state) {
     ring_free(&image);
 }
 
+// the value number i of a sequence without a pattern, from -1 to 1
+static double number(int i) {
+    return 2 * fmod(0.618033988749895 * (i + 1) * (i + 7), 1) - 1;
+}
+
+static void fused_variants_round_identically(void **state) {
+    (void)state;
+    enum { N = 37 };
+    double value[8][N];
+    for (int i = 0; i < 8 * N; i++) value[i / N][i % N] = number(i);
+    for (int i = 0; i < N; i++) {
+        for (int k = 5; k < 8; k++) value[k][i] *= value[k][i];
+    }
+    const struct ring_sources from = {.n = N,
+                                      .x = value[0],
+                                      .y = value[1],
+                                      .q = value[2],
+                                      .dx = value[3],
+                                      .dy = value[4],
+                                      .half = value[5],
+                                      .leg = value[6],
+                                      .square = value[7],
+                                      .span = 0.3,
+                                      .factor = 4,
+                                      .add = 1e-4};
+    struct ring_block first = {{0}};
+    for (int i = 0; i < RING_BLOCK; i++) {
+        first.x[i] = number(1000 + i);
+        first.y[i] = number(2000 + i);
+        first.half[i] = first.square[i] = 0.01 + 0.001 * i;
+    }
+    const struct ring_block targets = first;
+    ring_variant(0)(&first, &from);
+    for (int k = 1; ring_variant(k); k++) {
+        struct ring_block other = targets;
+        ring_variant(k)(&other, &from);
+        // the last variant is the baseline, without fused products
+        const double rounding = ring_variant(k + 1) ? 0 : 1e-13;
+        NEAR_ARRAY(RING_BLOCK, other.u, first.u, rounding, rounding);
+        NEAR_ARRAY(RING_BLOCK, other.v, first.v, rounding, rounding);
+        NEAR_ARRAY(RING_BLOCK, other.leg_u, first.leg_u, rounding, rounding);
+        NEAR_ARRAY(RING_BLOCK, other.leg_v, first.leg_v, rounding, rounding);
+        NEAR_ARRAY(RING_BLOCK, other.div, first.div, 100 * rounding, rounding);
+    }
+}
+
 static void a_lack_of_memory_is_reported(void **state) {
     (void)state;
     struct rings rings = {0};
@@ -201,6 +247,7 @@ int main(void) {
         cmocka_unit_test(gradients_agree_with_differences),
         cmocka_unit_test(a_source_has_no_spanwise_part_at_its_own_place),
         cmocka_unit_test(a_ring_and_its_image_cause_no_flow_through_the_wall),
+        cmocka_unit_test(fused_variants_round_identically),
         cmocka_unit_test(a_lack_of_memory_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,73 @@
+/* ring_loops.h: the loops over targets and sources of the velocity of rings. ring.c includes this text once for every
+ * vector width, with VARIANT, TARGET, lanes and FUSED as in kernel_loops.h, and
+ *
+ *     ROOT(a)         the square root of every lane
+ *
+ * Targets i and i + HALF of a block share a division. The operations on one target, and the order of operations, are
+ * the same for every width. */
+
+enum { VARIANT(width) = sizeof(lanes) / sizeof(double) };
+
+static inline TARGET lanes VARIANT(get)(const double *value) {
+    lanes vector;
+    memcpy(&vector, value, sizeof vector);
+    return vector;
+}
+
+static inline TARGET void VARIANT(put)(double *value, lanes vector) {
+    memcpy(value, &vector, sizeof vector);
+}
+
+static TARGET void VARIANT(velocity)(struct ring_block *at, const struct ring_sources *from) {
+    const double scale = from->span * inverse_two_pi;
+    for (int i = 0; i < HALF; i += VARIANT(width)) {
+        lanes x[2], y[2], half[2], square[2], u[2], v[2], leg_u[2], leg_v[2], div[2];
+        for (int k = 0; k < 2; k++) {
+            x[k] = VARIANT(get)(at->x + i + k * HALF);
+            y[k] = VARIANT(get)(at->y + i + k * HALF);
+            half[k] = VARIANT(get)(at->half + i + k * HALF);
+            square[k] = VARIANT(get)(at->square + i + k * HALF);
+            u[k] = v[k] = leg_u[k] = leg_v[k] = div[k] = (lanes){0};
+        }
+
+        for (int n = 0; n < from->n; n++) {
+            const double q = from->q[n] * scale, dx = from->dx[n] * scale, dy = from->dy[n] * scale;
+            const double half_n = from->factor * from->half[n] + from->leg[n], square_n = from->square[n] + from->add;
+            const lanes all_dx = dx - (lanes){0}, all_dy = dy - (lanes){0};
+            lanes rx[2], ry[2], r[2], t[2], root[2], product[2];
+            for (int k = 0; k < 2; k++) {
+                rx[k] = x[k] - from->x[n];
+                ry[k] = y[k] - from->y[n];
+                const lanes r2 = FUSED(rx[k], rx[k], ry[k] * ry[k]);
+                r[k] = r2 + (square[k] + square_n);
+                t[k] = r2 + (half[k] + half_n);
+                root[k] = ROOT(t[k]);
+                product[k] = r[k] * t[k] * root[k];
+            }
+
+            const lanes shared = 1 / (product[0] * product[1]);
+            for (int k = 0; k < 2; k++) {
+                const lanes inverse = shared * product[1 - k], f = q * (inverse * t[k]), g = inverse * r[k];
+                u[k] = FUSED(f, ry[k], u[k]);
+                v[k] = FUSED(f, rx[k], v[k]);
+                leg_u[k] = FUSED(g, all_dy, leg_u[k]);
+                leg_v[k] = FUSED(g, all_dx, leg_v[k]);
+                div[k] = FUSED(g * g * root[k], rx[k] * dy - ry[k] * dx, div[k]);
+            }
+        }
+
+        for (int k = 0; k < 2; k++) {
+            VARIANT(put)(at->u + i + k * HALF, -u[k]);
+            VARIANT(put)(at->v + i + k * HALF, v[k]);
+            VARIANT(put)(at->leg_u + i + k * HALF, -leg_u[k]);
+            VARIANT(put)(at->leg_v + i + k * HALF, leg_v[k]);
+            VARIANT(put)(at->div + i + k * HALF, div[k]);
+        }
+    }
+}
+
+#undef VARIANT
+#undef TARGET
+#undef lanes
+#undef FUSED
+#undef ROOT
