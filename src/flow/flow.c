@@ -102,8 +102,7 @@ static void rings_free(struct flow_rings *rings, int n_fish) {
         struct rings *const all[] = {&of->own,        &of->body,          &of->markers,
                                      &of->body_image, &of->middles_image, &of->markers_image};
         for (size_t i = 0; i < sizeof all / sizeof *all; i++) ring_free(all[i]);
-        ring_sheet_free(&of->graded);
-        ring_sheet_free(&of->middles);
+        ring_sheets_free(&of->wake);
         for (int i = 0; i < 2; i++) free(of->line[i]);
     }
 
@@ -129,13 +128,10 @@ static enum status rings_place_wakes(struct flow_rings *rings, const struct scho
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         const struct wake *const wake = &state->wake[f];
-        struct ring_sheet *const graded = &rings->fish[f].graded, *const middles = &rings->fish[f].middles;
-        enum status status = STATUS_OK;
-        if (is_new) status = ring_sheet_build(graded, RING_GRADED, fish, school, wake);
-        if (is_new && status == STATUS_OK) status = ring_sheet_build(middles, RING_MIDDLES, fish, school, wake);
+        struct ring_sheets *const sheets = &rings->fish[f].wake;
+        const enum status status = is_new ? ring_sheets_build(sheets, fish, school, wake) : STATUS_OK;
         if (status == STATUS_OK) {
-            ring_sheet_place(graded, fish, school, wake, state->t, tau);
-            ring_sheet_place(middles, fish, school, wake, state->t, tau);
+            ring_sheets_place(sheets, school, wake, state->t, tau);
         } else {
 #pragma omp atomic
             n_failed++;
@@ -185,15 +181,15 @@ static enum status rings_place(struct flow_rings *rings, const struct school *sc
     const double shed = y[fish->at.circulation];
 
     place_body(of, fish, body, y);
-    ring_sheet_place_nascent(&of->graded, fish, school, wake, state->t, tau, tail, shed);
-    *nascent = ring_sheet_place_nascent(&of->middles, fish, school, wake, state->t, tau, tail, shed);
+    ring_sheet_place_nascent(&of->wake.graded, school, wake, state->t, tau, tail, shed);
+    *nascent = ring_sheet_place_nascent(&of->wake.middles, school, wake, state->t, tau, tail, shed);
     double newest[2] = {tail[0], tail[1]};
     if (wake->n_vortex > 0) wake_marker(wake, wake->n_vortex - 1, school->interval, tau, newest);
     of->newest[0] = shed - *nascent;
     for (int i = 0; i < 2; i++) of->newest[1 + i] = newest[i] - tail[i];
     if (school->walls.n == 0) return STATUS_OK;
     TRY(ring_mirror(&of->body, flow_mirror(school), &of->body_image));
-    return ring_mirror(&of->middles.rings, flow_mirror(school), &of->middles_image);
+    return ring_mirror(&of->wake.middles.rings, flow_mirror(school), &of->middles_image);
 }
 
 int flow_midpoint(const struct fish *fish, int edge) {

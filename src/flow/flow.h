@@ -44,12 +44,12 @@ enum { N_LEG_SUMS = 7 };
 
 /* The rings of one fish. */
 struct fish_rings {
-    struct ring_sheet graded, middles; /* the wake for the own control points; the wake for all other targets */
-    struct rings own;     /* own body at the own control points: bound vortices, then legs of control points */
-    struct rings body;    /* control points, each with the circulation of its interval and its leg */
-    double *line[2];      /* dx of the control points, m                        (n_control) */
-    double newest[3];     /* label of the newest marker, m2 s-1; position of the marker relative to the tail, m */
-    struct rings markers; /* at the last event */
+    struct ring_sheets wake; /* for the own control points, and for all other targets */
+    struct rings own;        /* own body at the own control points: bound vortices, then legs of control points */
+    struct rings body;       /* control points, each with the circulation of its interval and its leg */
+    double *line[2];         /* dx of the control points, m                        (n_control) */
+    double newest[3];        /* label of the newest marker, m2 s-1; position of the marker relative to the tail, m */
+    struct rings markers;    /* at the last event */
     struct rings body_image, middles_image, markers_image;
 };
 

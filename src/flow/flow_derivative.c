@@ -255,16 +255,16 @@ void flow_ring_derivative(const struct flow *flow, int f, int g, int with_places
     if (f == g) {
         if (!nascent) derive_vortices(&pass);
         if (!nascent) derive_body(&pass, control, &exact, 0);
-        derive_ring_nascent(&pass, &of->graded, control, &exact, 0);
-        if (fish_feels_own_wake(fish)) derive_ring_nascent(&pass, &of->middles, behind, &own_wake, 0);
+        derive_ring_nascent(&pass, &of->wake.graded, control, &exact, 0);
+        if (fish_feels_own_wake(fish)) derive_ring_nascent(&pass, &of->wake.middles, behind, &own_wake, 0);
     } else {
         derive_body(&pass, all, &body, 0);
-        derive_ring_nascent(&pass, &of->middles, all, &wake, 0);
+        derive_ring_nascent(&pass, &of->wake.middles, all, &wake, 0);
     }
 
     if (flow->school->walls.n == 0) return;
     if (!nascent) derive_body(&pass, all, &body, 1);
-    derive_ring_nascent(&pass, &of->middles, all, &wake, 1);
+    derive_ring_nascent(&pass, &of->wake.middles, all, &wake, 1);
 }
 
 void flow_ring_motion(const struct flow *flow, int f, const struct influence_block *block) {

@@ -87,14 +87,14 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
 
     const struct ring_pair exact = ring_own_pair(fish, 0);
     induce(&exact, &of->own, &at);
-    induce(&exact, &of->graded.rings, &at);
+    induce(&exact, &of->wake.graded.rings, &at);
 
     // edge midpoints and tail: middles of the wake
     if (!fish_feels_own_wake(fish) || others.n == 0) return;
     const struct ring_pair smooth = ring_own_pair(fish, fish->smoothing * fish->smoothing);
     at = ring_targets_part(all, others);
     at.half = half + others.first - points.first;
-    induce(&smooth, &of->middles.rings, &at);
+    induce(&smooth, &of->wake.middles.rings, &at);
 }
 
 // other fish, and all images
@@ -108,7 +108,7 @@ static void induce_others(const struct flow *flow, int f, const struct ring_targ
         const struct ring_pair of_wake = ring_other_pair(other, other->smoothing * other->smoothing);
 
         if (g != f) induce(&of_body, &of->body, at);
-        if (g != f) induce(&of_wake, &of->middles.rings, at);
+        if (g != f) induce(&of_wake, &of->wake.middles.rings, at);
 
         if (school->walls.n == 0) continue;
         induce(&of_body, &of->body_image, at);
@@ -132,7 +132,7 @@ double flow_rings_work(const struct flow *flow) {
     double work = 0;
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct fish_rings *const of = &flow->rings->fish[f];
-        work += of_vortices * flow->n_points * (of->body.n + of->middles.rings.n);
+        work += of_vortices * flow->n_points * (of->body.n + of->wake.middles.rings.n);
     }
 
     return work;
@@ -178,7 +178,7 @@ void flow_rings_at(const struct flow *flow, const struct induced *at) {
         const struct ring_pair of_body = ring_other_pair(fish, fish->sheet_smoothing * fish->sheet_smoothing);
         const struct ring_pair of_wake = ring_other_pair(fish, fish->smoothing * fish->smoothing);
         induce(&of_body, &of->body, &to);
-        induce(&of_wake, &of->middles.rings, &to);
+        induce(&of_wake, &of->wake.middles.rings, &to);
         if (school->walls.n == 0) continue;
         induce(&of_body, &of->body_image, &to);
         induce(&of_wake, &of->middles_image, &to);

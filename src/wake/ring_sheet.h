@@ -18,23 +18,29 @@ struct ring_sheet {
     double *smoothing[2], *leg[2]; /* delta(d) and s at the start and at the end of the interval, m, m2 */
     struct rings rings;            /* at one time */
 };
-void ring_sheet_free(struct ring_sheet *sheet);
 
-/* Discretisation of a sheet: graded points for the own control points, or the middle of every stretch. */
-enum ring_view { RING_GRADED, RING_MIDDLES };
+/* Both views of the wake of a fish: graded points for the own control points, and the middle of every stretch for all
+ * other targets. The oldest n_single stretches have the middle in both views; the points differ in the smoothing. */
+struct ring_sheets {
+    struct ring_sheet graded, middles;
+    int n_single, capacity;
+    /* workspace: markers at both ends of the interval or at one time, labels, lengths of stretches */
+    double *x[2], *y[2], *label, *length[2];
+};
+void ring_sheets_free(struct ring_sheets *sheets);
 
 /* Select the points of the interval that starts at the event. Fails with STATUS_MEMORY. */
-enum status ring_sheet_build(struct ring_sheet *sheet, enum ring_view view, const struct fish *fish,
-                             const struct school *school, const struct wake *markers);
+enum status ring_sheets_build(struct ring_sheets *sheets, const struct fish *fish, const struct school *school,
+                              const struct wake *markers);
 
 /* Set the released points to the time tau after the event at time t. */
-void ring_sheet_place(struct ring_sheet *sheet, const struct fish *fish, const struct school *school,
-                      const struct wake *markers, double t, double tau);
+void ring_sheets_place(struct ring_sheets *sheets, const struct school *school, const struct wake *markers, double t,
+                       double tau);
 
 /* Set the nascent points to the time tau with the tail position at this time; shed: total circulation shed by the fish,
  * m2 s-1. Returns the circulation of the nascent stretch. */
-double ring_sheet_place_nascent(struct ring_sheet *sheet, const struct fish *fish, const struct school *school,
-                                const struct wake *markers, double t, double tau, const double tail[2], double shed);
+double ring_sheet_place_nascent(struct ring_sheet *sheet, const struct school *school, const struct wake *markers,
+                                double t, double tau, const double tail[2], double shed);
 
 /* Nascent point i: fraction of the way from the tail to the newest marker, and fraction of the stretch. */
 double ring_sheet_xi(const struct ring_sheet *sheet, int i);

@@ -131,21 +131,36 @@ double wake_ring(const struct wake *wake, const struct school *school, int i, do
     return strength * wake_label(wake, i, school->interval, tau);
 }
 
-void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
-             double *strength) {
+// add the decay of old vortices to strengths; the queue is sorted by age
+static void wake_decay_strengths(const struct wake *wake, const struct school *school, double t, double tau,
+                                 double *strength) {
     const double q = tau / school->interval;
-
-    for (int i = 0; i < wake->n_vortex; i++) {
-        x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], tau, school->interval);
-        y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, school->interval);
-        strength[i] = wake->circulation[i];
-    }
-
     for (int i = 0; i < wake->n_vortex; i++) {
         const double age = t - wake->birth[i];
         if (age + school->interval <= age_of_decay(school)) break;
         strength[i] *= wake_strength_within(school, age, q);
     }
+}
+
+void wake_markers_at(const struct wake *wake, double interval, double tau, double *restrict x, double *restrict y) {
+    for (int i = 0; i < wake->n_vortex; i++) {
+        x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], tau, interval);
+        y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, interval);
+    }
+}
+
+void wake_rings_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
+                   double *label) {
+    wake_markers_at(wake, school->interval, tau, x, y);
+    for (int i = 0; i < wake->n_vortex; i++) label[i] = wake_label(wake, i, school->interval, tau);
+    wake_decay_strengths(wake, school, t, tau, label);
+}
+
+void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
+             double *strength) {
+    wake_markers_at(wake, school->interval, tau, x, y);
+    memcpy(strength, wake->circulation, (size_t)wake->n_vortex * sizeof *strength);
+    wake_decay_strengths(wake, school, t, tau, strength);
 }
 
 double wake_lost(const struct wake *wake, const struct school *school, double t, double tau) {

@@ -71,6 +71,11 @@ void wake_marker(const struct wake *wake, int i, double interval, double tau, do
 double wake_label(const struct wake *wake, int i, double interval, double tau);
 double wake_ring(const struct wake *wake, const struct school *school, int i, double t, double tau);
 
+/* wake_marker, and wake_marker and wake_ring, of all markers (n_vortex). */
+void wake_markers_at(const struct wake *wake, double interval, double tau, double *restrict x, double *restrict y);
+void wake_rings_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
+                   double *label);
+
 /* Circulation of vortex i; for a marker: half of both adjacent stretches. */
 double wake_circulation(const struct wake *wake, int i);
 

@@ -385,7 +385,7 @@ static void legs_of_graded_points_begin_at_the_tail(void **state) {
         for (int f = 0; f < 2; f++) {
             const struct fish *const fish = &setup.school->fish[f];
             const struct wake *const wake = &setup.state->wake[f];
-            const struct ring_sheet *const sheet = &flow->rings->fish[f].graded;
+            const struct ring_sheet *const sheet = &flow->rings->fish[f].wake.graded;
             const int newest = wake->n_vortex - 1;
             const double w = fish->strip_depth;
             assert_true(sheet->n_released > 2 * FREE_SHEET_PANEL);

@@ -1,5 +1,6 @@
 /* test_ring.c: the kernel of a strip of finite depth against its formulas, limits and differences. */
 #include <math.h>
+#include <string.h>
 
 #include "failing_malloc.h"
 #include "near.h"
@@ -205,7 +206,8 @@ static void fused_variants_round_identically(void **state) {
                                       .span = 0.3,
                                       .factor = 4,
                                       .add = 1e-4};
-    struct ring_block first = {{0}};
+    struct ring_block first;
+    memset(&first, 0, sizeof first);
     for (int i = 0; i < RING_BLOCK; i++) {
         first.x[i] = number(1000 + i);
         first.y[i] = number(2000 + i);
