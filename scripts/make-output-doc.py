@@ -71,7 +71,8 @@ Readers can open the file at any time, and again to see new rows. The attribute 
 | `failed: ...` | the integration or the writing failed, or bodies met with `contact.action: stop`; the rows are valid |
 
 The attribute `warnings` has one line for each defect of a result after a successful integration, with the most affected
-fish. `shoal run`, `shoal info` and `shoal gather` print the warnings; with `--strict` the exit code is 3.
+fish. `shoal run`, `shoal info` and `shoal gather` print the warnings; with `--strict` the exit code is 3. The attribute
+`closest_approach` has the least distance of two bodies, with fish and time.
 
 @WARNINGS@
 
@@ -80,7 +81,7 @@ Every command and script refuses a truncated file; a study runs such a member ag
 ## Repeating a run
 
 Attribute `case_effective` is the complete case with every key, after includes, preset and `--set`; `case_text` is the
-original case file. `source` names the program, the commit and the libraries, `history` the command.
+original case file. `source` names the program, the commit and the libraries, `history` the time and the command.
 
     shoal info --case demo.nc > again.yaml
     shoal run again.yaml
@@ -90,18 +91,10 @@ resumed also needs the times of the stops: `--checkpoint-at` with the attribute 
 
 ## Attributes
 
-| attribute | contents |
-|---|---|
-| `Conventions` | CF-1.10 |
-| `title` | name of the case |
-| `history` | time and command of the creation |
-| `source` | program, commit, versions of the libraries |
-| `shoal_schema` | 1; a program with another number cannot read the file |
-| `run_status`, `warnings`, `closest_approach`, `merged_vortices`, `case_text`, `case_effective` | see above |
-| `checkpoint_at` | times of checkpoints besides `time.checkpoint_interval`, in the format of `--checkpoint-at`: `0.3,1.25` |
-
-Every variable has `long_name` and, except strings, `units`. `fish`, `xy`, `fish_name`, `node_arc`, `sheet_arc` and
-`control_arc` are coordinates.
+Besides the attributes above a file has `Conventions` (CF-1.10), `title` (the name of the case), `merged_vortices`,
+`checkpoint_at` (times of checkpoints besides `time.checkpoint_interval`, in the format of `--checkpoint-at`: `0.3,1.25`)
+and `shoal_schema` (1; a program with another number cannot read the file). Every variable has `long_name` and, except
+strings, `units`. `fish`, `xy`, `fish_name`, `node_arc`, `sheet_arc` and `control_arc` are coordinates.
 """
 
 # Title of a section, and the test on the dimensions of its variables.
