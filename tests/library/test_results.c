@@ -1,21 +1,25 @@
-/* test_results.c: every variable of ten short runs, in which all terms of the model act at once, against the values of
+/* test_results.c: every variable of ten short runs and three steady states, in which all terms of the model act at once, against the values of
  * tests/data/results.tsv. Independent tests verify the terms; this test notices every change of a result, which
  * CHANGES.md promises to state. After an intended change:
  *
  *     build/tests/library/test_results --write
  */
+#include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "case/case.h"
 #include "near.h"
 #include "shoal.h"
+#include "steady/steady.h"
 
 static const char table[] = "tests/data/results.tsv";
 
 /* Over the sum of the magnitudes: steps of the integrator may differ between machines, and the balances are sums of the
  * errors of steps. Smaller sums are rounding. */
-static const double tolerance = 3e-5, of_balances = 1e-2, rounding = 1e-9;
+static const double tolerance = 3e-5, of_differences = 1e-2, of_searches = 1e-4, rounding = 1e-9;
 
 #define TIME "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {rtol: 1e-6}\n"
 #define STREAM "fluid: {velocity: [0.2, -0.1], shear: 0.3, gust: {amplitude: 0.15, frequency: 2.2}}\n"
@@ -65,7 +69,7 @@ static const struct run {
      "    {" FISH ", start: {position: [0.1, -0.7], speed: 0.7}, control: {law: course, desired_heading: 200, damping: "
      "0.1}}]\n"},
     {"driven", TIME
-     "fluid: {velocity: [0.4, 0.1]}\noutput: {forces: edges}\n"
+     "fluid: {velocity: [0.4, 0.1], shear: 0.5}\noutput: {forces: edges}\n"
      "fish: [{" FISH ", force: pressure, motion: {prescribed: head, heave: 0.05, pitch: 10, pitch_phase: 80,\n"
      "     frequency: 4, pivot: 0.2}, load: {tip: [3, -8]}, body: {damping: curvature, relaxation_time: 0.01}},\n"
      "    {" FISH ", start: {position: [0.2, 0.7]}, motion: {prescribed: all, heave: 0.1, pitch: 20, frequency: 4,\n"
@@ -87,15 +91,39 @@ static const struct run {
     {"changed", TIME STREAM "wake: {lifetime: 0.25, decay: 0.1, spare_vortices: 9}\n"
                             "fish: [{" FISH ", start: {heading: 170, speed: 0.8}},\n"
                             "    {" FISH ", force: pressure, start: {position: [0.2, 0.7], speed: 0.6}}]\n"},
+    // names with "steady": steady states
+    {"steady_equilibrium",
+     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n"
+     "fluid: {density: 2, velocity: [0.8, 0.2], shear: 0.3, viscosity: 0}\nwake: {lifetime: 2, decay: 0.5}\n"
+     "fish: [{nodes: 6, sheet_points: 17, force: pressure, wave: {amplitude: 0.2, constant: 1, linear: 0.5, frequency: "
+     "0},\n     control: {bias: 0.4}, motion: {prescribed: head}, body: {modulus: 4e4, profile: uniform, thickness: "
+     "0.03},\n     start: {heading: 175}, load: {tip: [0.01, 0.02]}},\n"
+     "    {nodes: 5, sheet_points: 13, length: 0.7, wave: {frequency: 0, amplitude: 0}, motion: {prescribed: all},\n"
+     "     start: {position: [0.3, 0.8], heading: 160}}]\n"},
+    {"steady_circle",
+     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-7}\n"
+     "fluid: {velocity: [0.2, 0.1]}\nsteady: {tolerance: 1e-6}\n"
+     "fish: [{nodes: 6, sheet_points: 13, start: {speed: 0.9}, control: {bias: 0.2}, drag: {normal: 1}}]\n"},
+    {"steady_held",
+     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-7}\n"
+     "fluid: {velocity: [0.9, 0.1]}\nsteady: {tolerance: 1e-6}\n"
+     "fish: [{nodes: 6, sheet_points: 17, force: pressure, wave: {amplitude: 0.1},\n"
+     "     motion: {prescribed: head, heave: 0.1, pitch: 12, pitch_phase: 80, frequency: 1}}]\n"},
 };
 enum { N_RUNS = sizeof runs / sizeof *runs, MAX_VARIABLES = 200 };
 
 /* The values of a variable, as one number: a sum with weights that differ, and the sum of the magnitudes. NaN counts as
  * a number of its own. */
 struct entry {
-    char run[32], name[64];
+    char run[32], name[NC_MAX_NAME + 1];
     double sum, size;
 };
+
+static void entry_add(struct entry *entry, size_t i, double value) {
+    const double weight = 1 + 0.5 * cos(1.3 * (double)i), term = weight * (isnan(value) ? 1e-3 : value);
+    entry->sum += term;
+    entry->size += fabs(term);
+}
 
 static struct entry entry_of(struct shoal *run, const char *name) {
     struct entry entry = {.size = 0};
@@ -107,19 +135,27 @@ static struct entry entry_of(struct shoal *run, const char *name) {
         const double value = array.type == SHOAL_INT    ? ((const int *)array.values)[i]
                              : array.type == SHOAL_LONG ? (double)((const long *)array.values)[i]
                                                         : ((const double *)array.values)[i];
-        const double weight = 1 + 0.5 * cos(1.3 * (double)i), term = weight * (isnan(value) ? 1e-3 : value);
-        entry.sum += term;
-        entry.size += fabs(term);
+        entry_add(&entry, i, value);
     }
     return entry;
 }
 
 // numbers of the machine, numbers of steps, and sums that are zero but for rounding
 static int is_left_out(const char *name) {
-    static const char *const names[] = {"wall_time",           "steps",     "residual_evaluations",
-                                        "newton_iterations",   "order",     "jacobian_evaluations",
-                                        "error_test_failures", "step_size", "convergence_failures",
-                                        "total_circulation"};
+    static const char *const names[] = {"wall_time",
+                                        "steps",
+                                        "residual_evaluations",
+                                        "newton_iterations",
+                                        "order",
+                                        "jacobian_evaluations",
+                                        "error_test_failures",
+                                        "step_size",
+                                        "convergence_failures",
+                                        "total_circulation",
+                                        "steady_beats",
+                                        "steady_residual",
+                                        "steady_error",
+                                        "steady_multiplier_beats"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if (strcmp(names[i], name) == 0) return 1;
     }
@@ -141,7 +177,49 @@ static void change(struct shoal *run) {
     assert_int_equal(shoal_add_vortex(run, 1, 0.4, 0.2, 0.05), SHOAL_OK);
 }
 
+/* The variables of a steady state that the rows of a run lack. */
+static int find_steady_entries(const struct run *of, struct entry *entry) {
+    char path[] = "/tmp/test_results_XXXXXX";
+    close(mkstemp(path));
+    unlink(path);
+    struct case_values values;
+    const struct steady_options options = {.path = path, .command = "test"};
+    if (case_parse(&values, of->text, strlen(of->text), of->name, NULL, 0, NULL) != STATUS_OK ||
+        steady_run(&values, &options) != STATUS_OK) {
+        fail_msg("%s: %s", of->name, status_message());
+    }
+    case_free(&values);
+
+    int file, n_variables, n = 0;
+    assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
+    assert_int_equal(nc_inq_nvars(file, &n_variables), NC_NOERR);
+    for (int i = 0; i < n_variables; i++) {
+        struct entry *const to = &entry[n];
+        int n_dimensions, dimension[NC_MAX_VAR_DIMS];
+        nc_type type;
+        size_t n_values = 1, length;
+        *to = (struct entry){.size = 0};
+        nc_inq_var(file, i, to->name, &type, &n_dimensions, dimension, NULL);
+        for (int d = 0; d < n_dimensions; d++) {
+            nc_inq_dimlen(file, dimension[d], &length);
+            n_values *= length;
+        }
+        // the number of beats of a search, and so all times, depend on rounding
+        if (type == NC_CHAR || is_left_out(to->name) || strncmp(to->name, "steady_", 7) != 0) continue;
+        double *const value = calloc(n_values, sizeof *value);
+        assert_int_equal(nc_get_var_double(file, i, value), NC_NOERR);
+        for (size_t k = 0; k < n_values; k++) entry_add(to, k, value[k]);
+        free(value);
+        snprintf(to->run, sizeof to->run, "%s", of->name);
+        assert_in_range(++n, 0, MAX_VARIABLES - 1);
+    }
+    nc_close(file);
+    unlink(path);
+    return n;
+}
+
 static int find_entries(const struct run *of, struct entry *entry) {
+    if (strncmp(of->name, "steady", 6) == 0) return find_steady_entries(of, entry);
     struct shoal *run;
     if (shoal_open_text(&run, of->text, NULL, 0, NULL) != SHOAL_OK) fail_msg("%s: %s", of->name, shoal_message());
     if (strcmp(of->name, "changed") == 0) {
@@ -165,16 +243,22 @@ static int find_entries(const struct run *of, struct entry *entry) {
     return n;
 }
 
+static double tolerance_of(const struct entry *entry) {
+    // multipliers and growth rates are quotients of small differences
+    const int is_difference = strstr(entry->name, "_balance") || strstr(entry->name, "multiplier") ||
+                              strstr(entry->name, "growth") || strstr(entry->name, "exponent");
+    return is_difference ? of_differences : strncmp(entry->run, "steady", 6) == 0 ? of_searches : tolerance;
+}
+
 static int write_table(void) {
     static struct entry entry[MAX_VARIABLES];
     FILE *const file = fopen(table, "w");
     assert_non_null(file);
-    fputs("# Sums over the values of each variable at the end of short runs: tests/library/test_results.c --write\n",
-          file);
+    fputs("# Sums over the values of each variable of short runs: tests/library/test_results.c --write\n", file);
     for (int r = 0; r < N_RUNS; r++) {
         const int n = find_entries(&runs[r], entry);
         for (int i = 0; i < n; i++) {
-            if (entry[i].size > rounding)
+            if (entry[i].size > (strncmp(entry[i].run, "steady", 6) == 0 ? of_searches : rounding))
                 fprintf(file, "%s %s %.8g %.3g\n", entry[i].run, entry[i].name, entry[i].sum, entry[i].size);
         }
     }
@@ -193,15 +277,15 @@ static void results_of_short_runs_stay(void **state) {
     double worst = 0;
     while (fgets(line, sizeof line, file)) {
         struct entry want;
-        if (sscanf(line, "%31s %63s %lf %lf", want.run, want.name, &want.sum, &want.size) != 4) continue;
+        if (sscanf(line, "%31s %255s %lf %lf", want.run, want.name, &want.sum, &want.size) != 4) continue;
         for (int r = 0; r < N_RUNS; r++) {
             for (int i = 0; i < n[r]; i++) {
                 const struct entry *const got = &all[r][i];
                 if (strcmp(want.run, got->run) != 0 || strcmp(want.name, got->name) != 0) continue;
                 n_compared++;
                 const double off = fabs(got->sum - want.sum) / want.size;
-                if (!strstr(want.name, "_balance")) worst = fmax(worst, off);
-                if (off <= (strstr(want.name, "_balance") ? of_balances : tolerance)) continue;
+                if (tolerance_of(got) <= tolerance) worst = fmax(worst, off);
+                if (off <= tolerance_of(got)) continue;
                 n_wrong++;
                 print_error("%s: %s changes from %.8g to %.8g\n", want.run, want.name, want.sum, got->sum);
             }
