@@ -87,6 +87,60 @@ static void a_vortex_lies_where_the_faster_tail_would_have_left_it(void **state)
     school_clear(&setup);
 }
 
+static void a_vortex_lies_where_the_tail_of_a_turning_fish_would_have_left_it(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    const struct wake *const wake = &setup.state->wake[1];
+    const struct rigid old = rigid_of(&setup.school->fish[1], setup.state->y);
+    for (int i = 0; i < wake->n_vortex; i++) setup.state->wake[1].birth[i] = setup.state->t - 0.1 * (1 + i);
+    const double x = wake->x[1] - old.place[0], y = wake->y[1] - old.place[1], angle = -0.2 * 0.7;
+    rigid_change(setup.school, setup.state, 1, &(struct rigid){.turn = 0.7});
+    NEAR(wake->x[1], old.place[0] + cos(angle) * x - sin(angle) * y, 1e-14, 0);
+    NEAR(wake->y[1], old.place[1] + sin(angle) * x + cos(angle) * y, 1e-14, 0);
+    school_clear(&setup);
+}
+
+// places turn about the centre of mass and are displaced, all other vectors turn
+static void every_vector_of_the_past_turns_with_the_fish(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_DEFAULTS
+                          "time: {end: 3, shedding_interval: 0.05}\nfluid: {velocity: [0.4, -0.2], shear: 0.3}\n"
+                          "fish: [{nodes: 5, sheet_points: 17, start: {speed: 0.5}}]\n");
+    school_run(simulation, 0.5);
+    const struct history *const history = &simulation->state->history[0];
+    struct sample before[16];
+    const int n = history->n;
+    assert_in_range(n, 5, 16);
+    for (int age = 1; age < n; age++) before[age] = *state_recall(history, age);
+    const struct rigid old = rigid_of(simulation->school->fish, simulation->state->y);
+    const double c = cos(0.7), s = sin(0.7), way[] = {3, 1};
+    rigid_change(simulation->school, simulation->state, 0, &(struct rigid){.place = {3, 1}, .heading = 0.7});
+    for (int age = 1; age < n; age++) {
+        const struct sample *const was = &before[age], *const is = state_recall(history, age);
+        const double *const places[][2] = {{was->com, is->com}, {was->tail, is->tail}},
+                            *const vectors[][2] = {{was->velocity, is->velocity},
+                                                   {was->friction, is->friction},
+                                                   {was->force, is->force},
+                                                   {was->stream, is->stream},
+                                                   {was->drifted, is->drifted}};
+        for (size_t i = 0; i < 2; i++) {
+            const double x = places[i][0][0] - old.place[0], y = places[i][0][1] - old.place[1];
+            NEAR(places[i][1][0], old.place[0] + c * x - s * y + way[0], 1e-13, 0);
+            NEAR(places[i][1][1], old.place[1] + s * x + c * y + way[1], 1e-13, 0);
+        }
+        for (size_t i = 0; i < 5; i++) {
+            const double *const v = vectors[i][0];
+            if (age + 1 < n) assert_true(hypot(v[0], v[1]) > 0);
+            NEAR(vectors[i][1][0], c * v[0] - s * v[1], 1e-13, 1e-13);
+            NEAR(vectors[i][1][1], s * v[0] + c * v[1], 1e-13, 1e-13);
+        }
+        NEAR(is->heading, was->heading + 0.7, 1e-14, 0);
+    }
+    simulate_free(simulation);
+}
+
 static void means_over_the_last_period_do_not_notice_a_displacement(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(text);
@@ -192,6 +246,8 @@ int main(void) {
         cmocka_unit_test(a_place_is_seen_ahead_and_to_the_left),
         cmocka_unit_test(what_is_added_is_read_and_other_fish_stay),
         cmocka_unit_test(a_vortex_lies_where_the_faster_tail_would_have_left_it),
+        cmocka_unit_test(every_vector_of_the_past_turns_with_the_fish),
+        cmocka_unit_test(a_vortex_lies_where_the_tail_of_a_turning_fish_would_have_left_it),
         cmocka_unit_test(means_over_the_last_period_do_not_notice_a_displacement),
         cmocka_unit_test(means_over_the_last_period_do_not_notice_a_turn_in_a_stream),
         cmocka_unit_test(the_drift_of_a_stream_goes_on_with_the_stream_that_is_there),

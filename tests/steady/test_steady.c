@@ -207,6 +207,21 @@ static void the_step_of_the_multipliers_leads_to_the_fixed_point(void **state) {
     steady_setup_close(&setup);
 }
 
+static void scales_are_lengths_and_beats(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE "fish: [{" FISH ", length: 0.6}]\n");
+    setup.problem.map.period = 0.8;
+    const double want[] = {
+        [STEADY_SPEED] = 0.6 / 0.8, [STEADY_SLIP] = 0.6 / 0.8, [STEADY_TURN] = 1 / 0.8,   [STEADY_HEADING] = 1,
+        [STEADY_AHEAD] = 0.6,       [STEADY_ASIDE] = 0.6,      [STEADY_SHED] = 0.36 / 0.8};
+    for (int i = 0; i < (int)(sizeof want / sizeof *want); i++) {
+        const struct steady_unknown unknown = {0, (enum steady_quantity)i};
+        NEAR(steady_map_scale(&setup.problem.map, unknown), want[i], 0, 1e-15);
+    }
+    steady_setup_close(&setup);
+}
+
 static void a_held_fish_is_steady_when_its_forces_repeat(void **state) {
     (void)state;
     struct steady_setup setup;
@@ -501,6 +516,7 @@ int main(void) {
         cmocka_unit_test(a_law_of_control_brings_the_heading_to_where_a_run_has_it),
         cmocka_unit_test(the_state_stays_where_its_multipliers_are_taken),
         cmocka_unit_test(the_step_of_the_multipliers_leads_to_the_fixed_point),
+        cmocka_unit_test(scales_are_lengths_and_beats),
         cmocka_unit_test(a_held_fish_is_steady_when_its_forces_repeat),
         cmocka_unit_test(two_beats_in_a_row_are_steady),
         cmocka_unit_test(mean_powers_are_the_works_of_a_beat),
