@@ -1,8 +1,10 @@
 /* test_case_check.c: implausible values are noted at their places, and no others; the default shedding interval, and
  * times that are rounded to it. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "case/case_table.h"
 #include "case_fixture.h"
 
 /* The notes on the minimal case with one assignment are these words ("": there are none). */
@@ -151,6 +153,38 @@ static void is_refused(const char *text, const char *message) {
     if (message && !strstr(status_message(), message)) fail_msg("%s\nwithout %s", status_message(), message);
 }
 
+// a number at a bound of its key is out of range where the bound is open, and one just beyond always
+static void every_bound_of_every_key_is_kept(void **state) {
+    (void)state;
+    int n = 0;
+    for (int k = 0; k < case_table_n; k++) {
+        const struct key *const key = &case_table[k];
+        const bool is_of_fish = strncmp(key->path, "fish.", 5) == 0;
+        if ((key->type != REAL && key->type != INTEGER) || strcmp(key->path, "format") == 0) continue;
+        for (int end = 0; end < 2; end++) {
+            const double bound = end == 0 ? key->bounds.min : key->bounds.max;
+            const bool is_open = end == 0 ? key->bounds.is_min_open : key->bounds.is_max_open;
+            if (isinf(bound)) continue;
+            const double step = key->type == INTEGER ? 1 : fmax(fabs(bound), 1e-3) * 1e-9;
+            for (int beyond = 0; beyond < 2; beyond++) {
+                char assignment[256], message[256];
+                snprintf(assignment, sizeof assignment, "%s%s=%.17g", is_of_fish ? "fish[0]" : "",
+                         is_of_fish ? key->path + 4 : key->path, bound + (end == 0 ? -1 : 1) * beyond * step);
+                snprintf(message, sizeof message, "%s%s: must be", is_of_fish ? "fish[0]" : "",
+                         is_of_fish ? key->path + 4 : key->path);
+                struct case_values values;
+                const enum status status =
+                    case_parse(&values, minimal, strlen(minimal), "test", ".", 1, (const char *const[]){assignment});
+                if (status == STATUS_OK) case_free(&values);
+                const bool is_refused = status != STATUS_OK && strstr(status_message(), message);
+                if (is_refused != (beyond || is_open)) fail_msg("%s: %d %s", assignment, (int)status, status_message());
+                n++;
+            }
+        }
+    }
+    assert_true(n > 150);
+}
+
 // a case just inside of each limit, and one just outside
 static void limits_are_where_the_messages_say(void **state) {
     (void)state;
@@ -228,6 +262,7 @@ int main(void) {
         cmocka_unit_test(the_fastest_beat_has_a_hundred_events),
         cmocka_unit_test(times_that_do_not_fit_the_default_are_rounded_and_noted),
         cmocka_unit_test(times_that_fit_stay_to_the_bit),
+        cmocka_unit_test(every_bound_of_every_key_is_kept),
         cmocka_unit_test(limits_are_where_the_messages_say),
         cmocka_unit_test(times_that_do_not_fit_a_given_interval_are_errors),
     };

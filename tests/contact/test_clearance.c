@@ -117,6 +117,38 @@ static void bodies_that_cross_between_two_steps_have_touched(void **state) {
     clear(&pair);
 }
 
+static void bodies_meet_within_the_step_in_which_they_touch(void **state) {
+    (void)state;
+    struct pair pair = place(PAIR("5", "0"));
+    step(&pair, 1, 0, 0, 0.5);
+    // the gap is 4 of the 10 lengths of the step from 0.5 s to 0.7 s, minus two halves of the thickness
+    NEAR(step(&pair, 1, -10, 0, 0.7)->t, 0.5 + 0.2 * 3.9 / 10, 1e-3, 0);
+    clear(&pair);
+}
+
+// two bodies swing about their noses at rest: their tails are 1.2 m apart at both ends of the step, and meet in between
+static void two_bodies_that_turn_towards_each_other_have_touched(void **state) {
+    (void)state;
+    struct pair pair = place(PAIR("0", "3"));
+    double *const y = pair.setup.state->y;
+    const double height[] = {0, 1.5};
+    for (int end = 0; end < 2; end++) {
+        for (int f = 0; f < 2; f++) {
+            const struct fish *const fish = &pair.setup.school->fish[f];
+            const double across = (f == 0 ? 1 : -1) * 0.8, side = end == 0 ? 1 : -1;
+            for (int k = 0; k < fish->n_nodes; k++) {
+                y[fish->at.x + k] = (f == 0 ? side : -side) * 0.6 * fish->arc[k];
+                y[fish->at.y + k] = height[f] + across * fish->arc[k];
+            }
+        }
+        if (end == 0)
+            clearance_start(pair.setup.school, pair.setup.state, pair.setup.residual->neighbours, pair.between);
+    }
+    clearance_step(pair.setup.school, pair.setup.state, 1, y, pair.setup.residual->neighbours, pair.between);
+    NEAR(pair.setup.state->closest->distance, 0, 0, 0);
+    clear(&pair);
+}
+
 // a body that turns about its nose at rest, through the nose of the other one
 static void a_body_that_sweeps_over_another_has_touched_it(void **state) {
     (void)state;
@@ -237,6 +269,8 @@ int main(void) {
         cmocka_unit_test(one_fish_is_close_to_none),
         cmocka_unit_test(closest_approach_is_that_of_all_steps),
         cmocka_unit_test(bodies_that_cross_between_two_steps_have_touched),
+        cmocka_unit_test(bodies_meet_within_the_step_in_which_they_touch),
+        cmocka_unit_test(two_bodies_that_turn_towards_each_other_have_touched),
         cmocka_unit_test(a_body_that_sweeps_over_another_has_touched_it),
         cmocka_unit_test(bodies_that_pass_each_other_have_not),
         cmocka_unit_test(bodies_that_have_touched_stay_so),

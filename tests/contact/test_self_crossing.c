@@ -64,6 +64,11 @@ static double wave(double s) {
 static double spiral(double s) {
     return 3.5 * M_PI * s * s;
 }
+// a loop of 1.4 half turns with two long legs that cross
+static double loop(double s) {
+    const double arc = 0.4, from = 0.3;
+    return fmin(1.4 * M_PI, fmax(0, (s - from) / arc * 1.4 * M_PI));
+}
 static double sharp(double s) {
     return s < 0.5 ? 0 : 1;
 }
@@ -80,6 +85,7 @@ static void a_line_crosses_itself_beyond_a_circle(void **state) {
     (void)state;
     assert_false(crosses(0.01, open_circle));
     assert_true(crosses(0.01, more_than_a_circle));
+    assert_true(crosses(0.01, loop));
 }
 
 static void an_outline_crosses_itself_where_it_is_thicker_than_the_gap(void **state) {

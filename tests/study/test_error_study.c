@@ -3,6 +3,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/text.h"
 #include "case/case.h"
@@ -467,6 +468,67 @@ static void choices_of_the_model_are_not_in_the_sum(void **state) {
     error_plan_free(&study);
 }
 
+static void is_printed(const char *got, const char *want) {
+    size_t i = 0;
+    while (got[i] && got[i] == want[i]) i++;
+    if (got[i] != want[i]) fail_msg("from \"%.60s\" on:\n%s", want + i, got);
+}
+
+// every number of a report, and the rows of its table
+static void a_report_is_printed_whole(void **state) {
+    (void)state;
+    struct error_study study = open_study(
+        UNIFORM,
+        "{of: [steady_speed, steady_cost_of_transport], keys: [nodes, shedding_interval, rtol, smoothing, taper]}");
+    struct member_file *const members = make_members(&study);
+    set_value(&members[key_of(&study, "wake.smoothing")->member[0]], "steady_speed", 1.6);
+    set_value(&members[key_of(&study, "wake.taper")->member[0]], "steady_cost_of_transport", 0.0825);
+    assert_int_equal(error_study_judge(&study, members), STATUS_OK);
+    char *text = NULL;
+    size_t size;
+    FILE *const stream = open_memstream(&text, &size);
+    assert_int_equal(error_report_print(&study, members, stream), STATUS_OK);
+    fclose(stream);
+    is_printed(text,
+               "steady_speed of fish1: 1.5060 +- 0.0063 m s-1 (0.42 %)\n"
+               "steady_cost_of_transport of fish1: 0.0810 +- 0.0010 m s-2 (1.2 %)\n"
+               "key                     levels                  order    speed     %  share  cost_of_transport     %  "
+               "share        by  next\n"
+               "fish.nodes              13 17 [25] 35           2.0     0.0018  0.12     28            0.00028  0.35   "
+               "  28  4 levels\n"
+               "time.shedding_interval  0.04 0.02 [0.01] 0.005  1.0     0.0045  0.30     72            0.00072  0.89   "
+               "  72  4 levels  <- spend here: shedding_interval 0.005, CPU x 2, +-0.84 %\n"
+               "solver.rtol             0.0001 [1e-05] 1e-06    none   0.00000  0.00      0            0.00000  0.00   "
+               "   0  3 levels\n"
+               "sum                                                     0.0063  0.42                    0.0010  1.24\n"
+               "noise of a value, of integrator and search: 1.0e-05\n"
+               "choices, not in the sum: wake.smoothing ([0.1] 0.05) 6.2 %; wake.taper ([0.6] 0.3) 1.9 %\n");
+    free(text);
+
+    char path[] = "/tmp/test_error_XXXXXX", csv[4096] = "";
+    close(mkstemp(path));
+    unlink(path);
+    assert_int_equal(error_report_write_csv(&study, path), STATUS_OK);
+    FILE *const file = fopen(path, "r");
+    assert_true(fread(csv, 1, sizeof csv - 1, file) > 0);
+    fclose(file);
+    unlink(path);
+    static const char rows[] =
+        "fish,quantity,unit,value,key,levels,order,error,percent,verdict\n"
+        "\"fish1\",steady_speed,m s-1,1.50597917,sum,,nan,0.00626,0.415,\"\"\n"
+        "\"fish1\",steady_speed,m s-1,1.50597917,fish.nodes,13 17 [25] 35,2,0.00176,0.117,\"accepted\"\n"
+        "\"fish1\",steady_speed,m s-1,1.50597917,time.shedding_interval,0.04 0.02 [0.01] 0.005,1,0.0045,0.299,"
+        "\"accepted\"\n"
+        "\"fish1\",steady_speed,m s-1,1.50597917,solver.rtol,0.0001 [1e-05] 1e-06,nan,0,0,\"differences are below the "
+        "noise\"\n"
+        "\"fish1\",steady_speed,m s-1,1.50597917,wake.smoothing,[0.1] 0.05,nan,0.094,6.24,\"a choice of the model, not "
+        "in the sum\"\n";
+    csv[sizeof rows - 1] = '\0';
+    is_printed(csv, rows);
+    free_members(members, sweep_n_members(&study.study));
+    error_plan_free(&study);
+}
+
 static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
     (void)state;
     static const char text[] = UNIFORM "error: {of: steady_speed, within: 2e-3, keys: [nodes, shedding_interval]}\n";
@@ -522,6 +584,7 @@ int main(void) {
         cmocka_unit_test(a_member_that_failed_leaves_the_error_unknown),
         cmocka_unit_test(a_cusp_an_edge_and_a_sheet_are_objected_to),
         cmocka_unit_test(choices_of_the_model_are_not_in_the_sum),
+        cmocka_unit_test(a_report_is_printed_whole),
         cmocka_unit_test(every_failing_allocation_is_reported_and_leaves_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
