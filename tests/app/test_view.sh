@@ -100,6 +100,17 @@ end
 run run wall.yaml -q -o wall.nc
 run view wall.nc -q
 check walls_and_where_the_fluid_is grep -qF '"walls":[{"y":0.75,"inward":-1}],' wall.html
+cat >above.yaml <<'end'
+format: 1
+time: {end: 0.04, shedding_interval: 0.02}
+fluid: {walls: [0.75]}
+defaults: {fish: {nodes: 5}}
+fish: [{start: {position: [0, 2]}}, {start: {position: [0, 4]}, body: {thickness: 0.1}}, {start: {position: [0, 6]}}]
+end
+run run above.yaml -q -o above.nc
+run view above.nc -q
+check a_fish_above_a_wall grep -qF '"walls":[{"y":0.75,"inward":1}],' above.html
+check each_shape_is_there_once test "$(grep -o '"shape":[0-9]' above.html | tr -d '\n')" = '"shape":0"shape":1"shape":0'
 
 # a long run is thinned, and says so
 cat >long.yaml <<'end'
@@ -108,7 +119,7 @@ time: {end: 59.9, shedding_interval: 0.1, output_interval: 0.1}
 wake: {lifetime: 60, tolerance: 1e-3}
 fluid: {density: 0}
 defaults: {fish: {nodes: 5, sheet_points: 5, wave: {amplitude: 0.001}}}
-fish: [{}, {start: {position: [0, 5]}}, {start: {position: [0, 10]}}, {start: {position: [0, 15]}}, {start: {position: [0, 20]}}]
+fish: [{}, {start: {position: [0, 5]}}, {start: {position: [0, 10]}}, {start: {position: [0, 15]}}, {start: {position: [0, 20]}}, {start: {position: [0, 25]}}, {start: {position: [0, 30]}}]
 end
 run run long.yaml -q -o long.nc
 run view long.nc -q
@@ -126,6 +137,14 @@ assert (time.size - 1) % stride != 0, "the last row is one of them anyway"
 got = np.frombuffer(base64.b64decode(run["wakes"]["time"]), "f8")
 assert got.size == run["wakes"]["n"]
 assert np.array_equal(got, np.append(time[::stride], time[-1])), got
+# vortices that are left have the births of the result
+stride = int(re.search(r"vortices: one of (\d+) vortices", run["thinned"])[1])
+first, count = (np.frombuffer(base64.b64decode(run["wakes"][key]), "i4").reshape(-1, 7)[-1] for key in ("first", "count"))
+for f in range(7):
+    birth = netCDF4.Dataset("long.nc")["wake_birth"][-1, f].compressed()
+    left = (first[f] + np.arange(count[f])) * run["wakes"]["interval"]
+    kept = birth[np.round(birth / 0.1).astype(int) % stride == 0]
+    assert stride > 1 and kept.size == count[f] and np.allclose(left, kept, rtol=0, atol=1e-9), left
 end
 check the_last_row_is_always_there /usr/bin/python3 thinned.py
 check what_is_left_out_is_said grep -q '"thinned":"[^"]*wakes: one of ' long.html

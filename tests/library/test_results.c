@@ -1,6 +1,6 @@
-/* test_results.c: every variable of ten short runs and three steady states, in which all terms of the model act at once, against the values of
- * tests/data/results.tsv. Independent tests verify the terms; this test notices every change of a result, which
- * CHANGES.md promises to state. After an intended change:
+/* test_results.c: every variable of ten short runs and three steady states, in which all terms of the model act at
+ * once, against the values of tests/data/results.tsv. Independent tests verify the terms; this test notices every
+ * change of a result, which CHANGES.md promises to state. After an intended change:
  *
  *     build/tests/library/test_results --write
  */
