@@ -111,26 +111,22 @@ static enum status partners_reserve(struct contact *contact, int capacity) {
     return STATUS_OK;
 }
 
-// node paths are straight: a body between the walls at both ends of a step is between the walls during the step
-static enum status walls_check(const struct contact *contact, double t, const double *y) {
+enum status contact_find(struct contact *contact, const struct state *state, double t, const double *y) {
+    struct neighbours *const neighbours = contact->neighbours;
     const struct school *const school = contact->school;
+
+    // node paths are straight: a body between the walls at both ends of a step is between the walls during the step
     for (int f = 0; school->walls.n > 0 && f < school->n_fish; f++) {
         if (fish_wall_distance(school, &school->fish[f], y, NULL) > 0) continue;
         return status_fail(STATUS_RETRY, "the body of %s touches a wall before t = %.10g s", school->fish[f].name, t);
     }
-    return STATUS_OK;
-}
 
-enum status contact_find(struct contact *contact, const struct state *state, double t, const double *y) {
-    struct neighbours *const neighbours = contact->neighbours;
-    TRY(walls_check(contact, t, y));
     if (!neighbours) return STATUS_OK;
-    const int n_fish = contact->school->n_fish, threads = fish_threads(contact->school);
+    const int n_fish = school->n_fish, threads = fish_threads(school);
 
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < n_fish; f++) {
-        neighbours->box[f] =
-            clearance_box(&contact->school->fish[f], contact->school->contact_range, state->closest->before, y);
+        neighbours->box[f] = clearance_box(&school->fish[f], school->contact_range, state->closest->before, y);
     }
 
     // candidates: fish with overlapping boxes

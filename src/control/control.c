@@ -54,24 +54,21 @@ double lead_integral(const struct lead *lead, double t) {
     return lead->integral + integral;
 }
 
-// The sum over k of given[k] q^k/k! (1 - q)^4 (1 + 4 q + 10 q^2 + 20 q^3, truncated at q^(3-k)): given derivatives at q
-// = 0, zero derivatives at q = 1.
-static void series_set(const double given[N_GIVEN], double series[LEAD_TERMS]) {
-    static const double fall[] = {1, -4, 6, -4, 1}, rise[] = {1, 4, 10, 20}, factorial[] = {1, 1, 2, 6};
-    for (int i = 0; i < LEAD_TERMS; i++) series[i] = 0;
-    for (int k = 0; k < N_GIVEN; k++) {
-        for (int j = 0; j + k < N_GIVEN; j++) {
-            for (int i = 0; i < 5; i++) series[k + j + i] += given[k] / factorial[k] * rise[j] * fall[i];
-        }
-    }
-}
-
 // start a change from given derivatives by q, over a ramp
 static void lead_start(struct lead *lead, double t, double ramp, const double given[N_GIVEN], double target) {
     lead->integral = lead_integral(lead, t);
     const double from_target[N_GIVEN] = {given[0] - target, given[1], given[2], given[3]};
 
-    series_set(from_target, lead->series);
+    // the sum over k of from_target[k] q^k/k! (1 - q)^4 (1 + 4 q + 10 q^2 + 20 q^3, truncated at q^(3-k)): given
+    // derivatives at q = 0, zero derivatives at q = 1
+    static const double fall[] = {1, -4, 6, -4, 1}, rise[] = {1, 4, 10, 20}, factorial[] = {1, 1, 2, 6};
+    for (int i = 0; i < LEAD_TERMS; i++) lead->series[i] = 0;
+    for (int k = 0; k < N_GIVEN; k++) {
+        for (int j = 0; j + k < N_GIVEN; j++) {
+            for (int i = 0; i < 5; i++) lead->series[k + j + i] += from_target[k] / factorial[k] * rise[j] * fall[i];
+        }
+    }
+
     lead->series[0] += target;
     lead->start = t;
     lead->ramp = ramp;

@@ -24,14 +24,6 @@ static void harmonics_set(const struct fish *fish, const struct number_list *tab
     }
 }
 
-static enum status table_set(struct fish *fish, const struct number_list *table) {
-    if (table->n == 0) return STATUS_OK;
-    fish->n_harmonics = table->width / 2 + 1;
-    TRY(MEMORY_NEW(fish->harmonic, 2 * fish->n_joints * fish->n_harmonics, "the gait of a fish"));
-    for (int joint = 0; joint < fish->n_joints; joint++) harmonics_set(fish, table, joint);
-    return STATUS_OK;
-}
-
 static void wave_set(struct fish *fish, const struct fish_parameters *from) {
     const struct wave_parameters *wave = &from->wave;
     const double reference = fish->length / (from->reference_nodes - 1);
@@ -52,7 +44,13 @@ enum status fish_gait_set(struct fish *fish, const struct fish_parameters *from)
     TRY(MEMORY_NEW(fish->wave_amplitude, fish->n_joints, "the wave of a fish"));
     TRY(MEMORY_NEW(fish->wave_phase, fish->n_joints, "the wave of a fish"));
     wave_set(fish, from);
-    return table_set(fish, &from->wave.table);
+
+    // read the table of the gait
+    if (from->wave.table.n == 0) return STATUS_OK;
+    fish->n_harmonics = from->wave.table.width / 2 + 1;
+    TRY(MEMORY_NEW(fish->harmonic, 2 * fish->n_joints * fish->n_harmonics, "the gait of a fish"));
+    for (int joint = 0; joint < fish->n_joints; joint++) harmonics_set(fish, &from->wave.table, joint);
+    return STATUS_OK;
 }
 
 struct fish_gait fish_own_gait(const struct fish *fish, double t) {

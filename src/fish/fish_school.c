@@ -152,16 +152,6 @@ enum status fish_body_set(struct fish *fish, const struct fish_parameters *from,
 
 // ---- cosine points on the polygon or the smooth curve
 
-static enum status sheet_allocate(struct fish *fish) {
-    double **const per_control[] = {&fish->end_correction, &fish->control_density, &fish->control_interval};
-    TRY(MEMORY_NEW(fish->sheet_weight, fish->n_sheet, "the sheet of a fish"));
-    TRY(MEMORY_ARRAYS(per_control, fish->n_control, "the sheet of a fish"));
-    TRY(MEMORY_NEW(fish->sheet_point, fish->n_sheet, "the sheet of a fish"));
-    TRY(MEMORY_NEW(fish->sheet_slope, fish->n_sheet, "the sheet of a fish"));
-    TRY(MEMORY_NEW(fish->control_point, fish->n_control, "the sheet of a fish"));
-    return MEMORY_NEW(fish->control_tangent, fish->n_control, "the sheet of a fish");
-}
-
 // sigma at j intervals of the angle from the nose
 static double cosine_place(const struct fish *fish, double j) {
     const int last = fish->n_sheet - 1;
@@ -352,7 +342,15 @@ static enum status pressure_set(struct fish *fish, const struct fish_parameters 
 
 enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
                            const struct school_parameters *parameters) {
-    TRY(sheet_allocate(fish));
+    // reserve the sheet
+    double **const per_control[] = {&fish->end_correction, &fish->control_density, &fish->control_interval};
+    TRY(MEMORY_NEW(fish->sheet_weight, fish->n_sheet, "the sheet of a fish"));
+    TRY(MEMORY_ARRAYS(per_control, fish->n_control, "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->sheet_point, fish->n_sheet, "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->sheet_slope, fish->n_sheet, "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->control_point, fish->n_control, "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->control_tangent, fish->n_control, "the sheet of a fish"));
+
     TRY(sheet_set(fish, &parameters->sheet, parameters->wake.shedding));
     int is_strip = 0;
     for (int f = 0; f < parameters->n_fish; f++) is_strip |= fish_is_strip(&parameters->fish[f]);

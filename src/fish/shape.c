@@ -19,17 +19,6 @@ struct curve {
     double *barycentric;          /* c_k of the smooth curve                              (n_nodes) */
 };
 
-/* c_k = (-1)^k sum over j = max(0, k - 3) .. min(k, N - 4) of the binomial coefficients (3, k - j) */
-static void find_barycentric(struct curve *curve) {
-    static const double binomial[] = {1, 3, 3, 1};
-    const int degree = 3, last = curve->n_nodes - 1 - degree;
-    for (int k = 0; k < curve->n_nodes; k++) {
-        double sum = 0;
-        for (int j = k > degree ? k - degree : 0; j <= k && j <= last; j++) sum += binomial[k - j];
-        curve->barycentric[k] = k % 2 == 0 ? sum : -sum;
-    }
-}
-
 enum status curve_create(struct curve **curve, int n_nodes, int n_polygon, int n_smooth) {
     *curve = NULL;
     struct curve *new;
@@ -46,7 +35,16 @@ enum status curve_create(struct curve **curve, int n_nodes, int n_polygon, int n
     }
 
     for (int k = 0; k < n_nodes; k++) new->every[k] = k;
-    find_barycentric(new);
+
+    // c_k = (-1)^k sum over j = max(0, k - 3) .. min(k, N - 4) of the binomial coefficients (3, k - j)
+    static const double binomial[] = {1, 3, 3, 1};
+    const int degree = 3, last = new->n_nodes - 1 - degree;
+    for (int k = 0; k < new->n_nodes; k++) {
+        double sum = 0;
+        for (int j = k > degree ? k - degree : 0; j <= k && j <= last; j++) sum += binomial[k - j];
+        new->barycentric[k] = k % 2 == 0 ? sum : -sum;
+    }
+
     *curve = new;
     return STATUS_OK;
 }

@@ -47,16 +47,6 @@ static double strength_between(int n, int j, double theta) {
     return (1 + 2 * of_cosines) / (n - 1);
 }
 
-static void fill_control_points(struct sheet_integrals *to) {
-    for (int c = 0; c < to->n_control; c++) {
-        const double theta = pi * (c + 0.5) / to->n_control;
-        for (int j = 0; j < to->n_sheet; j++) {
-            to->strength[j * to->n_control + c] = strength_between(to->n_sheet, j, theta);
-            to->circulation[j * to->n_control + c] = sheet_integrals_circulation(to->n_sheet, j, theta);
-        }
-    }
-}
-
 // the kink for a vortex strength equal to the position: g = sin(theta) (1 - cos(theta)) minus the series of g
 static void kink_fill(struct sheet_integrals *to) {
     const int n = to->n_control;
@@ -118,7 +108,15 @@ static enum status integrals_fill(struct sheet_integrals *to, const double *dens
     TRY(MEMORY_NEW(to->kink_strength, n_control, "the integrals over a sheet"));
     TRY(MEMORY_NEW(to->kink_circulation, n_control, "the integrals over a sheet"));
 
-    fill_control_points(to);
+    // strength and circulation at the control points
+    for (int c = 0; c < to->n_control; c++) {
+        const double theta = pi * (c + 0.5) / to->n_control;
+        for (int j = 0; j < to->n_sheet; j++) {
+            to->strength[j * to->n_control + c] = strength_between(to->n_sheet, j, theta);
+            to->circulation[j * to->n_control + c] = sheet_integrals_circulation(to->n_sheet, j, theta);
+        }
+    }
+
     kink_fill(to);
     for (int k = 0; k < to->n_nodes - 1; k++) TRY(edge_integrate(to, k, density[k]));
 

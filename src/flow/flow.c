@@ -263,16 +263,6 @@ static enum status flow_find_classes(struct flow *flow) {
     return STATUS_OK;
 }
 
-// the bound sheets with the smoothing of each class
-static void flow_view_sheets(struct flow *flow) {
-    for (int c = 0; c < flow->n_classes; c++) {
-        struct flow_class *const class = &flow->class[c];
-        class->sheet = flow->sheet;
-        if (!flow_has_free_sheets(flow)) continue;
-        class->sheet = vortices_felt_by(&flow->sheet, class->sheet_smoothing, class->group);
-    }
-}
-
 double flow_sheet_smoothing(const struct flow *flow, int f, int g) {
     const double of_other = flow->school->fish[g].sheet_smoothing;
     if (!flow_has_free_sheets(flow)) return of_other;
@@ -311,7 +301,15 @@ static enum status flow_fill(struct flow *flow) {
     }
 
     TRY(MEMORY_NEW(flow->opposite, flow->sheet.n, "the bound vortices"));
-    flow_view_sheets(flow);
+
+    // the bound sheets with the smoothing of each class
+    for (int c = 0; c < flow->n_classes; c++) {
+        struct flow_class *const class = &flow->class[c];
+        class->sheet = flow->sheet;
+        if (!flow_has_free_sheets(flow)) continue;
+        class->sheet = vortices_felt_by(&flow->sheet, class->sheet_smoothing, class->group);
+    }
+
     TRY(velocity_sum_create(&flow->velocity_sum));
     if (school->finite) return rings_create(&flow->rings, school, flow->n_points);
     if (school->wake_tolerance <= 0) return STATUS_OK;

@@ -74,15 +74,6 @@ static struct rod_strains find_strains(struct residual *residual, int f, const s
     return (struct rod_strains){balance->strain, by_places.rate, balance->stress};
 }
 
-// strains and stresses of a consistent state: initial values of advance_strains
-static void start_strains(struct residual *residual, struct state *state, int f) {
-    const struct fish *fish = &residual->school->fish[f];
-    struct energy_balance *const balance = &state->balance[f];
-    const struct actuation muscle = residual_muscle(residual, f, state->t, state->y);
-    const struct rod_strains strains = {balance->strain, residual->scratch + fish->at.vx, balance->stress};
-    rod_strains(fish, &muscle, state->y, &strains);
-}
-
 // integrate strains and stresses of fish f to the end of a step at time t
 static void advance_strains(struct residual *residual, struct state *state, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
@@ -229,7 +220,13 @@ void diagnostics_after_jump(struct residual *residual, struct state *state) {
     const int threads = fish_threads(residual->school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) {
-        start_strains(residual, state, f);
+        // strains and stresses of a consistent state: initial values of advance_strains
+        const struct fish *fish = &residual->school->fish[f];
+        struct energy_balance *const balance = &state->balance[f];
+        const struct actuation muscle = residual_muscle(residual, f, state->t, state->y);
+        const struct rod_strains strains = {balance->strain, residual->scratch + fish->at.vx, balance->stress};
+        rod_strains(fish, &muscle, state->y, &strains);
+
         state->balance[f].work[WORK_ALL] += diagnostics_energy(residual, f, state->t, state->y);
         diagnostics_begin(residual, state, f);
     }

@@ -364,17 +364,6 @@ static void balance(const struct residual *residual, int f, const double *y, dou
     value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
 }
 
-// dx/dt = v and dv/dt = a; with momenta dp/dt = a
-static void kinematics(const struct fish *fish, const double *y, const double *yp, double *value) {
-    const int second = fish_has_momentum(fish) ? fish->at.px : fish->at.vx;
-    for (int i = 0; i < 2 * fish->n_nodes; i++) {
-        value[fish->at.x + i] = yp[fish->at.x + i] - y[fish->at.vx + i];
-        // given velocities have no equation; without momenta the next line overwrites this row
-        value[fish->at.vx + i] = 0;
-        value[second + i] = yp[second + i] - y[fish->at.ax + i];
-    }
-}
-
 static int all_finite(const double *value, int first, int end) {
     for (int i = first; i < end; i++) {
         if (!isfinite(value[i])) return 0;
@@ -402,7 +391,14 @@ static void evaluate_fish(void *data, int f) {
     const double *const u = residual->flow->u + residual->flow->points[f].first;
     const double *const v = residual->flow->v + residual->flow->points[f].first;
 
-    kinematics(fish, y, yp, value);
+    // dx/dt = v and dv/dt = a; with momenta dp/dt = a
+    const int second = fish_has_momentum(fish) ? fish->at.px : fish->at.vx;
+    for (int i = 0; i < 2 * fish->n_nodes; i++) {
+        value[fish->at.x + i] = yp[fish->at.x + i] - y[fish->at.vx + i];
+        // given velocities have no equation; without momenta the next line overwrites this row
+        value[fish->at.vx + i] = 0;
+        value[second + i] = yp[second + i] - y[fish->at.ax + i];
+    }
 
     // equation of motion, divided by the node masses
     residual_muscle(residual, f, t, y);

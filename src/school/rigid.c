@@ -68,15 +68,6 @@ static void change_wake(struct wake *wake, double t, const double centre[2], con
 
 static const double origin[2] = {0, 0};
 
-static void move_body(const struct fish *fish, const double centre[2], double angle, const double way[2], double *y) {
-    for (int k = 0; k < fish->n_nodes; k++) {
-        rotate(centre, angle, &y[fish->at.x + k], &y[fish->at.y + k]);
-        rotate(origin, angle, &y[fish->at.vx + k], &y[fish->at.vy + k]);
-        y[fish->at.x + k] += way[0];
-        y[fish->at.y + k] += way[1];
-    }
-}
-
 static void move_wake(struct wake *wake, const double centre[2], double angle, const double way[2]) {
     for (int i = 0; i < wake->n_vortex; i++) {
         rotate(centre, angle, &wake->x[i], &wake->y[i]);
@@ -128,7 +119,14 @@ void rigid_change(const struct school *school, struct state *state, int f, const
     change_velocity(fish, &before, velocity, change->turn, state->y);
     change_wake(&state->wake[f], state->t, before.place, tail, velocity, change->turn);
 
-    move_body(fish, before.place, change->heading, change->place, state->y);
+    // turn about the nose, then displace
+    for (int k = 0; k < fish->n_nodes; k++) {
+        rotate(before.place, change->heading, &state->y[fish->at.x + k], &state->y[fish->at.y + k]);
+        rotate(origin, change->heading, &state->y[fish->at.vx + k], &state->y[fish->at.vy + k]);
+        state->y[fish->at.x + k] += change->place[0];
+        state->y[fish->at.y + k] += change->place[1];
+    }
+
     move_wake(&state->wake[f], before.place, change->heading, change->place);
     move_history(&state->history[f], before.place, change->heading, change->place);
     if (state->history[f].n > 0) renew_stream(school, state->t, &state->history[f]);

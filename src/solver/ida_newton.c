@@ -105,14 +105,6 @@ static int jacobian_is_stale(const struct ida_newton *newton) {
     return newton->n_last * newton->n_solutions >= newton->n_iterations + newton->rules.jacobian_cost;
 }
 
-// start from the last total correction if the step is unchanged: the error of the predictor is then nearly unchanged
-static void newton_initial_guess(struct ida_newton *newton, N_Vector total) {
-    const double coefficient = newton->rules.leading_coefficient(newton->rules.data);
-    const int same = fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient;
-    N_VScale(same ? 1 : 0, newton->last, total);
-    newton->coefficient = coefficient;
-}
-
 static int jacobian_complete(const struct ida_newton *newton) {
     return newton->rules.complete && newton->rules.complete(newton->rules.data);
 }
@@ -124,7 +116,13 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
     if (newton->is_incomplete || jacobian_is_stale(newton)) evaluate = SUNTRUE;
     newton->is_incomplete = 0;
     if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
-    newton_initial_guess(newton, total);
+
+    // start from the last total correction if the step is unchanged: the error of the predictor is then nearly unchanged
+    const double coefficient = newton->rules.leading_coefficient(newton->rules.data);
+    const int same = fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient;
+    N_VScale(same ? 1 : 0, newton->last, total);
+    newton->coefficient = coefficient;
+
     for (sunbooleantype failed = SUNFALSE;; failed = SUNTRUE) {
         int code = newton->residual(total, newton->correction, ida);
         if (code != 0) return code;

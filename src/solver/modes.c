@@ -98,15 +98,6 @@ static enum status modes_evaluate(const struct modes *modes, double tau, double 
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
-static void restore_labels(const struct modes *modes) {
-    for (int f = 0; f < modes->n_shed; f++) {
-        struct wake *const wake = &modes->state->wake[f];
-        memcpy(wake->circulation, modes->label[f], (size_t)wake->n_vortex * sizeof *wake->circulation);
-        wake->shed_before = modes->shed[f];
-        wake->version++;
-    }
-}
-
 /* w_f(lambda), reduced, mean over the interval                                      (n_slow + n_shed) */
 static enum status wake_column(const struct modes *modes, int f, double complex lambda, double complex *column) {
     const struct school *const school = modes->residual->school;
@@ -129,7 +120,15 @@ static enum status wake_column(const struct modes *modes, int f, double complex 
             }
         }
     }
-    restore_labels(modes);
+
+    // restore the labels
+    for (int g = 0; g < modes->n_shed; g++) {
+        struct wake *const wake = &modes->state->wake[g];
+        memcpy(wake->circulation, modes->label[g], (size_t)wake->n_vortex * sizeof *wake->circulation);
+        wake->shed_before = modes->shed[g];
+        wake->version++;
+    }
+
     return STATUS_OK;
 }
 
@@ -282,24 +281,6 @@ end:
 
 // ---- one mode
 
-/* The matrix of differential unknowns and circulations at an exponent: [A + lambda E, W; B + lambda D, W + 1]. */
-static void fill_matrix(const struct modes *modes, double complex lambda, const double complex *wake,
-                        double complex *matrix) {
-    const int slow = modes->n_slow, rows = slow + modes->n_shed;
-    for (int k = 0; k < rows * slow; k++) matrix[k] = modes->by_value[k] + lambda * modes->by_rate[k];
-    memcpy(matrix + (size_t)rows * (size_t)slow, wake, (size_t)(rows * modes->n_shed) * sizeof *wake);
-    for (int f = 0; f < modes->n_shed; f++) matrix[slow + f + rows * (slow + f)] += 1;
-}
-
-/* The derivative of the matrix by lambda, for a constant wake, times a vector. */
-static void times_rate(const struct modes *modes, const double complex *vector, double complex *product) {
-    const int slow = modes->n_slow, rows = slow + modes->n_shed;
-    for (int i = 0; i < rows; i++) product[i] = 0;
-    for (int j = 0; j < slow; j++) {
-        for (int i = 0; i < rows; i++) product[i] += modes->by_rate[i + rows * j] * vector[j];
-    }
-}
-
 /* Workspace of the continuation of one mode. */
 struct following {
     double complex *matrix;        /* (rows, rows) */
@@ -311,7 +292,7 @@ struct following {
 /* Find the exponent near lambda with this fraction (part) of the memory of the wake; *found: converged. */
 static enum status mode_solve(const struct modes *modes, struct following *at, double part, double complex *lambda,
                               int *found) {
-    const int rows = modes->n_slow + modes->n_shed;
+    const int slow = modes->n_slow, rows = slow + modes->n_shed;
     *found = 0;
     for (int iteration = 0; iteration < ITERATIONS && !*found; iteration++) {
         for (int f = 0; f < modes->n_shed; f++) {
@@ -320,14 +301,24 @@ static enum status mode_solve(const struct modes *modes, struct following *at, d
             TRY(wake_column(modes, f, *lambda, column));
             for (int i = 0; i < rows; i++) column[i] = part * column[i] + (1 - part) * still[i];
         }
-        fill_matrix(modes, *lambda, at->wake, at->matrix);
+
+        // the matrix of differential unknowns and circulations at an exponent: [A + lambda E, W; B + lambda D, W + 1]
+        for (int k = 0; k < rows * slow; k++) at->matrix[k] = modes->by_value[k] + *lambda * modes->by_rate[k];
+        memcpy(at->matrix + (size_t)rows * (size_t)slow, at->wake, (size_t)(rows * modes->n_shed) * sizeof *at->wake);
+        for (int f = 0; f < modes->n_shed; f++) at->matrix[slow + f + rows * (slow + f)] += 1;
+
         if (LAPACKE_zgetrf(LAPACK_COL_MAJOR, rows, rows, at->matrix, rows, at->pivot) != 0) {
             *found = 1;  // singular to rounding: lambda is a root
             return STATUS_OK;
         }
         double complex change = 0;
         for (int inner = 0; inner < INNER; inner++) {
-            times_rate(modes, at->vector, at->next);
+            // the derivative of the matrix by lambda, for a constant wake, times a vector
+            for (int i = 0; i < rows; i++) at->next[i] = 0;
+            for (int j = 0; j < slow; j++) {
+                for (int i = 0; i < rows; i++) at->next[i] += modes->by_rate[i + rows * j] * at->vector[j];
+            }
+
             LAPACKE_zgetrs(LAPACK_COL_MAJOR, 'N', rows, 1, at->matrix, rows, at->pivot, at->next, rows);
             double complex product = 0;
             double square = 0;

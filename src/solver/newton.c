@@ -34,15 +34,6 @@ static int jacobian_of(N_Vector u, N_Vector value, SUNMatrix matrix, void *data,
     return solver->failure == STATUS_OK ? 0 : -1;
 }
 
-static void newton_release(struct solver *solver) {
-    if (solver->kinsol) KINFree(&solver->kinsol);
-    if (solver->linear) SUNLinSolFree(solver->linear);
-    if (solver->matrix) SUNMatDestroy(solver->matrix);
-    if (solver->unknowns) N_VDestroy(solver->unknowns);
-    if (solver->scales) N_VDestroy(solver->scales);
-    sundials_context_free(&solver->context);
-}
-
 static enum status newton_set_up(struct solver *solver, double *u, double *inverse) {
     const struct newton *const problem = solver->problem;
     for (int i = 0; i < problem->n; i++) inverse[i] = 1 / problem->scale[i];
@@ -99,7 +90,13 @@ enum status newton_solve(const struct newton *problem, double *u) {
     enum status status = memory_check(inverse, "Newton's method");
     if (status == STATUS_OK) status = newton_set_up(&solver, u, inverse);
     if (status == STATUS_OK) status = solve(&solver);
-    newton_release(&solver);
+    if (solver.kinsol) KINFree(&solver.kinsol);
+    if (solver.linear) SUNLinSolFree(solver.linear);
+    if (solver.matrix) SUNMatDestroy(solver.matrix);
+    if (solver.unknowns) N_VDestroy(solver.unknowns);
+    if (solver.scales) N_VDestroy(solver.scales);
+    sundials_context_free(&solver.context);
+
     free(inverse);
     return status;
 }
@@ -117,15 +114,6 @@ static void swap(double *a, double *b) {
     const double value = *a;
     *a = *b;
     *b = value;
-}
-
-static void multipliers_sort(int n, double *real, double *imaginary) {
-    for (int i = 1; i < n; i++) {
-        for (int j = i; j > 0 && multiplier_comes_before(real, imaginary, j, j - 1); j--) {
-            swap(&real[j], &real[j - 1]);
-            swap(&imaginary[j], &imaginary[j - 1]);
-        }
-    }
 }
 
 // exchange rows and columns                                                       from (n, m), to (m, n)
@@ -186,7 +174,15 @@ static enum status multipliers_solve(const struct map *map, double *matrix, doub
     for (int i = 0; i < n; i++) {
         if (hypot(real[i], imaginary[i]) < dead_multiplier) real[i] = imaginary[i] = 0;
     }
-    multipliers_sort(n, real, imaginary);
+
+    // sort by absolute value
+    for (int i = 1; i < n; i++) {
+        for (int j = i; j > 0 && multiplier_comes_before(real, imaginary, j, j - 1); j--) {
+            swap(&real[j], &real[j - 1]);
+            swap(&imaginary[j], &imaginary[j - 1]);
+        }
+    }
+
     return STATUS_OK;
 }
 

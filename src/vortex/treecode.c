@@ -309,14 +309,6 @@ static enum status tree_pairs_find(struct tree_sources *sources, const struct tr
     return tree_expansions_allocate(&sources->multipole, sources->boxes.n_boxes);
 }
 
-// change the degrees of all pairs: -1 from gradients to velocities alone, +1 back to gradients
-static void tree_pairs_raise(struct tree_sources *sources, int by) {
-    for (int i = 0; i < sources->n_far; i++) {
-        struct expansion_order *const order = &sources->far_sorted[i].order;
-        *order = (struct expansion_order){order->harmonic + by, order->mixed + by};
-    }
-}
-
 // returns 0 for positions that are not finite: a comparison with NaN is false
 static int pair_fits(const struct tree_limits *limits, int with_gradient, double smoothing, const struct tree_box *to,
                      const struct tree_box *from, struct expansion_order order) {
@@ -581,7 +573,12 @@ void treecode_move_targets(struct treecode *tree, const double *x, const double 
 // Set the degrees of the pairs for this sum: a gradient needs one more degree. Expansions keep the allocated degrees.
 static void pairs_set_degrees(struct treecode *tree, int with_gradient) {
     for (int s = 0; s < tree->n_sets && with_gradient != tree->with_gradient; s++) {
-        tree_pairs_raise(&tree->sources[s], with_gradient - tree->with_gradient);
+        // -1 from gradients to velocities alone, +1 back to gradients
+        const int by = with_gradient - tree->with_gradient;
+        for (int i = 0; i < tree->sources[s].n_far; i++) {
+            struct expansion_order *const order = &tree->sources[s].far_sorted[i].order;
+            *order = (struct expansion_order){order->harmonic + by, order->mixed + by};
+        }
     }
     tree->with_gradient = with_gradient;
 }

@@ -197,13 +197,6 @@ static void tiles_sort(struct sorted *sorted, int n_groups, const struct vortex_
     }
 }
 
-static void sorted_free(struct sorted *sorted) {
-    free(sorted->index);
-    free(sorted->tile);
-    free(sorted->has);
-    free(sorted->memory);
-}
-
 static enum status sorted_fill(struct sorted *sorted, const struct vortices *vortices) {
     const int n = sorted->n_vortices = vortices->n;
     sorted->index = malloc((size_t)(n + 1) * sizeof *sorted->index);
@@ -309,6 +302,10 @@ enum status velocity_sum_pairwise(const struct vortices *vortices, enum pairwise
         }
     }
 
-    sorted_free(&sorted);
+    free(sorted.index);
+    free(sorted.tile);
+    free(sorted.has);
+    free(sorted.memory);
+
     return status;
 }

@@ -265,16 +265,6 @@ static void find_near_fields(const struct wake_interpolation *interpolation, con
     }
 }
 
-// targets of the sums at the four times
-static void place_targets(const struct wake_interpolation *interpolation) {
-#pragma omp for schedule(static)
-    for (int i = 0; i < N_TIMES; i++) {
-        const struct induced at = targets_at(interpolation, i);
-        predict_paths(interpolation, time_of[i] * interpolation->school->interval, interpolation->path[i]);
-        vortices_zero(&at);
-    }
-}
-
 static enum status wake_interpolation_try_build(struct wake_interpolation *interpolation, const struct wake *wakes,
                                                 double t, const struct wake_interpolation_points *points) {
     const struct school *const school = interpolation->school;
@@ -300,7 +290,15 @@ static enum status wake_interpolation_try_build(struct wake_interpolation *inter
 #pragma omp parallel num_threads(threads)
     {
         place_wakes(interpolation, wakes);
-        place_targets(interpolation);
+
+        // targets of the sums at the four times
+#pragma omp for schedule(static)
+        for (int i = 0; i < N_TIMES; i++) {
+            const struct induced at = targets_at(interpolation, i);
+            predict_paths(interpolation, time_of[i] * interpolation->school->interval, interpolation->path[i]);
+            vortices_zero(&at);
+        }
+
         find_near_fields(interpolation, wakes, &n_failed);
         if (!by_tree) sum_directly(interpolation);
         if (is_whole && n_failed == 0) subtract_all(interpolation);
