@@ -219,7 +219,7 @@ static enum status print_version(void) {
     return STATUS_OK;
 }
 
-static enum status choose(int argc, char **argv) {
+static enum status main_choose(int argc, char **argv) {
     if (argc < 2) {
         print_help(stderr);
         return status_fail(STATUS_CASE, "no command");
@@ -250,7 +250,7 @@ int main(int argc, char **argv) {
     main_open_standard();
     main_reset_signals();
     main_guard_exit();
-    enum status status = choose(argc, argv);
+    enum status status = main_choose(argc, argv);
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
         status = status_fail(STATUS_FILE, "cannot write to standard output");
     }

@@ -48,7 +48,7 @@ static void check_warnings(struct checked *checked, int member, struct simulatio
     }
 }
 
-static void print_warnings(const struct checked *checked) {
+static void check_print_warnings(const struct checked *checked) {
     for (enum warning w = 0; w < N_WARNINGS; w++) {
         const int n = checked->n_warned[w];
         if (n == 0) continue;
@@ -60,7 +60,7 @@ static void print_warnings(const struct checked *checked) {
 }
 
 // A failed member is a result of a study; a failed run without a sweep is an error.
-static enum status estimate_member(struct checked *checked, int member, struct simulation *simulation) {
+static enum status check_estimate_member(struct checked *checked, int member, struct simulation *simulation) {
     struct estimate estimate;
     const enum status status = estimate_run(simulation, patience / checked->n_members, &estimate);
 
@@ -98,7 +98,7 @@ static enum status check_start(struct checked *checked, int member, const struct
     TRY(status);
     if (checked->n_unknowns == 0) checked->n_unknowns = simulation->school->n_unknowns;
     check_warnings(checked, member, simulation);
-    status = estimate_member(checked, member, simulation);
+    status = check_estimate_member(checked, member, simulation);
     simulate_free(simulation);
     return status;
 }
@@ -191,7 +191,7 @@ enum status main_check(const struct request *request) {
 
     if (status == STATUS_OK) {
         main_print_notes(request, &values);
-        print_warnings(&checked);
+        check_print_warnings(&checked);
         if (!request->quiet) print_verdict(&checked);
     }
 

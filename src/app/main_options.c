@@ -115,7 +115,7 @@ void main_print_help(const struct command *command, FILE *stream) {
 }
 
 /* A member of an object of JSON: a string, or null. */
-static void print_string(FILE *stream, const char *before, const char *name, const char *string) {
+static void options_print_string(FILE *stream, const char *before, const char *name, const char *string) {
     fprintf(stream, "%s\"%s\": ", before, name);
     text_print_json(stream, string);
 }
@@ -124,18 +124,18 @@ static void describe_option(const struct command *command, const struct option_h
     const char letter[2] = {option->code < OPTION_SET ? (char)option->code : '\0', '\0'};
     struct text meaning = {0};
     write_meaning(command, option, &meaning);
-    print_string(stream, "{", "letter", *letter ? letter : NULL);
-    print_string(stream, ", ", "name", option->name);
-    print_string(stream, ", ", "argument", option->argument);
-    print_string(stream, ", ", "meaning", meaning.text ? meaning.text : "");
+    options_print_string(stream, "{", "letter", *letter ? letter : NULL);
+    options_print_string(stream, ", ", "name", option->name);
+    options_print_string(stream, ", ", "argument", option->argument);
+    options_print_string(stream, ", ", "meaning", meaning.text ? meaning.text : "");
     fputs("}", stream);
     text_free(&meaning);
 }
 
 void main_describe(const struct command *command, FILE *stream) {
-    print_string(stream, "{", "name", command->name);
-    print_string(stream, ", ", "positional", command->positional);
-    print_string(stream, ", ", "summary", command->summary);
+    options_print_string(stream, "{", "name", command->name);
+    options_print_string(stream, ", ", "positional", command->positional);
+    options_print_string(stream, ", ", "summary", command->summary);
     fputs(", \"options\": [", stream);
 
     for (int i = 0; command->options[i]; i++) {

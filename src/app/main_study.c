@@ -30,7 +30,7 @@ static enum status read_count(const char *option, const char *text, int *count) 
 }
 
 /* Read the value of an option: a positive number; the default if the option is absent. */
-static enum status read_number(const char *option, const char *text, double standard, double *number) {
+static enum status study_read_number(const char *option, const char *text, double standard, double *number) {
     char *end = NULL;
     *number = text ? strtod(text, &end) : standard;
     if (*number > 0 && (!text || (end != text && *end == '\0'))) return STATUS_OK;
@@ -56,7 +56,7 @@ static enum status study_options_from(const struct request *request, const char 
                                       .data = progress,
                                       .stop = main_stop_signal()};
     if (request->processes) TRY(read_count("-j", request->processes, &options->n_processes));
-    if (request->limit) TRY(read_number("--limit", request->limit, 0, &options->limit));
+    if (request->limit) TRY(study_read_number("--limit", request->limit, 0, &options->limit));
     if (request->members) TRY(read_range(request->members, &options->first, &options->last));
     if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
     return STATUS_OK;
@@ -148,7 +148,8 @@ static enum status write_scripts(const struct case_values *values, const char *f
     return say_end(&page, stdout, study_slurm(values, folder, bundle, page.stream));
 }
 
-static enum status run_in_folder(const struct case_values *values, const struct request *request, const char *ending) {
+static enum status study_run_in_folder(const struct case_values *values, const struct request *request,
+                                       const char *ending) {
     char folder[512];
     const char *const slash = strrchr(request->positional, '/'), *const file = slash ? slash + 1 : request->positional,
                       *const dot = strrchr(file, '.');
@@ -167,7 +168,7 @@ static enum status run_in_folder(const struct case_values *values, const struct 
 enum status main_study(const struct request *request) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    const enum status status = run_in_folder(&values, request, "-study");
+    const enum status status = study_run_in_folder(&values, request, "-study");
     case_free(&values);
     return status;
 }
@@ -190,7 +191,7 @@ static enum status assign_errors(const struct case_values *values, const struct 
                            request->positional);
     }
 
-    if (request->within) TRY(read_number("--within", request->within, 0, &error.within));
+    if (request->within) TRY(study_read_number("--within", request->within, 0, &error.within));
     if (request->no_confirm) error.confirm = 0;
     text_add(&text, "error=");
     sweep_error_write(&text, &error);
@@ -216,7 +217,7 @@ enum status main_error(const struct request *request) {
     status = case_read(&values, request->positional, with_errors.n_assignments, with_errors.assignments);
 
     if (status == STATUS_OK) {
-        status = run_in_folder(&values, &with_errors, "-error");
+        status = study_run_in_folder(&values, &with_errors, "-error");
         case_free(&values);
     }
 
@@ -259,8 +260,8 @@ enum status main_compare(const struct request *request) {
                                             .path = request->output};
     double limit;
     if (request->repeats) TRY(read_count("--repeats", request->repeats, &options.repeats));
-    TRY(read_number("--reference-rtol", request->reference_rtol, 1e-9, &options.reference_rtol));
-    TRY(read_number("--limit", request->limit, 60, &limit));
+    TRY(study_read_number("--reference-rtol", request->reference_rtol, 1e-9, &options.reference_rtol));
+    TRY(study_read_number("--limit", request->limit, 60, &limit));
     if (request->output) TRY(target_check(request->output, TARGET_NETCDF, request->force));
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));

@@ -163,7 +163,7 @@ static char lower_case(char c) {
     return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
-static int smaller(int a, int b) {
+static int text_smaller(int a, int b) {
     return a < b ? a : b;
 }
 
@@ -177,10 +177,10 @@ int text_distance(const char *a, size_t n, const char *b, size_t m) {
     for (size_t i = 1; i <= n; i++) {
         for (size_t j = 1; j <= m; j++) {
             const int change = d[i - 1][j - 1] + (lower_case(a[i - 1]) != lower_case(b[j - 1]));
-            d[i][j] = smaller(change, smaller(d[i - 1][j], d[i][j - 1]) + 1);
+            d[i][j] = text_smaller(change, text_smaller(d[i - 1][j], d[i][j - 1]) + 1);
             const bool is_swap = i > 1 && j > 1 && lower_case(a[i - 1]) == lower_case(b[j - 2]) &&
                                  lower_case(a[i - 2]) == lower_case(b[j - 1]);
-            if (is_swap) d[i][j] = smaller(d[i][j], d[i - 2][j - 2] + 1);
+            if (is_swap) d[i][j] = text_smaller(d[i][j], d[i - 2][j - 2] + 1);
         }
     }
 

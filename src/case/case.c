@@ -146,7 +146,7 @@ static enum status check_default_values(struct reading *reading) {
 }
 
 /* Read the values from the tree. Errors of the case are added to the list; fails with STATUS_MEMORY only. */
-static enum status read_values(struct reading *reading, struct case_values *values) {
+static enum status case_read_values(struct reading *reading, struct case_values *values) {
     const struct case_tree *const tree = &reading->tree;
     const int n_before = reading->errors.n, n_fish = case_merge_n_fish(tree);
     check_keys(tree->root, "", "", NULL, &reading->errors);
@@ -226,7 +226,7 @@ static enum status finish_reading(struct reading *reading, enum status status, s
         for (int i = 0; i < n_assignments && status == STATUS_OK; i++) {
             status = case_merge_assign(&reading->tree, assignments[i], &reading->errors);
         }
-        if (status == STATUS_OK) status = read_values(reading, values);
+        if (status == STATUS_OK) status = case_read_values(reading, values);
         if (status == STATUS_OK && reading->errors.n == 0) status = keep_texts(values, &reading->tree);
     }
 
@@ -272,8 +272,8 @@ void case_free(struct case_values *values) {
 // ---- the case of a member
 
 /* Read the case of a member and store the number of the member. */
-static enum status read_member(struct case_values *values, const struct case_values *study, int member,
-                               int n_assignments, char **assignments) {
+static enum status case_read_member(struct case_values *values, const struct case_values *study, int member,
+                                    int n_assignments, char **assignments) {
     const enum status status = case_parse(values, study->merged, strlen(study->merged), study->name, NULL,
                                           n_assignments, (const char *const *)assignments);
     if (status == STATUS_CASE) {
@@ -314,7 +314,7 @@ enum status case_member(struct case_values *values, const struct case_values *st
         status = memory_copy_string(&assignments[n++], no_study, "the values of a member");
     }
 
-    if (status == STATUS_OK) status = read_member(values, study, member, n, assignments);
+    if (status == STATUS_OK) status = case_read_member(values, study, member, n, assignments);
     for (int i = 0; i < n; i++) free(assignments[i]);
     free(assignments);
     return status;

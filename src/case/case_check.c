@@ -283,7 +283,7 @@ static bool is_given(const struct check *check, const char *path) {
 }
 
 /* True if a key is present in the fish or under defaults.fish. */
-static bool is_written(const struct check *check, const char *path) {
+static bool check_is_written(const struct check *check, const char *path) {
     bool is_default;
     return case_merge_value(check->tree, path, check->index, &is_default) != NULL;
 }
@@ -291,7 +291,7 @@ static bool is_written(const struct check *check, const char *path) {
 /* Require a list of a table profile to have one value per edge; refuse the list for other profiles. */
 static void check_edge_list(const struct check *check, const char *path, const struct number_list *list) {
     const int profile = (int)check->fish->body.profile, nodes = check->fish->nodes;
-    const bool is_read = list->n > 0 || !is_written(check, path);
+    const bool is_read = list->n > 0 || !check_is_written(check, path);
     complain_if(profile == PROFILE_TABLE && nodes > 0 && is_read && list->n != nodes - 1, check, path,
                 "'profile: table' needs one value per edge, %d for %d nodes; got %d", nodes - 1, nodes, list->n);
     complain_if(profile >= 0 && profile != PROFILE_TABLE && list->n > 0, check, path,
@@ -311,8 +311,8 @@ static void check_body(const struct check *check) {
 static void check_wave_form(const struct check *check) {
     const struct number_list *const table = &check->fish->wave.table;
     static const char number[] = "fish.wave.number", wavelength[] = "fish.wave.wavelength";
-    const bool has_length = is_written(check, wavelength);
-    complain_if(has_length && is_written(check, number), check, wavelength,
+    const bool has_length = check_is_written(check, wavelength);
+    complain_if(has_length && check_is_written(check, number), check, wavelength,
                 "sets wave.number too: remove wavelength or number");
     complain_if(table->n == 1, check, "fish.wave.table", "needs at least two rows, from nose to tail");
     complain_if(table->n > 0 && is_given(check, number), check, has_length ? wavelength : number,

@@ -29,7 +29,7 @@ static bool is_about(const struct key *key, const char *word) {
     return false;
 }
 
-static int print_text(FILE *stream, const char *about) {
+static int keys_print_text(FILE *stream, const char *about) {
     int n = 0;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
@@ -59,12 +59,12 @@ static int print_text(FILE *stream, const char *about) {
 }
 
 /* Print a member of an object of JSON: a string, or null. */
-static void print_string(FILE *stream, const char *before, const char *name, const char *text) {
+static void keys_print_string(FILE *stream, const char *before, const char *name, const char *text) {
     fprintf(stream, "%s\"%s\": ", before, name);
     text_print_json(stream, text);
 }
 
-static int print_json(FILE *stream, const char *about) {
+static int keys_print_json(FILE *stream, const char *about) {
     int n = 0;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
@@ -72,19 +72,19 @@ static int print_json(FILE *stream, const char *about) {
         struct text range = {0};
         case_table_range(key, &range);
         fprintf(stream, "%s{\"path\": \"%s\"", n++ > 0 ? ",\n " : "[", key->path);
-        print_string(stream, ", ", "type", case_table_type(key));
-        print_string(stream, ", ", "default", key->initial);
-        print_string(stream, ", ", "derived", key->derived);
-        print_string(stream, ", ", "published", key->published);
-        print_string(stream, ", ", "range", range.text ? range.text : "");
-        print_string(stream, ", ", "unit", key->unit);
-        print_string(stream, ", ", "meaning", key->meaning);
+        keys_print_string(stream, ", ", "type", case_table_type(key));
+        keys_print_string(stream, ", ", "default", key->initial);
+        keys_print_string(stream, ", ", "derived", key->derived);
+        keys_print_string(stream, ", ", "published", key->published);
+        keys_print_string(stream, ", ", "range", range.text ? range.text : "");
+        keys_print_string(stream, ", ", "unit", key->unit);
+        keys_print_string(stream, ", ", "meaning", key->meaning);
 
         // "words": the meaning of each method
         for (int i = 0; i < methods_n && key->type == METHOD; i++) {
             char text[METHOD_BYTES];
             describe_method(&methods_table[i], text, sizeof text);
-            print_string(stream, i > 0 ? ", " : ", \"words\": {", methods_table[i].word, text);
+            keys_print_string(stream, i > 0 ? ", " : ", \"words\": {", methods_table[i].word, text);
         }
         if (key->type == METHOD) fprintf(stream, "}");
 
@@ -104,7 +104,7 @@ static int print_json(FILE *stream, const char *about) {
 }
 
 int case_keys(FILE *stream, int as_json, const char *word) {
-    return as_json ? print_json(stream, word) : print_text(stream, word);
+    return as_json ? keys_print_json(stream, word) : keys_print_text(stream, word);
 }
 
 // ---- JSON schema: sections become objects, keys become properties

@@ -31,7 +31,7 @@ static const char what[] = "reading the case file"; /* in messages on memory */
 // ---- sources
 
 /* Add an empty source, owned by the tree. */
-static enum status add_source(struct case_tree *tree, const char *name, struct yaml_source **source) {
+static enum status merge_add_source(struct case_tree *tree, const char *name, struct yaml_source **source) {
     TRY(MEMORY_RESIZE(tree->source, tree->n_sources + 1, what));
     TRY(MEMORY_NEW(*source, 1, what));
     (*source)->rank = tree->n_sources;
@@ -139,7 +139,7 @@ static enum status include_file(struct case_tree *tree, const struct yaml_node *
     text_add(&path, "%.*s%s", slash ? (int)(slash - folder) + 1 : 0, folder, node->text);
     use_shared(node->text, &path);
     struct yaml_source *source = NULL;
-    enum status status = path.failed ? memory_check(NULL, what) : add_source(tree, path.text, &source);
+    enum status status = path.failed ? memory_check(NULL, what) : merge_add_source(tree, path.text, &source);
     text_free(&path);
     TRY(status);
 
@@ -218,8 +218,8 @@ static enum status read_source(struct case_tree *tree, const struct yaml_source 
 }
 
 /* Read the case file and the included files. */
-static enum status read_case(struct case_tree *tree, const char *folder, const struct open_file *self,
-                             struct yaml_errors *errors) {
+static enum status merge_read_case(struct case_tree *tree, const char *folder, const struct open_file *self,
+                                   struct yaml_errors *errors) {
     struct yaml_node *root = NULL;
     const enum status status = read_source(tree, tree->source[0], folder, self, errors, &root);
     if (status == STATUS_OK && errors->n == 0) {
@@ -232,18 +232,18 @@ static enum status read_case(struct case_tree *tree, const char *folder, const s
 
 enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors) {
     struct yaml_source *source;
-    TRY(add_source(tree, path, &source));
+    TRY(merge_add_source(tree, path, &source));
     struct open_file self = {0};
     const enum status status = read_file(path, source, &self);
     if (status == STATUS_FILE) return status_fail(STATUS_FILE, "%s: error: the case file %s", path, status_message());
     TRY(status);
-    return read_case(tree, path, &self, errors);
+    return merge_read_case(tree, path, &self, errors);
 }
 
 enum status case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
                                  const char *folder, struct yaml_errors *errors) {
     struct yaml_source *source;
-    TRY(add_source(tree, origin, &source));
+    TRY(merge_add_source(tree, origin, &source));
     TRY(MEMORY_NEW(source->own_text, length + 1, what));
     memcpy(source->own_text, text, length);
     source->text = source->own_text;
@@ -251,7 +251,8 @@ enum status case_merge_read_text(struct case_tree *tree, const char *text, size_
     struct text place = {0};
     text_add(&place, "%s%s", folder ? folder : "", folder && *folder ? "/" : "");
     const struct open_file self = {0};
-    const enum status status = place.failed ? memory_check(NULL, what) : read_case(tree, place.text, &self, errors);
+    const enum status status =
+        place.failed ? memory_check(NULL, what) : merge_read_case(tree, place.text, &self, errors);
     text_free(&place);
     return status;
 }
@@ -331,7 +332,7 @@ enum status case_merge_assign(struct case_tree *tree, const char *assignment, st
     struct text title = {0};
     text_add(&title, "--set %s", assignment);
     struct yaml_source *source = NULL;
-    enum status status = title.failed ? memory_check(NULL, what) : add_source(tree, title.text, &source);
+    enum status status = title.failed ? memory_check(NULL, what) : merge_add_source(tree, title.text, &source);
     text_free(&title);
     if (status != STATUS_OK) goto free_name;
 

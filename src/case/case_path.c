@@ -30,7 +30,7 @@ static const struct {
      "'laminar'"},
 };
 
-static int smaller(int a, int b) {
+static int case_path_smaller(int a, int b) {
     return a < b ? a : b;
 }
 
@@ -39,7 +39,7 @@ static int distance_to_any(const char *word, const char *words) {
     int distance = INT_MAX;
     while (words && *words) {
         const size_t length = strcspn(words, " ");
-        distance = smaller(distance, text_distance(word, strlen(word), words, length));
+        distance = case_path_smaller(distance, text_distance(word, strlen(word), words, length));
         words += length + strspn(words + length, " ");
     }
     return distance;
@@ -70,7 +70,7 @@ static void keep_nearer(struct candidate *best, const struct key *key, size_t en
 
     one.distance = text_distance(word, strlen(word), one.word, strlen(one.word));
     const bool is_leaf = key->path[end] == '\0';
-    if (is_leaf) one.distance = smaller(one.distance, distance_to_any(word, key->synonyms));
+    if (is_leaf) one.distance = case_path_smaller(one.distance, distance_to_any(word, key->synonyms));
     one.remoteness = remoteness_of(one.section, section);
     const bool is_nearer = one.distance < best->distance;
     if (is_nearer || (one.distance == best->distance && one.remoteness < best->remoteness)) *best = one;
@@ -171,7 +171,7 @@ static void suggest_key(struct text *hint, const char *section, const char *word
     }
 
     const int length = (int)strnlen(word, WORD);
-    const int allowed = length < 4 ? length / 2 : smaller(3, length / 3);
+    const int allowed = length < 4 ? length / 2 : case_path_smaller(3, length / 3);
 
     if (best.distance > allowed) {
         add_words(hint, section);

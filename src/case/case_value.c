@@ -90,7 +90,8 @@ static bool read_any(const struct context *context, const struct yaml_node *node
 }
 
 /* The same in the range of the key. */
-static bool read_number(const struct context *context, const struct yaml_node *node, const char *what, double *value) {
+static bool value_read_number(const struct context *context, const struct yaml_node *node, const char *what,
+                              double *value) {
     double number;
     if (!read_any(context, node, what, &number)) return false;
     if (!is_in(&context->key->bounds, number)) {
@@ -109,7 +110,7 @@ static void read_duration(const struct context *context, const struct yaml_node 
     if (!word || (strcmp(word, " beats") != 0 && strcmp(word, " beat") != 0) ||
         (size_t)(word - node->text) >= sizeof digits) {
         const struct context in_seconds = {context->key, context->path, "", context->errors};
-        read_number(&in_seconds, node, form, &duration->seconds);
+        value_read_number(&in_seconds, node, form, &duration->seconds);
         return;
     }
     snprintf(digits, sizeof digits, "%.*s", (int)(word - node->text), node->text);
@@ -118,7 +119,7 @@ static void read_duration(const struct context *context, const struct yaml_node 
     struct key in_beats = *context->key;
     in_beats.unit = "beats";
     const struct context of_number = {&in_beats, context->path, "", context->errors};
-    read_number(&of_number, &number, form, &duration->beats);
+    value_read_number(&of_number, &number, form, &duration->beats);
 }
 
 /* True for a sign and digits only. */
@@ -166,7 +167,7 @@ static bool has_control(const char *text) {
     return strstr(text, "\xC2\x85") || strstr(text, "\xE2\x80\xA8") || strstr(text, "\xE2\x80\xA9");
 }
 
-static enum status read_string(const struct context *context, const struct yaml_node *node, char **value) {
+static enum status value_read_string(const struct context *context, const struct yaml_node *node, char **value) {
     if (node->kind != YAML_SCALAR || node->text[0] == '\0') {
         report_form(context, node, "a string", "");
     } else if (has_control(node->text)) {
@@ -193,15 +194,16 @@ static bool read_pair(const struct context *context, const struct yaml_node *nod
 
     // the bounds apply to the angles, not to the times
     const bool has_time = context->key->type == HEADING;
-    if (!(has_time ? read_any : read_number)(context, node->entry[0].value, what, &pair[0])) return false;
-    if (!read_number(context, node->entry[1].value, what, &pair[1])) return false;
+    if (!(has_time ? read_any : value_read_number)(context, node->entry[0].value, what, &pair[0])) return false;
+    if (!value_read_number(context, node->entry[1].value, what, &pair[1])) return false;
     value[0] = pair[0];
     value[1] = pair[1];
     return true;
 }
 
 /* Read a list of numbers or of pairs. */
-static enum status read_list(const struct context *context, const struct yaml_node *node, struct number_list *list) {
+static enum status value_read_list(const struct context *context, const struct yaml_node *node,
+                                   struct number_list *list) {
     char shown[64];
     if (node->kind != YAML_LIST) {
         yaml_errors_add(context->errors, node->mark, "%s: expects a %s, got %s", context->path,
@@ -224,8 +226,8 @@ static enum status read_list(const struct context *context, const struct yaml_no
     bool is_good = true;
     for (int i = 0; i < node->n; i++) {
         const struct yaml_node *const one = node->entry[i].value;
-        is_good &=
-            type == NUMBERS ? read_number(context, one, form, &value[i]) : read_pair(context, one, form, &value[2 * i]);
+        is_good &= type == NUMBERS ? value_read_number(context, one, form, &value[i])
+                                   : read_pair(context, one, form, &value[2 * i]);
     }
 
     if (is_good) {
@@ -266,7 +268,7 @@ static enum status read_rows(const struct context *context, const struct yaml_no
                             context->path, width, yaml_tree_describe(row, shown, sizeof shown));
         }
         for (int k = 0; k < width && is_row; k++) {
-            is_row = read_number(context, row->entry[k].value, "rows of numbers", &value[i * width + k]);
+            is_row = value_read_number(context, row->entry[k].value, "rows of numbers", &value[i * width + k]);
         }
         is_good &= is_row;
     }
@@ -287,9 +289,9 @@ static enum status read_heading(const struct context *context, const struct yaml
         return STATUS_OK;
     }
 
-    if (node->kind == YAML_LIST) return read_list(context, node, list);
+    if (node->kind == YAML_LIST) return value_read_list(context, node, list);
     double angle;
-    if (!read_number(context, node, "a number in degree or a list of [time in s, angle in degree]", &angle)) {
+    if (!value_read_number(context, node, "a number in degree or a list of [time in s, angle in degree]", &angle)) {
         return STATUS_OK;
     }
     double *pair;
@@ -305,15 +307,15 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
     const struct context context = {key, path, unit, errors};
 
     switch (key->type) {
-        case REAL: read_number(&context, node, "a number", field); break;
+        case REAL: value_read_number(&context, node, "a number", field); break;
         case DURATION: read_duration(&context, node, field); break;
         case INTEGER: read_integer(&context, node, field); break;
         case CHOICE:
         case METHOD: read_choice(&context, node, field); break;
-        case STRING: return read_string(&context, node, field);
+        case STRING: return value_read_string(&context, node, field);
         case PAIR: read_pair(&context, node, "two numbers [x, y]", field); break;
         case NUMBERS:
-        case PAIRS: return read_list(&context, node, field);
+        case PAIRS: return value_read_list(&context, node, field);
         case ROWS: return read_rows(&context, node, field);
         case HEADING: return read_heading(&context, node, field);
         case FILES:
@@ -336,7 +338,7 @@ static void write_pair(struct text *text, const double pair[2]) {
     text_add(text, "]");
 }
 
-static void write_list(struct text *text, const struct number_list *list, bool is_of_pairs) {
+static void value_write_list(struct text *text, const struct number_list *list, bool is_of_pairs) {
     text_add(text, "[");
     for (int i = 0; i < list->n; i++) {
         if (i > 0) text_add(text, ", ");
@@ -350,10 +352,10 @@ static void write_list(struct text *text, const struct number_list *list, bool i
     text_add(text, "]");
 }
 
-static void write_rows(struct text *text, const struct number_list *list) {
+static void value_write_rows(struct text *text, const struct number_list *list) {
     for (int i = 0; i < list->n; i++) {
         text_add(text, i == 0 ? "[" : ", ");
-        write_list(text, &(struct number_list){.n = list->width, .value = &list->value[i * list->width]}, false);
+        value_write_list(text, &(struct number_list){.n = list->width, .value = &list->value[i * list->width]}, false);
     }
     text_add(text, list->n > 0 ? "]" : "[]");
 }
@@ -367,10 +369,10 @@ void case_value_write(struct text *text, const struct key *key, const void *fiel
         case METHOD: text_add(text, "%s", case_table_word(key, *(const int *)field)); break;
         case STRING: yaml_write_scalar(text, *(char *const *)field); break;
         case PAIR: write_pair(text, field); break;
-        case NUMBERS: write_list(text, field, false); break;
-        case ROWS: write_rows(text, field); break;
+        case NUMBERS: value_write_list(text, field, false); break;
+        case ROWS: value_write_rows(text, field); break;
         case PAIRS:
-        case HEADING: write_list(text, field, true); break;
+        case HEADING: value_write_list(text, field, true); break;
         case FILES:
         case DEFAULTS:
         case AXES:

@@ -69,7 +69,8 @@ static enum status read_of(struct sweep_error *error, const struct yaml_node *of
 }
 
 /* The row of a key: "nodes", "fish.nodes" or "fish[*].nodes"; NULL after an error. */
-static const struct sweep_error_key *find_key(const char *name, struct yaml_mark mark, struct yaml_errors *errors) {
+static const struct sweep_error_key *error_find_key(const char *name, struct yaml_mark mark,
+                                                    struct yaml_errors *errors) {
     for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
         const char *const path = sweep_error_keys[i].path, *const last = strrchr(path, '.') + 1;
         const int is_of_every = strncmp(path, "fish.", 5) == 0 && strncmp(name, "fish[*].", 8) == 0;
@@ -126,7 +127,7 @@ static enum status read_keys(struct sweep_error *error, const struct yaml_node *
             continue;
         }
         const struct sweep_error_key *const key =
-            find_key(is_map ? entry->key : entry->value->text, is_map ? entry->mark : entry->value->mark, errors);
+            error_find_key(is_map ? entry->key : entry->value->text, is_map ? entry->mark : entry->value->mark, errors);
         for (int j = 0; j < error->n_keys && key; j++) {
             if (error->levels[j].key != key) continue;
             yaml_errors_add(errors, entry->value->mark, "error.keys: '%s' is there twice", key->path);

@@ -68,8 +68,8 @@ int sweep_expects_of(const struct case_values *study, const struct sweep_expecta
 }
 
 /* Find the key of the sweep that a condition "path=value" is about; false if there is none. */
-static bool find_key(const struct case_values *values, const char *text, size_t length,
-                     struct sweep_condition *condition) {
+static bool expect_find_key(const struct case_values *values, const char *text, size_t length,
+                            struct sweep_condition *condition) {
     for (int a = 0; a < values->n_axes; a++) {
         for (int k = 0; k < values->sweep[a].n_keys; k++) {
             const char *const path = values->sweep[a].key[k].path;
@@ -96,7 +96,7 @@ static enum status read_where(const struct reading *reading, const struct yaml_n
         const struct yaml_node *const node = list->entry[i].value;
         const char *const equals = node->kind == YAML_SCALAR ? strchr(node->text, '=') : NULL;
         struct sweep_condition *const condition = &reading->into->where[reading->into->n_where];
-        if (!equals || !find_key(reading->values, node->text, (size_t)(equals - node->text), condition)) {
+        if (!equals || !expect_find_key(reading->values, node->text, (size_t)(equals - node->text), condition)) {
             yaml_errors_add(reading->errors, node->mark,
                             "%s.where: expects PATH=VALUE with a key of the sweep, as in \"solver.method=ida\"",
                             reading->name);
@@ -112,7 +112,7 @@ static enum status read_where(const struct reading *reading, const struct yaml_n
 // ---- quantities and bounds
 
 /* Read a number of the expectation; NaN if absent. */
-static double read_number(const struct reading *reading, const char *name, double min) {
+static double expect_read_number(const struct reading *reading, const char *name, double min) {
     const struct yaml_node *const node = yaml_tree_find(reading->node, name);
     double number;
     if (!node) return NAN;
@@ -126,7 +126,7 @@ static double read_number(const struct reading *reading, const char *name, doubl
 }
 
 /* Read "fish". */
-static void read_fish(const struct reading *reading, const struct yaml_node *node) {
+static void expect_read_fish(const struct reading *reading, const struct yaml_node *node) {
     for (int f = 0; f < reading->values->school.n_fish; f++) {
         const char *const name = reading->values->school.fish[f].name;
         if (node->kind == YAML_SCALAR && name && strcmp(name, node->text) == 0) reading->into->fish = f;
@@ -139,10 +139,10 @@ static void read_fish(const struct reading *reading, const struct yaml_node *nod
 static void read_bounds(const struct reading *reading, const struct yaml_node *of) {
     struct sweep_expectation *const into = reading->into;
     if (of) into->of = sweep_quantities_read(of, reading->name, SWEEP_N_QUANTITIES, reading->errors);
-    into->min = read_number(reading, "least", -INFINITY);
-    into->max = read_number(reading, "most", -INFINITY);
-    into->spread = read_number(reading, "spread", 0);
-    into->ratio = read_number(reading, "ratio", 1);
+    into->min = expect_read_number(reading, "least", -INFINITY);
+    into->max = expect_read_number(reading, "most", -INFINITY);
+    into->spread = expect_read_number(reading, "spread", 0);
+    into->ratio = expect_read_number(reading, "ratio", 1);
     const bool has_bound = yaml_tree_find(reading->node, "least") || yaml_tree_find(reading->node, "most") ||
                            yaml_tree_find(reading->node, "spread") || yaml_tree_find(reading->node, "ratio");
 
@@ -194,7 +194,7 @@ static enum status read_expectation(const struct reading *reading) {
     } else {
         yaml_tree_check_keys(reading->node, reading->name, "of, fish, where, least, most, spread, ratio, fails",
                              reading->errors);
-        if (fish) read_fish(reading, fish);
+        if (fish) expect_read_fish(reading, fish);
         read_bounds(reading, yaml_tree_find(reading->node, "of"));
     }
 

@@ -336,7 +336,7 @@ static enum status read_scalar(struct reader *reader, const yaml_event_t *event,
     return memory_copy_string(&(*node)->text, text, what);
 }
 
-static enum status read_list(struct reader *reader, int depth, struct yaml_node *list) {
+static enum status yaml_read_list(struct reader *reader, int depth, struct yaml_node *list) {
     for (;;) {
         yaml_event_t event;
         TRY(next_event(reader, &event));
@@ -357,7 +357,8 @@ static enum status read_list(struct reader *reader, int depth, struct yaml_node 
 }
 
 /* Read a value and append the value under the key, unless the key is refused. */
-static enum status read_value(struct reader *reader, int depth, struct yaml_node *map, const struct yaml_node *key) {
+static enum status yaml_read_value(struct reader *reader, int depth, struct yaml_node *map,
+                                   const struct yaml_node *key) {
     yaml_event_t event;
     TRY(next_event(reader, &event));
     struct yaml_node *value = NULL;
@@ -398,7 +399,7 @@ static enum status read_map(struct reader *reader, int depth, struct yaml_node *
             yaml_errors_add(reader->errors, mark, "more than %d keys in one map", YAML_TREE_KEYS);
             status = STATUS_CASE;
         }
-        if (status == STATUS_OK) status = read_value(reader, depth, map, key);
+        if (status == STATUS_OK) status = yaml_read_value(reader, depth, map, key);
         yaml_tree_free(key);
         TRY(status);
     }
@@ -428,7 +429,7 @@ static enum status read_node(struct reader *reader, const yaml_event_t *event, i
     }
 
     refuse_extras(reader, mark, event->data.sequence_start.anchor, event->data.sequence_start.tag);
-    return read_list(reader, depth + 1, *node);
+    return yaml_read_list(reader, depth + 1, *node);
 }
 
 /* Read the only document of a stream. */

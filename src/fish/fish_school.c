@@ -266,7 +266,7 @@ static enum status sheet_set(struct fish *fish, const struct sheet_parameters *s
 }
 
 // w and dw/du at u: monotone cubics between edge midpoints, slope 0 at both ends, constant beyond
-static void strip_depth_at(const struct fish *fish, double u, double *depth, double *slope) {
+static void school_strip_depth_at(const struct fish *fish, double u, double *depth, double *slope) {
     const double *const w = fish->depth, from = fmin(fmax(u - 0.5, 0), fish->n_edges - 1);
     const int k = (int)fmin(from, fish->n_edges - 2);
     double tangent[2] = {0, 0};
@@ -286,7 +286,7 @@ static void strip_depth_at(const struct fish *fish, double u, double *depth, dou
 
 static double strip_half(const struct fish *fish, double u) {
     double depth, slope;
-    strip_depth_at(fish, u, &depth, &slope);
+    school_strip_depth_at(fish, u, &depth, &slope);
     return depth * depth / 32;
 }
 
@@ -303,7 +303,7 @@ static enum status strip_set(struct fish *fish) {
 
     for (int c = 0; c < fish->n_control; c++) {
         double depth, slope;
-        strip_depth_at(fish, cosine_place(fish, c + 0.5) * fish->n_edges, &depth, &slope);
+        school_strip_depth_at(fish, cosine_place(fish, c + 0.5) * fish->n_edges, &depth, &slope);
         fish->point_half[c] = depth * depth / 32;
         fish->control_widening[c] = depth * slope / 16;
     }

@@ -96,8 +96,8 @@ static struct range overlap(const struct chunk *chunk, struct range range) {
 
 // add the velocity of the own bound sheet, with one smoothing and the given circulations, at a range of points of the
 // fish
-static void induce_own(const struct flow *flow, const struct chunk *chunk, struct range points, double smoothing,
-                       double *circulation, const struct induced *all) {
+static void bodies_induce_own(const struct flow *flow, const struct chunk *chunk, struct range points, double smoothing,
+                              double *circulation, const struct induced *all) {
     const struct range which = overlap(chunk, points);
     if (which.n <= 0) return;
     const struct vortices sheet = {.n = flow->sheet.n,
@@ -119,11 +119,11 @@ static void induce_sheets(const struct flow *flow, const struct chunk *chunk, co
     const struct range own = flow->sheet_range[chunk->fish], points = flow->points[chunk->fish];
     const struct range control = {points.first, fish->n_control}, tail = {points.first + flow_tail(fish), 1};
 
-    induce_own(flow, chunk, control, 0, flow->sheet.circulation, all);
+    bodies_induce_own(flow, chunk, control, 0, flow->sheet.circulation, all);
     if (class->sheet_by_tree) {
         // the tree has summed all sheets at all points: subtract the own sheet
         const struct range but_tail = {points.first, points.n - 1};
-        induce_own(flow, chunk, but_tail, fish->sheet_smoothing, flow->opposite, all);
+        bodies_induce_own(flow, chunk, but_tail, fish->sheet_smoothing, flow->opposite, all);
         return;
     }
 
@@ -131,7 +131,7 @@ static void induce_sheets(const struct flow *flow, const struct chunk *chunk, co
     const int behind = own.first + own.n;
     vortices_induce(&class->sheet, (struct range){0, own.first}, &at);
     vortices_induce(&class->sheet, (struct range){behind, flow->sheet.n - behind}, &at);
-    induce_own(flow, chunk, tail, fish->sheet_smoothing, flow->sheet.circulation, all);
+    bodies_induce_own(flow, chunk, tail, fish->sheet_smoothing, flow->sheet.circulation, all);
 }
 
 // correction of the own free sheet at the control points of a fish

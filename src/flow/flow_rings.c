@@ -66,8 +66,8 @@ static struct range range_overlap(struct range one, struct range other) {
 }
 
 // own body and own wake
-static void induce_own(const struct flow *flow, const struct chunk *chunk, const struct ring_targets *all,
-                       const double *half, int with_gradient) {
+static void flow_rings_induce_own(const struct flow *flow, const struct chunk *chunk, const struct ring_targets *all,
+                                  const double *half, int with_gradient) {
     const struct fish *const fish = &flow->school->fish[chunk->fish];
     const struct fish_rings *const of = &flow->rings->fish[chunk->fish];
     const struct range points = flow->points[chunk->fish];
@@ -119,7 +119,7 @@ static void induce_others(const struct flow *flow, int f, const struct ring_targ
 void flow_rings_at_chunk(const struct flow *flow, const struct chunk *chunk, int with_gradient) {
     const struct fish *const fish = &flow->school->fish[chunk->fish];
     const struct ring_targets all = ring_body_targets(flow, with_gradient);
-    induce_own(flow, chunk, &all, fish->point_half, with_gradient);
+    flow_rings_induce_own(flow, chunk, &all, fish->point_half, with_gradient);
 
     struct ring_targets at = ring_targets_part(&all, chunk->at);
     at.half = fish->point_half + chunk->at.first - flow->points[chunk->fish].first;

@@ -40,7 +40,7 @@ void fluid_force_residual(const struct fish *fish, const struct flow_at_body *fl
     }
 }
 
-static double moment_about(const double place[2], const double about[2], const double force[2]) {
+static double fluid_force_moment_about(const double place[2], const double about[2], const double force[2]) {
     return (place[0] - about[0]) * force[1] - (place[1] - about[1]) * force[0];
 }
 
@@ -49,8 +49,8 @@ struct fluid_forces fluid_force_of_edge(const struct fish *fish, const struct fl
     const struct edge_forces on = forces_of_edge(fish, flow, k, y);
     struct fluid_forces forces = {.resistive = {on.drag[0], on.drag[1]},
                                   .friction = {on.friction[0], on.friction[1]},
-                                  .resistive_moment = moment_about(on.edge.middle, about, on.drag),
-                                  .friction_moment = moment_about(on.edge.middle, about, on.friction)};
+                                  .resistive_moment = fluid_force_moment_about(on.edge.middle, about, on.drag),
+                                  .friction_moment = fluid_force_moment_about(on.edge.middle, about, on.friction)};
 
     for (int end = 0; end < 2; end++) {
         const double node[2] = {y[edge_place(fish, 0, k + end)], y[edge_place(fish, 1, k + end)]};
@@ -60,7 +60,7 @@ struct fluid_forces fluid_force_of_edge(const struct fish *fish, const struct fl
             forces.reactive[i] += force[i];
         }
 
-        forces.reactive_moment += moment_about(node, about, force);
+        forces.reactive_moment += fluid_force_moment_about(node, about, force);
     }
 
     return forces;

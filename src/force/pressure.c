@@ -449,7 +449,7 @@ static double tail_kink(const struct fish *fish, const double *y) {
 }
 
 // depth of the strip at control point c
-static double strip_depth_at(const struct fish *fish, int c) {
+static double pressure_strip_depth_at(const struct fish *fish, int c) {
     return 4 * sqrt(2 * fish->point_half[c]);
 }
 
@@ -471,7 +471,8 @@ double pressure_jump(const struct pressure *p, int c, const double *y, const dou
     if (!(fish->strip_depth > 0)) return fish->fluid_density * jump;
     const double before =
         point->before / fish->control_density[c] + fish->integrals->kink_circulation[c] * tail_kink(fish, y);
-    return fish->fluid_density * fish->strip_depth / strip_depth_at(fish, c) * (jump + before * point->divergence);
+    return fish->fluid_density * fish->strip_depth / pressure_strip_depth_at(fish, c) *
+           (jump + before * point->divergence);
 }
 
 void pressure_of_edge(const struct pressure *p, int k, const double *y, const double *yp, double force[2]) {
@@ -483,13 +484,13 @@ void pressure_of_edge(const struct pressure *p, int k, const double *y, const do
 
         const struct direction *const body = &p->point[c].body;
         const double length = body->length * fish->control_interval[c];
-        const double depth = fish->strip_depth > 0 ? strip_depth_at(fish, c) : fish->depth[k];
+        const double depth = fish->strip_depth > 0 ? pressure_strip_depth_at(fish, c) : fish->depth[k];
         const double size = -depth * pressure_jump(p, c, y, yp) * length;
         for (int i = 0; i < 2; i++) force[i] += size * body->n[i];
     }
 }
 
-static double moment_about(const double arm[2], const double vector[2]) {
+static double pressure_moment_about(const double arm[2], const double vector[2]) {
     return arm[0] * vector[1] - arm[1] * vector[0];
 }
 
@@ -510,11 +511,11 @@ struct pressure_forces pressure_sum(const struct pressure *p, const double about
             sum.momentum[i] += momentum[i];
         }
 
-        sum.pressure_moment += moment_about(arm, force);
-        sum.momentum_moment += moment_about(arm, momentum);
+        sum.pressure_moment += pressure_moment_about(arm, force);
+        sum.momentum_moment += pressure_moment_about(arm, momentum);
         sum.pressure_power += edge_dot(force, velocity);
         if (k > 0) continue;
-        sum.suction_moment = moment_about(arm, p->suction);
+        sum.suction_moment = pressure_moment_about(arm, p->suction);
         sum.suction_power = edge_dot(p->suction, velocity);
         sum.separation_power = edge_dot(p->separation, velocity);
     }

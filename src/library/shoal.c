@@ -140,7 +140,7 @@ void shoal_close(struct shoal *run) {
     free(run);
 }
 
-static enum status write_row(struct shoal *run) {
+static enum status shoal_write_row(struct shoal *run) {
     if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
     struct result_row row = *handle_row(run);
     return record_row(&run->record, &row);
@@ -150,7 +150,7 @@ static enum status write_due_row(struct shoal *run) {
     TRY(check_process(run, "shoal_step"));
 
     pthread_mutex_lock(&handle_netcdf_lock);
-    enum status status = write_row(run);
+    enum status status = shoal_write_row(run);
     if (status != STATUS_OK) status = record_close(&run->record, status);
     pthread_mutex_unlock(&handle_netcdf_lock);
     if (status != STATUS_OK) release_record(run);
@@ -388,7 +388,7 @@ static enum status create_result_file(struct shoal *run, int overwrite) {
     TRY(record_create(&run->record, &run->shared->values, run->simulation->school, run->simulation->n_events,
                       run->record_path, overwrite, "libshoal"));
 
-    enum status status = write_row(run);
+    enum status status = shoal_write_row(run);
     if (status == STATUS_OK) status = record_publish(&run->record, 0);
     return status == STATUS_OK ? STATUS_OK : record_close(&run->record, status);
 }

@@ -49,7 +49,7 @@ static char **string_of(struct checkpoint *checkpoint, int i) {
     return (char **)(void *)((char *)checkpoint + strings[i].offset);
 }
 
-static char *number_of(struct checkpoint *checkpoint, int i) {
+static char *checkpoint_number_of(struct checkpoint *checkpoint, int i) {
     return (char *)checkpoint + numbers[i].offset;
 }
 
@@ -89,7 +89,7 @@ enum status checkpoint_write(const char *path, const char *previous, const struc
 
     for (int i = 0; i < N_NUMBERS; i++) {
         sections_open(&writer, numbers[i].name);
-        sections_add(&writer, number_of(&all, i), numbers[i].size);
+        sections_add(&writer, checkpoint_number_of(&all, i), numbers[i].size);
         sections_close(&writer);
     }
 
@@ -113,7 +113,7 @@ static enum status unfit(const char *name) {
     return status_fail(STATUS_FILE, "section '%s' is invalid", name);
 }
 
-static enum status read_string(struct checkpoint *checkpoint, int i) {
+static enum status checkpoint_read_string(struct checkpoint *checkpoint, int i) {
     struct section_reader section = sections_find(checkpoint->bytes, checkpoint->n, strings[i].name);
     char *string;
     TRY(MEMORY_NEW(string, section.left + 1, "a checkpoint"));
@@ -122,19 +122,20 @@ static enum status read_string(struct checkpoint *checkpoint, int i) {
     return section.is_short ? unfit(strings[i].name) : STATUS_OK;
 }
 
-static enum status read_number(const struct checkpoint *checkpoint, const char *name, void *to, size_t size) {
+static enum status checkpoint_read_number(const struct checkpoint *checkpoint, const char *name, void *to,
+                                          size_t size) {
     struct section_reader section = sections_find(checkpoint->bytes, checkpoint->n, name);
     sections_take(&section, to, size);
     return section.is_short || section.left > 0 ? unfit(name) : STATUS_OK;
 }
 
-static enum status read_all(struct checkpoint *checkpoint) {
+static enum status checkpoint_read_all(struct checkpoint *checkpoint) {
     TRY(sections_check(checkpoint->bytes, checkpoint->n));
-    for (int i = 0; i < N_STRINGS; i++) TRY(read_string(checkpoint, i));
+    for (int i = 0; i < N_STRINGS; i++) TRY(checkpoint_read_string(checkpoint, i));
     for (int i = 0; i < N_NUMBERS; i++) {
-        TRY(read_number(checkpoint, numbers[i].name, number_of(checkpoint, i), numbers[i].size));
+        TRY(checkpoint_read_number(checkpoint, numbers[i].name, checkpoint_number_of(checkpoint, i), numbers[i].size));
     }
-    TRY(read_number(checkpoint, "t", &checkpoint->t, sizeof checkpoint->t));
+    TRY(checkpoint_read_number(checkpoint, "t", &checkpoint->t, sizeof checkpoint->t));
     if (!isfinite(checkpoint->wall_time)) return unfit("wall_time");
     if (!isfinite(checkpoint->totals.step_size)) return unfit("step_size");
     if (strchr(checkpoint->result, '/') || checkpoint->rows.n_rows < 0) return unfit("result");
@@ -144,7 +145,7 @@ static enum status read_all(struct checkpoint *checkpoint) {
 enum status checkpoint_read(struct checkpoint *checkpoint, const char *path) {
     *checkpoint = (struct checkpoint){0};
     TRY(durable_read(path, &checkpoint->bytes, &checkpoint->n));
-    const enum status status = read_all(checkpoint);
+    const enum status status = checkpoint_read_all(checkpoint);
     if (status == STATUS_OK) return STATUS_OK;
     checkpoint_free(checkpoint);
     return status_fail(status, "%s: cannot be used: %s", path, status_message());

@@ -206,7 +206,7 @@ enum status durable_replace(const char *path, const char *previous, const void *
 // ---- reading
 
 // read all bytes; errno or 0
-static int read_all(int descriptor, unsigned char *bytes, size_t n) {
+static int durable_read_all(int descriptor, unsigned char *bytes, size_t n) {
     while (n > 0) {
         const ssize_t got = read(descriptor, bytes, n);
         if (got < 0 && errno == EINTR) continue;
@@ -226,7 +226,7 @@ static enum status read_open(int descriptor, const char *path, unsigned char **b
     }
     *n = (size_t)facts.st_size;
     TRY(MEMORY_NEW(*bytes, *n, path));
-    const int code = read_all(descriptor, *bytes, *n);
+    const int code = durable_read_all(descriptor, *bytes, *n);
     if (code == 0) return STATUS_OK;
     free(*bytes);
     *bytes = NULL;
@@ -245,7 +245,7 @@ enum status durable_read(const char *path, unsigned char **bytes, size_t *n) {
 
 // ---- a stream over a file in the making
 
-static enum status failed(const char *path, int code) {
+static enum status durable_failed(const char *path, int code) {
     return target_failed(path, code, strerror(code));
 }
 
@@ -262,24 +262,24 @@ enum status plain_file_open(struct plain_file *file, const char *path, enum targ
     }
 
     durable_end(&file->part);
-    return failed(path, code);
+    return durable_failed(path, code);
 }
 
 enum status plain_file_close(struct plain_file *file, enum status status) {
     errno = 0;
     const bool is_broken = fflush(file->stream) != 0 || ferror(file->stream);
-    if (status == STATUS_OK && is_broken) status = failed(file->path, errno);
+    if (status == STATUS_OK && is_broken) status = durable_failed(file->path, errno);
     if (status == STATUS_OK) status = target_check(file->path, file->kind, file->overwrite);
 
     if (status == STATUS_OK) {
         const int code = durable_publish(&file->part, file->overwrite);
-        if (code != 0) status = failed(file->path, code);
+        if (code != 0) status = durable_failed(file->path, code);
     }
 
     // the stream owns the descriptor
     const bool is_open = fclose(file->stream) != 0;
     file->part.descriptor = -1;
-    if (is_open && status == STATUS_OK) status = failed(file->path, errno);
+    if (is_open && status == STATUS_OK) status = durable_failed(file->path, errno);
     durable_end(&file->part);
     return status;
 }

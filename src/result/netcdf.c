@@ -56,7 +56,7 @@ bool netcdf_has_memory(void) {
     return needed != NULL;
 }
 
-static enum status failed(const char *path, int code) {
+static enum status netcdf_failed(const char *path, int code) {
     return target_failed(path, code == NC_ENOMEM ? ENOMEM : code, nc_strerror(code));
 }
 
@@ -82,7 +82,7 @@ static enum status opened(struct netcdf_writer *writer, const char *path) {
     const int code = writer->code;
     if (code == NC_NOERR) return STATUS_OK;
     netcdf_finish(writer);
-    return failed(path, code);
+    return netcdf_failed(path, code);
 }
 
 /* Initialise a writer without a file; returns the path for NetCDF, which the caller frees, or NULL if out of memory. */
@@ -226,7 +226,7 @@ enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite) {
     if (writer->code == NC_NOERR) TRY(target_check(writer->path, TARGET_NETCDF, overwrite));
     CALL(writer, durable_publish(&writer->part, overwrite));
     writer->last_fsync = seconds_now();
-    return writer->code == NC_NOERR ? STATUS_OK : failed(writer->path, writer->code);
+    return writer->code == NC_NOERR ? STATUS_OK : netcdf_failed(writer->path, writer->code);
 }
 
 void netcdf_reopen(struct netcdf_writer *writer) {
@@ -291,7 +291,7 @@ struct header {
 
 // ---- pieces
 
-static uint64_t read_number(struct header *header, int n_bytes) {
+static uint64_t netcdf_read_number(struct header *header, int n_bytes) {
     uint64_t number = 0;
     for (int i = 0; i < n_bytes; i++) {
         const int byte = fgetc(header->file);
@@ -316,7 +316,7 @@ static void skip(struct header *header, uint64_t n) {
 }
 
 static void skip_name(struct header *header) {
-    const uint64_t n = read_number(header, header->n_bytes);
+    const uint64_t n = netcdf_read_number(header, header->n_bytes);
     if (n > NC_MAX_NAME) header->is_damaged = true;
     if (!header->is_damaged) skip(header, n);
 }
@@ -326,15 +326,15 @@ static uint64_t read_type(struct header *header) {
     static const uint64_t bytes[] = {
         [NC_BYTE] = 1,  [NC_CHAR] = 1,   [NC_SHORT] = 2, [NC_INT] = 4,   [NC_FLOAT] = 4, [NC_DOUBLE] = 8,
         [NC_UBYTE] = 1, [NC_USHORT] = 2, [NC_UINT] = 4,  [NC_INT64] = 8, [NC_UINT64] = 8};
-    const uint64_t type = read_number(header, 4);
+    const uint64_t type = netcdf_read_number(header, 4);
     if (type >= NC_BYTE && type <= (header->version == 5 ? NC_UINT64 : NC_DOUBLE)) return bytes[type];
     header->is_damaged = true;
     return 1;
 }
 
 /* The number of entries of a list. */
-static uint64_t read_list(struct header *header, enum tag expected) {
-    const uint64_t tag = read_number(header, 4), n = read_number(header, header->n_bytes);
+static uint64_t netcdf_read_list(struct header *header, enum tag expected) {
+    const uint64_t tag = netcdf_read_number(header, 4), n = netcdf_read_number(header, header->n_bytes);
     if (tag == 0 && n == 0) return 0;
     if (tag != expected || n > header->size) header->is_damaged = true;
     return n;
@@ -343,20 +343,20 @@ static uint64_t read_list(struct header *header, enum tag expected) {
 // ---- the lists
 
 static void read_dimensions(struct header *header) {
-    header->n_dimensions = read_list(header, DIMENSION);
+    header->n_dimensions = netcdf_read_list(header, DIMENSION);
     if (header->n_dimensions > NC_MAX_DIMS) header->is_damaged = true;
     for (uint64_t i = 0; i < header->n_dimensions && !header->is_damaged; i++) {
         skip_name(header);
-        header->length[i] = read_number(header, header->n_bytes);
+        header->length[i] = netcdf_read_number(header, header->n_bytes);
         if (header->length[i] > max_size) header->is_damaged = true;
     }
 }
 
 static void skip_attributes(struct header *header) {
-    const uint64_t n = read_list(header, ATTRIBUTE);
+    const uint64_t n = netcdf_read_list(header, ATTRIBUTE);
     for (uint64_t i = 0; i < n && !header->is_damaged; i++) {
         skip_name(header);
-        const uint64_t bytes = read_type(header), n_values = read_number(header, header->n_bytes);
+        const uint64_t bytes = read_type(header), n_values = netcdf_read_number(header, header->n_bytes);
         if (n_values > header->size) header->is_damaged = true;
         if (!header->is_damaged) skip(header, n_values * bytes);
     }
@@ -364,13 +364,13 @@ static void skip_attributes(struct header *header) {
 
 /* Read the dimensions of a variable; the number of values, per row if the variable grows. */
 static uint64_t read_shape(struct header *header, bool *grows) {
-    const uint64_t n = read_number(header, header->n_bytes);
+    const uint64_t n = netcdf_read_number(header, header->n_bytes);
     uint64_t n_values = 1;
     *grows = false;
     if (n > NC_MAX_VAR_DIMS) header->is_damaged = true;
 
     for (uint64_t d = 0; d < n && !header->is_damaged; d++) {
-        const uint64_t number = read_number(header, header->n_bytes);
+        const uint64_t number = netcdf_read_number(header, header->n_bytes);
         const uint64_t length = number < header->n_dimensions ? header->length[number] : max_size;
         if (length == 0 && d == 0) {
             *grows = true;
@@ -390,8 +390,8 @@ static void read_variable(struct header *header) {
     const uint64_t n_values = read_shape(header, &grows);
     if (!header->is_damaged) skip_attributes(header);
     const uint64_t bytes = n_values * read_type(header);
-    read_number(header, header->n_bytes);  // skip the size, which follows from type and dimensions
-    const uint64_t begin = read_number(header, header->version == 1 ? 4 : 8);
+    netcdf_read_number(header, header->n_bytes);  // skip the size, which follows from type and dimensions
+    const uint64_t begin = netcdf_read_number(header, header->version == 1 ? 4 : 8);
     if (begin > max_size) header->is_damaged = true;
     if (header->is_damaged) return;
     uint64_t *const end = grows ? &header->end_of_row : &header->end;
@@ -411,10 +411,10 @@ static void read_header(struct header *header) {
     if (fread(magic, 1, sizeof magic, header->file) != sizeof magic) header->is_damaged = true;
     header->version = magic[3];
     header->n_bytes = header->version == 5 ? 8 : 4;
-    header->n_rows = read_number(header, header->n_bytes);
+    header->n_rows = netcdf_read_number(header, header->n_bytes);
     read_dimensions(header);
     if (!header->is_damaged) skip_attributes(header);
-    const uint64_t n_variables = header->is_damaged ? 0 : read_list(header, VARIABLE);
+    const uint64_t n_variables = header->is_damaged ? 0 : netcdf_read_list(header, VARIABLE);
     for (uint64_t i = 0; i < n_variables && !header->is_damaged; i++) read_variable(header);
 
     // a single variable is not filled up
@@ -437,22 +437,22 @@ static bool is_netcdf(FILE *file) {
     return is_known;
 }
 
-static uint64_t size_of(FILE *file) {
+static uint64_t netcdf_size_of(FILE *file) {
     fseeko(file, 0, SEEK_END);
     return (uint64_t)ftello(file);
 }
 
-static enum status examine(struct header *header, const char *path) {
+static enum status netcdf_examine(struct header *header, const char *path) {
     header->file = fopen(path, "rb");
     if (!header->file) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(errno));
     enum status status = STATUS_OK;
 
     if (is_netcdf(header->file)) {
-        header->size = size_of(header->file);
+        header->size = netcdf_size_of(header->file);
         rewind(header->file);
         read_header(header);
         // a row that was added meanwhile counts in the header, which was read after the size
-        header->size = size_of(header->file);
+        header->size = netcdf_size_of(header->file);
         if (header->is_damaged) {
             status = status_fail(STATUS_FILE, "%s: cannot be read: the header is damaged", path);
         } else if (header->end > header->size) {
@@ -470,7 +470,7 @@ static enum status examine(struct header *header, const char *path) {
 
 enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows) {
     struct header header = {0};
-    TRY(examine(&header, path));
+    TRY(netcdf_examine(&header, path));
     *rows = (struct netcdf_rows){.begin = header.begin,
                                  .begin_of_rows = header.begin_of_rows,
                                  .bytes = header.n_growing > 0 ? header.row_bytes : 0,
@@ -653,8 +653,8 @@ static enum status refuse_variable(const struct netcdf_reader *reader, const cha
 }
 
 /* The number of a variable of the expected form, with the slice as start and count for NetCDF. */
-static enum status find_variable(const struct netcdf_reader *reader, const char *name, bool is_text,
-                                 const struct netcdf_slice *slice, int *number, size_t *start, size_t *count) {
+static enum status netcdf_find_variable(const struct netcdf_reader *reader, const char *name, bool is_text,
+                                        const struct netcdf_slice *slice, int *number, size_t *start, size_t *count) {
     int n, dimensions[NC_MAX_VAR_DIMS];
     nc_type type;
     if (nc_inq_varid(reader->file, name, number) != NC_NOERR)
@@ -676,7 +676,7 @@ enum status netcdf_read_doubles(const struct netcdf_reader *reader, const char *
                                 double *values) {
     int number;
     size_t start[NETCDF_MAX_DIMENSIONS], count[NETCDF_MAX_DIMENSIONS];
-    TRY(find_variable(reader, name, false, slice, &number, start, count));
+    TRY(netcdf_find_variable(reader, name, false, slice, &number, start, count));
     const int code = nc_get_vara_double(reader->file, number, start, count, values);
     return code == NC_NOERR ? STATUS_OK : cannot_read(reader->path, code);
 }
@@ -685,7 +685,7 @@ enum status netcdf_read_text(const struct netcdf_reader *reader, const char *nam
                              char *values) {
     int number;
     size_t start[NETCDF_MAX_DIMENSIONS], count[NETCDF_MAX_DIMENSIONS];
-    TRY(find_variable(reader, name, true, slice, &number, start, count));
+    TRY(netcdf_find_variable(reader, name, true, slice, &number, start, count));
     const int code = nc_get_vara_text(reader->file, number, start, count, values);
     return code == NC_NOERR ? STATUS_OK : cannot_read(reader->path, code);
 }

@@ -108,7 +108,7 @@ static size_t n_of_fish(const struct copying *copying, const struct result_varia
     return n;
 }
 
-static enum status read_row(const struct copying *copying, const struct result_variable *variable, long row) {
+static enum status file_read_row(const struct copying *copying, const struct result_variable *variable, long row) {
     struct netcdf_slice slice[RESULT_MAX_DIMENSIONS + 1] = {0};
     for (int d = 0; variable->dimension[d] != NONE; d++) {
         const enum result_dimension dimension = variable->dimension[d];
@@ -119,7 +119,7 @@ static enum status read_row(const struct copying *copying, const struct result_v
     return netcdf_read_doubles(&copying->reader, variable->name, slice, copying->read);
 }
 
-static void write_row(const struct copying *copying, int i, long row) {
+static void file_write_row(const struct copying *copying, int i, long row) {
     const struct result_variable *const variable = &result_table[i];
     const struct result_target *const target = copying->target;
     size_t start[RESULT_MAX_DIMENSIONS] = {(size_t)row}, count[RESULT_MAX_DIMENSIONS];
@@ -133,12 +133,12 @@ static enum status copy_row(const struct copying *copying, int i, long row) {
     const size_t from = n_of_fish(copying, variable, true), to = n_of_fish(copying, variable, false);
     const size_t n_fish = result_table_has(variable, FISH) ? copying->target->length[FISH] : 1;
     const bool drop = source->drop_last_wake && row == source->n_rows - 1 && result_table_has(variable, VORTEX);
-    TRY(read_row(copying, variable, row));
+    TRY(file_read_row(copying, variable, row));
     for (size_t k = 0; k < n_fish * to; k++) copying->target->buffer[k] = NAN;
     for (size_t f = 0; f < n_fish && !drop; f++) {
         memcpy(copying->target->buffer + f * to, copying->read + f * from, (from < to ? from : to) * sizeof(double));
     }
-    write_row(copying, i, row);
+    file_write_row(copying, i, row);
     return STATUS_OK;
 }
 
@@ -278,7 +278,7 @@ struct result_file {
 // ---- the header
 
 /* True if a variable is in the file. */
-static bool is_written(const struct result_file *result, const struct result_variable *variable) {
+static bool file_is_written(const struct result_file *result, const struct result_variable *variable) {
     if (result_table_has(variable, WALL) && result->length[WALL] == 0) return false;
     return variable->forces <= result->forces && (result->is_steady || !variable->of_steady);
 }
@@ -324,7 +324,8 @@ static const char *coordinates_of(const struct result_variable *variable) {
     return "fish_name";
 }
 
-static void define_variable(struct result_file *result, int i, const int *dimension_number, enum precision precision) {
+static void file_define_variable(struct result_file *result, int i, const int *dimension_number,
+                                 enum precision precision) {
     const struct result_variable *const variable = &result_table[i];
     const bool of_fish = result_table_has(variable, FISH), is_text = variable->type == RESULT_TEXT;
     struct netcdf_variable to_define = {.name = variable->name,
@@ -355,7 +356,7 @@ static void write_attributes(struct result_file *result, const struct case_value
     netcdf_write_string(writer, NETCDF_GLOBAL, "case_effective", effective);
 }
 
-static void define_all(struct result_file *result, const struct case_values *values, const char *effective) {
+static void file_define_all(struct result_file *result, const struct case_values *values, const char *effective) {
     int dimension_number[RESULT_N_DIMENSIONS] = {0};
     for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++) {
         if ((d == MULTIPLIER && !result->is_steady) || (d != TIME && result->length[d] == 0)) continue;
@@ -364,8 +365,8 @@ static void define_all(struct result_file *result, const struct case_values *val
     }
 
     for (int i = 0; i < result_table_n; i++) {
-        if (!is_written(result, &result_table[i])) continue;
-        define_variable(result, i, dimension_number, values->output.precision);
+        if (!file_is_written(result, &result_table[i])) continue;
+        file_define_variable(result, i, dimension_number, values->output.precision);
     }
 
     write_attributes(result, values, effective);
@@ -397,7 +398,7 @@ static void write_variable(struct result_file *result, int i, const struct resul
 static void write_variables(struct result_file *result, bool with_time, const struct result_row *row) {
     for (int i = 0; i < result_table_n; i++) {
         const struct result_variable *const variable = &result_table[i];
-        if (!is_written(result, variable) || result_table_has(variable, TIME) != with_time) continue;
+        if (!file_is_written(result, variable) || result_table_has(variable, TIME) != with_time) continue;
         write_variable(result, i, row);
     }
 }
@@ -454,7 +455,7 @@ static enum status copy_rows(struct result_file *result, const struct result_sou
 
 static enum status write_new(struct result_file *result, const struct origin *origin) {
     TRY(netcdf_create(&result->writer, origin->path, origin->values->name, origin->command));
-    define_all(result, origin->values, origin->effective);
+    file_define_all(result, origin->values, origin->effective);
     write_variables(result, false, &(struct result_row){.school = origin->school});
     netcdf_sync(&result->writer, true);
     const int code = result->writer.code;
@@ -522,7 +523,7 @@ enum status result_file_publish(struct result_file *result, const char *run_stat
 static enum status find_all(struct result_file *result, const char *path) {
     TRY(netcdf_continue(&result->writer, path));
     for (int i = 0; i < result_table_n; i++) {
-        if (is_written(result, &result_table[i]))
+        if (file_is_written(result, &result_table[i]))
             result->number[i] = netcdf_number(&result->writer, result_table[i].name);
     }
 

@@ -26,7 +26,7 @@ static enum status of_school(const struct info *info, size_t row, const char *na
     return netcdf_read_doubles(info->reader, name, (struct netcdf_slice[]){{"time", row, 1}, {NULL}}, value);
 }
 
-static enum status of_fish(const struct info *info, size_t row, const char *name, size_t f, double *value) {
+static enum status info_of_fish(const struct info *info, size_t row, const char *name, size_t f, double *value) {
     return netcdf_read_doubles(info->reader, name, (struct netcdf_slice[]){{"time", row, 1}, {"fish", f, 1}, {NULL}},
                                value);
 }
@@ -64,7 +64,7 @@ static const struct column {
 };
 enum { N_COLUMNS = sizeof columns / sizeof *columns, N_CONSTANT_COLUMNS = 3 };
 
-static bool is_shown(const struct info *info, const struct column *column) {
+static bool info_is_shown(const struct info *info, const struct column *column) {
     return column->kind != LAST_OF_HELD || info->has_held;
 }
 
@@ -95,9 +95,9 @@ static enum status print_fish(const struct info *info, int n_columns, size_t f, 
     for (int c = 0; c < n_columns; c++) {
         const struct column *const column = &columns[c];
         double value;
-        if (!is_shown(info, column)) continue;
+        if (!info_is_shown(info, column)) continue;
         if (column->kind != CONSTANT) {
-            TRY(of_fish(info, info->n_rows - 1, column->variable, f, &value));
+            TRY(info_of_fish(info, info->n_rows - 1, column->variable, f, &value));
         } else {
             TRY(constant_of_fish(info, column->variable, f, &value));
         }
@@ -108,16 +108,16 @@ static enum status print_fish(const struct info *info, int n_columns, size_t f, 
     return STATUS_OK;
 }
 
-static enum status print_table(const struct info *info) {
+static enum status info_print_table(const struct info *info) {
     const int width = info->n_name > 4 ? (int)info->n_name : 4;
     const int n_columns = info->n_rows > 0 ? N_COLUMNS : N_CONSTANT_COLUMNS;
     fprintf(info->stream, "\n  %-*s", width, "fish");
     for (int c = 0; c < n_columns; c++) {
-        if (is_shown(info, &columns[c])) fprintf(info->stream, "  %10s", columns[c].head);
+        if (info_is_shown(info, &columns[c])) fprintf(info->stream, "  %10s", columns[c].head);
     }
     fprintf(info->stream, "\n  %-*s", width, "");
     for (int c = 0; c < n_columns; c++) {
-        if (is_shown(info, &columns[c])) fprintf(info->stream, "  %10s", columns[c].unit);
+        if (info_is_shown(info, &columns[c])) fprintf(info->stream, "  %10s", columns[c].unit);
     }
     fprintf(info->stream, "\n");
     for (size_t f = 0; f < info->n_fish; f++) TRY(print_fish(info, n_columns, f, width));
@@ -211,7 +211,7 @@ static enum status print_solver(const struct info *info) {
     return STATUS_OK;
 }
 
-static enum status print_all(const struct netcdf_reader *reader, FILE *stream) {
+static enum status info_print_all(const struct netcdf_reader *reader, FILE *stream) {
     struct info info = {.reader = reader, .stream = stream};
     TRY(netcdf_read_length(reader, "time", 0, SIZE_MAX, &info.n_rows));
     TRY(netcdf_read_length(reader, "fish", 1, INT_MAX, &info.n_fish));
@@ -219,7 +219,7 @@ static enum status print_all(const struct netcdf_reader *reader, FILE *stream) {
     TRY(find_held(&info));
     TRY(print_status(&info));
     TRY(print_rows(&info));
-    TRY(print_table(&info));
+    TRY(info_print_table(&info));
     if (info.n_rows == 0) return STATUS_OK;
     TRY(print_school(&info));
     TRY(result_info_steady(reader, stream));
@@ -230,7 +230,7 @@ static enum status print_all(const struct netcdf_reader *reader, FILE *stream) {
 }
 
 enum status result_info(const char *path, FILE *stream) {
-    return netcdf_print(path, print_all, stream);
+    return netcdf_print(path, info_print_all, stream);
 }
 
 // ---- steady states
@@ -363,7 +363,7 @@ static enum status is_empty(const struct netcdf_reader *reader, const struct qua
     return STATUS_OK;
 }
 
-static enum status print_head(const struct netcdf_reader *reader, size_t n_fish, FILE *stream) {
+static enum status info_print_head(const struct netcdf_reader *reader, size_t n_fish, FILE *stream) {
     fprintf(stream, "\n  %-22s", "");
     for (size_t f = 0; f < n_fish; f++) {
         char *name;
@@ -383,7 +383,7 @@ enum status result_info_steady(const struct netcdf_reader *reader, FILE *stream)
     TRY(print_effort(reader, stream));
     TRY(print_multipliers(reader, stream));
     TRY(netcdf_read_length(reader, "fish", 1, INT_MAX, &n_fish));
-    TRY(print_head(reader, n_fish, stream));
+    TRY(info_print_head(reader, n_fish, stream));
 
     for (size_t q = 0; q < sizeof quantities / sizeof *quantities; q++) {
         const struct quantity *const quantity = &quantities[q];

@@ -45,7 +45,7 @@ static void print_size(const char *path, FILE *stream) {
     fprintf(stream, "  size        %.1f %s\n", bytes < 1e6 ? bytes / 1e3 : bytes / 1e6, bytes < 1e6 ? "kB" : "MB");
 }
 
-static enum status print_head(const struct netcdf_reader *reader, FILE *stream) {
+static enum status kind_print_head(const struct netcdf_reader *reader, FILE *stream) {
     fprintf(stream, "%s\n", reader->path);
     TRY(print_attribute(reader, "  case        %s\n", "title", stream));
     TRY(print_attribute(reader, "  program     %s\n", "source", stream));
@@ -61,7 +61,7 @@ enum status result_kind_info(int n_kinds, const struct result_kind *kinds, const
     TRY(netcdf_open(&reader, path));
     enum status status = find_kind(&reader, n_kinds, kinds, &kind);
     if (status == STATUS_OK) {
-        status = case_only ? print_attribute(&reader, "%s", kind->case_name, stream) : print_head(&reader, stream);
+        status = case_only ? print_attribute(&reader, "%s", kind->case_name, stream) : kind_print_head(&reader, stream);
     }
     netcdf_close(&reader);
     return status == STATUS_OK && !case_only ? kind->info(path, stream) : status;
@@ -79,12 +79,12 @@ enum status result_kind_name(int n_kinds, const struct result_kind *kinds, const
 
 // ---- the list of variables
 
-static void print_text(const struct result_listed *listed, FILE *stream) {
+static void kind_print_text(const struct result_listed *listed, FILE *stream) {
     fprintf(stream, "%-20s  (%s)%*s  %-6s  %s\n", listed->name, listed->dimensions,
             22 - (int)strlen(listed->dimensions), "", listed->unit, listed->meaning);
 }
 
-static void print_json(const char *kind, const struct result_listed *listed, FILE *stream) {
+static void kind_print_json(const char *kind, const struct result_listed *listed, FILE *stream) {
     fprintf(stream, "\n  {\"file\": \"%s\", \"name\": \"%s\", \"dimensions\": [", kind, listed->name);
     for (const char *word = listed->dimensions; *word; word += strspn(word, ", ")) {
         const int length = (int)strcspn(word, ",");
@@ -109,9 +109,9 @@ int result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_j
             n_of_kind++;
             if (as_json) {
                 fputs(n == 0 ? "[" : ",", stream);
-                print_json(kinds[k].name, &listed, stream);
+                kind_print_json(kinds[k].name, &listed, stream);
             } else if (is_file) {
-                print_text(&listed, stream);
+                kind_print_text(&listed, stream);
             } else {
                 fprintf(stream, "%s: %s\n", listed.name, listed.meaning);
             }

@@ -11,7 +11,7 @@ static enum status reader_out_of_memory(const struct netcdf_reader *file) {
     return status_fail(STATUS_MEMORY, "%s: out of memory while reading", file->path);
 }
 
-static const struct result_variable *find_variable(const char *name) {
+static const struct result_variable *reader_find_variable(const char *name) {
     const struct result_variable *variable = result_table;
     while (strcmp(variable->name, name) != 0) variable++;
     return variable;
@@ -195,14 +195,14 @@ enum status result_reader_name(const struct netcdf_reader *file, size_t f, char 
 
 size_t result_reader_n(const struct result_reader *reader, const char *name) {
     size_t n = 1;
-    for (const enum result_dimension *d = find_variable(name)->dimension; *d != NONE; d++)
+    for (const enum result_dimension *d = reader_find_variable(name)->dimension; *d != NONE; d++)
         if (*d != TIME) n *= reader->length[*d];
     return n;
 }
 
 enum status result_reader_row(const struct result_reader *reader, const char *name, size_t row, double *values) {
     struct netcdf_slice slice[RESULT_MAX_DIMENSIONS + 1] = {0};
-    const enum result_dimension *const dimension = find_variable(name)->dimension;
+    const enum result_dimension *const dimension = reader_find_variable(name)->dimension;
 
     for (int d = 0; dimension[d] != NONE; d++) {
         slice[d] = (struct netcdf_slice){result_table_dimension(dimension[d]), 0, reader->length[dimension[d]]};

@@ -56,7 +56,7 @@ static bool is_kind(const char *head, size_t n, enum target_kind kind) {
 }
 
 /* Whether the file at path is a regular file of a kind; errno or 0. */
-static int examine(const char *path, enum target_kind kind, bool *is_ours) {
+static int target_examine(const char *path, enum target_kind kind, bool *is_ours) {
     struct stat facts;
     char head[HEAD];
     *is_ours = false;
@@ -76,7 +76,7 @@ static int examine(const char *path, enum target_kind kind, bool *is_ours) {
 
 bool target_is(const char *path, enum target_kind kind) {
     bool is_ours;
-    examine(path, kind, &is_ours);
+    target_examine(path, kind, &is_ours);
     return is_ours;
 }
 
@@ -138,7 +138,7 @@ enum status target_check(const char *path, enum target_kind kind, bool overwrite
     if (!S_ISREG(target.st_mode))
         return status_fail(STATUS_FILE, "%s is not an ordinary file: choose another name with -o", path);
     bool is_ours;
-    const int code = examine(path, kind, &is_ours);
+    const int code = target_examine(path, kind, &is_ours);
 
     if (code != 0) {
         return status_fail(STATUS_FILE, "%s exists and cannot be read (%s): choose another name with -o", path,

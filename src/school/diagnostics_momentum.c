@@ -442,8 +442,8 @@ static double plane_norm(const double vector[3]) {
 }
 
 // fill the impulses of a fish; add the fish to the momentum balance, and to the size of the terms of the balance
-static void fill_fish(struct residual *residual, const struct state *state, int f, struct diagnostics_fish *to,
-                      double balance[3], double size[3]) {
+static void momentum_fill_fish(struct residual *residual, const struct state *state, int f, struct diagnostics_fish *to,
+                               double balance[3], double size[3]) {
     const struct momentum_balance *const momentum = &state->momentum[f];
     const struct fish *const fish = &residual->school->fish[f];
     double body[3], fluid[3], lost[3], given[3];
@@ -492,7 +492,7 @@ void diagnostics_momentum(struct residual *residual, const struct state *state, 
     double size[3] = {0};
     memset(diagnostics->momentum_balance, 0, sizeof diagnostics->momentum_balance);
     for (int f = 0; f < school->n_fish; f++) {
-        fill_fish(residual, state, f, &diagnostics->fish[f], diagnostics->momentum_balance, size);
+        momentum_fill_fish(residual, state, f, &diagnostics->fish[f], diagnostics->momentum_balance, size);
     }
 
     const double rounding = 1e-6;

@@ -161,7 +161,7 @@ static enum status equilibrium_evaluate(struct equilibrium *e) {
     return residual_evaluate(e->residual, state->t, state->y, state->yp, e->all);
 }
 
-static enum status value_of(void *data, const double *u, double *value) {
+static enum status equilibrium_value_of(void *data, const double *u, double *value) {
     struct equilibrium *const e = data;
     for (int i = 0; i < e->n; i++) e->state->y[e->unknown[i]] = u[i] * e->scale[i];
     TRY(equilibrium_evaluate(e));
@@ -193,7 +193,7 @@ static void put_coupling(const struct equilibrium *e, int f, const struct jacobi
     }
 }
 
-static enum status jacobian_of(void *data, double *matrix) {
+static enum status equilibrium_jacobian_of(void *data, double *matrix) {
     struct equilibrium *const e = data;
     struct jacobian *const jacobian = e->jacobian;
     TRY(residual_jacobian(e->residual, e->state->t, 0, e->state->y, jacobian));
@@ -226,13 +226,13 @@ enum status equilibrium_solve(struct equilibrium *e) {
                                    .max_step = 1e30,
                                    .reuse = 1,
                                    .max_iterations = MAX_ITERATIONS,
-                                   .value = value_of,
-                                   .jacobian = jacobian_of,
+                                   .value = equilibrium_value_of,
+                                   .jacobian = equilibrium_jacobian_of,
                                    .data = e};
     equilibrium_set_known(e);
     for (int i = 0; i < e->n; i++) e->u[i] = e->state->y[e->unknown[i]] / e->scale[i];
     TRY(newton_solve(&problem, e->u));
-    TRY(value_of(e, e->u, e->value));
+    TRY(equilibrium_value_of(e, e->u, e->value));
     set_momenta(e);
     return equilibrium_evaluate(e);
 }
@@ -285,7 +285,7 @@ enum status equilibrium_stiffness(struct equilibrium *e, struct equilibrium_stif
     enum status status = MEMORY_NEW(matrix, n * n, "the static stiffness");
     if (status == STATUS_OK) status = MEMORY_NEW(values, 2 * n, "the static stiffness");
     if (status == STATUS_OK) status = MEMORY_NEW(pivot, n, "the static stiffness");
-    if (status == STATUS_OK) status = jacobian_of(e, matrix);
+    if (status == STATUS_OK) status = equilibrium_jacobian_of(e, matrix);
     if (status == STATUS_OK) status = eliminate_sheets(e, matrix, pivot);
     if (status == STATUS_OK) status = take_eigenvalues(e, matrix, values, values + n, stiffness);
     free(matrix);

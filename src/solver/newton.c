@@ -21,13 +21,14 @@ struct solver {
 };
 
 // a failure of a callback is final: evaluations are too expensive for smaller steps
-static int value_of(N_Vector u, N_Vector value, void *data) {
+static int newton_value_of(N_Vector u, N_Vector value, void *data) {
     struct solver *const solver = data;
     solver->failure = solver->problem->value(solver->problem->data, N_VGetArrayPointer(u), N_VGetArrayPointer(value));
     return solver->failure == STATUS_OK ? 0 : -1;
 }
 
-static int jacobian_of(N_Vector u, N_Vector value, SUNMatrix matrix, void *data, N_Vector scratch1, N_Vector scratch2) {
+static int newton_jacobian_of(N_Vector u, N_Vector value, SUNMatrix matrix, void *data, N_Vector scratch1,
+                              N_Vector scratch2) {
     (void)u, (void)value, (void)scratch1, (void)scratch2;
     struct solver *const solver = data;
     solver->failure = solver->problem->jacobian(solver->problem->data, SUNDenseMatrix_Data(matrix));
@@ -46,9 +47,9 @@ static enum status newton_set_up(struct solver *solver, double *u, double *inver
     if (!solver->linear || !solver->kinsol) return memory_check(NULL, "KINSOL");
     // steps of dead_multiplier do not end the iteration
     if (KINSetErrHandlerFn(solver->kinsol, sundials_context_message, &solver->failure) ||
-        KINSetUserData(solver->kinsol, solver) || KINInit(solver->kinsol, value_of, solver->unknowns) ||
+        KINSetUserData(solver->kinsol, solver) || KINInit(solver->kinsol, newton_value_of, solver->unknowns) ||
         KINSetLinearSolver(solver->kinsol, solver->linear, solver->matrix) ||
-        KINSetJacFn(solver->kinsol, jacobian_of) || KINSetMaxSetupCalls(solver->kinsol, problem->reuse) ||
+        KINSetJacFn(solver->kinsol, newton_jacobian_of) || KINSetMaxSetupCalls(solver->kinsol, problem->reuse) ||
         KINSetFuncNormTol(solver->kinsol, problem->tolerance) || KINSetScaledStepTol(solver->kinsol, 1e-14) ||
         KINSetNumMaxIters(solver->kinsol, problem->max_iterations) ||
         KINSetMaxNewtonStep(solver->kinsol, problem->max_step)) {
@@ -131,7 +132,7 @@ static const double least_singular = 0.03;
 static const double dead_multiplier = 1e-10;
 
 // (I - A) way = change, with the transposed map in the first n rows of images                        (m, n)
-static enum status find_fixed_point(int n, int m, const double *images, const double *change, double *way) {
+static enum status newton_find_fixed_point(int n, int m, const double *images, const double *change, double *way) {
     double *matrix = NULL;
     lapack_int *pivot = NULL;
     enum status status = MEMORY_NEW(matrix, n * n, "the fixed point of a map");
@@ -167,7 +168,7 @@ static enum status multipliers_solve(const struct map *map, double *matrix, doub
     double *const real = map->real, *const imaginary = map->imaginary;
     const int failed = LAPACKE_dgelsd(LAPACK_COL_MAJOR, m, n, n, matrix, m, images, m, real, least_singular, &rank);
     if (failed != 0 || rank < 1) return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
-    TRY(find_fixed_point(n, m, images, map->change, map->way));
+    TRY(newton_find_fixed_point(n, m, images, map->change, map->way));
     if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, images, m, real, imaginary, NULL, 1, NULL, 1) != 0) {
         return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
     }

@@ -169,7 +169,7 @@ static enum status one_step_iterate(struct one_step *solver, double t, double h,
     return STATUS_OK;
 }
 
-static enum status failed(const struct one_step *solver, double t) {
+static enum status one_step_failed(const struct one_step *solver, double t) {
     return status_fail(STATUS_SOLVER,
                        "integration failed at t = %.10g s: Newton's iteration did not converge with steps of %.3g s: "
                        "choose a smaller solver.step, or solver.method: ida",
@@ -191,7 +191,7 @@ static enum status one_step_step(struct one_step *solver, double t, double h) {
         if (status > 0) converged = 0;
         if (!converged) solver->cj = 0;
     }
-    if (!converged) return failed(solver, t - h);
+    if (!converged) return one_step_failed(solver, t - h);
     one_step_rates(solver, h);
     solver->counts.steps++;
     integrator_rates_step(solver->algebraic_rates, t, state);

@@ -17,8 +17,8 @@ void impulse_add_stretch(struct impulse_moments *sum, double circulation, const 
 }
 
 // add the given fraction (part) of the circulation of source i at the position of the source tau after the event
-static void add_source(struct impulse_moments *sum, const struct wake *wake, int i, double part, double interval,
-                       double tau) {
+static void impulse_add_source(struct impulse_moments *sum, const struct wake *wake, int i, double part,
+                               double interval, double tau) {
     double older[2], newer[2];
     wake_marker(wake, i, interval, tau, older);
     wake_marker(wake, i + wake->has_markers, interval, tau, newer);
@@ -62,7 +62,7 @@ struct impulse_moments impulse_of_wake(const struct wake *wake, const struct sch
 
     for (int i = 0; i < wake_n_sources(wake); i++) {
         const double strength = wake_strength_within(school, source_age(wake, i, t), tau / school->interval);
-        add_source(&sum, wake, i, strength, school->interval, tau);
+        impulse_add_source(&sum, wake, i, strength, school->interval, tau);
     }
     return sum;
 }
@@ -114,8 +114,8 @@ void impulse_fade(const struct school *school, struct state *state, int f) {
         const double part = wake_strength(school, age) - wake_strength(school, age + school->interval);
         // sources are ordered by age: all younger sources keep full strength
         if (!(part > 0) && wake_strength(school, age + school->interval) >= 1) break;
-        add_source(&lost, wake, i, part / 2, school->interval, 0);
-        add_source(&lost, wake, i, part / 2, school->interval, school->interval);
+        impulse_add_source(&lost, wake, i, part / 2, school->interval, 0);
+        impulse_add_source(&lost, wake, i, part / 2, school->interval, school->interval);
     }
 
     // the tail: newest marker at the beginning of the interval, node of y at the end
@@ -133,7 +133,7 @@ void impulse_remove(const struct school *school, struct state *state, int f) {
     const int n_old = school->finite ? 0 : wake_n_old(wake, school, state->t);
     struct impulse_moments lost = {0};
     for (int i = 0; i < n_old; i++) {
-        add_source(&lost, wake, i, wake_strength(school, source_age(wake, i, state->t)), school->interval, 0);
+        impulse_add_source(&lost, wake, i, wake_strength(school, source_age(wake, i, state->t)), school->interval, 0);
     }
 
     const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};

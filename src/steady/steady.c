@@ -156,7 +156,7 @@ static enum status write_beats(struct run *run) {
 
 // ---- a run
 
-static enum status find_fixed_point(struct run *run) {
+static enum status steady_find_fixed_point(struct run *run) {
     TRY(steady_search_run(&run->problem));
     run->found.residual = steady_map_residual(&run->problem.map);
     run->found.error = NAN;
@@ -224,7 +224,7 @@ static enum status find_and_write(struct run *run) {
     TRY(record_create_steady(&run->record, run->values, run->simulation->school, n_events, options->path,
                              options->overwrite, options->command));
 
-    const enum status status = is_static ? find_equilibrium(run) : find_fixed_point(run);
+    const enum status status = is_static ? find_equilibrium(run) : steady_find_fixed_point(run);
     if (status == STATUS_STOPPED && !is_static) {
         status_fail(status, "stopped %s in beat %d of the search; a search cannot be resumed: start the search again",
                     simulate_stopped_by(options->stop), run->problem.map.n_beats + 1);
@@ -244,7 +244,7 @@ static enum status find_and_write(struct run *run) {
     return record_close(&run->record, status);
 }
 
-static void run_release(struct run *run) {
+static void steady_run_release(struct run *run) {
     steady_problem_free(&run->problem);
     simulate_free(run->simulation);
     free(run->found.fish);
@@ -258,7 +258,7 @@ static void run_release(struct run *run) {
 static enum status run_locked(void *data) {
     struct run *const run = data;
     const enum status status = find_and_write(run);
-    run_release(run);
+    steady_run_release(run);
     return status;
 }
 

@@ -154,7 +154,7 @@ static enum status check_place_columns(const struct formation *formation) {
 }
 
 // each column repeats the last beats of the evaluation with an increment of one quantity
-static enum status difference_jacobian(struct formation *formation) {
+static enum status formation_difference_jacobian(struct formation *formation) {
     struct steady_map *const map = &formation->problem->map;
     const int n = formation->problem->n_unknowns;
     memcpy(formation->held, formation->u, (size_t)n * sizeof *formation->held);
@@ -185,7 +185,7 @@ static enum status formation_jacobian(void *data, double *matrix) {
     formation->n_slow = now > least_progress * formation->last_norm ? formation->n_slow + 1 : 0;
     const int is_elsewhere = largest_distance(n, formation->made_at, formation->u) > telling_step;
     if (!formation->has_matrix || (formation->n_slow >= SLOW_STEPS && is_elsewhere))
-        TRY(difference_jacobian(formation));
+        TRY(formation_difference_jacobian(formation));
     formation->last_norm = now;
     memcpy(matrix, formation->matrix, (size_t)n * (size_t)n * sizeof *matrix);
 

@@ -163,8 +163,8 @@ enum status steady_problem_beat(struct steady_problem *problem) {
 }
 
 // set n quantities, SI units; leave the state untouched if all quantities have these values already
-static enum status put_quantities(struct steady_problem *problem, int n, const struct steady_unknown *unknown,
-                                  const double *to) {
+static enum status steady_problem_put_quantities(struct steady_problem *problem, int n,
+                                                 const struct steady_unknown *unknown, const double *to) {
     double *const add = problem->scratch;
     steady_map_read(&problem->map, n, unknown, add);
     int is_elsewhere = 0;
@@ -184,14 +184,14 @@ enum status steady_problem_put(struct steady_problem *problem, const double *to)
     const int n = problem->n_unknowns;
     double *const target = problem->scratch + n;
     for (int i = 0; i < n; i++) target[i] = to[i] * steady_map_scale(&problem->map, problem->unknown[i]);
-    return put_quantities(problem, n, problem->unknown, target);
+    return steady_problem_put_quantities(problem, n, problem->unknown, target);
 }
 
 enum status steady_problem_put_pins(struct steady_problem *problem, double speed) {
     for (int i = 0; i < problem->n_pins; i++) {
         if (problem->pin[i].quantity == STEADY_SPEED) problem->pinned[i] = speed;
     }
-    return put_quantities(problem, problem->n_pins, problem->pin, problem->pinned);
+    return steady_problem_put_quantities(problem, problem->n_pins, problem->pin, problem->pinned);
 }
 
 // ---- the free motion of a formation

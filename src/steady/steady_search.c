@@ -49,14 +49,14 @@ static void list_quantities(struct solution *solution) {
     for (int i = 0; i < solution->n; i++) solution->unit[i] = steady_map_scale(map, solution->unknown[i]);
 }
 
-static void read_all(const struct solution *solution, double *value) {
+static void search_read_all(const struct solution *solution, double *value) {
     steady_map_read(&solution->problem->map, solution->n, solution->unknown, value);
     for (int i = 0; i < solution->n; i++) value[i] /= solution->unit[i];
 }
 
-static enum status put_quantities(const struct solution *solution, const double *to) {
+static enum status search_put_quantities(const struct solution *solution, const double *to) {
     double add[STEADY_QUANTITIES], most = 0;
-    read_all(solution, add);
+    search_read_all(solution, add);
     for (int i = 0; i < solution->n; i++) {
         add[i] = to[i] - add[i];
         most = fmax(most, fabs(add[i]));
@@ -70,10 +70,10 @@ static enum status put_quantities(const struct solution *solution, const double 
 // change in the last beat of an evaluation; every beat begins with the values u
 static enum status evaluate_change(const struct solution *solution, const double *u, double *change) {
     for (int i = 0; i < solution->together->beats; i++) {
-        TRY(put_quantities(solution, u));
+        TRY(search_put_quantities(solution, u));
         TRY(steady_problem_beat(solution->problem));
     }
-    read_all(solution, change);
+    search_read_all(solution, change);
     for (int i = 0; i < solution->n; i++) change[i] -= u[i];
     return STATUS_OK;
 }
@@ -89,7 +89,7 @@ static enum status together_value(void *data, const double *u, double *change) {
 }
 
 // each column starts from the same state with an increment of one quantity
-static enum status difference_jacobian(struct solution *solution) {
+static enum status search_difference_jacobian(struct solution *solution) {
     struct steady_map *const map = &solution->problem->map;
     TRY(steady_map_save(map, &solution->reached));
     for (int j = 0; j < solution->n; j++) {
@@ -108,7 +108,7 @@ static enum status difference_jacobian(struct solution *solution) {
 
 static enum status together_jacobian(void *data, double *matrix) {
     struct solution *const solution = data;
-    if (!solution->together->is_known || solution->n_steps == STEPS) TRY(difference_jacobian(solution));
+    if (!solution->together->is_known || solution->n_steps == STEPS) TRY(search_difference_jacobian(solution));
     solution->n_steps++;
     memcpy(matrix, solution->together->matrix, (size_t)(solution->n * solution->n) * sizeof *matrix);
     return STATUS_OK;
@@ -128,7 +128,7 @@ static enum status together_newton(struct solution *solution, double tolerance, 
                                   .jacobian = together_jacobian,
                                   .data = solution};
     TRY(steady_map_save(&problem->map, &solution->begun));
-    read_all(solution, u);
+    search_read_all(solution, u);
     const enum status status = newton_solve(&newton, u);
     *is_done = status == STATUS_OK;
     if (status != STATUS_SOLVER || problem->map.n_beats >= problem->settings->beats) return status;

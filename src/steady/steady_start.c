@@ -56,8 +56,8 @@ static enum status read_place(const struct reading *reading, size_t f, const str
     return STATUS_OK;
 }
 
-static enum status read_fish(const struct reading *reading, size_t f, const struct fish_parameters *first,
-                             struct fish_parameters *fish) {
+static enum status start_read_fish(const struct reading *reading, size_t f, const struct fish_parameters *first,
+                                   struct fish_parameters *fish) {
     const int is_free = fish->motion.prescribed == PRESCRIBED_NONE || fish->motion.surge == SURGE_FREE;
     double speed;
     if (!is_free) return STATUS_OK;
@@ -78,7 +78,7 @@ enum status steady_start_read(const char *path, const struct school_parameters *
     if (copy) memcpy(copy, school->fish, (size_t)school->n_fish * sizeof *copy);
 
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
-        status = read_fish(&reading, (size_t)f, school->fish, &copy[f]);
+        status = start_read_fish(&reading, (size_t)f, school->fish, &copy[f]);
     }
 
     netcdf_close(&reading.reader);

@@ -134,7 +134,7 @@ static void growth_free(struct growth *growth) {
 }
 
 // set the stream to this part of the full stream, and the loads to the square of this part, as forces of a stream scale
-static void set_part(struct growth *growth, double part) {
+static void static_set_part(struct growth *growth, double part) {
     const struct school *const whole = growth->simulation->school;
     struct school *const school = &growth->school;
     for (int i = 0; i < 2; i++) school->velocity[i] = part * whole->velocity[i];
@@ -193,7 +193,7 @@ static enum status growth_solve(struct growth *growth, double part) {
                            simulate_stopped_by(simulation->stop), part);
     }
 
-    set_part(growth, part);
+    static_set_part(growth, part);
     enum status status = equilibrium_solve(growth->equilibrium);
     if (status == STATUS_OK && largest_turn(simulation->school, growth->last, state->y) > most_turn) {
         status = status_fail(STATUS_SOLVER, "the solution is on another branch");
@@ -247,7 +247,7 @@ static enum status report_end_of_branch(struct growth *growth) {
     double stiffness;
     char reason[512];
     snprintf(reason, sizeof reason, "%s", status_message());
-    set_part(growth, growth->last_part);
+    static_set_part(growth, growth->last_part);
     TRY(find_stiffness(growth, &stiffness));
     return status_fail(
         STATUS_SOLVER,
@@ -259,7 +259,7 @@ static enum status report_end_of_branch(struct growth *growth) {
 static enum status growth_from_rest(struct growth *growth) {
     struct state *const state = growth->simulation->state;
     const size_t bytes = (size_t)growth->simulation->school->n_unknowns * sizeof *state->y;
-    set_part(growth, 0);
+    static_set_part(growth, 0);
     set_to_rest(growth->simulation);
     memcpy(growth->last, state->y, bytes);
     const enum status status = growth_solve(growth, 0);
@@ -315,7 +315,7 @@ static enum status find_solution(struct growth *growth, const char *from, struct
 
 // ---- the values of the equilibrium
 
-static void fill_fish(const struct simulation *simulation, int f, struct steady_fish *found) {
+static void static_fill_fish(const struct simulation *simulation, int f, struct steady_fish *found) {
     const struct fish *const fish = &simulation->school->fish[f];
     const struct diagnostics_fish *const now = &simulation->diagnostics->fish[f];
     const double *const y = simulation->state->y;
@@ -363,7 +363,7 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
     const struct rigid first = rigid_of(&simulation->school->fish[0], state->y);
     for (int f = 0; f < simulation->school->n_fish; f++) {
         const struct rigid rigid = rigid_of(&simulation->school->fish[f], state->y);
-        fill_fish(simulation, f, &found->fish[f]);
+        static_fill_fish(simulation, f, &found->fish[f]);
         rigid_relative_place(&first, &rigid, found->fish[f].place);
     }
 

@@ -53,7 +53,7 @@ static int is_in_beats(const struct case_values *values, const char *path) {
 }
 
 /* The value of a key, in beats if the case gives a duration in beats. */
-static double number_of(const struct case_values *values, const char *path, int fish) {
+static double plan_number_of(const struct case_values *values, const char *path, int fish) {
     const struct key *const key = case_table_row(path);
     const void *const field = field_of(values, path, fish);
     if (is_in_beats(values, path)) return ((const struct duration *)field)->beats;
@@ -64,12 +64,12 @@ static double number_of(const struct case_values *values, const char *path, int 
 
 static int are_fish_alike(const struct case_values *values, const char *path) {
     for (int f = 1; f < n_owners(values, path); f++) {
-        if (fabs(number_of(values, path, f) - number_of(values, path, 0)) > 0) return 0;
+        if (fabs(plan_number_of(values, path, f) - plan_number_of(values, path, 0)) > 0) return 0;
     }
     return 1;
 }
 
-/* The text of a value, in the unit of number_of. */
+/* The text of a value, in the unit of plan_number_of. */
 static char *text_of(const struct case_values *values, const struct key *key, double value) {
     struct text text = {0};
     if (key->type == CHOICE) {
@@ -99,7 +99,7 @@ static enum status add_columns(struct error_study *study, const struct case_valu
         } else {
             text_add(&text, "fish[%d]%s", f, path + 4);
         }
-        axis->value[axis->n_keys] = text_of(values, key, number_of(values, path, f));
+        axis->value[axis->n_keys] = text_of(values, key, plan_number_of(values, path, f));
         axis->key[axis->n_keys++] = (struct sweep_key){
             .path = text.text, .row = key->path, .unit = key->unit, .is_number = key->type != CHOICE};
         if (!axis->value[axis->n_keys - 1] || !text.text) return memory_check(NULL, what);
@@ -144,9 +144,9 @@ static void row_set(struct row *row, const char *path, int fish, double value) {
 /* The sheet points of a fish for the finest level of the nodes; all levels of the nodes use the same sheet. */
 static double sheet_for(const struct error_study *study, double finest, int f) {
     const struct case_values *const values = &study->study;
-    const double part = fmax(1, finest / number_of(values, "fish.nodes", 0));
-    const double nodes = round(part * number_of(values, "fish.nodes", f));
-    return fmax(number_of(values, "fish.sheet_points", f), 2 * nodes - 1);
+    const double part = fmax(1, finest / plan_number_of(values, "fish.nodes", 0));
+    const double nodes = round(part * plan_number_of(values, "fish.nodes", f));
+    return fmax(plan_number_of(values, "fish.sheet_points", f), 2 * nodes - 1);
 }
 
 /* Set the times that must be multiples of the interval; the end time has no effect on a steady state. */
@@ -166,19 +166,19 @@ static void row_apply(struct row *row, const struct error_plan_change *change) {
     const struct case_values *const values = &study->study;
     const struct error_study_key *const key = &study->key[change->key];
     const char *const path = key->row->path, *const companion = key->row->companion;
-    const double part = change->value / number_of(values, path, 0);
+    const double part = change->value / plan_number_of(values, path, 0);
     const int are_nodes = strcmp(path, "fish.nodes") == 0;
 
     if (!are_nodes && !(fabs(part - 1) > 1e-12)) return;
     for (int f = 0; f < n_owners(values, path); f++) {
-        const double value = f == 0 ? change->value : part * number_of(values, path, f);
+        const double value = f == 0 ? change->value : part * plan_number_of(values, path, f);
         row_set(row, path, f, key->row->kind == SWEEP_POINTS ? round(value) : value);
         if (!are_nodes) continue;
         const double finest = fmax(change->value, key->n_levels > 0 ? key->value[0] : 0);
         row_set(row, "fish.sheet_points", f, sheet_for(study, finest, f));
     }
 
-    if (companion) row_set(row, companion, 0, part * number_of(values, companion, 0));
+    if (companion) row_set(row, companion, 0, part * plan_number_of(values, companion, 0));
     if (strcmp(path, "time.shedding_interval") == 0) set_times(row, change->value);
 }
 
@@ -217,7 +217,7 @@ static enum status make_row(const struct error_study *study, int n, const struct
 }
 
 /* The member with the values of a row, except for multipliers; -1: none. */
-static int find_row(const struct error_study *study, const struct row *row) {
+static int plan_find_row(const struct error_study *study, const struct row *row) {
     const struct sweep_axis *const axis = axis_of(study);
     const int ignored = error_plan_column(study, "steady.multipliers");
     for (int m = 0; m < axis->n_values; m++) {
@@ -252,7 +252,7 @@ enum status error_plan_member(struct error_study *study, int n, const struct err
                               int *member, int *is_new) {
     struct row row;
     TRY(make_row(study, n, changes, &row));
-    *member = find_row(study, &row);
+    *member = plan_find_row(study, &row);
     *is_new = *member < 0;
     if (*is_new) return row_append(study, &row, before, member);
     row_free(&row);
@@ -383,7 +383,7 @@ static enum status add_default_levels(struct error_study *study, int k) {
 /* Whether a key affects the results of this case. */
 static int is_used(const struct error_study *study, const struct sweep_error_key *row) {
     const struct case_values *const values = &study->study;
-    const double value = number_of(values, row->path, 0);
+    const double value = plan_number_of(values, row->path, 0);
     const int is_wake = strncmp(row->path, "wake.", 5) == 0, has_fluid = values->school.fluid.density > 0;
 
     // an equilibrium has no events, but the wake of the modes is shed at events
@@ -412,7 +412,7 @@ static enum status choose_keys(struct error_study *study) {
         *key = (struct error_study_key){.row = row,
                                         .unit = is_in_beats(&study->study, row->path) ? " beats" : "",
                                         .n_levels = 1,
-                                        .value = {number_of(&study->study, row->path, 0)},
+                                        .value = {plan_number_of(&study->study, row->path, 0)},
                                         .member = {-1}};
         TRY(MEMORY_NEW(key->part, study->n_asked * study->n_fish, what));
     }

@@ -23,11 +23,11 @@ static const char *name_of(const struct error_study *study, int q) {
     return member_file_quantity(study->quantity[q])->name;
 }
 
-static int of_fish(const struct error_study *study, int q) {
+static int report_of_fish(const struct error_study *study, int q) {
     return member_file_quantity(study->quantity[q])->of_fish;
 }
 
-static int is_error(const struct error_study_key *key) {
+static int report_is_error(const struct error_study_key *key) {
     return key->row->kind != SWEEP_MODEL;
 }
 
@@ -46,7 +46,7 @@ static void write_levels(const struct error_study_key *key, char text[LEVEL_BYTE
 // ---- the plan
 
 /* The estimated CPU time of a member, s. */
-static enum status estimate_member(const struct error_study *study, int m, double seconds, double *duration) {
+static enum status report_estimate_member(const struct error_study *study, int m, double seconds, double *duration) {
     struct case_values values;
     struct simulation *simulation = NULL;
     struct estimate estimate;
@@ -88,7 +88,7 @@ enum status error_report_plan(const struct error_study *study, int n_processes, 
     enum status status = MEMORY_NEW(duration, n, "the plan of a study");
     for (int m = 0; m < n && status == STATUS_OK; m++) {
         // the time of an equilibrium is negligible
-        if (!study->is_static) status = estimate_member(study, m, patience / n, &duration[m]);
+        if (!study->is_static) status = report_estimate_member(study, m, patience / n, &duration[m]);
         sum += duration[m];
         longest = fmax(longest, duration[m]);
     }
@@ -155,7 +155,7 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
     const char *const unit = strcmp(own_unit, "1") == 0 ? "" : own_unit, *const blank = *unit ? " " : "";
 
     fprintf(stream, "%s", name_of(study, q));
-    if (of_fish(study, q)) fprintf(stream, " of %s", study->study.school.fish[f].name);
+    if (report_of_fish(study, q)) fprintf(stream, " of %s", study->study.school.fish[f].name);
     if (isnan(value)) {
         fprintf(stream, ": unknown\n");
     } else if (isnan(error)) {
@@ -173,15 +173,15 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
 /* Whether the levels of a key change all requested quantities by at most the noise. */
 static int is_below_noise(const struct error_study *study, const struct error_study_key *key) {
     for (int place = 0; place < study->n_asked * study->n_fish; place++) {
-        const int is_there = place % study->n_fish == 0 || of_fish(study, place / study->n_fish);
+        const int is_there = place % study->n_fish == 0 || report_of_fish(study, place / study->n_fish);
         if (is_there && key->part[place].verdict != ERROR_BUDGET_NONE) return 0;
     }
     return 1;
 }
 
 /* "5.0*": the observed order of the first quantity with an order, and a mark. */
-static void write_order(const struct error_study *study, const struct error_study_key *key, int f, int *is_above,
-                        char text[16]) {
+static void report_write_order(const struct error_study *study, const struct error_study_key *key, int f, int *is_above,
+                               char text[16]) {
     const double design = sweep_error_order(&study->study, key->row);
     if (key->n_levels == 1) {
         snprintf(text, 16, "not varied");
@@ -195,7 +195,7 @@ static void write_order(const struct error_study *study, const struct error_stud
         double order = NAN;
         for (int q = 0; q < study->n_asked && isnan(order); q++) {
             const struct error_study_part *const part =
-                &key->part[error_plan_place(study, q, of_fish(study, q) ? f : 0)];
+                &key->part[error_plan_place(study, q, report_of_fish(study, q) ? f : 0)];
             if (part->verdict == ERROR_BUDGET_ACCEPTED) order = part->order;
         }
         const int is_high = order > design;
@@ -221,7 +221,7 @@ static void write_next(const struct error_study *study, const struct error_study
 }
 
 /* Print two digits of a part of the sum, at most one decimal more than the sum and at most five decimals. */
-static void set_part(const struct study_table *table, int row, int column, double part, double sum) {
+static void report_set_part(const struct study_table *table, int row, int column, double part, double sum) {
     const int most = decimals_for(sum) < 4 ? 5 : decimals_for(sum) + 1, own = decimals_for(part);
     study_table_set(table, row, column, isnan(part) ? "unknown" : "%.*f", own < most ? own : most, part);
 }
@@ -231,16 +231,16 @@ static void fill_row(const struct error_study *study, const struct study_table *
     const struct error_study_key *const key = &study->key[k];
     char levels[LEVEL_BYTES], order[16];
     write_levels(key, levels);
-    write_order(study, key, f, is_above, order);
+    report_write_order(study, key, f, is_above, order);
     study_table_set(table, row, 0, "%s", key->row->path);
     study_table_set(table, row, 1, "%s", levels);
     study_table_set(table, row, 2, "%s", order);
     int c = 3;
     for (int q = 0; q < study->n_asked; q++, c += 3) {
         const int place = error_plan_place(study, q, f);
-        if (key->n_levels == 1 || (f > 0 && !of_fish(study, q))) continue;
+        if (key->n_levels == 1 || (f > 0 && !report_of_fish(study, q))) continue;
         const double error = key->part[place].error;
-        set_part(table, row, c, error, study->error[place]);
+        report_set_part(table, row, c, error, study->error[place]);
         study_table_number(table, row, c + 1, "%.2f", 100 * error / fabs(study->value[place]));
         study_table_number(table, row, c + 2, "%.0f", study->error[place] > 0 ? 100 * error / study->error[place] : 0);
     }
@@ -254,11 +254,11 @@ static void fill_row(const struct error_study *study, const struct study_table *
 }
 
 /* Print the share of each key for one fish. */
-static enum status print_table(const struct error_study *study, const struct error_study_next *next, int f,
-                               FILE *stream) {
+static enum status report_print_table(const struct error_study *study, const struct error_study_next *next, int f,
+                                      FILE *stream) {
     int n_keys = 0, is_above = 0, n_moved = 0;
     for (int k = 0; k < study->n_keys; k++) {
-        n_keys += is_error(&study->key[k]);
+        n_keys += report_is_error(&study->key[k]);
         n_moved += study->key[k].stated != study->key[k].first_stated;
     }
 
@@ -280,7 +280,7 @@ static enum status print_table(const struct error_study *study, const struct err
     study_table_set(&table, 0, n_columns - 1, "next");
     int row = 1;
     for (int k = 0; k < study->n_keys; k++) {
-        if (!is_error(&study->key[k])) continue;
+        if (!report_is_error(&study->key[k])) continue;
         char words[STUDY_CELL_BYTES] = "";
         if (k == next->key) write_next(study, next, words);
         fill_row(study, &table, row, k, f, &is_above);
@@ -291,7 +291,7 @@ static enum status print_table(const struct error_study *study, const struct err
         study_table_set(&table, row, 0, "together");
         for (int q = 0; q < study->n_asked; q++) {
             const int place = error_plan_place(study, q, f);
-            set_part(&table, row, 3 + 3 * q, study->together[place], study->error[place]);
+            report_set_part(&table, row, 3 + 3 * q, study->together[place], study->error[place]);
             study_table_number(&table, row, 4 + 3 * q, "%.2f",
                                100 * study->together[place] / fabs(study->value[place]));
         }
@@ -301,8 +301,8 @@ static enum status print_table(const struct error_study *study, const struct err
     study_table_set(&table, row, 0, "sum");
     for (int q = 0; q < study->n_asked; q++) {
         const int place = error_plan_place(study, q, f);
-        if (f > 0 && !of_fish(study, q)) continue;
-        set_part(&table, row, 3 + 3 * q, study->error[place], study->error[place]);
+        if (f > 0 && !report_of_fish(study, q)) continue;
+        report_set_part(&table, row, 3 + 3 * q, study->error[place], study->error[place]);
         study_table_number(&table, row, 4 + 3 * q, "%.2f", 100 * study->error[place] / fabs(study->value[place]));
     }
 
@@ -319,7 +319,7 @@ static void print_choices(const struct error_study *study, FILE *stream) {
     int n = 0;
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
-        if (is_error(key) || key->n_levels == 1) continue;
+        if (report_is_error(key) || key->n_levels == 1) continue;
         double most = 0;
         int is_none = 1;
         for (int place = 0; place < study->n_asked * study->n_fish; place++) {
@@ -349,7 +349,7 @@ static void print_reasons(const struct error_study *study, const struct member_f
         for (int place = 0; place < study->n_asked * study->n_fish; place++) {
             has_share |= !(key->part[place].error < 0.01 * study->error[place]);
         }
-        if (key->n_levels > 1 && is_error(key) && *key->reason && has_share) {
+        if (key->n_levels > 1 && report_is_error(key) && *key->reason && has_share) {
             fprintf(stream, "flagged: %s: %s\n", key->row->path, key->reason);
         }
     }
@@ -364,9 +364,9 @@ enum status error_report_print(struct error_study *study, const struct member_fi
     const int n_shown = study->n_fish < MOST_FISH ? study->n_fish : MOST_FISH;
     for (int f = 0; f < n_shown; f++) {
         for (int q = 0; q < study->n_asked; q++) {
-            if (f == 0 || of_fish(study, q)) print_value(study, q, f, stream);
+            if (f == 0 || report_of_fish(study, q)) print_value(study, q, f, stream);
         }
-        TRY(print_table(study, &next, f, stream));
+        TRY(report_print_table(study, &next, f, stream));
         if (f + 1 < n_shown) fprintf(stream, "\n");
     }
 
@@ -405,10 +405,10 @@ enum status error_report_write_csv(const struct error_study *study, const char *
                 char levels[LEVEL_BYTES] = "";
                 if (key) write_levels(key, levels);
                 const double error = key ? key->part[place].error : study->error[place];
-                const char *const verdict = !key             ? ""
-                                            : !is_error(key) ? "a choice of the model, not in the sum"
-                                            : *key->reason   ? key->reason
-                                                             : error_budget_words(key->verdict);
+                const char *const verdict = !key                    ? ""
+                                            : !report_is_error(key) ? "a choice of the model, not in the sum"
+                                            : *key->reason          ? key->reason
+                                                                    : error_budget_words(key->verdict);
                 fprintf(file, "\"%s\",%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,\"%s\"\n",
                         quantity->of_fish ? study->study.school.fish[f].name : "", quantity->name, quantity->unit,
                         study->value[place], key ? key->row->path : "sum", levels, key ? key->part[place].order : NAN,
@@ -514,10 +514,11 @@ void error_report_define(struct netcdf_writer *writer, const struct error_study 
     }
 }
 
-static void write_key(struct netcdf_writer *writer, const struct error_study *study, int k, size_t n_text, char *text) {
+static void report_write_key(struct netcdf_writer *writer, const struct error_study *study, int k, size_t n_text,
+                             char *text) {
     const struct error_study_key *const key = &study->key[k];
     const size_t start[] = {(size_t)k, 0}, all_text[] = {1, n_text}, one[] = {1, 1};
-    const int is_choice = !is_error(key);
+    const int is_choice = !report_is_error(key);
     const char *const texts[] = {
         [KEY_NAME] = key->row->path, [KEY_REASON] = key->n_levels == 1 ? key->objection : key->reason};
     const int *const ints[] = {
@@ -545,7 +546,7 @@ static void write_key(struct netcdf_writer *writer, const struct error_study *st
 }
 
 void error_report_write(struct netcdf_writer *writer, const struct error_study *study, size_t n_text, char *text) {
-    for (int k = 0; k < study->n_keys; k++) write_key(writer, study, k, n_text, text);
+    for (int k = 0; k < study->n_keys; k++) report_write_key(writer, study, k, n_text, text);
     for (int q = 0; q < study->n_asked; q++) {
         char name[N_OF_QUANTITY][NAME_BYTES];
         for (int i = 0; i < N_OF_QUANTITY; i++) {

@@ -21,7 +21,7 @@ enum { MOST_ADDED = 3 };
 
 // ---- values of the members
 
-static double value_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
+static double errors_value_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
     if (m < 0 || !member_file_is_complete(&members[m])) return NAN;
     const int quantity = study->quantity[q];
     return member_file_value(&members[m], quantity, member_file_quantity(quantity)->of_fish ? f : 0, 0);
@@ -40,7 +40,7 @@ static double lengths_of(const struct error_study *study, const struct member_fi
 
 /* The relative error of a value of a member independent of the levels: error of the integrator and of the search. The
  * ratio of search error to residual equals the ratio in the case. */
-static double noise_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
+static double errors_noise_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
     const struct sweep_axis *const axis = &study->study.sweep[0];
     const int column = error_plan_column(study, "solver.rtol");
     double rtol = study->study.school.rtol;
@@ -119,12 +119,12 @@ static enum status judge_key(struct error_study *study, const struct member_file
         for (int f = 0; f < (member_file_quantity(study->quantity[q])->of_fish ? n_fish : 1); f++) {
             int is_known = q < study->n_asked;
             for (int i = 0; i < n_levels; i++) {
-                judged[n].value[i][0] = value_of(study, members, key->member[i], q, f);
+                judged[n].value[i][0] = errors_value_of(study, members, key->member[i], q, f);
                 is_known |= !isnan(judged[n].value[i][0]);
             }
             // speed, cost and Strouhal number judge if known
             if (!is_known) continue;
-            const double noise = noise_of(study, members, key->member[key->stated], q, f);
+            const double noise = errors_noise_of(study, members, key->member[key->stated], q, f);
             sequence[n] = (struct error_budget_sequence){(const double(*)[2])judged[n].value, noise};
             judged[n++].place = error_plan_place(study, q, f);
         }
@@ -162,7 +162,7 @@ end:
 }
 
 /* Whether the error of a key contributes to the sum. */
-static int is_error(const struct error_study_key *key) {
+static int errors_is_error(const struct error_study_key *key) {
     return key->row->kind != SWEEP_MODEL && key->n_levels > 1;
 }
 
@@ -171,13 +171,13 @@ static void judge_choice(struct error_study *study, const struct member_file *me
     for (int q = 0; q < study->n_asked; q++) {
         for (int f = 0; f < study->n_fish; f++) {
             struct error_study_part *const part = &key->part[error_plan_place(study, q, f)];
-            const double base = value_of(study, members, key->member[key->stated], q, f);
+            const double base = errors_value_of(study, members, key->member[key->stated], q, f);
             *part = (struct error_study_part){.finest_error = NAN, .order = NAN};
             for (int i = 0; i < key->n_levels; i++) {
-                const double change = fabs(value_of(study, members, key->member[i], q, f) - base);
+                const double change = fabs(errors_value_of(study, members, key->member[i], q, f) - base);
                 part->error = isnan(change) ? NAN : fmax(part->error, change);
             }
-            const double noise = 3 * noise_of(study, members, key->member[key->stated], q, f) * fabs(base);
+            const double noise = 3 * errors_noise_of(study, members, key->member[key->stated], q, f) * fabs(base);
             part->verdict = part->error <= noise ? ERROR_BUDGET_NONE : ERROR_BUDGET_ACCEPTED;
         }
     }
@@ -190,21 +190,21 @@ static void sum_errors(struct error_study *study, const struct member_file *memb
     for (int q = 0; q < study->n_asked; q++) {
         for (int f = 0; f < study->n_fish; f++) {
             const int place = error_plan_place(study, q, f);
-            double sum = 0, moved = value_of(study, members, 0, q, f);
+            double sum = 0, moved = errors_value_of(study, members, 0, q, f);
             for (int k = 0; k < study->n_keys; k++) {
                 const struct error_study_key *const key = &study->key[k];
-                if (!is_error(key)) continue;
+                if (!errors_is_error(key)) continue;
                 sum += key->part[place].error;
-                moved += value_of(study, members, key->member[key->stated], q, f) -
-                         value_of(study, members, key->member[key->first_stated], q, f);
+                moved += errors_value_of(study, members, key->member[key->stated], q, f) -
+                         errors_value_of(study, members, key->member[key->first_stated], q, f);
             }
-            study->value[place] = value_of(study, members, study->stated, q, f);
+            study->value[place] = errors_value_of(study, members, study->stated, q, f);
             study->together[place] = n_moved > 1 ? fabs(study->value[place] - moved) : 0;
             study->error[place] = sum + study->together[place];
         }
     }
 
-    study->noise = noise_of(study, members, study->stated, 0, 0);
+    study->noise = errors_noise_of(study, members, study->stated, 0, 0);
     study->cost = cost_of(study, members, study->stated) / cost_of(study, members, 0);
 }
 
@@ -229,7 +229,7 @@ enum status error_study_judge(struct error_study *study, const struct member_fil
         struct error_study_key *const key = &study->key[k];
         if (key->n_levels == 1) continue;
         object_to_interval(study, members, key);
-        if (is_error(key)) {
+        if (errors_is_error(key)) {
             TRY(judge_key(study, members, key));
         } else {
             judge_choice(study, members, key);
@@ -272,8 +272,8 @@ static double next_part(const struct error_study *study, const struct member_fil
                 const double order = fmin(design, part->order);  // fmin ignores NaN
                 error *= pow(error_plan_size(key->row, next) / error_plan_size(key->row, key->value[0]), order);
             } else {
-                error += fabs(value_of(study, members, key->member[key->stated - 1], q, f) -
-                              value_of(study, members, key->member[0], q, f));
+                error += fabs(errors_value_of(study, members, key->member[key->stated - 1], q, f) -
+                              errors_value_of(study, members, key->member[0], q, f));
             }
             if (isnan(error)) return NAN;
             most = fmax(most, error / fabs(study->value[place]));
@@ -289,7 +289,7 @@ enum status error_study_find_next(struct error_study *study, const struct member
     *next = (struct error_study_next){.key = -1, .value = NAN, .cost = NAN, .part = NAN, .sum = NAN};
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
-        if (!is_error(key) || key->verdict == ERROR_BUDGET_NONE || !(relative_part(study, key) > most)) continue;
+        if (!errors_is_error(key) || key->verdict == ERROR_BUDGET_NONE || !(relative_part(study, key) > most)) continue;
         most = relative_part(study, key);
         next->key = k;
     }
@@ -378,8 +378,8 @@ void error_study_say_cost(const struct error_study *study, char words[ERROR_STUD
 
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
-        const int is_fixed = !is_error(key) || key->verdict != ERROR_BUDGET_ACCEPTED;
-        part[k] = is_error(key) ? relative_part(study, key) : 0;
+        const int is_fixed = !errors_is_error(key) || key->verdict != ERROR_BUDGET_ACCEPTED;
+        part[k] = errors_is_error(key) ? relative_part(study, key) : 0;
         order[k] = is_fixed ? NAN : sweep_error_order(&study->study, key->row);
         ratio[k] = 1;
         sum += part[k];

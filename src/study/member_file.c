@@ -108,7 +108,7 @@ struct reading {
 };
 
 /* Read the last row of the variable of a quantity, or the value of a steady state. */
-static enum status read_quantity(const struct reading *reading, int q) {
+static enum status member_read_quantity(const struct reading *reading, int q) {
     const struct member_file_quantity *const quantity = member_file_quantity(q);
     if (!netcdf_has(&reading->reader, quantity->name)) return STATUS_OK;
     const struct netcdf_slice slice[] = {{"time", reading->n_rows - 1, 1},
@@ -214,7 +214,7 @@ static enum status read_attributes(struct reading *reading) {
     return netcdf_read_string(reader, "case_effective", &member->effective);
 }
 
-static enum status read_values(struct reading *reading) {
+static enum status member_read_values(struct reading *reading) {
     const struct netcdf_reader *const reader = &reading->reader;
     TRY(netcdf_read_length(reader, "time", 0, SIZE_MAX / sizeof(double), &reading->n_rows));
     TRY(netcdf_read_length(reader, "fish", 1, MAX_FISH, &reading->n_fish));
@@ -227,7 +227,7 @@ static enum status read_values(struct reading *reading) {
 
     const struct netcdf_slice all_rows[] = {{"time", 0, reading->n_rows}, {NULL}};
     TRY(netcdf_read_doubles(reader, "time", all_rows, reading->time));
-    for (int q = 0; q < member_file_n_quantities() - N_COMPUTED; q++) TRY(read_quantity(reading, q));
+    for (int q = 0; q < member_file_n_quantities() - N_COMPUTED; q++) TRY(member_read_quantity(reading, q));
     for (int f = 0; f < reading->member->n_fish; f++) TRY(compute_fish(reading, f));
 
     return compute_beat_time(reading);
@@ -243,7 +243,7 @@ enum status member_file_read(struct member_file *member, const char *path) {
     }
 
     if (status == STATUS_OK) status = read_attributes(&reading);
-    if (status == STATUS_OK) status = read_values(&reading);
+    if (status == STATUS_OK) status = member_read_values(&reading);
     netcdf_close(&reading.reader);
     free(reading.time);
     free(reading.heading);

@@ -162,9 +162,9 @@ static enum status create_study(struct case_values *study, const struct case_val
 // ---- the run
 
 /* Run all members in a folder, then report. */
-static enum status run_in_folder(const char *folder, const struct case_values *study,
-                                 const struct study_compare_options *options, const struct study_options *run,
-                                 FILE *stream) {
+static enum status compare_run_in_folder(const char *folder, const struct case_values *study,
+                                         const struct study_compare_options *options, const struct study_options *run,
+                                         FILE *stream) {
     const struct study_options all = {.folder = folder,
                                       .command = run->command,
                                       .n_processes = 1,
@@ -203,7 +203,7 @@ enum status study_compare(const struct case_values *values, const struct study_c
     TRY(create_study(&study, values, options));
     enum status status = STATUS_OK;
     if (mkdtemp(folder)) {
-        status = run_in_folder(folder, &study, options, run, stream);
+        status = compare_run_in_folder(folder, &study, options, run, stream);
         study_folder_remove(folder);
     } else {
         status = status_fail(STATUS_FILE, "%s: cannot create this folder (%s): set TMPDIR to another folder", folder,

@@ -86,8 +86,8 @@ static size_t longest_text(const struct writing *writing) {
 // ---- definition
 
 /* Define a variable of strings (n, text) or of numbers (n); returns the number of the variable. */
-static int define_variable(struct writing *writing, const char *name, enum netcdf_type type, int first_dimension,
-                           const char *long_name, const char *units) {
+static int study_file_define_variable(struct writing *writing, const char *name, enum netcdf_type type,
+                                      int first_dimension, const char *long_name, const char *units) {
     const struct netcdf_variable variable = {.name = name,
                                              .long_name = long_name,
                                              .units = units,
@@ -103,7 +103,7 @@ static bool has_quantity(const struct case_values *study, const struct member_fi
     return !quantity->of_comparison || study_comparison_is(study);
 }
 
-static void define_all(struct writing *writing) {
+static void study_file_define_all(struct writing *writing) {
     struct netcdf_writer *const writer = &writing->writer;
     const struct case_values *const study = writing->study;
     writing->member_dimension = netcdf_define_dimension(writer, "member", (size_t)writing->n_members);
@@ -114,8 +114,9 @@ static void define_all(struct writing *writing) {
     netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", study->merged);
 
     for (int i = 0; i < N_OWN; i++) {
-        define_variable(writing, own[i].name, i == MEMBER ? NETCDF_INT : NETCDF_TEXT,
-                        i == FISH_NAME ? writing->fish_dimension : writing->member_dimension, own[i].meaning, "1");
+        study_file_define_variable(writing, own[i].name, i == MEMBER ? NETCDF_INT : NETCDF_TEXT,
+                                   i == FISH_NAME ? writing->fish_dimension : writing->member_dimension, own[i].meaning,
+                                   "1");
     }
 
     for (int a = 0; a < study->n_axes; a++) {
@@ -123,8 +124,8 @@ static void define_all(struct writing *writing) {
             const struct sweep_key *const key = &study->sweep[a].key[k];
             char name[NAME_BYTES];
             variable_name(key->path, name);
-            const int number = define_variable(writing, name, key->is_number ? NETCDF_DOUBLE : NETCDF_TEXT,
-                                               writing->member_dimension, key->path, key->unit);
+            const int number = study_file_define_variable(writing, name, key->is_number ? NETCDF_DOUBLE : NETCDF_TEXT,
+                                                          writing->member_dimension, key->path, key->unit);
             netcdf_write_integer(writer, number, "axis", a);
             if (k == 0 && study->sweep[a].refine) netcdf_write_integer(writer, number, "refine", 1);
         }
@@ -177,7 +178,7 @@ static void write_quantity(struct writing *writing, int q) {
     write_buffer(writing, quantity->name);
 }
 
-static void write_key(struct writing *writing, int a, int k) {
+static void study_file_write_key(struct writing *writing, int a, int k) {
     const struct sweep_key *const key = &writing->study->sweep[a].key[k];
     char name[NAME_BYTES];
     variable_name(key->path, name);
@@ -188,7 +189,7 @@ static void write_key(struct writing *writing, int a, int k) {
     if (key->is_number) write_buffer(writing, name);
 }
 
-static void write_all(struct writing *writing) {
+static void study_file_write_all(struct writing *writing) {
     const struct case_values *const study = writing->study;
     for (int m = 0; m < writing->n_members; m++) {
         netcdf_write_ints(&writing->writer, netcdf_number(&writing->writer, own[MEMBER].name), (size_t[]){(size_t)m},
@@ -199,7 +200,7 @@ static void write_all(struct writing *writing) {
 
     for (int f = 0; f < writing->n_fish; f++) write_text(writing, own[FISH_NAME].name, f, study->school.fish[f].name);
     for (int a = 0; a < study->n_axes; a++) {
-        for (int k = 0; k < study->sweep[a].n_keys; k++) write_key(writing, a, k);
+        for (int k = 0; k < study->sweep[a].n_keys; k++) study_file_write_key(writing, a, k);
     }
 
     for (int q = 0; member_file_quantity(q); q++) {
@@ -227,8 +228,8 @@ enum status study_file_write(const char *path, const struct case_values *study, 
     if (status == STATUS_OK) status = target_check(path, TARGET_NETCDF, true);
     if (status == STATUS_OK) status = netcdf_create(&writing.writer, path, study->name, command);
     if (status == STATUS_OK) {
-        define_all(&writing);
-        write_all(&writing);
+        study_file_define_all(&writing);
+        study_file_write_all(&writing);
         status = netcdf_publish(&writing.writer, true);
         const enum status finished = netcdf_finish(&writing.writer);
         if (status == STATUS_OK) status = finished;
@@ -281,7 +282,7 @@ struct reading {
 };
 
 /* Read one quantity of all members; files of earlier versions may lack the quantity. */
-static enum status read_quantity(const struct reading *reading, int q) {
+static enum status study_file_read_quantity(const struct reading *reading, int q) {
     const struct member_file_quantity *const quantity = member_file_quantity(q);
     if (!netcdf_has(&reading->reader, quantity->name)) return STATUS_OK;
     const int n_fish = reading->study->school.n_fish;
@@ -303,7 +304,7 @@ static enum status read_quantity(const struct reading *reading, int q) {
 }
 
 /* Read a string of a member; the caller frees the string. */
-static enum status read_string(const struct reading *reading, const char *name, size_t m, char **string) {
+static enum status study_file_read_string(const struct reading *reading, const char *name, size_t m, char **string) {
     TRY(MEMORY_NEW(*string, reading->n_text + 1, "study.nc"));
     const struct netcdf_slice slice[] = {{"member", m, 1}, {"text", 0, reading->n_text}, {NULL}};
     return netcdf_read_text(&reading->reader, name, slice, *string);
@@ -331,10 +332,10 @@ static enum status read_members(struct reading *reading) {
         struct member_file *const member = &reading->member[m];
         member->number = (int)m;
         TRY(member_file_create_values(member, reading->study->school.n_fish));
-        TRY(read_string(reading, "status", m, &member->status));
-        if (netcdf_has(reader, "warnings")) TRY(read_string(reading, "warnings", m, &member->warnings));
+        TRY(study_file_read_string(reading, "status", m, &member->status));
+        if (netcdf_has(reader, "warnings")) TRY(study_file_read_string(reading, "warnings", m, &member->warnings));
     }
-    for (int q = 0; member_file_quantity(q); q++) TRY(read_quantity(reading, q));
+    for (int q = 0; member_file_quantity(q); q++) TRY(study_file_read_quantity(reading, q));
 
     return STATUS_OK;
 }

@@ -101,8 +101,8 @@ static int read_reason(const char *folder, int number, char reason[REASON_BYTES]
 }
 
 /* Read the final values and the status of one member. */
-static enum status read_member(struct member_file *member, const struct case_values *study, const char *folder,
-                               int number) {
+static enum status folder_read_member(struct member_file *member, const struct case_values *study, const char *folder,
+                                      int number) {
     char *const path = study_folder_member(folder, number, ".nc");
     if (!path) return STATUS_MEMORY;
     enum status status = STATUS_OK;
@@ -132,7 +132,7 @@ enum status study_folder_read_members(struct member_file **members, const struct
     const int n = sweep_n_members(study);
     TRY(MEMORY_NEW(*members, n, "the members of a study"));
     for (int m = 0; m < n; m++) {
-        const enum status status = read_member(&(*members)[m], study, folder, m);
+        const enum status status = folder_read_member(&(*members)[m], study, folder, m);
         if (status == STATUS_OK) continue;
         study_folder_free_members(*members, n);
         *members = NULL;

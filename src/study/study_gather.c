@@ -44,8 +44,8 @@ static enum status print_expected(const struct case_values *study, const struct 
 }
 
 /* Print the warnings, except for a comparison of methods: the warnings of short runs concern the case. */
-static enum status print_warnings(const struct case_values *study, const struct member_file *members, int strict,
-                                  FILE *stream) {
+static enum status gather_print_warnings(const struct case_values *study, const struct member_file *members, int strict,
+                                         FILE *stream) {
     if (study_comparison_is(study)) return STATUS_OK;
     const int n = study_print_warnings(members, sweep_n_members(study), stream);
     if (!strict || n == 0) return STATUS_OK;
@@ -61,7 +61,7 @@ static enum status report_study(const struct case_values *study, const struct me
     if (status == STATUS_OK) status = study_file_write(path, study, members, &orders, NULL, command);
     if (status == STATUS_OK) {
         status = print_expected(study, members, &orders, stream);
-        const enum status warned = print_warnings(study, members, strict && status == STATUS_OK, warnings);
+        const enum status warned = gather_print_warnings(study, members, strict && status == STATUS_OK, warnings);
         if (status == STATUS_OK) status = warned;
     }
 

@@ -71,7 +71,7 @@ struct refinement {
 };
 
 /* The grid spacing of a value. */
-static double size_of(const struct refinement *refinement, int value) {
+static double orders_size_of(const struct refinement *refinement, int value) {
     const struct sweep_axis *const axis = &refinement->study->sweep[refinement->orders->axis];
     double number = NAN;
     text_number(axis->value[value * axis->n_keys], &number);
@@ -89,7 +89,8 @@ static const struct member_file *member_at(const struct refinement *refinement, 
 }
 
 /* Read a quantity of a fish at a level of a group; NaN if the member is not complete. */
-static void read_value(const struct refinement *refinement, int group, int level, int q, int f, double value[2]) {
+static void orders_read_value(const struct refinement *refinement, int group, int level, int q, int f,
+                              double value[2]) {
     const struct member_file *const member = member_at(refinement, group, level);
     const int quantity = member_file_quantity_number(sweep_quantities[q].name);
     const int is_complete = member_file_is_complete(member);
@@ -98,7 +99,7 @@ static void read_value(const struct refinement *refinement, int group, int level
 }
 
 /* The error of the values of a member independent of the levels: error of the integrator and of the steady search. */
-static double noise_of(const struct refinement *refinement, const struct member_file *member) {
+static double orders_noise_of(const struct refinement *refinement, const struct member_file *member) {
     const struct case_values *const study = refinement->study;
     double rtol = study->solver.step > 0 ? 0 : study->school.rtol;
     for (int a = 0; a < study->n_axes; a++) {
@@ -127,10 +128,10 @@ static void read_sequence(const struct refinement *refinement, int group, int q,
     const int finest = refinement->orders->n_levels - 1;
     sequence->is_known = 0;
     for (int i = 0; i < refinement->orders->n_judged; i++) {
-        read_value(refinement, group, finest - i, q, f, sequence->value[i]);
+        orders_read_value(refinement, group, finest - i, q, f, sequence->value[i]);
         sequence->is_known |= !isnan(sequence->value[i][0]);
     }
-    sequence->noise = noise_of(refinement, member_at(refinement, group, finest));
+    sequence->noise = orders_noise_of(refinement, member_at(refinement, group, finest));
 }
 
 /* Judge a quantity of a fish together with speed, cost and Strouhal number of the fish. */
@@ -178,7 +179,7 @@ static void fill_order(const struct refinement *refinement, int group, int q, in
     double size[ERROR_BUDGET_LEVELS], value[ERROR_BUDGET_LEVELS][2];
     for (int i = 0; i < orders->n_judged; i++) {
         size[i] = orders->grid_spacing[n - 1 - i];
-        read_value(refinement, group, n - 1 - i, q, f, value[i]);
+        orders_read_value(refinement, group, n - 1 - i, q, f, value[i]);
     }
 
     struct study_order *const order = &orders->order[place];
@@ -193,7 +194,7 @@ static void fill_order(const struct refinement *refinement, int group, int q, in
     for (int i = 0; i < n; i++) {
         double at[2];
         const double *const exact = is_given ? given : value[0];
-        read_value(refinement, group, i, q, f, at);
+        orders_read_value(refinement, group, i, q, f, at);
         orders->error[place * n + i] = i < n - 1 || is_given ? hypot(at[0] - exact[0], at[1] - exact[1]) : NAN;
     }
 }
@@ -220,7 +221,7 @@ enum status study_orders_create(struct study_orders *orders, const struct case_v
     // sort the levels from coarse to fine: insertion sort of few levels
     const struct refinement refinement = {study, members, orders, sweep_error_find(axis->key[0].row)};
     for (int i = 0; i < n_levels; i++) {
-        const double size = size_of(&refinement, i);
+        const double size = orders_size_of(&refinement, i);
         int j = i;
         for (; j > 0 && orders->grid_spacing[j - 1] < size; j--) {
             orders->grid_spacing[j] = orders->grid_spacing[j - 1];
@@ -450,8 +451,8 @@ void study_orders_define(struct netcdf_writer *writer, const struct case_values 
 }
 
 /* Write one quantity of one fish of a group. */
-static void write_order(struct netcdf_writer *writer, const struct study_orders *orders, int group, int q, int f,
-                        size_t n_text, char *text) {
+static void orders_write_order(struct netcdf_writer *writer, const struct study_orders *orders, int group, int q, int f,
+                               size_t n_text, char *text) {
     const int place = place_of(orders, group, q, f);
     const struct study_order *const order = &orders->order[place];
     const double *const values[] = {[DIFFERENCE] = orders->error + (long)place * orders->n_levels,
@@ -497,7 +498,7 @@ void study_orders_write(struct netcdf_writer *writer, const struct case_values *
     for (int g = 0; g < orders->n_groups; g++) {
         for (int q = 0; q < SWEEP_N_ORDERS; q++) {
             for (int f = 0; f < orders->n_fish && is_observed(study, q); f++) {
-                write_order(writer, orders, g, q, f, n_text, text);
+                orders_write_order(writer, orders, g, q, f, n_text, text);
             }
         }
     }

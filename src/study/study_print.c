@@ -93,7 +93,7 @@ static const struct shown {
 enum { N_SHOWN = sizeof shown / sizeof *shown };
 
 /* Whether a quantity is printed. */
-static int is_shown(const struct shown *one, const struct case_values *study, const struct member_file *members) {
+static int print_is_shown(const struct shown *one, const struct case_values *study, const struct member_file *members) {
     int has_held = !one->of_held;
     for (int f = 0; f < study->school.n_fish; f++) {
         const struct motion_parameters *const motion = &study->school.fish[f].motion;
@@ -113,7 +113,7 @@ enum status study_print(const struct case_values *study, const struct member_fil
     struct study_table table;
     int n_columns = 2 + (n_fish > 1), c = 0;
     for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;
-    for (int s = 0; s < N_SHOWN; s++) n_columns += is_shown(&shown[s], study, members);
+    for (int s = 0; s < N_SHOWN; s++) n_columns += print_is_shown(&shown[s], study, members);
     TRY(study_table_create(&table, 2 + n * n_fish, n_columns));
 
     // one column after the other: head, unit and values
@@ -146,7 +146,7 @@ enum status study_print(const struct case_values *study, const struct member_fil
     }
 
     for (int s = 0; s < N_SHOWN; s++) {
-        if (!is_shown(&shown[s], study, members)) continue;
+        if (!print_is_shown(&shown[s], study, members)) continue;
         const struct member_file_quantity *const quantity =
             member_file_quantity(member_file_quantity_number(shown[s].quantity));
         study_table_set(&table, 0, c, "%s", shown[s].head);

@@ -37,8 +37,8 @@ static enum status script_open(struct script *script, const char *folder, const 
     return STATUS_OK;
 }
 
-static enum status write_array(const struct case_values *study, const char *folder, const char *program, int n_tasks,
-                               int bundle) {
+static enum status study_slurm_write_array(const struct case_values *study, const char *folder, const char *program,
+                                           int n_tasks, int bundle) {
     struct script script;
     TRY(script_open(&script, folder, "array.sbatch", 1));
     fprintf(
@@ -122,7 +122,7 @@ enum status study_slurm(const struct case_values *study, const char *folder, int
     TRY(script_open(&script, place, "study.yaml", 0));
     fputs(study->merged, script.file.stream);
     TRY(plain_file_close(&script.file, STATUS_OK));
-    TRY(write_array(study, place, program, n_tasks, bundle));
+    TRY(study_slurm_write_array(study, place, program, n_tasks, bundle));
     TRY(write_gather(study, place, program));
     fprintf(stream, "%d members in %d tasks; start them with %s/submit.sh\n", n, n_tasks, folder);
 

@@ -195,7 +195,7 @@ static void set_lengths(struct field *field, const struct field_grid *grid) {
     length[EDGE_AXIS] = length[NODE_AXIS] - 1;
 }
 
-static void define_all(struct netcdf_writer *writer, const struct field *field, const char *run) {
+static void grid_define_all(struct netcdf_writer *writer, const struct field *field, const char *run) {
     int number[N_AXES];
     // walls come last
     const int has_walls = field->length[WALL_AXIS] > 0, n_axes = has_walls ? N_AXES : WALL_AXIS;
@@ -249,7 +249,7 @@ static void write_body(struct netcdf_writer *writer, const struct field *field, 
     }
 }
 
-static void write_all(struct netcdf_writer *writer, const struct field *field) {
+static void grid_write_all(struct netcdf_writer *writer, const struct field *field) {
     netcdf_write_doubles(writer, TIME_AT, NULL, NULL, &field->row->state->t);
     netcdf_write_doubles(writer, X_AT, NULL, NULL, field->at.x);
 
@@ -277,8 +277,8 @@ enum status field_file_write(const char *path, int overwrite, const char *run, c
     if (status == STATUS_OK) status = netcdf_create(&writer, path, row->values.name, command);
 
     if (status == STATUS_OK) {
-        define_all(&writer, &field, run);
-        write_all(&writer, &field);
+        grid_define_all(&writer, &field, run);
+        grid_write_all(&writer, &field);
         status = netcdf_publish(&writer, overwrite);
         const enum status finished = netcdf_finish(&writer);
         if (status == STATUS_OK) status = finished;
@@ -304,7 +304,7 @@ static enum status print_axis(const struct netcdf_reader *file, const char *name
     return STATUS_OK;
 }
 
-static enum status print_all(const struct netcdf_reader *file, FILE *stream) {
+static enum status grid_print_all(const struct netcdf_reader *file, FILE *stream) {
     double time;
     char *text;
     const struct netcdf_slice first[] = {{"time", 0, 1}, {NULL, 0, 0}};
@@ -321,5 +321,5 @@ static enum status print_all(const struct netcdf_reader *file, FILE *stream) {
 }
 
 enum status field_file_info(const char *path, FILE *stream) {
-    return netcdf_print(path, print_all, stream);
+    return netcdf_print(path, grid_print_all, stream);
 }

@@ -74,7 +74,7 @@ static enum status fail_without_wake(const struct reading *reading, const struct
 }
 
 /* The row at time t; NaN: the last row with a wake. */
-static enum status find_row(const struct reading *reading, const struct school *school, double t, long *row) {
+static enum status field_find_row(const struct reading *reading, const struct school *school, double t, long *row) {
     const long last = reading->n_rows - 1;
     const double *const time = reading->time, rounding = 1e-6 * school->interval;
     if (last < 0) return status_fail(STATUS_CASE, "%s: there is no row yet", reading->file.path);
@@ -103,8 +103,8 @@ static enum status find_row(const struct reading *reading, const struct school *
 // ---- the values of a row
 
 /* A variable over (time, fish, dimension[, xy]): n values of fish f, all of them finite. */
-static enum status read_values(const struct reading *reading, const char *name, long row, int f, const char *dimension,
-                               int n, bool has_xy) {
+static enum status field_read_values(const struct reading *reading, const char *name, long row, int f,
+                                     const char *dimension, int n, bool has_xy) {
     const struct netcdf_slice slice[] = {{"time", (size_t)row, 1},
                                          {"fish", (size_t)f, 1},
                                          {dimension, 0, (size_t)n},
@@ -132,9 +132,9 @@ static void separate(int n, const double *pairs, double *x, double *y) {
 static enum status read_body(const struct reading *reading, long row, int f, const struct field_row *to) {
     const struct fish *const fish = &to->school->fish[f];
     double *const y = to->state->y;
-    TRY(read_values(reading, "x", row, f, "node", fish->n_nodes, true));
+    TRY(field_read_values(reading, "x", row, f, "node", fish->n_nodes, true));
     separate(fish->n_nodes, reading->buffer, y + fish->at.x, y + fish->at.y);
-    TRY(read_values(reading, "sheet_strength", row, f, "sheet", fish->n_sheet, false));
+    TRY(field_read_values(reading, "sheet_strength", row, f, "sheet", fish->n_sheet, false));
 
     for (int j = 0; j < fish->n_sheet; j++) {
         // the file has the strength per actual length, the unknown is per natural length
@@ -166,11 +166,11 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
     }
     const int n = (int)count;
     TRY(wake_resize(wake, n));
-    TRY(read_values(reading, "wake_x", row, f, "vortex", n, true));
+    TRY(field_read_values(reading, "wake_x", row, f, "vortex", n, true));
     separate(n, reading->buffer, wake->x, wake->y);
-    TRY(read_values(reading, "wake_circulation", row, f, "vortex", n, false));
+    TRY(field_read_values(reading, "wake_circulation", row, f, "vortex", n, false));
     memcpy(wake->circulation, reading->buffer, (size_t)n * sizeof *wake->circulation);
-    TRY(read_values(reading, "wake_birth", row, f, "vortex", n, false));
+    TRY(field_read_values(reading, "wake_birth", row, f, "vortex", n, false));
     memcpy(wake->birth, reading->buffer, (size_t)n * sizeof *wake->birth);
     for (int i = 0; i < n; i++) {
         wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = wake->rate[i] = wake->rate_before[i] = 0;
@@ -189,8 +189,8 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
 
 // ---- the whole
 
-static enum status read_case(const struct reading *reading, int n_assignments, const char *const *assignments,
-                             struct field_row *row) {
+static enum status field_read_case(const struct reading *reading, int n_assignments, const char *const *assignments,
+                                   struct field_row *row) {
     int schema;
     TRY(netcdf_read_integer(&reading->file, "shoal_schema", 0, &schema));
     if (schema != RESULT_SCHEMA) {
@@ -203,7 +203,7 @@ static enum status read_case(const struct reading *reading, int n_assignments, c
     return state_create(&row->state, row->school);
 }
 
-static enum status read_row(struct reading *reading, double t, struct field_row *to) {
+static enum status field_read_row(struct reading *reading, double t, struct field_row *to) {
     const struct school *const school = to->school;
     size_t n_fish, n_rows, longest = 1;
     long row = 0;
@@ -222,7 +222,7 @@ static enum status read_row(struct reading *reading, double t, struct field_row 
     TRY(MEMORY_NEW(reading->buffer, 2 * longest, reading->file.path));
     const struct netcdf_slice rows[] = {{"time", 0, n_rows}, {NULL, 0, 0}};
     if (n_rows > 0) TRY(netcdf_read_doubles(&reading->file, "time", rows, reading->time));
-    TRY(find_row(reading, school, t, &row));
+    TRY(field_find_row(reading, school, t, &row));
     to->state->t = reading->time[row];
 
     for (int f = 0; f < school->n_fish; f++) {
@@ -238,8 +238,8 @@ enum status field_row_read(struct field_row *row, const char *path, double t, in
     struct reading reading = {0};
     *row = (struct field_row){0};
     TRY(netcdf_open(&reading.file, path));
-    enum status status = read_case(&reading, n_assignments, assignments, row);
-    if (status == STATUS_OK) status = read_row(&reading, t, row);
+    enum status status = field_read_case(&reading, n_assignments, assignments, row);
+    if (status == STATUS_OK) status = field_read_row(&reading, t, row);
     netcdf_close(&reading.file);
     free(reading.time);
     free(reading.buffer);

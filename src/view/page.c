@@ -53,7 +53,7 @@ static void write_string(FILE *stream, const char *name, const char *string) {
     fputc('"', stream);
 }
 
-static void write_array(FILE *stream, const char *name, size_t bytes, const void *values) {
+static void page_write_array(FILE *stream, const char *name, size_t bytes, const void *values) {
     fprintf(stream, "\"%s\":\"", name);
     text_print_base64(stream, bytes, values);
     fputc('"', stream);
@@ -109,7 +109,7 @@ static size_t at_least_1(double stride) {
 }
 
 /* Choose which rows and vortices are left out. */
-static enum status choose(struct page *page) {
+static enum status page_choose(struct page *page) {
     const double per_byte = 4.0 / 3, rows = (double)page->n_rows, fish = (double)page->n_fish;
     const double bodies = rows * ((double)page->n_nodes * 2 * sizeof(uint16_t) + 4 * sizeof(double)) * per_byte;
     const double series = rows * (3 * fish * sizeof(float) + sizeof(double)) * per_byte;
@@ -166,11 +166,11 @@ static enum status write_shape(const struct page *page, const double *thickness,
         }
         for (int i = 0; i < OUTLINE_POINTS; i++) values[2 * n_weights + (size_t)i] = (float)outline.half[i];
         fprintf(page->stream, "{\"nodes\":%d,\"points\":%d,", n, OUTLINE_POINTS);
-        write_array(page->stream, "weight", n_weights * sizeof *values, values);
+        page_write_array(page->stream, "weight", n_weights * sizeof *values, values);
         fputc(',', page->stream);
-        write_array(page->stream, "slope", n_weights * sizeof *values, values + n_weights);
+        page_write_array(page->stream, "slope", n_weights * sizeof *values, values + n_weights);
         fputc(',', page->stream);
-        write_array(page->stream, "half", OUTLINE_POINTS * sizeof *values, values + 2 * n_weights);
+        page_write_array(page->stream, "half", OUTLINE_POINTS * sizeof *values, values + 2 * n_weights);
         fputc('}', page->stream);
         outline_free(&outline);
     }
@@ -180,7 +180,7 @@ static enum status write_shape(const struct page *page, const double *thickness,
 }
 
 /* Write the walls, and the side with the fluid: the side of the first fish at the start. */
-static enum status write_walls(const struct page *page) {
+static enum status page_write_walls(const struct page *page) {
     const struct result_reader *const reader = &page->reader;
     double *x;
     TRY(result_reader_new(reader, "x", 0, &x));
@@ -271,11 +271,11 @@ static enum status rows_add(const struct page *page, struct rows *rows, size_t i
 
 static void rows_write(const struct page *page, const struct rows *rows) {
     fprintf(page->stream, "\"n\":%zu,", rows->n);
-    write_array(page->stream, "time", rows->n * sizeof *rows->time, rows->time);
+    page_write_array(page->stream, "time", rows->n * sizeof *rows->time, rows->time);
     fputs(",\n", page->stream);
-    write_array(page->stream, "box", 3 * rows->n * sizeof *rows->box, rows->box);
+    page_write_array(page->stream, "box", 3 * rows->n * sizeof *rows->box, rows->box);
     fputs(",\n", page->stream);
-    write_array(page->stream, "place", 2 * rows->n_places * sizeof *rows->place, rows->place);
+    page_write_array(page->stream, "place", 2 * rows->n_places * sizeof *rows->place, rows->place);
 }
 
 static enum status add_bodies(const struct page *page, struct rows *rows, double *x) {
@@ -295,7 +295,7 @@ static enum status add_bodies(const struct page *page, struct rows *rows, double
     return STATUS_OK;
 }
 
-static enum status write_bodies(const struct page *page) {
+static enum status page_write_bodies(const struct page *page) {
     struct rows rows;
     const size_t n = n_of(page->n_rows, page->body_stride);
     double *const x = calloc(result_reader_n(&page->reader, "x") + 1, sizeof *x);
@@ -373,10 +373,10 @@ static void write_strength(const struct page *page, const struct wakes *wakes) {
     const double unit = max > 0 ? max / INT16_MAX : 1;
     for (size_t i = 0; i < n; i++) wakes->integer[i] = (int16_t)lround(wakes->strength[i] / unit);
     fprintf(page->stream, ",\n\"unit\":%.9g,", unit);
-    write_array(page->stream, "strength", n * sizeof *wakes->integer, wakes->integer);
+    page_write_array(page->stream, "strength", n * sizeof *wakes->integer, wakes->integer);
 }
 
-static enum status write_wakes(const struct page *page) {
+static enum status page_write_wakes(const struct page *page) {
     const size_t n = n_of(page->n_wake_rows, page->wake_stride);
     const size_t slots = page->n_fish * page->reader.length[VORTEX], most = n * slots;
     struct wakes wakes = {.first = calloc(n * page->n_fish + 1, sizeof *wakes.first),
@@ -397,9 +397,9 @@ static enum status write_wakes(const struct page *page) {
         fprintf(page->stream, "\"wakes\":{\"interval\":%.9g,", page->school.interval * (double)page->vortex_stride);
         rows_write(page, &wakes.rows);
         fputs(",\n", page->stream);
-        write_array(page->stream, "first", n * page->n_fish * sizeof *wakes.first, wakes.first);
+        page_write_array(page->stream, "first", n * page->n_fish * sizeof *wakes.first, wakes.first);
         fputs(",\n", page->stream);
-        write_array(page->stream, "count", n * page->n_fish * sizeof *wakes.count, wakes.count);
+        page_write_array(page->stream, "count", n * page->n_fish * sizeof *wakes.count, wakes.count);
         write_strength(page, &wakes);
         fprintf(page->stream, "},\n");
     }
@@ -419,7 +419,7 @@ static enum status write_one_series(const struct page *page, const char *name, s
         for (size_t f = 0; f < page->n_fish; f++) values[f * n + i] = (float)row[f];
     }
     fputs(",\n", page->stream);
-    write_array(page->stream, name, n * page->n_fish * sizeof *values, values);
+    page_write_array(page->stream, name, n * page->n_fish * sizeof *values, values);
     return STATUS_OK;
 }
 
@@ -434,7 +434,7 @@ static enum status write_series(const struct page *page) {
 
     if (status == STATUS_OK) {
         fprintf(page->stream, "\"series\":{\"n\":%zu,", n);
-        write_array(page->stream, "time", n * sizeof *time, time);
+        page_write_array(page->stream, "time", n * sizeof *time, time);
     }
 
     for (size_t k = 0; k < sizeof names / sizeof *names && status == STATUS_OK; k++)
@@ -479,10 +479,10 @@ static enum status write_data(const struct page *page) {
     fprintf(stream, ",\"rows\":%zu,", page->n_rows);
     write_thinned(page);
     fputs(",\n", stream);
-    TRY(write_walls(page));
+    TRY(page_write_walls(page));
     TRY(write_all_fish(page));
-    TRY(write_bodies(page));
-    TRY(write_wakes(page));
+    TRY(page_write_bodies(page));
+    TRY(page_write_wakes(page));
     TRY(write_series(page));
     fputs("}", stream);
     return STATUS_OK;
@@ -495,7 +495,7 @@ static enum status fill_page(struct page *page) {
     TRY(result_reader_row(&page->reader, "shedding_interval", 0, &page->school.interval));
     TRY(result_reader_row(&page->reader, "wake_lifetime", 0, &page->school.lifetime));
     TRY(result_reader_row(&page->reader, "wake_decay", 0, &page->school.decay));
-    TRY(choose(page));
+    TRY(page_choose(page));
     const char *const place = strstr(page_template, placeholder);
     fwrite(page_template, 1, (size_t)(place - page_template), page->stream);
     TRY(write_data(page));

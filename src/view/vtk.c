@@ -32,8 +32,8 @@ static enum status export_out_of_memory(const struct export *export) {
 // ---- XML
 
 /* Write one array in base 64: the number of bytes, then the bytes. */
-static void write_array(FILE *stream, const char *type, const char *name, int components, size_t bytes,
-                        const void *values) {
+static void vtk_write_array(FILE *stream, const char *type, const char *name, int components, size_t bytes,
+                            const void *values) {
     fprintf(stream, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"binary\">", type, name,
             components);
 
@@ -49,11 +49,11 @@ static void write_array(FILE *stream, const char *type, const char *name, int co
 }
 
 static void write_doubles(FILE *stream, const char *name, size_t n, const double *values) {
-    write_array(stream, "Float64", name, 1, n * sizeof *values, values);
+    vtk_write_array(stream, "Float64", name, 1, n * sizeof *values, values);
 }
 
 static void write_integers(FILE *stream, const char *name, size_t n, const int64_t *values) {
-    write_array(stream, "Int64", name, 1, n * sizeof *values, values);
+    vtk_write_array(stream, "Int64", name, 1, n * sizeof *values, values);
 }
 
 static void begin_piece(FILE *stream, size_t n_points, size_t n_verts, size_t n_lines, size_t n_polys) {
@@ -80,7 +80,7 @@ static enum status write_points(const struct export *export, FILE *stream, size_
     }
 
     fputs("<Points>\n", stream);
-    write_array(stream, "Float64", "Points", 3, 3 * n * sizeof *points, points);
+    vtk_write_array(stream, "Float64", "Points", 3, 3 * n * sizeof *points, points);
     fputs("</Points>\n", stream);
     free(points);
     return STATUS_OK;
@@ -211,7 +211,7 @@ static void write_of_fish(const struct bodies *bodies, FILE *stream, const char 
     write_doubles(stream, name, 2 * n_fish, bodies->cell);
 }
 
-static enum status write_bodies(const struct export *export, size_t row, FILE *stream) {
+static enum status vtk_write_bodies(const struct export *export, size_t row, FILE *stream) {
     struct bodies bodies;
     const size_t n_fish = export->reader.length[FISH];
     enum status status = bodies_read(export, row, &bodies);
@@ -283,7 +283,7 @@ static enum status wakes_read(const struct export *export, size_t row, struct wa
     return STATUS_OK;
 }
 
-static enum status write_wakes(const struct export *export, size_t row, FILE *stream) {
+static enum status vtk_write_wakes(const struct export *export, size_t row, FILE *stream) {
     struct wakes wakes;
     enum status status = wakes_read(export, row, &wakes);
 
@@ -331,7 +331,7 @@ static enum status find_ends(const struct export *export, double ends[2]) {
 }
 
 /* One file for all rows: walls do not move. */
-static enum status write_walls(const struct export *export, size_t row, FILE *stream) {
+static enum status vtk_write_walls(const struct export *export, size_t row, FILE *stream) {
     (void)row;
     const size_t n = export->reader.length[WALL], size[] = {2, 2};
     double ends[2], xy[8];
@@ -380,21 +380,21 @@ static void list_file(const struct export *export, FILE *list, double t, int par
 }
 
 /* Write the files of all rows, and list the names. */
-static enum status write_rows(const struct export *export, FILE *list) {
+static enum status vtk_write_rows(const struct export *export, FILE *list) {
     fputs("<?xml version=\"1.0\"?>\n" TARGET_VTK_MARK
           "\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
           "<Collection>\n",
           list);
     const bool has_walls = export->reader.length[WALL] > 0;
-    if (has_walls) TRY(write_file(export, "walls", 0, write_walls));
+    if (has_walls) TRY(write_file(export, "walls", 0, vtk_write_walls));
 
     for (size_t row = 0; row < export->reader.length[TIME]; row++) {
         double t;
         bool has_wake;
         TRY(result_reader_row(&export->reader, "time", row, &t));
         TRY(result_reader_has_wake(&export->reader, row, &has_wake));
-        TRY(write_file(export, "bodies", row, write_bodies));
-        if (has_wake) TRY(write_file(export, "wakes", row, write_wakes));
+        TRY(write_file(export, "bodies", row, vtk_write_bodies));
+        if (has_wake) TRY(write_file(export, "wakes", row, vtk_write_wakes));
         list_file(export, list, t, 0, "bodies", row);
         if (has_wake) list_file(export, list, t, 1, "wakes", row);
         if (has_walls) list_file(export, list, t, 2, "walls", 0);
@@ -438,13 +438,13 @@ static enum status fill_export(struct export *export) {
     return status;
 }
 
-static enum status write_list(const struct export *export, char **name) {
+static enum status vtk_write_list(const struct export *export, char **name) {
     struct text path = {0};
     struct plain_file list;
     text_add(&path, "%s/%s.pvd", export->folder, export->stem);
     if (path.failed) return export_out_of_memory(export);
     enum status status = plain_file_open(&list, path.text, TARGET_VTK, export->overwrite, 0666);
-    if (status == STATUS_OK) status = plain_file_close(&list, write_rows(export, list.stream));
+    if (status == STATUS_OK) status = plain_file_close(&list, vtk_write_rows(export, list.stream));
     if (status == STATUS_OK && name) {
         *name = path.text;
     } else {
@@ -459,7 +459,7 @@ enum status vtk_export(const char *from, const char *folder, bool overwrite, cha
     enum status status = fill_export(&export);
     if (status == STATUS_OK && mkdir(folder, 0777) != 0 && errno != EEXIST)
         status = status_fail(STATUS_FILE, "%s: cannot make this folder: %s", folder, strerror(errno));
-    if (status == STATUS_OK) status = write_list(&export, name);
+    if (status == STATUS_OK) status = vtk_write_list(&export, name);
     for (size_t f = 0; export.outline && f < export.reader.length[FISH]; f++) outline_free(&export.outline[f]);
     free(export.outline);
     free(export.sheet_arc);

@@ -109,7 +109,7 @@ static void stretch_find_ends(struct ends *ends, const struct wake *markers, int
 }
 
 // point at the fraction xi of the way from the newer to the older end
-static void stretch_point(const struct ends *ends, double xi, double point[2]) {
+static void sheet_stretch_point(const struct ends *ends, double xi, double point[2]) {
     for (int i = 0; i < 2; i++) point[i] = (1 - xi) * ends->newer[i] + xi * ends->older[i];
 }
 
@@ -132,7 +132,7 @@ static void free_sheet_add(struct free_sheet *sheet, const struct fish *fish, co
         const double tail[2] = {markers->x[newest] + tau * markers->tail_velocity[0],
                                 markers->y[newest] + tau * markers->tail_velocity[1]};
         double point[2];
-        stretch_point(&at[end], xi, point);
+        sheet_stretch_point(&at[end], xi, point);
         const double from_tail[2] = {point[0] - tail[0], point[1] - tail[1]};
         sheet->smoothing[end][i] = free_sheet_smoothing(fish, from_tail, markers->tail_tangent);
     }
@@ -217,7 +217,7 @@ void free_sheet_place(struct free_sheet *sheet, const struct school *school, con
         }
 
         double point[2];
-        stretch_point(&ends, sheet->xi[i], point);
+        sheet_stretch_point(&ends, sheet->xi[i], point);
         const double smoothing = (1 - q) * sheet->smoothing[0][i] + q * sheet->smoothing[1][i];
         sheet->x[i] = point[0];
         sheet->y[i] = point[1];

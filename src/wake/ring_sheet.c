@@ -18,7 +18,7 @@ static struct ends stretch_ends(const double *x, const double *y, int stretch) {
 }
 
 // point at the fraction xi of the way from the newer to the older end
-static void stretch_point(const struct ends *ends, double xi, double point[2]) {
+static void ring_stretch_point(const struct ends *ends, double xi, double point[2]) {
     for (int i = 0; i < 2; i++) point[i] = (1 - xi) * ends->newer[i] + xi * ends->older[i];
 }
 
@@ -87,7 +87,7 @@ static void ring_sheet_add(const struct ring_sheets *from, struct ring_sheet *sh
         const double tau = end * interval;
         const struct ends at = stretch_ends(from->x[end], from->y[end], stretch);
         double point[2];
-        stretch_point(&at, xi, point);
+        ring_stretch_point(&at, xi, point);
         const double from_tail[2] = {point[0] - markers->x[newest] - tau * markers->tail_velocity[0],
                                      point[1] - markers->y[newest] - tau * markers->tail_velocity[1]};
 
@@ -173,7 +173,7 @@ static void ring_set(const struct rings *rings, int i, const struct ends *ends, 
                      double older) {
     const double along = -(newer + xi * (older - newer)) * part;
     double point[2];
-    stretch_point(ends, xi, point);
+    ring_stretch_point(ends, xi, point);
 
     rings->x[i] = point[0];
     rings->y[i] = point[1];
