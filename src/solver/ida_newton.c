@@ -117,7 +117,7 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
     newton->is_incomplete = 0;
     if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
 
-    // start from the last total correction if the step is unchanged: the error of the predictor is then nearly unchanged
+    // start from the last total correction if the step is unchanged: then the error of the predictor hardly changes
     const double coefficient = newton->rules.leading_coefficient(newton->rules.data);
     const int same = fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient;
     N_VScale(same ? 1 : 0, newton->last, total);
