@@ -146,7 +146,9 @@ void main_describe(const struct command *command, FILE *stream) {
     fputs("]}", stream);
 }
 
-enum status main_usage(const struct command *command, const char *format, const char *word) {
+/* Fail with STATUS_CASE. The message is the problem (a printf format with one %s for the word) and the command that
+ * prints help; command may be NULL. */
+static enum status main_usage(const struct command *command, const char *format, const char *word) {
     char problem[512];
     snprintf(problem, sizeof problem, format, word);
     return status_fail(STATUS_CASE, "%s; see shoal %s%s--help", problem, command ? command->name : "",

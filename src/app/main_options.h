@@ -83,8 +83,4 @@ void main_print_help(const struct command *command, FILE *stream);
 /* Print a command as a JSON object: name, positional, summary, and options with letter, name, argument and meaning. */
 void main_describe(const struct command *command, FILE *stream);
 
-/* Fail with STATUS_CASE. The message is the problem (a printf format with one %s for the word) and the command that
- * prints help; command may be NULL. */
-enum status main_usage(const struct command *command, const char *format, const char *word);
-
 #endif

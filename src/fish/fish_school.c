@@ -11,7 +11,7 @@
 #include "fish/fish_motion.h"
 #include "fish/shape.h"
 
-// ---- constants of every edge, joint and node
+// ---- constants of every edge, joint and node: doc/model.md, sections 1, 3 and 9
 
 static enum status body_allocate(struct fish *fish) {
     double **const per_node[] = {&fish->arc, &fish->mass};
@@ -142,7 +142,10 @@ static void fluid_forces_set(struct fish *fish, const struct fish_parameters *fr
     fish->linear_speed = drag->law == DRAG_LINEAR_QUADRATIC ? linear_speed : 0;
 }
 
-enum status fish_body_set(struct fish *fish, const struct fish_parameters *from, const struct fluid_parameters *fluid) {
+/* Set all data per node, edge and joint except the gait. Numbers of nodes, length and edge_length of the fish are set.
+ * Fails with STATUS_MEMORY. */
+static enum status fish_body_set(struct fish *fish, const struct fish_parameters *from,
+                                 const struct fluid_parameters *fluid) {
     TRY(body_allocate(fish));
     edges_shape(fish, from);
     body_weigh(fish, from);
@@ -150,7 +153,7 @@ enum status fish_body_set(struct fish *fish, const struct fish_parameters *from,
     return STATUS_OK;
 }
 
-// ---- cosine points on the polygon or the smooth curve
+// ---- cosine points on the polygon or the smooth curve: doc/model.md, sections 6, 15 and 18
 
 // sigma at j intervals of the angle from the nose
 static double cosine_place(const struct fish *fish, double j) {
@@ -340,8 +343,15 @@ static enum status pressure_set(struct fish *fish, const struct fish_parameters 
     return status;
 }
 
-enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
-                           const struct school_parameters *parameters) {
+/* Whether the sheets of the fish consist of vortex rings: force: pressure with span: finite. */
+static int fish_is_strip(const struct fish_parameters *from) {
+    return from->force == FORCE_PRESSURE && from->span == SPAN_FINITE;
+}
+
+/* Set all data per vortex and per control point. Numbers of nodes and points, length and depth of the fish are set.
+ * Fails with STATUS_MEMORY. */
+static enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
+                                  const struct school_parameters *parameters) {
     // reserve the sheet
     double **const per_control[] = {&fish->end_correction, &fish->control_density, &fish->control_interval};
     TRY(MEMORY_NEW(fish->sheet_weight, fish->n_sheet, "the sheet of a fish"));
@@ -355,10 +365,6 @@ enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from
     int is_strip = 0;
     for (int f = 0; f < parameters->n_fish; f++) is_strip |= fish_is_strip(&parameters->fish[f]);
     return pressure_set(fish, from, parameters->fluid.density, is_strip);
-}
-
-int fish_is_strip(const struct fish_parameters *from) {
-    return from->force == FORCE_PRESSURE && from->span == SPAN_FINITE;
 }
 
 int fish_sheet_least(const struct fish_parameters *from) {

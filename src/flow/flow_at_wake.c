@@ -57,7 +57,9 @@ static enum status convecting_place_body(struct flow *flow, int f) {
     return STATUS_OK;
 }
 
-enum status flow_at_markers_place(struct flow *flow, const struct state *state) {
+/* Set the vortices `convecting`, wake_range and body_range to markers and bodies of all fish at the event of the state,
+ * after flow_place. Fails with STATUS_MEMORY. */
+static enum status flow_at_markers_place(struct flow *flow, const struct state *state) {
     const int n_fish = flow->school->n_fish;
     vortices_clear(&flow->convecting);
     for (int c = 0; c < flow->n_classes; c++) {
@@ -232,7 +234,8 @@ static void markers_taper_own(const struct flow *flow, const struct state *state
     induce_at_newborn(flow, wake, f, tail, body.t);
 }
 
-enum status flow_at_markers(struct flow *flow, const struct state *state) {
+/* Set wake_u and wake_v to the velocity at the markers. Fails with STATUS_MEMORY. */
+static enum status flow_at_markers(struct flow *flow, const struct state *state) {
     const struct vortices *const markers = &flow->convecting;
     TRY(markers_induce_all(
         flow, &(struct induced){

@@ -18,13 +18,6 @@
  * Sources of a body with force: pressure: the control points with the circulations of section 15, which also determine
  * the force; of any other body: the bound vortices. */
 
-/* Set the vortices `convecting`, wake_range and body_range to markers and bodies of all fish at the event of the state,
- * after flow_place. Fails with STATUS_MEMORY. */
-enum status flow_at_markers_place(struct flow *flow, const struct state *state);
-
-/* Set wake_u and wake_v to the velocity at the markers. Fails with STATUS_MEMORY. */
-enum status flow_at_markers(struct flow *flow, const struct state *state);
-
 /* The velocity of the fluid at the released vortices, or markers, of all fish at the event of the state: wake_u,
  * wake_v, of fish f from wake_range[f].first on. Fails with STATUS_MEMORY. */
 enum status flow_at_wake(struct flow *flow, const struct state *state);

@@ -235,8 +235,10 @@ static void derive_ring_nascent(const struct pass *pass, const struct ring_sheet
     }
 }
 
-void flow_ring_derivative(const struct flow *flow, int f, int g, int with_places, int nascent,
-                          const struct influence_block *block) {
+/* Add to an empty block the velocity of all rings of fish g at the points of fish f: by strengths, and with_places also
+ * by positions and lines, with the points of f fixed. nascent != 0: only the nascent stretch. */
+static void flow_ring_derivative(const struct flow *flow, int f, int g, int with_places, int nascent,
+                                 const struct influence_block *block) {
     const struct pass pass = {flow, f, g, with_places, block};
     const struct fish *const fish = &flow->school->fish[f], *const other = &flow->school->fish[g];
     const struct fish_rings *const of = &flow->rings->fish[g];
@@ -267,7 +269,8 @@ void flow_ring_derivative(const struct flow *flow, int f, int g, int with_places
     derive_ring_nascent(&pass, &of->wake.middles, all, &wake, 1);
 }
 
-void flow_ring_motion(const struct flow *flow, int f, const struct influence_block *block) {
+/* Add the derivatives by the motion of the points of fish f in the field of all sources. After flow_gradient. */
+static void flow_ring_motion(const struct flow *flow, int f, const struct influence_block *block) {
     const struct fish *const fish = &flow->school->fish[f];
     const struct flow_rings *const rings = flow->rings;
     for (int p = 0; p < block->n_points; p++) {

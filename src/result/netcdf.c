@@ -42,14 +42,17 @@ const char *netcdf_reason(int code) {
 
 // ---- places and failures
 
-char *netcdf_local_path(const char *path) {
+/* The path for NetCDF: without "./" in front, NetCDF would take some names for addresses and drop leading blanks. NULL:
+ * out of memory. The caller frees the path. */
+static char *netcdf_local_path(const char *path) {
     const size_t size = strlen(path) + sizeof "./";
     char *const local = calloc(size, 1);
     if (local) snprintf(local, size, "%s%s", path[0] == '/' ? "" : "./", path);
     return local;
 }
 
-bool netcdf_has_memory(void) {
+/* True if the memory that NetCDF can need to create or open a file is available: NetCDF crashes if out of memory. */
+static bool netcdf_has_memory(void) {
     // the first call of NetCDF takes 2.2 MB
     void *volatile const needed = malloc((size_t)4 << 20);
     free(needed);

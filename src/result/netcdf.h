@@ -171,13 +171,4 @@ enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows);
  * with STATUS_FILE. */
 enum status netcdf_cut_rows(const char *path, const struct netcdf_rows *rows, uint64_t n);
 
-/* ---- shared by the files of netcdf only */
-
-/* The path for NetCDF: without "./" in front, NetCDF would take some names for addresses and drop leading blanks. NULL:
- * out of memory. The caller frees the path. */
-char *netcdf_local_path(const char *path);
-
-/* True if the memory that NetCDF can need to create or open a file is available: NetCDF crashes if out of memory. */
-bool netcdf_has_memory(void);
-
 #endif

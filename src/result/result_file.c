@@ -90,6 +90,16 @@ void result_values_fill(const struct result_variable *variable, const size_t *le
 
 // ---- row by row, variable by variable
 
+/* The target: for each variable of the table the number, presence in the file and lengths, and a buffer for one row of
+ * any variable. */
+struct result_target {
+    struct netcdf_writer *writer;
+    const int *number;
+    enum output_forces forces;
+    const size_t *length;
+    double *buffer;
+};
+
 struct copying {
     const struct result_source *source;
     const struct result_target *target;
@@ -165,7 +175,9 @@ static enum status copy_all(struct copying *copying) {
     return STATUS_OK;
 }
 
-enum status result_copy_rows(const struct result_source *source, const struct result_target *target) {
+/* Copy all rows. Fails with STATUS_FILE or STATUS_MEMORY if rows cannot be read; the writer stores failures of writing.
+ * */
+static enum status result_copy_rows(const struct result_source *source, const struct result_target *target) {
     struct copying copying = {.source = source, .target = target};
     TRY(netcdf_open(&copying.reader, source->path));
     const enum status status = copy_all(&copying);

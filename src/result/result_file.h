@@ -37,20 +37,6 @@ struct result_source {
     bool drop_last_wake; /* the last row gets no record of the wake */
 };
 
-/* The target: for each variable of the table the number, presence in the file and lengths, and a buffer for one row of
- * any variable. */
-struct result_target {
-    struct netcdf_writer *writer;
-    const int *number;
-    enum output_forces forces;
-    const size_t *length;
-    double *buffer;
-};
-
-/* Copy all rows. Fails with STATUS_FILE or STATUS_MEMORY if rows cannot be read; the writer stores failures of writing.
- * */
-enum status result_copy_rows(const struct result_source *source, const struct result_target *target);
-
 // ---- the rows of a result file before a checkpoint: number and checksum
 
 struct result_mark {

@@ -93,7 +93,9 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     find_constraint(residual, f, t, y, to);
 }
 
-int diagnostics_has_reaction(const struct school *school, const struct fish *fish) {
+/* Whether the momentum of a fish and of the fluid can balance: with force: pressure and constant depth along the body,
+ * or without fluid. */
+static int diagnostics_has_reaction(const struct school *school, const struct fish *fish) {
     return !(school->density > 0) || (fish_has_momentum(fish) && impulse_depth(fish) > 0);
 }
 

@@ -80,10 +80,6 @@ void diagnostics_fluid_force(const double resistive[2], const double reactive[2]
 /* The forces of the pressure, moments about a point; with other force models all 0, and A_0 NaN. */
 struct pressure_forces diagnostics_pressure(struct residual *residual, int f, const double about[2], const double *y);
 
-/* Whether the momentum of a fish and of the fluid can balance: with force: pressure and constant depth along the body,
- * or without fluid. */
-int diagnostics_has_reaction(const struct school *school, const struct fish *fish);
-
 /* Add the impulse of the external forces in the step that ended at t to the momentum balance of fish f, as
  * diagnostics_step adds works. n: number of values for the quadrature; times: the newest time first. n = 0: only store
  * the forces, as the first values. */

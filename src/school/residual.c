@@ -88,15 +88,17 @@ double residual_undamped(const struct school *school, int i) {
 
 // ---- neighbours by boxes, then by the distance of outlines
 
-enum status residual_couplings_fill(struct residual_couplings *couplings, const struct school *school,
-                                    struct neighbours *neighbours) {
+/* Fill *couplings without coupled pairs. The neighbours must outlive the couplings. Fails with STATUS_MEMORY; call
+ * residual_couplings_free also after a failure. */
+static enum status residual_couplings_fill(struct residual_couplings *couplings, const struct school *school,
+                                           struct neighbours *neighbours) {
     const size_t n_fish = (size_t)school->n_fish;
     *couplings =
         (struct residual_couplings){.school = school, .neighbours = neighbours, .reach = school->coupling_distance};
     return MEMORY_NEW(couplings->coupled, n_fish * n_fish, "the couplings of fish");
 }
 
-void residual_couplings_free(struct residual_couplings *couplings) {
+static void residual_couplings_free(struct residual_couplings *couplings) {
     free(couplings->coupled);
 }
 

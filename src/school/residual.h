@@ -64,12 +64,6 @@ struct residual_couplings {
     unsigned char *coupled; /* whether the Jacobian holds the block of fish g in the rows of fish f (n_fish, n_fish) */
 };
 
-/* Fill *couplings without coupled pairs. The neighbours must outlive the couplings. Fails with STATUS_MEMORY; call
- * residual_couplings_free also after a failure. */
-enum status residual_couplings_fill(struct residual_couplings *couplings, const struct school *school,
-                                    struct neighbours *neighbours);
-void residual_couplings_free(struct residual_couplings *couplings);
-
 /* Couple fish by the positions in y. Fails with STATUS_MEMORY; the coupled pairs are then unchanged. */
 enum status residual_couple(struct residual_couplings *couplings, const double *y);
 

@@ -63,7 +63,7 @@ int member_file_quantity_number(const char *name) {
     return -1;
 }
 
-int member_file_n_quantities(void) {
+static int member_file_n_quantities(void) {
     int n = 0;
     while (member_file_quantity(n)) n++;
     return n;

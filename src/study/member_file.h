@@ -19,9 +19,8 @@ struct member_file_quantity {
 /* Quantity number i, from 0; NULL beyond the last. */
 const struct member_file_quantity *member_file_quantity(int i);
 
-/* The index of the quantity with this name, -1 if there is none; the number of quantities. */
+/* The index of the quantity with this name, -1 if there is none. */
 int member_file_quantity_number(const char *name);
-int member_file_n_quantities(void);
 
 /* Status and final values of one member. */
 struct member_file {

@@ -22,7 +22,8 @@ static void ring_stretch_point(const struct ends *ends, double xi, double point[
     for (int i = 0; i < 2; i++) point[i] = (1 - xi) * ends->newer[i] + xi * ends->older[i];
 }
 
-double ring_sheet_leg(const struct fish *fish, double distance) {
+/* s of a point of the wake at this distance from the own tail along the sheet, m2. */
+static double ring_sheet_leg(const struct fish *fish, double distance) {
     const double depth = fish->strip_depth, ratio = distance / (3 * depth), fourth = ratio * ratio * ratio * ratio;
 
     // exp(-40) is less than the rounding of 1

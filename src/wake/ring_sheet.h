@@ -51,7 +51,4 @@ double ring_sheet_part(const struct ring_sheet *sheet, int i);
 enum status ring_sheet_markers(struct rings *rings, const struct fish *fish, const struct school *school,
                                const struct wake *markers, double t, double nascent);
 
-/* s of a point of the wake at this distance from the own tail along the sheet, m2. */
-double ring_sheet_leg(const struct fish *fish, double distance);
-
 #endif
