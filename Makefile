@@ -354,9 +354,9 @@ $(B)/fuzz/%: $(B)/fuzz/%.o $(if $(FUZZER),,$(B)/fuzz/driver.o) $(objects)
 
 # to be preloaded: tests/faults/faults.py, memory.py, power.py
 faults = $(B)/faults.so $(B)/memory.so $(B)/power.so
-$(B)/faults.so: tests/faults/shim.c
+$(B)/faults.so: tests/faults/shim.c tests/faults/open_like.h
 $(B)/memory.so: tests/faults/memory.c
-$(B)/power.so: tests/faults/power.c
+$(B)/power.so: tests/faults/power.c tests/faults/open_like.h
 $(faults): Makefile | $(folders)
 	$(say) LD $@
 	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow -Wcast-qual $(if $(WERROR),-Werror) -O2 -shared -fPIC -o $@ $(filter %.c,$^)

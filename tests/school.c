@@ -1,6 +1,7 @@
 /* school.c: schools, random states, differences. */
 #include "school.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -129,6 +130,17 @@ void school_stir(struct setup *setup) {
         control_set_bias(fish, &state->control[f], t, fish->control.bias + 0.1);
     }
     school_ok(residual_couple(&setup->residual->couplings, state->y));
+}
+
+void school_fill_wakes(struct setup *setup, int n) {
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const double *const nose = setup->school->fish[f].start_position;
+        struct wake *const wake = &setup->state->wake[f];
+        while (wake->n_vortex < n) {
+            school_ok(wake_release(wake, nose[0] + 1.1 + school_random(setup), nose[1] + 0.2 * school_random(setup),
+                                   0.1 * school_random(setup), setup->state->t));
+        }
+    }
 }
 
 void school_flow(struct setup *setup, const double *y) {
@@ -299,6 +311,16 @@ struct simulation *school_simulation(const char *text) {
     school_ok(simulate_create(&simulation, &values));
     case_free(&values);
     return simulation;
+}
+
+struct simulation *school_simulation_of(const char *format, ...) {
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    assert_in_range(length, 1, sizeof text - 1);
+    return school_simulation(text);
 }
 
 void school_run(struct simulation *simulation, double t) {

@@ -38,6 +38,9 @@ double school_random(struct setup *setup);
  * past the last event. */
 void school_stir(struct setup *setup);
 
+/* Fill the wake of each fish up to n vortices, at random places behind the body. */
+void school_fill_wakes(struct setup *setup, int n);
+
 /* The fluid's velocity (and gradient) everywhere for the unknowns y at setup->t. */
 void school_flow(struct setup *setup, const double *y);
 
@@ -57,6 +60,7 @@ double *school_dense_jacobian(const struct jacobian *jacobian);
 
 /* A simulation at the first event, and advanced to a time. Fails the test with the message of an error. */
 struct simulation *school_simulation(const char *text);
+struct simulation *school_simulation_of(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void school_run(struct simulation *simulation, double t);
 
 /* Fail the test, with the text of the case, unless two runs of the case have the same bits in every field of the state

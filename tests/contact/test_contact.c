@@ -509,17 +509,15 @@ static void of_many_contacts_the_least_gap_is_named(void **state) {
                              *const named[] = {"; b was in contact with the wall at y = 0, with a gap of 0.04 m",
                                                "; d and e were in contact, with a gap of 0.02 m"};
     for (int i = 0; i < 2; i++) {
-        char text[1024];
-        snprintf(text, sizeof text,
-                 "time: {end: 1, shedding_interval: 0.02}\nfluid: {walls: [0]}\nsolver: {max_steps: 1}\n"
-                 "contact: {range: 0.1}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
-                 "defaults: {fish: {" PASSIVE
-                 ", body: {profile: uniform, thickness: 0.1}}}\n"
-                 "fish: [{name: a, start: {position: [0, 0.13]}}, {name: b, start: {position: [5, 0.09]}},\n"
-                 "    {name: c, start: {position: [10, 0.11]}}, {name: d, start: {position: [15, 1]}},\n"
-                 "    {name: e, start: {position: [15, %s]}}]\n",
-                 height[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 1, shedding_interval: 0.02}\nfluid: {walls: [0]}\nsolver: {max_steps: 1}\n"
+            "contact: {range: 0.1}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
+            "defaults: {fish: {" PASSIVE
+            ", body: {profile: uniform, thickness: 0.1}}}\n"
+            "fish: [{name: a, start: {position: [0, 0.13]}}, {name: b, start: {position: [5, 0.09]}},\n"
+            "    {name: c, start: {position: [10, 0.11]}}, {name: d, start: {position: [15, 1]}},\n"
+            "    {name: e, start: {position: [15, %s]}}]\n",
+            height[i]);
         assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
         if (!strstr(status_message(), named[i])) fail_msg("%s", status_message());
         simulate_free(simulation);

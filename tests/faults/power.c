@@ -76,16 +76,7 @@ static int open_any(const char *path, int flags, mode_t mode) {
     return file;
 }
 
-#define OPEN_LIKE(name)                           \
-    int name(const char *path, int flags, ...) {  \
-        va_list list;                             \
-        va_start(list, flags);                    \
-        const mode_t mode = va_arg(list, mode_t); \
-        va_end(list);                             \
-        return open_any(path, flags, mode);       \
-    }
-OPEN_LIKE(open)
-OPEN_LIKE(open64)
+#include "open_like.h"
 
 static ssize_t written(int file, off_t at, const void *from, ssize_t n) {
     if (n > 0 && counts(file)) {

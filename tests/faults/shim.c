@@ -80,16 +80,7 @@ static int open_any(const char *path, int flags, mode_t mode) {
     return file;
 }
 
-#define OPEN_LIKE(name)                           \
-    int name(const char *path, int flags, ...) {  \
-        va_list list;                             \
-        va_start(list, flags);                    \
-        const mode_t mode = va_arg(list, mode_t); \
-        va_end(list);                             \
-        return open_any(path, flags, mode);       \
-    }
-OPEN_LIKE(open)
-OPEN_LIKE(open64)
+#include "open_like.h"
 
 ssize_t read(int file, void *to, size_t n) {
     const enum fate fate = counts(file) ? fate_of(READ) : PASS;

@@ -342,14 +342,7 @@ static void build_many(struct setup *setup, const char *fluid, double length) {
     school_build(setup, text);
     school_stir(setup);
     setup->t = setup->state->t;
-    for (int f = 0; f < MANY_FISH; f++) {
-        const double *const nose = setup->school->fish[f].start_position;
-        struct wake *const wake = &setup->state->wake[f];
-        while (wake->n_vortex < MANY_MARKERS) {
-            school_ok(wake_release(wake, nose[0] + 1.1 + school_random(setup), nose[1] + 0.2 * school_random(setup),
-                                   0.1 * school_random(setup), setup->state->t));
-        }
-    }
+    school_fill_wakes(setup, MANY_MARKERS);
 }
 
 /* Velocities at all points of the bodies and all markers: u of both, then v of both. */

@@ -4,6 +4,10 @@
 #include "flow/flow_rings.h"
 #include "school.h"
 
+#define ONE_STRIP                               \
+    SCHOOL_DEFAULTS                             \
+    "time: {end: 1, shedding_interval: 0.02}\n" \
+    "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}]\n"
 #define TWO                                                                                      \
     SCHOOL_DEFAULTS                                                                              \
     "time: {end: 1, shedding_interval: 0.02}\nfluid: {walls: [-0.9]}\ncontact: {action: warn}\n" \
@@ -153,9 +157,7 @@ static void points_of_others_feel_bodies_wakes_and_images_with_twice_the_span(vo
 static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_strip(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, SCHOOL_DEFAULTS
-                 "time: {end: 1, shedding_interval: 0.02}\n"
-                 "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}]\n");
+    school_build(&setup, ONE_STRIP);
     school_stir(&setup);
     const struct fish *const fish = setup.school->fish;
     double *const y = setup.state->y;
@@ -209,9 +211,7 @@ static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_str
 static void the_newborn_marker_feels_its_body_behind_the_tail(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, SCHOOL_DEFAULTS
-                 "time: {end: 1, shedding_interval: 0.02}\n"
-                 "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}]\n");
+    school_build(&setup, ONE_STRIP);
     school_stir(&setup);
     setup.t = setup.state->t;
     const struct fish *const fish = setup.school->fish;

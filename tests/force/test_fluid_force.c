@@ -218,13 +218,11 @@ static void the_reactive_force_does_not_feel_the_own_wake(void **state) {
     } cases[] = {{"reactive", 0.05}, {"reactive", 0.1}, {"reactive", 0.4}, {"published", 0.05}, {"published", 0.4}};
     double nose[5][2];
     for (int i = 0; i < 5; i++) {
-        char text[256];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
-                 "time: {end: 1, shedding_interval: 0.02}\nwake: {smoothing: %g}\n"
-                 "fish: [{nodes: 9, sheet_points: 17, force: %s}]\n",
-                 cases[i].smoothing, cases[i].force);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS
+                                 "time: {end: 1, shedding_interval: 0.02}\nwake: {smoothing: %g}\n"
+                                 "fish: [{nodes: 9, sheet_points: 17, force: %s}]\n",
+                                 cases[i].smoothing, cases[i].force);
         school_run(simulation, 1);
         const struct fish *const fish = simulation->school->fish;
         nose[i][0] = simulation->state->y[fish->at.x];

@@ -79,20 +79,25 @@ static void added_mass_of_a_plate_is_that_of_potential_flow(void **state) {
     }
 }
 
+// symmetric part of the matrix from velocities across the plate to momenta
+static void added_mass(struct setup *setup, int nodes, double *symmetric) {
+    double matrix[MAX_NODES * MAX_NODES];
+    for (int i = 0; i < nodes; i++) {
+        double velocity[MAX_NODES] = {0};
+        velocity[i] = 1;
+        added_momentum(setup, velocity, matrix + i * nodes);
+    }
+    for (int i = 0; i < nodes; i++) {
+        for (int k = 0; k < nodes; k++) symmetric[i * nodes + k] = (matrix[i * nodes + k] + matrix[k * nodes + i]) / 2;
+    }
+}
+
 // smallest eigenvalue of the symmetric part of the matrix from velocities across the plate to momenta
 static double smallest_eigenvalue(int nodes, int points) {
     struct setup setup;
     build_plate(&setup, nodes, points, "density: 1");
-    double matrix[MAX_NODES * MAX_NODES], symmetric[MAX_NODES * MAX_NODES], value[MAX_NODES];
-    for (int i = 0; i < nodes; i++) {
-        double velocity[MAX_NODES] = {0};
-        velocity[i] = 1;
-        added_momentum(&setup, velocity, matrix + i * nodes);
-    }
-
-    for (int i = 0; i < nodes; i++) {
-        for (int k = 0; k < nodes; k++) symmetric[i * nodes + k] = (matrix[i * nodes + k] + matrix[k * nodes + i]) / 2;
-    }
+    double symmetric[MAX_NODES * MAX_NODES], value[MAX_NODES];
+    added_mass(&setup, nodes, symmetric);
 
     assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', nodes, symmetric, nodes, value), 0);
     school_clear(&setup);
@@ -197,17 +202,9 @@ static void slow_modes_have_the_added_mass_of_the_sheet(void **state) {
     struct setup setup;
     build_plate(&setup, N, 33, "density: 1, modulus: 1.0e+4");
     const struct fish *fish = setup.school->fish;
-    double matrix[N * N], mass[N * N], stiffness[N * N] = {0}, value[N], scratch[6 * N];
-    for (int i = 0; i < N; i++) {
-        double velocity[N] = {0};
-        velocity[i] = 1;
-        added_momentum(&setup, velocity, matrix + i * N);
-    }
-
-    for (int i = 0; i < N; i++) {
-        for (int k = 0; k < N; k++) mass[i * N + k] = (matrix[i * N + k] + matrix[k * N + i]) / 2;
-        mass[i * N + i] += fish->mass[i];
-    }
+    double mass[N * N], stiffness[N * N] = {0}, value[N], scratch[6 * N];
+    added_mass(&setup, N, mass);
+    for (int i = 0; i < N; i++) mass[i * N + i] += fish->mass[i];
 
     for (int j = 0; j < fish->n_joints; j++) {
         const double turn[3] = {1, -2, 1}, l = fish->edge_length;
@@ -231,15 +228,13 @@ static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) 
     char body[128];
     const double mass = 0.1;
     snprintf(body, sizeof body, "density: %.17g, modulus: 1.0e+9, relaxation_time: 0.01", mass / (pi / 4 * 0.1));
-    char text[1024];
-    snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS
-             "time: {end: 1, shedding_interval: 0.002}\n"
-             "fluid: {density: 1, viscosity: 0, velocity: [0, 0.1]}\n"
-             "fish: [{nodes: 17, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
-             "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
-             body);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation =
+        school_simulation_of(SCHOOL_DEFAULTS
+                             "time: {end: 1, shedding_interval: 0.002}\n"
+                             "fluid: {density: 1, viscosity: 0, velocity: [0, 0.1]}\n"
+                             "fish: [{nodes: 17, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+                             "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
+                             body);
     const struct fish *fish = simulation->school->fish;
     double *const y = simulation->state->y;
 
@@ -441,14 +436,12 @@ static void energy_balance_is_closed_where_the_limit_acts(void **state) {
     (void)state;
     double imbalance[2];
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
-                 "time: {end: 2, shedding_interval: 0.02}\n"
-                 "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {suction_limit: %g},\n"
-                 "        body: {modulus: 3.0e+5}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n",
-                 i == 0 ? 0 : 0.003);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS
+                                 "time: {end: 2, shedding_interval: 0.02}\n"
+                                 "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {suction_limit: %g},\n"
+                                 "        body: {modulus: 3.0e+5}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n",
+                                 i == 0 ? 0 : 0.003);
         school_run(simulation, 1.5);
         simulate_measure(simulation);
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;

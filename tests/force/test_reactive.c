@@ -237,12 +237,10 @@ static void energy_of_body_and_fluid_is_the_work_of_the_muscle(void **state) {
     const double rtol[] = {1e-5, 1e-7};
     double worst[2] = {0, 0};
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 TIME STILL "solver: {rtol: %g}\nfish: [{force: reactive, start: {speed: 0.5}, drag: {" NO_DRAG
-                            "}, body: {modulus: 1.0e+5, relaxation_time: 0, " NO_DAMPING "}}]\n",
-                 rtol[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            TIME STILL "solver: {rtol: %g}\nfish: [{force: reactive, start: {speed: 0.5}, drag: {" NO_DRAG
+                       "}, body: {modulus: 1.0e+5, relaxation_time: 0, " NO_DAMPING "}}]\n",
+            rtol[i]);
         const double before = whole_energy(measured(simulation));
         while (simulation->state->t < 2) {
             school_ok(simulate_step(simulation));
@@ -272,14 +270,12 @@ static void no_fish_gains_energy_from_still_fluid(void **state) {
     for (int i = 0; i < 5; i++) {
         const double amplitude = 0.4 + 0.2 * school_random(&random), number = 8 * school_random(&random);
         const double frequency = 1 + 0.5 * school_random(&random), quadratic = school_random(&random);
-        char text[512];
-        snprintf(text, sizeof text,
-                 TIME STILL "fish: [{force: reactive, start: {speed: 0}, drag: {" NO_DRAG
-                            "}, added_mass: {extent: %s},\n"
-                            "  body: {modulus: 1.0e+5, relaxation_time: 0.001, " NO_DAMPING
-                            "}, wave: {amplitude: %g, number: %g, frequency: %g, quadratic: %g}}]\n",
-                 i % 2 == 0 ? "depth" : "thickness", amplitude, number, frequency, quadratic);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(TIME STILL "fish: [{force: reactive, start: {speed: 0}, drag: {" NO_DRAG
+                                            "}, added_mass: {extent: %s},\n"
+                                            "  body: {modulus: 1.0e+5, relaxation_time: 0.001, " NO_DAMPING
+                                            "}, wave: {amplitude: %g, number: %g, frequency: %g, quadratic: %g}}]\n",
+                                 i % 2 == 0 ? "depth" : "thickness", amplitude, number, frequency, quadratic);
         double gained = 0, fastest = 0;
         while (simulation->state->t < 10) {
             school_ok(simulate_step(simulation));

@@ -50,10 +50,8 @@ static void amplitude_and_bias_get_there_within_the_ramp(void **state) {
 
 // the nose after a swim in which everything is set, three times within one ramp; or nothing
 static double led_swim(const char *solver, int is_led, long *steps) {
-    char text[512];
-    snprintf(text, sizeof text, "%ssolver: %s\nfish: [{control: {ramp: 0.2}, body: {modulus: 1.0e+5}}]\n", TIME,
-             solver);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation =
+        school_simulation_of("%ssolver: %s\nfish: [{control: {ramp: 0.2}, body: {modulus: 1.0e+5}}]\n", TIME, solver);
     static const struct {
         double t;
         const char *key;

@@ -117,11 +117,8 @@ static void every_kind_of_wake_can_be_made_up(void **state) {
     (void)state;
     const char *const kinds[] = {"sheet", "continuous", "impulsive"};
     for (int i = 0; i < 3; i++) {
-        char text[400];
-        snprintf(text, sizeof text,
-                 "time: {end: 10, shedding_interval: 0.02, output_interval: 0.02}\nwake: {shedding: %s}\n" FISH,
-                 kinds[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 10, shedding_interval: 0.02, output_interval: 0.02}\nwake: {shedding: %s}\n" FISH, kinds[i]);
         struct estimate estimate;
         school_ok(estimate_run(simulation, 1, &estimate));
         assert_true(estimate.seconds > 0 && isfinite(estimate.seconds));

@@ -65,9 +65,8 @@ static void one_vortex_is_released_at_every_event_with_what_was_shed(void **stat
 
 // at an event with both release and removal
 static void fields_are_continuous(const char *wake) {
-    char text[400];
-    snprintf(text, sizeof text, TIME "wake: {%s}\nfish: [{}, {start: {position: [0.2, 0.5]}}]\n", wake);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation =
+        school_simulation_of(TIME "wake: {%s}\nfish: [{}, {start: {position: [0.2, 0.5]}}]\n", wake);
     school_run(simulation, 0.5);
     const double next = simulation->state->t + 0.02;
     school_ok(simulation->integrator->advance(simulation->solver, next, NULL));
@@ -128,10 +127,8 @@ static void the_largest_wake_of_a_run_is_known_before(void **state) {
                  {"shedding: continuous, lifetime: 0.2", 10},
                  {"shedding: impulsive, lifetime: 0.2", 10}};
     for (size_t i = 0; i < sizeof wakes / sizeof *wakes; i++) {
-        char text[256];
-        snprintf(text, sizeof text, TIME "solver: {rtol: 1e-2}\nwake: {%s}\nfish: [{nodes: 4, sheet_points: 5}]\n",
-                 wakes[i].wake);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            TIME "solver: {rtol: 1e-2}\nwake: {%s}\nfish: [{nodes: 4, sheet_points: 5}]\n", wakes[i].wake);
         const int spare = simulation->school->wake_spare;
         int most = simulation->state->wake[0].n_vortex;
         for (int n = 1; n <= 16; n++) {
@@ -239,9 +236,8 @@ static void samples_of_the_power_begin_again_where_the_bias_kinks(void **state) 
     (void)state;
     static const char *const laws[] = {"none", "averaged_heading"};
     for (int i = 0; i < 2; i++) {
-        char text[256];
-        snprintf(text, sizeof text, TIME "fish: [{control: {law: %s}, start: {heading: 170}}]\n", laws[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(TIME "fish: [{control: {law: %s}, start: {heading: 170}}]\n", laws[i]);
         for (int n = 1; n <= 5; n++) {
             school_ok(simulate_step(simulation));
             const struct state *const now = simulation->state;
@@ -257,13 +253,11 @@ static void samples_of_the_power_begin_again_where_the_bias_kinks(void **state) 
 
 // nodes and phi0 at the end of 0.3 s of a turn across a stream that shears, with a modulus and a method
 static void turn_with_feedforward(const char *modulus, const char *solver, double place[14], double *phi0) {
-    char text[400];
-    snprintf(text, sizeof text,
-             "time: {end: 1, shedding_interval: 0.02}\nsolver: {%s}\nfluid: {velocity: [0.3, 0.2], shear: 2}\n"
-             "fish: [{body: {modulus: %s},\n"
-             "        control: {law: heading, desired_heading: 160, filter: 0.1, feedforward: 200}}]\n",
-             solver, modulus);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation = school_simulation_of(
+        "time: {end: 1, shedding_interval: 0.02}\nsolver: {%s}\nfluid: {velocity: [0.3, 0.2], shear: 2}\n"
+        "fish: [{body: {modulus: %s},\n"
+        "        control: {law: heading, desired_heading: 160, filter: 0.1, feedforward: 200}}]\n",
+        solver, modulus);
     school_run(simulation, 0.3);
     const struct fish *fish = simulation->school->fish;
     memcpy(place, simulation->state->y + fish->at.x, 14 * sizeof *place);
@@ -305,13 +299,11 @@ static void vortices_of_the_case_meet_the_fish(void **state) {
     static const char *const wakes[] = {"", "shedding: continuous, "};
     static const char *const fish[] = {"nodes: 9, force: pressure", "force: published"};
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 "%s" TIME
-                 "wake: {%slifetime: 10, decay: 0, vortices: [[-1, 0.5, 0.02], [-1, -0.5, -0.03]]}\n"
-                 "fish: [{%s}]\n",
-                 i == 0 ? SCHOOL_DEFAULTS : "", wakes[i], fish[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of("%s" TIME
+                                 "wake: {%slifetime: 10, decay: 0, vortices: [[-1, 0.5, 0.02], [-1, -0.5, -0.03]]}\n"
+                                 "fish: [{%s}]\n",
+                                 i == 0 ? SCHOOL_DEFAULTS : "", wakes[i], fish[i]);
         const struct wake *const wake = &simulation->state->wake[0];
         const double circulation[] = {0.02, -0.03};
         for (int n = 0; n < 20; n++) {

@@ -152,12 +152,10 @@ static void places_are_second_order_in_the_shedding_interval(void **state) {
     struct outcome at[3];
     const char *const intervals[] = {"0.02", "0.01", "0.005"};
     for (int i = 0; i < 3; i++) {
-        char text[256];
-        snprintf(text, sizeof text,
-                 "time: {end: 0.8, shedding_interval: %s}\nsolver: {rtol: 1.0e-10, order: 5}\nfish: [{body: {modulus: "
-                 "1.0e+5}}]\n",
-                 intervals[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 0.8, shedding_interval: %s}\nsolver: {rtol: 1.0e-10, order: 5}\nfish: [{body: {modulus: "
+            "1.0e+5}}]\n",
+            intervals[i]);
         school_run(simulation, 0.8);
         const struct fish *fish = simulation->school->fish;
         at[i].shed = simulation->state->y[fish->at.circulation];
@@ -434,13 +432,11 @@ static void a_limp_fish_swims_on(void **state) {
     // the body bends back and forth: the tail overtakes the markers
     static const char *const forces[] = {"reactive", "pressure"};
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
-                 "time: {end: 26, shedding_interval: 0.02, output_interval: 0.02}\n"
-                 "fish: [{force: %s, nodes: 17, body: {modulus: 1e4}, start: {speed: 0.3}}]\n",
-                 forces[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS
+                                 "time: {end: 26, shedding_interval: 0.02, output_interval: 0.02}\n"
+                                 "fish: [{force: %s, nodes: 17, body: {modulus: 1e4}, start: {speed: 0.3}}]\n",
+                                 forces[i]);
         school_run(simulation, 26);
         simulate_measure(simulation);
         const double speed = simulation->diagnostics->fish[0].speed;
@@ -453,12 +449,10 @@ static void a_failure_of_a_folded_body_says_so(void **state) {
     (void)state;
     static const char *const amplitudes[] = {"1.2", "0.2"};
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\nsolver: {max_steps: 1}\n"
-                 "fish: [{name: worm, nodes: 7, wave: {amplitude: %s, ramp: 0}}]\n",
-                 amplitudes[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\nsolver: {max_steps: 1}\n"
+            "fish: [{name: worm, nodes: 7, wave: {amplitude: %s, ramp: 0}}]\n",
+            amplitudes[i]);
         assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
         const char *const said = strstr(status_message(), "; the body of worm folds: it turns by ");
         assert_int_equal(said != NULL, i == 0);

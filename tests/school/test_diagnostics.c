@@ -157,13 +157,11 @@ static void total_circulation_vanishes_at_every_event(void **state) {
 
 // the largest change of momentum (two) and angular momentum per mass of a bent fish that beats and turns, without fluid
 static void change_of_momentum(const char *rtol, double change[3]) {
-    char text[256];
-    snprintf(text, sizeof text,
-             TIME
-             "fluid: {density: 0}\nsolver: {rtol: %s}\n"
-             "fish: [{body: {modulus: 1.0e+5}, start: {speed: 0.5}, control: {bias: 0.3}}]\n",
-             rtol);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation =
+        school_simulation_of(TIME
+                             "fluid: {density: 0}\nsolver: {rtol: %s}\n"
+                             "fish: [{body: {modulus: 1.0e+5}, start: {speed: 0.5}, control: {bias: 0.3}}]\n",
+                             rtol);
     const struct fish *fish = simulation->school->fish;
     double *const y = simulation->state->y;
     double first[3] = {0, 0, 0};
@@ -383,9 +381,8 @@ static void cost_of_transport_is_what_fluid_and_damping_take(void **state) {
                                 "  motion: {prescribed: head, speed: 0.8, pitch: 10, frequency: 1}}",
                                 "{force: reactive, load: {tip: [0.5, 0]}}"};
     for (size_t i = 0; i < sizeof fish / sizeof *fish; i++) {
-        char text[512];
-        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "solver: {rtol: 1.0e-6}\nfish: [%s]\n", fish[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS TIME "solver: {rtol: 1.0e-6}\nfish: [%s]\n", fish[i]);
         double energy[2], audit[2];
         for (int k = 0; k < 2; k++) {
             school_run(simulation, 1 + k);
@@ -410,14 +407,12 @@ static void cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream(void **st
     (void)state;
     double cost[2];
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS TIME
-                 "fluid: {velocity: [%d, 0]}\n"
-                 "fish: [{force: pressure, wave: {amplitude: 0}, body: {profile: uniform},\n"
-                 "  motion: {prescribed: all, speed: %d, heave: 0.05, frequency: 1}}]\n",
-                 i, 1 - i);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS TIME
+                                 "fluid: {velocity: [%d, 0]}\n"
+                                 "fish: [{force: pressure, wave: {amplitude: 0}, body: {profile: uniform},\n"
+                                 "  motion: {prescribed: all, speed: %d, heave: 0.05, frequency: 1}}]\n",
+                                 i, 1 - i);
         school_run(simulation, 1);
         simulate_measure(simulation);
         cost[i] = simulation->diagnostics->fish[0].cost_of_transport;
@@ -606,10 +601,8 @@ static void the_desired_heading_is_unwrapped_next_to_the_heading(void **state) {
     (void)state;
     const double desired[] = {160, -150, 100}, want[] = {160, 210, 100};
     for (int i = 0; i < 3; i++) {
-        char text[256];
-        snprintf(text, sizeof text,
-                 TIME "fish: [{start: {heading: 170}, control: {law: heading, desired_heading: %g}}]\n", desired[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            TIME "fish: [{start: {heading: 170}, control: {law: heading, desired_heading: %g}}]\n", desired[i]);
         simulate_measure(simulation);
         NEAR(simulation->diagnostics->fish->heading, 170, 1e-10, 0);
         NEAR(simulation->diagnostics->fish->desired_heading, want[i], 1e-10, 0);
@@ -639,13 +632,11 @@ static void powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass(v
     (void)state;
     static const char *const forces[] = {"reactive", "pressure"};
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
-                 "time: {end: 1, shedding_interval: 0.02}\nfluid: {velocity: [0.5, 0.2], shear: 0.3}\n"
-                 "fish: [{force: %s, load: {tip: [3, 4]}, start: {position: [0, 2], speed: 1}}]\n",
-                 forces[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS
+                                 "time: {end: 1, shedding_interval: 0.02}\nfluid: {velocity: [0.5, 0.2], shear: 0.3}\n"
+                                 "fish: [{force: %s, load: {tip: [3, 4]}, start: {position: [0, 2], speed: 1}}]\n",
+                                 forces[i]);
         school_run(simulation, 0.1);
         simulate_measure(simulation);
         const struct fish *const fish = simulation->school->fish;

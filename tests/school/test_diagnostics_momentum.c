@@ -170,9 +170,7 @@ static void forces_without_a_reaction_have_no_balance(void **state) {
         {"fish: [{" FISH "}, {force: pressure, start: {position: [0, 1]}, body: {depth: 1}}]\n", 1, 1, 1},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[1024];
-        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "%s", cases[i].text);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(SCHOOL_DEFAULTS TIME "%s", cases[i].text);
         for (int n = 0; n < 3; n++) school_ok(simulate_step(simulation));
         simulate_measure(simulation);
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;
@@ -186,13 +184,11 @@ static void forces_without_a_reaction_have_no_balance(void **state) {
 
 // the same swim elsewhere, and in a stream
 static void fill(const char *fluid, const char *start, struct diagnostics_fish *of, double imbalance[3]) {
-    char text[1024];
-    snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS TIME
-             "solver: {rtol: 1.0e-8}\n%swake: {lifetime: 0.5, decay: 0.3}\n"
-             "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, %s}]\n",
-             fluid, start);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation = school_simulation_of(
+        SCHOOL_DEFAULTS TIME
+        "solver: {rtol: 1.0e-8}\n%swake: {lifetime: 0.5, decay: 0.3}\n"
+        "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, %s}]\n",
+        fluid, start);
     school_run(simulation, 1.2);
     simulate_measure(simulation);
     *of = *simulation->diagnostics->fish;
@@ -252,13 +248,11 @@ enum { ADDED = 450 }; /* vortices of each fish: three markers each */
 
 /* A school whose wakes the tree sums where the tolerance is not 0: its balance, and whether it has been the tree. */
 static void swim_among_many(const char *fluid, double tolerance, double balance[3], double *size, int *by_tree) {
-    char text[1024];
-    snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS TIME
-             "%swake: {lifetime: 0.8, decay: 0.6, spare_vortices: %d, tolerance: %g}\n"
-             "defaults: {fish: {" FISH "}}\nfish: [{}, {start: {position: [0.5, 0.6]}}]\n",
-             fluid, 3 * ADDED, tolerance);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation =
+        school_simulation_of(SCHOOL_DEFAULTS TIME
+                             "%swake: {lifetime: 0.8, decay: 0.6, spare_vortices: %d, tolerance: %g}\n"
+                             "defaults: {fish: {" FISH "}}\nfish: [{}, {start: {position: [0.5, 0.6]}}]\n",
+                             fluid, 3 * ADDED, tolerance);
     school_run(simulation, 0.1);
     struct setup random = {.seed = 7};
     for (int i = 0; i < 2 * ADDED; i++) {

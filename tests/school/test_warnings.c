@@ -225,9 +225,7 @@ static void speeds_that_the_case_gives_are_no_divergence(void **state) {
                 {"", "load: {tip: [5e5, 0]}, body: {modulus: 1e12}"}};
     double least = INFINITY;
     for (size_t i = 0; i < sizeof fast / sizeof *fast; i++) {
-        char text[1024];
-        snprintf(text, sizeof text, REST, fast[i].fluid, fast[i].fish);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(REST, fast[i].fluid, fast[i].fish);
         school_run(simulation, 0.1);
         simulate_measure(simulation);
         char line[WARNING_BYTES] = "";
@@ -427,12 +425,9 @@ static void a_small_gap_is_told_where_nothing_repels(void **state) {
     (void)state;
     static const char *const actions[] = {"repel", "warn"};
     for (int warns = 0; warns < 2; warns++) {
-        char text[256];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS TIME
-                 "contact: {action: %s}\nfish: [{name: a}, {start: {position: [0, 2]}, name: b}]\n",
-                 actions[warns]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            SCHOOL_DEFAULTS TIME "contact: {action: %s}\nfish: [{name: a}, {start: {position: [0, 2]}, name: b}]\n",
+            actions[warns]);
         struct closest *const closest = simulation->state->closest;
         closest->fish[0] = 1;
         closest->fish[1] = 0;
@@ -457,9 +452,8 @@ static void divergence_is_a_hundred_times_the_speeds_of_the_case(void **state) {
         "frequency: 3}}]\n",
         "fish: [{length: 2, wave: {amplitude: 0, frequency: 0}, load: {tip: [30, 40]}}]\n"};
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "fluid: {density: 0}\n%s", texts[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\n%s", texts[i]);
         simulate_measure(simulation);
         simulation->state->t = 8;
         const struct fish *const fish = &simulation->school->fish[0];

@@ -171,14 +171,12 @@ static void stiffness_takes_no_iterations_where_momenta_are_kept(void **state) {
     // the equations are linear but for the rounding of elastic forces in accelerations, on which nothing depends
     static const char *const moduli[] = {"1.0e+6", "1.0e+10", "1.0e+13"};
     for (int i = 0; i < 3; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
-                 "time: {end: 1, shedding_interval: 0.01}\n"
-                 "fish: [{force: pressure, body: {modulus: %s}, wave: {ramp: 0}, start: {speed: 1},\n"
-                 "        motion: {prescribed: head}}]\n",
-                 moduli[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS
+                                 "time: {end: 1, shedding_interval: 0.01}\n"
+                                 "fish: [{force: pressure, body: {modulus: %s}, wave: {ramp: 0}, start: {speed: 1},\n"
+                                 "        motion: {prescribed: head}}]\n",
+                                 moduli[i]);
         assert_in_range(initial_conditions_iterations(simulation->consistent), 1, 2);
         simulate_free(simulation);
     }

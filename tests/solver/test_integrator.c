@@ -80,10 +80,8 @@ static void methods_have_their_integrators(void **state) {
 
 // y of the tail after 0.1 s; *order: of the last step
 static double tail_after(const char *word, const char *step, const char *fish_text, int *order) {
-    char text[512];
-    snprintf(text, sizeof text, "time: {end: 1, shedding_interval: 0.02}\nsolver: {method: %s, step: %s}\n%s", word,
-             step, fish_text);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation = school_simulation_of(
+        "time: {end: 1, shedding_interval: 0.02}\nsolver: {method: %s, step: %s}\n%s", word, step, fish_text);
     school_run(simulation, 0.1);
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);

@@ -86,14 +86,12 @@ static void soft_rods_of_many_nodes_converge_whatever_the_step(void **state) {
     static const int nodes[] = {31, 41, 51};
     static const double steps[] = {0.003125, 0.0015625, 0.00078125};
     for (int i = 0; i < 9; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 "time: {end: 1, shedding_interval: 0.0125, output_interval: 0.0125}\nfluid: {density: 0}\n"
-                 "solver: {method: trapezoid, step: %.8f}\n"
-                 "fish: [{nodes: %d, sheet_points: 5, body: {modulus: 1.0e+5}, wave: {amplitude: 0},\n"
-                 "        start: {speed: 0}, motion: {prescribed: head, heave: 0.05, frequency: 1, speed: 0}}]\n",
-                 steps[i % 3], nodes[i / 3]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 1, shedding_interval: 0.0125, output_interval: 0.0125}\nfluid: {density: 0}\n"
+            "solver: {method: trapezoid, step: %.8f}\n"
+            "fish: [{nodes: %d, sheet_points: 5, body: {modulus: 1.0e+5}, wave: {amplitude: 0},\n"
+            "        start: {speed: 0}, motion: {prescribed: head, heave: 0.05, frequency: 1, speed: 0}}]\n",
+            steps[i % 3], nodes[i / 3]);
         school_run(simulation, 0.1);
         simulate_free(simulation);
     }
@@ -119,12 +117,10 @@ static void rates_of_algebraic_unknowns_are_differences_over_the_step(void **sta
     (void)state;
     static const char *const methods[] = {"implicit_euler", "trapezoid"};
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 "time: {end: 1, shedding_interval: 0.005}\nsolver: {method: %s, step: 0.005}\n"
-                 "fish: [{wave: {ramp: 0}, control: {law: heading, desired_heading: 150}}]\n",
-                 methods[i]);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 1, shedding_interval: 0.005}\nsolver: {method: %s, step: 0.005}\n"
+            "fish: [{wave: {ramp: 0}, control: {law: heading, desired_heading: 150}}]\n",
+            methods[i]);
         school_shed_step_by_step(simulation);
         simulate_free(simulation);
     }

@@ -15,9 +15,7 @@ static const char soft[] =
 
 // y of the tail at the end
 static double tail_at_end(const char *method, double step, double rtol) {
-    char text[512];
-    snprintf(text, sizeof text, soft, method, step, rtol);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation = school_simulation_of(soft, method, step, rtol);
     school_run(simulation, 0.4);
     const struct fish *fish = &simulation->school->fish[0];
     const double tail = simulation->state->y[fish->at.y + fish->n_nodes - 1];
@@ -50,9 +48,7 @@ static void one_evaluation_serves_the_end_of_a_step_and_the_start_of_the_next(vo
         int stages;
     } methods[] = {{"euler", 1}, {"heun", 2}, {"rk4", 4}};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-        char text[512];
-        snprintf(text, sizeof text, soft, methods[i].method, 1e-3, 1e-6);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(soft, methods[i].method, 1e-3, 1e-6);
         school_run(simulation, 0.4);
         // at each of the 20 events the wake gets a new vortex, so that the evaluation is done again
         const struct integrator_counts *const counts = &simulation->totals;
@@ -66,13 +62,11 @@ static void a_body_without_forces_coasts_as_far_as_its_speed_says(void **state) 
     (void)state;
     static const char *const methods[] = {"euler", "heun", "rk4", "dormand_prince"};
     for (size_t i = 0; i < 2 * sizeof methods / sizeof *methods; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 "time: {end: 0.4, shedding_interval: 0.02}\nfluid: {density: 0}\n"
-                 "solver: {method: %s, step: %s, rtol: 1.0e-6}\n"
-                 "fish: [{nodes: 7, sheet_points: 5, start: {speed: 0.5}, wave: {amplitude: 0}}]\n",
-                 methods[i / 2], i % 2 ? "0" : "0.0002");
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 0.4, shedding_interval: 0.02}\nfluid: {density: 0}\n"
+            "solver: {method: %s, step: %s, rtol: 1.0e-6}\n"
+            "fish: [{nodes: 7, sheet_points: 5, start: {speed: 0.5}, wave: {amplitude: 0}}]\n",
+            methods[i / 2], i % 2 ? "0" : "0.0002");
         const double before = simulation->state->y[simulation->school->fish[0].at.x];
         school_run(simulation, 0.4);
         // rounding of 2000 steps; with steps of its own choice a method lets the stiff body tremble within rtol
@@ -120,13 +114,11 @@ static void impulses_restart_the_explicit_method_too(void **state) {
     (void)state;
     double tail[2];
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 "time: {end: 0.4, shedding_interval: 0.02}\nwake: {shedding: impulsive}\n"
-                 "solver: {method: %s, rtol: 1.0e-9, order: 5}\n"
-                 "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4}}]\n",
-                 i == 0 ? "ida" : "dormand_prince");
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 0.4, shedding_interval: 0.02}\nwake: {shedding: impulsive}\n"
+            "solver: {method: %s, rtol: 1.0e-9, order: 5}\n"
+            "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4}}]\n",
+            i == 0 ? "ida" : "dormand_prince");
         school_run(simulation, 0.4);
         const struct fish *fish = &simulation->school->fish[0];
         tail[i] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
@@ -147,9 +139,7 @@ static void a_failure_without_a_reason_is_not_explained_by_an_old_message(void *
     (void)state;
     static const char *const old[] = {"", "a message of something else"};
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text, soft, "rk4", 0.005, 1e-5);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(soft, "rk4", 0.005, 1e-5);
         school_run(simulation, 0.04);
         status_fail(STATUS_FILE, "%s", old[i]);
         silent_from = 0.05;

@@ -8,14 +8,12 @@
 
 // one fish in the wake of another fish, while the oldest vortices decay; the midpoints of one fish omit the own wake
 static struct simulation *two_fish_in(const char *fluid, double tolerance, double interval, double smoothing) {
-    char text[512];
-    snprintf(text, sizeof text,
-             "%stime: {end: 1, shedding_interval: %g, output_interval: %g}\n"
-             "wake: {tolerance: %g, smoothing: %g, lifetime: 0.5}\n"
-             "fish: [{nodes: 5, sheet_points: 9, force: reactive}, {nodes: 6, sheet_points: 11, start: {position: "
-             "[1.3, 0.2]}}]\n",
-             fluid, interval, interval, tolerance, smoothing);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation = school_simulation_of(
+        "%stime: {end: 1, shedding_interval: %g, output_interval: %g}\n"
+        "wake: {tolerance: %g, smoothing: %g, lifetime: 0.5}\n"
+        "fish: [{nodes: 5, sheet_points: 9, force: reactive}, {nodes: 6, sheet_points: 11, start: {position: "
+        "[1.3, 0.2]}}]\n",
+        fluid, interval, interval, tolerance, smoothing);
     school_run(simulation, 0.8);
     return simulation;
 }
@@ -224,13 +222,11 @@ static void without_a_tolerance_nothing_is_interpolated(void **state) {
 
 // nose and tail of both fish after 1 s
 static void run(const char *solver, double *x) {
-    char text[512];
-    snprintf(text, sizeof text,
-             "time: {end: 1, shedding_interval: 0.01}\n"
-             "solver: {rtol: 1e-9, order: 5%s}\n"
-             "fish: [{}, {start: {position: [1.3, 0.2]}}]\n",
-             solver);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation = school_simulation_of(
+        "time: {end: 1, shedding_interval: 0.01}\n"
+        "solver: {rtol: 1e-9, order: 5%s}\n"
+        "fish: [{}, {start: {position: [1.3, 0.2]}}]\n",
+        solver);
     school_run(simulation, 1);
     for (int f = 0; f < 2; f++) {
         const struct fish *const fish = &simulation->school->fish[f];
