@@ -175,6 +175,41 @@ static void a_study_nc_that_does_not_fit_is_refused(void **state) {
     case_free(&study);
 }
 
+// values 5 + 0.3 h^2
+static void an_order_is_met_within_its_bounds_on_both_sides(void **state) {
+    (void)state;
+    static const struct {
+        double order;
+        enum status want;
+    } cases[] = {{1.89, STATUS_MISSED}, {1.91, STATUS_OK}, {2.09, STATUS_OK}, {2.11, STATUS_MISSED}};
+    for (int i = 0; i < 4; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "format: 1\ntime: {end: 1, shedding_interval: 0.1}\nfish: [{}]\n"
+                 "sweep: [{key: time.shedding_interval, values: [0.05, 0.1, 0.025], refine: true, expect: {order: %g, "
+                 "within: 0.1, of: nose}}]\n",
+                 cases[i].order);
+        struct case_values study;
+        struct member_file member[3];
+        struct study_orders orders;
+        assert_int_equal(case_parse(&study, text, strlen(text), "order.yaml", NULL, 0, NULL), STATUS_OK);
+        for (int m = 0; m < 3; m++) {
+            static const double h[] = {0.05, 0.1, 0.025};
+            member[m] = (struct member_file){.number = m, .status = strdup("complete")};
+            assert_int_equal(member_file_create_values(&member[m], 1), STATUS_OK);
+            const int nose = member_file_quantity_number("nose");
+            for (int k = 0; k < 2; k++) *member_file_place(&member[m], nose, 0, k) = 5 + 0.3 * h[m] * h[m];
+        }
+        assert_int_equal(study_orders_create(&orders, &study, member), STATUS_OK);
+        FILE *const nowhere = fopen("/dev/null", "w");
+        assert_int_equal(study_orders_print(&study, &orders, nowhere), cases[i].want);
+        fclose(nowhere);
+        for (int m = 0; m < 3; m++) member_file_free(&member[m]);
+        study_orders_free(&orders);
+        case_free(&study);
+    }
+}
+
 static void levels_of_points_are_their_distances_from_coarse_to_fine(void **state) {
     (void)state;
     static const char text[] =
@@ -311,6 +346,7 @@ int main(void) {
         cmocka_unit_test(a_given_value_gives_the_order_with_two_levels_each),
         cmocka_unit_test(orders_are_kept_in_study_nc),
         cmocka_unit_test(a_study_nc_that_does_not_fit_is_refused),
+        cmocka_unit_test(an_order_is_met_within_its_bounds_on_both_sides),
         cmocka_unit_test(levels_of_points_are_their_distances_from_coarse_to_fine),
         cmocka_unit_test(every_failing_allocation_of_a_study_is_reported_and_leaves_nothing),
         cmocka_unit_test(quantities_of_a_case_are_those_of_a_study),
