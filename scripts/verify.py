@@ -187,7 +187,9 @@ Bodies in an unsteady inflow, model.md 8. *Gusts*: a fixed plate in a gust that 
 U Dt = 0.005 to 0.02 L and 65 sheet points. The lift in a sine gust is Sears' function; the pressure of Sears' solution has
 the form of an incidence, so the suction, the only force along the plate, is the square of the lift. The lift in a step
 gust is Kuessner's function; s is the way of the middle of the step from the nose, in half lengths, and the step rises over
-a tenth of the length."""),
+a tenth of the length. *Vortex streets* (`wake.street`): the speed of a street in still fluid is von Karman's; the ends of
+a street are an error proportional to 1/N. A plate on the centre line, free along the stream, meets the gusts of all rows at
+the odd harmonics of the spacing; the suction of Sears' pressure accelerates the plate against the stream."""),
     "walls": ("Walls", """\
 Bodies beside straight walls, model.md 17: a fish beside a wall moves like a fish beside the mirror image, a plate between
 two walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to

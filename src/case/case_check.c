@@ -398,14 +398,28 @@ static bool has_moment(const struct control_parameters *control) {
     return is_of_heading && fabs(control->feedforward) > 0;
 }
 
+static void check_street(const struct check *check) {
+    const struct street_parameters *const street = &check->values->school.wake.street;
+    static const char path[] = "wake.street.vortices", spacing[] = "wake.street.spacing",
+                      circulation[] = "wake.street.circulation";
+    complain_if(street->n > 0 && street->spacing == 0, check, path, "needs a wake.street.spacing above 0");
+    complain_if(street->n > 0 && street->circulation == 0, check, path, "needs a wake.street.circulation");
+    complain_if(street->n == 0 && street->spacing > 0, check, spacing, "has no effect with wake.street.vortices 0");
+    complain_if(street->n == 0 && fabs(street->circulation) > 0, check, circulation,
+                "has no effect with wake.street.vortices 0");
+    complain_if(street->n == 0 && street->row_distance >= 0, check, "wake.street.row_distance",
+                "has no effect with wake.street.vortices 0");
+}
+
 /* Check the vortices in the fluid at the start. */
 static void check_vortices(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
     const struct number_list *const vortices = &school->wake.vortices;
-    static const char path[] = "wake.vortices";
-    if (vortices->n == 0) return;
-    complain_if(vortices->width != 3, check, path, "needs rows of 3 numbers, x, y and circulation, not of %d",
-                vortices->width);
+    const char *const path = school->wake.street.n > 0 ? "wake.street.vortices" : "wake.vortices";
+    complain_if(vortices->n > 0 && vortices->width != 3, check, "wake.vortices",
+                "needs rows of 3 numbers, x, y and circulation, not of %d", vortices->width);
+    check_street(check);
+    if (vortices->n == 0 && school->wake.street.n == 0) return;
     complain_if(school->wake.removed_circulation == REMOVED_DROPPED, check, path,
                 "the removal of a vortex would add its circulation to the body: use "
                 "'wake.removed_circulation: retained'");

@@ -113,6 +113,13 @@ static enum status derive_gradient_distance(const struct key_place *at) {
     return set_default(&at->values->school.fluid.gust_gradient_distance, length / 5);
 }
 
+// the ratio of a street without linear growth of disturbances: cosh^2(pi h/a) = 2
+static enum status derive_row_distance(const struct key_place *at) {
+    struct street_parameters *const street = &at->values->school.wake.street;
+    if (street->n == 0) return STATUS_OK;
+    return set_default(&street->row_distance, acosh(sqrt(2)) / 3.14159265358979323846 * street->spacing);
+}
+
 static enum status derive_taper(const struct key_place *at) {
     struct wake_parameters *const wake = &at->values->school.wake;
     return set_default(&wake->taper, wake->shedding == SHEDDING_SHEET ? 0.6 : 0);
@@ -323,6 +330,21 @@ const struct key case_table[] = {
     {"wake.vortices", ROWS, AT(school.wake.vortices), "[]", ANY, "",
      .meaning = "vortices at the start, in the wake of the first fish: rows of x and y in m, circulation in m2 s-1",
      .synonyms = "dipole encounter"},
+    {"wake.street.vortices", INTEGER, AT(school.wake.street.n), "0", FROM_TO(0, 10000), "",
+     .meaning =
+         "number of vortices of a vortex street at the start: two staggered rows along the stream, in the wake of "
+         "the first fish",
+     .synonyms = "karman"},
+    {"wake.street.spacing", REAL, AT(school.wake.street.spacing), "0", FROM(0), "m",
+     .meaning = "distance of neighbouring vortices of a row"},
+    {"wake.street.row_distance", REAL, AT(school.wake.street.row_distance), NULL, FROM(0), "m",
+     .meaning = "distance of the two rows", .derived = "0.2805 spacing, the stable street of von Karman",
+     .derive = derive_row_distance, .synonyms = "width"},
+    {"wake.street.circulation", REAL, AT(school.wake.street.circulation), "0", ANY, "m2 s-1",
+     .meaning = "circulation of a vortex to the right of the stream; the row to the left has the opposite: positive "
+                "behind a body with drag, negative behind a swimmer"},
+    {"wake.street.position", PAIR, AT(school.wake.street.position), "[0, 0]", ANY, "m",
+     .meaning = "middle of the street"},
 
     {"sheet.smoothing", REAL, AT(school.sheet.smoothing), "0.05", ABOVE(0), "",
      .meaning = "smoothing radius of a bound vortex at wakes and other fish, in body lengths", .published = "0.01",

@@ -494,6 +494,13 @@ static void walls_set(struct school *school, const struct school_parameters *par
     if (walls->n == 1 && parameters->fish[0].start_position[1] < walls->value[0]) school->walls.inward[0] = -1;
 }
 
+// the direction of the stream, along x without a stream
+static void stream_direction(const struct school *school, double along[2]) {
+    const double stream = hypot(school->velocity[0], school->velocity[1]);
+    along[0] = stream > 0 ? school->velocity[0] / stream : 1;
+    along[1] = stream > 0 ? school->velocity[1] / stream : 0;
+}
+
 static void fluid_set(struct school *school, const struct school_parameters *parameters) {
     school->density = parameters->fluid.density;
     school->velocity[0] = parameters->fluid.velocity[0];
@@ -501,9 +508,8 @@ static void fluid_set(struct school *school, const struct school_parameters *par
     school->shear = parameters->fluid.shear;
 
     // the gust blows to the left of the stream, along y without a stream
-    const double stream = hypot(school->velocity[0], school->velocity[1]);
-    const double along[2] = {stream > 0 ? school->velocity[0] / stream : 1,
-                             stream > 0 ? school->velocity[1] / stream : 0};
+    double along[2];
+    stream_direction(school, along);
     school->gust[0] = -parameters->fluid.gust_amplitude * along[1];
     school->gust[1] = parameters->fluid.gust_amplitude * along[0];
     school->gust_omega = 2 * M_PI * parameters->fluid.gust_frequency;
@@ -528,7 +534,8 @@ static void fluid_set(struct school *school, const struct school_parameters *par
     for (int f = 0; f < parameters->n_fish; f++) school->finite |= fish_is_strip(&parameters->fish[f]);
     school->wake_tolerance = parameters->wake.tolerance;
     school->wake_merge = parameters->wake.merge;
-    school->wake_spare = parameters->wake.spare + WAKE_PER_VORTEX * parameters->wake.vortices.n;
+    school->wake_spare =
+        parameters->wake.spare + WAKE_PER_VORTEX * (parameters->wake.vortices.n + parameters->wake.street.n);
     school->contact = parameters->contact.action;
     school->rtol = parameters->rtol;
     school->threads = parameters->threads;
@@ -538,11 +545,27 @@ static void fluid_set(struct school *school, const struct school_parameters *par
     school->contact_range = parameters->contact.range * longest;
 }
 
-static enum status vortices_set(struct school *school, const struct number_list *vortices) {
-    if (vortices->n == 0) return STATUS_OK;
-    TRY(MEMORY_NEW(school->vortices, 3 * vortices->n, "vortices at the start"));
-    memcpy(school->vortices, vortices->value, 3 * (size_t)vortices->n * sizeof *school->vortices);
-    school->n_vortices = vortices->n;
+// the vortices of a street along a direction, upstream first: the even ones in the row on the left
+static void street_set(const struct street_parameters *street, const double along[2], double *vortices) {
+    for (int i = 0; i < street->n; i++) {
+        const double left = i % 2 == 0 ? 1 : -1, across = left * street->row_distance / 2;
+        const double ahead = (i - (street->n - 1) / 2.0) * street->spacing / 2;
+        vortices[3 * i] = street->position[0] + ahead * along[0] - across * along[1];
+        vortices[3 * i + 1] = street->position[1] + ahead * along[1] + across * along[0];
+        vortices[3 * i + 2] = -left * street->circulation;
+    }
+}
+
+static enum status vortices_set(struct school *school, const struct wake_parameters *wake) {
+    const struct number_list *const list = &wake->vortices;
+    const int n = list->n + wake->street.n;
+    if (n == 0) return STATUS_OK;
+    TRY(MEMORY_NEW(school->vortices, 3 * n, "vortices at the start"));
+    if (list->n > 0) memcpy(school->vortices, list->value, 3 * (size_t)list->n * sizeof *school->vortices);
+    double along[2];
+    stream_direction(school, along);
+    street_set(&wake->street, along, school->vortices + 3 * (long)list->n);
+    school->n_vortices = n;
     return STATUS_OK;
 }
 
@@ -582,7 +605,7 @@ enum status fish_school_create(struct school **school, const struct school_param
     if (status != STATUS_OK) goto failed;
     new->n_fish = parameters->n_fish;
     fluid_set(new, parameters);
-    status = vortices_set(new, &parameters->wake.vortices);
+    status = vortices_set(new, &parameters->wake);
     for (int f = 0; f < new->n_fish &&status == STATUS_OK; f++) {
         status = fish_fill(&new->fish[f], parameters, &parameters->fish[f]);
         if (status != STATUS_OK) goto failed;

@@ -50,6 +50,13 @@ struct duration {
     double beats; /* of the slowest beat in the school */
 };
 
+/* A vortex street at the start: two staggered rows of opposite circulation. */
+struct street_parameters {
+    int n;                                     /* vortices of both rows; 0: no street */
+    double spacing, row_distance, position[2]; /* m */
+    double circulation;                        /* m2 s-1 */
+};
+
 struct wake_parameters {
     double smoothing;           /* fraction of the body length */
     double taper, taper_beside; /* fractions of the body length */
@@ -60,6 +67,7 @@ struct wake_parameters {
     double merge;                /* lengths per beat; 0: never */
     int spare;                   /* vortices of each wake that may be added from outside */
     struct number_list vortices; /* in the fluid at the start: rows of position [m] and circulation [m2 s-1] */
+    struct street_parameters street;
 };
 
 struct sheet_parameters {

@@ -439,6 +439,27 @@ static void distance_from_a_wall_counts_the_thicker_edge_of_a_node(void **state)
     school_clear(&setup);
 }
 
+static void a_street_has_two_staggered_rows_along_the_stream(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fluid: {velocity: [0, 2]}\n"
+                 "wake: {vortices: [[7, 8, 9]],\n"
+                 "       street: {vortices: 3, spacing: 0.8, row_distance: 0.3, circulation: 5, position: [1, 2]}}\n"
+                 "fish: [{force: published}]\n");
+    // along y: the row on the left has the smaller x
+    static const double want[] = {7, 8, 9, 0.85, 1.6, -5, 1.15, 2, 5, 0.85, 2.4, -5};
+    assert_int_equal(setup.school->n_vortices, 4);
+    for (int i = 0; i < 12; i++) NEAR(setup.school->vortices[i], want[i], 1e-15, 0);
+    school_clear(&setup);
+
+    // von Karman's ratio
+    school_build(&setup,
+                 TIME "wake: {street: {vortices: 2, spacing: 2, circulation: 1}}\nfish: [{force: published}]\n");
+    NEAR(setup.school->vortices[1] - setup.school->vortices[4], 2 * 0.28055, 1e-5, 0);
+    school_clear(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(joukowski_body_has_the_mass_of_the_reference),
@@ -457,6 +478,7 @@ int main(void) {
         cmocka_unit_test(fish_that_begin_beyond_a_wall_are_refused),
         cmocka_unit_test(unknowns_stand_fish_after_fish_in_the_documented_order),
         cmocka_unit_test(gust_blows_across_the_stream),
+        cmocka_unit_test(a_street_has_two_staggered_rows_along_the_stream),
         cmocka_unit_test(a_wave_has_an_amplitude_a_frequency_and_a_free_body),
         cmocka_unit_test(distance_is_that_of_the_outlines),
         cmocka_unit_test(distance_of_bent_bodies_is_the_least_of_their_points),

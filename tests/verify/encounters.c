@@ -6,6 +6,7 @@
 
 #include "linear_theory.h"
 #include "verify.h"
+#include "wake/wake.h"
 
 static const double pi = 3.14159265358979323846;
 static const double amplitude = 0.005; /* of gusts, m s-1 */
@@ -97,7 +98,85 @@ static void kuessner(void) {
     simulate_free(simulation);
 }
 
+// ---- a vortex street
+
+/* Speed of the four vortices in the middle of a street of n vortices over 0.4 of the spacing 1, circulation 1, far from
+ * a small body. */
+static double street_speed(int n, double interval) {
+    const double end = 1;
+    struct simulation *const simulation =
+        verify_open(VERIFY_DEFAULTS
+                    "format: 1\n"
+                    "time: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "wake: {lifetime: 1000, street: {vortices: %d, spacing: 1, circulation: 1}}\n"
+                    "solver: {rtol: 1e-4}\n"
+                    "fish: [{length: 1e-3, force: published, sheet_points: 9, wave: {amplitude: 0, frequency: 0},\n"
+                    "        start: {position: [0, 1000], speed: 0}, motion: {prescribed: all}}]\n",
+                    end, interval, interval, n);
+    const struct wake *const wake = &simulation->state->wake[0];
+    double sum = 0;
+    for (int way = 0; way < 2; way++) {
+        for (int i = 0; i < wake_n_sources(wake); i++) {
+            const int is_middle = fabs(wake->x[i] + (way ? 0.5 * end * tanh(pi * 0.280549) : 0)) < 0.99;
+            if (fabs(wake_source(wake, i)) > 0.5 && is_middle) sum += (way ? 1 : -1) * wake->x[i] / 4;
+        }
+        verify_run(simulation, end);
+    }
+    simulate_free(simulation);
+    return -sum / end;
+}
+
+/* The ends of a street are missing: an error proportional to 1/n. */
+static void street(void) {
+    const int n = verify_is_fast() ? 40 : 160;
+    const double interval = verify_is_fast() ? 0.02 : 0.01, karman = sqrt(0.5) / 2;
+    const double speed[2] = {street_speed(n, interval), street_speed(2 * n, interval)};
+    verify_relative(verify_text("vortex street: speed of the middle of %d vortices", 2 * n),
+                    "von Karman (1911): G/(2 a) tanh(pi h/a)", karman, speed[1], verify_is_fast() ? 0.02 : 0.005);
+    verify_relative(verify_text("vortex street: speed, %d and %d vortices extrapolated", n, 2 * n),
+                    "von Karman (1911): G/(2 a) tanh(pi h/a)", karman, 2 * speed[1] - speed[0],
+                    verify_is_fast() ? 1e-3 : 1e-4);
+}
+
+// ---- a plate in a vortex street
+
+/* A plate on the centre line of a street of spacing 2 is free along the stream and held in all other directions. The
+ * velocity across the plate has the amplitudes 2 G/a exp(-pi m h/a), m = 1, 3, .. The mean flow on the centre line is
+ * the stream less G/a. */
+static void drift(void) {
+    const double a = 2, h = acosh(sqrt(2)) / pi * a, circulation = 0.01, interval = verify_is_fast() ? 0.02 : 0.01;
+    const double mass = pi / 4 * 0.02, from = 10, to = from + 3 * a;
+    struct simulation *const simulation =
+        verify_open(VERIFY_DEFAULTS
+                    "format: 1\n"
+                    "time: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "fluid: {density: 1, viscosity: 0, velocity: [%.17g, 0]}\n"
+                    "wake: {lifetime: 1000, smoothing: 0.005,\n"
+                    "       street: {vortices: 48, spacing: %g, circulation: %g, position: [-7, 0]}}\n"
+                    "fish:\n"
+                    "  - {nodes: 17, sheet_points: %d, " VERIFY_ATTACHED
+                    ", wave: {amplitude: 0, frequency: 0},\n"
+                    "     start: {speed: 0}, motion: {prescribed: all, surge: free},\n"
+                    "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1}}\n",
+                    to, interval, interval, 1 + circulation / a, a, circulation, verify_is_fast() ? 33 : 65);
+    double thrust = 0, speed[2];
+    for (int m = 1; m < 8; m += 2) {
+        const double across = 2 * circulation / a * exp(-pi * m * h / a), lift = cabs(linear_theory_sears(pi * m / a));
+        thrust += pi * across * across * lift * lift / 2;
+    }
+    for (int i = 0; i < 2; i++) {
+        verify_run(simulation, i == 0 ? from : to);
+        simulate_measure(simulation);
+        speed[i] = simulation->diagnostics->fish[0].com_velocity[0];
+    }
+    verify_relative("plate in a street, free along the stream: mean acceleration", "Sears (1941), the suction",
+                    -thrust / mass, (speed[1] - speed[0]) / (to - from), 0.01);
+    simulate_free(simulation);
+}
+
 void verify_encounters(void) {
     sears();
     kuessner();
+    street();
+    drift();
 }
