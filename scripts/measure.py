@@ -2,7 +2,8 @@
 """Measure the tables of README.md and doc/, and write them into the documents.
 
     scripts/measure.py NAME...              print tables as markdown
-    scripts/measure.py --write FILE...      measure every table of these documents again, in place
+    scripts/measure.py --write FILE...      measure every table of these documents again, in place; print the
+                                            tables that only the text names, to compare the numbers in the text
     scripts/measure.py --figures FOLDER     draw the pictures of doc/figures again
     scripts/measure.py --list               names of the tables, with a line about each
 
@@ -662,15 +663,17 @@ def article(bench):
 # ---- documents and figures ----
 
 COMMAND = re.compile(r"^`scripts/measure\.py ([a-z_]+)`")
+IN_TEXT = re.compile(r"`scripts/measure\.py\s([a-z_]+)`")
 
 
 def write(bench, path):
-    """Replace every table of a document below a command."""
+    """Replace every table of a document below a command, and print the tables with numbers in the text."""
     with open(path, encoding="utf-8") as file:
         lines = file.read().split("\n")
+    named = IN_TEXT.findall("\n".join(lines))
     out, at = [], 0
     while at < len(lines):
-        found = COMMAND.match(lines[at])
+        found = COMMAND.match(lines[at]) if at == 0 or not lines[at - 1] else None
         if not found:
             out.append(lines[at])
             at += 1
@@ -678,6 +681,7 @@ def write(bench, path):
         name = found[1]
         if name not in TABLES:
             sys.exit(f"measure.py: {path}: there is no table {name}")
+        named.remove(name)
 
         # the paragraph of the command, then the new table in the place of the old one, if there is one
         while at < len(lines) and lines[at]:
@@ -691,6 +695,11 @@ def write(bench, path):
         at += 1
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(out))
+
+    for name in named:
+        print(f"{path}: compare the numbers in the text with the table {name}")
+        heads, rows = TABLES[name]
+        print(markdown(list(heads), [list(row) for row in rows(bench)]))
 
 
 # Per figure: cases to run, and the options of scripts/plot.py.
