@@ -40,8 +40,9 @@ static void add_spanwise(const struct column *to, int n, const struct ring_value
 }
 
 // add the velocity of a leg, or of a change of a leg
-static void add_leg(const struct column *to, int n, const struct ring_values *values, double dx, double dy,
-                    int has_edge) {
+static inline __attribute__((always_inline)) void add_leg_to(const struct column *to, int n,
+                                                             const struct ring_values *values, double dx, double dy,
+                                                             int has_edge) {
     for (int i = 0; i < n; i++) {
         to->u[i] -= values->leg[i] * dy;
         to->v[i] += values->leg[i] * dx;
@@ -57,9 +58,17 @@ static void add_leg(const struct column *to, int n, const struct ring_values *va
     }
 }
 
+static KERNEL_WIDE(void, add_leg,
+                   (const struct column *to, int n, const struct ring_values *values, double dx, double dy,
+                    int has_edge),
+                   (to, n, values, dx, dy, has_edge)) {
+    add_leg_to(to, n, values, dx, dy, has_edge);
+}
+
 // add the change of velocity by a displacement of the source in x or y
-static void add_displacement(const struct column *to, int n, const struct ring_values *values,
-                             const struct source *source, int in_y, double by) {
+static inline __attribute__((always_inline)) void add_displacement(const struct column *to, int n,
+                                                                   const struct ring_values *values,
+                                                                   const struct source *source, int in_y, double by) {
     const double *const u = in_y ? values->u_y : values->u_x, *const v = in_y ? values->v_y : values->v_x,
                         *const div = in_y ? values->div_y : values->div_x,
                         *const edge = in_y ? values->edge_y : values->edge_x;
@@ -76,8 +85,10 @@ static void add_displacement(const struct column *to, int n, const struct ring_v
     }
 }
 
-static void add_places(const struct influence_block *block, const struct fish *other, const struct source *source,
-                       int first, int n, const struct ring_values *values) {
+static KERNEL_WIDE(void, add_places,
+                   (const struct influence_block *block, const struct fish *other, const struct source *source,
+                    int first, int n, const struct ring_values *values),
+                   (block, other, source, first, n, values)) {
     // the image moves opposite to the source in y, and the leg of the image moves opposite in x
     const double sign = source->is_image ? -1 : 1;
     for (int i = 0; source->place && i < source->place->n; i++) {
@@ -92,8 +103,8 @@ static void add_places(const struct influence_block *block, const struct fish *o
         const int k = source->line->node[i];
         const double by = source->along * source->line->weight[i];
         const struct column x = column_of(block, k, first), y = column_of(block, other->n_nodes + k, first);
-        add_leg(&x, n, values, sign * by, 0, source->has_edge);
-        add_leg(&y, n, values, 0, by, source->has_edge);
+        add_leg_to(&x, n, values, sign * by, 0, source->has_edge);
+        add_leg_to(&y, n, values, 0, by, source->has_edge);
     }
 }
 

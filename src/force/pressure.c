@@ -31,6 +31,7 @@ enum status pressure_create(struct pressure **pressure, const struct fish *fish)
     if (status == STATUS_OK)
         status = MEMORY_NEW(new->at_points, N_AT_POINTS * fish->n_control, "the pressure on a fish");
     if (status == STATUS_OK) status = MEMORY_NEW(new->share, fish->n_control * n, "the pressure on a fish");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->spread, 2 * fish->n_control, "the pressure on a fish");
     if (status == STATUS_OK) status = MEMORY_NEW(new->point, fish->n_control, "the pressure on a fish");
     if (status != STATUS_OK) {
         pressure_free(new);
@@ -55,6 +56,7 @@ void pressure_free(struct pressure *pressure) {
     free(pressure->momentum_rate);
     free(pressure->force);
     free(pressure->product);
+    free(pressure->spread);
     free(pressure->at_points);
     free(pressure->share);
     free(pressure->point);
@@ -297,48 +299,35 @@ void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
     }
 }
 
-// add a force at control point c to the rows ax, ay of all nodes, in one column
-static void spread_force(const struct pressure *p, int c, double x, double y, double *column) {
-    const int n = p->fish->n_nodes;
-    const double *const share = p->share + (long)c * n;
-    for (int k = 0; k < n; k++) {
-        column[k] += share[k] * x;
-        column[n + k] += share[k] * y;
-    }
+// add forces at the control points, x then y, to the rows ax, ay of all nodes, in one column
+static void spread_forces(const struct pressure *p, double *column) {
+    const int n = p->fish->n_nodes, n_control = p->fish->n_control;
+    kernel_multiply(n, n_control, p->share, p->spread, column);
+    kernel_multiply(n, n_control, p->share, p->spread + n_control, column + n);
 }
 
-// convection by the positions of the nodes: the tangent turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|
-static void convection_by_places(const struct pressure *p, struct coupling_block *rows) {
+// by the positions of the nodes. Convection: the tangent turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|;
+// spanwise flow: E3 dx_c is linear in the positions
+static void forces_by_places(const struct pressure *p, struct coupling_block *rows) {
     const struct fish *fish = p->fish;
-    for (int c = 0; c < fish->n_control; c++) {
-        const struct pressure_point *const point = &p->point[c];
-        const struct direction *const body = &point->body;
-        const double across = edge_dot(point->slip, body->n), tau = slip_along(point);
-        const double *const slope = fish->control_tangent[c].to.weight;
-        double by_turn[2];
-        for (int i = 0; i < 2; i++) {
-            by_turn[i] = point->strength / body->length * (across * body->n[i] - tau * body->t[i]);
+    const int n = fish->n_nodes, n_control = fish->n_control;
+    double *const x = p->spread, *const y = p->spread + n_control;
+    for (int m = 0; m < 2 * n; m++) {
+        const int i = m / n;
+        const double *const slope = fish->control_by_node[1] + (long)(m % n) * n_control;
+        for (int c = 0; c < n_control; c++) {
+            const struct pressure_point *const point = &p->point[c];
+            const struct direction *const body = &point->body;
+            const double across = edge_dot(point->slip, body->n), tau = slip_along(point);
+            const double turn = point->strength / body->length * body->n[i] * slope[c];
+            x[c] = turn * (across * body->n[0] - tau * body->t[0]);
+            y[c] = turn * (across * body->n[1] - tau * body->t[1]);
+            if (!(fish->strip_depth > 0)) continue;
+            const double span = point->before * point->divergence * fish->control_interval[c] * slope[c];
+            x[c] -= i == 1 ? span : 0;
+            y[c] += i == 0 ? span : 0;
         }
-
-        for (int m = 0; m < 2 * fish->n_nodes; m++) {
-            const double turn = body->n[m / fish->n_nodes] * slope[m % fish->n_nodes];
-            spread_force(p, c, by_turn[0] * turn, by_turn[1] * turn, rows->value + (long)m * rows->n_rows);
-        }
-    }
-}
-
-// spanwise flow by the positions of the nodes: E3 dx_c is linear in the positions
-static void span_by_places(const struct pressure *p, struct coupling_block *rows) {
-    const struct fish *fish = p->fish;
-    const int n = fish->n_nodes;
-    for (int c = 0; fish->strip_depth > 0 && c < fish->n_control; c++) {
-        const struct pressure_point *const point = &p->point[c];
-        const double *const slope = fish->control_tangent[c].to.weight;
-        const double size = point->before * point->divergence * fish->control_interval[c];
-        for (int m = 0; m < n; m++) {
-            spread_force(p, c, 0, size * slope[m], rows->value + (long)m * rows->n_rows);
-            spread_force(p, c, -size * slope[m], 0, rows->value + (long)(n + m) * rows->n_rows);
-        }
+        spread_forces(p, rows->value + (long)m * rows->n_rows);
     }
 }
 
@@ -364,25 +353,27 @@ static void suction_jacobian(const struct pressure *p, struct coupling_block *ro
 void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_block *rows) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
-    convection_by_places(p, rows);
-    span_by_places(p, rows);
+    forces_by_places(p, rows);
     suction_jacobian(p, rows);
 
     // by the strengths: convection and spanwise flow, then rotation of the momentum
+    double *const force[2] = {p->spread, p->spread + fish->n_control};
     for (int j = 0; j < fish->n_sheet; j++) {
         double *const column = rows->value + (long)(2 * n + j) * rows->n_rows;
         for (int c = 0; c < fish->n_control; c++) {
             const struct pressure_point *const point = &p->point[c];
             const double size = fish->control_density[c] * fish->integrals->strength[(long)j * fish->n_control + c] *
                                 fish->sheet_weight[j] * slip_along(point);
-            spread_force(p, c, size * point->body.n[0], size * point->body.n[1], column);
+            force[0][c] = size * point->body.n[0];
+            force[1][c] = size * point->body.n[1];
             if (!(fish->strip_depth > 0)) continue;
             const double before = fish->control_density[c] * fish->sheet_weight[j] *
                                   fish->integrals->circulation[(long)j * fish->n_control + c];
             const double across = before * point->divergence * point->body.length * fish->control_interval[c];
-            spread_force(p, c, across * point->body.n[0] - before * point->edge[0],
-                         across * point->body.n[1] - before * point->edge[1], column);
+            force[0][c] += across * point->body.n[0] - before * point->edge[0];
+            force[1][c] += across * point->body.n[1] - before * point->edge[1];
         }
+        spread_forces(p, column);
 
         momentum_by_strength(fish, j, y + fish->at.vy, p->product);
         for (int k = 0; k < n; k++) column[k] += p->product[k] / fish->mass[k];
@@ -391,8 +382,8 @@ void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_
     }
 }
 
-// spanwise flow and force along the side edges, by the velocity in column m
-static void span_by_flow(const struct pressure *p, const struct influence_block *block, long m, double *column) {
+// add the spanwise flow and the force along the side edges, by the velocity in column m
+static void span_by_flow(const struct pressure *p, const struct influence_block *block, long m) {
     const struct fish *fish = p->fish;
     const double *const div = block->div + m * block->n_points;
     const double *const edge = block->edge ? block->edge + m * block->n_points : NULL;
@@ -401,14 +392,13 @@ static void span_by_flow(const struct pressure *p, const struct influence_block 
     for (int c = 0; c < fish->n_control; c++) {
         const struct pressure_point *const point = &p->point[c];
         const double across = point->before * div[c] * point->body.length * fish->control_interval[c];
-        double force[2] = {across * point->body.n[0], across * point->body.n[1]};
-        if (fish->depth_varies && edge) {
-            const double widening = point->before * fish->control_widening[c] * fish->control_interval[c];
-            force[0] -= widening * edge[c];
-            force[1] -= widening * edge[other + c];
-        }
-
-        spread_force(p, c, force[0], force[1], column);
+        double *const x = p->spread + c, *const y = x + fish->n_control;
+        *x += across * point->body.n[0];
+        *y += across * point->body.n[1];
+        if (!fish->depth_varies || !edge) continue;
+        const double widening = point->before * fish->control_widening[c] * fish->control_interval[c];
+        *x -= widening * edge[c];
+        *y -= widening * edge[other + c];
     }
 }
 
@@ -421,10 +411,12 @@ void pressure_flow_jacobian(const struct pressure *p, const struct influence_blo
         for (int c = 0; c < fish->n_control; c++) {
             const struct direction *const body = &p->point[c].body;
             const double size = p->point[c].strength * (body->t[0] * u[c] + body->t[1] * v[c]);
-            spread_force(p, c, size * body->n[0], size * body->n[1], rows->value + m * rows->n_rows);
+            p->spread[c] = size * body->n[0];
+            p->spread[fish->n_control + c] = size * body->n[1];
         }
 
-        if (block->div) span_by_flow(p, block, m, rows->value + m * rows->n_rows);
+        if (block->div) span_by_flow(p, block, m);
+        spread_forces(p, rows->value + m * rows->n_rows);
 
         // suction: tau
         const double by_slip = p->by_slip * (first->t[0] * u[0] + first->t[1] * v[0]) / fish->mass[0];

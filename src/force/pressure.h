@@ -40,7 +40,8 @@ struct pressure {
     double by_slip;        /* derivative of the size of the suction by tau, N s m-1 */
     double *share; /* share of a force at a control point in the row of a node, kg-1       (n_control, n_nodes) */
     struct pressure_point *point; /* (n_control) */
-    double *product, *at_points;  /* workspace: a product with R; values at the control points */
+    /* workspace: a product with R; values at the control points; forces at the control points */
+    double *product, *at_points, *spread;
 };
 
 /* Suction at the nose over S pi rho_f w L, with its derivatives. full: attached flow, qhat^2; bound: the maximum for
