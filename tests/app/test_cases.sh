@@ -71,7 +71,8 @@ def quantity(data, name, fish):
 
 
 PHRASES = {  # of a quantity in the line "# Expected" of a case
-    "speed": "speed {} m/s", "beat:heading": "mean heading {} degrees", "least:least_distance": "least distance {} m",
+    "speed": "speed {} m/s", "ground_speed": "speed over ground {} m/s", "beat:heading": "mean heading {} degrees",
+    "least:least_distance": "least distance {} m",
     "tail": "sweep of the tail {} m", "turning": "sum of the turning angles {} degrees", "steps": "{} steps per event",
     "efficiency": "efficiency {}", "most:leading_edge_a0": "largest A_0 {}", "beat:thrust": "mean thrust {} N",
     "most:contact_energy": "largest contact energy {} J", "kinetic_energy": "kinetic energy {} J",
