@@ -6,7 +6,6 @@
 """
 
 import os
-import re
 
 from ._library import FileError
 
@@ -37,7 +36,7 @@ class Results:
         self.names = list(self["fish_name"])
         self.n_nodes = self["n_nodes"].astype(int)
         self.thickness = self["edge_thickness"]
-        self.mean_section = sections(self.data, self.n_fish)
+        self.mean_section = self["mean_section"] == 1
         self.walls = walls(self.data, self.read("x", 0)[0, 0, 1])
         self.title = getattr(self.data, "title", "")
 
@@ -95,17 +94,6 @@ def kind_of(path):
             return next((kind for name, kind in KINDS.items() if hasattr(data, name)), None)
     except (OSError, RuntimeError, UnicodeError):
         return None
-
-
-def sections(data, n_fish):
-    """Whether the thickness of the edges is a mean over them: what fish.body.section says of each fish."""
-    if "mean_section" in data.variables:
-        return [value == 1 for value in data["mean_section"][:]]
-    # a file of an earlier version: its case has a line for each key, which begins with blanks
-    words = re.findall(r"^ +section: (\w+)", getattr(data, "case_effective", ""), re.MULTILINE)
-    if len(words) != n_fish:
-        raise FileError(f"{data.filepath()}: its case does not say the section of each fish: use the program that wrote it")
-    return [word == "mean" for word in words]
 
 
 def walls(data, inside):

@@ -1,7 +1,7 @@
 """Draw the file of `shoal field` on a figure: vorticity or speed, streamlines, bodies. Used by shoal.plot."""
 
 from ._plot_style import BODY, BODY_EDGE, Wall, colour_bar, matplotlib, with_unit
-from ._files import FileError, np, open_dataset, outline, sections, walls
+from ._files import FileError, np, open_dataset, outline, walls
 
 SPECIAL = 0.995  # share of the points below the end of the scale: bound sheets are much stronger than wakes
 
@@ -20,7 +20,7 @@ class Field:
         self.walls = walls(data, data["body_x"][0, 0, 0, 1])
         nodes, thickness = (np.ma.filled(data[name][:], np.nan) for name in ("body_x", "edge_thickness"))
         counts = np.asarray(data["n_nodes"][:], dtype=int)
-        means = sections(data, counts.size)
+        means = data["mean_section"][:] == 1
         self.outlines = [outline(nodes[0, f, :n], thickness[f, : n - 1], means[f]) for f, n in enumerate(counts)]
 
 

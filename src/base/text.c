@@ -3,6 +3,7 @@
 
 #include <limits.h>
 #include <locale.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -194,4 +195,53 @@ bool text_contains(const char *text, const char *word) {
         if (!word[i]) return true;
     }
     return !*word;
+}
+
+// ---- tables
+
+enum status text_table_create(struct text_table *table, int n_rows, int n_columns) {
+    *table = (struct text_table){n_rows, n_columns, 0, NULL};
+    return MEMORY_NEW(table->cell, (size_t)n_rows * (size_t)n_columns, "a table");
+}
+
+void text_table_free(struct text_table *table) {
+    free(table->cell);
+    *table = (struct text_table){0};
+}
+
+void text_table_set(const struct text_table *table, int row, int column, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(table->cell[row * table->n_columns + column], TEXT_CELL_BYTES, format, arguments);
+    va_end(arguments);
+}
+
+void text_table_number(const struct text_table *table, int row, int column, const char *format, double number) {
+    char text[TEXT_CELL_BYTES];
+    snprintf(text, sizeof text, format, number);
+    text_table_set(table, row, column, "%s", isnan(number) ? "-" : text);
+}
+
+static int column_width(const struct text_table *table, int column) {
+    int max = 0;
+    for (int row = 0; row < table->n_rows; row++) {
+        const int length = (int)strlen(table->cell[row * table->n_columns + column]);
+        if (length > max) max = length;
+    }
+    return max;
+}
+
+void text_table_print(const struct text_table *table, FILE *stream) {
+    for (int row = 0; row < table->n_rows; row++) {
+        int n_blanks = 0;  // no blanks at the end of a line
+        for (int column = 0; column < table->n_columns; column++) {
+            const char *const text = table->cell[row * table->n_columns + column];
+            const int is_last = column == table->n_columns - 1, is_left = column < table->n_left;
+            const int rest = is_last ? 0 : column_width(table, column) - (int)strlen(text);
+            n_blanks += (column > 0 ? 2 : 0) + (is_left ? 0 : rest);
+            if (*text) fprintf(stream, "%*s%s", n_blanks, "", text);
+            n_blanks = (*text ? 0 : n_blanks) + (is_left ? rest : 0);
+        }
+        fprintf(stream, "\n");
+    }
 }

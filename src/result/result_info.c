@@ -10,12 +10,12 @@
 
 #include "base/memory.h"
 #include "base/text.h"
+#include "case/case_table.h"
 #include "result/result_reader.h"
 
 struct info {
     const struct netcdf_reader *reader;
-    size_t n_rows, n_fish, n_name;
-    bool has_held;
+    size_t n_rows, n_fish;
     FILE *stream;
 };
 
@@ -42,6 +42,17 @@ static enum status interval_of(const struct info *info, double *interval) {
 
 // ---- the table of fish
 
+/* Set the names of the fish: in the first row, or from a row on in the first column. */
+static enum status set_names(const struct netcdf_reader *reader, const struct text_table *table, int n_fish, int row) {
+    for (int f = 0; f < n_fish; f++) {
+        char *name;
+        TRY(result_reader_name(reader, (size_t)f, &name));
+        text_table_set(table, row == 0 ? 0 : row + f, row == 0 ? 1 + f : 0, "%s", name);
+        free(name);
+    }
+    return STATUS_OK;
+}
+
 /* The columns: constants, values of the last row, and those of files with a held body. */
 static const struct column {
     const char *head, *unit, *variable, *format;
@@ -64,64 +75,40 @@ static const struct column {
 };
 enum { N_COLUMNS = sizeof columns / sizeof *columns, N_CONSTANT_COLUMNS = 3 };
 
-static bool info_is_shown(const struct info *info, const struct column *column) {
-    return column->kind != LAST_OF_HELD || info->has_held;
-}
-
-/* Whether a body is held. Files of earlier versions do not say so. */
-static enum status find_held(struct info *info) {
-    if (!netcdf_has(info->reader, "is_held")) return STATUS_OK;
-    for (size_t f = 0; f < info->n_fish; f++) {
-        double is_held;
-        TRY(constant_of_fish(info, "is_held", f, &is_held));
-        info->has_held |= is_held > 0;
-    }
-    return STATUS_OK;
-}
-
-/* Print a number of a table, or "-" for NaN. */
-static void print_cell(const struct info *info, const char *format, double value) {
-    char text[320];
-    snprintf(text, sizeof text, format, value);
-    fprintf(info->stream, "  %10s", isnan(value) ? "-" : text);
-}
-
-static enum status print_fish(const struct info *info, int n_columns, size_t f, int width) {
-    char *name;
-    TRY(result_reader_name(info->reader, f, &name));
-    fprintf(info->stream, "  %-*s", width, name);
-    free(name);
-
-    for (int c = 0; c < n_columns; c++) {
-        const struct column *const column = &columns[c];
-        double value;
-        if (!info_is_shown(info, column)) continue;
-        if (column->kind != CONSTANT) {
-            TRY(info_of_fish(info, info->n_rows - 1, column->variable, f, &value));
-        } else {
-            TRY(constant_of_fish(info, column->variable, f, &value));
-        }
-        print_cell(info, column->format, value);
-    }
-
-    fprintf(info->stream, "\n");
-    return STATUS_OK;
-}
-
 static enum status info_print_table(const struct info *info) {
-    const int width = info->n_name > 4 ? (int)info->n_name : 4;
-    const int n_columns = info->n_rows > 0 ? N_COLUMNS : N_CONSTANT_COLUMNS;
-    fprintf(info->stream, "\n  %-*s", width, "fish");
-    for (int c = 0; c < n_columns; c++) {
-        if (info_is_shown(info, &columns[c])) fprintf(info->stream, "  %10s", columns[c].head);
+    const int n_columns = info->n_rows > 0 ? N_COLUMNS : N_CONSTANT_COLUMNS, n_fish = (int)info->n_fish;
+    bool has_held = false;
+    for (int f = 0; f < n_fish; f++) {
+        double is_held;
+        TRY(constant_of_fish(info, "is_held", (size_t)f, &is_held));
+        has_held |= is_held > 0;
     }
-    fprintf(info->stream, "\n  %-*s", width, "");
-    for (int c = 0; c < n_columns; c++) {
-        if (info_is_shown(info, &columns[c])) fprintf(info->stream, "  %10s", columns[c].unit);
+
+    struct text_table table;
+    TRY(text_table_create(&table, 2 + n_fish, 1 + N_COLUMNS));
+    table.n_left = 1;
+    text_table_set(&table, 0, 0, "fish");
+    enum status status = set_names(info->reader, &table, n_fish, 2);
+
+    for (int i = 0, c = 1; i < n_columns && status == STATUS_OK; i++) {
+        const struct column *const column = &columns[i];
+        if (column->kind == LAST_OF_HELD && !has_held) continue;
+        text_table_set(&table, 0, c, "%s", column->head);
+        text_table_set(&table, 1, c, "%s", column->unit);
+        for (int f = 0; f < n_fish && status == STATUS_OK; f++) {
+            double value = NAN;
+            status = column->kind == CONSTANT
+                         ? constant_of_fish(info, column->variable, (size_t)f, &value)
+                         : info_of_fish(info, info->n_rows - 1, column->variable, (size_t)f, &value);
+            text_table_number(&table, 2 + f, c, column->format, value);
+        }
+        c++;
     }
+
     fprintf(info->stream, "\n");
-    for (size_t f = 0; f < info->n_fish; f++) TRY(print_fish(info, n_columns, f, width));
-    return STATUS_OK;
+    if (status == STATUS_OK) text_table_print(&table, info->stream);
+    text_table_free(&table);
+    return status;
 }
 
 // ---- data of the school
@@ -174,9 +161,9 @@ static enum status print_school(const struct info *info) {
     TRY(of_school(info, last, "polarisation", &polarisation));
     fprintf(info->stream, "\n  total circulation     %11.1e m2 s-1\n", circulation);
 
-    // files of earlier versions have no balance
     const struct netcdf_slice row[] = {{"time", last, 1}, {"xy", 0, 2}, {NULL}};
-    if (netcdf_read_doubles(info->reader, "momentum_balance", row, balance) == STATUS_OK && !isnan(balance[0]))
+    TRY(netcdf_read_doubles(info->reader, "momentum_balance", row, balance));
+    if (!isnan(balance[0]))
         fprintf(info->stream, "  momentum balance      %11.1e N s\n", hypot(balance[0], balance[1]));
     if (info->n_fish > 1)
         fprintf(info->stream, "  least distance        %11.4f m\n  polarisation          %11.4f\n", distance,
@@ -214,9 +201,7 @@ static enum status print_solver(const struct info *info) {
 static enum status info_print_all(const struct netcdf_reader *reader, FILE *stream) {
     struct info info = {.reader = reader, .stream = stream};
     TRY(netcdf_read_length(reader, "time", 0, SIZE_MAX, &info.n_rows));
-    TRY(netcdf_read_length(reader, "fish", 1, INT_MAX, &info.n_fish));
-    TRY(netcdf_read_length(reader, "name", 1, INT_MAX, &info.n_name));
-    TRY(find_held(&info));
+    TRY(netcdf_read_length(reader, "fish", 1, CASE_MAX_FISH, &info.n_fish));
     TRY(print_status(&info));
     TRY(print_rows(&info));
     TRY(info_print_table(&info));
@@ -263,7 +248,6 @@ static enum status print_modes(const struct netcdf_reader *reader, FILE *stream)
     const double still = 1e-5, two_pi = 6.283185307179586;  // rates below this, s-1, are rounding
     size_t n, i = 0;
     double first[2] = {0};
-    if (!netcdf_has(reader, "steady_exponent")) return STATUS_OK;
     TRY(netcdf_read_length(reader, "multiplier", 0, INT_MAX, &n));
 
     for (; i < n; i++) {
@@ -334,72 +318,46 @@ static enum status print_multipliers(const struct netcdf_reader *reader, FILE *s
     return STATUS_OK;
 }
 
-static enum status print_cells(const struct netcdf_reader *reader, const struct quantity *quantity, size_t n_fish,
-                               size_t xy, FILE *stream) {
-    for (size_t f = 0; f < n_fish; f++) {
-        double value;
-        struct netcdf_slice slice[] = {{"fish", f, 1}, {NULL}, {NULL}};
-        if (quantity->of_xy) slice[1] = (struct netcdf_slice){"xy", xy, 1};
-        TRY(netcdf_read_doubles(reader, quantity->variable, slice, &value));
-        char text[320];
-        snprintf(text, sizeof text, quantity->format, value);
-        fprintf(stream, "  %12s", isnan(value) ? "-" : text);
-    }
-
-    fprintf(stream, "  %s\n", quantity->unit);
-    return STATUS_OK;
-}
-
-/* Whether a row has a value at all. */
-static enum status is_empty(const struct netcdf_reader *reader, const struct quantity *quantity, size_t n_fish,
-                            int *is_empty) {
-    *is_empty = 1;
-    for (size_t f = 0; f < n_fish; f++) {
-        double value;
-        const struct netcdf_slice slice[] = {{"fish", f, 1}, {quantity->of_xy ? "xy" : NULL, 0, 1}, {NULL}};
-        TRY(netcdf_read_doubles(reader, quantity->variable, slice, &value));
-        *is_empty &= isnan(value);
-    }
-    return STATUS_OK;
-}
-
-static enum status info_print_head(const struct netcdf_reader *reader, size_t n_fish, FILE *stream) {
-    fprintf(stream, "\n  %-22s", "");
-    for (size_t f = 0; f < n_fish; f++) {
-        char *name;
-        TRY(result_reader_name(reader, f, &name));
-        fprintf(stream, "  %12s", name);
-        free(name);
-    }
-
-    fprintf(stream, "\n");
-    return STATUS_OK;
-}
-
 enum status result_info_steady(const struct netcdf_reader *reader, FILE *stream) {
-    if (!netcdf_has(reader, "steady_speed")) return STATUS_OK;
+    enum { N = sizeof quantities / sizeof *quantities };
     static const char *const along[] = {", ahead", ", aside"}, *const axis[] = {", x", ", y"};
+    if (!netcdf_has(reader, "steady_speed")) return STATUS_OK;
     size_t n_fish;
     TRY(print_effort(reader, stream));
     TRY(print_multipliers(reader, stream));
-    TRY(netcdf_read_length(reader, "fish", 1, INT_MAX, &n_fish));
-    TRY(info_print_head(reader, n_fish, stream));
+    TRY(netcdf_read_length(reader, "fish", 1, CASE_MAX_FISH, &n_fish));
 
-    for (size_t q = 0; q < sizeof quantities / sizeof *quantities; q++) {
-        const struct quantity *const quantity = &quantities[q];
-        const int is_place = strcmp(quantity->head, "place") == 0;
-        int has_none;
-        TRY(is_empty(reader, quantity, n_fish, &has_none));
-        if ((is_place && n_fish == 1) || has_none) continue;
-        for (size_t xy = 0; xy < (quantity->of_xy ? 2 : 1); xy++) {
-            char head[64];
-            snprintf(head, sizeof head, "%s%s", quantity->head, quantity->of_xy ? (is_place ? along : axis)[xy] : "");
-            fprintf(stream, "  %-22s", head);
-            TRY(print_cells(reader, quantity, n_fish, xy, stream));
+    struct text_table table;
+    TRY(text_table_create(&table, 1 + 2 * N, 2 + (int)n_fish));
+    table.n_left = 1;
+    enum status status = set_names(reader, &table, (int)n_fish, 0);
+
+    // one row after the other; the next quantity overwrites a row without values
+    int row = 1;
+    for (int i = 0; i < 2 * N && status == STATUS_OK; i++) {
+        const struct quantity *const quantity = &quantities[i / 2];
+        const bool is_place = strcmp(quantity->head, "place") == 0;
+        bool is_empty = true;
+        if ((i % 2 == 1 && !quantity->of_xy) || (is_place && n_fish == 1)) continue;
+
+        text_table_set(&table, row, 0, "%s%s", quantity->head, quantity->of_xy ? (is_place ? along : axis)[i % 2] : "");
+        text_table_set(&table, row, 1 + (int)n_fish, "%s", quantity->unit);
+        for (size_t f = 0; f < n_fish && status == STATUS_OK; f++) {
+            double value = NAN;
+            const struct netcdf_slice slice[] = {
+                {"fish", f, 1}, {quantity->of_xy ? "xy" : NULL, (size_t)(i % 2), 1}, {NULL}};
+            status = netcdf_read_doubles(reader, quantity->variable, slice, &value);
+            text_table_number(&table, row, 1 + (int)f, quantity->format, value);
+            is_empty &= isnan(value);
         }
+        if (!is_empty) row++;
     }
 
-    return STATUS_OK;
+    table.n_rows = row;
+    fprintf(stream, "\n");
+    if (status == STATUS_OK) text_table_print(&table, stream);
+    text_table_free(&table);
+    return status;
 }
 
 // ---- JSON

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 enum { MAX_LENGTH = 100000000 /* of a dimension */ };
 
 static enum status reader_out_of_memory(const struct netcdf_reader *file) {
@@ -82,60 +84,25 @@ static enum status read_counts(const struct result_reader *reader, const char *n
     return status;
 }
 
-/* Whether a key of each fish has a value, by the case in a file of an earlier version: a line for each key. */
-static enum status read_key(const struct result_reader *reader, const char *key, const char *value, bool *has_value) {
-    char *text;
-    size_t n = 0;
-    TRY(netcdf_read_string(&reader->file, "case_effective", &text));
-
-    for (const char *line = text; line && *line; line = strchr(line, '\n')) {
-        line += strspn(line, "\n");
-        const char *const word = line + strspn(line, " ");
-        if (word == line || strncmp(word, key, strlen(key)) != 0) continue;
-        if (n < reader->length[FISH]) has_value[n] = strncmp(word + strlen(key), value, strlen(value)) == 0;
-        n++;
-    }
-
-    free(text);
-    if (n == reader->length[FISH]) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: the case has '%s' for %zu of %zu fish: use the program that wrote the file",
-                       reader->file.path, key, n, reader->length[FISH]);
-}
-
-/* Whether a variable of each fish has a value. */
-static enum status read_flags(const struct result_reader *reader, const char *name, int value, bool *has_value) {
-    double *values;
-    TRY(result_reader_new(reader, name, 0, &values));
-    for (size_t f = 0; f < reader->length[FISH]; f++) has_value[f] = fabs(values[f] - value) < 0.5;
-    free(values);
-    return STATUS_OK;
-}
-
 /* Read fish.body.section and fish.force of each fish. */
 static enum status read_words(struct result_reader *reader) {
     const size_t n_fish = reader->length[FISH];
-    reader->has_mean_section = calloc(n_fish, sizeof *reader->has_mean_section);
-    bool *const has_pressure = calloc(n_fish, sizeof *has_pressure);
-    enum status status = reader->has_mean_section && has_pressure ? STATUS_OK : reader_out_of_memory(&reader->file);
+    double *section = NULL, *force = NULL;
+    enum status status = MEMORY_NEW(reader->has_mean_section, n_fish, reader->file.path);
+    if (status == STATUS_OK) status = result_reader_new(reader, "mean_section", 0, &section);
+    if (status == STATUS_OK) status = result_reader_new(reader, "fluid_force", 0, &force);
 
-    if (status == STATUS_OK) {
-        status = netcdf_has(&reader->file, "mean_section")
-                     ? read_flags(reader, "mean_section", 1, reader->has_mean_section)
-                     : read_key(reader, "section: ", "mean", reader->has_mean_section);
+    for (size_t f = 0; status == STATUS_OK && f < n_fish; f++) {
+        reader->has_mean_section[f] = fabs(section[f] - 1) < 0.5;
+        reader->has_pressure |= fabs(force[f] - FORCE_PRESSURE) < 0.5;
     }
 
-    if (status == STATUS_OK) {
-        status = netcdf_has(&reader->file, "fluid_force")
-                     ? read_flags(reader, "fluid_force", FORCE_PRESSURE, has_pressure)
-                     : read_key(reader, "force: ", "pressure", has_pressure);
-    }
-
-    for (size_t f = 0; status == STATUS_OK && f < n_fish; f++) reader->has_pressure |= has_pressure[f];
-    free(has_pressure);
+    free(section);
+    free(force);
     return status;
 }
 
-/* The walls, of which most files have none. */
+/* Read the walls; most files have none. */
 static enum status read_walls(struct result_reader *reader) {
     if (!netcdf_has(&reader->file, "wall_y")) return STATUS_OK;
     TRY(netcdf_read_length(&reader->file, result_table_dimension(WALL), 1, 2, &reader->length[WALL]));

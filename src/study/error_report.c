@@ -93,8 +93,8 @@ enum status error_report_plan(const struct error_study *study, int n_processes, 
         longest = fmax(longest, duration[m]);
     }
 
-    struct study_table table;
-    if (status == STATUS_OK) status = study_table_create(&table, 1 + study->n_keys, 4);
+    struct text_table table;
+    if (status == STATUS_OK) status = text_table_create(&table, 1 + study->n_keys, 4);
     if (status != STATUS_OK) {
         free(duration);
         return status;
@@ -102,7 +102,7 @@ enum status error_report_plan(const struct error_study *study, int n_processes, 
 
     table.n_left = 3;
     const char *const heads[] = {"key", "levels", "members", "time of each, s"};
-    for (int c = 0; c < 4; c++) study_table_set(&table, 0, c, "%s", heads[c]);
+    for (int c = 0; c < 4; c++) text_table_set(&table, 0, c, "%s", heads[c]);
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
         char levels[LEVEL_BYTES];
@@ -112,16 +112,16 @@ enum status error_report_plan(const struct error_study *study, int n_processes, 
             text_add(&members, "%s%d", members.length > 0 ? " " : "", key->member[i]);
             text_add(&times, "%s%.2g", times.length > 0 ? " " : "", duration[key->member[i]]);
         }
-        study_table_set(&table, 1 + k, 0, "%s", key->row->path);
-        study_table_set(&table, 1 + k, 1, "%s", levels);
-        study_table_set(&table, 1 + k, 2, "%s", members.text ? members.text : "not varied");
-        study_table_set(&table, 1 + k, 3, "%s", times.text ? times.text : "");
+        text_table_set(&table, 1 + k, 0, "%s", key->row->path);
+        text_table_set(&table, 1 + k, 1, "%s", levels);
+        text_table_set(&table, 1 + k, 2, "%s", members.text ? members.text : "not varied");
+        text_table_set(&table, 1 + k, 3, "%s", times.text ? times.text : "");
         text_free(&members);
         text_free(&times);
     }
 
-    study_table_print(&table, stream);
-    study_table_free(&table);
+    text_table_print(&table, stream);
+    text_table_free(&table);
     free(duration);
     fprintf(stream, "%d members, [the case] among them; about ", n);
     print_duration(sum, stream);
@@ -207,49 +207,49 @@ static void report_write_order(const struct error_study *study, const struct err
 
 /* Describe the effect of the next level of the key with the largest share. */
 static void write_next(const struct error_study *study, const struct error_study_next *next,
-                       char text[STUDY_CELL_BYTES]) {
+                       char text[TEXT_CELL_BYTES]) {
     const struct error_study_key *const key = &study->key[next->key];
-    int n = snprintf(text, STUDY_CELL_BYTES, "<- spend here");
+    int n = snprintf(text, TEXT_CELL_BYTES, "<- spend here");
     if (isnan(next->value)) return;
     const char *const last = strrchr(key->row->path, '.') + 1;
-    n += snprintf(text + n, (size_t)(STUDY_CELL_BYTES - n), ": %s %.4g, CPU x %.2g", last, next->value, next->cost);
+    n += snprintf(text + n, (size_t)(TEXT_CELL_BYTES - n), ": %s %.4g, CPU x %.2g", last, next->value, next->cost);
     if (isnan(next->sum)) {
-        snprintf(text + n, (size_t)(STUDY_CELL_BYTES - n), ", not predicted");
+        snprintf(text + n, (size_t)(TEXT_CELL_BYTES - n), ", not predicted");
     } else {
-        snprintf(text + n, (size_t)(STUDY_CELL_BYTES - n), ", +-%.2g %%", 100 * next->sum);
+        snprintf(text + n, (size_t)(TEXT_CELL_BYTES - n), ", +-%.2g %%", 100 * next->sum);
     }
 }
 
 /* Print two digits of a part of the sum, at most one decimal more than the sum and at most five decimals. */
-static void report_set_part(const struct study_table *table, int row, int column, double part, double sum) {
+static void report_set_part(const struct text_table *table, int row, int column, double part, double sum) {
     const int most = decimals_for(sum) < 4 ? 5 : decimals_for(sum) + 1, own = decimals_for(part);
-    study_table_set(table, row, column, isnan(part) ? "unknown" : "%.*f", own < most ? own : most, part);
+    text_table_set(table, row, column, isnan(part) ? "unknown" : "%.*f", own < most ? own : most, part);
 }
 
-static void fill_row(const struct error_study *study, const struct study_table *table, int row, int k, int f,
+static void fill_row(const struct error_study *study, const struct text_table *table, int row, int k, int f,
                      int *is_above) {
     const struct error_study_key *const key = &study->key[k];
     char levels[LEVEL_BYTES], order[16];
     write_levels(key, levels);
     report_write_order(study, key, f, is_above, order);
-    study_table_set(table, row, 0, "%s", key->row->path);
-    study_table_set(table, row, 1, "%s", levels);
-    study_table_set(table, row, 2, "%s", order);
+    text_table_set(table, row, 0, "%s", key->row->path);
+    text_table_set(table, row, 1, "%s", levels);
+    text_table_set(table, row, 2, "%s", order);
     int c = 3;
     for (int q = 0; q < study->n_asked; q++, c += 3) {
         const int place = error_plan_place(study, q, f);
         if (key->n_levels == 1 || (f > 0 && !report_of_fish(study, q))) continue;
         const double error = key->part[place].error;
         report_set_part(table, row, c, error, study->error[place]);
-        study_table_number(table, row, c + 1, "%.2f", 100 * error / fabs(study->value[place]));
-        study_table_number(table, row, c + 2, "%.0f", study->error[place] > 0 ? 100 * error / study->error[place] : 0);
+        text_table_number(table, row, c + 1, "%.2f", 100 * error / fabs(study->value[place]));
+        text_table_number(table, row, c + 2, "%.0f", study->error[place] > 0 ? 100 * error / study->error[place] : 0);
     }
 
     // the basis of the error
     if (key->n_levels == 3 && key->stated == 0) {
-        study_table_set(table, row, c, "3 levels (wider bounds)");
+        text_table_set(table, row, c, "3 levels (wider bounds)");
     } else if (key->n_levels > 1) {
-        study_table_set(table, row, c, "%d levels", key->n_levels < 4 ? key->n_levels : 4);
+        text_table_set(table, row, c, "%d levels", key->n_levels < 4 ? key->n_levels : 4);
     }
 }
 
@@ -263,52 +263,51 @@ static enum status report_print_table(const struct error_study *study, const str
     }
 
     const int n_columns = 5 + 3 * study->n_asked;
-    struct study_table table;
-    TRY(study_table_create(&table, 3 + n_keys, n_columns));
+    struct text_table table;
+    TRY(text_table_create(&table, 3 + n_keys, n_columns));
     table.n_left = 3;
     const char *const heads[] = {"key", "levels", "order"};
-    for (int c = 0; c < 3; c++) study_table_set(&table, 0, c, "%s", heads[c]);
+    for (int c = 0; c < 3; c++) text_table_set(&table, 0, c, "%s", heads[c]);
 
     for (int q = 0; q < study->n_asked; q++) {
         const int is_short = strncmp(name_of(study, q), "steady_", 7) == 0;
-        study_table_set(&table, 0, 3 + 3 * q, "%s", name_of(study, q) + (is_short ? 7 : 0));
-        study_table_set(&table, 0, 4 + 3 * q, "%%");
-        study_table_set(&table, 0, 5 + 3 * q, "share");
+        text_table_set(&table, 0, 3 + 3 * q, "%s", name_of(study, q) + (is_short ? 7 : 0));
+        text_table_set(&table, 0, 4 + 3 * q, "%%");
+        text_table_set(&table, 0, 5 + 3 * q, "share");
     }
 
-    study_table_set(&table, 0, n_columns - 2, "by");
-    study_table_set(&table, 0, n_columns - 1, "next");
+    text_table_set(&table, 0, n_columns - 2, "by");
+    text_table_set(&table, 0, n_columns - 1, "next");
     int row = 1;
     for (int k = 0; k < study->n_keys; k++) {
         if (!report_is_error(&study->key[k])) continue;
-        char words[STUDY_CELL_BYTES] = "";
+        char words[TEXT_CELL_BYTES] = "";
         if (k == next->key) write_next(study, next, words);
         fill_row(study, &table, row, k, f, &is_above);
-        study_table_set(&table, row++, n_columns - 1, "%s", words);
+        text_table_set(&table, row++, n_columns - 1, "%s", words);
     }
 
     if (n_moved > 1) {
-        study_table_set(&table, row, 0, "together");
+        text_table_set(&table, row, 0, "together");
         for (int q = 0; q < study->n_asked; q++) {
             const int place = error_plan_place(study, q, f);
             report_set_part(&table, row, 3 + 3 * q, study->together[place], study->error[place]);
-            study_table_number(&table, row, 4 + 3 * q, "%.2f",
-                               100 * study->together[place] / fabs(study->value[place]));
+            text_table_number(&table, row, 4 + 3 * q, "%.2f", 100 * study->together[place] / fabs(study->value[place]));
         }
         row++;
     }
 
-    study_table_set(&table, row, 0, "sum");
+    text_table_set(&table, row, 0, "sum");
     for (int q = 0; q < study->n_asked; q++) {
         const int place = error_plan_place(study, q, f);
         if (f > 0 && !report_of_fish(study, q)) continue;
         report_set_part(&table, row, 3 + 3 * q, study->error[place], study->error[place]);
-        study_table_number(&table, row, 4 + 3 * q, "%.2f", 100 * study->error[place] / fabs(study->value[place]));
+        text_table_number(&table, row, 4 + 3 * q, "%.2f", 100 * study->error[place] / fabs(study->value[place]));
     }
 
     table.n_rows = row + 1;
-    study_table_print(&table, stream);
-    study_table_free(&table);
+    text_table_print(&table, stream);
+    text_table_free(&table);
     if (is_above) fprintf(stream, "* above the design order, which is used: the error may be smaller\n");
 
     return STATUS_OK;

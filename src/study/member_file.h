@@ -33,8 +33,8 @@ struct member_file {
     double *value; /* see member_file_value; NaN: unknown                       (n quantities, n_fish, xy) */
 };
 
-/* Read a member file. Variables of quantities may be missing, as in files of earlier versions. Fails with STATUS_FILE
- * (missing or truncated file, variables not written by shoal) or STATUS_MEMORY; *member then owns nothing. */
+/* Read a member file. A run lacks the variables of steady states. Fails with STATUS_FILE (missing or truncated file,
+ * variables not written by shoal) or STATUS_MEMORY; *member then owns nothing. */
 enum status member_file_read(struct member_file *member, const char *path);
 
 /* Allocate the values of a member with n_fish fish, initially NaN. Fails with STATUS_MEMORY. */

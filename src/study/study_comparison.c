@@ -108,9 +108,9 @@ static struct wall_time wall_time_of(const struct case_values *study, const stru
 // ---- names
 
 /* "ida2" for ida of order 2, otherwise the word of the method. */
-static void name_method(const struct case_values *study, int m, char name[STUDY_CELL_BYTES]) {
+static void name_method(const struct case_values *study, int m, char name[TEXT_CELL_BYTES]) {
     const char *const word = set_to(study, m, METHOD);
-    snprintf(name, STUDY_CELL_BYTES, "%s%s", word, strcmp(word, "ida") == 0 ? set_to(study, m, ORDER) : "");
+    snprintf(name, TEXT_CELL_BYTES, "%s%s", word, strcmp(word, "ida") == 0 ? set_to(study, m, ORDER) : "");
 }
 
 static int has_step(const struct case_values *study, int m) {
@@ -210,23 +210,23 @@ static double common_error(const struct case_values *study, const struct member_
     return pow(10, ceil(log10(worst) - 1e-9));
 }
 
-static void name_setting(const struct case_values *study, int m, char text[STUDY_CELL_BYTES]) {
+static void name_setting(const struct case_values *study, int m, char text[TEXT_CELL_BYTES]) {
     const int key = has_step(study, m) ? STEP : RTOL;
-    snprintf(text, STUDY_CELL_BYTES, "%s %s", key == STEP ? "step" : "rtol", set_to(study, m, key));
+    snprintf(text, TEXT_CELL_BYTES, "%s %s", key == STEP ? "step" : "rtol", set_to(study, m, key));
 }
 
-static void fill_cost(const struct study_table *table, int row, const struct case_values *study, int n,
+static void fill_cost(const struct text_table *table, int row, const struct case_values *study, int n,
                       const struct point *point, double error, double unsure) {
-    char name[STUDY_CELL_BYTES], fine[STUDY_CELL_BYTES], coarse[STUDY_CELL_BYTES];
+    char name[TEXT_CELL_BYTES], fine[TEXT_CELL_BYTES], coarse[TEXT_CELL_BYTES];
     name_method(study, point[0].member, name);
-    study_table_set(table, row, 0, "%s", name);
+    text_table_set(table, row, 0, "%s", name);
 
     // the last setting with an error below the common one
     int i = n - 1;
     while (i >= 0 && point[i].error > error) i--;
     if (i < 0) {
         name_setting(study, point[0].member, fine);
-        study_table_set(table, row, 5, "not reached: error %.1e with %s", point[0].error, fine);
+        text_table_set(table, row, 5, "not reached: error %.1e with %s", point[0].error, fine);
         return;
     }
 
@@ -241,32 +241,32 @@ static void fill_cost(const struct study_table *table, int row, const struct cas
     const double spread = fmax(a->wall_time.spread, b->wall_time.spread);  // fmax ignores NaN
     const struct cost wall = is_bound ? (struct cost){a->wall_time.median, a->wall_time.spread}
                                       : cost_at(a, b, error, unsure, a->wall_time.median, b->wall_time.median, spread);
-    study_table_number(table, row, 1, "%.0f", evaluations.value);
-    study_table_number(table, row, 2, "%.0f", evaluations.bar);
-    study_table_number(table, row, 3, "%.3f", wall.value);
-    study_table_number(table, row, 4, "%.3f", wall.bar);
+    text_table_number(table, row, 1, "%.0f", evaluations.value);
+    text_table_number(table, row, 2, "%.0f", evaluations.bar);
+    text_table_number(table, row, 3, "%.3f", wall.value);
+    text_table_number(table, row, 4, "%.3f", wall.bar);
     if (is_bound) {
-        study_table_set(table, row, 5, "at most: error %.1e with %s", a->error, fine);
+        text_table_set(table, row, 5, "at most: error %.1e with %s", a->error, fine);
     } else {
         name_setting(study, b->member, coarse);
-        study_table_set(table, row, 5, "between %s and %s", fine, coarse);
+        text_table_set(table, row, 5, "between %s and %s", fine, coarse);
     }
 }
 
 /* Print the cost of each method at a common error, by power laws between the settings. */
 static enum status print_costs(const struct case_values *study, const struct member_file *members, FILE *stream) {
     const int n = sweep_n_members(study);
-    struct study_table table = {0};
+    struct text_table table = {0};
     struct point *point = NULL;
     double *buffer;
     enum status status = MEMORY_NEW(buffer, n, "a comparison");
     if (status == STATUS_OK) status = MEMORY_NEW(point, n, "a comparison");
-    if (status == STATUS_OK) status = study_table_create(&table, 1 + n, 6);
+    if (status == STATUS_OK) status = text_table_create(&table, 1 + n, 6);
     if (status != STATUS_OK) goto end;
 
     const double error = common_error(study, members, buffer, point), unsure = error_of(study, &members[1]);
     const char *const heads[] = {"method", "evaluat.", "+-", "wall, s", "+-", "settings"};
-    for (int c = 0; c < 6; c++) study_table_set(&table, 0, c, "%s", heads[c]);
+    for (int c = 0; c < 6; c++) text_table_set(&table, 0, c, "%s", heads[c]);
     int row = 1;
     for (int m = STUDY_COMPARISON_N_REFERENCES; m < n; m++) {
         const int n_points = is_first_of_method(study, m) ? collect_points(study, members, m, buffer, point) : 0;
@@ -277,10 +277,10 @@ static enum status print_costs(const struct case_values *study, const struct mem
     if (row > 1 && isfinite(error)) {
         fprintf(stream, "Cost at an error of %.0e in nose, tail (lengths) and power (part), known to %.1e:\n", error,
                 unsure);
-        study_table_print(&table, stream);
+        text_table_print(&table, stream);
     }
 end:
-    study_table_free(&table);
+    text_table_free(&table);
     free(buffer);
     free(point);
 
@@ -290,30 +290,30 @@ end:
 // ---- the table
 
 /* Fill the row of a setting, whose first member is m. */
-static void fill_setting(const struct study_table *table, int row, const struct case_values *study,
+static void fill_setting(const struct text_table *table, int row, const struct case_values *study,
                          const struct member_file *members, int m, double *buffer) {
     const struct member_file *const member = &members[m];
     const struct wall_time wall_time = wall_time_of(study, members, m, buffer);
-    char method[STUDY_CELL_BYTES];
+    char method[TEXT_CELL_BYTES];
     name_method(study, m, method);
-    study_table_set(table, row, 0, "%s", method);
-    study_table_set(table, row, 1, "%s", has_step(study, m) ? "-" : set_to(study, m, RTOL));
-    study_table_set(table, row, 2, "%s", has_step(study, m) ? set_to(study, m, STEP) : "-");
-    study_table_number(table, row, 3, "%.1e", largest_error(study, member, "nose_error"));
-    study_table_number(table, row, 4, "%.1e", largest_error(study, member, "tail_error"));
-    study_table_number(table, row, 5, "%.1e", largest_error(study, member, "power_error"));
-    study_table_number(table, row, 6, "%.3f", wall_time.median);
-    study_table_number(table, row, 7, "%.3f", wall_time.spread);
+    text_table_set(table, row, 0, "%s", method);
+    text_table_set(table, row, 1, "%s", has_step(study, m) ? "-" : set_to(study, m, RTOL));
+    text_table_set(table, row, 2, "%s", has_step(study, m) ? set_to(study, m, STEP) : "-");
+    text_table_number(table, row, 3, "%.1e", largest_error(study, member, "nose_error"));
+    text_table_number(table, row, 4, "%.1e", largest_error(study, member, "tail_error"));
+    text_table_number(table, row, 5, "%.1e", largest_error(study, member, "power_error"));
+    text_table_number(table, row, 6, "%.3f", wall_time.median);
+    text_table_number(table, row, 7, "%.3f", wall_time.spread);
 
     for (int c = 0; c < N_COUNTS; c++) {
-        study_table_number(table, row, N_BEFORE + c, "%.0f", member_file_number(member, counts[c].quantity, 0));
+        text_table_number(table, row, N_BEFORE + c, "%.0f", member_file_number(member, counts[c].quantity, 0));
     }
 
-    study_table_number(table, row, N_COLUMNS - 2, "%.1f",
-                       1e6 * wall_time.median / member_file_number(member, "residual_evaluations", 0));
+    text_table_number(table, row, N_COLUMNS - 2, "%.1f",
+                      1e6 * wall_time.median / member_file_number(member, "residual_evaluations", 0));
 
     // "failed: reason": the reasons follow the table
-    study_table_set(table, row, N_COLUMNS - 1, "%.*s", (int)strcspn(member->status, ":"), member->status);
+    text_table_set(table, row, N_COLUMNS - 1, "%.*s", (int)strcspn(member->status, ":"), member->status);
 }
 
 enum status study_comparison_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
@@ -321,16 +321,16 @@ enum status study_comparison_print(const struct case_values *study, const struct
                                                    {"nose", "lengths"}, {"tail", "lengths"}, {"power", "part"},
                                                    {"wall", "s"},       {"+-", "s"}};
     const int n = sweep_n_members(study);
-    struct study_table table = {0};
+    struct text_table table = {0};
     double *buffer;
     int n_rows = 0;
     for (int m = STUDY_COMPARISON_N_REFERENCES; m < n; m++) n_rows += first_repeat(study, m) == m;
     enum status status = MEMORY_NEW(buffer, n, "a comparison");
-    if (status == STATUS_OK) status = study_table_create(&table, 2 + n_rows, N_COLUMNS);
+    if (status == STATUS_OK) status = text_table_create(&table, 2 + n_rows, N_COLUMNS);
     if (status != STATUS_OK) goto free_buffer;
 
     // one sentence on the reference
-    char method[STUDY_CELL_BYTES], other[STUDY_CELL_BYTES];
+    char method[TEXT_CELL_BYTES], other[TEXT_CELL_BYTES];
     name_method(study, 0, method);
     name_method(study, 1, other);
     fprintf(stream, "Reference: %s, rtol %s; difference of %s, rtol %s: %.1e (nose) and %.1e (tail) lengths", method,
@@ -341,28 +341,28 @@ enum status study_comparison_print(const struct case_values *study, const struct
     fprintf(stream, ".\n");
 
     for (int c = 0; c < N_BEFORE; c++) {
-        for (int row = 0; row < 2; row++) study_table_set(&table, row, c, "%s", heads[c][row]);
+        for (int row = 0; row < 2; row++) text_table_set(&table, row, c, "%s", heads[c][row]);
     }
-    for (int c = 0; c < N_COUNTS; c++) study_table_set(&table, 0, N_BEFORE + c, "%s", counts[c].head);
-    study_table_set(&table, 0, N_COLUMNS - 2, "us/eval.");
-    study_table_set(&table, 0, N_COLUMNS - 1, "status");
+    for (int c = 0; c < N_COUNTS; c++) text_table_set(&table, 0, N_BEFORE + c, "%s", counts[c].head);
+    text_table_set(&table, 0, N_COLUMNS - 2, "us/eval.");
+    text_table_set(&table, 0, N_COLUMNS - 1, "status");
     for (int m = STUDY_COMPARISON_N_REFERENCES, row = 2; m < n; m++) {
         if (first_repeat(study, m) == m) fill_setting(&table, row++, study, members, m, buffer);
     }
-    study_table_print(&table, stream);
+    text_table_print(&table, stream);
 
     status = print_costs(study, members, stream);
     for (int m = 0; m < n; m++) {
         if (!strchr(members[m].status, ':')) continue;
         if (m >= STUDY_COMPARISON_N_REFERENCES && first_repeat(study, m) != m) continue;
-        char setting[STUDY_CELL_BYTES];
+        char setting[TEXT_CELL_BYTES];
         name_method(study, m, method);
         name_setting(study, m, setting);
         fprintf(stream, "%s, %s %s\n", method, setting, members[m].status);
     }
 
 free_buffer:
-    study_table_free(&table);
+    text_table_free(&table);
     free(buffer);
     return status;
 }

@@ -281,7 +281,7 @@ struct reading {
     double *buffer;           /* one quantity of all members */
 };
 
-/* Read one quantity of all members; files of earlier versions may lack the quantity. */
+/* Read one quantity of all members; quantities of comparisons exist in comparisons only. */
 static enum status study_file_read_quantity(const struct reading *reading, int q) {
     const struct member_file_quantity *const quantity = member_file_quantity(q);
     if (!netcdf_has(&reading->reader, quantity->name)) return STATUS_OK;
@@ -327,13 +327,12 @@ static enum status read_members(struct reading *reading) {
     TRY(MEMORY_NEW(reading->member, reading->n_members, "the members of study.nc"));
     TRY(MEMORY_NEW(reading->buffer, reading->n_members * n_fish * 2, "the members of study.nc"));
 
-    // files of earlier versions have no warnings
     for (size_t m = 0; m < reading->n_members; m++) {
         struct member_file *const member = &reading->member[m];
         member->number = (int)m;
         TRY(member_file_create_values(member, reading->study->school.n_fish));
         TRY(study_file_read_string(reading, "status", m, &member->status));
-        if (netcdf_has(reader, "warnings")) TRY(study_file_read_string(reading, "warnings", m, &member->warnings));
+        TRY(study_file_read_string(reading, "warnings", m, &member->warnings));
     }
     for (int q = 0; member_file_quantity(q); q++) TRY(study_file_read_quantity(reading, q));
 

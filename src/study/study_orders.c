@@ -282,15 +282,15 @@ static enum status print_group(const struct case_values *study, const struct stu
     static const char *const heads[] = {"coarse order", "order", "extrapolated", "", "error", "by"};
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
     const int n = orders->n_levels;
-    struct study_table table;
-    TRY(study_table_create(&table, 1 + SWEEP_N_ORDERS * orders->n_fish, n + 9));
+    struct text_table table;
+    TRY(text_table_create(&table, 1 + SWEEP_N_ORDERS * orders->n_fish, n + 9));
 
     // the values of the axis over the columns of errors
-    study_table_set(&table, 0, 0, "difference of");
-    study_table_set(&table, 0, 1, "fish");
-    study_table_set(&table, 0, 2, "unit");
-    for (int i = 0; i < n; i++) study_table_set(&table, 0, 3 + i, "%s", axis->value[orders->level[i] * axis->n_keys]);
-    for (int i = 0; i < 6; i++) study_table_set(&table, 0, 3 + n + i, "%s", heads[i]);
+    text_table_set(&table, 0, 0, "difference of");
+    text_table_set(&table, 0, 1, "fish");
+    text_table_set(&table, 0, 2, "unit");
+    for (int i = 0; i < n; i++) text_table_set(&table, 0, 3 + i, "%s", axis->value[orders->level[i] * axis->n_keys]);
+    for (int i = 0; i < 6; i++) text_table_set(&table, 0, 3 + n + i, "%s", heads[i]);
 
     // a row for each quantity of each fish
     int row = 1;
@@ -301,25 +301,25 @@ static enum status print_group(const struct case_values *study, const struct stu
         const struct sweep_quantity *const quantity = &sweep_quantities[q];
         const int is_given = !isnan(sweep_reference(study, orders->axis, q, f, 0));
         if (!order->is_known) continue;
-        study_table_set(&table, row, 0, "%s%s", quantity->name, is_given ? "*" : "");
-        study_table_set(&table, row, 1, "%s", study->school.fish[f].name);
-        study_table_set(&table, row, 2, "%s", member_file_quantity(member_file_quantity_number(quantity->name))->unit);
-        for (int i = 0; i < n; i++) study_table_number(&table, row, 3 + i, "%.2e", error[i]);
-        study_table_number(&table, row, n + 3, "%.2f", order->coarse_order);
-        study_table_number(&table, row, n + 4, "%.2f", order->order);
-        study_table_number(&table, row, n + 5, "%.9g", order->limit[0]);
-        if (quantity->of_xy) study_table_number(&table, row, n + 6, "%.9g", order->limit[1]);
-        study_table_number(&table, row, n + 7, "%.1e", order->error);
-        study_table_set(&table, row++, n + 8, "%s",
-                        is_given                                 ? "reference"
-                        : order->verdict == ERROR_BUDGET_NONE    ? "noise"
-                        : orders->n_judged < ERROR_BUDGET_LEVELS ? "3 levels (wider bounds)"
-                                                                 : "4 levels");
+        text_table_set(&table, row, 0, "%s%s", quantity->name, is_given ? "*" : "");
+        text_table_set(&table, row, 1, "%s", study->school.fish[f].name);
+        text_table_set(&table, row, 2, "%s", member_file_quantity(member_file_quantity_number(quantity->name))->unit);
+        for (int i = 0; i < n; i++) text_table_number(&table, row, 3 + i, "%.2e", error[i]);
+        text_table_number(&table, row, n + 3, "%.2f", order->coarse_order);
+        text_table_number(&table, row, n + 4, "%.2f", order->order);
+        text_table_number(&table, row, n + 5, "%.9g", order->limit[0]);
+        if (quantity->of_xy) text_table_number(&table, row, n + 6, "%.9g", order->limit[1]);
+        text_table_number(&table, row, n + 7, "%.1e", order->error);
+        text_table_set(&table, row++, n + 8, "%s",
+                       is_given                                 ? "reference"
+                       : order->verdict == ERROR_BUDGET_NONE    ? "noise"
+                       : orders->n_judged < ERROR_BUDGET_LEVELS ? "3 levels (wider bounds)"
+                                                                : "4 levels");
     }
 
     table.n_rows = row;
-    study_table_print(&table, stream);
-    study_table_free(&table);
+    text_table_print(&table, stream);
+    text_table_free(&table);
     enum status status = STATUS_OK;
     for (int place = 0; place < SWEEP_N_ORDERS * orders->n_fish; place++) {
         const enum status tested =

@@ -1,8 +1,7 @@
-/* study_print.c: tables, the members of a study, and the expectations. */
+/* study_print.c: the members of a study, and the expectations. */
 #include "study/study_print.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,58 +9,9 @@
 #include "base/text.h"
 #include "case/sweep.h"
 
-// ---- tables
-
-enum status study_table_create(struct study_table *table, int n_rows, int n_columns) {
-    *table = (struct study_table){n_rows, n_columns, 0, NULL};
-    return MEMORY_NEW(table->cell, n_rows * n_columns, "a table");
-}
-
-void study_table_free(struct study_table *table) {
-    free(table->cell);
-    *table = (struct study_table){0};
-}
-
-void study_table_set(const struct study_table *table, int row, int column, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(table->cell[row * table->n_columns + column], STUDY_CELL_BYTES, format, arguments);
-    va_end(arguments);
-}
-
-void study_table_number(const struct study_table *table, int row, int column, const char *format, double number) {
-    char text[STUDY_CELL_BYTES];
-    snprintf(text, sizeof text, format, number);
-    study_table_set(table, row, column, "%s", isnan(number) ? "-" : text);
-}
-
 void study_fill_name(char *text, size_t size, const char *format, const char *quantity) {
     const int before = (int)(strstr(format, "%s") - format);
     snprintf(text, size, "%.*s%s%s", before, format, quantity, format + before + 2);
-}
-
-static int column_width(const struct study_table *table, int column) {
-    int max = 0;
-    for (int row = 0; row < table->n_rows; row++) {
-        const int length = (int)strlen(table->cell[row * table->n_columns + column]);
-        if (length > max) max = length;
-    }
-    return max;
-}
-
-void study_table_print(const struct study_table *table, FILE *stream) {
-    for (int row = 0; row < table->n_rows; row++) {
-        int n_blanks = 0;  // no blanks at the end of a line
-        for (int column = 0; column < table->n_columns; column++) {
-            const char *const text = table->cell[row * table->n_columns + column];
-            const int is_last = column == table->n_columns - 1, is_left = column < table->n_left;
-            const int rest = is_last ? 0 : column_width(table, column) - (int)strlen(text);
-            n_blanks += (column > 0 ? 2 : 0) + (is_left ? 0 : rest);
-            if (*text) fprintf(stream, "%*s%s", n_blanks, "", text);
-            n_blanks = (*text ? 0 : n_blanks) + (is_left ? rest : 0);
-        }
-        fprintf(stream, "\n");
-    }
 }
 
 // ---- members
@@ -110,15 +60,15 @@ static int print_is_shown(const struct shown *one, const struct case_values *stu
 enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
     const int n = sweep_n_members(study),
               n_fish = study->school.n_fish < MAX_FISH_SHOWN ? study->school.n_fish : MAX_FISH_SHOWN;
-    struct study_table table;
+    struct text_table table;
     int n_columns = 2 + (n_fish > 1), c = 0;
     for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;
     for (int s = 0; s < N_SHOWN; s++) n_columns += print_is_shown(&shown[s], study, members);
-    TRY(study_table_create(&table, 2 + n * n_fish, n_columns));
+    TRY(text_table_create(&table, 2 + n * n_fish, n_columns));
 
     // one column after the other: head, unit and values
-    study_table_set(&table, 0, c, "member");
-    for (int row = 0; row < n * n_fish; row++) study_table_set(&table, 2 + row, c, "%d", row / n_fish);
+    text_table_set(&table, 0, c, "member");
+    for (int row = 0; row < n * n_fish; row++) text_table_set(&table, 2 + row, c, "%d", row / n_fish);
     c++;
 
     for (int a = 0; a < study->n_axes; a++) {
@@ -127,20 +77,20 @@ enum status study_print(const struct case_values *study, const struct member_fil
             // "modulus" for fish[*].body.modulus, "[1]phase" for fish[1].wave.phase
             const char *const path = axis->key[k].path, *const dot = strrchr(path, '.');
             const int is_one = strncmp(path, "fish[", 5) == 0 && path[5] != '*';
-            study_table_set(&table, 0, c, "%.*s%s", is_one ? (int)strcspn(path + 4, ".") : 0, is_one ? path + 4 : "",
-                            dot ? dot + 1 : path);
-            study_table_set(&table, 1, c, "%s", axis->key[k].unit);
+            text_table_set(&table, 0, c, "%.*s%s", is_one ? (int)strcspn(path + 4, ".") : 0, is_one ? path + 4 : "",
+                           dot ? dot + 1 : path);
+            text_table_set(&table, 1, c, "%s", axis->key[k].unit);
             for (int row = 0; row < n * n_fish; row++) {
                 const int value = sweep_member_value(study, row / n_fish, a);
-                study_table_set(&table, 2 + row, c, "%s", axis->value[value * axis->n_keys + k]);
+                text_table_set(&table, 2 + row, c, "%s", axis->value[value * axis->n_keys + k]);
             }
         }
     }
 
     if (n_fish > 1) {
-        study_table_set(&table, 0, c, "fish");
+        text_table_set(&table, 0, c, "fish");
         for (int row = 0; row < n * n_fish; row++) {
-            study_table_set(&table, 2 + row, c, "%s", study->school.fish[row % n_fish].name);
+            text_table_set(&table, 2 + row, c, "%s", study->school.fish[row % n_fish].name);
         }
         c++;
     }
@@ -149,25 +99,25 @@ enum status study_print(const struct case_values *study, const struct member_fil
         if (!print_is_shown(&shown[s], study, members)) continue;
         const struct member_file_quantity *const quantity =
             member_file_quantity(member_file_quantity_number(shown[s].quantity));
-        study_table_set(&table, 0, c, "%s", shown[s].head);
-        study_table_set(&table, 1, c, "%s", strcmp(quantity->unit, "1") == 0 ? "" : quantity->unit);
+        text_table_set(&table, 0, c, "%s", shown[s].head);
+        text_table_set(&table, 1, c, "%s", strcmp(quantity->unit, "1") == 0 ? "" : quantity->unit);
         for (int row = 0; row < n * n_fish; row++) {
             const int f = quantity->of_fish ? row % n_fish : 0;
-            study_table_number(&table, 2 + row, c, shown[s].format,
-                               member_file_number(&members[row / n_fish], quantity->name, f));
+            text_table_number(&table, 2 + row, c, shown[s].format,
+                              member_file_number(&members[row / n_fish], quantity->name, f));
         }
         c++;
     }
 
     // "failed: reason": the reasons follow the table
-    study_table_set(&table, 0, c, "status");
+    text_table_set(&table, 0, c, "status");
     for (int row = 0; row < n * n_fish; row++) {
         const char *const status = members[row / n_fish].status;
-        study_table_set(&table, 2 + row, c, "%.*s", (int)strcspn(status, ":"), status);
+        text_table_set(&table, 2 + row, c, "%.*s", (int)strcspn(status, ":"), status);
     }
 
-    study_table_print(&table, stream);
-    study_table_free(&table);
+    text_table_print(&table, stream);
+    text_table_free(&table);
     if (n_fish < study->school.n_fish) {
         fprintf(stream, "The first %d of %d fish; study.nc has all.\n", n_fish, study->school.n_fish);
     }

@@ -126,8 +126,6 @@ from shoal._files import Results
 assert [bool(mean) for mean in Results("named.nc").mean_section] == [True, False]
 end
     check "a fish with the name $name has its outline in pictures" /usr/bin/python3 sections.py "$root"
-    /usr/bin/python3 -c 'import netCDF4; netCDF4.Dataset("named.nc", "a").renameVariable("mean_section", "hidden")'
-    check "and in those of an earlier version ($name)" /usr/bin/python3 sections.py "$root"
 done
 
 # ---- walls

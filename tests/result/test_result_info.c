@@ -87,12 +87,12 @@ static void info_shows_the_multipliers_of_a_steady_state_and_a_table(void **stat
     static const char *const lines[] = {
         "  steady state after 12 beats: change from beat to beat 2.0e-06, about 3.0e-05 from the fixed point\n"
         "  multipliers in 30 more beats: 0.6000 +- 0.6000 i, 0.4000: stable\n",
-        "  speed                        0.50000       0.25000  m s-1\n",
-        "  place, ahead                 0.00000      -3.00000  m\n"
-        "  place, aside                 0.00000       2.00000  m\n"
-        "  force of the fluid, x              4             7  N\n"
-        "  force of the fluid, y              5             8  N\n",
-        "  drag                               -             6  N\n"};
+        "speed                      0.50000   0.25000  m s-1\n",
+        "place, ahead               0.00000  -3.00000  m\n"
+        "place, aside               0.00000   2.00000  m\n"
+        "force of the fluid, x            4         7  N\n"
+        "force of the fluid, y            5         8  N\n",
+        "drag                             -         6  N\n"};
     const char *text = steady_summary(f, &values);
     has_lines(text, 4, lines);
     assert_null(strstr(text, "lift"));

@@ -320,25 +320,25 @@ static void quantities_of_a_case_are_those_of_a_study(void **state) {
 
 static void a_table_has_aligned_columns_and_no_blanks_at_the_end(void **state) {
     (void)state;
-    struct study_table table;
-    assert_int_equal(study_table_create(&table, 2, 3), STATUS_OK);
-    study_table_set(&table, 0, 0, "a");
+    struct text_table table;
+    assert_int_equal(text_table_create(&table, 2, 3), STATUS_OK);
+    text_table_set(&table, 0, 0, "a");
     table.n_left = 1;
-    study_table_set(&table, 0, 1, "%0*d", 2 * STUDY_CELL_BYTES, 1);
-    study_table_number(&table, 1, 0, "%.2f", 3.14159);
-    study_table_number(&table, 1, 1, "%.2f", NAN);
-    study_table_set(&table, 1, 2, "end");
+    text_table_set(&table, 0, 1, "%0*d", 2 * TEXT_CELL_BYTES, 1);
+    text_table_number(&table, 1, 0, "%.2f", 3.14159);
+    text_table_number(&table, 1, 1, "%.2f", NAN);
+    text_table_set(&table, 1, 2, "end");
     char *text = NULL;
     size_t size;
     FILE *const stream = open_memstream(&text, &size);
-    study_table_print(&table, stream);
+    text_table_print(&table, stream);
     fclose(stream);
     // what is too long is cut; the first column is aligned to the left
-    char wanted[4 * STUDY_CELL_BYTES];
-    snprintf(wanted, sizeof wanted, "a     %0*d\n3.14  %*s  end\n", STUDY_CELL_BYTES - 1, 0, STUDY_CELL_BYTES - 1, "-");
+    char wanted[4 * TEXT_CELL_BYTES];
+    snprintf(wanted, sizeof wanted, "a     %0*d\n3.14  %*s  end\n", TEXT_CELL_BYTES - 1, 0, TEXT_CELL_BYTES - 1, "-");
     assert_string_equal(text, wanted);
     free(text);
-    study_table_free(&table);
+    text_table_free(&table);
 }
 
 int main(void) {

@@ -74,18 +74,7 @@ static void set_text(const struct fixture *f, const char *name, const char *text
     assert_int_equal(nc_close(file), NC_NOERR);
 }
 
-/* Give a variable a name that nobody looks for. */
-static void hide_variable(const struct fixture *f, const char *name) {
-    char hidden[64];
-    int file;
-    snprintf(hidden, sizeof hidden, "no_%s", name);
-    assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
-    assert_int_equal(nc_redef(file), NC_NOERR);
-    assert_int_equal(nc_rename_var(file, number_of(file, name), hidden), NC_NOERR);
-    assert_int_equal(nc_close(file), NC_NOERR);
-}
-
-/* What readers need of a case is in variables; the text of a case, with names that look like keys, is not searched. */
+/* Readers need variables only: the text of a case, with names that look like keys, is not searched. */
 static void sections_and_forces_are_those_of_the_fish_whatever_their_names(void **state) {
     struct fixture *f = *state;
     f->school->fish[0].has_mean_section = 0;
@@ -102,25 +91,6 @@ static void sections_and_forces_are_those_of_the_fish_whatever_their_names(void 
         result_reader_close(&reader);
         unlink(f->path);
     }
-}
-
-static void files_without_these_variables_are_read_by_the_lines_of_their_case(void **state) {
-    struct fixture *f = *state;
-    struct result_reader reader;
-    write_file(f, 1);
-    hide_variable(f, "mean_section");
-    hide_variable(f, "fluid_force");
-    set_text(f, "case_effective",
-             "name: section: mean\nfish:\n  - name: 'section: mean, force: pressure'\n    body:\n      section: nodes  "
-             "    # m\n"
-             "    force: reactive\n  - name: b\n    body:\n      section: mean\n    force: pressure\n");
-    assert_int_equal(result_reader_open(&reader, f->path), STATUS_OK);
-    assert_false(reader.has_mean_section[0]);
-    assert_true(reader.has_mean_section[1]);
-    assert_true(reader.has_pressure);
-    result_reader_close(&reader);
-    set_text(f, "case_effective", "fish:\n  - name: a\n    body:\n      section: nodes\n");
-    cannot_be_read(f->path, "the case has 'section: ' for 1 of 2 fish: use the program that wrote the file");
 }
 
 static void an_outline_needs_its_edges(void **state) {
@@ -205,7 +175,6 @@ int main(void) {
         WITH_FILE(the_reader_gives_what_was_written),
         WITH_FILE(the_reader_refuses_other_files),
         WITH_FILE(sections_and_forces_are_those_of_the_fish_whatever_their_names),
-        WITH_FILE(files_without_these_variables_are_read_by_the_lines_of_their_case),
         WITH_FILE(an_outline_needs_its_edges),
         WITH_FILE(a_page_is_whole_or_not_there),
         WITH_FILE(variables_that_do_not_fit_are_refused),
