@@ -70,6 +70,117 @@ static void has_lines(const char *text, int n, const char *const *lines) {
         if (strstr(text, lines[i]) == NULL) fail_msg("\"%s\" is not in\n%s", lines[i], text);
 }
 
+static void is_printed(const char *got, const char *want) {
+    size_t i = 0;
+    while (got[i] && got[i] == want[i]) i++;
+    if (got[i] != want[i]) fail_msg("from \"%.60s\" on:\n%s", want + i, got);
+}
+
+static void info_is_printed_whole(void **state) {
+    struct fixture *f = *state;
+    for (int i = 0; i < N_FISH; i++) {
+        struct diagnostics_fish *const of = &f->of_fish[i];
+        const double n = i + 1;
+        of->speed = 0.123456 * n;
+        of->heading = -12.3456 * n;
+        of->phi0 = 0.0123456 * n;
+        of->shed_circulation = -1.23456e-3 * n;
+        of->kinetic_energy = 23.45678 * n;
+        of->actuation_work = 34.56789 * n;
+        of->energy_balance = -4.5678e-5 * n;
+    }
+    f->diagnostics.momentum_balance[0] = -3e-3;
+    f->diagnostics.momentum_balance[1] = 4e-3;
+    write_file(f, 4);
+    enum status status;
+    const char *const text = info(f->path, 0, &status);
+    assert_int_equal(status, STATUS_OK);
+    is_printed(strstr(text, "  status"),
+               "  status      complete\n"
+               "  rows        4, from t = 0 s to 1.5 s; a vortex every 0.1 s\n"
+               "\n"
+               "  fish           nodes       sheet      length    vortices       speed     heading        phi0        "
+               "shed      energy        work     balance\n"
+               "                                             m                   m s-1      degree                  m2 "
+               "s-1           J           J           J\n"
+               "  leader             5           7           1           0      0.1235      -12.35      0.0123  "
+               "-1.235e-03       23.46       34.57    -4.6e-05\n"
+               "  suédois           7           5           2           0      0.2469      -24.69      0.0247  "
+               "-2.469e-03       46.91       69.14    -9.1e-05\n"
+               "\n"
+               "  total circulation         1.1e+01 m2 s-1\n"
+               "  momentum balance          5.0e-03 N s\n"
+               "  least distance            12.0000 m\n"
+               "  polarisation              13.0000\n"
+               "\n"
+               "  steps                          21   1.40 per event\n"
+               "  residual_evaluations           22   1.47 per event\n"
+               "  newton_iterations              23   1.53 per event\n"
+               "  jacobian_evaluations           24   1.60 per event\n"
+               "  error_test_failures            25   1.67 per event\n"
+               "  convergence_failures           26   1.73 per event\n"
+               "  wall_time                   28.00 s   0.0536 times real time\n");
+}
+
+static void a_steady_state_is_printed_whole(void **state) {
+    struct fixture *f = *state;
+    double numbers[2 * 20];
+    for (int i = 0; i < 40; i++) numbers[i] = 0.123456 * (i + 1);
+    struct steady_fish fish[N_FISH];
+    for (int i = 0; i < N_FISH; i++) {
+        const double *const n = numbers + 20 * i;
+        fish[i] = (struct steady_fish){.speed = n[0],
+                                       .turn = n[1],
+                                       .place = {n[2], n[3]},
+                                       .force = {n[4], n[5]},
+                                       .thrust = n[6],
+                                       .drag = n[7],
+                                       .lift = n[8],
+                                       .deflection = n[9],
+                                       .actuation_power = n[10],
+                                       .constraint_power = n[11],
+                                       .damping_power = n[12],
+                                       .fluid_power = n[13],
+                                       .power = n[14],
+                                       .cost_of_transport = n[15],
+                                       .efficiency = n[16],
+                                       .strouhal = n[17]};
+    }
+    const struct steady_values values = {
+        .n_beats = 12, .residual = 2e-6, .error = 3e-5, .stiffness = NAN, .fish = fish};
+    const char *const text = steady_summary(f, &values);
+    is_printed(strstr(text, "  steady state"),
+               "  steady state after 12 beats: change from beat to beat 2.0e-06, about 3.0e-05 from the fixed point\n"
+               "\n"
+               "                                leader      suédois\n"
+               "  speed                        0.12346       2.59258  m s-1\n"
+               "  turn in a beat                0.2469        2.7160  degree\n"
+               "  place, ahead                 0.37037       2.83949  m\n"
+               "  place, aside                 0.49382       2.96294  m\n"
+               "  force of the fluid, x        0.61728        3.0864  N\n"
+               "  force of the fluid, y        0.74074        3.2099  N\n"
+               "  thrust                       0.86419        3.3333  N\n"
+               "  drag                         0.98765        3.4568  N\n"
+               "  lift                          1.1111        3.5802  N\n"
+               "  deflection                   1.23456       3.70368  m\n"
+               "  power of the muscle            1.358        3.8271  W\n"
+               "  driving power                 1.4815        3.9506  W\n"
+               "  power of damping              1.6049         4.074  W\n"
+               "  power to the fluid            1.7284        4.1975  W\n"
+               "  power of muscle and drive        1.8518         4.321  W\n"
+               "  cost of transport            1.97530       4.44442  m s-2\n"
+               "  efficiency                   2.09875       4.56787  \n"
+               "  Strouhal number              2.22221       4.69133  \n"
+               "\n"
+               "  steps                          21\n"
+               "  residual_evaluations           22\n"
+               "  newton_iterations              23\n"
+               "  jacobian_evaluations           24\n"
+               "  error_test_failures            25\n"
+               "  convergence_failures           26\n"
+               "  wall_time                   28.00 s   0 times real time\n");
+}
+
 static void info_shows_the_multipliers_of_a_steady_state_and_a_table(void **state) {
     struct fixture *f = *state;
     struct steady_fish fish[N_FISH] = {{.speed = 0.5, .place = {0, 0}, .force = {4, 5}, .lift = NAN, .drag = NAN},
@@ -281,6 +392,8 @@ static void version_names_every_library(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         WITH_FILE(info_sums_up),
+        WITH_FILE(info_is_printed_whole),
+        WITH_FILE(a_steady_state_is_printed_whole),
         WITH_FILE(info_shows_the_multipliers_of_a_steady_state_and_a_table),
         WITH_FILE(info_says_how_bodies_without_a_beat_lose_their_stability),
         WITH_FILE(info_of_a_file_without_rows_says_so),
