@@ -1,4 +1,4 @@
-/* test_results.c: every variable of ten short runs and three steady states, in which all terms of the model act at
+/* test_results.c: every variable of eleven short runs and three steady states, in which all terms of the model act at
  * once, against the values of tests/data/results.tsv. Independent tests verify the terms; this test notices every
  * change of a result, which CHANGES.md promises to state. After an intended change:
  *
@@ -88,6 +88,9 @@ static const struct run {
      "fluid: {density: 800, velocity: [0.1, 0.1]}\nwake: {shedding: impulsive, lifetime: 0.1}\n"
      "fish: [{" FISH ", start: {speed: 0.8}, control: {bias: -0.2}, body: {modulus: 1e5, density: 1200}},\n"
      "    {" FISH ", start: {position: [0.2, 0.8], speed: 0.5}, body: {modulus: 1e5}}]\n"},
+    {"explicit_sheet",
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: heun, step: 2.5e-4}\n"
+     "wake: {lifetime: 0.1}\nfish: [{" FISH ", start: {speed: 0.8}, body: {modulus: 1e5}}]\n"},
     {"changed", TIME STREAM "wake: {lifetime: 0.25, decay: 0.1, spare_vortices: 9}\n"
                             "fish: [{" FISH ", start: {heading: 170, speed: 0.8}},\n"
                             "    {" FISH ", force: pressure, start: {position: [0.2, 0.7], speed: 0.6}}]\n"},

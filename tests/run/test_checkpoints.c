@@ -35,6 +35,11 @@ static void checkpoints_are_due_at_the_interval_and_where_they_are_asked_for(voi
         assert_int_equal(checkpoints_are_due(&checkpoints, event), want);
     }
     checkpoints_free(&checkpoints);
+    school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", NULL));
+    for (long event = 0; event <= 50; event++) {
+        assert_int_equal(checkpoints_are_due(&checkpoints, event), event > 0 && event % 10 == 0);
+    }
+    checkpoints_free(&checkpoints);
     values.time.checkpoint_interval = 0;
     school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", NULL));
     for (long event = 0; event <= 50; event++) assert_int_equal(checkpoints_are_due(&checkpoints, event), 0);
