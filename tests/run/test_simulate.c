@@ -219,6 +219,24 @@ static void notes_of_a_run_count_the_vortices_of_all_fish(void **state) {
     assert_string_equal(text, "0 merged with a neighbour; 75 vortices in the wakes at the end");
 }
 
+static void the_times_of_checkpoints_are_a_list_in_the_result(void **state) {
+    const char *const path = *state;
+    const struct simulate_options options = {
+        .path = path, .overwrite = 1, .command = "test", .checkpoint_at = "0.04,0.1,0.5"};
+    run_into(TIME "fish: [{}]\n", &options, STATUS_OK);
+    int file;
+    char text[64] = "";
+    assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
+    assert_int_equal(nc_get_att_text(file, NC_GLOBAL, "checkpoint_at", text), NC_NOERR);
+    nc_close(file);
+    assert_string_equal(text, "0.04,0.1,0.5");
+    char *const checkpoint = checkpoints_path(path), *const previous = checkpoints_previous(checkpoint);
+    unlink(checkpoint);
+    unlink(previous);
+    free(checkpoint);
+    free(previous);
+}
+
 static void a_run_tells_its_progress_at_every_event(void **state) {
     const char *const path = *state;
     const struct simulate_options options = {
@@ -515,6 +533,7 @@ int main(void) {
         cmocka_unit_test(places_are_second_order_in_the_shedding_interval),
         cmocka_unit_test(positive_bias_turns_right),
         cmocka_unit_test(notes_of_a_run_count_the_vortices_of_all_fish),
+        cmocka_unit_test(the_times_of_checkpoints_are_a_list_in_the_result),
         cmocka_unit_test(a_run_tells_its_progress_at_every_event),
         cmocka_unit_test(the_wake_is_written_at_its_own_interval_and_at_the_end),
         cmocka_unit_test(a_signal_stops_a_run_at_the_next_event),

@@ -230,6 +230,42 @@ static void an_order_is_met_within_its_bounds_on_both_sides(void **state) {
     }
 }
 
+// differences of 2e-3 are noise where the search is 1e-3 from the fixed point, known or ten times the residual
+static void differences_below_the_error_of_a_search_are_noise(void **state) {
+    (void)state;
+    static const double errors[][2] = {{1e-3, 1e-9}, {NAN, 1e-4}, {1e-5, 1e-3}};
+    for (int i = 0; i < 3; i++) {
+        static const char text[] =
+            "format: 1\ntime: {end: 1, shedding_interval: 0.1}\nfish: [{}]\n"
+            "sweep: [{key: time.shedding_interval, values: [0.1, 0.05, 0.025], refine: true, steady: true}]\n";
+        struct case_values study;
+        struct member_file member[3];
+        struct study_orders orders;
+        char *printed;
+        size_t size;
+        assert_int_equal(case_parse(&study, text, strlen(text), "noise.yaml", NULL, 0, NULL), STATUS_OK);
+        for (int m = 0; m < 3; m++) {
+            static const double speeds[] = {1.002, 1.001, 1};
+            static const char *const names[] = {"steady_speed", "steady_error", "steady_residual"};
+            const double values[] = {speeds[m], errors[i][0], errors[i][1]};
+            member[m] = (struct member_file){.number = m, .status = strdup("complete")};
+            assert_int_equal(member_file_create_values(&member[m], 1), STATUS_OK);
+            for (int k = 0; k < 3; k++) {
+                *member_file_place(&member[m], member_file_quantity_number(names[k]), 0, 0) = values[k];
+            }
+        }
+        assert_int_equal(study_orders_create(&orders, &study, member), STATUS_OK);
+        FILE *const stream = open_memstream(&printed, &size);
+        assert_int_equal(study_orders_print(&study, &orders, stream), STATUS_OK);
+        fclose(stream);
+        if (!strstr(printed, "steady_speed") || (strstr(printed, "noise") != NULL) != (i < 2)) fail_msg("%s", printed);
+        free(printed);
+        for (int m = 0; m < 3; m++) member_file_free(&member[m]);
+        study_orders_free(&orders);
+        case_free(&study);
+    }
+}
+
 static void levels_of_points_are_their_distances_from_coarse_to_fine(void **state) {
     (void)state;
     static const char text[] =
@@ -367,6 +403,7 @@ int main(void) {
         cmocka_unit_test(orders_are_kept_in_study_nc),
         cmocka_unit_test(a_study_nc_that_does_not_fit_is_refused),
         cmocka_unit_test(an_order_is_met_within_its_bounds_on_both_sides),
+        cmocka_unit_test(differences_below_the_error_of_a_search_are_noise),
         cmocka_unit_test(levels_of_points_are_their_distances_from_coarse_to_fine),
         cmocka_unit_test(every_failing_allocation_of_a_study_is_reported_and_leaves_nothing),
         cmocka_unit_test(quantities_of_a_case_are_those_of_a_study),
