@@ -205,18 +205,27 @@ static void run_into(const char *text, const struct simulate_options *options, e
     assert_int_equal(status, want);
 }
 
+/* An attribute of a result; the caller frees the text. */
+static char *read_attribute(const char *path, const char *name) {
+    int file;
+    size_t n;
+    assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
+    assert_int_equal(nc_inq_attlen(file, NC_GLOBAL, name, &n), NC_NOERR);
+    char *const text = calloc(n + 1, 1);
+    assert_int_equal(nc_get_att_text(file, NC_GLOBAL, name, text), NC_NOERR);
+    nc_close(file);
+    return text;
+}
+
 static void notes_of_a_run_count_the_vortices_of_all_fish(void **state) {
     const char *const path = *state;
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
     run_into(TIME "wake: {merge: 0.01}\nfish: [{}, {start: {position: [0, 2]}}, {start: {position: [0, 4]}}]\n",
              &options, STATUS_OK);
-    int file;
-    char text[256] = "";
-    assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
-    assert_int_equal(nc_get_att_text(file, NC_GLOBAL, "merged_vortices", text), NC_NOERR);
-    nc_close(file);
+    char *const text = read_attribute(path, "merged_vortices");
     // 25 events of three fish
     assert_string_equal(text, "0 merged with a neighbour; 75 vortices in the wakes at the end");
+    free(text);
 }
 
 static void the_times_of_checkpoints_are_a_list_in_the_result(void **state) {
@@ -224,12 +233,9 @@ static void the_times_of_checkpoints_are_a_list_in_the_result(void **state) {
     const struct simulate_options options = {
         .path = path, .overwrite = 1, .command = "test", .checkpoint_at = "0.04,0.1,0.5"};
     run_into(TIME "fish: [{}]\n", &options, STATUS_OK);
-    int file;
-    char text[64] = "";
-    assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
-    assert_int_equal(nc_get_att_text(file, NC_GLOBAL, "checkpoint_at", text), NC_NOERR);
-    nc_close(file);
+    char *const text = read_attribute(path, "checkpoint_at");
     assert_string_equal(text, "0.04,0.1,0.5");
+    free(text);
     char *const checkpoint = checkpoints_path(path), *const previous = checkpoints_previous(checkpoint);
     unlink(checkpoint);
     unlink(previous);
