@@ -61,6 +61,8 @@ struct control_law_data {
     double filter_share;             /* weight of the newest moment in the moving mean: 1 - exp(-Dt/T_f) */
 };
 
+enum { FISH_FAR_CONTROL = 16, FISH_FAR_EDGES = 15, FISH_FAR = FISH_FAR_CONTROL + FISH_FAR_EDGES + 1 };
+
 struct fish {
     char *name;
     struct layout at;
@@ -127,6 +129,12 @@ struct fish {
     double *sheet_half;       /* b^2/2 at the bound vortices, b = w/4, m2                  (n_sheet) */
     double *point_half;       /* b^2/2 at the points of the flow (flow.h), m2   (n_control + n_edges + 1) */
     double *control_widening; /* b db/du at control points, m2                             (n_control) */
+
+    /* The far part of the own wake is summed at a few points and interpolated; NULL: summed at all points. Positions of
+     * the points from the nodes (n_nodes, FISH_FAR), values at the points of the flow from the points
+     * (FISH_FAR, n_control + n_edges + 1), full matrices by columns. Points: Chebyshev points of the line of the body
+     * for the control points, Chebyshev points of the line of edge midpoints, the tail. */
+    double *far_by_node, *point_by_far;
 
     double *sheet_weight;            /* ds_j: circulation over unknown, m           (n_sheet) */
     struct curve *curve;             /* line of the body; owns the stencils below     */

@@ -293,6 +293,52 @@ static double strip_half(const struct fish *fish, double u) {
     return depth * depth / 32;
 }
 
+// Lagrange's polynomials of the n Chebyshev points of 0 .. 1 at x, into column elements `stride` apart
+static void lagrange_at(int n, double x, int stride, double *value) {
+    double sum = 0;
+    for (int m = 0; m < n; m++) {
+        const double angle = M_PI * (m + 0.5) / n, distance = x - (1 - cos(angle)) / 2;
+        value[m * stride] = (m % 2 == 0 ? 1 : -1) * sin(angle) / (fabs(distance) > 1e-14 ? distance : 1e-14);
+        sum += value[m * stride];
+    }
+    for (int m = 0; m < n; m++) value[m * stride] /= sum;
+}
+
+// points of the far part of the own wake; few points of the flow need none, and with a depth that varies the kernel is
+// no smooth function of the place
+static enum status far_points_set(struct fish *fish) {
+    const int n_points = fish->n_control + fish->n_edges + 1;
+    if (fish->depth_varies || n_points < 3 * FISH_FAR / 2) return STATUS_OK;
+    TRY(MEMORY_NEW(fish->far_by_node, fish->n_nodes * FISH_FAR, "the sheet of a fish"));
+    TRY(MEMORY_NEW(fish->point_by_far, FISH_FAR * n_points, "the sheet of a fish"));
+
+    struct curve *curve;
+    TRY(curve_create(&curve, fish->n_nodes, 0, 2 * FISH_FAR));
+    for (int m = 0; m < FISH_FAR; m++) {
+        // an edge midpoint is the mean of two points of the line one edge apart; the tail is a point of the line
+        const int k = m - FISH_FAR_CONTROL, is_edge = k >= 0 && k < FISH_FAR_EDGES, is_tail = k == FISH_FAR_EDGES;
+        const double angle = M_PI * (is_edge ? (k + 0.5) / FISH_FAR_EDGES : (m + 0.5) / FISH_FAR_CONTROL);
+        const double sigma = is_tail ? 1 : (1 - cos(angle)) / 2;
+        for (int end = 0; end <= is_edge; end++) {
+            const struct stencil point = curve_smooth_point(curve, sigma * (fish->n_edges - is_edge) + end);
+            for (int i = 0; i < point.n; i++) {
+                fish->far_by_node[point.node[i] * FISH_FAR + m] += point.weight[i] / (1 + is_edge);
+            }
+        }
+    }
+    curve_free(curve);
+
+    for (int c = 0; c < fish->n_control; c++) {
+        lagrange_at(FISH_FAR_CONTROL, cosine_place(fish, c + 0.5), n_points, fish->point_by_far + c);
+    }
+    for (int k = 0; k < fish->n_edges; k++) {
+        lagrange_at(FISH_FAR_EDGES, (double)k / (fish->n_edges - 1), n_points,
+                    fish->point_by_far + FISH_FAR_CONTROL * n_points + fish->n_control + k);
+    }
+    fish->point_by_far[FISH_FAR * n_points - 1] = 1;
+    return STATUS_OK;
+}
+
 // the strip of the sheets of the body: doc/model.md, section 18
 static enum status strip_set(struct fish *fish) {
     const int n_points = fish->n_control + fish->n_edges + 1;
@@ -313,7 +359,7 @@ static enum status strip_set(struct fish *fish) {
 
     for (int k = 0; k < fish->n_edges; k++) fish->point_half[fish->n_control + k] = strip_half(fish, k + 0.5);
     fish->point_half[n_points - 1] = strip_half(fish, fish->n_edges);
-    return STATUS_OK;
+    return far_points_set(fish);
 }
 
 // the pressure of the bound sheet: doc/model.md, section 15
@@ -666,6 +712,8 @@ void fish_school_free(struct school *school) {
                                fish->control_interval,
                                fish->sheet_half,
                                fish->point_half,
+                               fish->far_by_node,
+                               fish->point_by_far,
                                fish->control_widening,
                                fish->control.heading_time,
                                fish->control.heading,

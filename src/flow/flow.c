@@ -7,6 +7,7 @@
 
 #include "base/mathematics.h"
 #include "base/memory.h"
+#include "body/rod.h"
 
 // ---- external flow
 
@@ -119,6 +120,37 @@ double flow_mirror(const struct school *school) {
     return 2 * school->walls.y[0];
 }
 
+// The number of oldest stretches that are far from the body. A source with the sum of distances d from nose and tail is
+// on an ellipse of Bernstein, d = (L/2)(rho + 1/rho), and the interpolation at n Chebyshev points of a straight body
+// has an error of the order of rho^-n. d is reduced by the bend of the body and by its motion within the interval.
+static int rings_far_stretches(const struct fish *fish, const struct school *school, const struct ring_sheets *sheets,
+                               const double *y) {
+    // below, the kinks of the third derivative of the curve limit the interpolation
+    const double least_tolerance = 5e-8;
+    if (!fish->point_by_far || school->wake_tolerance < least_tolerance) return 0;
+    const int n = fish->n_nodes;
+    const double *const x = y + fish->at.x, *const z = y + fish->at.y;
+    const double chord[2] = {x[n - 1] - x[0], z[n - 1] - z[0]}, length = hypot(chord[0], chord[1]);
+    double bend = 0, speed = 0;
+    for (int k = 0; k < n; k++) {
+        bend = fmax(bend, fabs(chord[0] * (z[k] - z[0]) - chord[1] * (x[k] - x[0])) / length);
+        speed = fmax(speed, hypot(y[fish->at.vx + k], y[fish->at.vy + k]));
+    }
+
+    const double rho = fmax(2, pow(school->wake_tolerance, -1.0 / FISH_FAR_EDGES));
+    const double least = fish->length / 2 * (rho + 1 / rho) + 2 * bend + 2 * speed * school->interval;
+    int n_far = 0;
+    for (; n_far < sheets->n_single; n_far++) {
+        for (int end = 0; end < 2; end++) {
+            const double at[2] = {(sheets->x[end][n_far] + sheets->x[end][n_far + 1]) / 2,
+                                  (sheets->y[end][n_far] + sheets->y[end][n_far + 1]) / 2};
+            const double nose[2] = {at[0] - x[0], at[1] - z[0]}, tail[2] = {at[0] - x[n - 1], at[1] - z[n - 1]};
+            if (!(sqrt(edge_dot(nose, nose)) + sqrt(edge_dot(tail, tail)) >= least)) return n_far;
+        }
+    }
+    return n_far;
+}
+
 static enum status rings_place_wakes(struct flow_rings *rings, const struct school *school, const struct state *state,
                                      double tau, int is_new) {
     int n_placed = 0, n_failed = 0;
@@ -130,6 +162,7 @@ static enum status rings_place_wakes(struct flow_rings *rings, const struct scho
         const struct wake *const wake = &state->wake[f];
         struct ring_sheets *const sheets = &rings->fish[f].wake;
         const enum status status = is_new ? ring_sheets_build(sheets, fish, school, wake) : STATUS_OK;
+        if (is_new && status == STATUS_OK) rings->fish[f].n_far = rings_far_stretches(fish, school, sheets, state->y);
         if (status == STATUS_OK) {
             ring_sheets_place(sheets, school, wake, state->t, tau);
         } else {
@@ -181,6 +214,9 @@ static enum status rings_place(struct flow_rings *rings, const struct school *sc
     const double shed = y[fish->at.circulation];
 
     place_body(of, fish, body, y);
+    for (int i = 0; i < 2 && of->n_far > 0; i++) {
+        fish_of_nodes(FISH_FAR, fish->n_nodes, fish->far_by_node, y + (i == 0 ? fish->at.x : fish->at.y), of->far[i]);
+    }
     ring_sheet_place_nascent(&of->wake.graded, school, wake, state->t, tau, tail, shed);
     *nascent = ring_sheet_place_nascent(&of->wake.middles, school, wake, state->t, tau, tail, shed);
     double newest[2] = {tail[0], tail[1]};

@@ -50,6 +50,8 @@ struct fish_rings {
     double *line[2];         /* dx of the control points, m                        (n_control) */
     double newest[3];        /* label of the newest marker, m2 s-1; position of the marker relative to the tail, m */
     struct rings markers;    /* at the last event */
+    int n_far;               /* number of oldest stretches that are summed at the far points; 0: none */
+    double far[5][FISH_FAR]; /* far points: positions, m; velocity, m s-1; div u, s-1 */
     struct rings body_image, middles_image, markers_image;
 };
 

@@ -263,6 +263,7 @@ static void flow_evaluate(struct flow *flow, int with_gradient) {
 
     vortices_zero(&all);
     if (flow->rings) flow_rings_zero(flow, with_gradient);
+    if (flow->rings && !with_gradient) flow_rings_far(flow);
     if (!flow->rings && flow_sum_many(flow, threads, &all) != STATUS_OK) {
         // out of memory for a tree: use the direct sum
         for (int c = 0; c < flow->n_classes; c++) flow->class[c].sheet_by_tree = flow->class[c].images_by_many = 0;

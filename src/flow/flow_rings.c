@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "flow/flow.h"
+#include "vortex/kernel.h"
 #include "wake/free_sheet.h"
 
 static const double two_pi = 6.28318530717958647692;
@@ -28,6 +29,12 @@ static double mean_square(double one, double other) {
 
 static void induce(const struct ring_pair *pair, const struct rings *rings, const struct ring_targets *at) {
     ring_induce(pair, rings, (struct range){0, rings->n}, at);
+}
+
+// sources from number first on
+static void induce_from(const struct ring_pair *pair, const struct rings *rings, int first,
+                        const struct ring_targets *at) {
+    ring_induce(pair, rings, (struct range){first, rings->n - first}, at);
 }
 
 // ---- bodies
@@ -75,6 +82,8 @@ static void flow_rings_induce_own(const struct flow *flow, const struct chunk *c
     const struct range others =
         range_overlap(chunk->at, (struct range){points.first + fish->n_control, points.n - fish->n_control});
 
+    const int n_far = with_gradient ? 0 : of->n_far;
+
     // control points: all sources of the own body and the graded wake, with legs
     struct ring_targets at = ring_targets_part(all, control);
 
@@ -87,14 +96,47 @@ static void flow_rings_induce_own(const struct flow *flow, const struct chunk *c
 
     const struct ring_pair exact = ring_own_pair(fish, 0);
     induce(&exact, &of->own, &at);
-    induce(&exact, &of->wake.graded.rings, &at);
+    induce_from(&exact, &of->wake.graded.rings, n_far, &at);
 
     // edge midpoints and tail: middles of the wake
     if (!fish_feels_own_wake(fish) || others.n == 0) return;
     const struct ring_pair smooth = ring_own_pair(fish, fish->smoothing * fish->smoothing);
     at = ring_targets_part(all, others);
     at.half = half + others.first - points.first;
-    induce(&smooth, &of->wake.middles.rings, &at);
+    induce_from(&smooth, &of->wake.middles.rings, n_far, &at);
+}
+
+void flow_rings_far(const struct flow *flow) {
+    const struct school *const school = flow->school;
+#pragma omp parallel for num_threads(fish_threads(school)) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        struct fish_rings *const of = &flow->rings->fish[f];
+        const struct range points = flow->points[f], far = {0, of->n_far};
+        if (of->n_far == 0) continue;
+
+        // all values of half are equal
+        const struct ring_targets all = {.n = FISH_FAR,
+                                         .x = of->far[0],
+                                         .y = of->far[1],
+                                         .half = fish->point_half,
+                                         .u = of->far[2],
+                                         .v = of->far[3],
+                                         .div = of->far[4]};
+        memset(of->far[2], 0, 3 * sizeof of->far[2]);
+        const struct range control = {0, FISH_FAR_CONTROL}, others = {FISH_FAR_CONTROL, FISH_FAR - FISH_FAR_CONTROL};
+        const struct ring_pair exact = ring_own_pair(fish, 0),
+                               smooth = ring_own_pair(fish, fish->smoothing * fish->smoothing);
+        struct ring_targets at = ring_targets_part(&all, control);
+        ring_induce(&exact, &of->wake.graded.rings, far, &at);
+        at = ring_targets_part(&all, others);
+        if (fish_feels_own_wake(fish)) ring_induce(&smooth, &of->wake.middles.rings, far, &at);
+
+        double *const to[] = {flow->u, flow->v, flow->rings->div};
+        for (int i = 0; i < 3; i++) {
+            kernel_multiply(points.n, FISH_FAR, fish->point_by_far, of->far[2 + i], to[i] + points.first);
+        }
+    }
 }
 
 // other fish, and all images

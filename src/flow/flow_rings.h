@@ -21,6 +21,10 @@ void flow_rings_zero(const struct flow *flow, int with_gradient);
  * STATUS_MEMORY. */
 enum status flow_rings_at_markers(struct flow *flow, const struct state *state);
 
+/* Add the far part of the own wakes to the velocity and div u at the points; flow_rings_at_chunk without gradients
+ * omits this part. */
+void flow_rings_far(const struct flow *flow);
+
 /* Set image_u, image_v, image_div at the points of all bodies. */
 void flow_rings_images(struct flow *flow);
 

@@ -406,12 +406,76 @@ static void legs_of_graded_points_begin_at_the_tail(void **state) {
     school_clear(&setup);
 }
 
+// a fish with a bent body and a wavy wake of 300 markers that ends `from_tail` behind the tail; bend: of the body
+static void build_long_wake(struct setup *setup, const char *tolerance, double bend, double from_tail) {
+    char text[512];
+    snprintf(text, sizeof text,
+             SCHOOL_DEFAULTS
+             "time: {end: 1, shedding_interval: 0.02}\nwake: {tolerance: %s}\n"
+             "fish: [{nodes: 25, sheet_points: 49, force: pressure, pressure: {span: finite}}]\n",
+             tolerance);
+    school_build(setup, text);
+    const struct fish *const fish = &setup->school->fish[0];
+    double *const y = setup->state->y;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        const double s = (double)k / fish->n_edges;
+        y[fish->at.x + k] = s - bend * s * s;
+        y[fish->at.y + k] = bend * sin(2 * s);
+        y[fish->at.vx + k] = y[fish->at.vy + k] = 0;
+    }
+    const double tail[2] = {y[fish->at.x + fish->n_edges], y[fish->at.y + fish->n_edges]};
+    for (int i = 299; i >= 0; i--) {
+        const double behind = from_tail + 0.0065 * i;
+        school_ok(wake_release(&setup->state->wake[0], tail[0] + behind, tail[1] + 0.1 * sin(10 * behind),
+                               0.02 * cos(10 * behind), 0));
+    }
+    y[fish->at.circulation] = 0.02;
+}
+
+// the largest difference of velocities and div u to the sum over all rings, at two times
+static double far_error(double bend, double from_tail, int *n_far) {
+    struct setup exact, fast;
+    build_long_wake(&exact, "0", bend, from_tail);
+    build_long_wake(&fast, "1e-7", bend, from_tail);
+    double error = 0;
+    for (int end = 0; end < 2; end++) {
+        exact.t = fast.t = exact.state->t + end * 0.01;
+        school_ok(flow_velocity(exact.residual->flow, exact.state, exact.t, exact.state->y));
+        school_ok(flow_velocity(fast.residual->flow, fast.state, fast.t, fast.state->y));
+        const struct flow *const a = exact.residual->flow, *const b = fast.residual->flow;
+        assert_int_equal(a->rings->fish[0].n_far, 0);
+        *n_far = b->rings->fish[0].n_far;
+        for (int p = 0; p < a->n_points; p++) {
+            error = fmax(error, fmax(fabs(a->u[p] - b->u[p]), fabs(a->v[p] - b->v[p])));
+            error = fmax(error, fabs(a->rings->div[p] - b->rings->div[p]));
+        }
+    }
+    school_clear(&exact);
+    school_clear(&fast);
+    return error;
+}
+
+static void the_far_wake_is_interpolated_along_the_body(void **state) {
+    (void)state;
+    // a tenth of the tolerance of 1e-7: the velocity of the far wake is some hundredths; most of a wake behind the tail
+    // is far, and nothing of a wake along the body
+    int n_far;
+    assert_true(far_error(0, 0, &n_far) < 1e-8);
+    assert_in_range(n_far, 200, 280);
+    assert_true(far_error(0.1, 0, &n_far) < 1e-8);
+    assert_in_range(n_far, 150, 280);
+    assert_true(far_error(0.5, 0, &n_far) < 1e-8);
+    far_error(0.1, -2, &n_far);
+    assert_int_equal(n_far, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_of_others_feel_bodies_wakes_and_images_with_twice_the_span),
         cmocka_unit_test(control_points_feel_their_own_body_and_wake_with_the_span_of_the_strip),
         cmocka_unit_test(the_newborn_marker_feels_its_body_behind_the_tail),
         cmocka_unit_test(markers_feel_all_bodies_all_markers_and_all_images),
+        cmocka_unit_test(the_far_wake_is_interpolated_along_the_body),
         cmocka_unit_test(legs_of_graded_points_begin_at_the_tail),
         cmocka_unit_test(markers_are_stretched_and_a_wall_lets_nothing_through),
     };
