@@ -117,7 +117,7 @@ struct shoal_array {
     enum shoal_type type;
     int n_dimensions;
     size_t shape[4];
-    const char *dimension[4]; /* "fish", "node", "edge", "joint", "sheet", "vortex", "xy", "name", "wall" */
+    const char *dimension[4]; /* "fish", "node", "edge", "joint", "sheet", "sensor", "vortex", "xy", "name", "wall" */
     const char *unit, *long_name;
 };
 

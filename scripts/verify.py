@@ -190,6 +190,10 @@ gust is Kuessner's function; s is the way of the middle of the step from the nos
 a tenth of the length. *Vortex streets* (`wake.street`): the speed of a street in still fluid is von Karman's; the ends of
 a street are an error proportional to 1/N. A plate on the centre line, free along the stream, meets the gusts of all rows at
 the odd harmonics of the spacing; the suction of Sears' pressure accelerates the plate against the stream."""),
+    "skin": ("Pressure on the skin", """\
+Pressure on both sides of a plate at `sensors` (model.md 15): beside a vortex that passes, against the complex potential
+of the vortices of the run outside the circle of the plate; held in an oscillating stream, against linear theory, whose
+added-mass pressure is elliptic."""),
     "walls": ("Walls", """\
 Bodies beside straight walls, model.md 17: a fish beside a wall moves like a fish beside the mirror image, a plate between
 two walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to

@@ -84,6 +84,7 @@ class _Swimmer:
         run = event.run
         self.length, self.mass = float(run["body_length"][fish]), float(run["body_mass"][fish])
         self.n_joints, self.n_fish = int(run["n_joints"][fish]), len(run["n_joints"])
+        self.n_sensors, self.density = int(np.sum(np.isfinite(run["sensor_place"][fish]))), float(run["fluid_density"])
         self.others = [f for f in range(self.n_fish) if f != fish]
         frequency = float(run["frequency"][fish])
         usual = {"bias": (-0.5, 0.5), "amplitude": (0.2, 0.6), "frequency": (0.5 * frequency, 1.5 * frequency)}
@@ -101,6 +102,8 @@ class _Swimmer:
             self._earned = [(number_of(weight, f"reward: {choice_of(name, list(self._EARNED), 'a reward')}"),
                              self._EARNED[name]) for name, weight in reward.items()]
         for name in [*self.observations, *(() if callable(reward) else reward)]:
+            if name == "pressure" and not (self.n_sensors and self.density > 0):
+                raise CaseError("'pressure' needs sensors in the case, fish.sensors, and a fluid")
             if goal is None and name in ("goal", "closing"):
                 raise CaseError(f"{name!r} needs a goal: (x, y), or (fish, (x, y)) for a place beside a fish")
         self._parts, first = [], 0
@@ -148,7 +151,8 @@ class _Swimmer:
         return _make_box(-bound, bound, dtype=np.float32)
 
     def _size(self, name):
-        sizes = {"curvature": self.n_joints, "muscle": self.n_joints, "flow": self.sensors.size, "goal": 3,
+        sizes = {"curvature": self.n_joints, "muscle": self.n_joints, "flow": self.sensors.size,
+                 "pressure": 2 * self.n_sensors, "goal": 3,
                  "neighbours": 4 * (self.n_fish - 1), "action": len(self.actions)}
         return sizes.get(name, 2)
 
@@ -246,6 +250,10 @@ class _Swimmer:
         velocity = self.run.flow(self.event("x")[self.fish, 0] + turned)[0]
         return (velocity @ np.array([[c, -s], [s, c]])).ravel() / self.length
 
+    def _see_pressure(self):
+        pressure = [self.event(f"sensor_pressure_{side}")[self.fish, : self.n_sensors] for side in ("left", "right")]
+        return np.ravel(pressure, order="F") / (self.density * self.length**2)
+
     def _see_neighbours(self):
         c, s = self._cos, self._sin
         com, velocity = self.event("com"), self.event("com_velocity")
@@ -260,6 +268,7 @@ class _Swimmer:
         "curvature": (lambda self: self.event("curvature")[self.fish, : self.n_joints], 20),
         "muscle": (lambda self: self.event("natural_curvature")[self.fish, : self.n_joints], 20),
         "flow": (_see_flow, 20),
+        "pressure": (_see_pressure, 100),
         "goal": (_see_goal, 1000),
         "closing": (_see_closing, 20),
         "neighbours": (_see_neighbours, 1000),

@@ -481,6 +481,8 @@ static void check_pressure(const struct check *check) {
         complain_if(fish->span == SPAN_FINITE, check, "fish.pressure.span", only_pressure);
         complain_if(is_given(check, suction), check, suction, only_pressure);
         complain_if(is_given(check, limit), check, limit, only_pressure);
+        complain_if(fish->sensors.n > 0, check, "fish.sensors",
+                    "needs the pressure on the body: use 'force: pressure'");
         return;
     }
 
@@ -493,6 +495,9 @@ static void check_pressure(const struct check *check) {
                 "has no effect with 'force: pressure': remove the key");
     check_span(check);
     check_gust_points(check);
+    complain_if(fish->sensors.n > 0 && (fabs(school->fluid.shear) > 0 || school->fluid.gust_profile != GUST_UNIFORM),
+                check, "fish.sensors",
+                "the pressure on a side needs a stream with a potential: remove fluid.shear and fluid.gust.profile");
     complain_if(has_moment(&fish->control), check, "fish.control.feedforward",
                 "is the moment of the drag, which differs from the moment of the pressure: use 0");
 }

@@ -508,6 +508,11 @@ const struct key case_table[] = {
      .meaning = "force pressure: A_0 above which the flow at the nose separates, 0.11 (sharp nose, low Reynolds "
                 "number) to 0.25 (round nose, high); 0: no limit",
      .synonyms = "lesp critical a0 leading_edge"},
+    {"fish.sensors", NUMBERS, IN_FISH(sensors), "[]", FROM_TO(0, 1), "",
+     .meaning =
+         "force pressure: places of a lateral line, as fractions of the length from the nose; the result has the "
+         "pressure on both sides of the body there",
+     .synonyms = "lateral_line sensor probes"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},

@@ -113,14 +113,17 @@ struct fish {
     double form, waving;     /* K_form, K_w of a boundary layer */
 
     /* force: pressure */
-    double fluid_density;              /* kg m-3 */
-    double full_suction;               /* pi rho_f w L: of the nose, over velocity squared, kg m-1 */
-    double suction;                    /* full_suction S, kg m-1 */
-    double suction_limit;              /* A_c; 0: none */
-    double nose_factor;                /* (M-1) ds_0/(pi L): qhat over the unknown at the nose, 1 */
-    double *control_density;           /* density of the fluid times depth, kg m-2         (n_control) */
-    double *control_interval;          /* u of the interval around a control point, 1      (n_control) */
-    struct tangent nose_tangent;       /* the direction of the body at the nose */
+    double fluid_density;        /* kg m-3 */
+    double full_suction;         /* pi rho_f w L: of the nose, over velocity squared, kg m-1 */
+    double suction;              /* full_suction S, kg m-1 */
+    double suction_limit;        /* A_c; 0: none */
+    double nose_factor;          /* (M-1) ds_0/(pi L): qhat over the unknown at the nose, 1 */
+    double *control_density;     /* density of the fluid times depth, kg m-2         (n_control) */
+    double *control_interval;    /* u of the interval around a control point, 1      (n_control) */
+    struct tangent nose_tangent; /* the direction of the body at the nose */
+    int n_sensors;
+    double *sensor;                    /* fractions of the length                                  (n_sensors) */
+    double nose_radius;                /* h^2/(2 L) with the largest thickness h, m */
     struct sheet_integrals *integrals; /* NULL with other forces, unless there are rings */
 
     /* rings: section 18 */

@@ -591,6 +591,19 @@ static void fluid_set(struct school *school, const struct school_parameters *par
     school->contact_range = parameters->contact.range * longest;
 }
 
+// sensors, and the nose of an ellipse of the largest thickness
+static enum status sensors_set(struct fish *fish, const struct number_list *sensors) {
+    double largest = 0;
+    for (int k = 0; k < fish->n_edges; k++) largest = fmax(largest, fish->thickness[k]);
+    fish->nose_radius = largest * largest / (2 * fish->length);
+
+    if (sensors->n == 0) return STATUS_OK;
+    TRY(MEMORY_NEW(fish->sensor, sensors->n, "the sensors of a fish"));
+    memcpy(fish->sensor, sensors->value, (size_t)sensors->n * sizeof *fish->sensor);
+    fish->n_sensors = sensors->n;
+    return STATUS_OK;
+}
+
 // the vortices of a street along a direction, upstream first: the even ones in the row on the left
 static void street_set(const struct street_parameters *street, const double along[2], double *vortices) {
     for (int i = 0; i < street->n; i++) {
@@ -656,6 +669,7 @@ enum status fish_school_create(struct school **school, const struct school_param
         status = fish_fill(&new->fish[f], parameters, &parameters->fish[f]);
         if (status != STATUS_OK) goto failed;
         struct fish *const fish = &new->fish[f];
+        if (sensors_set(fish, &parameters->fish[f].sensors) != STATUS_OK) goto failed;
         const int n_momenta = fish->force == FORCE_PRESSURE ? fish->n_nodes : 0;
         fish->at = layout_after(new->n_unknowns, fish->n_nodes, n_momenta, fish->n_sheet);
         const double rate = fish_rate(new, fish);
@@ -715,6 +729,7 @@ void fish_school_free(struct school *school) {
                                fish->far_by_node,
                                fish->point_by_far,
                                fish->control_widening,
+                               fish->sensor,
                                fish->control.heading_time,
                                fish->control.heading,
                                fish->control.waypoint_x,

@@ -147,10 +147,11 @@ struct fish_parameters {
     int nodes, reference_nodes, sheet_points;
     struct body_parameters body;
     struct wave_parameters wave;
-    enum force force;     /* of the fluid on the body */
-    enum span span;       /* force: pressure: span model of the sheet strip */
-    double suction;       /* force: pressure: fraction of the leading-edge suction */
-    double suction_limit; /* force: pressure: largest leading-edge parameter with attached flow; 0: no limit */
+    enum force force;           /* of the fluid on the body */
+    enum span span;             /* force: pressure: span model of the sheet strip */
+    double suction;             /* force: pressure: fraction of the leading-edge suction */
+    double suction_limit;       /* force: pressure: largest leading-edge parameter with attached flow; 0: no limit */
+    struct number_list sensors; /* force: pressure: fractions of the body length with the pressure in the result */
     struct drag_parameters drag;
     struct added_mass_parameters added_mass;
     double start_position[2]; /* m */

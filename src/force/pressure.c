@@ -33,6 +33,10 @@ enum status pressure_create(struct pressure **pressure, const struct fish *fish)
     if (status == STATUS_OK) status = MEMORY_NEW(new->share, fish->n_control * n, "the pressure on a fish");
     if (status == STATUS_OK) status = MEMORY_NEW(new->spread, 2 * fish->n_control, "the pressure on a fish");
     if (status == STATUS_OK) status = MEMORY_NEW(new->point, fish->n_control, "the pressure on a fish");
+    for (int i = 0; i < 2 && status == STATUS_OK && fish->n_sensors > 0; i++) {
+        status = MEMORY_NEW(new->sensor[i], fish->n_sensors, "the sensors of a fish");
+    }
+
     if (status != STATUS_OK) {
         pressure_free(new);
         return status;
@@ -60,6 +64,7 @@ void pressure_free(struct pressure *pressure) {
     free(pressure->at_points);
     free(pressure->share);
     free(pressure->point);
+    for (int i = 0; i < 2; i++) free(pressure->sensor[i]);
     free(pressure);
 }
 
@@ -440,12 +445,11 @@ static double tail_kink(const struct fish *fish, const double *y) {
     return fish->sheet_weight[last - 1] * strength[last - 1] - 2 * fish->sheet_weight[last] * strength[last];
 }
 
-// depth of the strip at control point c
-static double pressure_strip_depth_at(const struct fish *fish, int c) {
+double pressure_strip_depth_at(const struct fish *fish, int c) {
     return 4 * sqrt(2 * fish->point_half[c]);
 }
 
-double pressure_jump(const struct pressure *p, int c, const double *y, const double *yp) {
+struct pressure_sheet pressure_sheet_at(const struct pressure *p, int c, const double *y, const double *yp) {
     const struct fish *fish = p->fish;
     const double *const circulation = fish->integrals->circulation + c;
     const struct pressure_point *const point = &p->point[c];
@@ -459,12 +463,20 @@ double pressure_jump(const struct pressure *p, int c, const double *y, const dou
     }
 
     const double around = point->circulation + fish->integrals->kink_strength[c] * tail_kink(fish, y);
-    const double jump = rate + around / length * slip_along(point);
-    if (!(fish->strip_depth > 0)) return fish->fluid_density * jump;
+    struct pressure_sheet sheet = {rate, around / length, slip_along(point), 0};
+    if (!(fish->strip_depth > 0)) return sheet;
     const double before =
         point->before / fish->control_density[c] + fish->integrals->kink_circulation[c] * tail_kink(fish, y);
-    return fish->fluid_density * fish->strip_depth / pressure_strip_depth_at(fish, c) *
-           (jump + before * point->divergence);
+    sheet.spanwise = before * point->divergence;
+    return sheet;
+}
+
+double pressure_jump(const struct pressure *p, int c, const double *y, const double *yp) {
+    const struct fish *fish = p->fish;
+    const struct pressure_sheet sheet = pressure_sheet_at(p, c, y, yp);
+    const double jump = sheet.rate + sheet.strength * sheet.slip;
+    if (!(fish->strip_depth > 0)) return fish->fluid_density * jump;
+    return fish->fluid_density * fish->strip_depth / pressure_strip_depth_at(fish, c) * (jump + sheet.spanwise);
 }
 
 void pressure_of_edge(const struct pressure *p, int k, const double *y, const double *yp, double force[2]) {

@@ -18,11 +18,12 @@
 /* A control point. circulation: of the interval around the point, m2 s-1; strength: circulation times density and
  * depth, kg s-1; slip: velocity of the fluid relative to the body, m s-1; body: tangent and normal. With rings: before:
  * density times depth times the circulation between nose and point, kg s-1; divergence: div u, s-1; edge: a of the edge
- * force times b db/du du, m2 s-1. */
+ * force times b db/du du, m2 s-1. potential_rate: Phi of the sensors, m2 s-2, set by skin_update. */
 struct pressure_point {
     double circulation, strength, slip[2];
     struct direction body;
     double before, divergence, edge[2];
+    double potential_rate;
 };
 
 /* Pressure force on one fish at the last pressure_update. Order of pairs: x of all nodes, then y. */
@@ -42,6 +43,7 @@ struct pressure {
     struct pressure_point *point; /* (n_control) */
     /* workspace: a product with R; values at the control points; forces at the control points */
     double *product, *at_points, *spread;
+    double *sensor[2]; /* pressure on the left and right side of the fish, Pa: set by skin_update   (n_sensors) */
 };
 
 /* Suction at the nose over S pi rho_f w L, with its derivatives. full: attached flow, qhat^2; bound: the maximum for
@@ -87,6 +89,16 @@ void pressure_flow_jacobian(const struct pressure *pressure, const struct influe
 
 /* Update momentum_rate from the rates yp of positions and strengths. */
 void pressure_update_rate(struct pressure *pressure, const double *y, const double *yp);
+
+/* After pressure_update_rate: the sheet at control point c, with the kink at the tail. rate: dC/dt, m2 s-2; strength:
+ * gamma, m s-1; slip: velocity of the fluid along the body relative to the body, m s-1; spanwise: with rings C div u,
+ * m2 s-2. With rings rate, strength and spanwise are those of a strip of the depth w_L: times w_L over the depth at the
+ * point, pressure_strip_depth_at, m. */
+struct pressure_sheet {
+    double rate, strength, slip, spanwise;
+};
+struct pressure_sheet pressure_sheet_at(const struct pressure *pressure, int c, const double *y, const double *yp);
+double pressure_strip_depth_at(const struct fish *fish, int c);
 
 /* After pressure_update_rate: pressure jump at control point c, left minus right, Pa. The jump includes the kink of the
  * sheet at the tail and vanishes at the tail. */

@@ -23,6 +23,7 @@ void result_values_lengths(const struct school *school, int n_vortices, size_t l
     length[FISH] = (size_t)school->n_fish;
     length[VORTEX] = (size_t)n_vortices;
     length[XY] = 2;
+    length[SENSOR] = 0;
     length[WALL] = (size_t)school->walls.n;
     length[MULTIPLIER] = STEADY_QUANTITIES * (size_t)school->n_fish;
 
@@ -32,6 +33,7 @@ void result_values_lengths(const struct school *school, int n_vortices, size_t l
             const size_t of_fish = (size_t)result_table_length(fish, d);
             if (of_fish > length[d]) length[d] = of_fish;
         }
+        if ((size_t)fish->n_sensors > length[SENSOR]) length[SENSOR] = (size_t)fish->n_sensors;
         const size_t n_name = strlen(fish->name);
         if (n_name > length[NAME]) length[NAME] = n_name;
     }
@@ -71,7 +73,7 @@ static void fill_slots(const struct result_variable *variable, const struct resu
         n = last == NAME ? strlen(value) : (size_t)result_table_length(&row->school->fish[f], last);
     }
 
-    memcpy(slots, value, n * result_values_size(variable->type));
+    if (n > 0) memcpy(slots, value, n * result_values_size(variable->type));
 }
 
 void result_values_fill(const struct result_variable *variable, const size_t *length, const struct result_row *row,
@@ -168,6 +170,7 @@ static enum status copy_all(struct copying *copying) {
         for (int i = 0; i < result_table_n; i++) {
             const struct result_variable *const variable = &result_table[i];
             if (variable->forces > target->forces || !result_table_has(variable, TIME)) continue;
+            if (result_table_has(variable, SENSOR) && target->length[SENSOR] == 0) continue;
             TRY(copy_row(copying, i, row));
         }
     }
@@ -292,6 +295,7 @@ struct result_file {
 /* True if a variable is in the file. */
 static bool file_is_written(const struct result_file *result, const struct result_variable *variable) {
     if (result_table_has(variable, WALL) && result->length[WALL] == 0) return false;
+    if (result_table_has(variable, SENSOR) && result->length[SENSOR] == 0) return false;
     return variable->forces <= result->forces && (result->is_steady || !variable->of_steady);
 }
 
@@ -332,6 +336,9 @@ static const char *coordinates_of(const struct result_variable *variable) {
     if (result_table_has(variable, SHEET) && strcmp(variable->name, "sheet_arc") != 0) return "fish_name sheet_arc";
     if (result_table_has(variable, CONTROL) && strcmp(variable->name, "control_arc") != 0) {
         return "fish_name control_arc";
+    }
+    if (result_table_has(variable, SENSOR) && strcmp(variable->name, "sensor_place") != 0) {
+        return "fish_name sensor_place";
     }
     return "fish_name";
 }

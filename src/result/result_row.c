@@ -91,6 +91,19 @@ void result_row_pressure(const struct result_row *row, int f, double *slots) {
     for (int c = 0; pressure && c < n; c++) slots[c] = pressure_jump(pressure, c, row->state->y, row->state->yp);
 }
 
+static void sensor_pressure(const struct result_row *row, int f, int side, double *slots) {
+    const struct pressure *const pressure = row->residual->pressure[f];
+    if (pressure) copy_values(row->school->fish[f].n_sensors, pressure->sensor[side], slots);
+}
+
+void result_row_sensor_left(const struct result_row *row, int f, double *slots) {
+    sensor_pressure(row, f, 0, slots);
+}
+
+void result_row_sensor_right(const struct result_row *row, int f, double *slots) {
+    sensor_pressure(row, f, 1, slots);
+}
+
 // ---- forces on the edges
 
 enum named_force { RESISTIVE, REACTIVE };

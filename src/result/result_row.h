@@ -73,6 +73,8 @@ void result_row_wake_circulation(const struct result_row *row, int f, double *sl
 void result_row_wake_birth(const struct result_row *row, int f, double *slots);
 void result_row_control_arc(const struct result_row *row, int f, double *slots);
 void result_row_pressure(const struct result_row *row, int f, double *slots);
+void result_row_sensor_left(const struct result_row *row, int f, double *slots);
+void result_row_sensor_right(const struct result_row *row, int f, double *slots);
 void result_row_edge_resistive_force(const struct result_row *row, int f, double *slots);
 void result_row_edge_reactive_force(const struct result_row *row, int f, double *slots);
 void result_row_edge_pressure_force(const struct result_row *row, int f, double *slots);

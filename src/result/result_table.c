@@ -67,6 +67,8 @@ const struct result_variable result_table[] = {
      .long_name = "arc coordinate of the bound vortices, from the nose"},
     {"control_arc",           {FISH, CONTROL},        RESULT_REAL,    "m",      GATHERED(result_row_control_arc),
      .long_name = "arc coordinate of the control points, from the nose"},
+    {"sensor_place",          {FISH, SENSOR},         RESULT_REAL,    "1",      ARRAY_IN_FISH(sensor),
+     .long_name = "place of the sensors: distance from the nose over the length; in the files of cases with sensors"},
     {"sheet_weight",          {FISH, SHEET},          RESULT_REAL,    "m",      ARRAY_IN_FISH(sheet_weight),
      .long_name = "natural length of body per bound vortex"},
     {"fluid_density",         {NONE},                 RESULT_REAL,    "kg m-3", IN_SCHOOL(density),
@@ -321,7 +323,13 @@ const struct result_variable result_table[] = {
      GATHERED(result_row_edge_pressure_force), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "force of the pressure on every edge; with output.forces: edges only"},
     {"pressure",              {TIME, FISH, CONTROL},  RESULT_BULK,    "Pa",     GATHERED(result_row_pressure),
-     .long_name = "pressure jump across the body at the control points, left less right; NaN unless force: pressure"},
+     .long_name = "pressure jump at control points, left less right seen from the nose; NaN unless force: pressure"},
+    {"sensor_pressure_left",  {TIME, FISH, SENSOR},   RESULT_REAL,    "Pa",
+     GATHERED(result_row_sensor_left),
+     .long_name = "pressure on the left side of the body at the sensors, less the pressure of the undisturbed stream"},
+    {"sensor_pressure_right", {TIME, FISH, SENSOR},   RESULT_REAL,    "Pa",
+     GATHERED(result_row_sensor_right),
+     .long_name = "pressure on the right side of the body at the sensors, less the pressure of the undisturbed stream"},
     {"leading_edge_a0",       {TIME, FISH},           RESULT_REAL,    "1",
      IN_FISH_DIAGNOSTICS(pressure.leading_edge_a0),
      .long_name = "leading-edge suction parameter A_0 of the flow past the nose; NaN unless force: pressure"},
@@ -370,7 +378,7 @@ _Static_assert(sizeof result_table / sizeof *result_table <= RESULT_TABLE_MAX, "
 
 const char *result_table_dimension(enum result_dimension dimension) {
     static const char *const name[] = {"",        "time",   "fish", "node", "edge",       "joint", "sheet",
-                                       "control", "vortex", "xy",   "name", "multiplier", "wall"};
+                                       "control", "vortex", "xy",   "name", "multiplier", "wall",  "sensor"};
     return name[dimension];
 }
 
@@ -387,6 +395,7 @@ int result_table_length(const struct fish *fish, enum result_dimension dimension
         case JOINT: return fish->n_joints;
         case SHEET: return fish->n_sheet;
         case CONTROL: return fish->n_control;
+        case SENSOR: return fish->n_sensors;
         default: return 1;
     }
 }

@@ -31,6 +31,7 @@ enum result_dimension {
     NAME,
     MULTIPLIER,
     WALL,
+    SENSOR,
     RESULT_N_DIMENSIONS
 };
 enum { RESULT_MAX_DIMENSIONS = 4 };

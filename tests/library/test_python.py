@@ -673,6 +673,18 @@ class Environments(unittest.TestCase):
         np.testing.assert_allclose(seen[:3], [*away, np.hypot(*away)], rtol=1e-6)
         np.testing.assert_allclose(seen[3:5], -(com[0] - com[1]), rtol=1e-6)
 
+    def test_the_pressure_on_both_sides_is_that_at_the_sensors_of_the_case(self):
+        sensors = {"fish[1].force": "pressure", "fish[1].sensors": [0.1, 0.6]}
+        env = shoal.SwimEnv(PAIR, sensors, fish=1, observations=("pressure",), act_every=0.04)
+        env.reset(seed=1)
+        seen = env.step(env.action_space.sample())[0]
+        both = [env.run[f"sensor_pressure_{side}"][1] for side in ("left", "right")]
+        of_fish = float(env.run["fluid_density"]) * float(env.run["body_length"][1]) ** 2
+        np.testing.assert_allclose(seen, np.transpose(both).ravel() / of_fish, rtol=1e-6)
+        self.assertTrue(np.all(seen != 0))
+        with self.assertRaisesRegex(shoal.CaseError, "needs sensors in the case"):
+            shoal.SwimEnv(PAIR, fish=1, observations=("pressure",))
+
     def test_closing_is_how_fast_the_goal_comes_nearer(self):
         env = shoal.SwimEnv(PAIR, {"defaults.fish.start.speed": 0.5}, fish=1, observations=("closing",), act_every=0.08,
                             goal=("a", (0.2, 0.7)))

@@ -34,11 +34,14 @@ static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_na
     struct fixture *f = *state;
     f->values.output.forces = OUTPUT_FORCES_EDGES;
     f->school->walls = (struct walls){2, {-7, 8}, {1, -1}};
+    f->school->fish[1].n_sensors = 2;
+    f->school->fish[1].sensor = (double[2]){0.25, 0.5};
     struct result_file *result;
     assert_int_equal(result_file_create_steady(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10),
                      STATUS_OK);
     assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
     assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+    f->school->fish[1].sensor = NULL;
     const int file = open_to_read(f);
     for (int i = 0; i < result_table_n; i++) {
         const struct result_variable *variable = &result_table[i];
@@ -220,6 +223,29 @@ static void walls_are_there_where_the_case_has_them(void **state) {
         if (n > 0) assert_int_equal(length_of(file, "wall"), (size_t)n);
         for (size_t i = 0; i < (size_t)n; i++) {
             NEAR(value_at(file, "wall_y", i, 0, 0, 0), f->school->walls.y[i], 0, 0);
+        }
+        nc_close(file);
+        unlink(f->path);
+    }
+}
+
+static void sensors_are_there_where_the_case_has_them(void **state) {
+    struct fixture *f = *state;
+    double place[2] = {0.25, 0.5};
+    struct fish *const fish = &f->school->fish[1];
+    for (int n = 0; n <= 2; n += 2) {
+        fish->n_sensors = n;
+        fish->sensor = place;
+        write_file(f, 1);
+        fish->sensor = NULL;
+        const int file = open_to_read(f);
+        int number;
+        assert_int_equal(nc_inq_varid(file, "sensor_pressure_left", &number), n > 0 ? NC_NOERR : NC_ENOTVAR);
+        assert_int_equal(nc_inq_dimid(file, "sensor", &number), n > 0 ? NC_NOERR : NC_EBADDIM);
+        for (size_t i = 0; i < (size_t)n; i++) {
+            NEAR(value_at(file, "sensor_place", 1, i, 0, 0), place[i], 0, 0);
+            assert_true(isnan(value_at(file, "sensor_place", 0, i, 0, 0)));
+            assert_true(isnan(value_at(file, "sensor_pressure_right", 0, 1, i, 0)));
         }
         nc_close(file);
         unlink(f->path);
@@ -495,6 +521,7 @@ int main(void) {
         WITH_FILE(unused_slots_hold_nan),
         WITH_FILE(derived_quantities_have_their_names),
         cmocka_unit_test_setup_teardown(walls_are_there_where_the_case_has_them, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(sensors_are_there_where_the_case_has_them, set_up, tear_down),
         cmocka_unit_test(every_diagnostic_of_a_fish_has_a_variable),
         WITH_FILE(wake_is_oldest_first_and_can_be_left_out),
         WITH_FILE(single_precision_keeps_time_and_scalars_double),

@@ -31,6 +31,7 @@ static const struct {
                 {"pressure", verify_pressure},
                 {"depth", verify_depth},
                 {"encounters", verify_encounters},
+                {"skin", verify_skin},
                 {"elastic", verify_elastic},
                 {"coupled", verify_coupled},
                 {"steady", verify_steady},

@@ -27,6 +27,7 @@ void verify_control(void);
 void verify_pressure(void);
 void verify_depth(void);
 void verify_encounters(void);
+void verify_skin(void);
 void verify_elastic(void);
 void verify_coupled(void);
 void verify_steady(void);
