@@ -7,6 +7,7 @@
 #include "app/main_signals.h"
 #include "app/say.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "case/case.h"
 #include "case/sweep.h"
 #include "fish/fish_school.h"
@@ -144,11 +145,6 @@ static enum status check_case(struct checked *checked) {
 // ---- printing
 
 static void print_cost(const struct checked *checked) {
-    static const struct {
-        double seconds;
-        const char *name;
-    } units[] = {{86400, "days"}, {3600, "h"}, {60, "min"}, {0, "s"}};
-
     if (checked->n_failed > 0) {
         say_line(stdout, "    %d of %d members %s in the first events; member %d: %s\n", checked->n_failed,
                  checked->n_members, checked->n_failed == 1 ? "fails" : "fail", checked->first_failed,
@@ -161,12 +157,11 @@ static void print_cost(const struct checked *checked) {
         return;
     }
 
-    const double seconds = checked->seconds * (checked->n_members - checked->n_failed) / checked->n_estimated;
-    int i = 0;
-    while (seconds < 1.5 * units[i].seconds) i++;
-    printf("    %s about %.2g %s and %.2g MB on this machine%s: estimated from a few events",
-           is_study(checked) ? "the runs take" : "the run takes", seconds / fmax(units[i].seconds, 1), units[i].name,
-           1e-6 * checked->bytes, is_study(checked) ? ", one after the other" : "");
+    char duration[TEXT_DURATION_BYTES];
+    text_duration(duration, checked->seconds * (checked->n_members - checked->n_failed) / checked->n_estimated);
+    printf("    %s about %s and %.2g MB on this machine%s: estimated from a few events",
+           is_study(checked) ? "the runs take" : "the run takes", duration, 1e-6 * checked->bytes,
+           is_study(checked) ? ", one after the other" : "");
     if (checked->n_estimated + checked->n_failed < checked->n_members) printf(" of %d members", checked->n_estimated);
     printf(", often within a factor of two\n");
 }

@@ -147,6 +147,16 @@ bool text_number(const char *text, double *number) {
     return true;
 }
 
+void text_duration(char text[TEXT_DURATION_BYTES], double seconds) {
+    static const struct {
+        double seconds;
+        const char *name;
+    } units[] = {{86400, "days"}, {3600, "h"}, {60, "min"}, {0, "s"}};
+    int i = 0;
+    while (seconds < 1.5 * units[i].seconds) i++;
+    snprintf(text, TEXT_DURATION_BYTES, "%.2g %s", seconds / fmax(units[i].seconds, 1), units[i].name);
+}
+
 void text_print_base64(FILE *stream, size_t n, const void *bytes) {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const unsigned char *const from = bytes;

@@ -47,6 +47,10 @@ bool text_contains(const char *text, const char *word);
  * string is not a number; nan, inf and hexadecimal digits are no numbers. */
 bool text_number(const char *text, double *number);
 
+/* Write a duration with two digits in the best unit from s to days: "12 min". */
+enum { TEXT_DURATION_BYTES = 32 };
+void text_duration(char text[TEXT_DURATION_BYTES], double seconds);
+
 /* Write n bytes to a stream in base 64 (RFC 4648, with padding), for files that hold numbers in the middle of text. A
  * failure sets the error indicator of the stream (ferror). */
 void text_print_base64(FILE *stream, size_t n, const void *bytes);

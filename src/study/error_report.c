@@ -68,18 +68,9 @@ static enum status report_estimate_member(const struct error_study *study, int m
 }
 
 static void print_duration(double seconds, FILE *stream) {
-    static const struct {
-        double seconds;
-        const char *name;
-    } units[] = {{86400, "days"}, {3600, "h"}, {60, "min"}, {0, "s"}};
-    if (!(seconds > 0.05)) {
-        fprintf(stream, "0.1 s");
-        return;
-    }
-
-    int i = 0;
-    while (seconds < 1.5 * units[i].seconds) i++;
-    fprintf(stream, "%.2g %s", seconds / fmax(units[i].seconds, 1), units[i].name);
+    char text[TEXT_DURATION_BYTES];
+    text_duration(text, seconds > 0.05 ? seconds : 0.1);
+    fputs(text, stream);
 }
 
 enum status error_report_plan(const struct error_study *study, int n_processes, FILE *stream) {

@@ -100,6 +100,61 @@ static void the_locale_does_not_matter(void **state) {
     text_free(&text);
 }
 
+static void the_string_of_a_text_is_taken_or_lack_of_memory_reported(void **state) {
+    (void)state;
+    char *string;
+    struct text text = {0};
+    assert_int_equal(text_take(&text, &string, "a path"), STATUS_OK);
+    assert_string_equal(string, "");
+    free(string);
+    text_add(&text, "%s.nc", "run");
+    assert_int_equal(text_take(&text, &string, "a path"), STATUS_OK);
+    assert_string_equal(string, "run.nc");
+    assert_null(text.text);
+    free(string);
+    n_until_failure = 0;
+    text_add(&text, "run");
+    n_until_failure = -1;
+    assert_int_equal(text_take(&text, &string, "a path"), STATUS_MEMORY);
+    assert_null(string);
+    assert_string_equal(status_message(), "out of memory: a path");
+}
+
+static void a_duration_has_at_least_one_and_a_half_units(void **state) {
+    (void)state;
+    static const struct {
+        double seconds;
+        const char *want;
+    } durations[] = {{0.02, "0.02 s"}, {89, "89 s"}, {90, "1.5 min"}, {5400, "1.5 h"}, {129600, "1.5 days"}};
+    for (int i = 0; i < 5; i++) {
+        char text[TEXT_DURATION_BYTES];
+        text_duration(text, durations[i].seconds);
+        assert_string_equal(text, durations[i].want);
+    }
+}
+
+static void columns_are_aligned_without_blanks_at_the_end(void **state) {
+    (void)state;
+    struct text_table table;
+    assert_int_equal(text_table_create(&table, 2, 3), STATUS_OK);
+    table.n_left = 1;
+    text_table_set(&table, 0, 0, "speed of %d", 2);
+    text_table_number(&table, 0, 1, "%.1f", 1.25);
+    text_table_set(&table, 0, 2, "m s-1");
+    text_table_set(&table, 1, 0, "cost");
+    text_table_number(&table, 1, 1, "%.3f", NAN);
+    char written[64] = "";
+    FILE *const stream = fmemopen(written, sizeof written, "w");
+    assert_non_null(stream);
+    text_table_print(&table, stream);
+    fclose(stream);
+    assert_string_equal(written, "speed of 2  1.2  m s-1\ncost          -\n");
+    text_table_free(&table);
+    n_until_failure = 0;
+    assert_int_equal(text_table_create(&table, 2, 3), STATUS_MEMORY);
+    n_until_failure = -1;
+}
+
 static void a_string_of_json_has_no_bare_quote_or_control_character(void **state) {
     (void)state;
     char written[64] = "";
@@ -144,6 +199,9 @@ int main(void) {
         cmocka_unit_test(a_number_is_written_with_no_more_digits_than_needed),
         cmocka_unit_test(a_text_that_lacks_memory_says_so_and_stays_as_it_was),
         cmocka_unit_test(the_locale_does_not_matter),
+        cmocka_unit_test(the_string_of_a_text_is_taken_or_lack_of_memory_reported),
+        cmocka_unit_test(a_duration_has_at_least_one_and_a_half_units),
+        cmocka_unit_test(columns_are_aligned_without_blanks_at_the_end),
         cmocka_unit_test(a_string_of_json_has_no_bare_quote_or_control_character),
         cmocka_unit_test(the_examples_of_the_standard),
     };
