@@ -114,28 +114,22 @@ void main_print_help(const struct command *command, FILE *stream) {
     }
 }
 
-/* A member of an object of JSON: a string, or null. */
-static void options_print_string(FILE *stream, const char *before, const char *name, const char *string) {
-    fprintf(stream, "%s\"%s\": ", before, name);
-    text_print_json(stream, string);
-}
-
 static void describe_option(const struct command *command, const struct option_help *option, FILE *stream) {
     const char letter[2] = {option->code < OPTION_SET ? (char)option->code : '\0', '\0'};
     struct text meaning = {0};
     write_meaning(command, option, &meaning);
-    options_print_string(stream, "{", "letter", *letter ? letter : NULL);
-    options_print_string(stream, ", ", "name", option->name);
-    options_print_string(stream, ", ", "argument", option->argument);
-    options_print_string(stream, ", ", "meaning", meaning.text ? meaning.text : "");
+    text_print_member(stream, "{", "letter", *letter ? letter : NULL);
+    text_print_member(stream, ", ", "name", option->name);
+    text_print_member(stream, ", ", "argument", option->argument);
+    text_print_member(stream, ", ", "meaning", meaning.text ? meaning.text : "");
     fputs("}", stream);
     text_free(&meaning);
 }
 
 void main_describe(const struct command *command, FILE *stream) {
-    options_print_string(stream, "{", "name", command->name);
-    options_print_string(stream, ", ", "positional", command->positional);
-    options_print_string(stream, ", ", "summary", command->summary);
+    text_print_member(stream, "{", "name", command->name);
+    text_print_member(stream, ", ", "positional", command->positional);
+    text_print_member(stream, ", ", "summary", command->summary);
     fputs(", \"options\": [", stream);
 
     for (int i = 0; command->options[i]; i++) {

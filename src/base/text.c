@@ -59,6 +59,11 @@ void text_print_json(FILE *stream, const char *string) {
     fputc('"', stream);
 }
 
+void text_print_member(FILE *stream, const char *before, const char *name, const char *string) {
+    fprintf(stream, "%s\"%s\": ", before, name);
+    text_print_json(stream, string);
+}
+
 void text_print_clean(FILE *stream, const char *string) {
     for (const unsigned char *c = (const unsigned char *)string; *c; c++) {
         // U+0080 to U+009F are control characters too

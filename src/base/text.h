@@ -26,6 +26,9 @@ void text_add_number(struct text *text, double number);
 /* Print a string of JSON with quotes; null if string is NULL. */
 void text_print_json(FILE *stream, const char *string);
 
+/* Print a member of an object of JSON after some text: BEFORE"NAME": string. */
+void text_print_member(FILE *stream, const char *before, const char *name, const char *string);
+
 /* Print a string with control characters escaped (\x1b), for terminals. Line breaks and tabs are unchanged. */
 void text_print_clean(FILE *stream, const char *string);
 

@@ -58,12 +58,6 @@ static int keys_print_text(FILE *stream, const char *about) {
     return n;
 }
 
-/* Print a member of an object of JSON: a string, or null. */
-static void keys_print_string(FILE *stream, const char *before, const char *name, const char *text) {
-    fprintf(stream, "%s\"%s\": ", before, name);
-    text_print_json(stream, text);
-}
-
 static int keys_print_json(FILE *stream, const char *about) {
     int n = 0;
     for (int k = 0; k < case_table_n; k++) {
@@ -72,19 +66,19 @@ static int keys_print_json(FILE *stream, const char *about) {
         struct text range = {0};
         case_table_range(key, &range);
         fprintf(stream, "%s{\"path\": \"%s\"", n++ > 0 ? ",\n " : "[", key->path);
-        keys_print_string(stream, ", ", "type", case_table_type(key));
-        keys_print_string(stream, ", ", "default", key->initial);
-        keys_print_string(stream, ", ", "derived", key->derived);
-        keys_print_string(stream, ", ", "published", key->published);
-        keys_print_string(stream, ", ", "range", range.text ? range.text : "");
-        keys_print_string(stream, ", ", "unit", key->unit);
-        keys_print_string(stream, ", ", "meaning", key->meaning);
+        text_print_member(stream, ", ", "type", case_table_type(key));
+        text_print_member(stream, ", ", "default", key->initial);
+        text_print_member(stream, ", ", "derived", key->derived);
+        text_print_member(stream, ", ", "published", key->published);
+        text_print_member(stream, ", ", "range", range.text ? range.text : "");
+        text_print_member(stream, ", ", "unit", key->unit);
+        text_print_member(stream, ", ", "meaning", key->meaning);
 
         // "words": the meaning of each method
         for (int i = 0; i < methods_n && key->type == METHOD; i++) {
             char text[METHOD_BYTES];
             describe_method(&methods_table[i], text, sizeof text);
-            keys_print_string(stream, i > 0 ? ", " : ", \"words\": {", methods_table[i].word, text);
+            text_print_member(stream, i > 0 ? ", " : ", \"words\": {", methods_table[i].word, text);
         }
         if (key->type == METHOD) fprintf(stream, "}");
 

@@ -101,17 +101,6 @@ static enum status change_apply(const struct change *change, const struct school
     return STATUS_OK;
 }
 
-/* Replace the newest sample of each fish; discard all earlier samples of a fish with new positions. */
-static void change_samples(const struct simulation *simulation, const struct change *change) {
-    struct state *const state = simulation->state;
-    for (int f = 0; f < simulation->school->n_fish; f++) {
-        struct history *const history = &state->history[f];
-        history->n = change->position && f == change->fish ? 0 : history->n - (history->n > 0);
-        history->last = (history->last + history->capacity - 1) % history->capacity;
-    }
-    diagnostics_remember(simulation->residual, state);
-}
-
 // evaluate the forces of images again; the external impulse until this event is unchanged
 static enum status change_images(const struct simulation *simulation) {
     struct state *const state = simulation->state;
@@ -148,7 +137,15 @@ static enum status change_make(struct shoal *run, const struct change *change) {
     // make the state consistent, evaluate forces and samples again
     TRY(event_change(state, simulation->residual, simulation->consistent, !change->vortex));
     TRY(handle_evaluate(simulation));
-    change_samples(simulation, change);
+
+    // replace the newest sample of each fish; discard all earlier samples of a fish with new positions
+    for (int f = 0; f < simulation->school->n_fish; f++) {
+        struct history *const history = &state->history[f];
+        history->n = change->position && f == change->fish ? 0 : history->n - (history->n > 0);
+        history->last = (history->last + history->capacity - 1) % history->capacity;
+    }
+    diagnostics_remember(simulation->residual, state);
+
     TRY(change_images(simulation));
     diagnostics_after_jump(simulation->residual, state);
 

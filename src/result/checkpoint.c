@@ -55,19 +55,6 @@ static char *checkpoint_number_of(struct checkpoint *checkpoint, int i) {
 
 // ---- writing
 
-static void add_state(struct sections_writer *writer, const struct state *state, const struct school *school) {
-    for (int i = 0; i < state_table_n; i++) {
-        const struct state_row *const row = &state_table[i];
-        if (row->type == STATE_UNKEPT) continue;
-        sections_open(writer, row->name);
-        for (int f = 0; f < state_table_n_owners(row, school); f++) {
-            const size_t bytes = state_table_length(row, state, school, f) * state_table_size(row);
-            sections_add(writer, state_table_values(row, state, f), bytes);
-        }
-        sections_close(writer);
-    }
-}
-
 enum status checkpoint_write(const char *path, const char *previous, const struct checkpoint *checkpoint,
                              const struct state *state, const struct school *school) {
     char program[VERSION_LENGTH], libraries[VERSION_LENGTH], processor[VERSION_LENGTH];
@@ -93,7 +80,18 @@ enum status checkpoint_write(const char *path, const char *previous, const struc
         sections_close(&writer);
     }
 
-    add_state(&writer, state, school);
+    // write the state, row by row of the table
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        if (row->type == STATE_UNKEPT) continue;
+        sections_open(&writer, row->name);
+        for (int f = 0; f < state_table_n_owners(row, school); f++) {
+            const size_t bytes = state_table_length(row, state, school, f) * state_table_size(row);
+            sections_add(&writer, state_table_values(row, state, f), bytes);
+        }
+        sections_close(&writer);
+    }
+
     enum status status = sections_finish(&writer);
     if (status == STATUS_OK) status = durable_replace(path, previous, writer.bytes, writer.n);
     sections_free(&writer);

@@ -345,16 +345,6 @@ static uint64_t netcdf_read_list(struct header *header, enum tag expected) {
 
 // ---- the lists
 
-static void read_dimensions(struct header *header) {
-    header->n_dimensions = netcdf_read_list(header, DIMENSION);
-    if (header->n_dimensions > NC_MAX_DIMS) header->is_damaged = true;
-    for (uint64_t i = 0; i < header->n_dimensions && !header->is_damaged; i++) {
-        skip_name(header);
-        header->length[i] = netcdf_read_number(header, header->n_bytes);
-        if (header->length[i] > max_size) header->is_damaged = true;
-    }
-}
-
 static void skip_attributes(struct header *header) {
     const uint64_t n = netcdf_read_list(header, ATTRIBUTE);
     for (uint64_t i = 0; i < n && !header->is_damaged; i++) {
@@ -415,7 +405,16 @@ static void read_header(struct header *header) {
     header->version = magic[3];
     header->n_bytes = header->version == 5 ? 8 : 4;
     header->n_rows = netcdf_read_number(header, header->n_bytes);
-    read_dimensions(header);
+
+    // dimensions
+    header->n_dimensions = netcdf_read_list(header, DIMENSION);
+    if (header->n_dimensions > NC_MAX_DIMS) header->is_damaged = true;
+    for (uint64_t i = 0; i < header->n_dimensions && !header->is_damaged; i++) {
+        skip_name(header);
+        header->length[i] = netcdf_read_number(header, header->n_bytes);
+        if (header->length[i] > max_size) header->is_damaged = true;
+    }
+
     if (!header->is_damaged) skip_attributes(header);
     const uint64_t n_variables = header->is_damaged ? 0 : netcdf_read_list(header, VARIABLE);
     for (uint64_t i = 0; i < n_variables && !header->is_damaged; i++) read_variable(header);

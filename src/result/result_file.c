@@ -120,7 +120,14 @@ static size_t n_of_fish(const struct copying *copying, const struct result_varia
     return n;
 }
 
-static enum status file_read_row(const struct copying *copying, const struct result_variable *variable, long row) {
+static enum status copy_row(const struct copying *copying, int i, long row) {
+    const struct result_variable *const variable = &result_table[i];
+    const struct result_source *const source = copying->source;
+    const size_t from = n_of_fish(copying, variable, true), to = n_of_fish(copying, variable, false);
+    const size_t n_fish = result_table_has(variable, FISH) ? copying->target->length[FISH] : 1;
+    const bool drop = source->drop_last_wake && row == source->n_rows - 1 && result_table_has(variable, VORTEX);
+
+    // read the row
     struct netcdf_slice slice[RESULT_MAX_DIMENSIONS + 1] = {0};
     for (int d = 0; variable->dimension[d] != NONE; d++) {
         const enum result_dimension dimension = variable->dimension[d];
@@ -128,29 +135,19 @@ static enum status file_read_row(const struct copying *copying, const struct res
         slice[d].first = dimension == TIME ? (size_t)row : 0;
         slice[d].n = dimension == VORTEX ? copying->n_vortices : copying->target->length[dimension];
     }
-    return netcdf_read_doubles(&copying->reader, variable->name, slice, copying->read);
-}
+    TRY(netcdf_read_doubles(&copying->reader, variable->name, slice, copying->read));
 
-static void file_write_row(const struct copying *copying, int i, long row) {
-    const struct result_variable *const variable = &result_table[i];
-    const struct result_target *const target = copying->target;
-    size_t start[RESULT_MAX_DIMENSIONS] = {(size_t)row}, count[RESULT_MAX_DIMENSIONS];
-    for (int d = 0; variable->dimension[d] != NONE; d++) count[d] = target->length[variable->dimension[d]];
-    netcdf_write_doubles(target->writer, target->number[i], start, count, target->buffer);
-}
-
-static enum status copy_row(const struct copying *copying, int i, long row) {
-    const struct result_variable *const variable = &result_table[i];
-    const struct result_source *const source = copying->source;
-    const size_t from = n_of_fish(copying, variable, true), to = n_of_fish(copying, variable, false);
-    const size_t n_fish = result_table_has(variable, FISH) ? copying->target->length[FISH] : 1;
-    const bool drop = source->drop_last_wake && row == source->n_rows - 1 && result_table_has(variable, VORTEX);
-    TRY(file_read_row(copying, variable, row));
     for (size_t k = 0; k < n_fish * to; k++) copying->target->buffer[k] = NAN;
     for (size_t f = 0; f < n_fish && !drop; f++) {
         memcpy(copying->target->buffer + f * to, copying->read + f * from, (from < to ? from : to) * sizeof(double));
     }
-    file_write_row(copying, i, row);
+
+    // write the row
+    const struct result_target *const target = copying->target;
+    size_t start[RESULT_MAX_DIMENSIONS] = {(size_t)row}, count[RESULT_MAX_DIMENSIONS];
+    for (int d = 0; variable->dimension[d] != NONE; d++) count[d] = target->length[variable->dimension[d]];
+    netcdf_write_doubles(target->writer, target->number[i], start, count, target->buffer);
+
     return STATUS_OK;
 }
 

@@ -113,14 +113,6 @@ static enum status info_print_table(const struct info *info) {
 
 // ---- data of the school
 
-static enum status print_status(const struct info *info) {
-    char *run_status;
-    TRY(netcdf_read_string(info->reader, "run_status", &run_status));
-    fprintf(info->stream, "  status      %s\n", run_status);
-    free(run_status);
-    return STATUS_OK;
-}
-
 static enum status print_rows(const struct info *info) {
     const size_t n_missing = info->reader->n_missing;
     if (n_missing > 0) {
@@ -202,7 +194,11 @@ static enum status info_print_all(const struct netcdf_reader *reader, FILE *stre
     struct info info = {.reader = reader, .stream = stream};
     TRY(netcdf_read_length(reader, "time", 0, SIZE_MAX, &info.n_rows));
     TRY(netcdf_read_length(reader, "fish", 1, CASE_MAX_FISH, &info.n_fish));
-    TRY(print_status(&info));
+    char *run_status;
+    TRY(netcdf_read_string(info.reader, "run_status", &run_status));
+    fprintf(info.stream, "  status      %s\n", run_status);
+    free(run_status);
+
     TRY(print_rows(&info));
     TRY(info_print_table(&info));
     if (info.n_rows == 0) return STATUS_OK;
@@ -435,8 +431,7 @@ static enum status print_json_names(const struct netcdf_reader *reader, FILE *st
 }
 
 enum status result_json_steady(const struct netcdf_reader *reader, FILE *stream) {
-    fputs("{\"file\": ", stream);
-    text_print_json(stream, reader->path);
+    text_print_member(stream, "{", "file", reader->path);
     TRY(print_json_names(reader, stream));
 
     for (int i = 0; i < result_table_n; i++) {
@@ -458,8 +453,7 @@ static enum status print_json_attribute(const struct netcdf_reader *reader, cons
                                         FILE *stream) {
     char *text;
     TRY(netcdf_read_string(reader, attribute, &text));
-    fprintf(stream, ",\n  \"%s\": ", name);
-    text_print_json(stream, text);
+    text_print_member(stream, ",\n  ", name, text);
     free(text);
     return STATUS_OK;
 }
@@ -539,8 +533,7 @@ static enum status print_json_part(const struct netcdf_reader *reader, const str
 }
 
 enum status result_json_summary(const struct netcdf_reader *reader, const char *kind, FILE *stream) {
-    fputs("{\"file\": ", stream);
-    text_print_json(stream, reader->path);
+    text_print_member(stream, "{", "file", reader->path);
     fprintf(stream, ",\n  \"kind\": \"%s\"", kind);
     TRY(print_json_attribute(reader, "case", "title", stream));
     TRY(print_json_attribute(reader, "program", "source", stream));

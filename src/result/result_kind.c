@@ -79,11 +79,6 @@ enum status result_kind_name(int n_kinds, const struct result_kind *kinds, const
 
 // ---- the list of variables
 
-static void kind_print_text(const struct result_listed *listed, FILE *stream) {
-    fprintf(stream, "%-20s  (%s)%*s  %-6s  %s\n", listed->name, listed->dimensions,
-            22 - (int)strlen(listed->dimensions), "", listed->unit, listed->meaning);
-}
-
 static void kind_print_json(const char *kind, const struct result_listed *listed, FILE *stream) {
     fprintf(stream, "\n  {\"file\": \"%s\", \"name\": \"%s\", \"dimensions\": [", kind, listed->name);
     for (const char *word = listed->dimensions; *word; word += strspn(word, ", ")) {
@@ -111,7 +106,8 @@ int result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_j
                 fputs(n == 0 ? "[" : ",", stream);
                 kind_print_json(kinds[k].name, &listed, stream);
             } else if (is_file) {
-                kind_print_text(&listed, stream);
+                fprintf(stream, "%-20s  (%s)%*s  %-6s  %s\n", listed.name, listed.dimensions,
+                        22 - (int)strlen(listed.dimensions), "", listed.unit, listed.meaning);
             } else {
                 fprintf(stream, "%s: %s\n", listed.name, listed.meaning);
             }

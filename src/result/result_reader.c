@@ -54,15 +54,6 @@ static enum status read_lengths(struct result_reader *reader) {
     return status_fail(STATUS_FILE, "%s: the run has not written a row yet", reader->file.path);
 }
 
-static enum status read_names(struct result_reader *reader) {
-    reader->name = calloc(reader->length[FISH], sizeof *reader->name);
-    if (!reader->name) return reader_out_of_memory(&reader->file);
-    for (size_t f = 0; f < reader->length[FISH]; f++) {
-        TRY(result_reader_name(&reader->file, f, &reader->name[f]));
-    }
-    return STATUS_OK;
-}
-
 /* The counts of a variable over the fish, each from min to max. */
 static enum status read_counts(const struct result_reader *reader, const char *name, size_t min, size_t max,
                                int **counts) {
@@ -115,7 +106,13 @@ static enum status fill_reader(struct result_reader *reader) {
     TRY(read_walls(reader));
     TRY(netcdf_read_string(&reader->file, "title", &reader->title));
     TRY(netcdf_read_string(&reader->file, "run_status", &reader->run_status));
-    TRY(read_names(reader));
+
+    // names of the fish
+    TRY(MEMORY_NEW(reader->name, reader->length[FISH], reader->file.path));
+    for (size_t f = 0; f < reader->length[FISH]; f++) {
+        TRY(result_reader_name(&reader->file, f, &reader->name[f]));
+    }
+
     TRY(read_words(reader));
 
     // an outline needs the edges between the nodes

@@ -47,14 +47,6 @@ static void report_progress(const struct steady_problem *problem, void *data) {
 
 // ---- the values of the steady state
 
-static enum status values_allocate(struct run *run) {
-    const int n_fish = run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;
-    double **const arrays[] = {&run->found.real, &run->found.imaginary, &run->found.rate, &run->found.omega, &run->way};
-    run->found.growth = run->found.growth_frequency = NAN;
-    TRY(MEMORY_NEW(run->found.fish, n_fish, "the steady state"));
-    return memory_arrays(arrays, 5, n, "the steady state");
-}
-
 // distance between the speed and the speed of the fixed point, lengths per beat; 0 for a formation, which is solved for
 static double speed_distance(const struct run *run) {
     const struct steady_problem *const problem = &run->problem;
@@ -216,7 +208,11 @@ static enum status find_and_write(struct run *run) {
                   : steady_problem_create(&run->problem, &run->values->steady, run->simulation));
     run->problem.progress = report_progress;
     run->problem.data = run;
-    TRY(values_allocate(run));
+    const int n_fish = run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;
+    double **const arrays[] = {&run->found.real, &run->found.imaginary, &run->found.rate, &run->found.omega, &run->way};
+    run->found.growth = run->found.growth_frequency = NAN;
+    TRY(MEMORY_NEW(run->found.fish, n_fish, "the steady state"));
+    TRY(memory_arrays(arrays, 5, n, "the steady state"));
 
     // the largest number of events bounds the number of vortices in the file
     const long n_beats = run->values->steady.beats + run->values->steady.output_beats;

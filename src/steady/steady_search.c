@@ -249,17 +249,6 @@ static enum status solve_speed(struct search *search) {
     return STATUS_OK;
 }
 
-// the first beats: the muscle ramp ends and the wake grows
-static enum status settle_start(struct search *search) {
-    const struct steady_map *const map = &search->problem->map;
-    const struct school *const school = map->simulation->school;
-    double ramp = 0, change;
-    for (int f = 0; f < school->n_fish; f++) ramp = fmax(ramp, school->fish[f].ramp);
-    const int n_beats = (int)fmin(1e6, ceil(ramp / map->period * (1 - 1e-9))) + 2;
-    for (int i = 0; i < n_beats; i++) TRY(try_beat(search, speed_now(search), &change));
-    return STATUS_OK;
-}
-
 static enum status solve_fish(struct search *search) {
     if (search->n_tries-- > 0) return solve_speed(search);
     if (search->n_together-- <= 0) return STATUS_OK;
@@ -312,7 +301,14 @@ static enum status swim_freely(struct search *search, int *is_steady) {
 
 static enum status run_search(struct search *search) {
     struct steady_problem *const problem = search->problem;
-    TRY(settle_start(search));
+
+    // the first beats: the muscle ramp ends and the wake grows
+    const struct steady_map *const map = &search->problem->map;
+    const struct school *const school = map->simulation->school;
+    double ramp = 0, change;
+    for (int f = 0; f < school->n_fish; f++) ramp = fmax(ramp, school->fish[f].ramp);
+    const int n_beats = (int)fmin(1e6, ceil(ramp / map->period * (1 - 1e-9))) + 2;
+    for (int i = 0; i < n_beats; i++) TRY(try_beat(search, speed_now(search), &change));
 
     // solve for a common speed of a formation at the initial places first, then for all unknowns
     if (problem->map.is_formation) {
