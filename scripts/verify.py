@@ -189,7 +189,9 @@ the form of an incidence, so the suction, the only force along the plate, is the
 gust is Kuessner's function; s is the way of the middle of the step from the nose, in half lengths, and the step rises over
 a tenth of the length. *Vortex streets* (`wake.street`): the speed of a street in still fluid is von Karman's; the ends of
 a street are an error proportional to 1/N. A plate on the centre line, free along the stream, meets the gusts of all rows at
-the odd harmonics of the spacing; the suction of Sears' pressure accelerates the plate against the stream."""),
+the odd harmonics of the spacing; the suction of Sears' pressure accelerates the plate against the stream. A plate that is
+free in all directions heaves and pitches in a weak street as the equations of a rigid body with Wagner's lift, integrated by
+another program."""),
     "skin": ("Pressure on the skin", """\
 Pressure on both sides of a plate at `sensors` (model.md 15): beside a vortex that passes, against the complex potential
 of the vortices of the run outside the circle of the plate; held in an oscillating stream, against linear theory, whose

@@ -48,7 +48,8 @@ static const char *const cases[] = {
     "fish: [{motion: {prescribed: head, heave: 0.1, frequency: 2}, force: reactive, load: {tip: [0.1, 0]}}]\n",
     TIME
     "fluid: {velocity: [0.1, 0], gust: {profile: sine, amplitude: 0.2, wavelength: 0.6}}\n"
-    "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{force: pressure}]\n",
+    "wake: {shedding: sheet, street: {vortices: 5, spacing: 0.4, circulation: 0.1}}\nsheet: {curve: smooth}\n"
+    "fish: [{force: pressure, pressure: {span: infinite}}]\n",
 };
 enum { N_CASES = sizeof cases / sizeof *cases, N_BEFORE = 8, N_AFTER = 6 };
 

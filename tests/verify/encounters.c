@@ -174,9 +174,112 @@ static void drift(void) {
     simulate_free(simulation);
 }
 
+/* A free rigid plate meets a weak street: heave y and pitch p (slope of the plate) of linear theory, integrated in time
+ * by trapezoids. The lift of Wagner's function phi for changes of the downwash q at three quarters of the chord acts at
+ * the first quarter,
+ *
+ *     F = pi (int phi dq + 1/2 d/dt int v sin^2(theta) dtheta/pi)
+ *     q = int v (1 - cos theta) dtheta/pi - y' - p - p'/4
+ *     (m + pi/4) y'' = F - pi/4 p'          (I + pi/128) p'' = - F/4 - pi/16 p'
+ *
+ * with the velocity v of the street, which moves with the stream 1, across the plate at x = (1 - cos theta)/2. */
+enum { N_STEPS = 500, N_STREET = 12, N_PLACES = 40 };
+static const double step = 0.01, street_spacing = 2, street_ahead = 2, street_circulation = 0.002;
+
+struct free_plate {
+    double phi[N_STEPS + 1], downwash[N_STEPS + 1];
+    double mass, inertia;
+    double y[2], pitch[2]; /* value and rate */
+};
+
+static double street_middle(void) {
+    return -(N_STREET - 1) / 4.0 * street_spacing - street_ahead;
+}
+
+/* Sums over the chord: of v (1 - cos theta), and of the rate of v sin^2(theta) by a difference. */
+static void gust_of_street(double t, double *downwash, double *rate) {
+    const double h = acosh(sqrt(2)) / pi * street_spacing, dt = 1e-4;
+    *downwash = *rate = 0;
+    for (int i = 0; i < N_PLACES; i++) {
+        const double theta = pi * (i + 0.5) / N_PLACES, x = (1 - cos(theta)) / 2;
+        double v[3] = {0};
+        for (int k = 0; k < 3 * N_STREET; k++) {
+            const int n = k / 3, side = n % 2 == 0 ? 1 : -1;
+            const double ahead = street_middle() + (n - (N_STREET - 1) / 2.0) * street_spacing / 2;
+            const double r = x - ahead - (t + (k % 3 - 1) * dt);
+            v[k % 3] -= side * street_circulation * r / (r * r + h * h / 4) / (2 * pi);
+        }
+        *downwash += v[1] * (1 - cos(theta)) / N_PLACES;
+        *rate += (v[2] - v[0]) / (2 * dt) * sin(theta) * sin(theta) / N_PLACES;
+    }
+}
+
+/* Accelerations of heave and pitch at step n with these rates and this pitch. */
+static void accelerate(struct free_plate *plate, int n, const double y[2], const double pitch[2], double a[2]) {
+    double downwash, rate;
+    gust_of_street(n * step, &downwash, &rate);
+    plate->downwash[n] = downwash - y[1] - pitch[0] - pitch[1] / 4;
+    double lift = plate->downwash[0] * plate->phi[n] + rate / 2;
+    for (int i = 0; i < n; i++) {
+        lift += (plate->downwash[i + 1] - plate->downwash[i]) * (plate->phi[n - i] + plate->phi[n - i - 1]) / 2;
+    }
+    a[0] = pi * (lift - pitch[1] / 4) / (plate->mass + pi / 4);
+    a[1] = -pi * (lift / 4 + pitch[1] / 16) / (plate->inertia + pi / 128);
+}
+
+static void advance(struct free_plate *plate, int n) {
+    double before[2], after[2], y[2], pitch[2];
+    accelerate(plate, n, plate->y, plate->pitch, before);
+    for (int i = 0; i < 2; i++) after[i] = before[i];
+    for (int iteration = 0; iteration < 3; iteration++) {
+        y[1] = plate->y[1] + step * (before[0] + after[0]) / 2;
+        y[0] = plate->y[0] + step * (plate->y[1] + y[1]) / 2;
+        pitch[1] = plate->pitch[1] + step * (before[1] + after[1]) / 2;
+        pitch[0] = plate->pitch[0] + step * (plate->pitch[1] + pitch[1]) / 2;
+        accelerate(plate, n + 1, y, pitch, after);
+    }
+    for (int i = 0; i < 2; i++) {
+        plate->y[i] = y[i];
+        plate->pitch[i] = pitch[i];
+    }
+}
+
+static void free_plate(void) {
+    const double density = 500, mass = pi / 4 * 0.02 * density;
+    struct free_plate plate = {.mass = mass, .inertia = mass / 12};
+    struct simulation *const simulation =
+        verify_open(VERIFY_DEFAULTS
+                    "format: 1\n"
+                    "time: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
+                    "wake: {lifetime: 1000, smoothing: 0.005,\n"
+                    "       street: {vortices: %d, spacing: %g, circulation: %g, position: [%.17g, 0]}}\n"
+                    "fish:\n"
+                    "  - {nodes: 33, sheet_points: 65, " VERIFY_ATTACHED
+                    ", wave: {amplitude: 0, frequency: 0}, start: {speed: 0},\n"
+                    "     body: {profile: uniform, thickness: 0.02, depth: 1, density: %g, modulus: 1.0e+9}}\n",
+                    step, step, N_STREET, street_spacing, street_circulation, street_middle(), density);
+    const struct fish *const fish = &simulation->school->fish[0];
+    const double *const y = simulation->state->y;
+    for (int n = 0; n <= N_STEPS; n++) plate.phi[n] = n == 0 ? 0.5 : linear_theory_wagner(2 * n * step);
+    for (int n = 0; n < (verify_is_fast() ? 300 : N_STEPS); n++) {
+        advance(&plate, n);
+        if ((n + 1) % 100 > 0 || n + 1 == 100) continue;
+        const double t = (n + 1) * step;
+        verify_run(simulation, t);
+        simulate_measure(simulation);
+        verify_relative(verify_text("free plate in a street: heave after %g s", t), "Wagner, integrated in time",
+                        plate.y[0], simulation->diagnostics->fish[0].com[1], 0.005);
+        verify_relative(verify_text("free plate in a street: pitch after %g s", t), "Wagner, integrated in time",
+                        plate.pitch[0], y[fish->at.y + fish->n_nodes - 1] - y[fish->at.y], 0.005);
+    }
+    simulate_free(simulation);
+}
+
 void verify_encounters(void) {
     sears();
     kuessner();
     street();
     drift();
+    free_plate();
 }
