@@ -225,6 +225,15 @@ static void limits_are_where_the_messages_say(void **state) {
          "time.end: 2 s is not an integer multiple"},
         {SHORT "fish: [{nodes: 5, wave: {table: [[12.566, -1], [1, 1]]}}]\n",
          SHORT "fish: [{nodes: 5, wave: {table: [[1, 1], [1, -12.567]]}}]\n", "turns a joint by up to 3.14 rad"},
+        {SHORT "fish: [{}]\nsweep: [{key: time.shedding_interval, values: [0.01, 0.02]}]\n",
+         SHORT "fish: [{}]\nsweep: [{key: time.shedding_interval, values: [0.01, 0.0200001]}]\n",
+         "value 0.0200001 of time.shedding_interval does not divide time.end, 1 s"},
+        {SHORT
+         "fish: [{nodes: 7, control: {bias: 2}, wave: {amplitude: 0.5, constant: 1, linear: 0, quadratic: 0, table: "
+         "[[12.8, -1], [1, 1]]}}]\n",
+         SHORT "fish: [{nodes: 7, control: {bias: 2.1}, wave: {amplitude: 0.5, constant: 1, linear: 0, quadratic: 0, "
+               "table: [[12.8, -1], [1, 1]]}}]\n",
+         "turns a joint by up to 3.18 rad"},
         {FINITE("21"), FINITE("20"), "a span of 0.25 lengths needs at least 21 points"},
         {SHORT "fish: [{nodes: 9, sheet_points: 17, force: pressure}]\n",
          SHORT "fish: [{nodes: 9, sheet_points: 16, force: pressure}]\n",

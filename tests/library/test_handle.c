@@ -115,6 +115,7 @@ static void waypoints_are_taken_up(void **state) {
     const double nose[2] = {y[fish->at.x], y[fish->at.y]};
     const double points[] = {nose[0], nose[1] + 0.1, nose[0], nose[1] + 2};
     school_ok(handle_set_key(simulation, 0, "control.waypoints", 4, points));
+    assert_int_equal(control_n_waypoints(fish, memory), 2);
     NEAR(control_desired_heading(fish, memory, 0.1, y), acos(-1) / 2, 1e-12, 0);
     // the first one is near enough to be passed at once
     school_run(simulation, 0.12);
