@@ -217,7 +217,7 @@ style: all $(generated_docs)  ## check warnings, format, layers, names and the g
 	    diff -u "$$document" "$(B)/$$document" || { echo "$$document is out of date: run 'make docs'" >&2; exit 1; }; \
 	done
 
-mutants: deps  ## see that the tests notice errors: 50 small ones are built in, one at a time (minutes)
+mutants: deps  ## see that the tests notice errors: 200 small ones are built in, one at a time (minutes)
 	@$(parallel) tests
 	@scripts/mutants.py
 

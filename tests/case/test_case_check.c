@@ -186,6 +186,32 @@ static void every_bound_of_every_key_is_kept(void **state) {
 }
 
 // a case just inside of each limit, and one just outside
+static void longer_strings_than_a_key_allows_are_refused(void **state) {
+    (void)state;
+    int n = 0;
+    for (int k = 0; k < case_table_n; k++) {
+        const struct key *const key = &case_table[k];
+        if (key->type != STRING || isinf(key->bounds.max) || !(key->bounds.max < 4000)) continue;
+        const bool is_of_fish = strncmp(key->path, "fish.", 5) == 0;
+        for (int more = 0; more < 2; more++) {
+            char assignment[4200];
+            const int start = snprintf(assignment, sizeof assignment, "%s%s=", is_of_fish ? "fish[0]" : "",
+                                       is_of_fish ? key->path + 4 : key->path);
+            const int length = (int)key->bounds.max + more;
+            memset(assignment + start, 'a', (size_t)length);
+            assignment[start + length] = '\0';
+            struct case_values values;
+            const enum status status =
+                case_parse(&values, minimal, strlen(minimal), "test", ".", 1, (const char *const[]){assignment});
+            if (status == STATUS_OK) case_free(&values);
+            const bool is_refused = status != STATUS_OK && strstr(status_message(), "longer than");
+            if (is_refused != more) fail_msg("%s: %d bytes: %s", key->path, length, status_message());
+            n++;
+        }
+    }
+    assert_true(n >= 4);
+}
+
 static void limits_are_where_the_messages_say(void **state) {
     (void)state;
 #define SHORT "time: {end: 1, shedding_interval: 0.01}\n"
@@ -272,6 +298,7 @@ int main(void) {
         cmocka_unit_test(times_that_do_not_fit_the_default_are_rounded_and_noted),
         cmocka_unit_test(times_that_fit_stay_to_the_bit),
         cmocka_unit_test(every_bound_of_every_key_is_kept),
+        cmocka_unit_test(longer_strings_than_a_key_allows_are_refused),
         cmocka_unit_test(limits_are_where_the_messages_say),
         cmocka_unit_test(times_that_do_not_fit_a_given_interval_are_errors),
     };
