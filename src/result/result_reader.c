@@ -9,10 +9,6 @@
 
 enum { MAX_LENGTH = 100000000 /* of a dimension */ };
 
-static enum status reader_out_of_memory(const struct netcdf_reader *file) {
-    return status_fail(STATUS_MEMORY, "%s: out of memory while reading", file->path);
-}
-
 static const struct result_variable *reader_find_variable(const char *name) {
     const struct result_variable *variable = result_table;
     while (strcmp(variable->name, name) != 0) variable++;
@@ -59,8 +55,7 @@ static enum status read_counts(const struct result_reader *reader, const char *n
                                int **counts) {
     double *values;
     TRY(result_reader_new(reader, name, 0, &values));
-    *counts = calloc(reader->length[FISH], sizeof **counts);
-    enum status status = *counts ? STATUS_OK : reader_out_of_memory(&reader->file);
+    enum status status = MEMORY_NEW(*counts, reader->length[FISH], reader->file.path);
 
     for (size_t f = 0; status == STATUS_OK && f < reader->length[FISH]; f++) {
         if (values[f] >= (double)min && values[f] <= (double)max) {
@@ -147,8 +142,7 @@ enum status result_reader_name(const struct netcdf_reader *file, size_t f, char 
     size_t n;
     *name = NULL;
     TRY(netcdf_read_length(file, "name", 1, MAX_LENGTH, &n));
-    *name = calloc(n + 1, 1);
-    if (!*name) return reader_out_of_memory(file);
+    TRY(MEMORY_NEW(*name, n + 1, file->path));
     const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, n}, {NULL}};
     const enum status status = netcdf_read_text(file, "fish_name", slice, *name);
     if (status == STATUS_OK) return STATUS_OK;
@@ -179,8 +173,7 @@ enum status result_reader_row(const struct result_reader *reader, const char *na
 }
 
 enum status result_reader_new(const struct result_reader *reader, const char *name, size_t row, double **values) {
-    *values = calloc(result_reader_n(reader, name) + 1, sizeof **values);
-    if (!*values) return reader_out_of_memory(&reader->file);
+    TRY(MEMORY_NEW(*values, result_reader_n(reader, name) + 1, reader->file.path));
     const enum status status = result_reader_row(reader, name, row, *values);
     if (status == STATUS_OK) return STATUS_OK;
     free(*values);
@@ -193,9 +186,9 @@ enum status result_reader_has_wake(const struct result_reader *reader, size_t ro
     double *count;
     TRY(result_reader_new(reader, "wake_count", row, &count));
     const struct netcdf_slice slice[] = {{"time", row, 1}, {"fish", 0, n_fish}, {"vortex", 0, 1}, {NULL}};
-    double *const first = calloc(n_fish, sizeof *first);
-    const enum status status = first ? netcdf_read_doubles(&reader->file, "wake_circulation", slice, first)
-                                     : reader_out_of_memory(&reader->file);
+    double *first = NULL;
+    enum status status = MEMORY_NEW(first, n_fish, reader->file.path);
+    if (status == STATUS_OK) status = netcdf_read_doubles(&reader->file, "wake_circulation", slice, first);
     *has_wake = status == STATUS_OK;
     for (size_t f = 0; *has_wake && f < n_fish; f++) *has_wake = count[f] == 0 || isfinite(first[f]);
     free(count);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "result/durable.h"
@@ -32,10 +33,6 @@ struct page {
     size_t body_stride, wake_stride, series_stride, vortex_stride;
     size_t n_wake_rows, *wake_row; /* rows with a wake                                  (n_wake_rows) */
 };
-
-static enum status page_out_of_memory(const struct page *page) {
-    return status_fail(STATUS_MEMORY, "%s: out of memory: the page of a run", page->reader.file.path);
-}
 
 // ---- JSON
 
@@ -87,8 +84,7 @@ static void place_in_box(size_t n, const double *xy, const double box[3], uint16
 /* Find the rows with a wake, and the total number of vortices in these rows. */
 static enum status find_wakes(struct page *page, double *n_vortices) {
     *n_vortices = 0;
-    page->wake_row = calloc(page->n_rows, sizeof *page->wake_row);
-    if (!page->wake_row) return page_out_of_memory(page);
+    TRY(MEMORY_NEW(page->wake_row, page->n_rows, page->reader.file.path));
 
     for (size_t row = 0; row < page->n_rows; row++) {
         bool has_wake;
@@ -154,8 +150,8 @@ static enum status write_shape(const struct page *page, const double *thickness,
     const int n = page->reader.n_nodes[f];
     const size_t n_weights = (size_t)n * OUTLINE_POINTS;
     struct outline outline;
-    float *const values = calloc(2 * n_weights + OUTLINE_POINTS, sizeof *values);
-    if (!values) return page_out_of_memory(page);
+    float *values;
+    TRY(MEMORY_NEW(values, 2 * n_weights + OUTLINE_POINTS, page->reader.file.path));
     const enum status status =
         outline_create(&outline, n, thickness + f * page->reader.length[EDGE], page->reader.has_mean_section[f]);
 
@@ -225,8 +221,8 @@ static enum status write_fish(const struct page *page, const double *thickness, 
 
 static enum status write_all_fish(const struct page *page) {
     double *thickness, *length = NULL;
-    size_t *const numbers = calloc(2 * page->n_fish, sizeof *numbers);
-    if (!numbers) return page_out_of_memory(page);
+    size_t *numbers;
+    TRY(MEMORY_NEW(numbers, 2 * page->n_fish, page->reader.file.path));
     enum status status = result_reader_new(&page->reader, "edge_thickness", 0, &thickness);
     if (status == STATUS_OK) status = result_reader_new(&page->reader, "body_length", 0, &length);
     if (status == STATUS_OK) status = write_fish(page, thickness, length, numbers, numbers + page->n_fish);
@@ -247,10 +243,9 @@ struct rows {
 
 static enum status rows_create(const struct page *page, struct rows *rows, size_t n, size_t n_places) {
     *rows = (struct rows){.n = n};
-    rows->time = calloc(n + 1, sizeof *rows->time);
-    rows->box = calloc(n + 1, 3 * sizeof *rows->box);
-    rows->place = calloc(n_places + 1, 2 * sizeof *rows->place);
-    return rows->time && rows->box && rows->place ? STATUS_OK : page_out_of_memory(page);
+    TRY(MEMORY_NEW(rows->time, n + 1, page->reader.file.path));
+    TRY(MEMORY_NEW(rows->box, 3 * (n + 1), page->reader.file.path));
+    return MEMORY_NEW(rows->place, 2 * (n_places + 1), page->reader.file.path);
 }
 
 static void rows_free(struct rows *rows) {
@@ -300,7 +295,7 @@ static enum status page_write_bodies(const struct page *page) {
     const size_t n = n_of(page->n_rows, page->body_stride);
     double *const x = calloc(result_reader_n(&page->reader, "x") + 1, sizeof *x);
     enum status status = rows_create(page, &rows, n, n * page->n_nodes);
-    if (status == STATUS_OK && !x) status = page_out_of_memory(page);
+    if (status == STATUS_OK && !x) status = memory_check(NULL, page->reader.file.path);
     if (status == STATUS_OK) status = add_bodies(page, &rows, x);
 
     if (status == STATUS_OK) {
@@ -390,7 +385,7 @@ static enum status page_write_wakes(const struct page *page) {
     enum status status = rows_create(page, &wakes.rows, n, most);
     const bool has_memory = wakes.first && wakes.count && wakes.strength && wakes.integer && wakes.x &&
                             wakes.circulation && wakes.birth && wakes.xy;
-    if (status == STATUS_OK && !has_memory) status = page_out_of_memory(page);
+    if (status == STATUS_OK && !has_memory) status = memory_check(NULL, page->reader.file.path);
     if (status == STATUS_OK) status = add_wakes(page, &wakes);
 
     if (status == STATUS_OK) {
@@ -428,7 +423,7 @@ static enum status write_series(const struct page *page) {
     const size_t n = n_of(page->n_rows, page->series_stride);
     double *const time = calloc(n, sizeof *time), *const row = calloc(page->n_fish, sizeof *row);
     float *const values = calloc(n * page->n_fish, sizeof *values);
-    enum status status = time && row && values ? STATUS_OK : page_out_of_memory(page);
+    enum status status = time && row && values ? STATUS_OK : memory_check(NULL, page->reader.file.path);
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
         status = result_reader_row(&page->reader, "time", row_of(i, page->n_rows, page->series_stride), &time[i]);
 

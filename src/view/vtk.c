@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "result/durable.h"
 #include "result/result_reader.h"
@@ -24,10 +25,6 @@ struct export {
     double *control_arc;     /* as in the file; NULL: no fish has force: pressure */
     size_t n_points;         /* of all bodies */
 };
-
-static enum status export_out_of_memory(const struct export *export) {
-    return status_fail(STATUS_MEMORY, "%s: out of memory: files of VTK", export->reader.file.path);
-}
 
 // ---- XML
 
@@ -71,8 +68,8 @@ static void end_piece(FILE *stream) {
 
 /* Positions in the plane as points in space. */
 static enum status write_points(const struct export *export, FILE *stream, size_t n, const double *xy) {
-    double *const points = calloc(n + 1, 3 * sizeof *points);
-    if (!points) return export_out_of_memory(export);
+    double *points;
+    TRY(MEMORY_NEW(points, 3 * (n + 1), export->reader.file.path));
 
     for (size_t i = 0; i < n; i++) {
         points[3 * i] = xy[2 * i];
@@ -91,8 +88,9 @@ static enum status write_cells(const struct export *export, FILE *stream, const 
                                const size_t *sizes, size_t first) {
     size_t n = 0;
     for (size_t i = 0; i < n_cells; i++) n += sizes[i];
-    int64_t *const numbers = calloc(n + n_cells + 1, sizeof *numbers), *const offsets = numbers + n;
-    if (!numbers) return export_out_of_memory(export);
+    int64_t *numbers;
+    TRY(MEMORY_NEW(numbers, n + n_cells + 1, export->reader.file.path));
+    int64_t *const offsets = numbers + n;
     for (size_t i = 0; i < n; i++) numbers[i] = (int64_t)(first + i);
     int64_t end = 0;
     for (size_t i = 0; i < n_cells; i++) offsets[i] = end += (int64_t)sizes[i];
@@ -125,16 +123,15 @@ static void bodies_free(struct bodies *bodies) {
 
 static enum status bodies_read(const struct export *export, size_t row, struct bodies *bodies) {
     const size_t n_cells = 2 * export->reader.length[FISH];
-    *bodies = (struct bodies){.xy = calloc(export->n_points, 2 * sizeof *bodies->xy),
-                              .value = calloc(export->n_points, sizeof *bodies->value),
-                              .size = calloc(n_cells, sizeof *bodies->size),
-                              .fish = calloc(n_cells, sizeof *bodies->fish),
-                              .is_outline = calloc(n_cells, sizeof *bodies->is_outline),
-                              .cell = calloc(n_cells, sizeof *bodies->cell),
-                              .pressure_at = calloc(export->n_points, sizeof *bodies->pressure_at)};
-    if (!bodies->xy || !bodies->value || !bodies->size || !bodies->fish || !bodies->is_outline || !bodies->cell ||
-        !bodies->pressure_at)
-        return export_out_of_memory(export);
+    const char *const path = export->reader.file.path;
+    *bodies = (struct bodies){0};
+    TRY(MEMORY_NEW(bodies->xy, 2 * export->n_points, path));
+    TRY(MEMORY_NEW(bodies->value, export->n_points, path));
+    TRY(MEMORY_NEW(bodies->pressure_at, export->n_points, path));
+    TRY(MEMORY_NEW(bodies->size, n_cells, path));
+    TRY(MEMORY_NEW(bodies->fish, n_cells, path));
+    TRY(MEMORY_NEW(bodies->is_outline, n_cells, path));
+    TRY(MEMORY_NEW(bodies->cell, n_cells, path));
     if (export->control_arc) TRY(result_reader_new(&export->reader, "pressure", row, &bodies->pressure));
     TRY(result_reader_new(&export->reader, "x", row, &bodies->nodes));
     TRY(result_reader_new(&export->reader, "sheet_x", row, &bodies->sheet));
@@ -258,10 +255,10 @@ static void wakes_free(struct wakes *wakes) {
 
 static enum status wakes_read(const struct export *export, size_t row, struct wakes *wakes) {
     const size_t slots = export->reader.length[FISH] * export->reader.length[VORTEX];
-    *wakes = (struct wakes){.age = calloc(slots + 1, sizeof *wakes->age),
-                            .fish = calloc(slots + 1, sizeof *wakes->fish),
-                            .size = calloc(slots + 1, sizeof *wakes->size)};
-    if (!wakes->age || !wakes->fish || !wakes->size) return export_out_of_memory(export);
+    *wakes = (struct wakes){0};
+    TRY(MEMORY_NEW(wakes->age, slots + 1, export->reader.file.path));
+    TRY(MEMORY_NEW(wakes->fish, slots + 1, export->reader.file.path));
+    TRY(MEMORY_NEW(wakes->size, slots + 1, export->reader.file.path));
     TRY(result_reader_new(&export->reader, "wake_x", row, &wakes->x));
     TRY(result_reader_new(&export->reader, "wake_circulation", row, &wakes->circulation));
     TRY(result_reader_new(&export->reader, "wake_birth", row, &wakes->birth));
@@ -363,7 +360,7 @@ static enum status write_file(const struct export *export, const char *what, siz
     struct plain_file file;
     text_add(&path, "%s/", export->folder);
     add_name(&path, export, what, row);
-    enum status status = path.failed ? export_out_of_memory(export)
+    enum status status = path.failed ? memory_check(NULL, export->reader.file.path)
                                      : plain_file_open(&file, path.text, TARGET_VTK, export->overwrite, 0666);
     if (status == STATUS_OK) status = plain_file_close(&file, write(export, row, file.stream));
     text_free(&path);
@@ -422,9 +419,8 @@ static enum status fill_export(struct export *export) {
     TRY(result_reader_row(reader, "wake_lifetime", 0, &export->school.lifetime));
     TRY(result_reader_row(reader, "wake_decay", 0, &export->school.decay));
     TRY(result_reader_new(reader, "sheet_arc", 0, &export->sheet_arc));
-    export->outline = calloc(reader->length[FISH], sizeof *export->outline);
+    TRY(MEMORY_NEW(export->outline, reader->length[FISH], reader->file.path));
     double *thickness;
-    if (!export->outline) return export_out_of_memory(export);
     TRY(result_reader_new(reader, "edge_thickness", 0, &thickness));
     enum status status = STATUS_OK;
 
@@ -442,7 +438,7 @@ static enum status vtk_write_list(const struct export *export, char **name) {
     struct text path = {0};
     struct plain_file list;
     text_add(&path, "%s/%s.pvd", export->folder, export->stem);
-    if (path.failed) return export_out_of_memory(export);
+    if (path.failed) return memory_check(NULL, export->reader.file.path);
     enum status status = plain_file_open(&list, path.text, TARGET_VTK, export->overwrite, 0666);
     if (status == STATUS_OK) status = plain_file_close(&list, vtk_write_rows(export, list.stream));
     if (status == STATUS_OK && name) {
