@@ -398,6 +398,18 @@ static bool has_moment(const struct control_parameters *control) {
     return is_of_heading && fabs(control->feedforward) > 0;
 }
 
+/* True for a height at or beyond a wall, seen from the first fish. */
+static bool is_beyond_wall(const struct school_parameters *school, double y) {
+    const struct number_list *const walls = &school->fluid.walls;
+    const double start = school->fish[0].start_position[1];
+    for (int i = 0; i < walls->n && i < 2; i++) {
+        const double wall = walls->value[i];
+        if (start > wall ? y <= wall : y >= wall) return true;
+    }
+
+    return false;
+}
+
 static void check_street(const struct check *check) {
     const struct street_parameters *const street = &check->values->school.wake.street;
     static const char path[] = "wake.street.vortices", spacing[] = "wake.street.spacing",
@@ -420,6 +432,15 @@ static void check_vortices(const struct check *check) {
                 "needs rows of 3 numbers, x, y and circulation, not of %d", vortices->width);
     check_street(check);
     if (vortices->n == 0 && school->wake.street.n == 0) return;
+    for (int i = 0; vortices->width == 3 && i < vortices->n; i++) {
+        complain_if(is_beyond_wall(school, vortices->value[3 * i + 1]), check, "wake.vortices",
+                    "vortex %d is beyond a wall of fluid.walls", i + 1);
+    }
+
+    const struct street_parameters *const street = &school->wake.street;
+    const double half = street->row_distance / 2, middle = street->position[1];
+    complain_if(street->n > 0 && (is_beyond_wall(school, middle - half) || is_beyond_wall(school, middle + half)),
+                check, "wake.street.position", "a row of the street is beyond a wall of fluid.walls");
     complain_if(school->wake.removed_circulation == REMOVED_DROPPED, check, path,
                 "the removal of a vortex would add its circulation to the body: use "
                 "'wake.removed_circulation: retained'");
