@@ -293,6 +293,29 @@ static void rings_taper(const struct flow *flow, const struct state *state, int 
 
 enum { MARKERS = 64 };  // markers of one fish that a thread evaluates at once
 
+// set the velocity of the own sheet at all markers of a fish
+static void induce_own_markers(const struct flow *flow, int f) {
+    const struct flow_rings *const rings = flow->rings;
+    const struct fish *const fish = &flow->school->fish[f];
+    const struct rings *const markers = &rings->fish[f].markers;
+    const int first = flow->wake_range[f].first;
+    const struct ring_targets at = {.n = markers->n,
+                                    .x = markers->x,
+                                    .y = markers->y,
+                                    .half = markers->half,
+                                    .leg = markers->leg,
+                                    .u = flow->wake_u + first,
+                                    .v = flow->wake_v + first,
+                                    .leg_u = rings->wake_leg_u + first,
+                                    .leg_v = rings->wake_leg_v + first,
+                                    .div = rings->wake_div + first};
+    double *const sums[] = {at.u, at.v, at.leg_u, at.leg_v, at.div};
+    for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) memset(sums[i], 0, (size_t)at.n * sizeof **sums);
+    const struct ring_pair smooth = ring_own_pair(fish, fish->smoothing * fish->smoothing);
+    ring_induce_mutual(&smooth, markers, &at);
+}
+
+// add the velocity of all others
 static void induce_at_markers(const struct flow *flow, const struct state *state, int f, struct range which) {
     const struct school *const school = flow->school;
     const struct flow_rings *const rings = flow->rings;
@@ -312,15 +335,15 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
                               .div = rings->wake_div + first};
 
     for (int i = 0; i < which.n; i++) {
-        flow_external(school, flow->t, at.x[i], at.y[i], &at.u[i], &at.v[i]);
-        at.leg_u[i] = at.leg_v[i] = at.div[i] = 0;
+        double u, v;
+        flow_external(school, flow->t, at.x[i], at.y[i], &u, &v);
+        at.u[i] += u;
+        at.v[i] += v;
     }
 
-    // own sheet and body
+    // own body
     struct ring_targets near = at;
-    const struct ring_pair smooth = ring_own_pair(fish, fish->smoothing * fish->smoothing),
-                           exact = ring_own_pair(fish, 0);
-    induce(&smooth, markers, &at);
+    const struct ring_pair exact = ring_own_pair(fish, 0);
     rings_taper(flow, state, f, which, x, y, square);
     near.x = x;
     near.y = y;
@@ -369,6 +392,10 @@ enum status flow_rings_at_markers(struct flow *flow, const struct state *state) 
     for (int f = 0; f < school->n_fish; f++) n_chunks += (flow->wake_range[f].n + MARKERS - 1) / MARKERS;
     const double work = 6.0 * flow->n_markers * flow->n_markers;
     const int threads = parallel_threads(school->threads, n_chunks, work, PARALLEL_INTERACTIONS);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int f = 0; f < school->n_fish; f++) {
+        if (flow->wake_range[f].n > 0) induce_own_markers(flow, f);
+    }
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
         int f = 0, before = 0, n = (flow->wake_range[0].n + MARKERS - 1) / MARKERS;

@@ -1,4 +1,4 @@
-/* ring.c: one square root per pair, one division for two pairs. */
+/* ring.c: one square root per pair, one division for two pairs; in mutual sums both serve both directions. */
 #include "vortex/ring.h"
 
 #include <math.h>
@@ -108,16 +108,16 @@ typedef double two __attribute__((vector_size(2 * sizeof(double))));
 #define ROOT(a) ((two){sqrt((a)[0]), sqrt((a)[1])})
 #include "vortex/ring_loops.h"
 
-ring_loops *ring_variant(int i) {
-    ring_loops *found[3];
+const struct ring_loops *ring_variant(int i) {
+    const struct ring_loops *found[3];
     int n = 0;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f")) found[n++] = velocity_avx512;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found[n++] = velocity_avx2;
+    if (__builtin_cpu_supports("avx512f")) found[n++] = &loops_avx512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found[n++] = &loops_avx2;
 #elif defined(__aarch64__)
-    found[n++] = velocity_neon;
+    found[n++] = &loops_neon;
 #endif
-    found[n++] = velocity_baseline;
+    found[n++] = &loops_baseline;
     return i < n ? found[i] : NULL;
 }
 
@@ -207,22 +207,26 @@ static void add_block(const struct ring_block *block, const struct ring_targets 
     }
 }
 
+static struct ring_sources ring_sources_of(const struct ring_pair *pair, const struct rings *rings,
+                                           struct range which) {
+    return (struct ring_sources){.n = which.n,
+                                 .x = rings->x + which.first,
+                                 .y = rings->y + which.first,
+                                 .q = rings->q + which.first,
+                                 .dx = rings->dx + which.first,
+                                 .dy = rings->dy + which.first,
+                                 .half = rings->half + which.first,
+                                 .leg = rings->leg + which.first,
+                                 .square = rings->square + which.first,
+                                 .span = pair->span,
+                                 .factor = pair->factor,
+                                 .add = pair->square};
+}
+
 void ring_induce(const struct ring_pair *pair, const struct rings *rings, struct range which,
                  const struct ring_targets *at) {
     if (which.n <= 0) return;
-    const struct ring_sources from = {.n = which.n,
-                                      .x = rings->x + which.first,
-                                      .y = rings->y + which.first,
-                                      .q = rings->q + which.first,
-                                      .dx = rings->dx + which.first,
-                                      .dy = rings->dy + which.first,
-                                      .half = rings->half + which.first,
-                                      .leg = rings->leg + which.first,
-                                      .square = rings->square + which.first,
-                                      .span = pair->span,
-                                      .factor = pair->factor,
-                                      .add = pair->square};
-
+    const struct ring_sources from = ring_sources_of(pair, rings, which);
     for (int first = 0; first < at->n; first += RING_BLOCK) {
         const int n = at->n - first < RING_BLOCK ? at->n - first : RING_BLOCK;
         struct ring_block block;
@@ -231,11 +235,51 @@ void ring_induce(const struct ring_pair *pair, const struct rings *rings, struct
         if (at->u_x) {
             block_gradient(&block, &from);
         } else {
-            ring_variant(0)(&block, &from);
+            ring_variant(0)->velocity(&block, &from);
         }
 
         if (at->edge) block_edge(&block, &from);
         add_block(&block, at, first, n);
+    }
+}
+
+// sums of a tile of sources: five of HALF numbers for each fit in the first cache
+enum { TILE = 2 * RING_BLOCK };
+
+static double sum_of_lanes(const double *value) {
+    return ((value[0] + value[4]) + (value[2] + value[6])) + ((value[1] + value[5]) + (value[3] + value[7]));
+}
+
+void ring_induce_mutual(const struct ring_pair *pair, const struct rings *rings, const struct ring_targets *at) {
+    for (int first = 0; first < rings->n; first += TILE) {
+        const struct range tile = {first, rings->n - first < TILE ? rings->n - first : TILE};
+        const struct ring_sources from = ring_sources_of(pair, rings, tile);
+        struct ring_lanes sums[TILE];
+        memset(sums, 0, sizeof sums);
+
+        // the tile and all rings before
+        for (int before = 0; before < first; before += RING_BLOCK) {
+            struct ring_block block;
+            struct ring_mates mates;
+            fill_block(&block, pair, at, before, RING_BLOCK);
+            memcpy(mates.q, rings->q + before, sizeof mates.q);
+            memcpy(mates.dx, rings->dx + before, sizeof mates.dx);
+            memcpy(mates.dy, rings->dy + before, sizeof mates.dy);
+            ring_variant(0)->mutual(&block, &mates, &from, sums);
+            add_block(&block, at, before, RING_BLOCK);
+        }
+        for (int i = 0; i < tile.n; i++) {
+            const double leg_u = -sum_of_lanes(sums[i].leg_u), leg_v = sum_of_lanes(sums[i].leg_v);
+            at->u[first + i] += sum_of_lanes(sums[i].u) + leg_u;
+            at->v[first + i] += leg_v - sum_of_lanes(sums[i].v);
+            if (at->leg_u) at->leg_u[first + i] += leg_u;
+            if (at->leg_v) at->leg_v[first + i] += leg_v;
+            if (at->div) at->div[first + i] -= 3 * sum_of_lanes(sums[i].div);
+        }
+
+        // the rings of the tile
+        const struct ring_targets own = ring_targets_part(at, tile);
+        ring_induce(pair, rings, tile, &own);
     }
 }
 

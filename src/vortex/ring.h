@@ -63,6 +63,10 @@ struct ring_pair {
 void ring_induce(const struct ring_pair *pair, const struct rings *rings, struct range which,
                  const struct ring_targets *at);
 
+/* Add the velocities of all rings to the rings themselves: ring_induce with the places, half and leg of the rings as
+ * targets, without gradients; a pair of rings has one square root. `square` of the rings is 0. */
+void ring_induce_mutual(const struct ring_pair *pair, const struct rings *rings, const struct ring_targets *at);
+
 /* The mirror image of the rings in a wall: position (x, shift - y), circulation and legs reversed. *image is
  * overwritten. Fails with STATUS_MEMORY. */
 enum status ring_mirror(const struct rings *rings, double shift, struct rings *image);
@@ -100,9 +104,21 @@ struct ring_sources {
     double span, factor, add;
 };
 
-/* The loops of ring_induce for one vector width: u, v, leg_u, leg_v and a third of div. Variant i of this processor,
- * the fastest first; NULL after the last variant. */
-typedef void ring_loops(struct ring_block *at, const struct ring_sources *from);
-ring_loops *ring_variant(int i);
+/* Strengths of the rings of a block; sums at a source, one number per lane. */
+struct ring_mates {
+    double q[RING_BLOCK], dx[RING_BLOCK], dy[RING_BLOCK];
+};
+struct ring_lanes {
+    double u[RING_BLOCK / 2], v[RING_BLOCK / 2], leg_u[RING_BLOCK / 2], leg_v[RING_BLOCK / 2], div[RING_BLOCK / 2];
+};
+
+/* The loops of ring_induce and ring_induce_mutual for one vector width: u, v, leg_u, leg_v and a third of div. Variant
+ * i of this processor, the fastest first; NULL after the last variant. */
+struct ring_loops {
+    void (*velocity)(struct ring_block *at, const struct ring_sources *from);
+    void (*mutual)(struct ring_block *at, const struct ring_mates *mates, const struct ring_sources *from,
+                   struct ring_lanes *sums);
+};
+const struct ring_loops *ring_variant(int i);
 
 #endif

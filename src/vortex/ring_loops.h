@@ -66,6 +66,79 @@ static TARGET void VARIANT(velocity)(struct ring_block *at, const struct ring_so
     }
 }
 
+// a block of rings and later sources, each the targets of the others: the sums of a source stay one number per lane
+static TARGET void VARIANT(mutual)(struct ring_block *at, const struct ring_mates *mates,
+                                   const struct ring_sources *from, struct ring_lanes *sums) {
+    const double scale = from->span * inverse_two_pi;
+    for (int i = 0; i < HALF; i += VARIANT(width)) {
+        lanes x[2], y[2], half[2], square[2], q_at[2], dx_at[2], dy_at[2], u[2], v[2], leg_u[2], leg_v[2], div[2];
+        for (int k = 0; k < 2; k++) {
+            const int p = i + k * HALF;
+            x[k] = VARIANT(get)(at->x + p);
+            y[k] = VARIANT(get)(at->y + p);
+            half[k] = VARIANT(get)(at->half + p);
+            square[k] = VARIANT(get)(at->square + p);
+            q_at[k] = scale * VARIANT(get)(mates->q + p);
+            dx_at[k] = scale * VARIANT(get)(mates->dx + p);
+            dy_at[k] = scale * VARIANT(get)(mates->dy + p);
+            u[k] = v[k] = leg_u[k] = leg_v[k] = div[k] = (lanes){0};
+        }
+
+        for (int n = 0; n < from->n; n++) {
+            const double q = from->q[n] * scale, dx = from->dx[n] * scale, dy = from->dy[n] * scale;
+            const double half_n = from->factor * from->half[n] + from->leg[n], square_n = from->square[n] + from->add;
+            const lanes all_q = q - (lanes){0}, all_dx = dx - (lanes){0}, all_dy = dy - (lanes){0};
+            lanes rx[2], ry[2], r[2], t[2], root[2], product[2];
+            for (int k = 0; k < 2; k++) {
+                rx[k] = x[k] - from->x[n];
+                ry[k] = y[k] - from->y[n];
+                const lanes r2 = FUSED(rx[k], rx[k], ry[k] * ry[k]);
+                r[k] = r2 + (square[k] + square_n);
+                t[k] = r2 + (half[k] + half_n);
+                root[k] = ROOT(t[k]);
+                product[k] = r[k] * t[k] * root[k];
+            }
+
+            const lanes shared = 1 / (product[0] * product[1]);
+            struct ring_lanes *const sum = &sums[n];
+            lanes to_u = VARIANT(get)(sum->u + i), to_v = VARIANT(get)(sum->v + i);
+            lanes to_leg_u = VARIANT(get)(sum->leg_u + i), to_leg_v = VARIANT(get)(sum->leg_v + i);
+            lanes to_div = VARIANT(get)(sum->div + i);
+            for (int k = 0; k < 2; k++) {
+                const lanes inverse = shared * product[1 - k], f = inverse * t[k], g = inverse * r[k];
+                const lanes fx = f * rx[k], fy = f * ry[k], h = g * g * root[k];
+                u[k] = FUSED(all_q, fy, u[k]);
+                v[k] = FUSED(all_q, fx, v[k]);
+                leg_u[k] = FUSED(g, all_dy, leg_u[k]);
+                leg_v[k] = FUSED(g, all_dx, leg_v[k]);
+                div[k] = FUSED(h, rx[k] * dy - ry[k] * dx, div[k]);
+
+                // at the source, with the opposite distance
+                to_u = FUSED(q_at[k], fy, to_u);
+                to_v = FUSED(q_at[k], fx, to_v);
+                to_leg_u = FUSED(g, dy_at[k], to_leg_u);
+                to_leg_v = FUSED(g, dx_at[k], to_leg_v);
+                to_div = FUSED(h, rx[k] * dy_at[k] - ry[k] * dx_at[k], to_div);
+            }
+            VARIANT(put)(sum->u + i, to_u);
+            VARIANT(put)(sum->v + i, to_v);
+            VARIANT(put)(sum->leg_u + i, to_leg_u);
+            VARIANT(put)(sum->leg_v + i, to_leg_v);
+            VARIANT(put)(sum->div + i, to_div);
+        }
+
+        for (int k = 0; k < 2; k++) {
+            VARIANT(put)(at->u + i + k * HALF, -u[k]);
+            VARIANT(put)(at->v + i + k * HALF, v[k]);
+            VARIANT(put)(at->leg_u + i + k * HALF, -leg_u[k]);
+            VARIANT(put)(at->leg_v + i + k * HALF, leg_v[k]);
+            VARIANT(put)(at->div + i + k * HALF, div[k]);
+        }
+    }
+}
+
+static const struct ring_loops VARIANT(loops) = {.velocity = VARIANT(velocity), .mutual = VARIANT(mutual)};
+
 #undef VARIANT
 #undef TARGET
 #undef lanes

@@ -214,10 +214,10 @@ static void fused_variants_round_identically(void **state) {
         first.half[i] = first.square[i] = 0.01 + 0.001 * i;
     }
     const struct ring_block targets = first;
-    ring_variant(0)(&first, &from);
+    ring_variant(0)->velocity(&first, &from);
     for (int k = 1; ring_variant(k); k++) {
         struct ring_block other = targets;
-        ring_variant(k)(&other, &from);
+        ring_variant(k)->velocity(&other, &from);
         // the last variant is the baseline, without fused products
         const double rounding = ring_variant(k + 1) ? 0 : 1e-13;
         NEAR_ARRAY(RING_BLOCK, other.u, first.u, rounding, rounding);
@@ -226,6 +226,32 @@ static void fused_variants_round_identically(void **state) {
         NEAR_ARRAY(RING_BLOCK, other.leg_v, first.leg_v, rounding, rounding);
         NEAR_ARRAY(RING_BLOCK, other.div, first.div, 100 * rounding, rounding);
     }
+}
+
+static void rings_cause_the_same_velocity_one_by_one_and_mutually(void **state) {
+    (void)state;
+    // several tiles, and a last tile and block that are not full
+    enum { N = 137 };
+    struct rings rings = {0};
+    assert_int_equal(ring_append(&rings, N), STATUS_OK);
+    double *const values[] = {rings.x, rings.y, rings.q, rings.dx, rings.dy, rings.half, rings.leg};
+    for (int k = 0; k < 7; k++) {
+        for (int i = 0; i < N; i++) values[k][i] = k < 5 ? number(k * N + i) : 0.01 + 0.01 * fabs(number(k * N + i));
+    }
+    const struct ring_pair pair = {.span = 0.3, .factor = 1, .square = 1e-4};
+    double one[5][N] = {{0}}, mutual[5][N] = {{0}};
+    struct ring_targets at = {.n = N, .x = rings.x, .y = rings.y, .half = rings.half, .leg = rings.leg};
+    at.u = one[0], at.v = one[1], at.leg_u = one[2], at.leg_v = one[3], at.div = one[4];
+    ring_induce(&pair, &rings, (struct range){0, N}, &at);
+    at.u = mutual[0], at.v = mutual[1], at.leg_u = mutual[2], at.leg_v = mutual[3], at.div = mutual[4];
+    ring_induce_mutual(&pair, &rings, &at);
+    for (int k = 0; k < 5; k++) {
+        double most = 0;
+        for (int i = 0; i < N; i++) most = fmax(most, fabs(one[k][i]));
+        NEAR_ARRAY(N, mutual[k], one[k], 1e-13 * most, 0);
+        assert_true(most > 0.1);
+    }
+    ring_free(&rings);
 }
 
 static void a_lack_of_memory_is_reported(void **state) {
@@ -250,6 +276,7 @@ int main(void) {
         cmocka_unit_test(a_source_has_no_spanwise_part_at_its_own_place),
         cmocka_unit_test(a_ring_and_its_image_cause_no_flow_through_the_wall),
         cmocka_unit_test(fused_variants_round_identically),
+        cmocka_unit_test(rings_cause_the_same_velocity_one_by_one_and_mutually),
         cmocka_unit_test(a_lack_of_memory_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
