@@ -195,7 +195,8 @@ another program."""),
     "skin": ("Pressure on the skin", """\
 Pressure on both sides of a plate at `sensors` (model.md 15): beside a vortex that passes, against the complex potential
 of the vortices of the run outside the circle of the plate; held in an oscillating stream, against linear theory, whose
-added-mass pressure is elliptic."""),
+added-mass pressure is elliptic. Friction on both sides by Thwaites' method (model.md 9) against Blasius and the
+Navier-Stokes solutions of the last section."""),
     "walls": ("Walls", """\
 Bodies beside straight walls, model.md 17: a fish beside a wall moves like a fish beside the mirror image, a plate between
 two walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to

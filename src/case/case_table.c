@@ -394,7 +394,9 @@ const struct key case_table[] = {
     {"output.precision", CHOICE, AT(output.precision), "double", ANY, "",
      .meaning = "floating-point precision of the variables in the file", .words = WORDS("double", "single")},
     {"output.forces", CHOICE, AT(output.forces), "totals", ANY, "",
-     .meaning = "forces in the file; totals: per fish; edges: also per edge", .words = WORDS("totals", "edges")},
+     .meaning = "forces in the file; totals: per fish; edges: also per edge; sides: also the laminar friction on each "
+                "side of a fish with force pressure",
+     .words = WORDS("totals", "edges", "sides")},
     {"output.wake_interval", REAL, AT(output.wake_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two records of the wake, an integer multiple of output_interval",
      .derived = "time.output_interval", .derive = derive_wake_interval},

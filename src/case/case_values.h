@@ -23,7 +23,7 @@ struct case_solver {
     int max_steps; /* per shedding interval */
 };
 
-enum output_forces { OUTPUT_FORCES_TOTALS, OUTPUT_FORCES_EDGES };
+enum output_forces { OUTPUT_FORCES_TOTALS, OUTPUT_FORCES_EDGES, OUTPUT_FORCES_SIDES };
 
 struct case_output {
     char *file; /* NULL: the name of the case with .nc, in the working directory */

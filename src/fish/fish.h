@@ -123,6 +123,7 @@ struct fish {
     struct tangent nose_tangent; /* the direction of the body at the nose */
     int n_sensors;
     double *sensor;                    /* fractions of the length                                  (n_sensors) */
+    double viscosity;                  /* kinematic, of the fluid, m2 s-1 */
     double nose_radius;                /* h^2/(2 L) with the largest thickness h, m */
     struct sheet_integrals *integrals; /* NULL with other forces, unless there are rings */
 

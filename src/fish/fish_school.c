@@ -111,6 +111,7 @@ static void boundary_layer_set(struct fish *fish, const struct drag_parameters *
 // drag, added mass and added mass shed at the tail: doc/model.md, section 9
 static void fluid_forces_set(struct fish *fish, const struct fish_parameters *from,
                              const struct fluid_parameters *fluid) {
+    fish->viscosity = fluid->viscosity;
     const struct drag_parameters *drag = &from->drag;
     const int wide = from->added_mass.extent == EXTENT_DEPTH, published = from->force == FORCE_PUBLISHED;
     const double density = fluid->density, reactive = from->force == FORCE_PRESSURE ? 0 : 1;

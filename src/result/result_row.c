@@ -1,10 +1,13 @@
 /* result_row.c: values that have to be put together. */
 #include "result/result_row.h"
 
+#include <math.h>
+
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
 #include "force/bound_sheet.h"
 #include "force/fluid_force.h"
+#include "force/side_friction.h"
 
 // ---- bodies and wakes
 
@@ -102,6 +105,48 @@ void result_row_sensor_left(const struct result_row *row, int f, double *slots) 
 
 void result_row_sensor_right(const struct result_row *row, int f, double *slots) {
     sensor_pressure(row, f, 1, slots);
+}
+
+// ---- friction on the sides
+
+// all values NaN without force: pressure, and if there is no memory
+static struct side_friction sides_of(const struct result_row *row, int f) {
+    const struct pressure *const pressure = row->residual->pressure[f];
+    struct side_friction sides;
+    if (pressure && side_friction(pressure, row->state->y, row->state->yp, &sides) == STATUS_OK) return sides;
+    return (struct side_friction){{{NAN, NAN}, {NAN, NAN}}, {NAN, NAN}, NAN};
+}
+
+void result_row_left_friction(const struct result_row *row, int f, double *slots) {
+    const struct side_friction sides = sides_of(row, f);
+    copy_values(2, sides.force[0], slots);
+}
+
+void result_row_right_friction(const struct result_row *row, int f, double *slots) {
+    const struct side_friction sides = sides_of(row, f);
+    copy_values(2, sides.force[1], slots);
+}
+
+void result_row_left_separation(const struct result_row *row, int f, double *slots) {
+    slots[0] = sides_of(row, f).separation[0];
+}
+
+void result_row_right_separation(const struct result_row *row, int f, double *slots) {
+    slots[0] = sides_of(row, f).separation[1];
+}
+
+void result_row_friction_ratio(const struct result_row *row, int f, double *slots) {
+    const struct fish *const fish = &row->school->fish[f];
+    if (!row->residual->pressure[f]) return;
+    const struct flow_at_body flow = flow_at_body(row->residual->flow, f);
+    double law = 0;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct edge edge = edge_at(fish, k, row->state->y);
+        const double *const about = row->diagnostics->fish[f].com;
+        law += edge_dot(fluid_force_of_edge(fish, &flow, k, about, row->state->y).friction, edge.t);
+    }
+
+    slots[0] = fabs(law) > 0 ? sides_of(row, f).along / law : NAN;
 }
 
 // ---- forces on the edges

@@ -32,7 +32,7 @@ static void format_is_cdf5(void **state) {
 
 static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name(void **state) {
     struct fixture *f = *state;
-    f->values.output.forces = OUTPUT_FORCES_EDGES;
+    f->values.output.forces = OUTPUT_FORCES_SIDES;
     f->school->walls = (struct walls){2, {-7, 8}, {1, -1}};
     f->school->fish[1].n_sensors = 2;
     f->school->fish[1].sensor = (double[2]){0.25, 0.5};

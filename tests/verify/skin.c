@@ -1,8 +1,9 @@
-/* skin.c: the section "skin" (model.md 15): pressure on both sides of a plate at sensors, against potential theory
- * without common code with the program. Length L, speed and density of the fluid 1. */
+/* skin.c: the section "skin" (model.md 9 and 15): pressure on both sides of a plate at sensors, against potential
+ * theory without common code with the program; friction on both sides. Length L, speed and density of the fluid 1. */
 #include <complex.h>
 #include <math.h>
 
+#include "force/side_friction.h"
 #include "linear_theory.h"
 #include "verify.h"
 
@@ -141,9 +142,74 @@ static void check_gust(double k, double bound) {
     }
 }
 
+// ---- friction on both sides by Thwaites' method
+
+/* Mean friction along x over a time, N: of both sides by Thwaites' method, and of the law that acts. */
+struct frictions {
+    double sides, law;
+};
+static struct frictions mean_friction(struct simulation *simulation, double from, double duration) {
+    struct frictions mean = {0, 0};
+    const int n = (int)lround(duration / simulation->school->interval);
+    for (int i = 1; i <= n; i++) {
+        struct side_friction sides;
+        verify_run(simulation, from + i * duration / n);
+        simulate_measure(simulation);
+        verify_ok(
+            side_friction(simulation->residual->pressure[0], simulation->state->y, simulation->state->yp, &sides));
+        mean.sides += (sides.force[0][0] + sides.force[1][0]) / n;
+        mean.law += simulation->diagnostics->fish[0].friction_force[0] / n;
+    }
+    return mean;
+}
+
+// an ellipse of 12 % at Reynolds number 1000 at rest in a stream, Navier-Stokes: C_F 0.0995; and a thin plate
+static void check_friction_at_rest(void) {
+    static const struct {
+        const char *name, *source;
+        double thickness, reference, bound;
+    } bodies[] = {{"plate", "Blasius", 1e-4, 2 * 1.328 / 31.6227766, 0.012},
+                  {"ellipse of 12 %", "Navier-Stokes", 0.12, 0.0995, 0.05}};
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation =
+            verify_open(VERIFY_DEFAULTS
+                        "format: 1\n"
+                        "time: {end: 1, shedding_interval: 0.01}\n"
+                        "fluid: {density: 1, viscosity: 1e-3}\n"
+                        "fish: [{force: pressure, start: {speed: 1}, wave: {amplitude: 0, frequency: 0},\n"
+                        "        body: {profile: uniform, thickness: %g, depth: 1}, motion: {prescribed: all}}]\n",
+                        bodies[i].thickness);
+        const struct frictions mean = mean_friction(simulation, 0, 0.02);
+        verify_relative(verify_text("%s at Reynolds number 1000: friction of both sides", bodies[i].name),
+                        bodies[i].source, bodies[i].reference, 2 * mean.sides, bodies[i].bound);
+        simulate_free(simulation);
+    }
+}
+
+// the friction of Navier-Stokes solutions in motion: less in heave, more for the swimmer
+static void check_friction_in_motion(void) {
+    const double pressure = 1.25 * 1.25 / 2;
+    struct simulation *const foil = verify_open_case("foil_heave.yaml", 0, NULL);
+    const struct frictions of_foil = mean_friction(foil, 0, 2);
+    verify_ratio("heave of an ellipse at Re 1000: friction of both sides", "Navier-Stokes, about 0.06", 0.06,
+                 of_foil.sides / pressure, 1.3, 1.6);
+    verify_ratio("heave of an ellipse at Re 1000: friction of the law", "Navier-Stokes, about 0.06", 0.06,
+                 of_foil.law / pressure, 1.9, 2.2);
+    simulate_free(foil);
+
+    struct simulation *const swimmer = verify_open_case("swimmer_navier_stokes.yaml", 0, NULL);
+    verify_run(swimmer, 6);
+    const struct frictions of_swimmer = mean_friction(swimmer, 6, 1);
+    verify_ratio("swimmer: friction of both sides over the law", "law that acts", of_swimmer.law, of_swimmer.sides,
+                 0.78, 0.88);
+    simulate_free(swimmer);
+}
+
 void verify_skin(void) {
     check_passing_vortex();
     check_gust(1, verify_is_fast() ? 0.02 : 0.004);
+    check_friction_at_rest();
     if (verify_is_fast()) return;
     check_gust(4, 0.004);
+    check_friction_in_motion();
 }

@@ -1,0 +1,151 @@
+/* Tests of src/force/side_friction.c: Thwaites' method on known flows, and the friction on the sides of plates. */
+#include <math.h>
+#include <stdio.h>
+
+#include "force/side_friction.h"
+#include "school.h"
+
+static const double pi = 3.14159265358979323846;
+static const double viscosity = 1e-5;
+
+enum { N = 801 };
+static double x[N], u[N], friction[N], lambda[N];
+
+// the first point at which the layer separates, between two points
+static double separation(void) {
+    for (int i = 1; i < N; i++) {
+        if (lambda[i] >= side_separation) continue;
+        const double part = (side_separation - lambda[i - 1]) / (lambda[i] - lambda[i - 1]);
+        return (1 - part) * x[i - 1] + part * x[i];
+    }
+    return NAN;
+}
+
+static void a_flat_plate_has_the_friction_of_blasius(void **state) {
+    (void)state;
+    for (int i = 0; i < N; i++) {
+        x[i] = (double)i / (N - 1);
+        u[i] = 1;
+    }
+    side_thwaites(N, x, u, viscosity, friction, lambda);
+    for (int i = 1; i < N; i++) {
+        // Thwaites: 0.335, Blasius: 0.332
+        NEAR(friction[i], sqrt(viscosity / x[i]) * pow(0.09, 0.62) / sqrt(0.45), 0, 1e-12);
+        NEAR(friction[i], 0.33206 * sqrt(viscosity / x[i]), 0, 0.01);
+        NEAR(lambda[i], 0, 1e-15, 0);
+    }
+}
+
+// u = x^m: f''(0) of Falkner and Skan by Hartree, times ((m + 1)/2)^(1/2)
+static void wedges_have_the_friction_of_falkner_and_skan(void **state) {
+    (void)state;
+    static const struct { double m, wall; } wedges[] = {{1, 1.2326}, {1.0 / 3, 0.7575}, {1.0 / 9, 0.5120}};
+    for (int k = 0; k < 3; k++) {
+        const double m = wedges[k].m;
+        for (int i = 0; i < N; i++) {
+            x[i] = (double)i / (N - 1);
+            u[i] = pow(x[i], m);
+        }
+        side_thwaites(N, x, u, viscosity, friction, lambda);
+        for (int i = N / 2; i < N - 1; i += 50) {
+            NEAR(lambda[i], 0.45 * m / (5 * m + 1), 1e-3, 0);
+            NEAR(friction[i], u[i] * sqrt(viscosity * u[i] / x[i]) * wedges[k].wall, 0, 0.04);
+        }
+    }
+}
+
+// 103.1 degrees by Thwaites' method, 104.5 by the equations of the boundary layer; 0.123 and 0.120 in u = 1 - x
+static void layers_separate_from_a_cylinder_and_in_a_decelerated_flow(void **state) {
+    (void)state;
+    for (int i = 0; i < N; i++) {
+        x[i] = pi * i / (N - 1);
+        u[i] = 2 * sin(x[i]);
+    }
+    side_thwaites(N, x, u, viscosity, friction, lambda);
+    NEAR(separation() * 180 / pi, 103.1, 0.1, 0);
+    for (int i = 0; i < N; i++) {
+        x[i] = 0.2 * i / (N - 1);
+        u[i] = 1 - x[i];
+    }
+    side_thwaites(N, x, u, viscosity, friction, lambda);
+    NEAR(separation(), 0.123, 1e-3, 0);
+}
+
+// a layer towards smaller x is the mirror image, and layers on both sides of a stagnation point are independent
+static void layers_run_in_the_direction_of_the_flow(void **state) {
+    (void)state;
+    for (int i = 0; i < N; i++) {
+        x[i] = 2.0 * i / (N - 1) - 1;
+        u[i] = tanh(4 * x[i]);
+    }
+    side_thwaites(N, x, u, viscosity, friction, lambda);
+    for (int i = 0; i < N; i++) {
+        NEAR(friction[N - 1 - i], -friction[i], 1e-15, 1e-12);
+        NEAR(lambda[N - 1 - i], lambda[i], 1e-15, 1e-12);
+    }
+    assert_true(friction[3 * N / 4] > 0);
+}
+
+static struct side_friction friction_of(struct simulation *simulation) {
+    struct side_friction sides;
+    simulate_measure(simulation);
+    school_ok(side_friction(simulation->residual->pressure[0], simulation->state->y, simulation->state->yp, &sides));
+    return sides;
+}
+
+static struct simulation *plate(const char *stream, double thickness) {
+    char text[600];
+    snprintf(text, sizeof text,
+             SCHOOL_DEFAULTS
+             "time: {end: 2, shedding_interval: 0.02}\n"
+             "fluid: {density: 1, viscosity: 1e-3, velocity: [%s]}\n"
+             "fish: [{force: pressure, sheet_points: 65, wave: {amplitude: 0, frequency: 0},\n"
+             "        body: {profile: uniform, thickness: %g, depth: 0.5}, motion: {prescribed: all}}]\n",
+             stream, thickness);
+    return school_simulation(text);
+}
+
+static void a_plate_has_half_of_blasius_friction_on_each_side(void **state) {
+    (void)state;
+    struct simulation *const simulation = plate("1, 0", 1e-5);
+    school_run(simulation, 0.2);
+    const struct side_friction sides = friction_of(simulation);
+    for (int side = 0; side < 2; side++) {
+        NEAR(sides.force[side][0], 0.5 * 0.664 * sqrt(1e-3), 0, 0.015);
+        NEAR(sides.force[side][1], 0, 1e-12, 0);
+        assert_true(isnan(sides.separation[side]));
+    }
+    NEAR(sides.along, sides.force[0][0] + sides.force[1][0], 0, 1e-12);
+    simulate_free(simulation);
+}
+
+// at incidence the layer separates on the side away from the stream, and the mirrored plate exchanges the sides
+static void incidence_separates_the_layer_on_one_side(void **state) {
+    (void)state;
+    struct side_friction sides[2];
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation = plate(i == 0 ? "1, 0.1" : "1, -0.1", 0.12);
+        school_run(simulation, 2);
+        sides[i] = friction_of(simulation);
+        simulate_free(simulation);
+    }
+    // the plate points to -x, so that a stream with a positive y component comes from the left
+    for (int side = 0; side < 2; side++) {
+        NEAR(sides[1].force[1 - side][0], sides[0].force[side][0], 0, 1e-6);
+        NEAR(sides[1].force[1 - side][1], -sides[0].force[side][1], 1e-12, 1e-6);
+    }
+    assert_true(isnan(sides[0].separation[0]));
+    assert_true(sides[0].separation[1] > 0 && sides[0].separation[1] < 0.3);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_flat_plate_has_the_friction_of_blasius),
+        cmocka_unit_test(wedges_have_the_friction_of_falkner_and_skan),
+        cmocka_unit_test(layers_separate_from_a_cylinder_and_in_a_decelerated_flow),
+        cmocka_unit_test(layers_run_in_the_direction_of_the_flow),
+        cmocka_unit_test(a_plate_has_half_of_blasius_friction_on_each_side),
+        cmocka_unit_test(incidence_separates_the_layer_on_one_side),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
