@@ -116,7 +116,7 @@ check each_shape_is_there_once test "$(grep -o '"shape":[0-9]' above.html | tr -
 cat >long.yaml <<'end'
 format: 1
 time: {end: 59.9, shedding_interval: 0.1, output_interval: 0.1}
-wake: {lifetime: 60, tolerance: 1e-3}
+wake: {lifetime: 40, tolerance: 1e-3}
 fluid: {density: 0}
 defaults: {fish: {nodes: 5, sheet_points: 5, wave: {amplitude: 0.001}}}
 fish: [{}, {start: {position: [0, 5]}}, {start: {position: [0, 10]}}, {start: {position: [0, 15]}}, {start: {position: [0, 20]}}, {start: {position: [0, 25]}}, {start: {position: [0, 30]}}]
