@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "solver/dense_factors.h"
+#include "vortex/kernel.h"
 
 /* A diagonal pivot keeps the factors sparse. Use a diagonal pivot of at least diagonal_tolerance (the default of KLU)
  * times the largest entry of the column. If the reciprocal pivot growth is then below min_growth, as in soft rods of
@@ -127,6 +128,8 @@ struct fish_factors {
     struct sparse_columns rod;  /* A; owned */
     struct dense_factors schur; /* S, later the factors of S                         (order n_sheet) */
     double *row_scale;          /* the largest entry of each row of the block                  (n) */
+    int first_full, n_full;     /* the columns of A under which C is nearly full */
+    double *full;               /* -C of these columns                               (n_full, n_sheet) */
     double *x_rod, *x_sheet;    /* solutions                               (AT_ONCE, n_rod), (n_sheet) */
 };
 
@@ -140,6 +143,7 @@ void fish_factors_free(struct fish_factors *factors) {
     free(factors->rod.value);
     dense_factors_free(&factors->schur);
     free(factors->row_scale);
+    free(factors->full);
     free(factors->x_rod);
     free(factors->x_sheet);
     free(factors);
@@ -181,6 +185,35 @@ static int sheet_column(const struct fish_factors *factors, int k) {
     return k < factors->first ? k : k + factors->n_rod;
 }
 
+// find the longest run of columns with at least half of the rows of C
+static enum status find_full(struct fish_factors *factors) {
+    const struct sparse *const block = factors->block;
+    int run = 0;
+    factors->n_full = 0;
+    for (int c = 0; c < factors->n_rod; c++) {
+        const int column = factors->first + c;
+        run = 2 * (block->column_start[column + 1] - factors->split[column]) > factors->n_sheet ? run + 1 : 0;
+        if (run <= factors->n_full) continue;
+        factors->n_full = run;
+        factors->first_full = c + 1 - run;
+    }
+    free(factors->full);
+    factors->full = calloc((size_t)factors->n_full * (size_t)factors->n_sheet + 1, sizeof *factors->full);
+    return factors->full ? STATUS_OK : STATUS_MEMORY;
+}
+
+static void take_full(const struct fish_factors *factors) {
+    const struct sparse *const block = factors->block;
+    for (int c = 0; c < factors->n_full; c++) {
+        const int column = factors->first + factors->first_full + c;
+        double *const to = factors->full + (long)c * factors->n_sheet;
+        memset(to, 0, (size_t)factors->n_sheet * sizeof *to);
+        for (int64_t i = factors->split[column]; i < block->column_start[column + 1]; i++) {
+            to[block->row_index[i] - factors->n_rod] = -block->value[i];
+        }
+    }
+}
+
 // find the parts in the columns of the block, and the pattern of A
 static enum status factors_divide(struct fish_factors *factors) {
     const struct sparse *const block = factors->block;
@@ -205,6 +238,7 @@ static enum status factors_divide(struct fish_factors *factors) {
         const int64_t *const from = block->row_index + block->column_start[factors->first + c];
         memcpy(rod->row + rod->start[c], from, (size_t)(rod->start[c + 1] - rod->start[c]) * sizeof *from);
     }
+    TRY(find_full(factors));
     rod->n = factors->n_rod;
     rod->version = factors->version = block->version;
     factors->in_parts = 1;
@@ -239,11 +273,12 @@ static void subtract_column(const struct sparse *block, int64_t start, int64_t e
     for (int64_t i = 0; i < n; i++) y[row[start + i] - first_row] -= value[i] * x;
 }
 
-// subtract C x from the rows of the sheet; x: unknowns of the rod
-static void subtract_rod(const struct fish_factors *factors, const double *x, double *rows) {
+// subtract C x from the rows of the sheet, except n_left columns from first_left on; x: unknowns of the rod
+static void subtract_rod(const struct fish_factors *factors, const double *x, int first_left, int n_left,
+                         double *rows) {
     const struct sparse *const block = factors->block;
     for (int c = 0; c < factors->n_rod; c++) {
-        if (x[c] == 0) continue;
+        if (x[c] == 0 || (c >= first_left && c < first_left + n_left)) continue;
         const int column = factors->first + c;
         subtract_column(block, factors->split[column], block->column_start[column + 1], factors->n_rod, x[c], rows);
     }
@@ -282,7 +317,7 @@ static double fill_columns(struct fish_factors *factors, int first, int n) {
     if (has_rod) sparse_factors_solve(factors->a, n, factors->x_rod);
     for (int k = 0; k < n; k++) {
         double *const s = dense_factors_column(&factors->schur, first + k);
-        if (has_rod) subtract_rod(factors, factors->x_rod + k * factors->n_rod, s);
+        if (has_rod) subtract_rod(factors, factors->x_rod + k * factors->n_rod, 0, 0, s);
         const double after = schur_largest(factors, s);
         if (after > 0) least = fmin(least, before[k] / after);
     }
@@ -292,6 +327,7 @@ static double fill_columns(struct fish_factors *factors, int first, int n) {
 // STATUS_RETRY: A is singular or nearly singular
 static enum status factors_set_up_parts(struct fish_factors *factors) {
     factors_take_values(factors);
+    take_full(factors);
     const enum status status = sparse_factors_set_up(factors->a, &factors->rod);
     if (status != STATUS_OK) return status == STATUS_MEMORY ? status : STATUS_RETRY;
     const int n = factors->n_sheet;
@@ -329,7 +365,8 @@ static void factors_solve_parts(struct fish_factors *factors, double *x) {
     memcpy(rod, x, (size_t)factors->n_rod * sizeof *rod);
     memcpy(sheet, x + factors->n_rod, (size_t)n * sizeof *sheet);
     sparse_factors_solve(factors->a, 1, rod);
-    subtract_rod(factors, rod, sheet);
+    subtract_rod(factors, rod, factors->first_full, factors->n_full, sheet);
+    kernel_multiply(n, factors->n_full, factors->full, rod + factors->first_full, sheet);
     dense_factors_solve(&factors->schur, sheet);
     memcpy(rod, x, (size_t)factors->n_rod * sizeof *rod);
     for (int k = 0; k < n; k++) {
