@@ -226,6 +226,33 @@ static void fused_variants_round_identically(void **state) {
         NEAR_ARRAY(RING_BLOCK, other.leg_v, first.leg_v, rounding, rounding);
         NEAR_ARRAY(RING_BLOCK, other.div, first.div, 100 * rounding, rounding);
     }
+
+    // mutual sums: at the block, then one number per lane at the sources
+    struct ring_mates mates;
+    for (int i = 0; i < RING_BLOCK; i++) {
+        mates.q[i] = number(3000 + i);
+        mates.dx[i] = number(4000 + i);
+        mates.dy[i] = number(5000 + i);
+    }
+    struct ring_lanes sums[N];
+    memset(sums, 0, sizeof sums);
+    struct ring_block mutual = targets;
+    ring_variant(0)->mutual(&mutual, &mates, &from, sums);
+    NEAR_ARRAY(RING_BLOCK, mutual.u, first.u, 1e-12, 1e-12);
+    for (int k = 1; ring_variant(k); k++) {
+        struct ring_block other = targets;
+        struct ring_lanes others[N];
+        memset(others, 0, sizeof others);
+        ring_variant(k)->mutual(&other, &mates, &from, others);
+        const double rounding = ring_variant(k + 1) ? 0 : 1e-12;
+        NEAR_ARRAY(RING_BLOCK, other.u, mutual.u, rounding, rounding);
+        NEAR_ARRAY(RING_BLOCK, other.leg_v, mutual.leg_v, rounding, rounding);
+        for (int n = 0; n < N; n++) {
+            NEAR_ARRAY(RING_BLOCK / 2, others[n].u, sums[n].u, rounding, rounding);
+            NEAR_ARRAY(RING_BLOCK / 2, others[n].leg_u, sums[n].leg_u, rounding, rounding);
+            NEAR_ARRAY(RING_BLOCK / 2, others[n].div, sums[n].div, 100 * rounding, rounding);
+        }
+    }
 }
 
 static void rings_cause_the_same_velocity_one_by_one_and_mutually(void **state) {
