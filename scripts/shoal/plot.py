@@ -557,7 +557,7 @@ def plot_pressure(results, options):
         axes.set_title(names(results)[fish], size=9)
         axes.set_xlim(0, 1)
         axes.grid(lw=0.3, color=GRID)
-    label_panels(all_axes, n_columns, "distance from the nose / body length", "pressure, left less right [Pa]")
+    label_panels(all_axes, n_columns, "distance from the nose / body length", "pressure, right less left [Pa]")
     most = 1.1 * max(np.nanmax(values) for values in drawn)
     all_axes[0].set_ylim(-most, most)
     legend_above_titles(all_axes, shown, of)

@@ -323,7 +323,7 @@ const struct result_variable result_table[] = {
      GATHERED(result_row_edge_pressure_force), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "force of the pressure on every edge; with output.forces: edges only"},
     {"pressure",              {TIME, FISH, CONTROL},  RESULT_BULK,    "Pa",     GATHERED(result_row_pressure),
-     .long_name = "pressure jump at control points, left less right seen from the nose; NaN unless force: pressure"},
+     .long_name = "pressure jump at control points, right side of the body less left side; NaN unless force: pressure"},
     {"sensor_pressure_left",  {TIME, FISH, SENSOR},   RESULT_REAL,    "Pa",
      GATHERED(result_row_sensor_left),
      .long_name = "pressure on the left side of the body at the sensors, less the pressure of the undisturbed stream"},

@@ -22,9 +22,9 @@ enum status page_write(const char *from, const char *to, bool overwrite);
 //     FOLDER/NAME-wakes-0000.vtp   the free vortices, in rows with a wake
 //     FOLDER/NAME-walls-0000.vtp   the walls as lines, in all rows, if the case has fluid.walls
 //
-// Point data of bodies: sheet_strength [m s-1] and, with force: pressure, the pressure jump [Pa], left less right, on
-// the outline the value of the adjacent line. Cell data: fish (number, from 0), outline (1, or 0 for a line), speed [m
-// s-1], heading [degree]. Point data of wakes: circulation [m2 s-1] with decay, age [s], fish.
+// Point data of bodies: sheet_strength [m s-1] and, with force: pressure, the pressure jump [Pa], right side less left,
+// on the outline the value of the adjacent line. Cell data: fish (number, from 0), outline (1, or 0 for a line), speed
+// [m s-1], heading [degree]. Point data of wakes: circulation [m2 s-1] with decay, age [s], fish.
 
 /* Write all rows of the result file at from to the folder; create a missing folder. Without overwrite existing files
  * are refused. The list of times is written last. name: NULL, or set to the path of the list, which the caller frees.

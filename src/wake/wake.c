@@ -159,7 +159,7 @@ void wake_rings_at(const struct wake *wake, const struct school *school, double 
 void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
              double *strength) {
     wake_markers_at(wake, school->interval, tau, x, y);
-    memcpy(strength, wake->circulation, (size_t)wake->n_vortex * sizeof *strength);
+    for (int i = 0; i < wake->n_vortex; i++) strength[i] = wake->circulation[i];
     wake_decay_strengths(wake, school, t, tau, strength);
 }
 
