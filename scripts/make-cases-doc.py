@@ -35,10 +35,9 @@ fish:
     start: {position: [0, 0], speed: 0.8}
 ```
 
-`shoal check CASE` checks a case and estimates time and memory of the run, `shoal show CASE` prints every key, value and
-unit of the case, `shoal keys` prints the tables below, and `shoal keys WORD` the keys with a word in name or meaning.
-`shoal new CASE` writes a commented case to start from. All errors of a case are listed at once, each with a place and
-a remedy:
+`shoal new CASE` writes a commented case to start from, `shoal check CASE` checks a case and estimates time and memory
+of the run, `shoal show CASE` prints every key, value and unit, `shoal keys` the tables below, and `shoal keys WORD`
+the keys with a word in name or meaning. All errors of a case are listed at once, each with a remedy:
 
 ```
 cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'? The key belongs to fish[2].body
@@ -49,13 +48,12 @@ cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'?
 ## Values
 
 - Units are SI, angles are in degrees; a value is written without a unit: `length: 0.5`, not `length: 0.5 m`.
-- The key decides how a value is read: `name: no` is a string, `end: 1e1` is the number 10. Numbers are decimal, with a
-  point; `nan` and `inf` are refused.
-- "required" in the tables means that there is no default. A default in *italics* is computed from other values;
-  *published* precedes the value of `preset: published`.
-- `end`, `output_interval` and `checkpoint_interval` are integer multiples of `shedding_interval`, `wake_interval` is one
-  of `output_interval`. Every row of output and every checkpoint ([reliability.md](reliability.md)) is then the state at
-  an event.
+- The key decides how a value is read: `name: no` is a string, `end: 1e1` is the number 10. `nan` and `inf` are
+  refused.
+- A default in *italics* is computed from other values; *published* precedes the value of `preset: published`.
+- `end`, `output_interval` and `checkpoint_interval` are integer multiples of `shedding_interval`, `wake_interval` is
+  one of `output_interval`. Every row of output and every checkpoint ([reliability.md](reliability.md)) is then the
+  state at an event.
 
 ## Precedence
 

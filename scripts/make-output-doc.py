@@ -32,8 +32,8 @@ Octave (`pkg load netcdf`) and MATLAB list the dimensions in the opposite order:
     x = ncread("demo.nc", "x");                         % (xy, node, fish, time)
     plot(squeeze(x(1, 1, 1, :)), squeeze(x(2, 1, 1, :)))  % path of the nose of the first fish
 
-`shoal view demo.nc` writes demo.html, a page that plays bodies and wakes in any browser. `shoal export demo.nc --vtk
-demo` writes files for ParaView. Figures and films: [gallery.md](gallery.md).
+`shoal view demo.nc` writes a page that plays bodies and wakes in any browser, `shoal export demo.nc --vtk demo` files
+for ParaView. Figures and films: [gallery.md](gallery.md).
 
 ## Dimensions
 
@@ -70,9 +70,9 @@ Readers can open the file at any time, and again to see new rows. The attribute 
 | `stopped` | stopped by a signal or `--max-wall`; `shoal resume` continues ([reliability.md](reliability.md)) |
 | `failed: ...` | the integration or the writing failed, or bodies met with `contact.action: stop`; the rows are valid |
 
-The attribute `warnings` has one line for each defect of a result after a successful integration, with the most affected
-fish. `shoal run`, `shoal info` and `shoal gather` print the warnings; with `--strict` the exit code is 3. The attribute
-`closest_approach` has the least distance of two bodies, with fish and time.
+The attribute `warnings` has one line for each defect of a result, with the most affected fish. `shoal run`, `shoal
+info` and `shoal gather` print the warnings; with `--strict` the exit code is 3. The attribute `closest_approach` has
+the least distance of two bodies, with fish and time.
 
 @WARNINGS@
 
@@ -80,8 +80,8 @@ Every command and script refuses a truncated file; a study runs such a member ag
 
 ## Repeating a run
 
-Attribute `case_effective` is the complete case with every key, after includes, preset and `--set`; `case_text` is the
-original case file. `source` names the program, the commit and the libraries, `history` the time and the command.
+Attribute `case_effective` is the complete case, after includes, preset and `--set`; `case_text` is the original file.
+`source` names the program, the commit and the libraries, `history` the time and the command.
 
     shoal info --case demo.nc > again.yaml
     shoal run again.yaml
@@ -111,10 +111,10 @@ OTHERS = {
     "study": """
 ## The file of a study
 
-`shoal study` and `shoal gather` make `study.nc` from the files of the members. Attribute `study_case` is the case with the
-sweep, `shoal_study` is 1. Each swept key is a variable over `member`, named like the key with `_` for `.` and without
-brackets; `long_name` is the path, `axis` the number of the axis, and `refine` is 1 on a refined axis. The last row of
-every variable over (time), (time, fish) or (time, fish, xy) of a result file is included, with `member` for `time`; for
+`shoal study` and `shoal gather` make `study.nc` from the files of the members. Attribute `study_case` is the case
+with the sweep, `shoal_study` is 1. Each swept key is a variable over `member`, named like the key with `_` for `.`
+and without brackets; `long_name` is the path, `axis` the number of the axis, and `refine` is 1 on a refined axis. The
+last row of every variable over (time), (time, fish) or (time, fish, xy) is included, with `member` for `time`; for
 steady states also `steady_...`. A member without rows has NaN.
 
 A refined axis adds the variables over `level` and `group` (members that differ in the refined key only), for each
@@ -130,10 +130,10 @@ measures the error of the reference, other members with equal values are repeats
     shoal field demo.nc --at 2.5 --grid 600,400 --box -2,-1,2,1 -o field.nc
     scripts/plot.py field field.nc                           # vorticity (--speed: speed), streamlines, bodies: field.png
 
-`shoal field` writes the velocity and the vorticity of the fluid on a grid, at the time of one row: the sum of the external
-flow, every bound sheet and every wake, as at another body at that position (doc/model.md, section 8), by the tree with an
-error of 1e-7 of the sum of absolute values. The field omits the flow around the thickness of bodies, which are lines in
-the model. A row without a wake (`output.wake_interval`) has no field.
+`shoal field` writes velocity and vorticity of the fluid on a grid, at the time of one row: the sum of the external
+flow, every bound sheet and every wake, as at another body at that position (doc/model.md, section 8), with an error
+of 1e-7 of the sum of absolute values. The field omits the thickness of bodies, which are lines in the model. A row
+without a wake (`output.wake_interval`) has no field.
 
 Attribute `run` names the file of the run, `case_effective` is the case, `shoal_field` is 1.
 """,
