@@ -69,7 +69,7 @@ def columns(path, *heads):
 
 def rows(path, *names):
     text = open(path).read()
-    return [float(re.search(rf"^  {name} +(\S+)", text, re.M)[1]) for name in names]
+    return [float(re.search(rf"^ *{name} +(\S+)", text, re.M)[1]) for name in names]
 
 case, tolerance, theory = sys.argv[1], float(sys.argv[2]), sys.argv[3:]
 true = ["mean_thrust", "mean_power", "efficiency"]

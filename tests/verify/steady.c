@@ -14,11 +14,12 @@ enum { BRUTE_BEATS = 200, MOST_BEATS = BRUTE_BEATS / 10 };
 
 struct swimmer {
     const char *name, *text;
+    bool is_fish;
     int decays_from, decays_to; /* beats of the run between which the error falls by the largest multiplier */
 };
 
 struct found {
-    double speed, cost, multiplier, to_bound[MOST_BEATS + 1];
+    double speed, cost, strouhal, multiplier, to_bound[MOST_BEATS + 1];
     int n_beats;
 };
 
@@ -41,6 +42,7 @@ static struct found search_for(const char *text) {
     verify_ok(steady_search_run(&problem));
     found.n_beats = problem.map.n_beats;
     found.speed = problem.map.last[0].speed;
+    found.strouhal = simulation->diagnostics->fish[0].strouhal;
     found.cost = problem.map.last[0].actuation + problem.map.last[0].driving;
     verify_ok(steady_multipliers_find(&problem, real, imaginary, way, &n_beats));
     found.multiplier = hypot(real[0], imaginary[0]);
@@ -79,6 +81,13 @@ static void compare(const struct swimmer *swimmer) {
     const struct found found = search_for(swimmer->text);
     verify_relative(verify_text("%s: speed, m/s", name), "a run of 200 beats", reference, found.speed, 1e-4);
     verify_relative(verify_text("%s: power, W", name), "a run of 200 beats", power, found.cost, 5e-4);
+    // fish of length 1 m with a beat of 1 s: the stride, in lengths a beat, equals the speed
+    if (swimmer->is_fish) {
+        verify_ratio(verify_text("%s: stride, lengths a beat", name), "range published for fish", 1, found.speed, 0.45,
+                     1.25);
+        verify_ratio(verify_text("%s: Strouhal number", name), "range published for fish", 1, found.strouhal, 0.14,
+                     0.35);
+    }
     verify_zero(verify_text("%s: beats of the search", name), "at most a tenth of the run's", found.n_beats,
                 MOST_BEATS);
     const int n = found.n_beats < MOST_BEATS ? found.n_beats : MOST_BEATS;
@@ -100,21 +109,21 @@ static void compare(const struct swimmer *swimmer) {
 #define TIME "format: 1\ntime: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 static const struct swimmer swimmers[] = {
-    {"default fish", VERIFY_DEFAULTS TIME "fish: [{}]\n", 20, 30},
-    {"stiff fish", VERIFY_DEFAULTS TIME "fish: [{body: {modulus: 1e7}}]\n", 20, 30},
+    {"default fish", VERIFY_DEFAULTS TIME "fish: [{}]\n", true, 20, 30},
+    {"stiff fish", VERIFY_DEFAULTS TIME "fish: [{body: {modulus: 1e7}}]\n", true, 20, 30},
     {"fish with pressure",
      VERIFY_DEFAULTS TIME "wake: {lifetime: 8}\n"
                           "fish: [{force: pressure, start: {speed: 0.5}, body: {depth: 1}}]\n",
-     20, 30},
+     true, 20, 30},
     {"fish of finite span",
-     VERIFY_DEFAULTS TIME "fish: [{force: pressure, start: {speed: 0.5}, pressure: {span: finite}}]\n", 20, 30},
+     VERIFY_DEFAULTS TIME "fish: [{force: pressure, start: {speed: 0.5}, pressure: {span: finite}}]\n", true, 20, 30},
     {"heaving plate",
      VERIFY_DEFAULTS TIME "solver: {rtol: 1e-6}\n"
                           "fluid: {density: 1, viscosity: 4.536e-4}\nwake: {lifetime: 8, smoothing: 0.1}\n"
                           "fish: [{length: 2, force: pressure, start: {speed: 4}, wave: {amplitude: 0, frequency: 0},\n"
                           "  body: {profile: uniform, thickness: 0.1, depth: 0.5, density: 1.5915, modulus: 1e5},\n"
                           "  motion: {prescribed: all, surge: free, heave: 0.1, frequency: 1}}]\n",
-     20, 30},
+     false, 20, 30},
 };
 
 // ---- a fish that is steered, and two that swim freely
