@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #include "run/estimate.h"
@@ -25,6 +26,12 @@ static double processor_time(void) {
     struct timespec now;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double peak_memory(void) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * (double)usage.ru_maxrss;
 }
 
 static struct estimate estimate_of(const char *text, double patience) {
@@ -126,6 +133,9 @@ static void every_kind_of_wake_can_be_made_up(void **state) {
         assert_true(simulation->state->wake[1].n_vortex >= wake_most(simulation->school, 500) - 1);
         // a program without a run has some megabytes
         assert_true(estimate.bytes > 4e6 && estimate.bytes < 1e10);
+        // after the longest wakes no memory is missing but that of the file
+        const double most = peak_memory() + 7e6;
+        assert_true(estimate.bytes <= most);
         simulate_free(simulation);
     }
 }

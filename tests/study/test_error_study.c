@@ -449,6 +449,37 @@ static void a_cusp_an_edge_and_a_sheet_are_objected_to(void **state) {
     error_plan_free(&study);
 }
 
+// the report of a study whose shedding interval has this share of the error and a reason for a flag
+static int is_flagged_with_share(double share) {
+    struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [nodes, shedding_interval]}");
+    struct member_file *const members = make_members(&study);
+    assert_int_equal(error_study_judge(&study, members), STATUS_OK);
+    assert_true(study.error[0] > 0);
+    for (int k = 0; k < study.n_keys; k++) {
+        if (strcmp(study.key[k].row->path, "time.shedding_interval") != 0) continue;
+        study.key[k].verdict = ERROR_BUDGET_OBJECTION;
+        snprintf(study.key[k].reason, sizeof study.key[k].reason, "too long");
+        study.key[k].part[0].error = share * study.error[0];
+    }
+    char *text = NULL;
+    size_t size;
+    FILE *const stream = open_memstream(&text, &size);
+    assert_int_equal(error_report_print(&study, members, stream), STATUS_OK);
+    fclose(stream);
+    const int is_flagged = strstr(text, "flagged: time.shedding_interval: too long\n") != NULL;
+    free(text);
+    free_members(members, sweep_n_members(&study.study));
+    error_plan_free(&study);
+    return is_flagged;
+}
+
+static void a_flag_is_explained_from_a_hundredth_of_the_error_on(void **state) {
+    (void)state;
+    assert_true(is_flagged_with_share(0.02));
+    assert_false(is_flagged_with_share(0.005));
+    assert_true(is_flagged_with_share(NAN));
+}
+
 static void choices_of_the_model_are_not_in_the_sum(void **state) {
     (void)state;
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [rtol, smoothing]}");
@@ -583,6 +614,7 @@ int main(void) {
         cmocka_unit_test(what_is_too_dear_is_not_run_and_its_cost_is_said),
         cmocka_unit_test(a_member_that_failed_leaves_the_error_unknown),
         cmocka_unit_test(a_cusp_an_edge_and_a_sheet_are_objected_to),
+        cmocka_unit_test(a_flag_is_explained_from_a_hundredth_of_the_error_on),
         cmocka_unit_test(choices_of_the_model_are_not_in_the_sum),
         cmocka_unit_test(a_report_is_printed_whole),
         cmocka_unit_test(every_failing_allocation_is_reported_and_leaves_nothing),

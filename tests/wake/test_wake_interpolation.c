@@ -119,6 +119,44 @@ static void images_in_walls_are_interpolated_as_exactly(void **state) {
     }
 }
 
+// change of the velocity at all points by a drift, at the end of an interval: by interpolation or exactly
+static int drift_changes(const struct simulation *simulation, int exactly, double change[2 * POINTS]) {
+    struct flow *const flow = simulation->residual->flow;
+    double u[2][POINTS], v[2][POINTS];
+    if (exactly) {
+        flow_sum_exactly(flow);
+    } else {
+        evaluate(simulation, 0, simulation->state->y, u[0], v[0]);
+        school_ok(flow_interpolate(flow, simulation->state));
+    }
+    for (int i = 0; i < 2; i++) {
+        double *const y = later(simulation, 1, i * 1e-5);
+        evaluate(simulation, 1, y, u[i], v[i]);
+        assert_int_equal(flow->by_interpolation[0] && flow->by_interpolation[1], !exactly);
+        free(y);
+    }
+    for (int p = 0; p < flow->n_points; p++) {
+        change[2 * p] = u[1][p] - u[0][p];
+        change[2 * p + 1] = v[1][p] - v[0][p];
+    }
+    return 2 * flow->n_points;
+}
+
+static void at_the_end_of_an_interval_drift_counts_with_the_gradient_there(void **state) {
+    (void)state;
+    struct simulation *const simulation = two_fish(1e-3, 0.02, 0.2);
+    double interpolated[2 * POINTS], exact[2 * POINTS], error = 0, most = 0;
+    drift_changes(simulation, 0, interpolated);
+    const int n = drift_changes(simulation, 1, exact);
+    for (int i = 0; i < n; i++) {
+        error = fmax(error, fabs(interpolated[i] - exact[i]));
+        most = fmax(most, fabs(exact[i]));
+    }
+    print_message("drift changes the velocity by %.3g m/s at most, error %.3g\n", most, error);
+    assert_true(error < 1e-3 * most);
+    simulate_free(simulation);
+}
+
 static void with_drift_the_error_is_below_the_tolerance_or_every_vortex_is_summed(void **state) {
     (void)state;
     struct simulation *const simulation = two_fish(1e-5, 0.01, 0.2);
@@ -259,6 +297,7 @@ int main(void) {
         cmocka_unit_test(the_error_stays_below_the_tolerance),
         cmocka_unit_test(images_in_walls_are_interpolated_as_exactly),
         cmocka_unit_test(with_drift_the_error_is_below_the_tolerance_or_every_vortex_is_summed),
+        cmocka_unit_test(at_the_end_of_an_interval_drift_counts_with_the_gradient_there),
         cmocka_unit_test(the_equations_do_not_depend_on_what_was_evaluated_before),
         cmocka_unit_test(the_gradient_is_that_of_the_interpolated_velocity),
         cmocka_unit_test(without_a_tolerance_nothing_is_interpolated),
