@@ -193,7 +193,9 @@ static void the_simulation_stays_where_it_is(void **state) {
     double *const before = malloc((size_t)n * sizeof *before);
     assert_non_null(before);
     memcpy(before, found.simulation->state->y, (size_t)n * sizeof *before);
+    const double reach = found.simulation->residual->couplings.reach;
     school_ok(steady_modes_find(found.simulation, &found.values));
+    NEAR(found.simulation->residual->couplings.reach, reach, 0, 0);
     assert_memory_equal(before, found.simulation->state->y, (size_t)n * sizeof *before);
     assert_int_equal(found.simulation->state->event, 0);
     assert_int_equal(found.simulation->state->wake[0].n_vortex, 0);
