@@ -25,12 +25,26 @@ spends() {  # ms, arguments...
         BEGIN { spent = 1000 * (both(after) - both(before)); print spent " ms"; exit !(spent <= limit) }'
 }
 
+# The number before a unit in the estimate of the last check.
+estimated() {  # UNIT
+    awk -v unit="$1" '/ on this machine/ { for (i = 2; i <= NF; i++) if ($i == unit) { print $(i - 1); exit } }' out
+}
+
+is_below() { awk -v value="$1" -v limit="$2" 'BEGIN { print value, limit; exit !(value > 0 && value < limit) }'; }
+
 estimates() {
     run check "$demo"
     check "time and memory are estimated" \
         grep -qE '^    the run takes about [0-9.e+]+ (s|min|h) and [0-9.e+]+ MB on this machine' out
+    local of_one seconds
+    of_one=$(estimated MB)
+    seconds=$(estimated s)
     run check "$cases/studies/phase.yaml" --set time.end=1
     check "the runs of a study add up" grep -q '^    the runs take about .* on this machine, one after the other' out
+    check "which run one after the other in the memory of one" is_below "$(estimated MB)" $((3 * ${of_one%.*}))
+    # of 20 members one runs
+    run check "$demo" --set 'sweep=[{key: solver.max_steps, values: [1, 1, 1, 1, 1, 1, 1, 1, 1, 500, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]}]'
+    check "members that fail take no time" is_below "$(estimated s)" "$(awk -v one="$seconds" 'BEGIN { print 6 * one }')"
     run check "$demo" -q
     check "-q says nothing" silent
 }

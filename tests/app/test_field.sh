@@ -27,6 +27,8 @@ run field run.nc --at 0.2 --box -1,-2,3.5,4e-1 --grid 3,2 -o box.nc -q
 check "field with a box: exit 0" test "$code" = 0
 check "field -q is quiet" test ! -s out
 check "field with a box: its corners" test "$(ncdump -v x,y box.nc | grep -cE '^ (x = -1, 1.25, 3.5|y = -2, 0.4) ;')" = 2
+run field run.nc --at 0.2 --box 0,0,1,4 -o long.nc
+check "field without a grid: 400 points along the longer side" has out "long.nc: 101 x 400 points at t = 0.2 s"
 run field run.nc -o last.nc
 check "field without a time: the last row with its wake" has out "at t = 0.5 s"
 

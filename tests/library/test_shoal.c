@@ -934,6 +934,7 @@ static struct shoal *opened_to_change(void **state, double t) {
 static void a_body_is_where_it_was_put_with_its_velocity(void **state) {
     struct shoal *const run = opened_to_change(state, 0.2);
     double x[18], v[18], x_now[18], v_now[18], audit[3];
+    const double moment = one_of(run, "angular_momentum_balance", 0);
     const int n_before = shoal_n_vortices(run, 0);
     assert_int_equal(shoal_state(run, 0, x, v), SHOAL_OK);
     for (size_t i = 0; i < 3; i++)
@@ -960,6 +961,7 @@ static void a_body_is_where_it_was_put_with_its_velocity(void **state) {
     // the total circulation is 0, and the balances are unchanged
     NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
     for (size_t i = 0; i < 2; i++) NEAR(one_of(run, "momentum_balance", i), audit[i], 1e-9, 0);
+    NEAR(one_of(run, "angular_momentum_balance", 0), moment, 1e-9, 0);
     NEAR(one_of(run, "energy_balance", 0), audit[2], 1e-9, 0);
     assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
     NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);

@@ -325,37 +325,6 @@ static void a_result_with_only_the_previous_checkpoint_is_unfinished_too(void **
     free(path);
 }
 
-// the rows of two cases agree until the earlier end, so only the cases tell which checkpoint belongs to the result
-static void a_checkpoint_of_another_case_with_the_same_rows_continues_nothing(void **state) {
-    static const char *const texts[] = {
-        "time: {end: 0.2, shedding_interval: 0.02, output_interval: 0.02}\nfish: [{}]\n",
-        "time: {end: 0.3, shedding_interval: 0.02, output_interval: 0.02}\nfish: [{}]\n"};
-    char *const path = checkpoints_path(*state);
-    char other[512], *effective[2];
-    assert_non_null(path);
-    snprintf(other, sizeof other, "%s.other", path);
-    for (int i = 0; i < 2; i++) {
-        struct checkpoint checkpoint;
-        const struct simulate_options options = {
-            .path = *state, .overwrite = 1, .command = "test", .progress = stop_at_the_fifth, .stop = &stop};
-        stop = 0;
-        run_into(texts[i], &options, STATUS_STOPPED);
-        if (checkpoint_read(&checkpoint, path) != STATUS_OK) fail_msg("%s", status_message());
-        effective[i] = strdup(checkpoint.effective);
-        checkpoint_free(&checkpoint);
-        if (i == 0) assert_int_equal(rename(path, other), 0);
-    }
-    stop = 0;
-    double t;
-    assert_true(simulate_can_resume(*state, path, effective[1], &t));
-    assert_false(simulate_can_resume(*state, path, effective[0], &t));
-    assert_false(simulate_can_resume(*state, other, effective[0], &t));
-    assert_false(simulate_can_resume(*state, other, effective[1], &t));
-    assert_int_equal(unlink(other), 0);
-    for (int i = 0; i < 2; i++) free(effective[i]);
-    free(path);
-}
-
 static double wall_time, first_resumed;
 static void take_a_tenth_of_a_second(const struct simulate_progress *progress, void *data) {
     (void)data;
@@ -575,7 +544,6 @@ int main(void) {
         cmocka_unit_test(the_wake_is_written_at_its_own_interval_and_at_the_end),
         cmocka_unit_test(a_signal_stops_a_run_at_the_next_event),
         cmocka_unit_test(a_result_with_only_the_previous_checkpoint_is_unfinished_too),
-        cmocka_unit_test(a_checkpoint_of_another_case_with_the_same_rows_continues_nothing),
         cmocka_unit_test(wall_time_of_a_resumed_run_continues),
         cmocka_unit_test(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one),
         cmocka_unit_test(a_signal_during_the_start_leaves_nothing),
