@@ -111,6 +111,21 @@ static void a_file_of_other_bodies_is_refused(void **state) {
     assert_int_equal(steady_start_shapes(path, setup.school, setup.state->y), STATUS_FILE);
     assert_non_null(strstr(status_message(), "does not have 7 nodes"));
     school_clear(&setup);
+
+    // a body with more nodes in the file, and one that is padded
+    for (int is_padded = 0; is_padded < 2; is_padded++) {
+        double longer[2 * N_NODES];
+        for (int k = 0; k < N_NODES; k++) {
+            longer[2 * k] = is_padded && k >= 4 ? (double)NAN : (double)k;
+            longer[2 * k + 1] = is_padded && k >= 4 ? (double)NAN : 0;
+        }
+        put_state(1, 0, (double[]){1}, longer);
+        school_build(&setup, TIME "fish: [{nodes: 4, sheet_points: 7, motion: {prescribed: head}}]\n");
+        const enum status status = steady_start_shapes(path, setup.school, setup.state->y);
+        assert_int_equal(status, is_padded ? STATUS_OK : STATUS_FILE);
+        if (!is_padded) assert_non_null(strstr(status_message(), "does not have 4 nodes"));
+        school_clear(&setup);
+    }
 }
 
 int main(void) {
