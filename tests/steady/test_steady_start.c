@@ -66,6 +66,8 @@ static void followers_keep_their_places_in_the_frame_of_the_first_fish(void **st
     NEAR_ARRAY(2, found[1].start_position, ((double[]){3, 3}), 1e-14, 0);
     NEAR(found[0].start_speed, 1.5, 0, 0);
     NEAR(found[1].start_speed, 1.6, 0, 0);
+    NEAR(found[0].motion.speed, 1.5, 0, 0);
+    NEAR(found[1].motion.speed, 1.6, 0, 0);
     free(found);
 }
 
