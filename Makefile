@@ -105,6 +105,9 @@ library_objects = $(patsubst src/%.c,$(B)/%.o,$(wildcard $(patsubst %,src/%/*.c,
 test_names   = $(or $(TEST),*)
 c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/*/test_%.c)))
 shell_tests  = $(filter-out tests/slurm/%,$(wildcard $(test_names:%=tests/*/test_%.sh)))
+# C tests of more than three seconds, not in make check
+long_c_tests = contact diagnostics diagnostics_momentum estimate flow_at_markers simulate skin steady steady_formation take_up treecode warnings
+quick_c_tests = $(filter-out $(foreach test,$(long_c_tests),%/test_$(test)),$(c_tests))
 test_helpers = $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/*.c))
 
 verify_program = $(B)/verify/verify
@@ -148,9 +151,11 @@ test:  ## install what is missing, build, run every test
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
 
-check: style test-c  ## what to run before a commit: style, and the tests in C
+check: deps style  ## what to run before a commit: style, and the tests in C that take at most three seconds
+	@$(parallel) tests
+	@scripts/run-tests.sh $(program) $(quick_c_tests)
 
-test-c: deps  ## run the tests in C only (half a minute)
+test-c: deps  ## run the tests in C only (a minute)
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests)
 

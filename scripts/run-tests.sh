@@ -33,6 +33,8 @@ stop() {
 trap stop EXIT
 trap 'exit 130' INT TERM
 
+# the test programs share the processors: waiting threads sleep after microseconds, as in the program (src/app/main.c)
+export GOMP_SPINCOUNT=${GOMP_SPINCOUNT-4000}
 # the sanitizers, when built in: show the stack, also where cmocka would catch the signal
 export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=handle_segv=2:handle_sigfpe=2
 # memory kept by clang's OpenMP for its threads is not a leak of shoal
