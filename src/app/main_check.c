@@ -158,11 +158,13 @@ static void print_cost(const struct checked *checked) {
     }
 
     char duration[TEXT_DURATION_BYTES];
-    text_duration(duration, checked->seconds * (checked->n_members - checked->n_failed) / checked->n_estimated);
+    // of the members that were not examined, as many are expected to fail as of the examined members
+    const int n_examined = checked->n_estimated + checked->n_failed;
+    text_duration(duration, checked->seconds * checked->n_members / n_examined);
     printf("    %s about %s and %.2g MB on this machine%s: estimated from a few events",
            is_study(checked) ? "the runs take" : "the run takes", duration, 1e-6 * checked->bytes,
            is_study(checked) ? ", one after the other" : "");
-    if (checked->n_estimated + checked->n_failed < checked->n_members) printf(" of %d members", checked->n_estimated);
+    if (n_examined < checked->n_members) printf(" of %d members", checked->n_estimated);
     printf(", often within a factor of two\n");
 }
 

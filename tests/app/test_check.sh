@@ -42,9 +42,10 @@ estimates() {
     run check "$cases/studies/phase.yaml" --set time.end=1
     check "the runs of a study add up" grep -q '^    the runs take about .* on this machine, one after the other' out
     check "which run one after the other in the memory of one" is_below "$(estimated MB)" $((3 * ${of_one%.*}))
-    # of 20 members one runs
-    run check "$demo" --set 'sweep=[{key: solver.max_steps, values: [1, 1, 1, 1, 1, 1, 1, 1, 1, 500, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]}]'
-    check "members that fail take no time" is_below "$(estimated s)" "$(awk -v one="$seconds" 'BEGIN { print 6 * one }')"
+    # One of 8 members runs, the third that is examined: 8 that run would take 8 times as long. The limit leaves room for two
+    # estimates that differ, and for a slow machine, which examines fewer failing members.
+    run check "$demo" --set 'sweep=[{key: solver.max_steps, values: [1, 1, 500, 1, 1, 1, 1, 1]}]'
+    check "members that fail take no time" is_below "$(estimated s)" "$(awk -v one="$seconds" 'BEGIN { print 5 * one }')"
     run check "$demo" -q
     check "-q says nothing" silent
 }
