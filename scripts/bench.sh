@@ -157,6 +157,24 @@ stopped_run 'in a start of seconds, 600 nodes and points a fish' "$cases/pair.ya
     --set 'fish[0].sheet_points=600' --set 'fish[1].nodes=600' --set 'fish[1].sheet_points=600'
 slowest=$(printf '%s\n' $slowest "$seconds" | sort -g | tail -1)
 
+heading 'Checks before a run: CPU s'
+slowest_check=0
+check_of() {  # name, arguments of check
+    local name=$1 wall cpu
+    shift
+    read -r wall cpu _ < <(measured "$program" check -q "$@")
+    printf '%-58s %10s\n' "$name" "$cpu"
+    slowest_check=$(printf '%s\n' "$slowest_check" "$cpu" | sort -g | tail -1)
+}
+printf '%s\n' 'format: 1' 'time: {end: 2000, shedding_interval: 0.01}' 'wake: {lifetime: 2000}' 'fish: [{}]' >long.yaml
+awk 'BEGIN { print "format: 1\ntime: {end: 10}\nfish:"
+             for (i = 0; i < 150; i++) printf "  - {start: {position: [%g, %g]}}\n", i % 10 * 2, int(i / 10) / 2 }' >many.yaml
+check_of '200,000 vortices' long.yaml
+check_of '200,000 vortices in a channel' long.yaml --set 'fluid.walls=[-1, 1]'
+check_of '200,000 vortices without a tree' long.yaml --set wake.tolerance=0
+check_of '150 fish' many.yaml
+check_of 'a study of 88 members, of which some take long' "$cases/studies/stiffness.yaml"
+
 heading 'Learning from Python (tests/bench/actions.py)'
 /usr/bin/python3 "$root/tests/bench/actions.py" "$build/bench/actions" "$build/libshoal.so.0" | tee actions.txt
 
@@ -173,6 +191,7 @@ check_limit 'an action in Python: CPU time over that in C' "$(sed -n 's/.* ratio
 check_limit 'environments: 1 thread over 2, actions a second' \
     "$(sed -n 's/.*with two (ratio \([0-9.]*\)).*/\1/p' actions.txt | awk '{ printf "%.2f", 1 / $1 }')" 0.556
 check_limit 'seconds from a signal to the end' "$slowest" 10
+check_limit 'CPU seconds of shoal check' "$slowest_check" 0.5
 check_limit '256 fish: CPU time per event over that of 64' "$(awk '/^256 fish take/ { print $4 }' schools.txt)" 6
 check_limit '64 to 1024 fish: power of the CPU time per event' "$(awk '/^(256|1024) fish take/ { growth += $NF / 2 }
     END { print growth }' schools.txt)" 1.15

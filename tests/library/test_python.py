@@ -2,7 +2,6 @@
 """test_python.py: the module shoal. Run by test_python.sh in a folder of its own; ends with the line of a shell test."""
 
 import copy
-import ctypes
 import gc
 import importlib.util
 import json
@@ -731,33 +730,6 @@ class Environments(unittest.TestCase):
             env.step([0.1, 0.2])
         with self.assertRaisesRegex(shoal.CaseError, "an action is 1 numbers"):
             env.step([np.nan])
-
-    @unittest.skipIf(os.environ.get("LD_PRELOAD"), "with sanitizers times say nothing")
-    def test_an_action_costs_at_most_20_percent_more_than_its_events_in_the_library(self):
-        case = {"time": {"end": 1, "shedding_interval": 0.02}, "fish": [{}, {"start": {"position": [1.5, 0.3]}}]}
-        env = shoal.SwimEnv(case, fish=1, goal=(0, (1.5, 0.3)), reward={"speed": 1, "cost_of_transport": 0.01},
-                            observations=("velocity", "heading", "goal", "closing", "curvature"))
-        library, array, bias = shoal._library.library, shoal._library.Array(), ctypes.c_double()
-        times = {True: [], False: []}
-        for _ in range(4):
-            for in_python in True, False:
-                env.reset()
-                pointer, n, truncated = env.run._handle.pointer, 0, False
-                start = time.process_time()
-                while not truncated:
-                    bias.value = 0.2 * np.sin(0.1 * n)
-                    n += 1
-                    if in_python:
-                        truncated = env.step([bias.value])[3]
-                        continue
-                    library.shoal_set(pointer, 1, b"control.bias", 1, bias)
-                    truncated = library.shoal_step(pointer) < 0 or n == 50
-                    for name in b"com", b"com_velocity", b"heading", b"curvature", b"actuation_work":
-                        library.shoal_read(pointer, name, array)
-                times[in_python].append(time.process_time() - start)
-        ratio = min(times[True]) / min(times[False])
-        print(f"an action in Python over its events in the library: {ratio:.3f}")
-        self.assertLess(ratio, 1.2)
 
     def test_actions_outside_the_box_are_refused(self):
         env = shoal.SwimEnv(PAIR, actions={"bias": (-0.3, 0.3), "frequency": (0.8, 1.2)})
