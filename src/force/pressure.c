@@ -25,8 +25,11 @@ enum status pressure_create(struct pressure **pressure, const struct fish *fish)
     double **const per_node[] = {&new->momentum, &new->momentum_rate, &new->force};
     new->fish = fish;
     enum status status = MEMORY_ARRAYS(per_node, 2 * n, "the pressure on a fish");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->circulation, fish->n_sheet, "the pressure on a fish");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->matrix, n * n, "the pressure on a fish");
+    struct pressure_matrix *const matrices[] = {&new->matrix, &new->rate};
+    for (int i = 0; i < 2 && status == STATUS_OK; i++) {
+        status = MEMORY_NEW(matrices[i]->circulation, fish->n_sheet, "the pressure on a fish");
+        if (status == STATUS_OK) status = MEMORY_NEW(matrices[i]->value, n * n, "the pressure on a fish");
+    }
     if (status == STATUS_OK) status = MEMORY_NEW(new->product, n, "the pressure on a fish");
     if (status == STATUS_OK)
         status = MEMORY_NEW(new->at_points, N_AT_POINTS * fish->n_control, "the pressure on a fish");
@@ -54,8 +57,12 @@ enum status pressure_create(struct pressure **pressure, const struct fish *fish)
 
 void pressure_free(struct pressure *pressure) {
     if (!pressure) return;
-    free(pressure->circulation);
-    free(pressure->matrix);
+    const struct pressure_matrix *const matrices[] = {&pressure->matrix, &pressure->rate};
+    for (int i = 0; i < 2; i++) {
+        free(matrices[i]->circulation);
+        free(matrices[i]->value);
+    }
+
     free(pressure->momentum);
     free(pressure->momentum_rate);
     free(pressure->force);
@@ -68,22 +75,30 @@ void pressure_free(struct pressure *pressure) {
     free(pressure);
 }
 
-// R = sum over j: P_j times the circulation of vortex j; strength: the unknowns or the rates of the unknowns
-static void pressure_find_matrix(struct pressure *p, const double *strength) {
-    const struct fish *fish = p->fish;
+// R = sum over j: P_j times the circulation of vortex j; strength: the unknowns or the rates of the unknowns. R of the
+// same circulations is kept: the energy balance of a step needs R twice.
+static void pressure_find_matrix(const struct fish *fish, const double *strength, struct pressure_matrix *to) {
     const int n = fish->n_nodes;
-    for (int j = 0; j < fish->n_sheet; j++) p->circulation[j] = fish->sheet_weight[j] * strength[fish->at.gamma + j];
-    memset(p->matrix, 0, (size_t)n * (size_t)n * sizeof *p->matrix);
-    kernel_multiply(n * n, fish->n_sheet, fish->integrals->momentum, p->circulation, p->matrix);
+    int is_new = 0;
+    for (int j = 0; j < fish->n_sheet; j++) {
+        const double circulation = fish->sheet_weight[j] * strength[fish->at.gamma + j];
+        is_new |= !(fabs(circulation - to->circulation[j]) <= 0);
+        to->circulation[j] = circulation;
+    }
+
+    if (!is_new) return;
+    memset(to->value, 0, (size_t)n * (size_t)n * sizeof *to->value);
+    kernel_multiply(n * n, fish->n_sheet, fish->integrals->momentum, to->circulation, to->value);
 }
 
 // add E3 R x to the pairs of all nodes; x: x components of all nodes, then y components
-static void pressure_add_product(struct pressure *p, const double *x, double *to) {
+static void pressure_add_product(struct pressure *p, const struct pressure_matrix *matrix, const double *x,
+                                 double *to) {
     const int n = p->fish->n_nodes;
     memset(p->product, 0, (size_t)n * sizeof *p->product);
-    kernel_multiply(n, n, p->matrix, x + n, p->product);
+    kernel_multiply(n, n, matrix->value, x + n, p->product);
     for (int k = 0; k < n; k++) to[k] -= p->product[k];
-    kernel_multiply(n, n, p->matrix, x, to + n);
+    kernel_multiply(n, n, matrix->value, x, to + n);
 }
 
 // tau: tangential velocity of the fluid relative to the body
@@ -101,8 +116,8 @@ static void pressure_find_points(struct pressure *p, const double *y) {
         fish_of_nodes(n, n_nodes, slope, y + fish->at.x + i * n_nodes, at + (LINE + i) * n);
         fish_of_nodes(n, n_nodes, place, y + fish->at.vx + i * n_nodes, at + (VELOCITY + i) * n);
     }
-    sheet_integrals_around(fish->integrals, p->circulation, at + AROUND * n);
-    if (fish->strip_depth > 0) sheet_integrals_before(fish->integrals, p->circulation, at + BEFORE * n);
+    sheet_integrals_around(fish->integrals, p->matrix.circulation, at + AROUND * n);
+    if (fish->strip_depth > 0) sheet_integrals_before(fish->integrals, p->matrix.circulation, at + BEFORE * n);
 }
 
 static void pressure_convect(struct pressure *p, const struct flow_at_body *flow) {
@@ -184,11 +199,11 @@ static void pressure_suck(struct pressure *p, const double *y) {
 void pressure_update(struct pressure *p, const struct flow_at_body *flow, const double *y) {
     const struct fish *fish = p->fish;
     const size_t size = 2 * (size_t)fish->n_nodes * sizeof *p->momentum;
-    pressure_find_matrix(p, y);
+    pressure_find_matrix(fish, y, &p->matrix);
     memset(p->momentum, 0, size);
     memset(p->force, 0, size);
-    pressure_add_product(p, y + fish->at.x, p->momentum);
-    pressure_add_product(p, y + fish->at.vx, p->force);
+    pressure_add_product(p, &p->matrix, y + fish->at.x, p->momentum);
+    pressure_add_product(p, &p->matrix, y + fish->at.vx, p->force);
     pressure_find_points(p, y);
     pressure_convect(p, flow);
     pressure_span(p, flow);
@@ -254,7 +269,7 @@ void pressure_momentum_jacobian(struct pressure *p, int at_start, const double *
 
             // by the positions
             for (int m = 0; m < n; m++) {
-                sparse_add(jacobian, row, fish->at.x + other + m, sign * p->matrix[m * n + k]);
+                sparse_add(jacobian, row, fish->at.x + other + m, sign * p->matrix.value[m * n + k]);
             }
         }
     }
@@ -280,7 +295,7 @@ void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
     for (int k = 0; k < n; k++) {
         for (int m = 0; m < n; m++) {
             // convection: n t of every control point; rotation: -E3
-            double sum[2][2] = {{0, p->matrix[m * n + k]}, {-p->matrix[m * n + k], 0}};
+            double sum[2][2] = {{0, p->matrix.value[m * n + k]}, {-p->matrix.value[m * n + k], 0}};
             for (int c = 0; c < fish->n_control; c++) {
                 const double *const weight = fish->control_point[c].weight;
                 const struct direction *const body = &p->point[c].body;
@@ -432,10 +447,9 @@ void pressure_flow_jacobian(const struct pressure *p, const struct influence_blo
 void pressure_update_rate(struct pressure *p, const double *y, const double *yp) {
     const struct fish *fish = p->fish;
     memset(p->momentum_rate, 0, 2 * (size_t)fish->n_nodes * sizeof *p->momentum_rate);
-    pressure_add_product(p, y + fish->at.vx, p->momentum_rate);
-    pressure_find_matrix(p, yp);
-    pressure_add_product(p, y + fish->at.x, p->momentum_rate);
-    pressure_find_matrix(p, y);
+    pressure_add_product(p, &p->matrix, y + fish->at.vx, p->momentum_rate);
+    pressure_find_matrix(fish, yp, &p->rate);
+    pressure_add_product(p, &p->rate, y + fish->at.x, p->momentum_rate);
 }
 
 // amplitude of the kink of the sheet at the tail, from the strengths or from the rates of the strengths

@@ -26,11 +26,16 @@ struct pressure_point {
     double potential_rate;
 };
 
+/* R: I = E3 R x for the nodes x. */
+struct pressure_matrix {
+    double *circulation; /* of the bound vortices, m2 s-1; of dR/dt: the rates, m2 s-2            (n_sheet) */
+    double *value;       /* by columns, kg s-1 or kg s-2                                   (n_nodes, n_nodes) */
+};
+
 /* Pressure force on one fish at the last pressure_update. Order of pairs: x of all nodes, then y. */
 struct pressure {
     const struct fish *fish;
-    double *circulation;   /* of the bound vortices, m2 s-1                                     (n_sheet) */
-    double *matrix;        /* R by columns: I = E3 R x, kg s-1                           (n_nodes, n_nodes) */
+    struct pressure_matrix matrix, rate; /* R and dR/dt; the latter set by pressure_update_rate */
     double *momentum;      /* I, the added momentum of the nodes, N s                         (2 n_nodes) */
     double *momentum_rate; /* dI/dt, N: set by pressure_update_rate                             (2 n_nodes) */
     double *force;         /* rotation and convection: force of the pressure plus dI/dt, N       (2 n_nodes) */
