@@ -1,4 +1,5 @@
-/* ring.c: one square root per pair, one division for two pairs; in mutual sums both serve both directions. */
+/* ring.c: one root in single precision per pair, one division for two pairs; in mutual sums both serve both
+ * directions. */
 #include "vortex/ring.h"
 
 #include <math.h>
@@ -78,14 +79,14 @@ struct ring_targets ring_targets_part(const struct ring_targets *all, struct ran
 #define TARGET __attribute__((target("avx512f")))
 #define lanes __m512d
 #define FUSED(a, b, c) _mm512_fmadd_pd(a, b, c)
-#define ROOT(a) _mm512_sqrt_pd(a)
+#define ONE_OVER_ROOT(a) _mm512_cvtps_pd(_mm256_div_ps(_mm256_set1_ps(1), _mm256_sqrt_ps(_mm512_cvtpd_ps(a))))
 #include "vortex/ring_loops.h"
 
 #define VARIANT(name) name##_avx2
 #define TARGET __attribute__((target("avx2,fma")))
 #define lanes __m256d
 #define FUSED(a, b, c) _mm256_fmadd_pd(a, b, c)
-#define ROOT(a) _mm256_sqrt_pd(a)
+#define ONE_OVER_ROOT(a) _mm256_cvtps_pd(_mm_div_ps(_mm_set1_ps(1), _mm_sqrt_ps(_mm256_cvtpd_ps(a))))
 #include "vortex/ring_loops.h"
 
 #elif defined(__aarch64__)
@@ -94,7 +95,7 @@ struct ring_targets ring_targets_part(const struct ring_targets *all, struct ran
 #define TARGET
 #define lanes float64x2_t
 #define FUSED(a, b, c) vfmaq_f64(c, a, b)
-#define ROOT(a) vsqrtq_f64(a)
+#define ONE_OVER_ROOT(a) vcvt_f64_f32(vdiv_f32(vdup_n_f32(1), vsqrt_f32(vcvt_f32_f64(a))))
 #include "vortex/ring_loops.h"
 
 #endif
@@ -105,7 +106,7 @@ typedef double two __attribute__((vector_size(2 * sizeof(double))));
 #define TARGET
 #define lanes two
 #define FUSED(a, b, c) ((a) * (b) + (c))
-#define ROOT(a) ((two){sqrt((a)[0]), sqrt((a)[1])})
+#define ONE_OVER_ROOT(a) ((two){1 / sqrtf((float)(a)[0]), 1 / sqrtf((float)(a)[1])})
 #include "vortex/ring_loops.h"
 
 const struct ring_loops *ring_variant(int i) {

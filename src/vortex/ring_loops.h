@@ -1,7 +1,7 @@
 /* ring_loops.h: the loops over targets and sources of the velocity of rings. ring.c includes this text once for every
  * vector width, with VARIANT, TARGET, lanes and FUSED as in kernel_loops.h, and
  *
- *     ROOT(a)         the square root of every lane
+ *     ONE_OVER_ROOT(a)    one over the square root of every lane, in single precision: IEEE 754 rounds both operations
  *
  * Targets i and i + HALF of a block share a division. The operations on one target, and the order of operations, are
  * the same for every width. */
@@ -16,6 +16,13 @@ static inline TARGET lanes VARIANT(get)(const double *value) {
 
 static inline TARGET void VARIANT(put)(double *value, lanes vector) {
     memcpy(value, &vector, sizeof vector);
+}
+
+// T^(-1/2): the error e of single precision, 2e-7 of the value, becomes (5/2) e^3, below the rounding. T is within the
+// range of single precision, 1e-37 to 1e38 m2.
+static inline TARGET lanes VARIANT(inverse_root)(lanes t) {
+    const lanes near = ONE_OVER_ROOT(t), error = 1 - t * near * near;
+    return FUSED(near * error, FUSED(error, 0.375 - (lanes){0}, 0.5 - (lanes){0}), near);
 }
 
 static TARGET void VARIANT(velocity)(struct ring_block *at, const struct ring_sources *from) {
@@ -34,25 +41,31 @@ static TARGET void VARIANT(velocity)(struct ring_block *at, const struct ring_so
             const double q = from->q[n] * scale, dx = from->dx[n] * scale, dy = from->dy[n] * scale;
             const double half_n = from->factor * from->half[n] + from->leg[n], square_n = from->square[n] + from->add;
             const lanes all_dx = dx - (lanes){0}, all_dy = dy - (lanes){0};
-            lanes rx[2], ry[2], r[2], t[2], root[2], product[2];
+            lanes rx[2], ry[2], r[2], root[2];
             for (int k = 0; k < 2; k++) {
                 rx[k] = x[k] - from->x[n];
                 ry[k] = y[k] - from->y[n];
                 const lanes r2 = FUSED(rx[k], rx[k], ry[k] * ry[k]);
                 r[k] = r2 + (square[k] + square_n);
-                t[k] = r2 + (half[k] + half_n);
-                root[k] = ROOT(t[k]);
-                product[k] = r[k] * t[k] * root[k];
+                root[k] = VARIANT(inverse_root)(r2 + (half[k] + half_n));
             }
 
-            const lanes shared = 1 / (product[0] * product[1]);
+            // a bound vortex has no leg, and a leg of the body has no spanwise vortex
+            if (fabs(q) > 0) {
+                const lanes shared = q / (r[0] * r[1]);
+                for (int k = 0; k < 2; k++) {
+                    const lanes f = shared * r[1 - k] * root[k];
+                    u[k] = FUSED(f, ry[k], u[k]);
+                    v[k] = FUSED(f, rx[k], v[k]);
+                }
+            }
+
+            if (!(fabs(dx) + fabs(dy) > 0)) continue;
             for (int k = 0; k < 2; k++) {
-                const lanes inverse = shared * product[1 - k], f = q * (inverse * t[k]), g = inverse * r[k];
-                u[k] = FUSED(f, ry[k], u[k]);
-                v[k] = FUSED(f, rx[k], v[k]);
+                const lanes inverse = root[k] * root[k], g = inverse * root[k];
                 leg_u[k] = FUSED(g, all_dy, leg_u[k]);
                 leg_v[k] = FUSED(g, all_dx, leg_v[k]);
-                div[k] = FUSED(g * g * root[k], rx[k] * dy - ry[k] * dx, div[k]);
+                div[k] = FUSED(g * inverse, rx[k] * dy - ry[k] * dx, div[k]);
             }
         }
 
@@ -88,25 +101,23 @@ static TARGET void VARIANT(mutual)(struct ring_block *at, const struct ring_mate
             const double q = from->q[n] * scale, dx = from->dx[n] * scale, dy = from->dy[n] * scale;
             const double half_n = from->factor * from->half[n] + from->leg[n], square_n = from->square[n] + from->add;
             const lanes all_q = q - (lanes){0}, all_dx = dx - (lanes){0}, all_dy = dy - (lanes){0};
-            lanes rx[2], ry[2], r[2], t[2], root[2], product[2];
+            lanes rx[2], ry[2], r[2], root[2];
             for (int k = 0; k < 2; k++) {
                 rx[k] = x[k] - from->x[n];
                 ry[k] = y[k] - from->y[n];
                 const lanes r2 = FUSED(rx[k], rx[k], ry[k] * ry[k]);
                 r[k] = r2 + (square[k] + square_n);
-                t[k] = r2 + (half[k] + half_n);
-                root[k] = ROOT(t[k]);
-                product[k] = r[k] * t[k] * root[k];
+                root[k] = VARIANT(inverse_root)(r2 + (half[k] + half_n));
             }
 
-            const lanes shared = 1 / (product[0] * product[1]);
+            const lanes shared = 1 / (r[0] * r[1]);
             struct ring_lanes *const sum = &sums[n];
             lanes to_u = VARIANT(get)(sum->u + i), to_v = VARIANT(get)(sum->v + i);
             lanes to_leg_u = VARIANT(get)(sum->leg_u + i), to_leg_v = VARIANT(get)(sum->leg_v + i);
             lanes to_div = VARIANT(get)(sum->div + i);
             for (int k = 0; k < 2; k++) {
-                const lanes inverse = shared * product[1 - k], f = inverse * t[k], g = inverse * r[k];
-                const lanes fx = f * rx[k], fy = f * ry[k], h = g * g * root[k];
+                const lanes inverse = root[k] * root[k], f = shared * r[1 - k] * root[k], g = inverse * root[k];
+                const lanes fx = f * rx[k], fy = f * ry[k], h = g * inverse;
                 u[k] = FUSED(all_q, fy, u[k]);
                 v[k] = FUSED(all_q, fx, v[k]);
                 leg_u[k] = FUSED(g, all_dy, leg_u[k]);
@@ -143,4 +154,4 @@ static const struct ring_loops VARIANT(loops) = {.velocity = VARIANT(velocity), 
 #undef TARGET
 #undef lanes
 #undef FUSED
-#undef ROOT
+#undef ONE_OVER_ROOT
