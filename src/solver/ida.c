@@ -175,10 +175,13 @@ static enum status ida_fill(struct ida *solver) {
     TRY(linear_sundials_create(&solver->linear, solver->context.context, solver->jacobian, solver->tolerance, linear,
                                &solver->failure));
     const int is_sheet = school->shedding == SHEDDING_SHEET;
+    int has_momentum = 0;
+    for (int f = 0; f < school->n_fish; f++) has_momentum |= fish_has_momentum(&school->fish[f]);
     const struct ida_newton_rules rules = {.max_iterations = max_iterations,
                                            .max_with_new = max_with_new,
                                            .jacobian_cost = jacobian_cost,
                                            .kinds = is_sheet ? solver->kinds : NULL,
+                                           .is_periodic = has_momentum,
                                            .data = solver,
                                            .leading_coefficient = leading_coefficient,
                                            .update = is_sheet ? update_jacobian : NULL,

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 
@@ -11,11 +12,15 @@
  * hundred times larger, and vanishes with the second correction. */
 enum { ALL, DIFFERENTIAL, N_NORMS };
 
+/* Most solutions between two total corrections that are alike, and number of total corrections: two alike for each. */
+enum { MOST_LAG = 4, N_PAST = 2 * MOST_LAG };
+
 struct ida_newton {
     struct ida_newton_rules rules;
     struct corotation *corotation;
     N_Vector correction;
-    N_Vector last;      /* total correction of the last solution */
+    N_Vector past[N_PAST]; /* total corrections of the last solutions with this coefficient, the newest first */
+    int n_past;
     double coefficient; /* leading coefficient of the last solution */
 
     /* functions of IDA */
@@ -109,6 +114,54 @@ static int jacobian_complete(const struct ida_newton *newton) {
     return newton->rules.complete && newton->rules.complete(newton->rules.data);
 }
 
+// sum of squares of the weighted difference of the last total correction and the total correction lag solutions before
+static double newton_difference(const struct ida_newton *newton, N_Vector weights, int lag) {
+    const double *const last = N_VGetArrayPointer(newton->past[0]),
+                        *const before = N_VGetArrayPointer(newton->past[lag]),
+                        *const weight = N_VGetArrayPointer(weights);
+    double sum = 0;
+    for (sunindextype i = 0; i < N_VGetLength(weights); i++) {
+        const double difference = (last[i] - before[i]) * weight[i];
+        sum += difference * difference;
+    }
+    return sum;
+}
+
+/* The start is the last total correction. With a period, for example of two steps, it is the total correction of one
+ * period before, plus the change from the period before: doc/numerics.md. The period is the lag with the least
+ * difference. */
+static void newton_start(const struct ida_newton *newton, N_Vector weights, N_Vector total) {
+    if (newton->n_past == 0) {
+        N_VConst(0, total);
+        return;
+    }
+
+    const int most = newton->rules.is_periodic ? MOST_LAG : 0;
+    int period = 1;
+    double least = INFINITY;
+    for (int lag = 1; lag <= most && lag < newton->n_past; lag++) {
+        const double difference = newton_difference(newton, weights, lag);
+        if (!(difference < least)) continue;
+        least = difference;
+        period = lag;
+    }
+
+    const int n = 2 * period;
+    if (newton->rules.is_periodic && n <= newton->n_past) {
+        N_VLinearSum(2, newton->past[period - 1], -1, newton->past[n - 1], total);
+    } else {
+        N_VScale(1, newton->past[period - 1], total);
+    }
+}
+
+static void newton_keep(struct ida_newton *newton, N_Vector total) {
+    N_Vector const oldest = newton->past[N_PAST - 1];
+    memmove(newton->past + 1, newton->past, (N_PAST - 1) * sizeof *newton->past);
+    newton->past[0] = oldest;
+    N_VScale(1, total, oldest);
+    if (newton->n_past < N_PAST) newton->n_past++;
+}
+
 static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
                         sunrealtype tolerance, sunbooleantype evaluate, void *ida) {
     struct ida_newton *const newton = newton_of(solver);
@@ -117,11 +170,11 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
     newton->is_incomplete = 0;
     if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
 
-    // start from the last total correction if the step is unchanged: then the error of the predictor hardly changes
+    // total corrections of another step size are not alike
     const double coefficient = newton->rules.leading_coefficient(newton->rules.data);
-    const int same = fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient;
-    N_VScale(same ? 1 : 0, newton->last, total);
+    if (!(fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient)) newton->n_past = 0;
     newton->coefficient = coefficient;
+    newton_start(newton, weights, total);
 
     for (sunbooleantype failed = SUNFALSE;; failed = SUNTRUE) {
         int code = newton->residual(total, newton->correction, ida);
@@ -138,7 +191,7 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
         newton->most = evaluate ? newton->rules.max_with_new : newton->rules.max_iterations;
         code = newton_iterate(newton, total, weights, tolerance, ida);
         if (code == 0) {
-            N_VScale(1, total, newton->last);
+            newton_keep(newton, total);
             newton->n_solutions++;
             newton->n_last = newton->done;
             newton->n_iterations += newton->done;
@@ -158,6 +211,7 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
 static int newton_initialize(SUNNonlinearSolver solver) {
     struct ida_newton *const newton = newton_of(solver);
     newton->coefficient = 0;
+    newton->n_past = 0;
     newton->n_solutions = newton->n_iterations = newton->n_last = 0;
     return 0;
 }
@@ -198,7 +252,9 @@ static int newton_free(SUNNonlinearSolver solver) {
     if (newton) {
         corotation_free(newton->corotation);
         if (newton->correction) N_VDestroy(newton->correction);
-        if (newton->last) N_VDestroy(newton->last);
+        for (int i = 0; i < N_PAST; i++) {
+            if (newton->past[i]) N_VDestroy(newton->past[i]);
+        }
         free(newton);
     }
     SUNNonlinSolFreeEmpty(solver);
@@ -211,14 +267,16 @@ enum status ida_newton_create(SUNNonlinearSolver *solver, SUNContext context, N_
     struct ida_newton *const newton = calloc(1, sizeof *newton);
     SUNNonlinearSolver const new = SUNNonlinSolNewEmpty(context);
     if (new) new->content = newton;
-    if (!newton || !new || corotation_create(&newton->corotation, school) != STATUS_OK ||
-        !(newton->correction = N_VClone(like)) || !(newton->last = N_VClone(like))) {
+    int is_complete = newton && new;
+    if (is_complete) is_complete = corotation_create(&newton->corotation, school) == STATUS_OK;
+    if (is_complete) is_complete = (newton->correction = N_VClone(like)) != NULL;
+    for (int i = 0; i < N_PAST && is_complete; i++) is_complete = (newton->past[i] = N_VClone(like)) != NULL;
+    if (!is_complete) {
         if (!new) free(newton);
         newton_free(new);
         return memory_check(NULL, "Newton's iteration");
     }
     newton->rules = rules;
-    N_VConst(0, newton->last);
     new->ops->gettype = newton_type;
     new->ops->initialize = newton_initialize;
     new->ops->solve = newton_solve;

@@ -16,6 +16,8 @@ struct ida_newton_rules {
     /* 1 for differential unknowns, 0 for algebraic unknowns; outlives the solver. With kinds, the norm of the
      * differential unknowns must converge as well as the norm of all unknowns; NULL: only the latter. */
     N_Vector kinds;
+    /* whether total corrections have the period of an interval between events; else the start is the last one */
+    int is_periodic;
     void *data; /* argument of the functions below */
     /* d(dy/dt)/dy of IDA's present step, s-1: while it is constant, corrections hardly change */
     double (*leading_coefficient)(void *data);

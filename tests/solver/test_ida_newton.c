@@ -17,7 +17,7 @@ struct problem {
     double slope;       /* 1 / the Jacobian */
     double growth;      /* added to wrong at each solution */
     double coefficient; /* of the step */
-    int n_residuals, n_set_ups, n_bad, n_updates, never_finite;
+    int is_periodic, n_residuals, n_set_ups, n_bad, n_updates, never_finite;
     double updated; /* how wrong the Jacobian is after an update; 0: there are none */
 };
 
@@ -72,7 +72,8 @@ static void update(void *data) {
 }
 
 static void set_up(struct problem *problem) {
-    *problem = (struct problem){.root = 1, .coefficient = 100, .updated = problem->updated};
+    *problem = (struct problem){
+        .root = 1, .coefficient = 100, .updated = problem->updated, .is_periodic = problem->is_periodic};
     school_build(&problem->setup, "time: {end: 1}\nfish: [{nodes: 4, sheet_points: 5}]\n");
     const int n = problem->setup.school->n_unknowns;
     assert_int_equal(SUNContext_Create(SUN_COMM_NULL, &problem->context), 0);
@@ -91,6 +92,7 @@ static void set_up(struct problem *problem) {
                                            .max_with_new = 20,
                                            .jacobian_cost = 5,
                                            .kinds = problem->kinds,
+                                           .is_periodic = problem->is_periodic,
                                            .data = problem,
                                            .leading_coefficient = coefficient,
                                            .update = problem->updated > 0 ? update : NULL};
@@ -297,6 +299,28 @@ static void the_last_correction_is_the_guess_while_the_step_stays(void **state) 
     clear(&problem);
 }
 
+static void the_start_has_the_period_of_the_corrections(void **state) {
+    (void)state;
+    // corrections with a period of solutions, which grow: the first solution of the third period starts at the root
+    for (int period = 1; period <= 4; period++) {
+        struct problem problem = {.is_periodic = 1};
+        long iterations = 0;
+        set_up(&problem);
+        for (int i = 0; i <= 2 * period; i++) {
+            const double of_phase[] = {1, -3, 0.5, 2};
+            problem.root = of_phase[i % period] * (1 + 0.01 * (i / period));
+            assert_int_equal(solve(&problem, 1e-6, i == 0, &iterations), 0);
+            assert_int_equal(iterations, i < 2 * period ? 2 : 1);
+        }
+        NEAR(error_of(&problem, problem.total), 0, 1e-10, 0);
+        // not with another step
+        problem.coefficient *= 1.001;
+        assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
+        assert_int_equal(iterations, 2);
+        clear(&problem);
+    }
+}
+
 static void a_jacobian_that_has_become_expensive_is_evaluated_again(void **state) {
     (void)state;
     struct problem problem = {.updated = 0};
@@ -331,6 +355,7 @@ int main(void) {
         cmocka_unit_test(a_new_jacobian_that_leaves_something_out_may_take_longer),
         cmocka_unit_test(a_failure_with_a_new_jacobian_asks_for_a_smaller_step),
         cmocka_unit_test(the_last_correction_is_the_guess_while_the_step_stays),
+        cmocka_unit_test(the_start_has_the_period_of_the_corrections),
         cmocka_unit_test(a_jacobian_that_has_become_expensive_is_evaluated_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
