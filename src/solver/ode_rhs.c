@@ -279,7 +279,7 @@ static void fix_given(const struct fish *fish, double t, double *band, double *f
         double position[2], velocity[2], acceleration[2];
         fish_prescribed_node(fish, given / 2, t, position, velocity, acceleration);
         for (int other = given - BANDWIDTH + 1; other < given + BANDWIDTH; other++) {
-            if (other < 0 || other == given || other >= n) continue;
+            if (other < 0 || other >= n) continue;
             double *const entry = other > given ? mass_entry(band, other, given) : mass_entry(band, given, other);
             if (!fish_is_prescribed(fish, other / 2, other % 2)) force[other] -= *entry * acceleration[given % 2];
             *entry = 0;
