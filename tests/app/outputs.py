@@ -187,7 +187,9 @@ def main():
         except (OSError, ValueError) as error:
             got = [f"unreadable: {error}"]
         if write:
-            part[1:] = [line[:400].rstrip() for line in got] + [""]
+            got = [line[:400].rstrip() for line in got]
+            kept = [b if same(a, b) else a for a, b in zip(got, want)]  # a change shows the changed lines only
+            part[1:] = kept + got[len(kept) :] + [""]
             continue
         got = [line[:400].rstrip() for line in got]
         wrong = [(a, b) for a, b in zip(got, want) if not same(a, b)]
