@@ -126,10 +126,11 @@ static enum status check_iterate(const struct formation *formation, const double
         if (is_place(formation, i)) most = fmax(most, fabs(u[i] - formation->start[i]));
     }
     if (formation->follows || (most <= farthest && problem->map.n_beats < formation->most_beats)) return STATUS_OK;
-    return status_fail(STATUS_SOLVER,
-                       "no formation in %d beats: Newton's method moves a fish by %.2g lengths, limit %g, or needs more "
-                       "than half of steady.beats: start nearer to the formation, or increase steady.beats",
-                       problem->map.n_beats, most, farthest);
+    return status_fail(
+        STATUS_SOLVER,
+        "no formation in %d beats: Newton's method moves a fish by %.2g lengths, limit %g, or needs more "
+        "than half of steady.beats: start nearer to the formation, or increase steady.beats",
+        problem->map.n_beats, most, farthest);
 }
 
 static enum status formation_value(void *data, const double *u, double *change) {
