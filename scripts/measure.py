@@ -599,6 +599,23 @@ def cost(bench):
         yield name, end, n_events(bench.run(text, *keys)), f"{bench.seconds(text, *keys):.2f}"
 
 
+@table("force", "span", "CPU time over reactive", "of 16 fish", *COUNTS)
+def forces(bench):
+    """cost of a default fish (10 s) and of 16 fish (2 s) with three forces, one thread (minutes)"""
+    keys = [("fish[*].force=reactive",)]
+    keys += [("fish[*].force=pressure", f"fish[*].pressure.span={span}") for span in ("infinite", "finite")]
+    one, many = DEFAULT.replace("end: 8", "end: 10"), lattice(16, (1.5, 1.5), 2)
+    seconds = []
+    for text in one, many:
+        # alternate, so that the load of the machine is the same for all
+        passes = [[bench.seconds(text, "solver.threads=1", *force) for force in keys] for _ in range(3)]
+        seconds.append([min(times) for times in zip(*passes)])
+    for i, force in enumerate(keys):
+        names = [key.split("=")[1] for key in force]
+        yield (*(names + [""])[:2], *(f"{times[i] / times[0]:.2f}" for times in seconds),
+               *per_event(bench.run(one, *force)))
+
+
 @table("speed [m/s]", "steps, most in 10 ms", "median after that", "closest [mm]", "balance over energy", "rtol 1e-6",
        "energy [J]", "of it stretching", "shortest body [L]", "shortest edge")
 def impact(bench):
