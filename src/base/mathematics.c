@@ -2,6 +2,7 @@
 #include "base/mathematics.h"
 
 #include <math.h>
+#include <stddef.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -62,6 +63,82 @@ void quadrature_legendre(int n, double *node, double *weight) {
         legendre(n, x, &slope);
         node[i] = (1 + x) / 2;
         weight[i] = 1 / ((1 - x * x) * slope * slope);
+    }
+}
+
+// ---- Gauss rule of a sum: the zeros of the orthogonal polynomials of Stieltjes' recurrence
+//      p_k+1 = (x - a_k) p_k - b_k p_k-1
+
+struct recurrence {
+    double a[QUADRATURE_MOST_NODES], b[QUADRATURE_MOST_NODES]; /* b_0: the sum of the weights */
+};
+
+// p_n at x; norm, if not NULL: the sum of p_k^2/(b_1 .. b_k) of all k below n
+static double recurrence_value(const struct recurrence *of, int n, double x, double *norm) {
+    double before = 0, value = 1, size = 1;
+    if (norm) *norm = 0;
+    for (int k = 0; k < n; k++) {
+        if (k > 0) size *= of->b[k];
+        if (norm) *norm += value * value / size;
+        const double next = (x - of->a[k]) * value - (k > 0 ? of->b[k] * before : 0);
+        before = value;
+        value = next;
+    }
+    return value;
+}
+
+void quadrature_of_sum(int n_terms, const double *x, const double *weight, double *scratch, int n, double *node,
+                       double *node_weight) {
+    struct recurrence of;
+    double *const value = scratch, *const before = scratch + n_terms;
+    double low = INFINITY, high = -INFINITY, last = 1;
+    for (int i = 0; i < n_terms; i++) {
+        value[i] = 1;
+        before[i] = 0;
+        low = fmin(low, x[i]);
+        high = fmax(high, x[i]);
+    }
+
+    for (int k = 0; k < n; k++) {
+        double square = 0, moment = 0;
+        for (int i = 0; i < n_terms; i++) {
+            square += weight[i] * value[i] * value[i];
+            moment += weight[i] * x[i] * value[i] * value[i];
+        }
+
+        of.a[k] = moment / square;
+        of.b[k] = square / last;
+        last = square;
+        for (int i = 0; i < n_terms; i++) {
+            const double next = (x[i] - of.a[k]) * value[i] - (k > 0 ? of.b[k] * before[i] : 0);
+            before[i] = value[i];
+            value[i] = next;
+        }
+    }
+
+    // the zeros of p_k lie between the zeros of p_k-1: bisect
+    double zero[QUADRATURE_MOST_NODES + 1];
+    for (int k = 1; k <= n; k++) {
+        for (int i = 0; i < k; i++) {
+            double left = i > 0 ? node[i - 1] : low, right = i < k - 1 ? node[i] : high;
+            const int rises = (k - i) % 2 == 1;
+            for (int step = 0; step < 64; step++) {
+                const double middle = (left + right) / 2;
+                if ((recurrence_value(&of, k, middle, NULL) > 0) == rises) {
+                    right = middle;
+                } else {
+                    left = middle;
+                }
+            }
+            zero[i] = (left + right) / 2;
+        }
+        for (int i = 0; i < k; i++) node[i] = zero[i];
+    }
+
+    for (int i = 0; i < n; i++) {
+        double norm;
+        recurrence_value(&of, n, node[i], &norm);
+        node_weight[i] = of.b[0] / norm;
     }
 }
 

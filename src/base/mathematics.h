@@ -22,6 +22,13 @@ double ramp_rate(double t, double duration);
  * 2 n - 1. Each array (n). */
 void quadrature_legendre(int n, double *node, double *weight);
 
+/* The n nodes, in ascending order, and weights of the Gauss rule of a sum of n_terms >= n terms, sum_i weight_i f(x_i)
+ * with all x different and all weights above 0: exact for polynomials f of degree 2 n - 1. scratch (2 n_terms), node
+ * and node_weight (n). */
+enum { QUADRATURE_MOST_NODES = 16 };
+void quadrature_of_sum(int n_terms, const double *x, const double *weight, double *scratch, int n, double *node,
+                       double *node_weight);
+
 /* The integral over the newest interval, t[1] to t[0], of the parabola through the values at three times (n = 3), or of
  * the line through two (n = 2); the newest first. */
 double quadrature_newest(int n, const double t[3], const double value[3]);

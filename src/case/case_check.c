@@ -484,8 +484,6 @@ static void check_span(const struct check *check) {
     const int least = fish_sheet_least(fish);
     complain_if(school->wake.removed_circulation == REMOVED_DROPPED, check, path,
                 "vortex rings must stay closed: use 'wake.removed_circulation: retained'");
-    complain_if(school->fluid.walls.n > 1, check, path,
-                "finite allows at most one wall: use 'infinite', or remove one of fluid.walls");
     complain_if(fish->sheet_points < least, check, "fish.sheet_points",
                 "a span of %.3g lengths needs at least %d points (1 + 5 L/w), not %d", 5.0 / (least - 1), least,
                 fish->sheet_points);

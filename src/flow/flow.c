@@ -82,9 +82,11 @@ static enum status rings_create(struct flow_rings **rings, const struct school *
     for (int i = 1; i < N_LEG_SUMS; i++) new->legs[i] = new->legs[0] + (long)i *n_points;
     TRY(MEMORY_NEW(new->edge, 2 * n_points, "the points of the flow"));
     TRY(MEMORY_NEW(new->edge_gradient, 4 * n_points, "the points of the flow"));
+    double depth = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         struct fish_rings *const of = &new->fish[f];
+        depth = fmax(depth, fish->strip_depth);
         TRY(ring_append(&of->own, fish->n_sheet + fish->n_control));
         TRY(ring_append(&of->body, fish->n_control));
         for (int i = 0; i < 2; i++) TRY(MEMORY_NEW(of->line[i], fish->n_control, "the rings of a fish"));
@@ -93,7 +95,7 @@ static enum status rings_create(struct flow_rings **rings, const struct school *
         memcpy(of->body.half, fish->point_half, (size_t)fish->n_control * sizeof *of->own.half);
     }
 
-    return STATUS_OK;
+    return images_of_rings(&school->walls, depth, &new->image, &new->n_images);
 }
 
 static void rings_free(struct flow_rings *rings, int n_fish) {
@@ -113,11 +115,8 @@ static void rings_free(struct flow_rings *rings, int n_fish) {
                              rings->legs[0]};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     free(rings->fish);
+    free(rings->image);
     free(rings);
-}
-
-double flow_mirror(const struct school *school) {
-    return 2 * school->walls.y[0];
 }
 
 // The number of oldest stretches that are far from the body. A source with the sum of distances d from nose and tail is
@@ -223,9 +222,8 @@ static enum status rings_place(struct flow_rings *rings, const struct school *sc
     if (wake->n_vortex > 0) wake_marker(wake, wake->n_vortex - 1, school->interval, tau, newest);
     of->newest[0] = shed - *nascent;
     for (int i = 0; i < 2; i++) of->newest[1 + i] = newest[i] - tail[i];
-    if (school->walls.n == 0) return STATUS_OK;
-    TRY(ring_mirror(&of->body, flow_mirror(school), &of->body_image));
-    return ring_mirror(&of->wake.middles.rings, flow_mirror(school), &of->middles_image);
+    TRY(ring_write_images(&of->body, rings->n_images, rings->image, &of->body_image));
+    return ring_write_images(&of->wake.middles.rings, rings->n_images, rings->image, &of->middles_image);
 }
 
 int flow_midpoint(const struct fish *fish, int edge) {

@@ -57,6 +57,8 @@ struct fish_rings {
 
 struct flow_rings {
     struct fish_rings *fish; /* (n_fish) */
+    int n_images;
+    struct ring_image *image; /* of every ring in the walls                                        (n_images) */
     /* with the velocity at points: div u, gradient of div u; a, gradient of a, one component after the other
      * (n_points) */
     double *div, *div_x, *div_y, *edge, *edge_gradient;
@@ -67,9 +69,6 @@ struct flow_rings {
     int wake_capacity;
     double *wake_div, *wake_rate, *wake_image_div, *wake_leg_u, *wake_leg_v, *wake_leg_div;
 };
-
-/* The image of a source at y lies at flow_mirror - y (one wall). */
-double flow_mirror(const struct school *school);
 
 /* Points of one fish that a thread evaluates at once. */
 struct chunk {

@@ -24,7 +24,7 @@ static struct column column_of(const struct influence_block *block, int c, int f
 struct source {
     struct ring_source ring;
     struct ring_pair pair;
-    int is_image;
+    double image;                 // sign of the images that are summed (ring.h); 0: the source itself
     const struct stencil *place;  // nodes that move the source; follows: fraction of the motion
     double follows;
     const struct stencil *line;  // leg d = along times the vector along the body, or to the tail
@@ -89,8 +89,8 @@ static KERNEL_WIDE(void, add_places,
                    (const struct influence_block *block, const struct fish *other, const struct source *source,
                     int first, int n, const struct ring_values *values),
                    (block, other, source, first, n, values)) {
-    // the image moves opposite to the source in y, and the leg of the image moves opposite in x
-    const double sign = source->is_image ? -1 : 1;
+    // a mirror image moves opposite to the source in y, and the leg of the image moves opposite in x
+    const double sign = source->image < 0 ? -1 : 1;
     for (int i = 0; source->place && i < source->place->n; i++) {
         const int k = source->place->node[i];
         const double by = source->follows * source->place->weight[i];
@@ -115,19 +115,30 @@ struct pass {
     const struct influence_block *block;
 };
 
+// the values of a source, or the sum of the values of all its images of one sign
 static void unit_of(const struct pass *pass, const struct source *source, int first, int n,
                     struct ring_values *values) {
     const struct flow *const flow = pass->flow;
-    const int at = flow->points[pass->f].first + first;
-    ring_unit(&source->pair, &source->ring, n, flow->x + at, flow->y + at,
-              flow->school->fish[pass->f].point_half + first, values);
-}
+    const double *const x = flow->x + flow->points[pass->f].first + first;
+    const double *const y = flow->y + flow->points[pass->f].first + first;
+    const double *const half = flow->school->fish[pass->f].point_half + first;
+    if (source->image == 0) {
+        ring_unit(&source->pair, &source->ring, n, x, y, half, values);
+        return;
+    }
 
-// the image of a source in the wall
-static void mirror(const struct flow *flow, struct ring_source *ring) {
-    ring->y = flow_mirror(flow->school) - ring->y;
-    ring->q = -ring->q;
-    ring->dx = -ring->dx;
+    memset(values, 0, sizeof *values);
+    for (int k = 0; k < flow->rings->n_images; k++) {
+        const struct ring_image *const image = &flow->rings->image[k];
+        if (image->sign != source->image) continue;
+        struct ring_source ring = source->ring;
+        ring.y = image->sign * ring.y + image->shift;
+        ring.q *= image->sign;
+        ring.dx *= image->sign;
+        struct ring_values one;
+        ring_unit(&source->pair, &ring, n, x, y, half, &one);
+        ring_values_add(&one, image->weight, n, values);
+    }
 }
 
 // bound vortices of a fish at the own control points
@@ -155,10 +166,10 @@ static void derive_vortices(const struct pass *pass) {
 }
 
 // control points of fish g at a range of the points of fish f: only legs in the own strip, else the whole ring
-static void derive_body(const struct pass *pass, struct range points, const struct ring_pair *pair, int is_image) {
+static void derive_body(const struct pass *pass, struct range points, const struct ring_pair *pair, double image) {
     const struct fish *const fish = &pass->flow->school->fish[pass->g];
     const struct fish_rings *const of = &pass->flow->rings->fish[pass->g];
-    const int is_own = pass->f == pass->g && !is_image;
+    const int is_own = pass->f == pass->g && image == 0;
     const int strength = pass->block->n_columns - 1 - fish->n_sheet, end = points.first + points.n;
 
     for (int first = points.first; first < end; first += RING_CHUNK) {
@@ -169,26 +180,25 @@ static void derive_body(const struct pass *pass, struct range points, const stru
             double along = 0;
             for (int j = 0; j < fish->n_sheet; j++) along += before[j * fish->n_control] * of->own.q[j];
 
-            struct source source = {.ring = {.x = of->body.x[c],
-                                             .y = of->body.y[c],
-                                             .q = is_own ? 0 : of->body.q[c],
-                                             .dx = of->body.dx[c],
-                                             .dy = of->body.dy[c],
-                                             .half = of->body.half[c]},
-                                    .pair = *pair,
-                                    .is_image = is_image,
-                                    .place = &fish->control_point[c],
-                                    .follows = 1,
-                                    .line = &fish->control_tangent[c].to,
-                                    .along = along * fish->control_interval[c],
-                                    .has_edge = is_own};
+            const struct source source = {.ring = {.x = of->body.x[c],
+                                                   .y = of->body.y[c],
+                                                   .q = is_own ? 0 : of->body.q[c],
+                                                   .dx = of->body.dx[c],
+                                                   .dy = of->body.dy[c],
+                                                   .half = of->body.half[c]},
+                                          .pair = *pair,
+                                          .image = image,
+                                          .place = &fish->control_point[c],
+                                          .follows = 1,
+                                          .line = &fish->control_tangent[c].to,
+                                          .along = along * fish->control_interval[c],
+                                          .has_edge = is_own};
 
-            if (is_image) mirror(pass->flow, &source.ring);
             struct ring_values values;
             unit_of(pass, &source, first, n, &values);
 
             // by the strengths of the bound vortices
-            const double sign = is_image ? -1 : 1;
+            const double sign = image < 0 ? -1 : 1;
             for (int j = 0; j < fish->n_sheet; j++) {
                 const struct column to = column_of(pass->block, strength + j, first);
                 const double weight = fish->sheet_weight[j];
@@ -203,12 +213,12 @@ static void derive_body(const struct pass *pass, struct range points, const stru
 
 // the nascent points of one view of the wake of fish g at a range of the points of fish f
 static void derive_ring_nascent(const struct pass *pass, const struct ring_sheet *sheet, struct range points,
-                                const struct ring_pair *pair, int is_image) {
+                                const struct ring_pair *pair, double image) {
     const struct flow *const flow = pass->flow;
     const struct fish *const fish = &flow->school->fish[pass->g];
     const struct stencil tail = {.n = 1, .node = (const int[]){fish->n_nodes - 1}, .weight = (const double[]){1}};
     const int n_released = sheet->n_released, end = points.first + points.n;
-    const int is_own = pass->f == pass->g && !is_image;
+    const int is_own = pass->f == pass->g && image == 0;
     const double shed = flow->nascent.circulation[pass->g] + flow->rings->fish[pass->g].newest[0];
 
     for (int first = points.first; first < end; first += RING_CHUNK) {
@@ -220,23 +230,22 @@ static void derive_ring_nascent(const struct pass *pass, const struct ring_sheet
             // C part; the circulation of the stretch is q/part
             const double along = -(shed - xi * rings->q[i] / part) * part;
 
-            struct source source = {.ring = {.x = rings->x[i],
-                                             .y = rings->y[i],
-                                             .q = rings->q[i],
-                                             .dx = rings->dx[i],
-                                             .dy = rings->dy[i],
-                                             .half = rings->half[i]},
-                                    .pair = *pair,
-                                    .is_image = is_image,
-                                    .place = &tail,
-                                    .follows = 1 - xi,
-                                    .line = &tail,
-                                    .along = -along,
-                                    .has_edge = is_own};
-            if (is_image) mirror(flow, &source.ring);
+            const struct source source = {.ring = {.x = rings->x[i],
+                                                   .y = rings->y[i],
+                                                   .q = rings->q[i],
+                                                   .dx = rings->dx[i],
+                                                   .dy = rings->dy[i],
+                                                   .half = rings->half[i]},
+                                          .pair = *pair,
+                                          .image = image,
+                                          .place = &tail,
+                                          .follows = 1 - xi,
+                                          .line = &tail,
+                                          .along = -along,
+                                          .has_edge = is_own};
             struct ring_values values;
             unit_of(pass, &source, first, n, &values);
-            const double sign = is_image ? -1 : 1, by_shed = -(1 - xi) * part;
+            const double sign = image < 0 ? -1 : 1, by_shed = -(1 - xi) * part;
             const double *const way = flow->rings->fish[pass->g].newest + 1;
             const struct column to = column_of(pass->block, pass->block->n_columns - 1, first);
             add_spanwise(&to, n, &values, sign * part);
@@ -275,9 +284,12 @@ static void flow_ring_derivative(const struct flow *flow, int f, int g, int with
         derive_ring_nascent(&pass, &of->wake.middles, all, &wake, 0);
     }
 
-    if (flow->school->walls.n == 0) return;
-    if (!nascent) derive_body(&pass, all, &body, 1);
-    derive_ring_nascent(&pass, &of->wake.middles, all, &wake, 1);
+    // images: mirrored in a wall, and in a channel shifted
+    for (int i = 0; i < flow->school->walls.n; i++) {
+        const double sign = i == 0 ? -1 : 1;
+        if (!nascent) derive_body(&pass, all, &body, sign);
+        derive_ring_nascent(&pass, &of->wake.middles, all, &wake, sign);
+    }
 }
 
 /* Add the derivatives by the motion of the points of fish f in the field of all sources. After flow_gradient. */

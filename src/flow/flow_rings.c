@@ -170,7 +170,7 @@ void flow_rings_at_chunk(const struct flow *flow, const struct chunk *chunk, int
 
 double flow_rings_work(const struct flow *flow) {
     // a ring costs about as much as six vortices
-    const double of_vortices = 6;
+    const double of_vortices = 6 * (1.0 + flow->rings->n_images);
     double work = 0;
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct fish_rings *const of = &flow->rings->fish[f];
@@ -256,7 +256,7 @@ static enum status rings_place_markers(struct flow *flow, const struct state *st
                                flow->nascent.circulation[f]));
         flow->wake_range[f] = (struct range){flow->n_markers, of->markers.n};
         flow->n_markers += of->markers.n;
-        if (school->walls.n > 0) TRY(ring_mirror(&of->markers, flow_mirror(flow->school), &of->markers_image));
+        TRY(ring_write_images(&of->markers, flow->rings->n_images, flow->rings->image, &of->markers_image));
     }
 
     return STATUS_OK;
@@ -390,7 +390,7 @@ enum status flow_rings_at_markers(struct flow *flow, const struct state *state) 
     const struct school *const school = flow->school;
     int n_chunks = 0;
     for (int f = 0; f < school->n_fish; f++) n_chunks += (flow->wake_range[f].n + MARKERS - 1) / MARKERS;
-    const double work = 6.0 * flow->n_markers * flow->n_markers;
+    const double work = 6.0 * flow->n_markers * flow->n_markers * (1 + flow->rings->n_images);
     const int threads = parallel_threads(school->threads, n_chunks, work, PARALLEL_INTERACTIONS);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {

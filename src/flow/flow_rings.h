@@ -5,7 +5,7 @@
  *     own edge midpoints        own wake, a point for every stretch, unless force: reactive        b = w/4
  *     own markers               own markers; own control points, tapered                           b = w/4
  *     bodies, markers of others control points; a point for every stretch, or markers              b = w/2
- *     images in a wall          of all fish, including the own                                     b = w/2
+ *     images in walls           of all fish, including the own                                     b = w/2
  */
 #ifndef FLOW_RINGS_H
 #define FLOW_RINGS_H

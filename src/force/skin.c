@@ -96,11 +96,19 @@ static void skin_add_rows(const struct skin_targets *at, const struct skin_sourc
 static void skin_add_images(const struct skin_targets *at, const struct ring_pair *pair,
                             const struct skin_source *source) {
     const struct walls *const walls = &at->flow->school->walls;
-    if (walls->n == 1) {
-        const struct skin_source image = skin_mirror(source, flow_mirror(at->flow->school));
-        skin_add(at, pair, &image);
+    for (int k = 0; pair && k < at->flow->rings->n_images; k++) {
+        const struct ring_image *const of = &at->flow->rings->image[k];
+        struct skin_source image = of->sign < 0 ? skin_mirror(source, of->shift) : *source;
+        if (of->sign > 0) image.x[1] += of->shift;
+        struct ring_pair weighted = *pair;
+        weighted.span *= of->weight;
+        skin_add(at, &weighted, &image);
     }
-    if (walls->n == 2) skin_add_rows(at, source);
+    if (!pair && walls->n == 1) {
+        const struct skin_source image = skin_mirror(source, 2 * walls->y[0]);
+        skin_add(at, NULL, &image);
+    }
+    if (!pair && walls->n == 2) skin_add_rows(at, source);
 }
 
 // ---- bodies

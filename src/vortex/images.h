@@ -9,6 +9,7 @@
 
 #include "vortex/far_images.h"
 #include "vortex/kernel.h"
+#include "vortex/ring.h"
 #include "vortex/velocity_sum.h"
 #include "vortex/vortices.h"
 
@@ -24,6 +25,13 @@ struct image {
  * width away from the fluid. */
 enum { IMAGES_NEAREST = 4 };
 int images_nearest(const struct walls *walls, struct image image[IMAGES_NEAREST]);
+
+/* The images of rings of at most this depth [m], in a new list that the caller frees; NULL without walls. In a channel
+ * a Gauss rule replaces the infinite sums: the images k = 1, and all further images as weighted images at nodes between
+ * the places of the images. There are 36 images for depths up to 8 H, 32 more for each factor of 4, and at most 272;
+ * the error is at most 1e-8 of the velocity of a vortex at the distance H if source and target are less than 6 H apart.
+ * doc/model.md, section 18. Fails with STATUS_MEMORY. */
+enum status images_of_rings(const struct walls *walls, double depth, struct ring_image **image, int *n_images);
 
 /* Add the velocity of all images of a range of vortices to the targets. In a channel smoothings are above 0. */
 void images_induce(const struct walls *walls, const struct vortices *vortices, struct range which,

@@ -284,18 +284,26 @@ void ring_induce_mutual(const struct ring_pair *pair, const struct rings *rings,
     }
 }
 
-enum status ring_mirror(const struct rings *rings, double shift, struct rings *image) {
-    image->n = 0;
-    TRY(ring_append(image, rings->n));
-    for (int i = 0; i < rings->n; i++) {
-        image->x[i] = rings->x[i];
-        image->y[i] = shift - rings->y[i];
-        image->q[i] = -rings->q[i];
-        image->dx[i] = -rings->dx[i];
-        image->dy[i] = rings->dy[i];
-        image->half[i] = rings->half[i];
-        image->leg[i] = rings->leg[i];
-        image->square[i] = rings->square[i];
+enum status ring_write_images(const struct rings *rings, int n_images, const struct ring_image *image,
+                              struct rings *images) {
+    images->n = 0;
+    TRY(ring_append(images, n_images * rings->n));
+    for (int k = 0; k < n_images; k++) {
+        const double weight = image[k].weight, reversed = image[k].sign * weight;
+        const int first = k * rings->n;
+        for (int i = 0; i < rings->n; i++) {
+            images->x[first + i] = rings->x[i];
+            images->y[first + i] = image[k].sign * rings->y[i] + image[k].shift;
+            images->q[first + i] = reversed * rings->q[i];
+            images->dx[first + i] = reversed * rings->dx[i];
+            images->dy[first + i] = weight * rings->dy[i];
+        }
+
+        const size_t size = (size_t)rings->n * sizeof(double);
+        if (rings->n == 0) continue;
+        memcpy(images->half + first, rings->half, size);
+        memcpy(images->leg + first, rings->leg, size);
+        memcpy(images->square + first, rings->square, size);
     }
 
     return STATUS_OK;
@@ -323,5 +331,16 @@ void ring_unit(const struct ring_pair *pair, const struct ring_source *source, i
         values->div_y[i] = k * across * ry + h * source->dx;
         values->edge_x[i] = k / 2 * rx;
         values->edge_y[i] = k / 2 * ry;
+    }
+}
+
+void ring_values_add(const struct ring_values *one, double factor, int n, struct ring_values *sum) {
+    const double *const from[] = {one->unit_u, one->unit_v, one->leg,    one->div_by_dx, one->div_by_dy,
+                                  one->edge,   one->u_x,    one->u_y,    one->v_x,       one->v_y,
+                                  one->div_x,  one->div_y,  one->edge_x, one->edge_y};
+    double *const to[] = {sum->unit_u, sum->unit_v, sum->leg, sum->div_by_dx, sum->div_by_dy, sum->edge,   sum->u_x,
+                          sum->u_y,    sum->v_x,    sum->v_y, sum->div_x,     sum->div_y,     sum->edge_x, sum->edge_y};
+    for (size_t k = 0; k < sizeof to / sizeof *to; k++) {
+        for (int i = 0; i < n; i++) to[k][i] += factor * from[k][i];
     }
 }

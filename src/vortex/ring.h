@@ -67,9 +67,15 @@ void ring_induce(const struct ring_pair *pair, const struct rings *rings, struct
  * targets, without gradients; a pair of rings has one square root. `square` of the rings is 0. */
 void ring_induce_mutual(const struct ring_pair *pair, const struct rings *rings, const struct ring_targets *at);
 
-/* The mirror image of the rings in a wall: position (x, shift - y), circulation and legs reversed. *image is
- * overwritten. Fails with STATUS_MEMORY. */
-enum status ring_mirror(const struct rings *rings, double shift, struct rings *image);
+/* An image of every ring: at (x, sign y + shift), with the fraction `weight` of the strength. sign = -1: mirrored in a
+ * wall, with reversed circulation and reversed legs along the wall. */
+struct ring_image {
+    double sign, shift, weight;
+};
+
+/* Write all images of the rings, image after image, to *images, which is overwritten. Fails with STATUS_MEMORY. */
+enum status ring_write_images(const struct rings *rings, int n_images, const struct ring_image *image,
+                              struct rings *images);
 
 /* One source for a Jacobian at n targets of one chunk. */
 enum { RING_CHUNK = 64 };
@@ -87,6 +93,9 @@ struct ring_values {
 };
 void ring_unit(const struct ring_pair *pair, const struct ring_source *source, int n, const double *x, const double *y,
                const double *half, struct ring_values *values);
+
+/* Add a factor times the values of another source at the same n targets. */
+void ring_values_add(const struct ring_values *one, double factor, int n, struct ring_values *sum);
 
 /* A block of targets, with sums. */
 enum { RING_BLOCK = 16 };

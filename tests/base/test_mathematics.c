@@ -76,6 +76,34 @@ static void polynomials_of_degree_2n_less_1_are_integrated_exactly(void **state)
     }
 }
 
+// the terms of a sum with any weights; without freedom the nodes are the terms
+static void the_gauss_rule_of_a_sum_is_exact_to_degree_2n_less_1(void **state) {
+    (void)state;
+    enum { N = 40 };
+    double x[N], weight[N], scratch[2 * N], node[8], of_node[8];
+    for (int i = 0; i < N; i++) {
+        x[i] = 1.0 / (i + 2);
+        weight[i] = 1 + 0.5 * sin(i);
+    }
+
+    for (int n = 1; n <= 8; n++) {
+        quadrature_of_sum(N, x, weight, scratch, n, node, of_node);
+        for (int degree = 0; degree < 2 * n; degree++) {
+            double sum = 0, rule = 0;
+            for (int i = 0; i < N; i++) sum += weight[i] * pow(x[i], degree);
+            for (int i = 0; i < n; i++) rule += of_node[i] * pow(node[i], degree);
+            NEAR(rule, sum, 0, 1e-12);
+        }
+        for (int i = 1; i < n; i++) assert_true(node[i] > node[i - 1]);
+    }
+
+    quadrature_of_sum(3, x, weight, scratch, 3, node, of_node);
+    for (int i = 0; i < 3; i++) {
+        NEAR(node[i], x[2 - i], 0, 1e-13);
+        NEAR(of_node[i], weight[2 - i], 0, 1e-12);
+    }
+}
+
 static void nodes_ascend_and_are_symmetric(void **state) {
     (void)state;
     double node[16], weight[16];
@@ -162,6 +190,7 @@ int main(void) {
         cmocka_unit_test(three_derivatives_vanish_at_both_ends),
         cmocka_unit_test(ramp_of_no_duration_is_one_at_all_times),
         cmocka_unit_test(polynomials_of_degree_2n_less_1_are_integrated_exactly),
+        cmocka_unit_test(the_gauss_rule_of_a_sum_is_exact_to_degree_2n_less_1),
         cmocka_unit_test(nodes_ascend_and_are_symmetric),
         cmocka_unit_test(four_nodes_are_those_of_the_tables),
         cmocka_unit_test(the_newest_interval_of_a_parabola_is_exact),

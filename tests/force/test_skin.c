@@ -176,6 +176,7 @@ static void in_a_channel_the_rate_of_the_potential_is_its_difference_in_time(voi
         mirrors[n++] = (struct mirror){-1, -0.6 + 3.0 * k};
     }
     compare_with_differences("fluid: {walls: [-0.3, 1.2]}\n", "", n, mirrors, 0.008);
+    compare_with_differences("fluid: {walls: [-0.3, 1.2]}\n", ", pressure: {span: finite}", n, mirrors, 0.008);
 }
 
 // ---- sides

@@ -9,15 +9,13 @@
 /* Pairs of fish that meet head on between two walls; every third fish has another force model, some fish have a
  * control law. The number of unknowns is large enough for parallel loops over fish. */
 enum { N_PAIRS = 9 };
-#define MEETING                                                           \
-    "time: {end: 1, shedding_interval: 0.01}\nfluid: {walls: [-0.3%s]}\n" \
+#define MEETING                                                            \
+    "time: {end: 1, shedding_interval: 0.01}\nfluid: {walls: [-0.3, 4]}\n" \
     "contact: {range: 0.05}\ndefaults: {fish: {nodes: 7, sheet_points: 15, start: {speed: 0.5}}}\n"
 
 static void meeting_text(size_t size, char *text, const char *settings, const char *force, int threads) {
-    // the ring model allows at most one wall
-    const char *const wall = strstr(force, "finite") ? "" : ", 4";
     static const char *const law[] = {"none", "heading", "course, desired_heading: 170"};
-    size_t used = (size_t)snprintf(text, size, "%s" MEETING "solver: {threads: %d}\nfish:\n", settings, wall, threads);
+    size_t used = (size_t)snprintf(text, size, "%s" MEETING "solver: {threads: %d}\nfish:\n", settings, threads);
     for (int f = 0; f < 2 * N_PAIRS; f++) {
         const int right = f % 2;
         used += (size_t)snprintf(text + used, size - used,

@@ -108,6 +108,10 @@ static void the_balance_is_closed_with_every_external_force(void **state) {
          "fluid: {walls: [-0.3]}\nwake: {lifetime: 0.8, decay: 0.6}\n"
          "fish: [{" STRIP "}, {force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 33, length: 0.5, "
          "drag: {skin: laminar}, start: {position: [0.5, 0.4], speed: 0.5}, body: {depth: 0.4}}]\n"},
+        {"finite span, a channel, two depths",
+         "fluid: {walls: [-0.3, 0.8]}\nwake: {lifetime: 0.8, decay: 0.6}\n"
+         "fish: [{" STRIP "}, {force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 33, length: 0.5, "
+         "drag: {skin: laminar}, start: {position: [0.5, 0.4], speed: 0.5}, body: {depth: 0.4}}]\n"},
         {"finite span, a depth for every edge",
          "fish: [{force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 65, wave: {ramp: 0.5}, "
          "drag: {skin: laminar}, start: {speed: 0.5}, body: {profile: table, "

@@ -154,6 +154,12 @@ static const struct variant {
      "fish: [{nodes: 5, sheet_points: 14, force: pressure, pressure: {span: finite},\n"
      "        drag: {skin: laminar, normal: 0.5},\n"
      "        body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05], depth_table: [0.5, 0.7, 0.6, 0.4]}}]\n"},
+    {"two fish of finite span and two depths in a channel",
+     PRESSURE FAR "fluid: {velocity: [0.3, 0], walls: [-0.7, 1.1]}\n"
+                  "fish:\n"
+                  "  - {nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}\n"
+                  "  - {nodes: 4, sheet_points: 11, force: pressure, pressure: {span: finite}, body: {depth: 0.6},\n"
+                  "     start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"four fish of finite span, one force each, two depths", PRESSURE FAR
      "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
      "fish:\n"

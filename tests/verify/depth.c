@@ -2,30 +2,31 @@
  * dimensions. Length L = 1 m, density 1. */
 #include <math.h>
 
+#include "flow/flow_at_bodies.h"
 #include "solver/initial_conditions.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;
 
 // a plate that heaves in a stream of 1 m/s
-static struct simulation *heave(const char *span, double depth, double amplitude, const char *wake) {
+static struct simulation *heave(const char *span, double depth, double amplitude, const char *wake, const char *walls) {
     return verify_open(VERIFY_DEFAULTS
                        "format: 1\n"
                        "time: {end: 5}\n"
-                       "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
+                       "fluid: {density: 1, viscosity: 0, velocity: [1, 0], walls: [%s]}\n"
                        "wake: {%s}\n"
                        "fish: [{nodes: 9, sheet_points: 33, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
                        "        pressure: {span: %s, suction_limit: 0},\n"
                        "        body: {profile: uniform, thickness: 0.02, depth: %.17g},\n"
                        "        motion: {prescribed: all, heave: %.17g, frequency: 0.8}}]\n",
-                       wake, span, depth, amplitude);
+                       walls, wake, span, depth, amplitude);
 }
 
 /* Thrust m (v^2 - U^2 y'^2)/2 and power m U v^2 of a slender body by the motion of the tail, m = pi rho w^2/4. */
 static void check_slender(void) {
     const double depth = 0.25, amplitude = 0.03, square = pow(amplitude * 2 * pi * 0.8, 2) / 2;
     const double mass = pi * depth * depth / 4;
-    struct simulation *const simulation = heave("finite", depth, amplitude, "lifetime: 3.75");
+    struct simulation *const simulation = heave("finite", depth, amplitude, "lifetime: 3.75", "");
     verify_run(simulation, 5);
     simulate_measure(simulation);
     const struct diagnostics_fish *const of = simulation->diagnostics->fish;
@@ -110,37 +111,122 @@ static void check_added_mass(void) {
 }
 
 // the energy balance of a free fish over the work of its muscle
-static void check_energy(void) {
+static void check_energy(const char *name, const char *walls) {
     struct simulation *const simulation = verify_open(VERIFY_DEFAULTS
                                                       "format: 1\n"
                                                       "time: {end: 4}\n"
                                                       "solver: {rtol: 1e-6}\n"
+                                                      "fluid: {walls: [%s]}\n"
                                                       "fish: [{force: pressure, start: {speed: 0.5},\n"
-                                                      "        pressure: {span: finite}}]\n");
+                                                      "        pressure: {span: finite}}]\n",
+                                                      walls);
     verify_run(simulation, 4);
     simulate_measure(simulation);
     const struct diagnostics_fish *const of = simulation->diagnostics->fish;
-    verify_zero("a fish, w/L = 0.25: energy balance after 4 s over work", "first law",
-                of->energy_balance / of->actuation_work, 3e-5);
+    verify_zero(name, "first law", of->energy_balance / of->actuation_work, 3e-5);
     simulate_free(simulation);
 }
 
-static void check_deep(void) {
-    static const char kept[] = "lifetime: 100, decay: 0";
-    struct simulation *const deep = heave("finite", 1e4, 0.175, kept), *const plane =
-                                                                           heave("infinite", 1e4, 0.175, kept);
+// the largest difference of the circulation shed, over the circulation
+static double shed_difference(struct simulation *one, struct simulation *other) {
     double most = 0, largest = 0;
     for (int i = 1; i <= 10; i++) {
-        verify_run(deep, 0.25 * i);
-        verify_run(plane, 0.25 * i);
-        const int shed = deep->school->fish[0].at.circulation;
-        most = fmax(most, fabs(deep->state->y[shed] - plane->state->y[shed]));
-        largest = fmax(largest, fabs(plane->state->y[shed]));
+        verify_run(one, 0.25 * i);
+        verify_run(other, 0.25 * i);
+        const int shed = one->school->fish[0].at.circulation;
+        most = fmax(most, fabs(one->state->y[shed] - other->state->y[shed]));
+        largest = fmax(largest, fabs(other->state->y[shed]));
     }
+    simulate_free(one);
+    simulate_free(other);
+    return most / largest;
+}
+
+static const char kept[] = "lifetime: 100, decay: 0";
+
+static void check_deep(void) {
+    const double amplitude = 0.175;
     verify_zero("plate in heave, w/L = 10000: circulation shed less that in two dimensions", "two dimensions",
-                most / largest, 1e-6);
-    simulate_free(deep);
-    simulate_free(plane);
+                shed_difference(heave("finite", 1e4, amplitude, kept, ""), heave("infinite", 1e4, amplitude, kept, "")),
+                1e-6);
+}
+
+// ---- a channel
+
+/* The legs across the channel and the legs of the images are two lines from wall to wall at the distance b = w/2: the
+ * flow C dy/(pi H b) falls only like H/w. */
+static void check_channel_limits(void) {
+    static const struct { double depth, bound; } deep[] = {{1e4, 1e-4}, {1e7, 1e-6}};
+    static const char channel[] = "-0.4, 0.6";
+    const double amplitude = 0.175;
+    for (int i = 0; i < 2; i++) {
+        verify_zero(verify_text("plate in heave in a channel, H/L = 1, w/L = %g: circulation shed less that in two "
+                                "dimensions",
+                                deep[i].depth),
+                    "closed sum of vortices",
+                    shed_difference(heave("finite", deep[i].depth, amplitude, kept, channel),
+                                    heave("infinite", deep[i].depth, amplitude, kept, channel)),
+                    deep[i].bound);
+    }
+    verify_zero("plate in heave, w/L = 0.25, one wall: circulation shed less that with a second wall at 100 L",
+                "one wall",
+                shed_difference(heave("finite", 0.25, amplitude, kept, "-0.4"),
+                                heave("finite", 0.25, amplitude, kept, "-0.4, 100")),
+                1e-6);
+}
+
+static struct simulation *in_channel(double y, double phase) {
+    return verify_open(VERIFY_DEFAULTS
+                       "format: 1\n"
+                       "time: {end: 1}\n"
+                       "solver: {rtol: 1e-8}\n"
+                       "fluid: {viscosity: 0, walls: [-0.5, 0.5]}\n"
+                       "fish: [{force: pressure, start: {speed: 0.5, position: [0, %.17g]},\n"
+                       "        wave: {phase: %.17g}, pressure: {span: finite, suction_limit: 0}}]\n",
+                       y, phase);
+}
+
+// flow through the walls, mirror symmetry, momentum of a fish that swims between walls
+static void check_channel_fish(void) {
+    enum { N = 42 };
+    struct simulation *const one = in_channel(0.2, 0), *const mirrored = in_channel(-0.2, 180);
+    double most = 0, momentum = 0, through = 0, along = 0, asymmetry = 0;
+    for (int i = 1; i <= 10; i++) {
+        verify_run(one, 0.1 * i);
+        simulate_measure(one);
+        const struct diagnostics *const now = one->diagnostics;
+        const double *const velocity = now->fish[0].com_velocity;
+        most = fmax(most, hypot(now->momentum_balance[0], now->momentum_balance[1]));
+        momentum = fmax(momentum, one->school->fish[0].total_mass * hypot(velocity[0], velocity[1]));
+    }
+
+    double x[N], y[N], u[N], v[N], u_x[N], u_y[N], v_x[N];
+    const double *const at = one->state->y + one->school->fish[0].at.x;
+    for (int i = 0; i < N; i++) {
+        x[i] = at[0] - 2 + 0.1 * i;
+        y[i] = i % 2 == 0 ? -0.5 : 0.5;
+    }
+    const struct induced points = {.n = N, .x = x, .y = y, .u = u, .v = v, .u_x = u_x, .u_y = u_y, .v_x = v_x};
+    verify_ok(flow_field(one->residual->flow, one->state, &points));
+    for (int i = 0; i < N; i++) {
+        through = fmax(through, fabs(v[i]));
+        along = fmax(along, fabs(u[i]));
+    }
+
+    verify_run(mirrored, 1);
+    const int n = one->school->fish[0].n_nodes;
+    for (int k = 0; k < n; k++) {
+        asymmetry = fmax(asymmetry, fabs(at[k] - mirrored->state->y[k]));
+        asymmetry = fmax(asymmetry, fabs(at[n + k] + mirrored->state->y[n + k]));
+    }
+    verify_zero("a fish in a channel, w/H = 0.25: flow through the walls over flow along the walls", "impermeable",
+                through / along, 1e-8);
+    verify_zero("a fish in a channel, w/H = 0.25: place less that of the mirrored case, L", "symmetry", asymmetry,
+                1e-9);
+    verify_zero("a fish in a channel, w/H = 0.25: momentum lost", "momentum of bodies and rings", most / momentum,
+                1e-3);
+    simulate_free(one);
+    simulate_free(mirrored);
 }
 
 // the momentum of a fish, and of two of different depth, is found in the fluid
@@ -194,9 +280,12 @@ void verify_depth(void) {
     check_lift();
     check_added_mass();
     check_deep();
-    check_energy();
+    check_energy("a fish, w/L = 0.25: energy balance after 4 s over work", "");
     check_momentum("a fish, w/L = 0.25: momentum lost", "{}", 1e-3);
     check_momentum("two fish, w = 0.25 and 0.4 m: momentum lost",
                    "{}, {body: {depth: 0.4}, start: {position: [0.3, 0.4]}}", 1e-3);
     check_slow_start();
+    check_energy("a fish in a channel, H/L = 1, w/L = 0.25: energy balance after 4 s over work", "-0.45, 0.55");
+    check_channel_limits();
+    check_channel_fish();
 }

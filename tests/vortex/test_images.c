@@ -44,6 +44,149 @@ static void all_of(const struct walls *walls, const struct vortices *vortices, c
     images_induce(walls, vortices, (struct range){0, vortices->n}, at);
 }
 
+// ---- rings in a channel of width 1.5
+
+enum { N_RING_TARGETS = 24 };
+
+// velocity and div u of one ring of half span `span` with its images at targets, half of them on the walls
+struct ring_field {
+    double x[N_RING_TARGETS], y[N_RING_TARGETS];
+    double u[N_RING_TARGETS], v[N_RING_TARGETS], div[N_RING_TARGETS];
+};
+static void ring_field_of(const struct rings *rings, double span, int n_images, const struct ring_image *image,
+                          struct ring_field *field) {
+    struct rings images = {0};
+    memset(field, 0, sizeof *field);
+    for (int i = 0; i < N_RING_TARGETS; i++) {
+        field->x[i] = 0.7 * (i / 2 - 4);
+        field->y[i] = i % 2 == 0 ? channel.y[i / 2 % 2] : 0.35 + 0.6 * sin(13 * i);
+    }
+
+    const struct ring_pair pair = {.span = span, .factor = 4, .square = 0.001};
+    const struct ring_targets at = {.n = N_RING_TARGETS,
+                                    .x = field->x,
+                                    .y = field->y,
+                                    .half = rings->leg,
+                                    .u = field->u,
+                                    .v = field->v,
+                                    .div = field->div};
+    assert_int_equal(ring_write_images(rings, n_images, image, &images), STATUS_OK);
+    ring_induce(&pair, rings, (struct range){0, 1}, &at);
+    ring_induce(&pair, &images, (struct range){0, images.n}, &at);
+    ring_free(&images);
+}
+
+// a ring with half = span^2/8: all of T; leg: 0 for all targets
+static void ring_make(struct rings *rings, double span) {
+    *rings = (struct rings){0};
+    assert_int_equal(ring_append(rings, N_RING_TARGETS), STATUS_OK);
+    rings->n = 1;
+    rings->x[0] = 0.1;
+    rings->y[0] = 0.8;
+    rings->q[0] = 0.7;
+    rings->dx[0] = 0.05;
+    rings->dy[0] = 0.04;
+    rings->half[0] = span * span / 4;
+}
+
+// targets up to 6 channel widths away; bound: part of the largest velocity on a wall, 2 q/(4 H) without depth
+static void rings_and_images_cause_no_flow_through_a_channel(void **state) {
+    (void)state;
+    static const struct {
+        double depth, bound;
+        int n;
+    } cases[] = {{0.1, 1e-12, 36}, {1, 1e-12, 36}, {12, 1e-11, 36}, {100, 1e-8, 80}, {1e5, 1e-8, 240}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct ring_image *image;
+        struct rings rings;
+        struct ring_field field;
+        int n;
+        ring_make(&rings, cases[i].depth / 2);
+        assert_int_equal(images_of_rings(&channel, cases[i].depth, &image, &n), STATUS_OK);
+        assert_int_equal(n, cases[i].n);
+        ring_field_of(&rings, cases[i].depth / 2, n, image, &field);
+        double through = 0, along = 0;
+        for (int k = 0; k < N_RING_TARGETS; k += 2) {
+            through = fmax(through, fabs(field.v[k]));
+            along = fmax(along, fabs(field.u[k]));
+        }
+        print_message("depth %g: %d images, flow through the walls %.2g of %.2g\n", cases[i].depth, n, through, along);
+        assert_true(through < cases[i].bound * along);
+        free(image);
+        ring_free(&rings);
+    }
+}
+
+// the sum over 40 000 images
+static void few_images_of_rings_are_the_sum_over_all(void **state) {
+    (void)state;
+    enum { MANY = 10000 };
+    struct ring_image *image, *all = calloc(4 * MANY, sizeof *all);
+    assert_non_null(all);
+    for (int k = 1; k <= MANY; k++) {
+        all[4 * k - 4] = (struct ring_image){-1, 0.7 - 1.5 * (2 * k - 1), 1};
+        all[4 * k - 3] = (struct ring_image){-1, 0.7 + 1.5 * (2 * k - 1), 1};
+        all[4 * k - 2] = (struct ring_image){1, 3.0 * k, 1};
+        all[4 * k - 1] = (struct ring_image){1, -3.0 * k, 1};
+    }
+
+    static const double depths[] = {0.1, 1, 12, 100};
+    for (size_t i = 0; i < sizeof depths / sizeof *depths; i++) {
+        struct rings rings;
+        struct ring_field sum, few;
+        int n;
+        ring_make(&rings, depths[i] / 2);
+        assert_int_equal(images_of_rings(&channel, depths[i], &image, &n), STATUS_OK);
+        ring_field_of(&rings, depths[i] / 2, 4 * MANY, all, &sum);
+        ring_field_of(&rings, depths[i] / 2, n, image, &few);
+
+        // the rest beyond the sum is depth/(H MANY)^2
+        const double bound = 2e-8 + 1e-2 * depths[i] / ((double)MANY * MANY);
+        for (int k = 0; k < N_RING_TARGETS; k++) {
+            NEAR(few.u[k], sum.u[k], bound, 0);
+            NEAR(few.v[k], sum.v[k], bound, 0);
+            NEAR(few.div[k], sum.div[k], bound, 0);
+        }
+        free(image);
+        ring_free(&rings);
+    }
+    free(all);
+}
+
+// for a deep strip: the closed sum over the images of a vortex
+static void images_of_deep_rings_are_those_of_vortices(void **state) {
+    (void)state;
+    const double depth = 1e7;
+    struct ring_image *image;
+    struct rings rings;
+    struct ring_field field;
+    int n;
+    ring_make(&rings, depth / 2);
+    assert_int_equal(images_of_rings(&channel, depth, &image, &n), STATUS_OK);
+    assert_int_equal(n, 272);
+    ring_field_of(&rings, depth / 2, n, image, &field);
+
+    struct vortices vortex = {0};
+    double u[N_RING_TARGETS], v[N_RING_TARGETS];
+    const struct induced at = {.n = N_RING_TARGETS, .x = field.x, .y = field.y, .u = u, .v = v};
+    assert_int_equal(vortices_append(&vortex, 1, sqrt(0.001)), STATUS_OK);
+    vortex.x[0] = rings.x[0];
+    vortex.y[0] = rings.y[0];
+    vortex.circulation[0] = rings.q[0];
+    memset(u, 0, sizeof u);
+    memset(v, 0, sizeof v);
+    vortices_induce(&vortex, (struct range){0, 1}, &at);
+    images_induce(&channel, &vortex, (struct range){0, 1}, &at);
+    for (int k = 0; k < N_RING_TARGETS; k++) {
+        NEAR(field.u[k], u[k], 1e-7, 0);
+        NEAR(field.v[k], v[k], 1e-7, 0);
+        NEAR(field.div[k], 0, 1e-7, 0);
+    }
+    free(image);
+    ring_free(&rings);
+    vortices_free(&vortex);
+}
+
 static void distances_are_those_from_the_nearest_wall(void **state) {
     (void)state;
     const struct walls none = {0};
@@ -437,6 +580,9 @@ static void a_pair_that_meets_a_wall_parts_along_it(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rings_and_images_cause_no_flow_through_a_channel),
+        cmocka_unit_test(few_images_of_rings_are_the_sum_over_all),
+        cmocka_unit_test(images_of_deep_rings_are_those_of_vortices),
         cmocka_unit_test(distances_are_those_from_the_nearest_wall),
         cmocka_unit_test(one_wall_has_one_image_of_every_vortex),
         cmocka_unit_test(a_channel_has_all_images_of_the_images),

@@ -166,7 +166,7 @@ static void a_ring_and_its_image_cause_no_flow_through_the_wall(void **state) {
     rings.dx[0] = 0.2;
     rings.dy[0] = -0.3;
     rings.half[0] = 0.002;
-    assert_int_equal(ring_mirror(&rings, -0.5, &image), STATUS_OK);
+    assert_int_equal(ring_write_images(&rings, 1, &(struct ring_image){-1, -0.5, 1}, &image), STATUS_OK);
     enum { N = 20 };
     double x[N], y[N], u[N] = {0}, v[N] = {0};
     for (int i = 0; i < N; i++) {
