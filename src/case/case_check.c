@@ -36,7 +36,8 @@ __attribute__((format(printf, 4, 5))) static void complain_if(bool condition, co
     for (int i = 0; check->is_of_notes && i < check->errors->n && i < YAML_ERRORS_KEPT; i++) {
         const struct yaml_mark other = check->errors->kept[i].mark;
         const bool is_same = other.source == mark.source && other.line == mark.line && other.column == mark.column;
-        if (is_same && strstr(check->errors->kept[i].text, strchr(path, '.'))) return;
+        const char *const text = check->errors->kept[i].text;  // NULL without memory
+        if (is_same && text && strstr(text, strchr(path, '.'))) return;
     }
 
     char reason[512];

@@ -481,7 +481,7 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
     (void)state;
     write_file("water.yaml", "fluid: {density: 1025}\n");
     write_file("case.yaml",
-               "include: [water.yaml]\nformat: 1\ntime: {end: 1}\ndefaults: {fish: {name: a}}\n"
+               "include: [water.yaml]\nformat: 1\ntime: {end: 1}\ndefaults: {fish: {name: a, force: pressure}}\n"
                "fish:\n  - {nodes: 4, body: {profile: table, thickness_table: [1, 2, 3], depth_table: [1, 2, 3]}}\n"
                "  - {name: b, control: {law: heading, desired_heading: 3}}\n"
                "sweep: [{keys: ['fish[*].nodes', solver.order], values: [[4, 1], [4, 2]]},\n"
