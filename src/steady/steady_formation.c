@@ -7,8 +7,8 @@
 #include "solver/newton.h"
 #include "steady/steady_problem.h"
 
-/* Largest change of a slow quantity in one step, in lengths and in the other scales; largest distance of a place from
- * the initial place, in lengths, beyond which Newton's method has failed. */
+/* Largest change of a slow quantity in one step, in lengths and in the other scales; largest change since the start,
+ * beyond which Newton's method has failed. */
 static const double longest_step = 0.25, farthest = 1.5;
 
 /* Difference increment of the Jacobian, in the scale of the quantity. */
@@ -121,10 +121,7 @@ static void broyden_update(struct formation *formation, const double *u, const d
 // Newton's method can separate the fish until the interaction vanishes, make the fish overlap, or oscillate
 static enum status check_iterate(const struct formation *formation, const double *u) {
     const struct steady_problem *const problem = formation->problem;
-    double most = 0;
-    for (int i = 0; i < problem->n_unknowns; i++) {
-        if (is_place(formation, i)) most = fmax(most, fabs(u[i] - formation->start[i]));
-    }
+    const double most = largest_distance(problem->n_unknowns, formation->start, u);
     if (formation->follows || (most <= farthest && problem->map.n_beats < formation->most_beats)) return STATUS_OK;
     return status_fail(
         STATUS_SOLVER,

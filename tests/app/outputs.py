@@ -3,8 +3,8 @@
 
     tests/app/outputs.py PROGRAM [--write]
 
-The table has cases ("== NAME", then the text of the file) and commands ("$ ARGUMENTS" of the program, or of sums()
-below, then the output; lines of standard error start with "! ", a last line "= N" is an exit code other than 0).
+The table has cases ("== NAME", then the text of the file) and commands ("$ ARGUMENTS" of the program, "$ sums FILE or
+FOLDER", "$ text FILE", "$ cut FILE BYTES" at its end, then the output; lines of standard error start with "! ", a last line "= N" is an exit code other than 0).
 Numbers agree to one and a half units of the last digit and to 1e-3, small differences to 0.3. --write replaces the outputs. The commands run in the
 current folder.
 """
@@ -155,9 +155,15 @@ def output_of(program, command):
             if path.endswith(".html")
             else sums_of_netcdf(path) if path.endswith(".nc") else sums_of_vtk(path)
         )
+    if words[0] == "cut":
+        os.truncate(words[1], os.path.getsize(words[1]) - int(words[2]))
+        return []
+    if words[0] == "text":
+        with open(words[1], encoding="utf-8") as file:
+            return [line.rstrip("\n").replace(os.getcwd(), "FOLDER").replace(program, "SHOAL") for line in file]
     ended = subprocess.run([program, *words], capture_output=True, text=True, errors="replace", check=False)
     lines = ended.stdout.splitlines() + ["! " + line for line in ended.stderr.splitlines()]
-    lines = [line.replace(os.getcwd(), "FOLDER") for line in lines if not re.match(FREE[0], line)]
+    lines = [line.replace(os.getcwd(), "FOLDER").replace(program, "SHOAL") for line in lines if not re.match(FREE[0], line)]
     return lines + ([f"= {ended.returncode}"] if ended.returncode else [])
 
 
@@ -170,7 +176,7 @@ def main():
         table = file.read().split("\n")
     parts, i = [], 0
     for line in table:
-        if line[:2] in ("$ ", "==", "# ") or not parts:
+        if line[:2] in ("$ ", "==") or not parts:
             parts.append([line])
         else:
             parts[-1].append(line)

@@ -1,4 +1,4 @@
-/* test_results.c: every variable of eleven short runs and three steady states, in which all terms of the model act at
+/* test_results.c: every variable of fourteen short runs and three steady states, in which all terms of the model act at
  * once, against the values of tests/data/results.tsv. Independent tests verify the terms; this test notices every
  * change of a result, which CHANGES.md promises to state. After an intended change:
  *
@@ -91,6 +91,22 @@ static const struct run {
     {"explicit_sheet",
      "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: heun, step: 2.5e-4}\n"
      "wake: {lifetime: 0.1}\nfish: [{" FISH ", start: {speed: 0.8}, body: {modulus: 1e5}}]\n"},
+    {"trapezoid",
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: trapezoid, step: 1.25e-3}\n" STREAM
+     "wake: {lifetime: 0.1}\noutput: {forces: edges}\n"
+     "fish: [{" FISH ", force: pressure, start: {heading: 170, speed: 0.8}, drag: {skin: boundary_layer}},\n"
+     "    {" FISH ", length: 0.8, start: {position: [0.2, 0.6], speed: 0.5}, control: {law: heading, desired_heading: "
+     "170}}]\n"},
+    {"implicit_euler",
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: implicit_euler, step: 1.25e-3}\n"
+     "wake: {lifetime: 0.1}\n"
+     "fish: [{" FISH ", force: pressure, motion: {prescribed: head, heave: 0.05, pitch: 10, frequency: 4}}]\n"},
+    {"dormand_prince",
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: dormand_prince, rtol: 1e-7}\n" STREAM
+     "wake: {lifetime: 0.1, shedding: continuous}\n"
+     "fish: [{" FISH ", start: {speed: 0.8}, body: {modulus: 1e5, density: 1200}, added_mass: {extent: thickness}},\n"
+     "    {" FISH ", body: {modulus: 1e5}, motion: {prescribed: head, surge: free, heave: 0.05, frequency: 4},\n"
+     "     start: {position: [0.2, 0.7], speed: 0.5}}]\n"},
     {"changed", TIME STREAM "wake: {lifetime: 0.25, decay: 0.1, spare_vortices: 9}\n"
                             "fish: [{" FISH ", start: {heading: 170, speed: 0.8}},\n"
                             "    {" FISH ", force: pressure, start: {position: [0.2, 0.7], speed: 0.6}}]\n"},

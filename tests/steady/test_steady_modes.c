@@ -60,6 +60,25 @@ static void without_water_they_are_those_of_a_clamped_beam(void **state) {
     simulate_free(found.simulation);
 }
 
+// modes that decay alike, here not at all, differ by their frequencies
+static void modes_without_damping_are_told_apart(void **state) {
+    (void)state;
+    static const char text[] = SCHOOL_DEFAULTS
+        "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 1e-9, velocity: [1, 0], viscosity: 0}\n"
+        "wake: {lifetime: 1}\n"
+        "fish: [{nodes: 17, sheet_points: 33, " CLAMPED PLATE "relaxation_time: 0}, start: {heading: 180, speed: 0}}]\n";
+    struct found found;
+    find(&found, text);
+    const double number[] = {1.875104, 4.694091, 7.854757}, within[] = {8e-3, 2.4e-2, 5e-2};
+    for (int j = 0; j < 3; j++) {
+        const double omega = number[j] * number[j] / 8;
+        const int i = nearest(&found, omega);
+        NEAR(found.omega[i], omega, 0, within[j]);
+        NEAR(found.rate[i], 0, 1e-6, 0);
+    }
+    simulate_free(found.simulation);
+}
+
 #define STREAM(velocity)                         \
     SCHOOL_DEFAULTS                              \
     "time: {end: 40, shedding_interval: 0.04}\n" \
@@ -248,6 +267,7 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_water_they_are_those_of_a_clamped_beam),
+        cmocka_unit_test(modes_without_damping_are_told_apart),
         cmocka_unit_test(a_run_grows_as_fast),
         cmocka_unit_test(they_do_not_depend_on_who_moves),
         cmocka_unit_test(the_lifetime_of_a_long_wake_does_not_matter),
