@@ -66,7 +66,8 @@ static void modes_without_damping_are_told_apart(void **state) {
     static const char text[] = SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 1e-9, velocity: [1, 0], viscosity: 0}\n"
         "wake: {lifetime: 1}\n"
-        "fish: [{nodes: 17, sheet_points: 33, " CLAMPED PLATE "relaxation_time: 0}, start: {heading: 180, speed: 0}}]\n";
+        "fish: [{nodes: 17, sheet_points: 33, " CLAMPED PLATE
+        "relaxation_time: 0}, start: {heading: 180, speed: 0}}]\n";
     struct found found;
     find(&found, text);
     const double number[] = {1.875104, 4.694091, 7.854757}, within[] = {8e-3, 2.4e-2, 5e-2};

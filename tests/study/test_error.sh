@@ -55,6 +55,10 @@ check its_cost_is_said grep -q 'the stated value takes .* times the time of the 
 cp out table
 run gather within
 check gather_takes_the_same_steps cmp out table
+cp -r within warned
+/usr/bin/python3 -c 'import netCDF4; netCDF4.Dataset("warned/member-0000.nc", "a").warnings = "too few nodes"'
+run gather warned --strict
+check warnings_of_the_case_are_not_those_of_the_stated_value test "$code" = 0 -a -z "$(grep 'too few nodes' out)"
 run info within/study.nc
 check info_takes_them_too cmp <(sed -n '/^steady_lift/,$p' out) table
 run error foil.yaml --of steady_lift --within 3e-4 -o within
