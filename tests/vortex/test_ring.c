@@ -73,6 +73,29 @@ static void velocity_and_divergence_are_those_of_the_formulas(void **state) {
     NEAR(sum.edge[1], h / 2 * 0.03, 0, 1e-13);
 }
 
+static void the_root_has_full_precision_at_any_distance(void **state) {
+    (void)state;
+    // induce compares the root that begins in single precision with a root in double precision
+    for (int i = 0; i < 3000; i++) {
+        const double r = pow(10, -15 + 0.01 * i);
+        const struct ring_source at_once[] = {{.q = 1, .dx = 0.02 * r, .dy = 0.03 * r, .half = r * r},
+                                              {.q = 1, .half = r * r},
+                                              {.dx = 0.02 * r, .dy = 0.03 * r, .half = r * r}};
+        const struct ring_pair pair = {.span = r, .factor = 1};
+        double u[3], v[3];
+        for (int k = 0; k < 3; k++) {
+            const struct sum sum = induce(&pair, &at_once[k], 0.6 * r, 0.8 * r, 0, 0, 0);
+            u[k] = sum.u;
+            v[k] = sum.v;
+        }
+        // vortex and leg apart
+        NEAR(u[1] + u[2], u[0], 0, 1e-14);
+        NEAR(v[1] + v[2], v[0], 0, 1e-14);
+        NEAR(v[1], 0.6 / (two_pi * sqrt(2) * r), 0, 1e-14);
+        NEAR(v[2], 0.02 / (two_pi * pow(2, 1.5) * r), 0, 1e-14);
+    }
+}
+
 static void a_deep_strip_is_that_of_two_dimensions(void **state) {
     (void)state;
     const double b = 1e5;
@@ -297,6 +320,7 @@ static void a_lack_of_memory_is_reported(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(velocity_and_divergence_are_those_of_the_formulas),
+        cmocka_unit_test(the_root_has_full_precision_at_any_distance),
         cmocka_unit_test(a_deep_strip_is_that_of_two_dimensions),
         cmocka_unit_test(far_away_a_closed_ring_is_a_dipole_of_its_area),
         cmocka_unit_test(gradients_agree_with_differences),
