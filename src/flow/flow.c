@@ -8,6 +8,7 @@
 #include "base/mathematics.h"
 #include "base/memory.h"
 #include "body/rod.h"
+#include "fish/fish_motion.h"
 
 // ---- external flow
 
@@ -201,6 +202,16 @@ static void place_body(struct fish_rings *of, const struct fish *fish, const str
     }
 }
 
+// the direction of the stream relative to a body that is held at the first node
+static void rings_find_downstream(const struct school *school, const struct fish *fish, double t, double along[2]) {
+    double place[2], velocity[2], acceleration[2], stream[2];
+    fish_prescribed_node(fish, 0, t, place, velocity, acceleration);
+    flow_external(school, t, place[0], place[1], &stream[0], &stream[1]);
+    const double x = stream[0] - velocity[0], y = stream[1] - velocity[1], speed = hypot(x, y);
+    along[0] = speed > 0 ? x / speed : 0;
+    along[1] = speed > 0 ? y / speed : 0;
+}
+
 // Place body, nascent stretch and images of fish f tau after the event for the unknowns y; ring_body: x, y of control
 // points and of bound vortices, and circulations of bound vortices. *nascent: circulation of the nascent stretch. Fails
 // with STATUS_MEMORY.
@@ -216,8 +227,15 @@ static enum status rings_place(struct flow_rings *rings, const struct school *sc
     for (int i = 0; i < 2 && of->n_far > 0; i++) {
         fish_of_nodes(FISH_FAR, fish->n_nodes, fish->far_by_node, y + (i == 0 ? fish->at.x : fish->at.y), of->far[i]);
     }
-    ring_sheet_place_nascent(&of->wake.graded, school, wake, state->t, tau, tail, shed);
-    *nascent = ring_sheet_place_nascent(&of->wake.middles, school, wake, state->t, tau, tail, shed);
+    if (rings->is_steady) {
+        rings_find_downstream(school, fish, state->t + tau, of->downstream);
+        TRY(ring_sheet_place_steady(&of->wake.graded, fish, tail, of->downstream, shed));
+        TRY(ring_sheet_place_steady(&of->wake.middles, fish, tail, of->downstream, shed));
+        *nascent = 0;
+    } else {
+        ring_sheet_place_nascent(&of->wake.graded, school, wake, state->t, tau, tail, shed);
+        *nascent = ring_sheet_place_nascent(&of->wake.middles, school, wake, state->t, tau, tail, shed);
+    }
     double newest[2] = {tail[0], tail[1]};
     if (wake->n_vortex > 0) wake_marker(wake, wake->n_vortex - 1, school->interval, tau, newest);
     of->newest[0] = shed - *nascent;

@@ -49,6 +49,7 @@ struct fish_rings {
     struct rings body;       /* control points, each with the circulation of its interval and its leg */
     double *line[2];         /* dx of the control points, m                        (n_control) */
     double newest[3];        /* label of the newest marker, m2 s-1; position of the marker relative to the tail, m */
+    double downstream[2];    /* direction of the legs of a steady wake; 0 without a stream */
     struct rings markers;    /* at the last event */
     int n_far;               /* number of oldest stretches that are summed at the far points; 0: none */
     double far[5][FISH_FAR]; /* far points: positions, m; velocity, m s-1; div u, s-1 */
@@ -57,6 +58,7 @@ struct fish_rings {
 
 struct flow_rings {
     struct fish_rings *fish; /* (n_fish) */
+    int is_steady;           /* whether all legs go from the tail to infinity, in an equilibrium; set from outside */
     int n_images;
     struct ring_image *image; /* of every ring in the walls                                        (n_images) */
     /* with the velocity at points: div u, gradient of div u; a, gradient of a, one component after the other

@@ -211,10 +211,49 @@ static void derive_body(const struct pass *pass, struct range points, const stru
     }
 }
 
+// the legs of a steady wake, which move with the tail
+static void derive_steady_legs(const struct pass *pass, const struct ring_sheet *sheet, struct range points,
+                               const struct ring_pair *pair, double image) {
+    const struct fish *const fish = &pass->flow->school->fish[pass->g];
+    const struct fish_rings *const of = &pass->flow->rings->fish[pass->g];
+    const struct rings *const rings = &sheet->rings;
+    const struct stencil tail = {.n = 1, .node = (const int[]){fish->n_nodes - 1}, .weight = (const double[]){1}};
+    const int end = points.first + points.n, has_edge = pass->f == pass->g && image == 0;
+    const double sign = image < 0 ? -1 : 1;
+
+    for (int first = points.first; first < end; first += RING_CHUNK) {
+        const int n = end - first < RING_CHUNK ? end - first : RING_CHUNK;
+        const struct column to = column_of(pass->block, pass->block->n_columns - 1, first);
+        for (int i = 0; i < sheet->n_nascent; i++) {
+            const struct source source = {.ring = {.x = rings->x[i],
+                                                   .y = rings->y[i],
+                                                   .dx = rings->dx[i],
+                                                   .dy = rings->dy[i],
+                                                   .half = rings->half[i],
+                                                   .leg = rings->leg[i]},
+                                          .pair = *pair,
+                                          .image = image,
+                                          .place = &tail,
+                                          .follows = 1,
+                                          .has_edge = has_edge};
+            struct ring_values values;
+            unit_of(pass, &source, first, n, &values);
+            const double by_shed = -ring_sheet_steady_length(sheet, i);
+            add_leg(&to, n, &values, sign * by_shed * of->downstream[0], by_shed * of->downstream[1], has_edge);
+            if (pass->with_places) add_places(pass->block, fish, &source, first, n, &values);
+        }
+    }
+}
+
 // the nascent points of one view of the wake of fish g at a range of the points of fish f
 static void derive_ring_nascent(const struct pass *pass, const struct ring_sheet *sheet, struct range points,
                                 const struct ring_pair *pair, double image) {
     const struct flow *const flow = pass->flow;
+    if (flow->rings->is_steady) {
+        derive_steady_legs(pass, sheet, points, pair, image);
+        return;
+    }
+
     const struct fish *const fish = &flow->school->fish[pass->g];
     const struct stencil tail = {.n = 1, .node = (const int[]){fish->n_nodes - 1}, .weight = (const double[]){1}};
     const int n_released = sheet->n_released, end = points.first + points.n;

@@ -30,7 +30,7 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
     memset(rows->value, 0, (size_t)rows->n_rows * (size_t)rows->n_columns * sizeof *rows->value);
 
     flow_derivative(residual->flow, f, g, block);
-    if (residual->shed_now == SHED_IS_FAR) zero_nascent_column(block);
+    if (residual->shed_now == SHED_IS_FAR && !residual->flow->rings) zero_nascent_column(block);
 
     fluid_force_flow_jacobian(fish, &flow, block, y, rows);
     if (residual->pressure[f]) pressure_flow_jacobian(residual->pressure[f], block, rows);

@@ -111,6 +111,7 @@ enum status equilibrium_create(struct equilibrium **equilibrium, struct residual
     // couple all bodies at any distance
     residual->couplings.reach = 1e6 * residual->school->fish[0].length;
     residual->shed_now = SHED_IS_FAR;
+    if (residual->flow->rings) residual->flow->rings->is_steady = 1;
     enum status status = equilibrium_allocate(new);
     if (status == STATUS_OK) status = residual_couple(&residual->couplings, state->y);
     if (status != STATUS_OK) {
@@ -125,6 +126,7 @@ enum status equilibrium_create(struct equilibrium **equilibrium, struct residual
 void equilibrium_free(struct equilibrium *e) {
     if (!e) return;
     e->residual->shed_now = SHED_BY_LAW;
+    if (e->residual->flow->rings) e->residual->flow->rings->is_steady = 0;
     e->residual->couplings.reach = e->reach;
     void *const owned[] = {e->unknown,   e->row, e->number, e->row_number, e->scale,
                            e->row_scale, e->one, e->u,      e->value,      e->all};

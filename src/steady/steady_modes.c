@@ -87,7 +87,8 @@ enum status steady_modes_find(struct simulation *simulation, struct steady_value
     const int n_events = count_events(simulation);
     found->n_exponents = 0;
     set_growth(found);
-    if (n_events == 0 || simulation->school->shedding == SHEDDING_IMPULSIVE || !(simulation->school->density > 0)) {
+    if (n_events == 0 || simulation->school->finite || simulation->school->shedding == SHEDDING_IMPULSIVE ||
+        !(simulation->school->density > 0)) {
         return STATUS_OK;
     }
 

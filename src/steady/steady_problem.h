@@ -109,9 +109,9 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
 // a beat. Tested by tests/steady/test_steady_modes.c, test_steady.c and the section "elastic" of `make verify`.
 
 /* Fill the exponents of an equilibrium; the state of the simulation is restored. Hold the bodies while a wake of zero
- * strength is convected downstream, then find the modes with solver/modes.h. No exponents if the state jumps at events
- * (wake.shedding: impulsive), without a stream, or without shedding. Fails with STATUS_MEMORY, STATUS_SOLVER or
- * STATUS_STOPPED. */
+ * strength is convected downstream, then find the modes with solver/modes.h. No exponents with pressure.span: finite,
+ * if the state jumps at events (wake.shedding: impulsive), without a stream, or without shedding. Fails with
+ * STATUS_MEMORY, STATUS_SOLVER or STATUS_STOPPED. */
 enum status steady_modes_find(struct simulation *simulation, struct steady_values *found);
 
 /* Fill the exponents of a beat from the multipliers and the period, s. */

@@ -73,13 +73,6 @@ enum status steady_static_refuse(const struct school *school) {
             "give a fish the frequency of the gust");
     }
 
-    if (school->finite) {
-        return status_fail(
-            STATUS_CASE,
-            "a steady wake of finite span has infinite legs, which the equilibrium does not model: run the "
-            "case in time, or set pressure.span to infinite");
-    }
-
     if (school->removed == REMOVED_DROPPED) {
         return status_fail(STATUS_CASE,
                            "removed circulation is dropped, so a body with lift never stops shedding: set "
@@ -355,6 +348,7 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
     TRY(status);
 
     // evaluate the full case, which the residual of the simulation describes
+    if (simulation->residual->flow->rings) simulation->residual->flow->rings->is_steady = 1;
     TRY(residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch));
     diagnostics_remember(simulation->residual, state);
     diagnostics_after_jump(simulation->residual, state);

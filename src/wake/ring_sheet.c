@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "base/memory.h"
 #include "wake/free_sheet.h"
 
@@ -261,6 +262,42 @@ double ring_sheet_place_nascent(struct ring_sheet *sheet, const struct school *s
     }
 
     return shed - older;
+}
+
+enum status ring_sheet_place_steady(struct ring_sheet *sheet, const struct fish *fish, const double tail[2],
+                                    const double along[2], double shed) {
+    enum { PANELS = 7, NODES = RING_SHEET_STEADY / PANELS };
+    static const double end[PANELS] = {0, 0.25, 0.5, 1, 2, 4, 8};
+    const double depth = fish->strip_depth;
+    struct rings *const rings = &sheet->rings;
+    double node[NODES], weight[NODES];
+    quadrature_legendre(NODES, node, weight);
+    TRY(ring_sheet_reserve(sheet, RING_SHEET_STEADY));
+    sheet->n_released = 0;
+    sheet->n_nascent = RING_SHEET_STEADY;
+    rings->n = 0;
+    TRY(ring_append(rings, RING_SHEET_STEADY));
+
+    // behind the last end, where the legs act like 1/d^3, quadrature in 1/d
+    for (int i = 0; i < RING_SHEET_STEADY; i++) {
+        const int panel = i / NODES, last = panel == PANELS - 1;
+        const double q = node[i % NODES], part = weight[i % NODES];
+        const double first = depth * end[panel], length = last ? first : depth * end[panel + 1] - first;
+        const double distance = last ? first / q : first + q * length;
+
+        sheet->part[i] = part * length / (last ? q * q : 1);
+        rings->x[i] = tail[0] + distance * along[0];
+        rings->y[i] = tail[1] + distance * along[1];
+        rings->dx[i] = -shed * sheet->part[i] * along[0];
+        rings->dy[i] = -shed * sheet->part[i] * along[1];
+        rings->half[i] = depth * depth / 32;
+        rings->leg[i] = ring_sheet_leg(fish, distance);
+    }
+    return STATUS_OK;
+}
+
+double ring_sheet_steady_length(const struct ring_sheet *sheet, int i) {
+    return sheet->part[i];
 }
 
 enum status ring_sheet_markers(struct rings *rings, const struct fish *fish, const struct school *school,

@@ -1,5 +1,6 @@
 /* test_equilibrium.c: bodies at rest in a stream: the total force vanishes, and the stiffness agrees with differences.
  * doc/steady.md, "Without a beat". */
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "school.h"
@@ -145,15 +146,18 @@ static int differences(const struct rig *rig, double matrix[MOST][MOST]) {
     return n;
 }
 
-static void the_stiffness_is_that_of_differences_with_sheets_that_follow(void **state) {
-    (void)state;
-    struct rig rig = rig_of(SCHOOL_DEFAULTS TIME
-                            "fluid: {density: 1, velocity: [1, 0.2], viscosity: 0}\n"
-                            "fish: [{nodes: 4, sheet_points: 9, force: pressure,"
-                            " wave: {amplitude: 0, frequency: 0},"
-                            " body: {profile: uniform, thickness: 0.05, depth: 1,"
-                            " density: 20, modulus: 1e5},"
-                            " start: {heading: 170, speed: 0}, motion: {prescribed: head, speed: 0}}]\n");
+static void stiffness_is_that_of_differences(const char *span, const char *fluid) {
+    char text[1000];
+    snprintf(text, sizeof text,
+             SCHOOL_DEFAULTS TIME
+             "fluid: {density: 1, viscosity: 0, %s}\n"
+             "fish: [{nodes: 4, sheet_points: 9, force: pressure, pressure: {span: %s},"
+             " wave: {amplitude: 0, frequency: 0},"
+             " body: {profile: uniform, thickness: 0.05, depth: 1,"
+             " density: 20, modulus: 1e5},"
+             " start: {heading: 170, speed: 0}, motion: {prescribed: head, speed: 0}}]\n",
+             fluid, span);
+    struct rig rig = rig_of(text);
     struct equilibrium_stiffness stiffness;
     double matrix[MOST][MOST];
     school_ok(equilibrium_solve(rig.equilibrium));
@@ -166,6 +170,15 @@ static void the_stiffness_is_that_of_differences_with_sheets_that_follow(void **
     clear(&rig);
 }
 
+static void the_stiffness_is_that_of_differences_with_sheets_that_follow(void **state) {
+    (void)state;
+    // two dimensions; rings with legs to infinity, and their images in a channel
+    static const char *const spans[][2] = {{"infinite", "velocity: [1, 0.2]"},
+                                           {"finite", "velocity: [1, 0.2]"},
+                                           {"finite", "walls: [-1, 1.5], velocity: [1, 0]"}};
+    for (size_t i = 0; i < sizeof spans / sizeof *spans; i++)
+        stiffness_is_that_of_differences(spans[i][0], spans[i][1]);
+}
 static void nothing_bends_where_the_whole_motion_is_given(void **state) {
     (void)state;
     struct rig rig = rig_of(SCHOOL_DEFAULTS STREAM

@@ -64,6 +64,29 @@ static void a_run_with_damping_comes_to_it(void **state) {
     simulate_free(found.simulation);
 }
 
+// Helmbold's lift at AR 1 is 0.236 of two dimensions; no modes
+static void a_body_of_finite_span_has_legs_to_infinity(void **state) {
+    (void)state;
+    struct answer found;
+    answer(&found, SCHOOL_DEFAULTS TIME
+           "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\n"
+           "fish: [{" BODY
+           ", force: pressure, pressure: {span: finite, suction_limit: 0}, start: {heading: 179, speed: 0},"
+           " motion: {prescribed: all, speed: 0}}]\n");
+    school_ok(found.status);
+    assert_true(found.values.residual < 1e-10);
+    const double angle = 3.14159265358979323846 / 180;
+    NEAR(found.fish[0].lift / (3.14159265358979323846 * angle), 0.236, 0, 0.02);
+
+    // the wake leaves the body along the stream
+    const struct fish_rings *const rings = &found.simulation->residual->flow->rings->fish[0];
+    NEAR(rings->downstream[0], 1, 1e-15, 0);
+    NEAR(rings->downstream[1], 0, 1e-15, 0);
+    school_ok(steady_modes_find(found.simulation, &found.values));
+    assert_int_equal(found.values.n_exponents, 0);
+    simulate_free(found.simulation);
+}
+
 static void forces_are_those_along_and_across_the_stream(void **state) {
     (void)state;
     struct answer found;
@@ -174,6 +197,7 @@ static void where_there_is_none_it_says_how_far_the_stream_can_grow(void **state
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_run_with_damping_comes_to_it),
+        cmocka_unit_test(a_body_of_finite_span_has_legs_to_infinity),
         cmocka_unit_test(forces_are_those_along_and_across_the_stream),
         cmocka_unit_test(it_diverges_where_a_column_does),
         cmocka_unit_test(natural_curvature_is_the_shape_at_rest),
