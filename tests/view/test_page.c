@@ -3,8 +3,10 @@
 #include <sys/stat.h>
 
 #include "crafted_file.h"
+#include "failing_malloc.h"
 #include "result/result_reader.h"
 #include "result_fixture.h"
+#include "study/study_folder.h"
 #include "view/export.h"
 
 // ---- the reader
@@ -168,6 +170,39 @@ static void variables_that_do_not_fit_are_refused(void **state) {
     free(bytes);
 }
 
+static enum status write_page(const struct fixture *f) {
+    unlink(page_of(f));
+    return page_write(f->path, page_of(f), false);
+}
+
+static enum status write_vtk(const struct fixture *f) {
+    char folder[64];
+    snprintf(folder, sizeof folder, "%s/vtk", f->folder);
+    const enum status status = vtk_export(f->path, folder, true, NULL);
+    study_folder_remove(folder);
+    return status;
+}
+
+static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
+    struct fixture *f = *state;
+    enum status (*const write[])(const struct fixture *f) = {write_page, write_vtk};
+    write_file(f, 2);
+    for (int i = 0; i < 2; i++) {
+        enum status status = STATUS_MEMORY;
+        const int before = n_live;
+        int n = 0;
+        for (; status != STATUS_OK && n < 1000; n++) {
+            n_until_failure = n;
+            status = write[i](f);
+            n_until_failure = -1;
+            if (status != STATUS_OK) assert_int_equal(status, STATUS_MEMORY);
+            assert_int_equal(n_live, before);
+        }
+        assert_in_range(n, 30, 999);
+    }
+    unlink(page_of(f));
+}
+
 #define WITH_FILE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
 int main(void) {
@@ -178,6 +213,7 @@ int main(void) {
         WITH_FILE(an_outline_needs_its_edges),
         WITH_FILE(a_page_is_whole_or_not_there),
         WITH_FILE(variables_that_do_not_fit_are_refused),
+        WITH_FILE(every_failing_allocation_is_reported_and_leaves_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
