@@ -71,12 +71,14 @@ void flow_external_acceleration(const struct school *school, double t, double ac
 
 // ---- rings of bodies, and points of wakes
 
-static enum status rings_create(struct flow_rings **rings, const struct school *school, int n_points) {
+static enum status rings_create(struct flow_rings **rings, const struct school *school, int n_points, int n_classes) {
     *rings = NULL;
     struct flow_rings *new;
     TRY(MEMORY_NEW(new, 1, "the rings of fish"));
     *rings = new;
     TRY(MEMORY_NEW(new->fish, school->n_fish, "the rings of fish"));
+    TRY(MEMORY_NEW(new->by_tree, 4 * n_classes * n_classes, "the rings of fish"));
+    TRY(ring_tree_create(&new->tree));
     double **const at_points[] = {&new->div, &new->div_x, &new->div_y, &new->image_div};
     TRY(MEMORY_ARRAYS(at_points, n_points, "the points of the flow"));
     TRY(MEMORY_NEW(new->legs[0], N_LEG_SUMS * n_points, "the points of the flow"));
@@ -115,6 +117,10 @@ static void rings_free(struct flow_rings *rings, int n_fish) {
                              rings->edge_gradient, rings->wake_leg_u, rings->wake_leg_v, rings->wake_leg_div,
                              rings->legs[0]};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    ring_tree_free(rings->tree);
+    ring_free(&rings->many);
+    ring_free(&rings->places);
+    free(rings->by_tree);
     free(rings->fish);
     free(rings->image);
     free(rings);
@@ -363,7 +369,7 @@ static enum status flow_fill(struct flow *flow) {
     }
 
     TRY(velocity_sum_create(&flow->velocity_sum));
-    if (school->finite) return rings_create(&flow->rings, school, flow->n_points);
+    if (school->finite) return rings_create(&flow->rings, school, flow->n_points, flow->n_classes);
     if (school->wake_tolerance <= 0) return STATUS_OK;
     return wake_interpolation_create(&flow->interpolation, school, flow->points, flow->without_own);
 }

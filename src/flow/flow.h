@@ -22,6 +22,7 @@
 #include "fish/fish.h"
 #include "state/state.h"
 #include "vortex/ring.h"
+#include "vortex/ring_tree.h"
 #include "vortex/velocity_sum.h"
 #include "vortex/vortices.h"
 #include "wake/free_sheet.h"
@@ -70,6 +71,12 @@ struct flow_rings {
      * (n_markers) */
     int wake_capacity;
     double *wake_div, *wake_rate, *wake_image_div, *wake_leg_u, *wake_leg_v, *wake_leg_div;
+
+    /* sums of many fish by the tree: sources and targets of one sum; whether the sum of bodies or of wakes of one class
+     * or of the images at another class is by the tree, in this evaluation (2, 2, n_classes, n_classes) */
+    struct ring_tree *tree;
+    struct rings many, places;
+    int *by_tree;
 };
 
 /* Points of one fish that a thread evaluates at once. */

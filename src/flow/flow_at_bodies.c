@@ -263,6 +263,11 @@ static void flow_evaluate(struct flow *flow, int with_gradient) {
 
     vortices_zero(&all);
     if (flow->rings) flow_rings_zero(flow, with_gradient);
+    if (flow->rings && flow_rings_many(flow, threads, with_gradient) != STATUS_OK) {
+        flow_rings_direct(flow);
+        vortices_zero(&all);
+        flow_rings_zero(flow, with_gradient);
+    }
     if (flow->rings && !with_gradient) flow_rings_far(flow);
     if (!flow->rings && flow_sum_many(flow, threads, &all) != STATUS_OK) {
         // out of memory for a tree: use the direct sum

@@ -1,4 +1,4 @@
-/* flow_rings.c: direct sums, fish by fish. */
+/* flow_rings.c: direct sums, fish by fish; the tree for the other fish of large schools. */
 #include "flow/flow_rings.h"
 
 #include <math.h>
@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "flow/flow.h"
 #include "vortex/kernel.h"
+#include "vortex/tolerance.h"
 #include "wake/free_sheet.h"
 
 static const double two_pi = 6.28318530717958647692;
@@ -139,6 +140,142 @@ void flow_rings_far(const struct flow *flow) {
     }
 }
 
+// ---- sums by the tree: all bodies, or all wakes, of one class at the targets of one class
+
+enum { BODIES, WAKES };
+
+static int *by_tree(const struct flow *flow, int kind, int of_images, int targets, int sources) {
+    const int n = flow->n_classes;
+    return &flow->rings->by_tree[((2 * kind + of_images) * n + targets) * n + sources];
+}
+
+// whether the rings of fish g at fish f are in a sum by the tree
+static int is_by_tree(const struct flow *flow, int kind, int of_images, int f, int g) {
+    return *by_tree(flow, kind, of_images, flow->class_of[f], flow->class_of[g]);
+}
+
+void flow_rings_direct(const struct flow *flow) {
+    memset(flow->rings->by_tree, 0, 4 * (size_t)flow->n_classes * (size_t)flow->n_classes * sizeof(int));
+}
+
+// append rings with their span in the strengths
+static enum status append_with_span(struct rings *many, const struct rings *rings, double span) {
+    const int first = many->n;
+    TRY(ring_append(many, rings->n));
+    for (int i = 0; i < rings->n; i++) {
+        many->x[first + i] = rings->x[i];
+        many->y[first + i] = rings->y[i];
+        many->q[first + i] = span * rings->q[i];
+        many->dx[first + i] = span * rings->dx[i];
+        many->dy[first + i] = span * rings->dy[i];
+        many->half[first + i] = rings->half[i];
+        many->leg[first + i] = rings->leg[i];
+    }
+
+    return STATUS_OK;
+}
+
+/* A sum at the targets of one class: which rings of each fish, with the square of the smoothing. Sum i of four has the
+ * kind i / 2, of the images for an odd i. */
+struct many {
+    int kind;
+    int targets, sources; /* classes */
+    double square;
+    int at_markers, of_images;
+};
+
+static const struct rings *many_of(const struct fish_rings *of, const struct many *which) {
+    if (which->kind == BODIES) return which->of_images ? &of->body_image : &of->body;
+    if (which->at_markers) return which->of_images ? &of->markers_image : &of->markers;
+    return which->of_images ? &of->middles_image : &of->wake.middles.rings;
+}
+
+static enum status sum_by_tree(const struct flow *flow, const struct many *which, int threads,
+                               const struct ring_targets *at) {
+    const struct school *const school = flow->school;
+    struct rings *const many = &flow->rings->many;
+    const struct fish *fish = NULL; /* the first fish of the targets: all have one length */
+    many->n = 0;
+    for (int f = school->n_fish - 1; f >= 0; f--) {
+        if (flow->class_of[f] == which->targets) fish = &school->fish[f];
+    }
+    for (int g = 0; g < school->n_fish; g++) {
+        if (flow->class_of[g] != which->sources) continue;
+        const double span = ring_other_pair(&school->fish[g], 0).span;
+        TRY(append_with_span(many, many_of(&flow->rings->fish[g], which), span));
+    }
+
+    const struct ring_pair pair = {.span = 1, .factor = ring_other_pair(fish, 0).factor, .square = which->square};
+    // bodies, wakes and images share the tolerance
+    const int n_sums = school->walls.n > 0 ? 4 : 2;
+    const double unit = fish->length * fish_rate(school, fish);
+    const double tolerance = school->wake_tolerance * unit / (TOLERANCE_RINGS * n_sums);
+    return ring_tree_induce(flow->rings->tree, &pair, many, fish->length, tolerance, threads, at);
+}
+
+// select the sums by the tree
+static void select_by_tree(const struct flow *flow, int at_markers) {
+    const struct school *const school = flow->school;
+    for (int i = 0; i < 4; i++) {
+        const struct many which = {.kind = i / 2, .of_images = i % 2, .at_markers = at_markers};
+        for (int c = 0; c < flow->n_classes; c++) {
+            for (int k = 0; k < flow->n_classes; k++) {
+                // the tree includes the own rings of a fish, which are then subtracted
+                int n_targets = 0, n_sources = 0;
+                double own = 0;
+                for (int f = 0; f < school->n_fish; f++) {
+                    const int n = at_markers ? flow->wake_range[f].n : flow->points[f].n;
+                    const int n_rings = many_of(&flow->rings->fish[f], &which)->n;
+                    n_targets += flow->class_of[f] == c ? n : 0;
+                    n_sources += flow->class_of[f] == k ? n_rings : 0;
+                    if (flow->class_of[f] == c && c == k && !which.of_images) own += (double)n * n_rings;
+                }
+                *by_tree(flow, which.kind, which.of_images, c, k) =
+                    ring_tree_is_faster(n_sources, (double)n_targets * n_sources - 2 * own, school->wake_tolerance);
+            }
+        }
+    }
+}
+
+enum status flow_rings_many(const struct flow *flow, int threads, int with_gradient) {
+    select_by_tree(flow, 0);
+    const struct ring_targets all = ring_body_targets(flow, with_gradient);
+    for (int c = 0; c < flow->n_classes; c++) {
+        struct ring_targets at = ring_targets_part(&all, flow->class[c].points);
+        struct rings *const places = &flow->rings->places;
+        places->n = 0;
+        TRY(ring_append(places, at.n));
+        for (int f = 0; f < flow->school->n_fish; f++) {
+            if (flow->class_of[f] != c) continue;
+            memcpy(places->half + flow->points[f].first - flow->class[c].points.first, flow->school->fish[f].point_half,
+                   (size_t)flow->points[f].n * sizeof(double));
+        }
+        at.half = places->half;
+
+        for (int k = 0; k < flow->n_classes; k++) {
+            const struct flow_class *const class = &flow->class[k];
+            const double squares[] = {mean_square(flow->class[c].sheet_smoothing, class->sheet_smoothing),
+                                      class->smoothing * class->smoothing};
+            for (int i = 0; i < 4; i++) {
+                const struct many which = {
+                    .kind = i / 2, .of_images = i % 2, .targets = c, .sources = k, .square = squares[i / 2]};
+                if (*by_tree(flow, which.kind, which.of_images, c, k)) TRY(sum_by_tree(flow, &which, threads, &at));
+            }
+        }
+    }
+
+    return STATUS_OK;
+}
+
+// Add the rings of another fish that are not in the sum by the tree; subtract the rings of the own fish from this sum.
+static void induce_other(const struct ring_pair *pair, const struct rings *rings, int is_own, int is_in_tree,
+                         const struct ring_targets *at) {
+    if (is_own != is_in_tree) return;
+    struct ring_pair with = *pair;
+    if (is_own) with.span = -with.span;
+    induce(&with, rings, at);
+}
+
 // other fish, and all images
 static void induce_others(const struct flow *flow, int f, const struct ring_targets *at) {
     const struct school *const school = flow->school;
@@ -149,12 +286,12 @@ static void induce_others(const struct flow *flow, int f, const struct ring_targ
         const struct ring_pair of_body = ring_other_pair(other, sheets);
         const struct ring_pair of_wake = ring_other_pair(other, other->smoothing * other->smoothing);
 
-        if (g != f) induce(&of_body, &of->body, at);
-        if (g != f) induce(&of_wake, &of->wake.middles.rings, at);
+        induce_other(&of_body, &of->body, g == f, is_by_tree(flow, BODIES, 0, f, g), at);
+        induce_other(&of_wake, &of->wake.middles.rings, g == f, is_by_tree(flow, WAKES, 0, f, g), at);
 
         if (school->walls.n == 0) continue;
-        induce(&of_body, &of->body_image, at);
-        induce(&of_wake, &of->middles_image, at);
+        induce_other(&of_body, &of->body_image, 0, is_by_tree(flow, BODIES, 1, f, g), at);
+        induce_other(&of_wake, &of->middles_image, 0, is_by_tree(flow, WAKES, 1, f, g), at);
     }
 }
 
@@ -367,9 +504,11 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
             const struct fish_rings *const of = &rings->fish[g];
             const struct ring_pair of_body = ring_other_pair(other, fish->smoothing * fish->smoothing);
             const struct ring_pair of_wake = ring_other_pair(other, mean_square(fish->smoothing, other->smoothing));
-            if (pass == 0 && g == f) continue;
-            induce(&of_body, pass == 0 ? &of->body : &of->body_image, &image);
-            induce(&of_wake, pass == 0 ? &of->markers : &of->markers_image, &image);
+            const int is_own = pass == 0 && g == f;
+            induce_other(&of_body, pass == 0 ? &of->body : &of->body_image, is_own,
+                         is_by_tree(flow, BODIES, pass, f, g), &image);
+            induce_other(&of_wake, pass == 0 ? &of->markers : &of->markers_image, is_own,
+                         is_by_tree(flow, WAKES, pass, f, g), &image);
         }
 
         for (int i = 0; i < which.n && pass == 1; i++) {
@@ -378,10 +517,62 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
             at.div[i] += image.div[i];
         }
     }
+}
 
-    // [p] = 0 on the wake
-    const double *const label = state->wake[f].circulation + which.first;
-    for (int i = 0; i < which.n; i++) rings->wake_rate[first + i] = -label[i] * at.div[i];
+// add the sums by the tree; markers of one class are not consecutive
+static enum status add_many_at_markers(const struct flow *flow, int threads, const struct many *which) {
+    const struct flow_rings *const rings = flow->rings;
+    struct rings *const places = &flow->rings->places;
+    const int n_fish = flow->school->n_fish;
+    places->n = 0;
+    for (int f = 0; f < n_fish; f++) {
+        if (flow->class_of[f] == which->targets) TRY(append_with_span(places, &rings->fish[f].markers, 0));
+    }
+
+    // the sums replace the strengths
+    const struct ring_targets at = {.n = places->n,
+                                    .x = places->x,
+                                    .y = places->y,
+                                    .half = places->half,
+                                    .leg = places->leg,
+                                    .u = places->q,
+                                    .v = places->dx,
+                                    .div = places->dy};
+    TRY(sum_by_tree(flow, which, threads, &at));
+    for (int f = 0, p = 0; f < n_fish; f++) {
+        if (flow->class_of[f] != which->targets) continue;
+        for (int i = flow->wake_range[f].first; i < flow->wake_range[f].first + flow->wake_range[f].n; i++, p++) {
+            flow->wake_u[i] += at.u[p];
+            flow->wake_v[i] += at.v[p];
+            rings->wake_div[i] += at.div[p];
+            if (!which->of_images) continue;
+            flow->wake_image_u[i] += at.u[p];
+            flow->wake_image_v[i] += at.v[p];
+            rings->wake_image_div[i] += at.div[p];
+        }
+    }
+
+    return STATUS_OK;
+}
+
+static enum status flow_rings_many_at_markers(const struct flow *flow, int threads) {
+    for (int c = 0; c < flow->n_classes; c++) {
+        for (int k = 0; k < flow->n_classes; k++) {
+            const double own = flow->class[c].smoothing;
+            const double squares[] = {own * own, mean_square(own, flow->class[k].smoothing)};
+            for (int i = 0; i < 4; i++) {
+                const struct many which = {.kind = i / 2,
+                                           .of_images = i % 2,
+                                           .targets = c,
+                                           .sources = k,
+                                           .square = squares[i / 2],
+                                           .at_markers = 1};
+                if (*by_tree(flow, which.kind, which.of_images, c, k)) TRY(add_many_at_markers(flow, threads, &which));
+            }
+        }
+    }
+
+    return STATUS_OK;
 }
 
 enum status flow_rings_at_markers(struct flow *flow, const struct state *state) {
@@ -392,6 +583,7 @@ enum status flow_rings_at_markers(struct flow *flow, const struct state *state) 
     for (int f = 0; f < school->n_fish; f++) n_chunks += (flow->wake_range[f].n + MARKERS - 1) / MARKERS;
     const double work = 6.0 * flow->n_markers * flow->n_markers * (1 + flow->rings->n_images);
     const int threads = parallel_threads(school->threads, n_chunks, work, PARALLEL_INTERACTIONS);
+    select_by_tree(flow, 1);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         if (flow->wake_range[f].n > 0) induce_own_markers(flow, f);
@@ -407,6 +599,17 @@ enum status flow_rings_at_markers(struct flow *flow, const struct state *state) 
 
         const int first = (chunk - before) * MARKERS, left = flow->wake_range[f].n - first;
         induce_at_markers(flow, state, f, (struct range){first, left < MARKERS ? left : MARKERS});
+    }
+
+    TRY(flow_rings_many_at_markers(flow, threads));
+
+    // [p] = 0 on the wake
+    for (int f = 0; f < school->n_fish; f++) {
+        const int first = flow->wake_range[f].first;
+        const double *const label = state->wake[f].circulation;
+        for (int i = 0; i < flow->wake_range[f].n; i++) {
+            flow->rings->wake_rate[first + i] = -label[i] * flow->rings->wake_div[first + i];
+        }
     }
 
     return STATUS_OK;

@@ -21,6 +21,12 @@ void flow_rings_zero(const struct flow *flow, int with_gradient);
  * STATUS_MEMORY. */
 enum status flow_rings_at_markers(struct flow *flow, const struct state *state);
 
+/* Select the sums of other fish and of images at all points that are by the tree, and add these sums, which
+ * flow_rings_at_chunk omits. Fails with STATUS_MEMORY: the sums are then incomplete. flow_rings_direct selects no sum.
+ */
+enum status flow_rings_many(const struct flow *flow, int threads, int with_gradient);
+void flow_rings_direct(const struct flow *flow);
+
 /* Add the far part of the own wakes to the velocity and div u at the points; flow_rings_at_chunk without gradients
  * omits this part. */
 void flow_rings_far(const struct flow *flow);

@@ -13,12 +13,15 @@
  * (vortex/treecode.c), half of the relative tolerance bounds the truncated harmonic terms, half the truncated mixed
  * terms.
  *
+ * Vortex rings are not interpolated in time: a fast sum (vortex/ring_tree.c) takes half of wake.tolerance.
+ *
  * Each constant is a divisor: part = tolerance / constant. */
 #ifndef TOLERANCE_H
 #define TOLERANCE_H
 
 enum {
     TOLERANCE_SUM = 10,    /* fast sum over many vortices or images */
+    TOLERANCE_RINGS = 2,   /* fast sum over many vortex rings, in lengths per beat */
     TOLERANCE_TERMS = 2,   /* of a fast sum: truncated terms of one kind, harmonic or mixed */
     TOLERANCE_DRIFT = 2,   /* drift from the predicted path */
     TOLERANCE_WAKES = 8,   /* whole wakes in the far field */

@@ -5,6 +5,7 @@
  * phases CASES --schools schools of 1 to 1024 fish with full wakes: time and memory per event, on one thread and on
  *       two in turn
  * phases CASES --schools THREADS N... the same for other schools and more threads
+ * phases CASES --finite-schools ... the same with `pressure.span: finite`
  *
  * Schools take turns, event by event, and the ratios use the least times, because other processes slow some events, on
  * one core or both, but hardly all events.
@@ -215,13 +216,14 @@ static void whole_run(const char *cases, const char *name, int threads) {
 // ---- schools
 
 // rows a length apart, fish in a row three lengths, every second row shifted and in antiphase
-static char *school_text(int n_fish) {
+static char *school_text(int n_fish, int is_finite) {
     const size_t size = 512 + 128 * (size_t)n_fish;
     char *const text = malloc(size);
     if (!text) abort();
     int used = snprintf(text, size,
                         "format: 1\nname: school\ntime: {end: 3, shedding_interval: 0.01, output_interval: 1}\n"
-                        "defaults: {fish: {control: {law: heading}}}\nfish:\n");
+                        "defaults: {fish: {control: {law: heading}%s}}\nfish:\n",
+                        is_finite ? ", force: pressure, pressure: {span: finite}" : "");
     const int columns = (int)ceil(sqrt(n_fish));
     for (int f = 0; f < n_fish; f++) {
         const int row = f / columns, odd = row % 2;
@@ -244,9 +246,9 @@ struct school_run {
 };
 
 // bring a school to wakes of a whole lifetime
-static void school_begin(struct school_run *run, int n_fish, int threads) {
+static void school_begin(struct school_run *run, int n_fish, int is_finite, int threads) {
     const double before = memory();
-    char *const text = school_text(n_fish);
+    char *const text = school_text(n_fish, is_finite);
     read_case(&run->values, text, threads);
     free(text);
     must(simulate_create(&run->simulation, &run->values));
@@ -297,10 +299,10 @@ static void school_end(struct school_run *run, int n_fish, int threads) {
     case_free(&run->values);
 }
 
-static void schools(int threads, int n, const int *n_fish) {
+static void schools(int threads, int n, const int *n_fish, int is_finite) {
     struct school_run *const run = calloc((size_t)n, sizeof *run);
     if (!run) abort();
-    for (int i = 0; i < n; i++) school_begin(&run[i], n_fish[i], threads);
+    for (int i = 0; i < n; i++) school_begin(&run[i], n_fish[i], is_finite, threads);
     for (int event = 0; event < EVENTS; event++) {
         for (int i = 0; i < n; i++) {
             for (int all = 0; all < 2; all++) school_event(&run[i], all, threads, event);
@@ -322,8 +324,9 @@ static void schools(int threads, int n, const int *n_fish) {
 int main(int argc, char **argv) {
     enum { MOST = 16 };
     int n_fish[MOST] = {1, 4, 16, 64, 256, 1024}, n = 6, threads = 2;
-    if (argc < 2 || argc == 4 || argc > 4 + MOST || (argc > 2 && strcmp(argv[2], "--schools") != 0)) {
-        fputs("usage: phases CASES [--schools [THREADS N...]]\n", stderr);
+    const int is_finite = argc > 2 && strcmp(argv[2], "--finite-schools") == 0;
+    if (argc < 2 || argc == 4 || argc > 4 + MOST || (argc > 2 && !is_finite && strcmp(argv[2], "--schools") != 0)) {
+        fputs("usage: phases CASES [--schools|--finite-schools [THREADS N...]]\n", stderr);
         return 2;
     }
     if (argc > 4) {
@@ -333,7 +336,7 @@ int main(int argc, char **argv) {
     }
     print_head();
     if (argc > 2) {
-        schools(threads, n, n_fish);
+        schools(threads, n, n_fish, is_finite);
         return 0;
     }
     const char *const names[] = {"single_free", "diamond"};

@@ -469,6 +469,95 @@ static void the_far_wake_is_interpolated_along_the_body(void **state) {
     assert_int_equal(n_far, 0);
 }
 
+// ---- large schools
+
+// five fish beside a wall, one of them shorter, with wavy wakes of n markers
+static void build_large(struct setup *setup, const char *tolerance, int n) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             SCHOOL_DEFAULTS
+             "time: {end: 1, shedding_interval: 0.02}\nwake: {tolerance: %s}\nfluid: {walls: [-1.5]}\n"
+             "contact: {action: warn}\n"
+             "defaults: {fish: {nodes: 25, sheet_points: 199, force: pressure, pressure: {span: finite}}}\n"
+             "fish:\n"
+             "  - {start: {position: [0, 0]}}\n  - {start: {position: [0.5, 1]}}\n  - {start: {position: [0, 2]}}\n"
+             "  - {start: {position: [0.5, 3]}}\n  - {length: 0.8, start: {position: [0, -0.9]}}\n",
+             tolerance);
+    school_build(setup, text);
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const struct fish *const fish = &setup->school->fish[f];
+        const double *const y = setup->state->y;
+        const double tail[2] = {y[fish->at.x + fish->n_edges], y[fish->at.y + fish->n_edges]};
+        for (int i = n - 1; i >= 0; i--) {
+            const double behind = 6.0 * i / n, phase = 6 * behind + f;
+            school_ok(wake_release(&setup->state->wake[f], tail[0] + behind, tail[1] + 0.1 * sin(phase),
+                                   0.02 * cos(phase), 0));
+        }
+        setup->state->y[fish->at.circulation] = 0.02;
+    }
+}
+
+static double largest_difference(int n, const double *one, const double *other) {
+    double most = 0;
+    for (int i = 0; i < n; i++) {
+        const double difference = fabs(one[i] - other[i]);
+        if (!(difference <= most)) most = difference;
+    }
+    return most;
+}
+
+// velocity and div u in lengths (1 m) per beat (1 s); the tolerance is 1e-7
+static void large_schools_are_summed_by_the_tree_to_half_the_tolerance(void **state) {
+    (void)state;
+    struct setup exact, fast;
+    build_large(&exact, "0", 6000);
+    build_large(&fast, "1e-7", 6000);
+    const struct flow *const a = exact.residual->flow, *const b = fast.residual->flow;
+    const struct flow_rings *const of_a = a->rings, *const of_b = b->rings;
+    school_ok(flow_gradient(exact.residual->flow, exact.state, exact.t, exact.state->y));
+    school_ok(flow_gradient(fast.residual->flow, fast.state, fast.t, fast.state->y));
+    assert_true(ring_tree_interactions(of_b->tree) > 0 && ring_tree_interactions(of_a->tree) <= 0);
+    const double *const values[][2] = {{a->u, b->u}, {a->v, b->v}, {of_a->div, of_b->div}};
+    for (int i = 0; i < 3; i++) assert_true(largest_difference(a->n_points, values[i][0], values[i][1]) < 5e-8);
+    // gradients serve Newton's iteration; the smallest box of a target is 0.04 lengths wide
+    const double *const gradients[][2] = {
+        {a->u_x, b->u_x}, {a->u_y, b->u_y}, {a->v_x, b->v_x}, {of_a->div_x, of_b->div_x}, {of_a->div_y, of_b->div_y}};
+    for (int i = 0; i < 5; i++) assert_true(largest_difference(a->n_points, gradients[i][0], gradients[i][1]) < 1e-5);
+    school_clear(&exact);
+    school_clear(&fast);
+
+    build_large(&exact, "0", 1200);
+    build_large(&fast, "1e-7", 1200);
+    school_ok(flow_at_wake(exact.residual->flow, exact.state));
+    school_ok(flow_at_wake(fast.residual->flow, fast.state));
+    const struct flow *const c = exact.residual->flow, *const d = fast.residual->flow;
+    assert_true(ring_tree_interactions(d->rings->tree) > 0);
+    const double *const at_markers[][2] = {{c->wake_u, d->wake_u},
+                                           {c->wake_v, d->wake_v},
+                                           {c->wake_image_u, d->wake_image_u},
+                                           {c->wake_image_v, d->wake_image_v},
+                                           {c->rings->wake_div, d->rings->wake_div},
+                                           {c->rings->wake_image_div, d->rings->wake_image_div},
+                                           {c->rings->wake_rate, d->rings->wake_rate}};
+    for (int i = 0; i < 7; i++) {
+        assert_true(largest_difference(c->n_markers, at_markers[i][0], at_markers[i][1]) < 5e-8);
+    }
+
+    // the bits do not depend on the number of threads
+    struct setup threads;
+    build_large(&threads, "1e-7", 1200);
+    const int n_threads = threads.school->threads;
+    threads.school->threads = 3;
+    school_ok(flow_at_wake(threads.residual->flow, threads.state));
+    threads.school->threads = n_threads;
+    assert_memory_equal(threads.residual->flow->wake_u, d->wake_u, (size_t)d->n_markers * sizeof(double));
+    assert_memory_equal(threads.residual->flow->rings->wake_rate, d->rings->wake_rate,
+                        (size_t)d->n_markers * sizeof(double));
+    school_clear(&threads);
+    school_clear(&exact);
+    school_clear(&fast);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_of_others_feel_bodies_wakes_and_images_with_twice_the_span),
@@ -476,6 +565,7 @@ int main(void) {
         cmocka_unit_test(the_newborn_marker_feels_its_body_behind_the_tail),
         cmocka_unit_test(markers_feel_all_bodies_all_markers_and_all_images),
         cmocka_unit_test(the_far_wake_is_interpolated_along_the_body),
+        cmocka_unit_test(large_schools_are_summed_by_the_tree_to_half_the_tolerance),
         cmocka_unit_test(legs_of_graded_points_begin_at_the_tail),
         cmocka_unit_test(markers_are_stretched_and_a_wall_lets_nothing_through),
     };
