@@ -218,6 +218,18 @@ static void rings_find_downstream(const struct school *school, const struct fish
     along[1] = speed > 0 ? y / speed : 0;
 }
 
+// the distance from the tail of a fish within which all other fish are
+static double rings_steady_reach(const struct school *school, const struct fish *fish) {
+    double reach = 0;
+    for (int g = 0; g < school->n_fish; g++) {
+        const struct fish *const other = &school->fish[g];
+        const double x = other->start_position[0] - fish->start_position[0];
+        const double y = other->start_position[1] - fish->start_position[1];
+        reach = fmax(reach, hypot(x, y) + fish->length + 2 * other->length);
+    }
+    return reach;
+}
+
 // Place body, nascent stretch and images of fish f tau after the event for the unknowns y; ring_body: x, y of control
 // points and of bound vortices, and circulations of bound vortices. *nascent: circulation of the nascent stretch. Fails
 // with STATUS_MEMORY.
@@ -235,8 +247,9 @@ static enum status rings_place(struct flow_rings *rings, const struct school *sc
     }
     if (rings->is_steady) {
         rings_find_downstream(school, fish, state->t + tau, of->downstream);
-        TRY(ring_sheet_place_steady(&of->wake.graded, fish, tail, of->downstream, shed));
-        TRY(ring_sheet_place_steady(&of->wake.middles, fish, tail, of->downstream, shed));
+        const double reach = rings_steady_reach(school, fish);
+        TRY(ring_sheet_place_steady(&of->wake.graded, fish, tail, of->downstream, shed, 0));
+        TRY(ring_sheet_place_steady(&of->wake.middles, fish, tail, of->downstream, shed, reach));
         *nascent = 0;
     } else {
         ring_sheet_place_nascent(&of->wake.graded, school, wake, state->t, tau, tail, shed);

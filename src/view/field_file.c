@@ -137,6 +137,11 @@ static enum status make_points(struct field *field, const struct field_grid *gri
 static enum status sum_field(struct field *field) {
     struct flow *flow;
     TRY(flow_create(&flow, field->row->school));
+
+    // without markers all circulation was shed infinitely long ago
+    int n_markers = 0;
+    for (int f = 0; f < field->row->school->n_fish; f++) n_markers += field->row->state->wake[f].n_vortex;
+    if (flow->rings) flow->rings->is_steady = n_markers == 0;
     const enum status status = flow_field(flow, field->row->state, &field->at);
     flow_free(flow);
     for (int i = 0; i < field->at.n; i++) field->vorticity[i] = field->at.v_x[i] - field->at.u_y[i];

@@ -264,28 +264,33 @@ double ring_sheet_place_nascent(struct ring_sheet *sheet, const struct school *s
     return shed - older;
 }
 
+// ends of the panels of a steady wake, in depths: 0, 1/4, 1/2, 1, 2, 3, ..
+static double steady_end(int panel) {
+    return panel < 3 ? panel / 4.0 : panel - 2;
+}
+
 enum status ring_sheet_place_steady(struct ring_sheet *sheet, const struct fish *fish, const double tail[2],
-                                    const double along[2], double shed) {
-    enum { PANELS = 7, NODES = RING_SHEET_STEADY / PANELS };
-    static const double end[PANELS] = {0, 0.25, 0.5, 1, 2, 4, 8};
+                                    const double along[2], double shed, double reach) {
+    enum { NODES = 8, LEAST = 30 };
     const double depth = fish->strip_depth;
+    const int n_panels = (int)fmax(LEAST, ceil(reach / depth)) + 2, n = (n_panels + 1) * NODES;
     struct rings *const rings = &sheet->rings;
     double node[NODES], weight[NODES];
     quadrature_legendre(NODES, node, weight);
-    TRY(ring_sheet_reserve(sheet, RING_SHEET_STEADY));
+    TRY(ring_sheet_reserve(sheet, n));
     sheet->n_released = 0;
-    sheet->n_nascent = RING_SHEET_STEADY;
+    sheet->n_nascent = n;
     rings->n = 0;
-    TRY(ring_append(rings, RING_SHEET_STEADY));
+    TRY(ring_append(rings, n));
 
     // behind the last end, where the legs act like 1/d^3, quadrature in 1/d
-    for (int i = 0; i < RING_SHEET_STEADY; i++) {
-        const int panel = i / NODES, last = panel == PANELS - 1;
-        const double q = node[i % NODES], part = weight[i % NODES];
-        const double first = depth * end[panel], length = last ? first : depth * end[panel + 1] - first;
-        const double distance = last ? first / q : first + q * length;
+    for (int i = 0; i < n; i++) {
+        const int panel = i / NODES, is_last = panel == n_panels;
+        const double q = node[i % NODES], part = weight[i % NODES], first = depth * steady_end(panel);
+        const double length = is_last ? first : depth * steady_end(panel + 1) - first;
+        const double distance = is_last ? first / q : first + q * length;
 
-        sheet->part[i] = part * length / (last ? q * q : 1);
+        sheet->part[i] = part * length / (is_last ? q * q : 1);
         rings->x[i] = tail[0] + distance * along[0];
         rings->y[i] = tail[1] + distance * along[1];
         rings->dx[i] = -shed * sheet->part[i] * along[0];

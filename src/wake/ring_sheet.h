@@ -47,11 +47,10 @@ double ring_sheet_xi(const struct ring_sheet *sheet, int i);
 double ring_sheet_part(const struct ring_sheet *sheet, int i);
 
 /* The wake of an equilibrium (doc/steady.md): two legs of circulation `shed` from the tail to infinity along the unit
- * vector `along`, as RING_SHEET_STEADY nascent points in place of all points. Fails with STATUS_MEMORY.
- * ring_sheet_steady_length: length of the legs of point i, m. */
-enum { RING_SHEET_STEADY = 56 };
+ * vector `along`, as nascent points in place of all points; targets beside the legs are valid up to the distance reach
+ * from the tail, m. Fails with STATUS_MEMORY. ring_sheet_steady_length: length of the legs of point i, m. */
 enum status ring_sheet_place_steady(struct ring_sheet *sheet, const struct fish *fish, const double tail[2],
-                                    const double along[2], double shed);
+                                    const double along[2], double shed, double reach);
 double ring_sheet_steady_length(const struct ring_sheet *sheet, int i);
 
 /* Append the markers as sources at markers, at the event at time t, to rings; nascent: circulation of the nascent

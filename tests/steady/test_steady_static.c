@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fish/fish_motion.h"
+#include "flow/flow_at_bodies.h"
 #include "school.h"
 #include "steady/steady_problem.h"
 
@@ -82,6 +83,20 @@ static void a_body_of_finite_span_has_legs_to_infinity(void **state) {
     const struct fish_rings *const rings = &found.simulation->residual->flow->rings->fish[0];
     NEAR(rings->downstream[0], 1, 1e-15, 0);
     NEAR(rings->downstream[1], 0, 1e-15, 0);
+
+    // far behind, s = w^2/8, B = w^2/8 at a point of the fluid: two lines of the circulation C w/2, at T = w^2/4
+    const struct fish *const fish = &found.simulation->school->fish[0];
+    const double *const y = found.simulation->state->y;
+    const double expected = -y[fish->at.circulation] * 0.5 / (2 * 3.14159265358979323846) * 2 / 0.25;
+    double at[2][4], u[4] = {0}, v[4] = {0}, u_x[4], u_y[4], v_x[4];
+    for (int i = 0; i < 4; i++) {
+        at[0][i] = y[fish->at.x + fish->n_nodes - 1] + 15 + 1.3 * i;
+        at[1][i] = y[fish->at.y + fish->n_nodes - 1];
+    }
+    school_ok(flow_field(found.simulation->residual->flow, found.simulation->state,
+                         &(struct induced){4, at[0], at[1], u, v, u_x, u_y, v_x}));
+    for (int i = 0; i < 4; i++) NEAR(v[i], expected, 0, 5e-3);
+
     school_ok(steady_modes_find(found.simulation, &found.values));
     assert_int_equal(found.values.n_exponents, 0);
     simulate_free(found.simulation);
