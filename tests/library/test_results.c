@@ -1,4 +1,4 @@
-/* test_results.c: every variable of fourteen short runs and three steady states, in which all terms of the model act at
+/* test_results.c: every variable of fifteen short runs and three steady states, in which all terms of the model act at
  * once, against the values of tests/data/results.tsv. Independent tests verify the terms; this test notices every
  * change of a result, which CHANGES.md promises to state. After an intended change:
  *
@@ -107,6 +107,11 @@ static const struct run {
      "fish: [{" FISH ", start: {speed: 0.8}, body: {modulus: 1e5, density: 1200}, added_mass: {extent: thickness}},\n"
      "    {" FISH ", body: {modulus: 1e5}, motion: {prescribed: head, surge: free, heave: 0.05, frequency: 4},\n"
      "     start: {position: [0.2, 0.7], speed: 0.5}}]\n"},
+    {"explicit_pressure",
+     "format: 1\ntime: {end: 0.1, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\n" STREAM
+     "wake: {lifetime: 0.1}\n"
+     "fish: [{" FISH ", force: pressure, body: {modulus: 1e5}, load: {tip: [1, 2]},\n"
+     "     motion: {prescribed: head, heave: 0.05, pitch: 10, frequency: 4}}]\n"},
     {"changed", TIME STREAM "wake: {lifetime: 0.25, decay: 0.1, spare_vortices: 9}\n"
                             "fish: [{" FISH ", start: {heading: 170, speed: 0.8}},\n"
                             "    {" FISH ", force: pressure, start: {position: [0.2, 0.7], speed: 0.6}}]\n"},

@@ -179,6 +179,11 @@ static void what_can_have_no_equilibrium_is_refused_with_the_reason(void **state
     refused(SCHOOL_DEFAULTS TIME "fish: [{" HEAD "}, {" BODY
                                  ", start: {position: [3, 0]}, motion: {prescribed: head, speed: 1}}]\n",
             "move at different velocities");
+    // along x at the same speed
+    refused(SCHOOL_DEFAULTS TIME "fish: [{" BODY
+                                 ", start: {heading: 170}, motion: {prescribed: head, speed: 1}},\n    {" BODY
+                                 ", start: {position: [3, 0], heading: 190}, motion: {prescribed: head, speed: 1}}]\n",
+            "move at different velocities");
     refused(SCHOOL_DEFAULTS TIME "fluid: {gust: {amplitude: 0.1, frequency: 1}}\nfish: [{" HEAD "}]\n", "gust");
     refused(SCHOOL_DEFAULTS TIME
             "fluid: {shear: 0.1}\n"
