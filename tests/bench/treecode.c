@@ -15,6 +15,7 @@
 #include <time.h>
 
 #include "vortex/kernel.h"
+#include "vortex/ring_tree.h"
 
 enum { REPEAT = 7, SAMPLE = 2048 };
 
@@ -201,6 +202,52 @@ static void print_table(const char *title, const int *n, int n_rows, double smoo
     }
 }
 
+/* Rings of wakes on themselves: depth 0.25, e = 0.05, the tolerance of the default case. */
+static void print_rings(void) {
+    static const int n[] = {1200, 2400, 4800, 19200, 76800};
+    printf(
+        "\nRings on rings, tolerance 2.5e-8\n\n| n | direct | tree | ratio | interactions / direct "
+        "|\n|---|---|---|---|---|\n");
+    struct ring_tree *tree;
+    if (ring_tree_create(&tree) != STATUS_OK) die(status_message());
+    for (size_t i = 0; i < sizeof n / sizeof *n; i++) {
+        struct rings rings = {0};
+        double *const circulation = doubles(n[i]), *const u = doubles(n[i]), *const v = doubles(n[i]);
+        double *const div = doubles(n[i]);
+        const struct points from = wakes(n[i], circulation);
+        if (ring_append(&rings, n[i]) != STATUS_OK) die(status_message());
+        for (int k = 0; k < n[i]; k++) {
+            rings.x[k] = from.x[k];
+            rings.y[k] = from.y[k];
+            rings.q[k] = 0.05 * circulation[k];
+            rings.dx[k] = 0.01 * circulation[k];
+            rings.half[k] = 0.25 * 0.25 / 32;
+            rings.leg[k] = 0.25 * 0.25 / 8 * fmin(1, 0.01 * (k % 300));
+        }
+
+        const struct ring_pair pair = {.span = 0.125, .factor = 4, .square = 0.0025};
+        const struct ring_targets at = {
+            .n = n[i], .x = rings.x, .y = rings.y, .half = rings.half, .leg = rings.leg, .u = u, .v = v, .div = div};
+        const struct ring_targets sample = ring_targets_part(&at, (struct range){0, n[i] < 4800 ? n[i] : 2400});
+        double by_sum = INFINITY, by_tree = INFINITY;
+        for (int r = 0; r < REPEAT; r++) {
+            const double t0 = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
+            ring_induce(&pair, &rings, (struct range){0, rings.n}, &sample);
+            const double t1 = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
+            if (ring_tree_induce(tree, &pair, &rings, 1, 2.5e-8, 1, &at) != STATUS_OK) die(status_message());
+            const double t2 = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
+            by_sum = fmin(by_sum, (t1 - t0) * n[i] / sample.n);
+            by_tree = fmin(by_tree, t2 - t1);
+        }
+
+        printf("| %d | %.2f | %.2f | %.1f | %.3f |\n", n[i], by_sum, by_tree, by_sum / by_tree,
+               ring_tree_interactions(tree) / n[i] / n[i]);
+        ring_free(&rings);
+        free(circulation), free(u), free(v), free(div), free(from.x), free(from.y);
+    }
+    ring_tree_free(tree);
+}
+
 int main(void) {
     const int n[] = {1000, 2000, 3000, 4000, 8000, 16384, 32768, 65536}, n_rows = sizeof n / sizeof *n,
               many[] = {32768};
@@ -211,5 +258,6 @@ int main(void) {
     print_table("Tolerance 1e-6", many, 1, 0.2, 1e-6, 0, 2);
     print_table("Tolerance 1e-10", many, 1, 0.2, 1e-10, 0, 2);
     print_table("Tolerance 1e-12", many, 1, 0.2, 1e-12, 0, 2);
+    print_rings();
     return 0;
 }
