@@ -289,21 +289,21 @@ def coverage_cases():
         yield "reactive fish", STEADY, "[nodes]", text(25, 69, body)
     for body in ("body: {profile: uniform, modulus: 1e6}", "body: {modulus: 1e7}", "body: {}",
                  "wave: {frequency: 2}, body: {depth: 0.5, modulus: 5e6}"):
-        yield "fish with pressure", STEADY, "[nodes]", text(13, 69, f"force: pressure, {body}")
-        yield "fish with pressure", STEADY, OTHERS, text(13, 33, f"force: pressure, {body}")
+        yield "fish with pressure", STEADY, "[nodes]", text(13, 69, f"force: pressure, pressure: {{span: infinite}}, {body}")
+        yield "fish with pressure", STEADY, OTHERS, text(13, 33, f"force: pressure, pressure: {{span: infinite}}, {body}")
     stream = "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\n"
     for heading, modulus in ((170, 2e5), (160, 4e5), (176, 8e5), (172, 1.5e5), (165, 6e5), (178, 1.2e5), (150, 1e6), (174, 3e5)):
-        body = (f"force: pressure, start: {{heading: {heading}, speed: 0}}, {STILL}, motion: {{prescribed: head}}, "
+        body = (f"force: pressure, pressure: {{span: infinite}}, start: {{heading: {heading}, speed: 0}}, {STILL}, motion: {{prescribed: head}}, "
                 f"body: {{profile: uniform, thickness: 0.05, depth: 1, density: 25.465, modulus: {modulus:g}}}")
         yield "foil", ["steady_lift", "steady_deflection"], "[nodes]", text(13, 69, body, more=stream)
         yield "foil", ["steady_lift", "steady_deflection"], "[sheet_points]", text(13, 33, body, more=stream)
-    body = (f"force: pressure, start: {{speed: 1}}, {STILL}, motion: {{prescribed: head, heave: 0.05, frequency: 0.5}}, "
+    body = (f"force: pressure, pressure: {{span: infinite}}, start: {{speed: 1}}, {STILL}, motion: {{prescribed: head, heave: 0.05, frequency: 0.5}}, "
             "body: {profile: uniform, thickness: 0.05, depth: 1, density: 25.465, modulus: 814873, relaxation_time: 0.001}")
     for nodes, sheet, keys in ((13, 69, "[nodes]"), (13, 33, OTHERS)):
         yield ("foil", ["steady_thrust", "steady_fluid_power"], keys,
                text(nodes, sheet, body, more="fluid: {density: 1, viscosity: 0}\n"))
     for heave, frequency in ((0.175, 1), (0.05, 2)):
-        body = (f"force: pressure, start: {{speed: 1.25}}, {STILL}, body: {{profile: uniform, thickness: 0.12, depth: 1}}, "
+        body = (f"force: pressure, pressure: {{span: infinite}}, start: {{speed: 1.25}}, {STILL}, body: {{profile: uniform, thickness: 0.12, depth: 1}}, "
                 f"motion: {{prescribed: all, heave: {heave}, frequency: {frequency}}}")
         yield "foil", HEAVE, OTHERS, text(13, 33, body, end=3 / frequency, more="fluid: {density: 1, viscosity: 1.25e-3}\n")
     for place, phase, body in (("[0, 0.5]", 90, "body: {}"), ("[1.4, 0.2]", 0, "body: {modulus: 1e7}")):
@@ -640,7 +640,7 @@ def impact(bench):
 def merge(bench):
     """error and saving of wake.merge: one fish with force: pressure, a wake of 16 s, 20 s from 1 m/s (minutes)"""
     case = DEFAULT.replace("end: 8", "end: 20")
-    case = case.replace("{name: fish}", "{name: fish, force: pressure, start: {speed: 1}}")
+    case = case.replace("{name: fish}", "{name: fish, force: pressure, pressure: {span: infinite}, start: {speed: 1}}")
     case += "wake: {lifetime: 16}\n"
     exact, seconds = bench.run(case), bench.seconds(case)
     for limit in ("1e-5", "1e-4", "1e-3", "1e-2"):

@@ -321,7 +321,7 @@ EOF
     check "a run draws one line within 35 columns" /usr/bin/python3 terminal.py 35 "$program" run "$demo" --force -o drawn.nc --set time.end=20
     check "so does a study" /usr/bin/python3 terminal.py 60 "$program" study other.yaml -o drawn -j 1 --set time.end=5
     printf '%s\n' 'format: 1' 'time: {end: 3, shedding_interval: 0.05, output_interval: 0.1}' \
-        'fish: [{name: a, force: pressure}]' >search.yaml
+        'fish: [{name: a, force: pressure, pressure: {span: infinite}}]' >search.yaml
     check "and a search" /usr/bin/python3 terminal.py 60 "$program" steady search.yaml --force
 }
 

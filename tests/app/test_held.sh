@@ -15,7 +15,7 @@ fish:
   - name: plate
     force: pressure
     sheet_points: 65
-    pressure: {suction_limit: 0}
+    pressure: {span: infinite, suction_limit: 0}
     start: {speed: 6.283185307179586}
     wave: {amplitude: 0, frequency: 0}
     body: {profile: uniform, thickness: 0.01, depth: 1}
@@ -30,6 +30,7 @@ steady: {multipliers: false, tolerance: 1e-5}
 fish:
   - name: foil
     force: pressure
+    pressure: {span: infinite}
     start: {heading: -143.13010235415598}
     wave: {amplitude: 0, frequency: 0}
     body: {profile: uniform, thickness: 0.12, depth: 1}

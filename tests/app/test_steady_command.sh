@@ -139,7 +139,7 @@ format: 1
 time: {end: 1, shedding_interval: 0.02}
 fluid: {density: 1, velocity: [1, 0], viscosity: 0}
 fish:
-  - {name: plate, force: pressure, wave: {amplitude: 0, frequency: 0},
+  - {name: plate, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0},
      body: {profile: uniform, thickness: 0.05, depth: 1, density: 25, modulus: 8e4},
      start: {heading: 174, speed: 0}, motion: {prescribed: head}}
 end

@@ -208,10 +208,11 @@ static void without_an_older_stress_the_step_is_linear(void **state) {
 
 /* A default fish from rest, after two beats. */
 static struct simulation *fish_from_rest(const char *modulus, const char *rtol) {
-    struct simulation *const simulation = school_simulation_of(
-        SCHOOL_DEFAULTS TIME
-        "solver: {rtol: %s}\nfish: [{nodes: 13, sheet_points: 33, body: {modulus: %s, relaxation_time: 0.02}}]\n",
-        rtol, modulus);
+    struct simulation *const simulation =
+        school_simulation_of(SCHOOL_DEFAULTS TIME
+                             "solver: {rtol: %s}\nfish: [{force: reactive, nodes: 13, sheet_points: 33, body: "
+                             "{modulus: %s, relaxation_time: 0.02}}]\n",
+                             rtol, modulus);
     school_run(simulation, 2);
     simulate_measure(simulation);
     return simulation;

@@ -424,7 +424,7 @@ static void a_case_shown_reads_back_bit_for_bit(void **state) {
         "  - {control: {waypoints: [[1, 2]], damping: 0.3}}\n",
         // without the preset, whose feedforward is 1; one fish for each law, some with their own frequency
         "format: 1\ntime: {end: 1}\nfish: [{wave: {frequency: 0}, control: {bias: 0.1}},\n"
-        "  {wave: {frequency: 3}, control: {law: heading, feedforward: 0.2}},\n"
+        "  {wave: {frequency: 3}, force: reactive, control: {law: heading, feedforward: 0.2}},\n"
         "  {start: {heading: 20}, control: {law: averaged_heading}}, {control: {law: course}}]\n",
         "format: 1\ntime: {end: 1}\nfish: [{wave: {wavelength: 0.7, constant: 0.1}},\n"
         "  {wave: {table: [[0, 1.5, 2], [3, 4, -0.1]]}}]\n",

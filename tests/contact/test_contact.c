@@ -322,12 +322,13 @@ static void bodies_that_meet_do_not_cross(void **state) {
 // Two plates heave and swim in line; the faster plate behind pushes the plate in front and does not pass through.
 static void plates_that_swim_in_line_do_not_cross(void **state) {
     (void)state;
-    struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS TIME
-        "defaults: {fish: {nodes: 5, sheet_points: 17, force: pressure, wave: {amplitude: 0, frequency: 0}, "
-        "body: {profile: uniform, thickness: 0.05, depth: 1, density: 2000}, "
-        "motion: {prescribed: all, surge: free, heave: 0.05, frequency: 1}}}\n"
-        "fish: [{start: {speed: 1}}, {start: {position: [1.3, 0], speed: 2}}]\n");
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_DEFAULTS TIME
+                          "defaults: {fish: {nodes: 5, sheet_points: 17, force: pressure, pressure: {span: infinite}, "
+                          "wave: {amplitude: 0, frequency: 0}, "
+                          "body: {profile: uniform, thickness: 0.05, depth: 1, density: 2000}, "
+                          "motion: {prescribed: all, surge: free, heave: 0.05, frequency: 1}}}\n"
+                          "fish: [{start: {speed: 1}}, {start: {position: [1.3, 0], speed: 2}}]\n");
     double stored = 0, imbalance = 0;
     const double energy = diagnostics_energy(simulation->residual, 1, 0, simulation->state->y);
     while (simulation->state->t < 1) {
@@ -373,7 +374,7 @@ static void bodies_under_pressure_throw_each_other_back(void **state) {
     struct simulation *const simulation = school_simulation(
         SCHOOL_DEFAULTS TIME
         "solver: {rtol: 1.0e-6}\n"
-        "defaults: {fish: {nodes: 9, sheet_points: 17, force: pressure, pressure: {suction_limit: 0},\n"
+        "defaults: {fish: {nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite, suction_limit: 0},\n"
         "                  drag: {skin: laminar}, wave: {amplitude: 0}, body: {relaxation_time: 0.02},\n"
         "                  start: {speed: 1}}}\n"
         "fish: [{start: {position: [-0.1, 0.01], heading: 0}}, {start: {position: [0.1, -0.01], heading: 180}}]\n");
@@ -403,7 +404,10 @@ static void bodies_under_pressure_throw_each_other_back(void **state) {
 // A body that is thrown back moves tail first, and the tail overtakes the newest marker.
 static void bodies_that_are_thrown_back_go_on_tail_first(void **state) {
     (void)state;
-#define PRESSED(fish) SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, sheet_points: 33, " fish "}}\n"
+#define PRESSED(fish)                                                                                             \
+    SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, pressure: {span: infinite}, sheet_points: 33, " fish \
+                         "}}"                                                                                     \
+                         "\n"
     static const char *const cases[] = {
         // at a wall, at a right angle: the tail turns back within an interval
         PRESSED("nodes: 9, body: {modulus: 5.394e+6}") "fluid: {walls: [-0.4974]}\n"

@@ -16,11 +16,11 @@
 #define SHEET "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
 
 /* Two lengths, not in consecutive order; bodies with control points as sources, close to each other. */
-#define SCHOOL                                                          \
-    "defaults: {fish: {force: pressure, nodes: 5, sheet_points: 11}}\n" \
-    "fish:\n"                                                           \
-    "  - {start: {position: [0, 0.2]}}\n"                               \
-    "  - {length: 0.5, start: {position: [0.3, 0.5], heading: 165}}\n"  \
+#define SCHOOL                                                                                      \
+    "defaults: {fish: {force: pressure, pressure: {span: infinite}, nodes: 5, sheet_points: 11}}\n" \
+    "fish:\n"                                                                                       \
+    "  - {start: {position: [0, 0.2]}}\n"                                                           \
+    "  - {length: 0.5, start: {position: [0.3, 0.5], heading: 165}}\n"                              \
     "  - {start: {position: [0.2, 0.8], heading: 190}}\n"
 
 enum { N_FISH = 3, N_PAIRS = 8, N_MARKERS = 2 * N_PAIRS + 1 };

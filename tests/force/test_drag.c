@@ -148,7 +148,8 @@ static void a_body_with_a_wave_has_the_factor_of_waving(void **state) {
                  {"drag: {waving: 1.2}", 1.2}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[512];
-        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure}}\nfish: [{%s}]\n",
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, pressure: {span: infinite}}}\nfish: [{%s}]\n",
                  cases[i].fish);
         struct setup setup;
         school_build(&setup, text);

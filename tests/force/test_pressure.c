@@ -22,7 +22,8 @@ static void build_plate(struct setup *setup, int nodes, int points, const char *
              SCHOOL_DEFAULTS
              "time: {end: 1, shedding_interval: 0.002}\n"
              "fluid: {density: 1, viscosity: 0}\n"
-             "fish: [{nodes: %d, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+             "fish: [{nodes: %d, sheet_points: %d, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, "
+             "frequency: 0},\n"
              "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
              nodes, 2 * nodes - 1, more);
     school_settings(&setup->values, text);
@@ -228,13 +229,13 @@ static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) 
     char body[128];
     const double mass = 0.1;
     snprintf(body, sizeof body, "density: %.17g, modulus: 1.0e+9, relaxation_time: 0.01", mass / (pi / 4 * 0.1));
-    struct simulation *const simulation =
-        school_simulation_of(SCHOOL_DEFAULTS
-                             "time: {end: 1, shedding_interval: 0.002}\n"
-                             "fluid: {density: 1, viscosity: 0, velocity: [0, 0.1]}\n"
-                             "fish: [{nodes: 17, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
-                             "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
-                             body);
+    struct simulation *const simulation = school_simulation_of(
+        SCHOOL_DEFAULTS
+        "time: {end: 1, shedding_interval: 0.002}\n"
+        "fluid: {density: 1, viscosity: 0, velocity: [0, 0.1]}\n"
+        "fish: [{nodes: 17, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0},\n"
+        "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
+        body);
     const struct fish *fish = simulation->school->fish;
     double *const y = simulation->state->y;
 
@@ -261,7 +262,8 @@ static void momenta_scale_with_the_deeper_end(void **state) {
         snprintf(text, sizeof text,
                  SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 800}\n"
-                 "fish: [{nodes: 5, sheet_points: 21, length: 2, force: pressure, body: {profile: table,\n"
+                 "fish: [{nodes: 5, sheet_points: 21, length: 2, force: pressure, pressure: {span: infinite}, body: "
+                 "{profile: table,\n"
                  "    thickness_table: [0.1, 0.1, 0.1, 0.1], depth_table: [%s]}}]\n",
                  depths[i]);
         school_build(&setup, text);
@@ -282,7 +284,8 @@ static void force_and_reaction_are_those_of_the_jump(void **state) {
         school_simulation(SCHOOL_DEFAULTS
                           "time: {end: 1, shedding_interval: 0.01}\n"
                           "fluid: {density: 2, viscosity: 0}\n"
-                          "fish: [{force: pressure, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, body: "
+                          "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, "
+                          "start: {speed: 1}, body: "
                           "{profile: uniform, thickness: 0.1, "
                           "depth: 0.5},\n"
                           "        motion: {prescribed: all, heave: 0.05, pitch: 5, frequency: 1}}]\n");
@@ -374,15 +377,15 @@ static void suction_law_has_a_value_at_rest(void **state) {
 // a plate at an incidence in a stream, with this suction limit; the caller frees the setup
 static struct simulation *inclined_plate(double degrees, double limit) {
     char text[512];
-    snprintf(
-        text, sizeof text,
-        SCHOOL_DEFAULTS
-        "time: {end: 1, shedding_interval: 0.01}\n"
-        "fluid: {density: 2, viscosity: 0}\n"
-        "fish: [{force: pressure, pressure: {suction: 0.8, suction_limit: %g}, wave: {amplitude: 0, frequency: 0},\n"
-        "        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
-        "        motion: {prescribed: all, pitch: %g, pitch_phase: 90}}]\n",
-        limit, degrees);
+    snprintf(text, sizeof text,
+             SCHOOL_DEFAULTS
+             "time: {end: 1, shedding_interval: 0.01}\n"
+             "fluid: {density: 2, viscosity: 0}\n"
+             "fish: [{force: pressure, pressure: {span: infinite, suction: 0.8, suction_limit: %g}, wave: {amplitude: "
+             "0, frequency: 0},\n"
+             "        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
+             "        motion: {prescribed: all, pitch: %g, pitch_phase: 90}}]\n",
+             limit, degrees);
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, 0.1);
     simulate_measure(simulation);
@@ -436,12 +439,12 @@ static void energy_balance_is_closed_where_the_limit_acts(void **state) {
     (void)state;
     double imbalance[2];
     for (int i = 0; i < 2; i++) {
-        struct simulation *const simulation =
-            school_simulation_of(SCHOOL_DEFAULTS
-                                 "time: {end: 2, shedding_interval: 0.02}\n"
-                                 "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {suction_limit: %g},\n"
-                                 "        body: {modulus: 3.0e+5}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n",
-                                 i == 0 ? 0 : 0.003);
+        struct simulation *const simulation = school_simulation_of(
+            SCHOOL_DEFAULTS
+            "time: {end: 2, shedding_interval: 0.02}\n"
+            "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite, suction_limit: %g},\n"
+            "        body: {modulus: 3.0e+5}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n",
+            i == 0 ? 0 : 0.003);
         school_run(simulation, 1.5);
         simulate_measure(simulation);
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;
@@ -503,7 +506,8 @@ static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
         school_simulation(SCHOOL_DEFAULTS
                           "time: {end: 1, shedding_interval: 0.02}\n"
                           "solver: {rtol: 1.0e-6}\n"
-                          "fish: [{nodes: 9, sheet_points: 17, force: pressure, body: {modulus: 3.0e+4}, wave: {ramp: "
+                          "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite}, body: "
+                          "{modulus: 3.0e+4}, wave: {ramp: "
                           "0.3}, start: {speed: 0.5}}]\n");
     school_run(simulation, 0.5);
     simulate_measure(simulation);

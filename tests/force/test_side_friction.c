@@ -95,13 +95,14 @@ static struct side_friction friction_of(struct simulation *simulation) {
 
 static struct simulation *plate(const char *stream, double thickness) {
     char text[600];
-    snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS
-             "time: {end: 2, shedding_interval: 0.02}\n"
-             "fluid: {density: 1, viscosity: 1e-3, velocity: [%s]}\n"
-             "fish: [{force: pressure, sheet_points: 65, wave: {amplitude: 0, frequency: 0},\n"
-             "        body: {profile: uniform, thickness: %g, depth: 0.5}, motion: {prescribed: all}}]\n",
-             stream, thickness);
+    snprintf(
+        text, sizeof text,
+        SCHOOL_DEFAULTS
+        "time: {end: 2, shedding_interval: 0.02}\n"
+        "fluid: {density: 1, viscosity: 1e-3, velocity: [%s]}\n"
+        "fish: [{force: pressure, pressure: {span: infinite}, sheet_points: 65, wave: {amplitude: 0, frequency: 0},\n"
+        "        body: {profile: uniform, thickness: %g, depth: 0.5}, motion: {prescribed: all}}]\n",
+        stream, thickness);
     return school_simulation(text);
 }
 

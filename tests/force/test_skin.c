@@ -13,7 +13,8 @@ static void a_body_that_glides_reads_the_stagnation_pressure_at_the_nose(void **
         school_simulation(SCHOOL_DEFAULTS
                           "time: {end: 1}\n"
                           "fluid: {density: 2, velocity: [0.5, 0]}\n"
-                          "fish: [{force: pressure, sensors: [0, 0.1, 0.5, 1], wave: {amplitude: 0, frequency: 0},\n"
+                          "fish: [{force: pressure, pressure: {span: infinite}, sensors: [0, 0.1, 0.5, 1], wave: "
+                          "{amplitude: 0, frequency: 0},\n"
                           "        start: {speed: 1}, body: {profile: uniform, thickness: 0.1},\n"
                           "        motion: {prescribed: all}}]\n");
     school_run(simulation, 0.5);
@@ -130,7 +131,8 @@ static void compare_with_differences(const char *keys, const char *fish, int n_m
              "wake: {smoothing: 1e-3, lifetime: 100, decay: 0}\n"
              "sheet: {smoothing: 1e-3}\n"
              "%s"
-             "defaults: {fish: {force: pressure, start: {speed: 0.5}, nodes: 17, sheet_points: 49, sensors: [0.5],\n"
+             "defaults: {fish: {force: pressure, start: {speed: 0.5}, nodes: 17, "
+             "sheet_points: 49, sensors: [0.5],\n"
              "                  wave: {ramp: 0.2}%s}}\n"
              "fish: [{}, {start: {position: [0.1, 0.4]}, wave: {phase: 70}}]\n",
              keys, fish);
@@ -159,9 +161,9 @@ static void compare_with_differences(const char *keys, const char *fish, int n_m
 static void the_rate_of_the_potential_is_its_difference_in_time(void **state) {
     (void)state;
     static const struct mirror none[] = {{1, 0}}, wall[] = {{1, 0}, {-1, -0.6}};
-    compare_with_differences("", "", 1, none, 0.005);
+    compare_with_differences("", ", pressure: {span: infinite}", 1, none, 0.005);
     compare_with_differences("", ", pressure: {span: finite}", 1, none, 0.005);
-    compare_with_differences("fluid: {walls: [-0.3]}\n", "", 2, wall, 0.005);
+    compare_with_differences("fluid: {walls: [-0.3]}\n", ", pressure: {span: infinite}", 2, wall, 0.005);
     compare_with_differences("fluid: {walls: [-0.3]}\n", ", pressure: {span: finite}", 2, wall, 0.005);
 }
 
@@ -175,7 +177,7 @@ static void in_a_channel_the_rate_of_the_potential_is_its_difference_in_time(voi
         if (k != 0) mirrors[n++] = (struct mirror){1, 3.0 * k};
         mirrors[n++] = (struct mirror){-1, -0.6 + 3.0 * k};
     }
-    compare_with_differences("fluid: {walls: [-0.3, 1.2]}\n", "", n, mirrors, 0.008);
+    compare_with_differences("fluid: {walls: [-0.3, 1.2]}\n", ", pressure: {span: infinite}", n, mirrors, 0.008);
     compare_with_differences("fluid: {walls: [-0.3, 1.2]}\n", ", pressure: {span: finite}", n, mirrors, 0.008);
 }
 
@@ -185,12 +187,13 @@ static void in_a_channel_the_rate_of_the_potential_is_its_difference_in_time(voi
 static void both_sides_differ_by_the_jump(void **state) {
     (void)state;
     // sensors at the control points 12, 24 and 36
-    struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS
-        "time: {end: 1}\n"
-        "fish: [{force: pressure, start: {speed: 0.5}, sensors: [0.15820385, 0.51635954, 0.86493204],\n"
-        "        sheet_points: 49, body: {profile: uniform, thickness: 1e-3}, wave: {ramp: 0.2}},\n"
-        "       {start: {position: [0.2, 0.4]}}]\n");
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_DEFAULTS
+                          "time: {end: 1}\n"
+                          "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 0.5}, sensors: "
+                          "[0.15820385, 0.51635954, 0.86493204],\n"
+                          "        sheet_points: 49, body: {profile: uniform, thickness: 1e-3}, wave: {ramp: 0.2}},\n"
+                          "       {pressure: {span: infinite}, start: {position: [0.2, 0.4]}}]\n");
     school_run(simulation, 0.5);
     simulate_measure(simulation);
     struct pressure *const pressure = simulation->residual->pressure[0];

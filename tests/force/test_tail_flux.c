@@ -155,7 +155,7 @@ static void a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes(void **st
         struct simulation *const simulation = school_simulation_of(
             SCHOOL_DEFAULTS TIME
             "wake: {smoothing: 1.0e+6}\n"
-            "fish: [{nodes: %d, sheet_points: %d,\n"
+            "fish: [{force: reactive, nodes: %d, sheet_points: %d,\n"
             "        body: {profile: uniform, thickness: 0.1, modulus: 1.0e+8, damping: curvature,\n"
             "               relaxation_time: 0.001}}]\n",
             nodes[i], nodes[i] > 17 ? 2 * nodes[i] - 1 : 33);

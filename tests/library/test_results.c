@@ -27,22 +27,26 @@ static const double tolerance = 1e-4, of_differences = 1e-2, rounding = 1e-9, of
 #define TIME "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {rtol: 1e-6}\n"
 #define STREAM "fluid: {velocity: [0.2, -0.1], shear: 0.3, gust: {amplitude: 0.15, frequency: 2.2}}\n"
 #define FISH "nodes: 5, sheet_points: 17, wave: {frequency: 4, phase: 20}"
+#define SLENDER "force: reactive, " FISH
 
 static const struct run {
     const char *name, *text;
 } runs[] = {
     {"reactive", TIME STREAM
      "wake: {lifetime: 0.16, decay: 0.09}\noutput: {forces: edges}\n"
-     "fish: [{" FISH ", start: {heading: 170, speed: 0.8}, control: {bias: 0.3}, drag: {skin: boundary_layer}},\n"
-     "    {nodes: 6, sheet_points: 15, length: 0.7, start: {position: [0.3, 0.5], heading: 200, speed: 0.5},\n"
+     "fish: [{" SLENDER ", start: {heading: 170, speed: 0.8}, control: {bias: 0.3}, drag: {skin: boundary_layer}},\n"
+     "    {force: reactive, nodes: 6, sheet_points: 15, length: 0.7, start: {position: [0.3, 0.5], heading: 200, "
+     "speed: 0.5},\n"
      "     wave: {frequency: 3, wavelength: 0.8}, body: {profile: uniform, thickness: 0.1, relaxation_time: 0.02},\n"
      "     drag: {law: linear_quadratic, linear_speed: 0.3}}]\n"},
     {"pressure", TIME STREAM
      "wake: {lifetime: 0.2, spare_vortices: 6, vortices: [[0.5, 0.4, 0.05], [-0.4, -0.3, -0.04]]}\n"
      "output: {forces: edges}\n"
-     "fish: [{" FISH ", force: pressure, start: {heading: 170, speed: 0.6}, pressure: {suction_limit: 0.12},\n"
+     "fish: [{" FISH
+     ", force: pressure, start: {heading: 170, speed: 0.6}, pressure: {span: infinite, suction_limit: 0.12},\n"
      "     drag: {skin: boundary_layer, transition: 1e5}},\n"
-     "    {nodes: 6, sheet_points: 19, length: 1.2, force: pressure, start: {position: [0.2, 0.7], speed: 0.7},\n"
+     "    {nodes: 6, sheet_points: 19, length: 1.2, force: pressure, pressure: {span: infinite}, start: {position: "
+     "[0.2, 0.7], speed: 0.7},\n"
      "     wave: {frequency: 3}, drag: {skin: laminar}}]\n"},
     {"span", TIME
      "fluid: {walls: [-0.6], velocity: [0.1, 0], shear: 0.2}\nwake: {lifetime: 0.2, decay: 0.1}\n"
@@ -51,11 +55,11 @@ static const struct run {
      "    {nodes: 5, sheet_points: 27, length: 0.8, force: pressure, pressure: {span: finite}, start: {position: [0.2, "
      "0.6],\n     heading: 190, speed: 0.9}, wave: {frequency: 4}, body: {profile: table, thickness_table: [0.05, 0.1, "
      "0.08,\n     0.04], depth_table: [0.16, 0.2, 0.18, 0.22]}}]\n"},
-    {"channel", TIME
-     "fluid: {walls: [-0.5, 0.8], velocity: [0.3, 0]}\nwake: {lifetime: 0.2}\ncontact: {range: 0.05}\n"
-     "fish: [{" FISH ", start: {heading: 160, speed: 0.9}},\n"
-     "    {nodes: 6, sheet_points: 13, length: 0.8, force: pressure, start: {position: [0.3, 0.5], heading: 190},\n"
-     "     wave: {frequency: 3}}]\n"},
+    {"channel", TIME "fluid: {walls: [-0.5, 0.8], velocity: [0.3, 0]}\nwake: {lifetime: 0.2}\ncontact: {range: 0.05}\n"
+                     "fish: [{" SLENDER ", start: {heading: 160, speed: 0.9}},\n"
+                     "    {nodes: 6, sheet_points: 13, length: 0.8, force: pressure, pressure: {span: infinite}, "
+                     "start: {position: [0.3, 0.5], heading: 190},\n"
+                     "     wave: {frequency: 3}}]\n"},
     {"published",
      "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\npreset: published\n"
      "fluid: {velocity: [0.2, 0.1]}\nwake: {lifetime: 0.1}\n"
@@ -65,76 +69,86 @@ static const struct run {
      "     control: {law: heading, desired_heading: [[0, 170], [0.3, 150]], feedforward: 0.5, filter: 0.2}}]\n"},
     {"steered", TIME STREAM
      "wake: {shedding: continuous, removed_circulation: dropped, lifetime: 0.12, decay: 0.05}\n"
-     "fish: [{" FISH ", start: {speed: 0.8}, control: {law: heading, waypoints: [[-0.3, 0.2], [-1, -1]],\n"
+     "fish: [{" SLENDER ", start: {speed: 0.8}, control: {law: heading, waypoints: [[-0.3, 0.2], [-1, -1]],\n"
      "     acceptance_radius: 0.3, gain: 1.5, limit: 0.8}},\n"
-     "    {" FISH ", length: 0.9, start: {position: [0.2, 0.6], speed: 0.6}, control: {law: averaged_heading,\n"
+     "    {" SLENDER ", length: 0.9, start: {position: [0.2, 0.6], speed: 0.6}, control: {law: averaged_heading,\n"
      "     desired_heading: 150, rate: 2, feedforward: 30, filter: 0.2}},\n"
-     "    {" FISH ", start: {position: [0.1, -0.7], speed: 0.7}, control: {law: course, desired_heading: 200, damping: "
+     "    {" SLENDER
+     ", start: {position: [0.1, -0.7], speed: 0.7}, control: {law: course, desired_heading: 200, damping: "
      "0.1}}]\n"},
     {"driven", TIME
      "fluid: {velocity: [0.4, 0.1], shear: 0.5}\noutput: {forces: edges}\n"
-     "fish: [{" FISH ", force: pressure, motion: {prescribed: head, heave: 0.05, pitch: 10, pitch_phase: 80,\n"
+     "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, motion: {prescribed: head, heave: 0.05, pitch: "
+     "10, pitch_phase: 80,\n"
      "     frequency: 4, pivot: 0.2}, load: {tip: [3, -8]}, body: {damping: curvature, relaxation_time: 0.01}},\n"
-     "    {" FISH ", start: {position: [0.2, 0.7]}, motion: {prescribed: all, heave: 0.1, pitch: 20, frequency: 4,\n"
+     "    {" SLENDER ", start: {position: [0.2, 0.7]}, motion: {prescribed: all, heave: 0.1, pitch: 20, frequency: 4,\n"
      "     speed: 0.5}},\n"
-     "    {" FISH
+     "    {" SLENDER
      ", start: {position: [0.1, -0.7], heading: 180, speed: 0.4}, motion: {prescribed: head, surge: free,\n"
      "     heave: 0.05, frequency: 4}}]\n"},
     {"contact",
      "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {rtol: 1e-6}\n"
      "fluid: {walls: [-0.1]}\nwake: {shedding: continuous, taper: 0, taper_beside: 0, lifetime: 0.1}\n"
      "contact: {range: 0.06}\n"
-     "fish: [{" FISH ", start: {position: [0, 0.04], speed: 0.6}, body: {modulus: 2e6}},\n"
-     "    {" FISH ", length: 0.8, start: {position: [0.1, 0.34], heading: 176, speed: 0.5}}]\n"},
+     "fish: [{" SLENDER ", start: {position: [0, 0.04], speed: 0.6}, body: {modulus: 2e6}},\n"
+     "    {" SLENDER ", length: 0.8, start: {position: [0.1, 0.34], heading: 176, speed: 0.5}}]\n"},
     {"explicit",
      "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\n"
      "fluid: {density: 800, velocity: [0.1, 0.1]}\nwake: {shedding: impulsive, lifetime: 0.1}\n"
-     "fish: [{" FISH ", start: {speed: 0.8}, control: {bias: -0.2}, body: {modulus: 1e5, density: 1200}},\n"
-     "    {" FISH ", start: {position: [0.2, 0.8], speed: 0.5}, body: {modulus: 1e5}}]\n"},
+     "fish: [{" SLENDER ", start: {speed: 0.8}, control: {bias: -0.2}, body: {modulus: 1e5, density: 1200}},\n"
+     "    {" SLENDER ", start: {position: [0.2, 0.8], speed: 0.5}, body: {modulus: 1e5}}]\n"},
     {"explicit_sheet",
      "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: heun, step: 2.5e-4}\n"
-     "wake: {lifetime: 0.1}\nfish: [{" FISH ", start: {speed: 0.8}, body: {modulus: 1e5}}]\n"},
+     "wake: {lifetime: 0.1}\nfish: [{" SLENDER ", start: {speed: 0.8}, body: {modulus: 1e5}}]\n"},
     {"trapezoid",
      "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: trapezoid, step: 1.25e-3}\n" STREAM
      "wake: {lifetime: 0.1}\noutput: {forces: edges}\n"
-     "fish: [{" FISH ", force: pressure, start: {heading: 170, speed: 0.8}, drag: {skin: boundary_layer}},\n"
-     "    {" FISH ", length: 0.8, start: {position: [0.2, 0.6], speed: 0.5}, control: {law: heading, desired_heading: "
+     "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, start: {heading: 170, speed: 0.8}, drag: {skin: "
+     "boundary_layer}},\n"
+     "    {" SLENDER
+     ", length: 0.8, start: {position: [0.2, 0.6], speed: 0.5}, control: {law: heading, desired_heading: "
      "170}}]\n"},
     {"implicit_euler",
      "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: implicit_euler, step: 1.25e-3}\n"
      "wake: {lifetime: 0.1}\n"
-     "fish: [{" FISH ", force: pressure, motion: {prescribed: head, heave: 0.05, pitch: 10, frequency: 4}}]\n"},
+     "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, motion: {prescribed: head, heave: 0.05, pitch: "
+     "10, frequency: 4}}]\n"},
     {"dormand_prince",
      "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: dormand_prince, rtol: 1e-7}\n" STREAM
      "wake: {lifetime: 0.1, shedding: continuous}\n"
-     "fish: [{" FISH ", start: {speed: 0.8}, body: {modulus: 1e5, density: 1200}, added_mass: {extent: thickness}},\n"
-     "    {" FISH ", body: {modulus: 1e5}, motion: {prescribed: head, surge: free, heave: 0.05, frequency: 4},\n"
+     "fish: [{" SLENDER
+     ", start: {speed: 0.8}, body: {modulus: 1e5, density: 1200}, added_mass: {extent: thickness}},\n"
+     "    {" SLENDER ", body: {modulus: 1e5}, motion: {prescribed: head, surge: free, heave: 0.05, frequency: 4},\n"
      "     start: {position: [0.2, 0.7], speed: 0.5}}]\n"},
     {"explicit_pressure",
      "format: 1\ntime: {end: 0.1, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\n" STREAM
      "wake: {lifetime: 0.1}\n"
-     "fish: [{" FISH ", force: pressure, body: {modulus: 1e5}, load: {tip: [1, 2]},\n"
+     "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, body: {modulus: 1e5}, load: {tip: [1, 2]},\n"
      "     motion: {prescribed: head, heave: 0.05, pitch: 10, frequency: 4}}]\n"},
-    {"changed", TIME STREAM "wake: {lifetime: 0.25, decay: 0.1, spare_vortices: 9}\n"
-                            "fish: [{" FISH ", start: {heading: 170, speed: 0.8}},\n"
-                            "    {" FISH ", force: pressure, start: {position: [0.2, 0.7], speed: 0.6}}]\n"},
+    {"changed", TIME STREAM
+     "wake: {lifetime: 0.25, decay: 0.1, spare_vortices: 9}\n"
+     "fish: [{" SLENDER ", start: {heading: 170, speed: 0.8}},\n"
+     "    {" FISH ", force: pressure, pressure: {span: infinite}, start: {position: [0.2, 0.7], speed: 0.6}}]\n"},
     // names with "steady": steady states
     {"steady_equilibrium",
      "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n"
      "fluid: {density: 2, velocity: [0.8, 0.2], shear: 0.3, viscosity: 0}\nwake: {lifetime: 2, decay: 0.5}\n"
-     "fish: [{nodes: 6, sheet_points: 17, force: pressure, wave: {amplitude: 0.2, constant: 1, linear: 0.5, frequency: "
+     "fish: [{nodes: 6, sheet_points: 17, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0.2, "
+     "constant: 1, linear: 0.5, frequency: "
      "0},\n     control: {bias: 0.4}, motion: {prescribed: head}, body: {modulus: 4e4, profile: uniform, thickness: "
      "0.03},\n     start: {heading: 175}, load: {tip: [0.01, 0.02]}},\n"
-     "    {nodes: 5, sheet_points: 13, length: 0.7, wave: {frequency: 0, amplitude: 0}, motion: {prescribed: all},\n"
+     "    {force: reactive, nodes: 5, sheet_points: 13, length: 0.7, wave: {frequency: 0, amplitude: 0}, motion: "
+     "{prescribed: all},\n"
      "     start: {position: [0.3, 0.8], heading: 160}}]\n"},
     {"steady_circle",
      "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-7}\n"
      "fluid: {velocity: [0.2, 0.1]}\nsteady: {tolerance: 1e-6}\n"
-     "fish: [{nodes: 6, sheet_points: 13, start: {speed: 0.9}, control: {bias: 0.2}, drag: {normal: 1}}]\n"},
+     "fish: [{force: reactive, nodes: 6, sheet_points: 13, start: {speed: 0.9}, control: {bias: 0.2}, drag: {normal: "
+     "1}}]\n"},
     {"steady_held",
      "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-7}\n"
      "fluid: {velocity: [0.9, 0.1]}\nsteady: {tolerance: 1e-6}\n"
-     "fish: [{nodes: 6, sheet_points: 17, force: pressure, wave: {amplitude: 0.1},\n"
+     "fish: [{nodes: 6, sheet_points: 17, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0.1},\n"
      "     motion: {prescribed: head, heave: 0.1, pitch: 12, pitch_phase: 80, frequency: 1}}]\n"},
 };
 enum { N_RUNS = sizeof runs / sizeof *runs, MAX_VARIABLES = 200 };

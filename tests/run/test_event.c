@@ -297,7 +297,7 @@ static void a_fish_reaches_its_waypoints(void **state) {
 static void vortices_of_the_case_meet_the_fish(void **state) {
     (void)state;
     static const char *const wakes[] = {"", "shedding: continuous, "};
-    static const char *const fish[] = {"nodes: 9, force: pressure", "force: published"};
+    static const char *const fish[] = {"nodes: 9, force: pressure, pressure: {span: infinite}", "force: published"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
             school_simulation_of("%s" TIME

@@ -514,13 +514,14 @@ static void order_3_needs_bodies_whose_stiffness_is_damped(void **state) {
 
 static void order_5_is_for_bodies_slower_than_their_beat(void **state) {
     (void)state;
-    // the slowest mode of a default fish has 0.6 Hz at 6.6e4 Pa, and grows with the root of the modulus
-    assert_int_equal(order_of("", "[{body: {modulus: 6e4}}]"), 5);
-    assert_int_equal(order_of("", "[{body: {modulus: 1e5}}]"), 3);
-    assert_int_equal(order_of("", "[{body: {modulus: 1e5}, wave: {frequency: 2}}]"), 5);
-    assert_int_equal(order_of("", "[{body: {modulus: 6e4}}, {start: {position: [2, 0]}}]"), 3);
-    assert_int_equal(order_of("", "[{body: {modulus: 6e4, relaxation_time: 0}}]"), 2);
-    assert_int_equal(order_of("order: 3", "[{body: {modulus: 6e4}}]"), 3);
+    // the slowest mode of a fish with the reactive force has 0.6 Hz at 6.6e4 Pa, and grows with the root of the modulus
+    assert_int_equal(order_of("", "[{force: reactive, body: {modulus: 6e4}}]"), 5);
+    assert_int_equal(order_of("", "[{force: reactive, body: {modulus: 1e5}}]"), 3);
+    assert_int_equal(order_of("", "[{force: reactive, body: {modulus: 1e5}, wave: {frequency: 2}}]"), 5);
+    assert_int_equal(
+        order_of("", "[{force: reactive, body: {modulus: 6e4}}, {force: reactive, start: {position: [2, 0]}}]"), 3);
+    assert_int_equal(order_of("", "[{force: reactive, body: {modulus: 6e4, relaxation_time: 0}}]"), 2);
+    assert_int_equal(order_of("order: 3", "[{force: reactive, body: {modulus: 6e4}}]"), 3);
 }
 
 int main(void) {

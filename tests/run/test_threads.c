@@ -53,7 +53,7 @@ static void compare_threads(const char *settings, const char *force, int n_event
 
 static void threads_change_no_bit_of_a_school_in_contact(void **state) {
     (void)state;
-    compare_threads(SCHOOL_DEFAULTS, "pressure", 2);
+    compare_threads(SCHOOL_DEFAULTS, "pressure, pressure: {span: infinite}", 2);
 }
 
 static void threads_change_no_bit_of_sheets_of_finite_span(void **state) {

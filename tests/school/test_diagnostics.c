@@ -374,12 +374,13 @@ static void drift_is_the_change_of_the_speed_in_a_period(void **state) {
 static void cost_of_transport_is_what_fluid_and_damping_take(void **state) {
     (void)state;
     // a muscle; a heaving plate at free speed; a pitching towed plate; a loaded plate
-    const char *const fish[] = {"{force: reactive, added_mass: {extent: depth}, body: {modulus: 1.0e+5}}",
-                                "{force: pressure, wave: {amplitude: 0}, body: {profile: uniform},\n"
-                                "  motion: {prescribed: all, surge: free, heave: 0.05, frequency: 1}}",
-                                "{force: pressure, wave: {amplitude: 0}, body: {modulus: 1.0e+5},\n"
-                                "  motion: {prescribed: head, speed: 0.8, pitch: 10, frequency: 1}}",
-                                "{force: reactive, load: {tip: [0.5, 0]}}"};
+    const char *const fish[] = {
+        "{force: reactive, added_mass: {extent: depth}, body: {modulus: 1.0e+5}}",
+        "{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0}, body: {profile: uniform},\n"
+        "  motion: {prescribed: all, surge: free, heave: 0.05, frequency: 1}}",
+        "{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0}, body: {modulus: 1.0e+5},\n"
+        "  motion: {prescribed: head, speed: 0.8, pitch: 10, frequency: 1}}",
+        "{force: reactive, load: {tip: [0.5, 0]}}"};
     for (size_t i = 0; i < sizeof fish / sizeof *fish; i++) {
         struct simulation *const simulation =
             school_simulation_of(SCHOOL_DEFAULTS TIME "solver: {rtol: 1.0e-6}\nfish: [%s]\n", fish[i]);
@@ -407,12 +408,12 @@ static void cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream(void **st
     (void)state;
     double cost[2];
     for (int i = 0; i < 2; i++) {
-        struct simulation *const simulation =
-            school_simulation_of(SCHOOL_DEFAULTS TIME
-                                 "fluid: {velocity: [%d, 0]}\n"
-                                 "fish: [{force: pressure, wave: {amplitude: 0}, body: {profile: uniform},\n"
-                                 "  motion: {prescribed: all, speed: %d, heave: 0.05, frequency: 1}}]\n",
-                                 i, 1 - i);
+        struct simulation *const simulation = school_simulation_of(
+            SCHOOL_DEFAULTS TIME
+            "fluid: {velocity: [%d, 0]}\n"
+            "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0}, body: {profile: uniform},\n"
+            "  motion: {prescribed: all, speed: %d, heave: 0.05, frequency: 1}}]\n",
+            i, 1 - i);
         school_run(simulation, 1);
         simulate_measure(simulation);
         cost[i] = simulation->diagnostics->fish[0].cost_of_transport;
@@ -425,12 +426,13 @@ static void cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream(void **st
 static void thrust_and_power_of_a_held_plate_are_means_over_the_last_period(void **state) {
     (void)state;
     enum { N = 50 };
-    struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS
-        "time: {end: 2, shedding_interval: 0.02}\n"
-        "fluid: {density: 2, viscosity: 1.0e-5}\n"
-        "fish: [{force: pressure, wave: {amplitude: 0}, start: {speed: 1}, body: {profile: uniform},\n"
-        "        motion: {prescribed: all, heave: 0.05, frequency: 1}}]\n");
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_DEFAULTS
+                          "time: {end: 2, shedding_interval: 0.02}\n"
+                          "fluid: {density: 2, viscosity: 1.0e-5}\n"
+                          "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0}, start: {speed: "
+                          "1}, body: {profile: uniform},\n"
+                          "        motion: {prescribed: all, heave: 0.05, frequency: 1}}]\n");
     const struct diagnostics_fish *of = simulation->diagnostics->fish;
     double thrust = 0, power = 0, edge = 0;
     for (int i = 0; i <= N; i++) {
@@ -459,15 +461,15 @@ static void power_of_a_held_plate_is_the_work_of_muscle_and_drive(void **state) 
     double power[2];
     for (int i = 0; i < 2; i++) {
         char text[768];
-        snprintf(
-            text, sizeof text,
-            SCHOOL_DEFAULTS
-            "time: {end: 4, shedding_interval: 0.02}\n"
-            "fluid: {density: 1, velocity: [%d, 0]}\n"
-            "fish: [{force: pressure, nodes: 13, wave: {amplitude: 0.1}, body: {profile: uniform, thickness: 0.05,\n"
-            "  depth: 1, density: 25, modulus: 8.0e+5, relaxation_time: 0.02},\n"
-            "  motion: {prescribed: head, speed: %d, heave: 0.05, frequency: 1}}]\n",
-            i, 1 - i);
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS
+                 "time: {end: 4, shedding_interval: 0.02}\n"
+                 "fluid: {density: 1, velocity: [%d, 0]}\n"
+                 "fish: [{force: pressure, pressure: {span: infinite}, nodes: 13, wave: {amplitude: 0.1}, body: "
+                 "{profile: uniform, thickness: 0.05,\n"
+                 "  depth: 1, density: 25, modulus: 8.0e+5, relaxation_time: 0.02},\n"
+                 "  motion: {prescribed: head, speed: %d, heave: 0.05, frequency: 1}}]\n",
+                 i, 1 - i);
         struct simulation *const simulation = school_simulation(text);
         school_run(simulation, 3);
         const double *const work = simulation->state->balance[0].work;
@@ -658,10 +660,10 @@ static void powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass(v
 
 static void balances_that_begin_again_are_closed(void **state) {
     (void)state;
-    struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 1, shedding_interval: 0.02}\ndefaults: {fish: {force: pressure}}\n"
-                          "fish: [{}, {start: {position: [0, 2]}}]\n");
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_DEFAULTS
+        "time: {end: 1, shedding_interval: 0.02}\ndefaults: {fish: {force: pressure, pressure: {span: infinite}}}\n"
+        "fish: [{}, {start: {position: [0, 2]}}]\n");
     school_run(simulation, 0.1);
     struct state *const now = simulation->state;
     double work[2];

@@ -8,13 +8,10 @@
 #include "school/diagnostics_momentum.h"
 
 #define TIME "time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\n"
-#define FISH                                                                                                       \
-    "force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, start: {speed: 0.5}, " \
-    "body: {depth: 1}"
-
-#define STRIP                                                                                                      \
-    "force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, start: {speed: 0.5}, " \
-    "pressure: {span: finite}, body: {depth: 0.25}"
+#define SWIMMER \
+    "force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, start: {speed: 0.5}, "
+#define FISH SWIMMER "pressure: {span: infinite}, body: {depth: 1}"
+#define STRIP SWIMMER "pressure: {span: finite}, body: {depth: 0.25}"
 
 /* The momentum balance after some time over the largest term; the largest angular balance. */
 struct balance {
@@ -78,23 +75,23 @@ static void the_balance_is_closed_with_every_external_force(void **state) {
         {"a wall", "fluid: {walls: [-0.3]}\nwake: {lifetime: 0.8, decay: 0.6}\nfish: [{" FISH "}]\n"},
         {"a channel, two lengths",
          "fluid: {walls: [-0.4, 0.8]}\nwake: {lifetime: 0.8, decay: 0.6}\n"
-         "fish: [{" FISH "}, {force: pressure, nodes: 9, sheet_points: 33, length: 0.5, "
+         "fish: [{" FISH "}, {force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, length: 0.5, "
          "drag: {skin: laminar}, start: {position: [0.5, 0.4], speed: 0.5}, "
          "body: {depth: 2}}]\n"},
         {"a load at the tail", "fish: [{" FISH ", load: {tip: [2, -1]}}]\n"},
         {"a prescribed head",
-         "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
+         "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
          "body: {depth: 1, modulus: 1.0e+5}, drag: {skin: laminar}, start: {speed: 1}, "
          "motion: {prescribed: head, heave: 0.02, pitch: 3, frequency: 1, phase: 90}}]\n"},
         {"separation at the nose, half of the suction",
-         "fish: [{" FISH ", pressure: {suction: 0.5, suction_limit: 0.01}}]\n"},
+         "fish: [{" SWIMMER "body: {depth: 1}, pressure: {span: infinite, suction: 0.5, suction_limit: 0.01}}]\n"},
         {"merged vortices",
          "wake: {lifetime: 3, merge: 1e-2}\n"
-         "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
+         "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
          "body: {depth: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, "
          "start: {speed: 4}, motion: {prescribed: all, heave: 0.02, frequency: 1, phase: 90}}]\n"},
         {"a plate that surges",
-         "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
+         "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
          "body: {depth: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, "
          "start: {speed: 1}, "
          "motion: {prescribed: all, surge: free, heave: 0.02, frequency: 1, phase: 90}}]\n"},
@@ -175,14 +172,17 @@ static void forces_without_a_reaction_have_no_balance(void **state) {
         const char *text;
         int has_impulse, has_external, has_balance;
     } cases[] = {
-        {"fish: [{nodes: 9, start: {speed: 1}}]\n", 1, 0, 0},
+        {"fish: [{force: reactive, nodes: 9, start: {speed: 1}}]\n", 1, 0, 0},
         {"preset: published\nfish: [{}]\n", 1, 0, 0},
-        {"fish: [{force: pressure, nodes: 5, body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05], "
+        {"fish: [{force: pressure, pressure: {span: infinite}, nodes: 5, body: {profile: table, thickness_table: [0.1, "
+         "0.2, 0.15, 0.05], "
          "depth_table: [0.2, 0.3, 0.25, 0.1]}}]\n",
          0, 0, 0},
         // two fish of different depth
-        {"fish: [{" FISH "}, {force: pressure, start: {position: [0, 1]}}]\n", 1, 1, 0},
-        {"fish: [{" FISH "}, {force: pressure, start: {position: [0, 1]}, body: {depth: 1}}]\n", 1, 1, 1},
+        {"fish: [{" FISH "}, {force: pressure, pressure: {span: infinite}, start: {position: [0, 1]}}]\n", 1, 1, 0},
+        {"fish: [{" FISH
+         "}, {force: pressure, pressure: {span: infinite}, start: {position: [0, 1]}, body: {depth: 1}}]\n",
+         1, 1, 1},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct simulation *const simulation = school_simulation_of(SCHOOL_DEFAULTS TIME "%s", cases[i].text);
@@ -199,11 +199,12 @@ static void forces_without_a_reaction_have_no_balance(void **state) {
 
 // the same swim elsewhere, and in a stream
 static void fill(const char *fluid, const char *start, struct diagnostics_fish *of, double imbalance[3]) {
-    struct simulation *const simulation = school_simulation_of(
-        SCHOOL_DEFAULTS TIME
-        "solver: {rtol: 1.0e-8}\n%swake: {lifetime: 0.5, decay: 0.3}\n"
-        "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, %s}]\n",
-        fluid, start);
+    struct simulation *const simulation =
+        school_simulation_of(SCHOOL_DEFAULTS TIME
+                             "solver: {rtol: 1.0e-8}\n%swake: {lifetime: 0.5, decay: 0.3}\n"
+                             "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: "
+                             "{ramp: 0.5}, drag: {skin: laminar}, %s}]\n",
+                             fluid, start);
     school_run(simulation, 1.2);
     simulate_measure(simulation);
     *of = *simulation->diagnostics->fish;

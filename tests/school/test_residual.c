@@ -113,38 +113,41 @@ static const struct variant {
               "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
               "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"},
-    {"pressure", PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure}]\n"},
+    {"pressure", PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}]\n"},
     {"pressure, less suction, quadratic skin and cross-flow drag, stream, shear, gust, bias",
      PRESSURE "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
-              "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {suction: 0.4},\n"
+              "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite, suction: 0.4},\n"
               "        drag: {skin: quadratic, tangential: 0.1, normal: 0.7}, control: {bias: 0.2}}]\n"},
     {"pressure, a depth for every edge, heading", PRESSURE
-     "fish: [{nodes: 5, sheet_points: 9, force: pressure, drag: {skin: laminar, normal: 0.5},\n"
+     "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, drag: {skin: laminar, normal: "
+     "0.5},\n"
      "        body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05], depth_table: [0.2, 0.3, 0.25, 0.1]},\n"
      "        control: {law: heading, feedforward: 0, desired_heading: 150}}]\n"},
     {"pressure, a boundary layer with transition, waving and form",
      PRESSURE "fluid: {viscosity: 1.0e-4, velocity: [0.3, -0.2], shear: 0.7}\n"
-              "fish: [{nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1.0e+4}, control: {bias: 0.2},\n"
+              "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, body: {modulus: "
+              "1.0e+4}, control: {bias: 0.2},\n"
               "        drag: {skin: boundary_layer, transition: 5000, waving: 1.7, form: 100, normal: 0.5}}]\n"},
     {"reactive, a turbulent boundary layer",
      TIME "fish: [{sheet_points: 9, force: reactive, drag: {skin: boundary_layer, transition: 0, form: 100}}]\n"},
     {"pressure, clamped head", PRESSURE
-     "fish: [{nodes: 5, sheet_points: 9, force: pressure, body: {section: mean, relaxation_time: 0.05},\n"
+     "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, body: {section: mean, "
+     "relaxation_time: 0.05},\n"
      "        load: {tip: [3, -2]},\n"
      "        motion: {prescribed: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
     {"pressure, prescribed body",
-     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure,\n"
+     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite},\n"
               "        motion: {prescribed: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
     {"pressure, prescribed body that goes by its forces",
-     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure,\n"
+     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite},\n"
               "        motion: {prescribed: all, surge: free, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
     {"four fish, one force each and a prescribed head", PRESSURE FAR
      "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
      "fish:\n"
-     "  - {nodes: 5, sheet_points: 9, force: pressure}\n"
+     "  - {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}\n"
      "  - {nodes: 5, sheet_points: 7, force: reactive, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
      "  - {nodes: 4, sheet_points: 7, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"
-     "  - {nodes: 4, sheet_points: 7, force: pressure, start: {position: [0, 1.2]},\n"
+     "  - {nodes: 4, sheet_points: 7, force: pressure, pressure: {span: infinite}, start: {position: [0, 1.2]},\n"
      "     motion: {prescribed: head, surge: free, heave: 0.1, frequency: 1}}\n"},
     {"pressure of finite span",
      PRESSURE "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite},\n"
@@ -171,8 +174,9 @@ static const struct variant {
     {"two fish with pressure, a sine gust",
      PRESSURE FAR "fluid: {velocity: [0.3, -0.2], gust: {profile: sine, amplitude: 0.4, wavelength: 1.6, speed: 0.5}}\n"
                   "fish:\n"
-                  "  - {nodes: 5, sheet_points: 9, force: pressure, drag: {normal: 0.7}}\n"
-                  "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0.2, 0.6], heading: 190}}\n"},
+                  "  - {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, drag: {normal: 0.7}}\n"
+                  "  - {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, start: {position: "
+                  "[0.2, 0.6], heading: 190}}\n"},
     {"finite span, a step gust, a stream across",
      PRESSURE "fluid: {velocity: [0, 0.3], shear: 0.2,\n"
               "        gust: {profile: step, amplitude: 0.4, position: 0.1, gradient_distance: 0.6}}\n"
@@ -214,8 +218,9 @@ static const struct variant {
               "fish:\n"
               "  - {sheet_points: 9, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
-    {"pressure in a channel", PRESSURE "fluid: {walls: [-0.5, 0.8]}\ncontact: {range: 0.6}\n"
-                                       "fish: [{nodes: 5, sheet_points: 9, force: pressure}]\n"},
+    {"pressure in a channel",
+     PRESSURE "fluid: {walls: [-0.5, 0.8]}\ncontact: {range: 0.6}\n"
+              "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}]\n"},
     {"two fish, impulsive", TIME FAR "preset: published\n"
                                      "fish:\n"
                                      "  - {sheet_points: 9}\n"
@@ -248,7 +253,8 @@ static void jacobian_agrees_with_differences_where_the_suction_ends(void **state
     static const char text[] = TIME FAR
         "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
         "fluid: {velocity: [0.3, 0], shear: 0.7, walls: [-1.2, 1.3]}\n"
-        "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1}}}\n"
+        "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, body: {modulus: "
+        "1}}}\n"
         "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n";
     const double factor[] = {0.3, 0.9, 1, 1.1, 2};
     for (size_t i = 0; i < sizeof factor / sizeof *factor; i++) {
@@ -273,7 +279,8 @@ static void jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake
     school_build(&setup, TIME FAR
                  "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
                  "fluid: {walls: [-1.2, 1.3]}\n"
-                 "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1}}}\n"
+                 "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, body: "
+                 "{modulus: 1}}}\n"
                  "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n");
     school_stir(&setup);
     for (int f = 0; f < 2; f++) {

@@ -107,7 +107,7 @@ static void every_vector_of_the_past_turns_with_the_fish(void **state) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
                           "time: {end: 3, shedding_interval: 0.05}\nfluid: {velocity: [0.4, -0.2], shear: 0.3}\n"
-                          "fish: [{nodes: 5, sheet_points: 17, start: {speed: 0.5}}]\n");
+                          "fish: [{force: reactive, nodes: 5, sheet_points: 17, start: {speed: 0.5}}]\n");
     school_run(simulation, 0.5);
     const struct history *const history = &simulation->state->history[0];
     struct sample before[16];

@@ -50,7 +50,7 @@ static void a_fish_that_gathers_speed_drifts(void **state) {
 
 static void a_tail_without_a_limit_is_told(void **state) {
     (void)state;
-#define CUSP(keys) SCHOOL_DEFAULTS TIME "fish: [{body: {tail_thickness: 0}, " keys "}]\n"
+#define CUSP(keys) SCHOOL_DEFAULTS TIME "fish: [{force: reactive, body: {tail_thickness: 0}, " keys "}]\n"
     expect_warnings(CUSP("nodes: 25"), 0.1, "u");
     // for any number of nodes; not if the tail does not bend
     expect_warnings(CUSP("nodes: 61, sheet_points: 121"), 0.02, "u");
@@ -68,7 +68,8 @@ static void few_nodes_at_the_tail_are_told(void **state) {
         char text[256];
         snprintf(text, sizeof text,
                  SCHOOL_DEFAULTS TIME
-                 "fish: [{nodes: %d, body: {profile: uniform, thickness: 0.1, modulus: 1e7}, wave: {frequency: 2}}]\n",
+                 "fish: [{force: reactive, nodes: %d, body: {profile: uniform, thickness: 0.1, modulus: 1e7}, wave: "
+                 "{frequency: 2}}]\n",
                  n);
         expect_warnings(text, 0.01, n < enough ? "t" : "");
     }
@@ -77,10 +78,10 @@ static void few_nodes_at_the_tail_are_told(void **state) {
 static void a_controller_that_chatters_is_told(void **state) {
     (void)state;
     // a stiff body under a large damping: each beat of the course has more than four reversals
-#define STEERED(keys)                                                                 \
-    SCHOOL_DEFAULTS                                                                   \
-    "time: {end: 8, shedding_interval: 0.02}\n"                                       \
-    "fish: [{start: {speed: 0.9}, wave: {amplitude: 0.7}, body: {modulus: 1.0e+7},\n" \
+#define STEERED(keys)                                                                                  \
+    SCHOOL_DEFAULTS                                                                                    \
+    "time: {end: 8, shedding_interval: 0.02}\n"                                                        \
+    "fish: [{force: reactive, start: {speed: 0.9}, wave: {amplitude: 0.7}, body: {modulus: 1.0e+7},\n" \
     "  control: {law: course, " keys "desired_heading: [[0, 180], [3, 180], [3.1, 120]]}}]\n"
     expect_warnings(STEERED("damping: 2, "), 7, "dh");
     // the defaults turn and hold the course without
@@ -131,8 +132,9 @@ static void the_worst_fish_is_named(void **state) {
 
 static void few_sheet_points_for_a_short_stretch_are_told(void **state) {
     (void)state;
-#define PLATE(n) \
-    SCHOOL_DEFAULTS TIME "fish: [{sheet_points: " n ", wave: {frequency: 0}, motion: {prescribed: all, speed: 1}}]\n"
+#define PLATE(n)                                                     \
+    SCHOOL_DEFAULTS TIME "fish: [{force: reactive, sheet_points: " n \
+                         ", wave: {frequency: 0}, motion: {prescribed: all, speed: 1}}]\n"
     expect_warnings(PLATE("31"), 0.1, "");
     expect_warnings(PLATE("21"), 0.1, "s");
     // only a free sheet begins with the stretch of an interval
@@ -147,7 +149,7 @@ static void an_open_energy_balance_is_told(void **state) {
     (void)state;
     // a plate that pitches once in two events: the events do not resolve the power
     expect_warnings(SCHOOL_DEFAULTS
-                    "time: {end: 10, shedding_interval: 0.5, output_interval: 0.5}\nfish: [{wave: "
+                    "time: {end: 10, shedding_interval: 0.5, output_interval: 0.5}\nfish: [{force: reactive, wave: "
                     "{amplitude: 0}, motion: {prescribed: all, speed: 1, pitch: 10, frequency: 1}}]\n",
                     10, "ev");
 }
@@ -170,11 +172,11 @@ static void an_open_energy_balance_is_told_within_the_first_beat(void **state) {
 // the first interval after a sudden transverse start of a plate; not in the first beat
 static void an_open_momentum_balance_is_told(void **state) {
     (void)state;
-#define HEAVE(phase)                                                                        \
-    SCHOOL_DEFAULTS                                                                         \
-    "time: {end: 3, shedding_interval: 0.01}\n"                                             \
-    "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "           \
-    "body: {profile: uniform, thickness: 0.05}, drag: {skin: laminar}, start: {speed: 1}, " \
+#define HEAVE(phase)                                                                                          \
+    SCHOOL_DEFAULTS                                                                                           \
+    "time: {end: 3, shedding_interval: 0.01}\n"                                                               \
+    "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, " \
+    "body: {profile: uniform, thickness: 0.05}, drag: {skin: laminar}, start: {speed: 1}, "                   \
     "motion: {prescribed: all, heave: 0.1, frequency: 2, phase: " phase "}}]\n"
     expect_warnings(HEAVE("0"), 0.4, "");
     expect_warnings(HEAVE("0"), 0.6, "o");
@@ -213,7 +215,7 @@ static void a_run_that_diverges_in_its_first_beat_says_so(void **state) {
 static void speeds_that_the_case_gives_are_no_divergence(void **state) {
     (void)state;
     // a beat of 1 Hz alone would be exceeded a hundred times at 628 m/s, or m2/s
-#define REST SCHOOL_DEFAULTS TIME "fluid: {density: 0%s}\nfish: [{wave: {amplitude: 0}, %s}]\n"
+#define REST SCHOOL_DEFAULTS TIME "fluid: {density: 0%s}\nfish: [{force: reactive, wave: {amplitude: 0}, %s}]\n"
     static const struct {
         const char *fluid, *fish;
     } fast[] = {{", velocity: [0, 1e3]", "motion: {prescribed: all, speed: 0}"},
@@ -251,17 +253,17 @@ static void a_body_that_crosses_itself_is_told_without_a_fluid_too(void **state)
 
 static void separation_at_the_nose_is_told(void **state) {
     (void)state;
-#define INCLINED(degrees, more)                                                              \
-    SCHOOL_DEFAULTS TIME "fish: [{force: pressure" more                                      \
-                         ", wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, motion: " \
+#define INCLINED(degrees, more)                                                               \
+    SCHOOL_DEFAULTS TIME "fish: [{force: pressure, pressure: {span: infinite" more            \
+                         "}, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, motion: " \
                          "{prescribed: all, pitch: " degrees ", pitch_phase: 90}}]\n"
     // A_0 is about half of tan(alpha) after a tenth of a length
     expect_warnings(INCLINED("15", ""), 0.1, "");
     expect_warnings(INCLINED("30", ""), 0.1, "l");
-    expect_warnings(INCLINED("30", ", pressure: {suction_limit: 0.35}"), 0.1, "");
+    expect_warnings(INCLINED("30", ", suction_limit: 0.35"), 0.1, "");
     // without limit, or without suction
-    expect_warnings(INCLINED("30", ", pressure: {suction_limit: 0}"), 0.1, "");
-    expect_warnings(INCLINED("30", ", pressure: {suction: 0}"), 0.1, "");
+    expect_warnings(INCLINED("30", ", suction_limit: 0"), 0.1, "");
+    expect_warnings(INCLINED("30", ", suction: 0"), 0.1, "");
 }
 
 static void bodies_that_pass_through_each_other_are_told(void **state) {
@@ -304,8 +306,10 @@ static void expect_line(const struct simulation *simulation, enum warning warnin
 
 static void the_limits_are_those_of_the_manual(void **state) {
     (void)state;
-    struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS TIME "fish: [{force: pressure, wave: {frequency: 0.5}}, {start: {position: [0, 2]}}]\n");
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_DEFAULTS TIME
+                          "fish: [{force: pressure, pressure: {span: infinite}, wave: {frequency: 0.5}}, {force: "
+                          "reactive, start: {position: [0, 2]}}]\n");
     school_run(simulation, 0.02);
     simulate_measure(simulation);
     struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
@@ -373,7 +377,8 @@ static void the_energy_balance_is_compared_with_the_largest_work(void **state) {
 static void the_advice_is_enough(void **state) {
     (void)state;
     // 3.2/sqrt(U Dt/L) = 32: 33 points are enough, 0.9 of 32 edges are allowed, and 29 edges are the first such number
-    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{sheet_points: 29}]\n");
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_DEFAULTS TIME "fish: [{force: reactive, sheet_points: 29}]\n");
     school_run(simulation, 0.02);
     simulate_measure(simulation);
     struct fish *const fish = &simulation->school->fish[0];

@@ -94,14 +94,14 @@ def draw_dense_school(draw):
                     f"ramp: {draw.choice([0.3, 1])}}}, body: {{modulus: {10 ** draw.uniform(5, 7.5):.4g}}}}}\n")
     return (f"time: {{end: 2, shedding_interval: {draw.choice([0.01, 0.02])}, output_interval: 0.1}}\n"
             f"fluid: {{viscosity: {draw.choice([1e-6, 1e-4])}{walls}}}\n"
-            f"defaults: {{fish: {{nodes: {nodes}, force: pressure}}}}\nfish:\n" + "".join(fish))
+            f"defaults: {{fish: {{nodes: {nodes}, force: pressure, pressure: {{span: infinite}}}}}}\nfish:\n" + "".join(fish))
 
 
 def draw_wall(draw):
     """A fish that is sent into a wall."""
     return (f"time: {{end: 1.2, shedding_interval: {draw.choice([0.01, 0.02])}, output_interval: 0.1}}\n"
             f"fluid: {{walls: [{-draw.uniform(0.3, 0.8):.4f}]}}\n"
-            f"fish: [{{force: pressure, nodes: {draw.choice([9, 13, 17, 25])}, "
+            f"fish: [{{force: pressure, pressure: {{span: infinite}}, nodes: {draw.choice([9, 13, 17, 25])}, "
             f"body: {{modulus: {10 ** draw.uniform(5.5, 7):.4g}}},\n"
             f"        start: {{heading: {180 + draw.uniform(10, 90):.2f}, speed: {draw.choice([2, 4])}}}, "
             f"wave: {{phase: {draw.uniform(0, 360):.1f}}}}}]\n")
@@ -111,7 +111,7 @@ def draw_head_on(draw):
     """Two fish nose to nose; some beat, some are as long as each other."""
     speed = draw.choice([0.5, 1, 2, 4])
     return (f"time: {{end: 1, shedding_interval: {draw.choice([0.005, 0.01, 0.02])}, output_interval: 0.1}}\n"
-            f"defaults: {{fish: {{force: pressure, nodes: {draw.choice([9, 9, 13, 17, 25])}, "
+            f"defaults: {{fish: {{force: pressure, pressure: {{span: infinite}}, nodes: {draw.choice([9, 9, 13, 17, 25])}, "
             f"body: {{modulus: {10 ** draw.uniform(5.5, 7.5):.4g}}}, wave: {{amplitude: {draw.choice([0, 0, 0.4])}}}}}}}\n"
             f"fish: [{{start: {{position: [-0.15, {draw.uniform(-0.03, 0.03):.4f}], heading: 0, speed: {speed}}}}},\n"
             f"       {{start: {{position: [0.15, 0], heading: {180 + draw.uniform(-15, 15):.2f}, "

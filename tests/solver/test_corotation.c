@@ -12,7 +12,8 @@ static const char *const text =
     "fish:\n"
     "  - {nodes: 6, sheet_points: 7}\n"
     "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
-    "  - {nodes: 9, sheet_points: 18, length: 0.6, force: pressure, start: {position: [2, 1], heading: 30}}\n";
+    "  - {nodes: 9, sheet_points: 18, length: 0.6, force: pressure, pressure: {span: infinite}, start: {position: [2, "
+    "1], heading: 30}}\n";
 
 enum { MAX_NODES = 9 };
 

@@ -8,9 +8,9 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.1}\n"
 #define STREAM TIME "fluid: {density: 1, velocity: [1, 0.2], viscosity: 0}\n"
-#define PLATE                                                                          \
-    "nodes: 7, sheet_points: 13, force: pressure, wave: {amplitude: 0, frequency: 0}," \
-    " body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e5}," \
+#define PLATE                                                                                                      \
+    "nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}," \
+    " body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e5},"                             \
     " start: {heading: 170, speed: 0}, motion: {prescribed: head, speed: 0}"
 
 // two plates, one behind the other, with couplings
@@ -182,7 +182,7 @@ static void the_stiffness_is_that_of_differences_with_sheets_that_follow(void **
 static void nothing_bends_where_the_whole_motion_is_given(void **state) {
     (void)state;
     struct rig rig = rig_of(SCHOOL_DEFAULTS STREAM
-                            "fish: [{nodes: 7, sheet_points: 13, force: pressure,"
+                            "fish: [{nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite},"
                             " wave: {amplitude: 0, frequency: 0}, start: {heading: 170, speed: 0},"
                             " motion: {prescribed: all, speed: 0}}]\n");
     struct equilibrium_stiffness stiffness;

@@ -30,9 +30,9 @@ static const char *const texts[] = {
     TIME
     "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
     "fish:\n"
-    "  - {nodes: 7, sheet_points: 13, force: pressure}\n"
+    "  - {nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite}}\n"
     "  - {nodes: 6, sheet_points: 13, force: reactive, start: {position: [0, 0.7]}}\n"
-    "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -0.7]},\n"
+    "  - {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, start: {position: [0, -0.7]},\n"
     "     motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}}\n",
     TIME
     "fish: [{}, {nodes: 5, length: 0.7, start: {position: [0.2, 0.5]}}, {nodes: 9, start: {position: [0, -0.6]}}]\n"};
@@ -140,7 +140,8 @@ static void momenta_follow_at_the_start_and_velocities_later(void **state) {
     struct setup setup;
     school_build(&setup, TIME
                  "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
-                 "fish: [{nodes: 7, sheet_points: 13, force: pressure, motion: {prescribed: head, heave: 0.1, "
+                 "fish: [{nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite}, motion: "
+                 "{prescribed: head, heave: 0.1, "
                  "frequency: 1}}]\n");
     school_stir(&setup);
     const struct layout *at = &setup.school->fish[0].at;
@@ -174,7 +175,8 @@ static void stiffness_takes_no_iterations_where_momenta_are_kept(void **state) {
         struct simulation *const simulation =
             school_simulation_of(SCHOOL_DEFAULTS
                                  "time: {end: 1, shedding_interval: 0.01}\n"
-                                 "fish: [{force: pressure, body: {modulus: %s}, wave: {ramp: 0}, start: {speed: 1},\n"
+                                 "fish: [{force: pressure, pressure: {span: infinite}, body: {modulus: %s}, wave: "
+                                 "{ramp: 0}, start: {speed: 1},\n"
                                  "        motion: {prescribed: head}}]\n",
                                  moduli[i]);
         assert_in_range(initial_conditions_iterations(simulation->consistent), 1, 2);

@@ -7,7 +7,8 @@
 static const char two_fish[] =
     "time: {end: 1}\n"
     "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
-    "fish: [{nodes: 5, sheet_points: 9, force: pressure}, {nodes: 5, sheet_points: 9, start: {position: [0, 2]}}]\n";
+    "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}, {nodes: 5, sheet_points: 9, "
+    "start: {position: [0, 2]}}]\n";
 
 static double parabola(int i, double t) {
     return i + 3 * t - (i % 5) * t * t;

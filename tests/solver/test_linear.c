@@ -34,9 +34,10 @@
     "defaults: {fish: {nodes: 6, sheet_points: 100}}\n"                                                           \
     "fish:\n"                                                                                                     \
     "  - {control: {law: heading, desired_heading: 150}}\n"                                                       \
-    "  - {force: pressure, length: 0.7, start: {position: [0.2, 0.35]}}\n"                                        \
+    "  - {force: pressure, pressure: {span: infinite}, length: 0.7, start: {position: [0.2, 0.35]}}\n"            \
     "  - {motion: {prescribed: head, heave: 0.1, frequency: 1}, start: {position: [0.1, -0.4]}}\n"                \
-    "  - {force: pressure, start: {position: [1.35, 0]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n" \
+    "  - {force: pressure, pressure: {span: infinite}, start: {position: [1.35, 0]}, motion: {prescribed: head, " \
+    "heave: 0.1, frequency: 1}}\n"                                                                                \
     "  - {sheet_points: 9, start: {position: [1.4, 0.4]}}\n"
 
 // full matrices that have been factorised
@@ -327,7 +328,7 @@ static void the_column_of_the_circulation_shed_can_be_updated(void **state) {
     static const char *const texts[] = {
         SHEETS, "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n" SCHOOL,
         "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
-        "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure}}\n" TIME
+        "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}}\n" TIME
         "solver: {coupling_distance: 0.6}\n"
         "fish:\n"
         "  - {start: {position: [0, 0]}}\n"

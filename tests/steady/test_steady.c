@@ -49,7 +49,8 @@ static void a_plate_with_limited_suction_has_the_speed_of_a_long_run(void **stat
     static const char text[] = SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
         "fluid: {density: 1, viscosity: 1.25e-3}\nsteady: {tolerance: 5e-5}\n"
-        "fish: [{nodes: 5, sheet_points: 17, force: pressure, pressure: {suction_limit: 0.14}, start: {speed: 5},\n"
+        "fish: [{nodes: 5, sheet_points: 17, force: pressure, pressure: {span: infinite, suction_limit: 0.14}, start: "
+        "{speed: 5},\n"
         "        wave: {amplitude: 0, frequency: 0}, body: {profile: uniform, thickness: 0.1, depth: 1, density: "
         "1.59},\n"
         "        motion: {prescribed: all, surge: free, heave: 0.175, frequency: 1}}]\n";
@@ -94,7 +95,10 @@ static void a_fish_that_is_steered_to_one_side_goes_in_a_circle(void **state) {
     circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n", 0.2,
            22);
     circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", control: {bias: 0.4}}]\n", 0.4, 30);
-    circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", force: pressure, control: {bias: 0.2}}]\n", 0.2, 25);
+    circle(COARSE
+           "steady: {tolerance: 2e-5}\nfish: [{nodes: 7, sheet_points: 13,"
+           " force: pressure, pressure: {span: infinite}, control: {bias: 0.2}}]\n",
+           0.2, 25);
     // removed circulation is dropped: the circulation is not a separate quantity
     circle(COARSE
            "steady: {tolerance: 2e-5}\nwake: {removed_circulation: dropped}\n"
@@ -112,7 +116,7 @@ static void a_fish_that_coasts_has_the_same_speed_from_two_starts(void **state) 
         snprintf(text, sizeof text,
                  "include: [cases/include/article.yaml]\n# preset:\n"
                  "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
-                 "steady: {beats: 120}\nfish: [{" FISH ", start: {speed: %d}}]\n",
+                 "steady: {beats: 120}\nfish: [{nodes: 7, sheet_points: 13, start: {speed: %d}}]\n",
                  i);
         steady_setup_open(&setup, text);
         school_ok(steady_search_run(&setup.problem));
@@ -481,9 +485,10 @@ static void the_balance_of_momentum_begins_with_the_rows_and_is_kept(void **stat
     struct steady_setup setup;
     struct state *kept = NULL;
     double searched[3], first[3], again[3];
-    steady_setup_open(&setup, COARSE
-                      "steady: {tolerance: 1e-3}\n"
-                      "fish: [{" FISH ", force: pressure, start: {speed: 0.3}}]\n");
+    steady_setup_open(
+        &setup, COARSE
+        "steady: {tolerance: 1e-3}\n"
+        "fish: [{nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite}, start: {speed: 0.3}}]\n");
     school_ok(steady_search_run(&setup.problem));
     struct steady_map *const map = &setup.problem.map;
     struct simulation *const simulation = map->simulation;

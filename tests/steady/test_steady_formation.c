@@ -7,7 +7,8 @@
     "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"                                           \
     "fluid: {density: 1, viscosity: 2e-3}\nwake: {lifetime: 3, smoothing: 0.2}\n"                                \
     "steady: {formation: true, tolerance: 3e-3}\n"                                                               \
-    "defaults: {fish: {nodes: 5, sheet_points: 13, force: pressure, start: {speed: 4.1},\n"                      \
+    "defaults: {fish: {nodes: 5, sheet_points: 13, force: pressure, pressure: {span: infinite}, start: {speed: " \
+    "4.1},\n"                                                                                                    \
     "  wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all, surge: free, heave: 0.15, frequency: 1},\n" \
     "  body: {profile: uniform, thickness: 0.05, depth: 1, density: 20}}}\n"
 
@@ -129,7 +130,7 @@ static void from_between_two_places_it_goes_where_the_fish_would(void **state) {
     steady_setup_open(&setup, SCHOOL_DEFAULTS
                       "time: {end: 1, shedding_interval: 0.025, output_interval: 0.025}\n"
                       "steady: {formation: true, tolerance: 3e-4}\nwake: {lifetime: 2, decay: 0.2}\n"
-                      "defaults: {fish: {nodes: 13, sheet_points: 25, start: {speed: 0.75},\n"
+                      "defaults: {fish: {force: reactive, nodes: 13, sheet_points: 25, start: {speed: 0.75},\n"
                       "  control: {law: heading, desired_heading: 180}}}\n"
                       "fish: [{}, {start: {position: [1.75, 0.1]}}]\n");
     school_ok(steady_search_run(&setup.problem));

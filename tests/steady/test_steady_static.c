@@ -13,7 +13,8 @@
 #define BODY                                                          \
     "nodes: 9, sheet_points: 17, wave: {amplitude: 0, frequency: 0}," \
     " body: {profile: uniform, thickness: 0.02, depth: 1, density: 63.66, modulus: 40000, relaxation_time: 0.2}"
-#define HEAD BODY ", motion: {prescribed: head, speed: 0}"
+#define SLENDER "force: reactive, " BODY
+#define HEAD SLENDER ", motion: {prescribed: head, speed: 0}"
 
 struct answer {
     struct simulation *simulation;
@@ -43,7 +44,9 @@ static void a_run_with_damping_comes_to_it(void **state) {
     (void)state;
     static const char pressure[] = SCHOOL_DEFAULTS TIME
         "fluid: {density: 1, velocity: [0.3, 0], viscosity: 0}\nwake: {lifetime: 20}\n"
-        "fish: [{" HEAD ", force: pressure, start: {heading: 170, speed: 0}}]\n";
+        "fish: [{" BODY
+        ", motion: {prescribed: head, speed: 0}, force: pressure, pressure: {span: infinite}, start: {heading: 170, "
+        "speed: 0}}]\n";
     // across the stream: the body bends by half of the length
     static const char across[] = SCHOOL_DEFAULTS TIME
         "fluid: {density: 1, velocity: [0.5, 0]}\nwake: {lifetime: 5}\n"
@@ -108,7 +111,7 @@ static void forces_are_those_along_and_across_the_stream(void **state) {
     answer(&found, SCHOOL_DEFAULTS TIME
            "fluid: {density: 1, velocity: [0, 2], viscosity: 0}\n"
            "fish: [{" BODY
-           ", force: pressure, pressure: {suction_limit: 0}, start: {heading: 260, speed: 0},"
+           ", force: pressure, pressure: {span: infinite, suction_limit: 0}, start: {heading: 260, speed: 0},"
            " motion: {prescribed: all, speed: 0}}]\n");
     school_ok(found.status);
     // 2 pi sin(alpha), to the left of the stream; no drag
@@ -148,7 +151,7 @@ static void natural_curvature_is_the_shape_at_rest(void **state) {
     struct answer found;
     answer(&found, SCHOOL_DEFAULTS TIME
            "fluid: {density: 0}\n"
-           "fish: [{nodes: 9, sheet_points: 17, wave: {amplitude: 0.3, constant: 1,"
+           "fish: [{force: reactive, nodes: 9, sheet_points: 17, wave: {amplitude: 0.3, constant: 1,"
            " linear: 0, quadratic: 0, number: 0, frequency: 0, phase: 90},"
            " motion: {prescribed: head, speed: 0}, start: {speed: 0}}]\n");
     school_ok(found.status);
@@ -173,10 +176,10 @@ static void refused(const char *text, const char *words) {
 
 static void what_can_have_no_equilibrium_is_refused_with_the_reason(void **state) {
     (void)state;
-    refused(SCHOOL_DEFAULTS TIME "fish: [{" BODY "}]\n", "neither beats nor is held");
-    refused(SCHOOL_DEFAULTS TIME "fish: [{" BODY ", motion: {prescribed: head, surge: free}}]\n",
+    refused(SCHOOL_DEFAULTS TIME "fish: [{" SLENDER "}]\n", "neither beats nor is held");
+    refused(SCHOOL_DEFAULTS TIME "fish: [{" SLENDER ", motion: {prescribed: head, surge: free}}]\n",
             "motion.surge: given");
-    refused(SCHOOL_DEFAULTS TIME "fish: [{" HEAD "}, {" BODY
+    refused(SCHOOL_DEFAULTS TIME "fish: [{" HEAD "}, {" SLENDER
                                  ", start: {position: [3, 0]}, motion: {prescribed: head, speed: 1}}]\n",
             "move at different velocities");
     // along x at the same speed
@@ -187,11 +190,11 @@ static void what_can_have_no_equilibrium_is_refused_with_the_reason(void **state
     refused(SCHOOL_DEFAULTS TIME "fluid: {gust: {amplitude: 0.1, frequency: 1}}\nfish: [{" HEAD "}]\n", "gust");
     refused(SCHOOL_DEFAULTS TIME
             "fluid: {shear: 0.1}\n"
-            "fish: [{" BODY ", start: {heading: 90}, motion: {prescribed: head, speed: 1}}]\n",
+            "fish: [{" SLENDER ", start: {heading: 90}, motion: {prescribed: head, speed: 1}}]\n",
             "across a shear");
     refused(SCHOOL_DEFAULTS TIME "wake: {removed_circulation: dropped}\nfish: [{" HEAD "}]\n", "retained");
     refused(SCHOOL_DEFAULTS TIME
-            "fish: [{nodes: 9, sheet_points: 17, wave: {amplitude: 0.1, frequency: 0, ramp: 1},"
+            "fish: [{force: reactive, nodes: 9, sheet_points: 17, wave: {amplitude: 0.1, frequency: 0, ramp: 1},"
             " motion: {prescribed: head, speed: 0}}]\n",
             "set wave.ramp to 0");
 }

@@ -14,7 +14,7 @@ format: 1
 time: {end: 1, shedding_interval: 0.05}
 fluid: {velocity: [1, 0], density: 1, viscosity: 0}
 fish:
-  - {name: foil, force: pressure, wave: {amplitude: 0, frequency: 0}, start: {heading: 174}, motion: {prescribed: head},
+  - {name: foil, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, start: {heading: 174}, motion: {prescribed: head},
      nodes: 17, body: {profile: uniform, thickness: 0.05, depth: 1, density: 25.465, modulus: 81487}}
 end
 run error foil.yaml --of steady_lift --plan

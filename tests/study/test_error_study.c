@@ -16,7 +16,7 @@
 /* A fish without a cusp at the tail, and long waves: no key is flagged in advance. */
 #define UNIFORM                                                           \
     "format: 1\nname: uniform\ntime: {end: 4, shedding_interval: 0.01}\n" \
-    "fish: [{nodes: 25, sheet_points: 49, body: {profile: uniform, modulus: 1e8}}]\n"
+    "fish: [{force: reactive, nodes: 25, sheet_points: 49, body: {profile: uniform, modulus: 1e8}}]\n"
 
 static struct error_study open_study(const char *text, const char *error) {
     char all[2048];
@@ -112,7 +112,9 @@ static void levels_that_are_no_valid_cases_are_replaced(void **state) {
     (void)state;
     // with the pressure a sheet needs 2 nodes - 1 points
     struct error_study study = open_study(
-        "format: 1\ntime: {end: 4}\nfish: [{nodes: 25, sheet_points: 49, force: pressure}]\n", "{of: steady_speed}");
+        "format: 1\ntime: {end: 4}\nfish: [{nodes: 25, sheet_points: 49, force: pressure, pressure: {span: "
+        "infinite}}]\n",
+        "{of: steady_speed}");
     levels_are(&study, "fish.sheet_points", 4, (double[]){136, 97, 69, 49}, 49);
     levels_are(&study, "fish.nodes", 4, (double[]){35, 25, 17, 13}, 25);
     error_plan_free(&study);
@@ -122,7 +124,8 @@ static void levels_that_are_no_valid_cases_are_replaced(void **state) {
     error_plan_free(&study);
     // a table has a value for each edge
     study = open_study(
-        "format: 1\ntime: {end: 4}\nfish: [{nodes: 5, sheet_points: 11, body: {profile: table, thickness_table: [0.1, "
+        "format: 1\ntime: {end: 4}\nfish: [{force: reactive, nodes: 5, sheet_points: 11, body: {profile: table, "
+        "thickness_table: [0.1, "
         "0.1, 0.1, "
         "0.1],\n"
         "  depth_table: [0.2, 0.2, 0.2, 0.2]}}]\n",
@@ -219,7 +222,8 @@ static void fish_of_different_resolution_change_in_proportion(void **state) {
 static void an_equilibrium_has_points_only(void **state) {
     (void)state;
     struct error_study study = open_study(
-        "format: 1\ntime: {end: 4}\nfluid: {velocity: [1, 0]}\nfish: [{nodes: 9, force: pressure, wave: {amplitude: 0, "
+        "format: 1\ntime: {end: 4}\nfluid: {velocity: [1, 0]}\nfish: [{nodes: 9, force: pressure, pressure: {span: "
+        "infinite}, wave: {amplitude: 0, "
         "frequency: 0}, motion: {prescribed: head, speed: 0}}]\n",
         "{of: steady_lift}");
     assert_true(study.is_static);
@@ -228,7 +232,8 @@ static void an_equilibrium_has_points_only(void **state) {
     // the modes shed wakes, and are computed for every member
     study = open_study(
         "format: 1\ntime: {end: 4, shedding_interval: 0.02}\nfluid: {velocity: [1, 0]}\n"
-        "fish: [{nodes: 9, force: pressure, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: head, speed: "
+        "fish: [{nodes: 9, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, motion: "
+        "{prescribed: head, speed: "
         "0}}]\n",
         "{of: steady_growth}");
     assert_int_equal(study.n_keys, 3);
@@ -434,14 +439,15 @@ static void a_member_that_failed_leaves_the_error_unknown(void **state) {
 
 static void a_cusp_an_edge_and_a_sheet_are_objected_to(void **state) {
     (void)state;
-    struct error_study study =
-        open_study("format: 1\ntime: {end: 4}\nfish: [{sheet_points: 21, body: {tail_thickness: 0}}]\n", "{of: speed}");
+    struct error_study study = open_study(
+        "format: 1\ntime: {end: 4}\nfish: [{force: reactive, sheet_points: 21, body: {tail_thickness: 0}}]\n",
+        "{of: speed}");
     assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "cusp"));
     assert_non_null(strstr(key_of(&study, "fish.sheet_points")->objection, "2 nodes - 1"));
     error_plan_free(&study);
     study = open_study(
         "format: 1\ntime: {end: 4, shedding_interval: 1e-3}\n"
-        "fish: [{nodes: 25, sheet_points: 49, body: {profile: uniform, modulus: 5e2}}]\n",
+        "fish: [{force: reactive, nodes: 25, sheet_points: 49, body: {profile: uniform, modulus: 5e2}}]\n",
         "{of: steady_speed}");
     assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "longer than its tail bends over"));
     // 49 points are too few for steps of 1.5e-3 lengths

@@ -229,7 +229,7 @@ static enum status compare(const struct case_values *values, const char *path, F
 
 static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
     (void)state;
-    struct case_values values = parse(CASE "fish: [{nodes: 4, sheet_points: 5}]\n");
+    struct case_values values = parse(CASE "fish: [{force: reactive, nodes: 4, sheet_points: 5}]\n");
     char path[] = "/tmp/shoal-comparison-XXXXXX";
     close(mkstemp(path));
     FILE *const nowhere = fopen("/dev/null", "w");

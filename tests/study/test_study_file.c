@@ -288,7 +288,8 @@ static void levels_of_points_are_their_distances_from_coarse_to_fine(void **stat
 // ---- memory
 
 static const char small[] =
-    "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\nfish: [{nodes: 4, sheet_points: 5}]\n"
+    "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\nfish: [{force: reactive, nodes: 4, "
+    "sheet_points: 5}]\n"
     "sweep: [{key: solver.rtol, values: [1e-3, 1e-4, 1e-5], refine: true}]\n";
 
 /* What fails: each with the case above and a folder. */

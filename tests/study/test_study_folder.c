@@ -8,7 +8,8 @@
 #include "study/study_folder.h"
 
 static const char case_text[] =
-    "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\nfish: [{nodes: 5, sheet_points: 6}]\n"
+    "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\nfish: [{force: reactive, nodes: 5, "
+    "sheet_points: 6}]\n"
     "sweep: [{key: solver.rtol, values: [1e-3, 1e-4, 1e-5]}]\n";
 
 /* A folder in which all three members have run. */

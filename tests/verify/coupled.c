@@ -29,7 +29,8 @@ static struct simulation *open_plate(const struct plate *plate) {
                        "time: {end: 1, shedding_interval: 0.002}\n"
                        "fluid: {density: 1, viscosity: 0, velocity: [0, %.17g]}\n"
                        "fish:\n"
-                       "  - {nodes: %d, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+                       "  - {nodes: %d, sheet_points: %d, force: pressure, pressure: {span: infinite}, wave: "
+                       "{amplitude: 0, frequency: 0},\n"
                        "     body: {profile: uniform, thickness: %g, depth: 1, density: %.17g, modulus: %.17g,\n"
                        "            relaxation_time: %g}}\n",
                        plate->stream, plate->nodes, plate->n_sheet, thickness, plate->mass / (pi / 4 * thickness),

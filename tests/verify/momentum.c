@@ -6,8 +6,9 @@
 
 #include "verify.h"
 
-#define PLAIN                                                                                             \
-    "force: pressure, nodes: 17, drag: {skin: laminar}, pressure: {suction_limit: 0}, body: {depth: %g, " \
+#define PLAIN                                                                                                         \
+    "force: pressure, nodes: 17, drag: {skin: laminar}, pressure: {span: infinite, suction_limit: 0}, body: {depth: " \
+    "%g, "                                                                                                            \
     "tail_thickness: 0, damping: curvature, relaxation_time: 0.001}"
 
 /* A run: the fish, and the differences from the standard run. */
@@ -160,7 +161,7 @@ static void refined(void) {
 
 #define PLATE(phase)                                                                                              \
     "{force: pressure, nodes: 17, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, drag: {skin: laminar}, " \
-    "pressure: {suction_limit: 0}, body: {profile: uniform, thickness: 0.05, depth: 1}, "                         \
+    "pressure: {span: infinite, suction_limit: 0}, body: {profile: uniform, thickness: 0.05, depth: 1}, "         \
     "motion: {prescribed: all, heave: 0.1, frequency: 1, phase: " phase "}}"
 
 static void balances(void) {

@@ -176,7 +176,8 @@ static void check_friction_at_rest(void) {
                         "format: 1\n"
                         "time: {end: 1, shedding_interval: 0.01}\n"
                         "fluid: {density: 1, viscosity: 1e-3}\n"
-                        "fish: [{force: pressure, start: {speed: 1}, wave: {amplitude: 0, frequency: 0},\n"
+                        "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 1}, wave: {amplitude: 0, "
+                        "frequency: 0},\n"
                         "        body: {profile: uniform, thickness: %g, depth: 1}, motion: {prescribed: all}}]\n",
                         bodies[i].thickness);
         const struct frictions mean = mean_friction(simulation, 0, 0.02);

@@ -112,15 +112,17 @@ static const struct swimmer swimmers[] = {
     {"default fish", VERIFY_DEFAULTS TIME "fish: [{}]\n", true, 20, 30},
     {"stiff fish", VERIFY_DEFAULTS TIME "fish: [{body: {modulus: 1e7}}]\n", true, 20, 30},
     {"fish with pressure",
-     VERIFY_DEFAULTS TIME "wake: {lifetime: 8}\n"
-                          "fish: [{force: pressure, start: {speed: 0.5}, body: {depth: 1}}]\n",
+     VERIFY_DEFAULTS TIME
+     "wake: {lifetime: 8}\n"
+     "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 0.5}, body: {depth: 1}}]\n",
      true, 20, 30},
     {"fish of finite span",
      VERIFY_DEFAULTS TIME "fish: [{force: pressure, start: {speed: 0.5}, pressure: {span: finite}}]\n", true, 20, 30},
     {"heaving plate",
      VERIFY_DEFAULTS TIME "solver: {rtol: 1e-6}\n"
                           "fluid: {density: 1, viscosity: 4.536e-4}\nwake: {lifetime: 8, smoothing: 0.1}\n"
-                          "fish: [{length: 2, force: pressure, start: {speed: 4}, wave: {amplitude: 0, frequency: 0},\n"
+                          "fish: [{length: 2, force: pressure, pressure: {span: infinite}, start: {speed: 4}, wave: "
+                          "{amplitude: 0, frequency: 0},\n"
                           "  body: {profile: uniform, thickness: 0.1, depth: 0.5, density: 1.5915, modulus: 1e5},\n"
                           "  motion: {prescribed: all, surge: free, heave: 0.1, frequency: 1}}]\n",
      false, 20, 30},
@@ -182,7 +184,8 @@ static void circles(void) {
     circle("fish in a wide circle", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.03}}]\n");
     circle("fish in a circle", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.1}}]\n");
     circle("fish in a narrow circle", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.4}}]\n");
-    circle("fish with pressure in a circle", VERIFY_DEFAULTS TIME "fish: [{force: pressure, control: {bias: 0.2}}]\n");
+    circle("fish with pressure in a circle",
+           VERIFY_DEFAULTS TIME "fish: [{force: pressure, pressure: {span: infinite}, control: {bias: 0.2}}]\n");
 }
 
 /* cases/formation.yaml */

@@ -76,7 +76,7 @@ const char *verify_text(const char *format, ...) __attribute__((format(printf, 1
 
 /* The keys of a fish with the pressure of attached flow as in linear theory: full suction, and the friction of a
  * laminar boundary layer on a plate. */
-#define VERIFY_ATTACHED "force: pressure, pressure: {suction_limit: 0}, drag: {skin: laminar}"
+#define VERIFY_ATTACHED "force: pressure, pressure: {span: infinite, suction_limit: 0}, drag: {skin: laminar}"
 
 /* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_DEFAULTS or a preset with the
  * defaults of the article's model (tests/data/small.yaml); the section ends with the message where that fails. */

@@ -128,7 +128,8 @@ static double dipole_error(double interval, double *parted) {
                     "fluid: {density: 1, viscosity: 0, walls: [0]}\n"
                     "wake: {lifetime: 1000, decay: 0, smoothing: 0.001, tolerance: 0,\n"
                     "       vortices: [[-0.5, 2, -6.283185307179586], [0.5, 2, 6.283185307179586]]}\n"
-                    "fish: [{nodes: 5, sheet_points: 33, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+                    "fish: [{nodes: 5, sheet_points: 33, force: pressure, pressure: {span: infinite}, wave: "
+                    "{amplitude: 0, frequency: 0},\n"
                     "        motion: {prescribed: all, speed: 0}, start: {position: [1000, 1]}}]\n",
                     interval, interval);
     double most = 0;

@@ -15,7 +15,7 @@ enum { N_POINTS = 60 };
 
 static char folder[] = "/tmp/test_field.XXXXXX", path[64], field_path[64];
 
-#define SEVENTEEN "sheet_points: 17"
+#define SEVENTEEN "force: reactive, sheet_points: 17"
 
 /* Two fish whose wakes decay during the run, in an external flow with all its terms; keys: of both fish. */
 static const char *school_with(const char *shedding, const char *keys) {
