@@ -252,13 +252,11 @@ static enum status rings_place(struct flow_rings *rings, const struct school *sc
         TRY(ring_sheet_place_steady(&of->wake.middles, fish, tail, of->downstream, shed, reach));
         *nascent = 0;
     } else {
-        ring_sheet_place_nascent(&of->wake.graded, school, wake, state->t, tau, tail, shed);
-        *nascent = ring_sheet_place_nascent(&of->wake.middles, school, wake, state->t, tau, tail, shed);
+        const struct direction tangent = fish_direction(fish, &fish->tail_tangent, y);
+        ring_sheet_place_nascent(&of->wake.graded, school, wake, state->t, tau, tail, &tangent, shed);
+        *nascent = ring_sheet_place_nascent(&of->wake.middles, school, wake, state->t, tau, tail, NULL, shed);
     }
-    double newest[2] = {tail[0], tail[1]};
-    if (wake->n_vortex > 0) wake_marker(wake, wake->n_vortex - 1, school->interval, tau, newest);
-    of->newest[0] = shed - *nascent;
-    for (int i = 0; i < 2; i++) of->newest[1 + i] = newest[i] - tail[i];
+    of->newest = shed - *nascent;
     TRY(ring_write_images(&of->body, rings->n_images, rings->image, &of->body_image));
     return ring_write_images(&of->wake.middles.rings, rings->n_images, rings->image, &of->middles_image);
 }

@@ -49,7 +49,7 @@ struct fish_rings {
     struct rings own;        /* own body at the own control points: bound vortices, then legs of control points */
     struct rings body;       /* control points, each with the circulation of its interval and its leg */
     double *line[2];         /* dx of the control points, m                        (n_control) */
-    double newest[3];        /* label of the newest marker, m2 s-1; position of the marker relative to the tail, m */
+    double newest;           /* label of the newest marker, m2 s-1 */
     double downstream[2];    /* direction of the legs of a steady wake; 0 without a stream */
     struct rings markers;    /* at the last event */
     int n_far;               /* number of oldest stretches that are summed at the far points; 0: none */

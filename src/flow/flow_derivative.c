@@ -245,6 +245,35 @@ static void derive_steady_legs(const struct pass *pass, const struct ring_sheet 
     }
 }
 
+// add the derivatives by one node of fish, for an end of a stretch that moves by the vector `moves` per displacement of
+// the node along the vector `way`; the source follows the fraction xi of the motion, the leg -source->along times it
+static void add_ring_push(const struct influence_block *block, const struct fish *fish, int node, const double moves[2],
+                          const double way[2], double weight, const struct source *source, double xi, int first, int n,
+                          const struct ring_values *values) {
+    for (int i = 0; i < 2; i++) {
+        const struct column to = column_of(block, i * fish->n_nodes + node, first);
+        const double x = weight * way[i] * moves[0], y = weight * way[i] * moves[1];
+        add_displacement(&to, n, values, source, 0, xi * x);
+        add_displacement(&to, n, values, source, 1, xi * y);
+        add_leg(&to, n, values, -source->along * x, -source->along * y, source->has_edge);
+    }
+}
+
+// add the derivatives of a nascent point by the older end of an overtaken stretch: free_sheet.h
+static void add_overtaken_ring(const struct influence_block *block, const struct fish *fish,
+                               const struct nascent_end *end, const struct source *source, double xi, int first, int n,
+                               const struct ring_values *values) {
+    const struct stencil *const parts[2] = {&fish->tail_tangent.from, &fish->tail_tangent.to};
+    add_ring_push(block, fish, fish->n_nodes - 1, end->tangent, end->tangent, 1, source, xi, first, n, values);
+    for (int part = 0; part < 2; part++) {
+        for (int i = 0; i < parts[part]->n; i++) {
+            const double weight = (part == 0 ? -1 : 1) * parts[part]->weight[i];
+            add_ring_push(block, fish, parts[part]->node[i], end->by_turn, end->normal, weight, source, xi, first, n,
+                          values);
+        }
+    }
+}
+
 // the nascent points of one view of the wake of fish g at a range of the points of fish f
 static void derive_ring_nascent(const struct pass *pass, const struct ring_sheet *sheet, struct range points,
                                 const struct ring_pair *pair, double image) {
@@ -258,7 +287,7 @@ static void derive_ring_nascent(const struct pass *pass, const struct ring_sheet
     const struct stencil tail = {.n = 1, .node = (const int[]){fish->n_nodes - 1}, .weight = (const double[]){1}};
     const int n_released = sheet->n_released, end = points.first + points.n;
     const int is_own = pass->f == pass->g && image == 0;
-    const double shed = flow->nascent.circulation[pass->g] + flow->rings->fish[pass->g].newest[0];
+    const double shed = flow->nascent.circulation[pass->g] + flow->rings->fish[pass->g].newest;
 
     for (int first = points.first; first < end; first += RING_CHUNK) {
         const int n = end - first < RING_CHUNK ? end - first : RING_CHUNK;
@@ -285,11 +314,14 @@ static void derive_ring_nascent(const struct pass *pass, const struct ring_sheet
             struct ring_values values;
             unit_of(pass, &source, first, n, &values);
             const double sign = image < 0 ? -1 : 1, by_shed = -(1 - xi) * part;
-            const double *const way = flow->rings->fish[pass->g].newest + 1;
             const struct column to = column_of(pass->block, pass->block->n_columns - 1, first);
             add_spanwise(&to, n, &values, sign * part);
-            add_leg(&to, n, &values, sign * by_shed * way[0], by_shed * way[1], is_own);
-            if (pass->with_places) add_places(pass->block, fish, &source, first, n, &values);
+            add_leg(&to, n, &values, sign * by_shed * sheet->way[0], by_shed * sheet->way[1], is_own);
+            if (!pass->with_places) continue;
+            add_places(pass->block, fish, &source, first, n, &values);
+            if (sheet->end.is_overtaken) {
+                add_overtaken_ring(pass->block, fish, &sheet->end, &source, xi, first, n, &values);
+            }
         }
     }
 }
@@ -415,14 +447,14 @@ static void add_push(const struct influence_block *block, const struct fish *oth
 }
 
 // add the derivatives of a source that follows the older end of an overtaken nascent stretch: free_sheet.h
-static void add_overtaken(const struct influence_block *block, const struct fish *fish, const struct free_sheet *sheet,
+static void add_overtaken(const struct influence_block *block, const struct fish *fish, const struct nascent_end *end,
                           int first, int n, const struct kernel_values *slope, double factor) {
     const struct stencil *const parts[2] = {&fish->tail_tangent.from, &fish->tail_tangent.to};
-    add_push(block, fish, fish->n_nodes - 1, sheet->tangent, sheet->tangent, first, n, slope, factor);
+    add_push(block, fish, fish->n_nodes - 1, end->tangent, end->tangent, first, n, slope, factor);
     for (int part = 0; part < 2; part++) {
         for (int i = 0; i < parts[part]->n; i++) {
             const double weight = (part == 0 ? -1 : 1) * parts[part]->weight[i] * factor;
-            add_push(block, fish, parts[part]->node[i], sheet->by_turn, sheet->normal, first, n, slope, weight);
+            add_push(block, fish, parts[part]->node[i], end->by_turn, end->normal, first, n, slope, weight);
         }
     }
 }
@@ -467,7 +499,7 @@ static void derive_nascent_source(const struct target *at, struct range points, 
             const double factor = -source->part * source->follows * flow->nascent.circulation[at->g];
             add_motion(at->block, other, &tail, 1, first, n, &unit, &factor, 1);
             if (source->follows_end > 0) {
-                add_overtaken(at->block, other, &flow->free_sheet[at->g], first, n, &unit,
+                add_overtaken(at->block, other, &flow->free_sheet[at->g].end, first, n, &unit,
                               -source->part * source->follows_end * flow->nascent.circulation[at->g]);
             }
         }
@@ -498,7 +530,7 @@ static void derive_nascent(const struct target *at) {
         const int source = sheet->n - (FREE_SHEET_PANEL + 1) + i;
         const struct nascent_source point = {
             sheet->x[source],   sheet->y[source],     0,
-            free_sheet_part[i], 1 - free_sheet_xi[i], sheet->is_overtaken ? free_sheet_xi[i] : 0};
+            free_sheet_part[i], 1 - free_sheet_xi[i], sheet->end.is_overtaken ? free_sheet_xi[i] : 0};
         derive_nascent_source(at, (struct range){0, n_own}, &point);
     }
 }

@@ -233,29 +233,32 @@ void free_sheet_nascent_point(const struct wake *markers, double interval, doubl
     for (int k = 0; k < 2; k++) point[k] = (1 - xi) * tail[k] + xi * newest[k];
 }
 
-/* The older end of the nascent stretch for the own control points: the newest marker, or, if the tail has overtaken the
- * marker, the point beside the tail, x - s t with s = (x - x_tail) . t < 0. This point moves with the tail along t and,
- * as the tangent turns, dt = n (n.dX')/|X'|, by -((r.n) t + s n)/|X'| per n.dX'. */
-static void free_sheet_end_nascent(struct free_sheet *sheet, const double marker[2], const double tail[2],
-                                   const struct direction *tangent, double end[2]) {
+/* Beside the tail is x - s t with s = (x - x_tail) . t < 0. This point moves with the tail along t and, as the tangent
+ * turns, dt = n (n.dX')/|X'|, by -((r.n) t + s n)/|X'| per n.dX'. */
+struct nascent_end free_sheet_nascent_end(const double marker[2], const double tail[2],
+                                          const struct direction *tangent) {
+    struct nascent_end end;
     const double r[2] = {marker[0] - tail[0], marker[1] - tail[1]};
     const double s = fmin(0, edge_dot(r, tangent->t)), across = edge_dot(r, tangent->n);
-    sheet->is_overtaken = s < 0;
+    end.is_overtaken = s < 0;
     for (int k = 0; k < 2; k++) {
-        end[k] = marker[k] - s * tangent->t[k];
-        sheet->by_turn[k] = -(across * tangent->t[k] + s * tangent->n[k]) / tangent->length;
-        sheet->tangent[k] = tangent->t[k];
-        sheet->normal[k] = tangent->n[k];
+        end.x[k] = marker[k] - s * tangent->t[k];
+        end.by_turn[k] = -(across * tangent->t[k] + s * tangent->n[k]) / tangent->length;
+        end.tangent[k] = tangent->t[k];
+        end.normal[k] = tangent->n[k];
     }
+
+    return end;
 }
 
 void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers,
                               double interval, double tau, const double tail[2], const struct direction *tangent,
                               double circulation) {
     const int first = sheet->n - (FREE_SHEET_PANEL + 1);
-    double marker[2], end[2];
+    double marker[2];
     free_sheet_nascent_point(markers, interval, tau, tail, 1, marker);
-    free_sheet_end_nascent(sheet, marker, tail, tangent, end);
+    sheet->end = free_sheet_nascent_end(marker, tail, tangent);
+    const double *const end = sheet->end.x;
 
     for (int i = 0; i < FREE_SHEET_PANEL; i++) {
         const double xi = free_sheet_xi[i];

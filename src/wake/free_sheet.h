@@ -31,6 +31,17 @@ extern const double free_sheet_xi[FREE_SHEET_PANEL], free_sheet_part[FREE_SHEET_
 enum { FREE_SHEET_GRADED = 1, FREE_SHEET_PAIRED = 4 };
 extern const double free_sheet_pair_xi[2];
 
+/* The older end of the nascent stretch for the own control points: the newest marker, or, if the tail has overtaken the
+ * marker, a point beside the tail. This point moves with the tail along the tangent, and by by_turn per displacement
+ * X'.n of the tangent vector along the normal. */
+struct nascent_end {
+    int is_overtaken;
+    double x[2]; /* m */
+    double tangent[2], normal[2], by_turn[2];
+};
+struct nascent_end free_sheet_nascent_end(const double marker[2], const double tail[2],
+                                          const struct direction *tangent);
+
 /* Correction for the own control points, added to the middles of all stretches. First the middles of old stretches,
  * with the tapered smoothing in place of the smoothing of the wake; then points in place of the middles of the newest
  * stretches. The last FREE_SHEET_PANEL + 1 sources are the nascent stretch in place of its middle; the other sources
@@ -45,11 +56,7 @@ struct free_sheet {
     /* at one time                                                                                     (n) */
     double *x, *y, *circulation; /* m, m2 s-1 */
     double *square;              /* of the smoothing, m2 */
-    /* Whether the tail has overtaken the newest marker. The older end of the nascent stretch then lies beside the tail
-     * and moves with the tail along the tangent, and by by_turn per displacement X'.n of the tangent vector along the
-     * normal. */
-    int is_overtaken;
-    double tangent[2], normal[2], by_turn[2];
+    struct nascent_end end;
 };
 
 /* Free all memory of the sheet; accepts a zeroed sheet. */

@@ -7,7 +7,6 @@
 
 #include "base/mathematics.h"
 #include "base/memory.h"
-#include "wake/free_sheet.h"
 
 // both ends of a stretch at one time
 struct ends {
@@ -248,13 +247,17 @@ double ring_sheet_part(const struct ring_sheet *sheet, int i) {
 }
 
 double ring_sheet_place_nascent(struct ring_sheet *sheet, const struct school *school, const struct wake *markers,
-                                double t, double tau, const double tail[2], double shed) {
+                                double t, double tau, const double tail[2], const struct direction *tangent,
+                                double shed) {
     struct rings *const rings = &sheet->rings;
     const int newest = markers->n_vortex - 1;
     const double older = newest >= 0 ? wake_ring(markers, school, newest, t, tau) : markers->shed_before;
-    struct ends ends = {.newer = {tail[0], tail[1]}, .older = {tail[0], tail[1]}};
-
-    if (newest >= 0) wake_marker(markers, newest, school->interval, tau, ends.older);
+    double marker[2] = {tail[0], tail[1]};
+    if (newest >= 0) wake_marker(markers, newest, school->interval, tau, marker);
+    sheet->end =
+        tangent ? free_sheet_nascent_end(marker, tail, tangent) : (struct nascent_end){.x = {marker[0], marker[1]}};
+    const struct ends ends = {.newer = {tail[0], tail[1]}, .older = {sheet->end.x[0], sheet->end.x[1]}};
+    for (int i = 0; i < 2; i++) sheet->way[i] = ends.older[i] - tail[i];
 
     for (int k = 0; k < sheet->n_nascent; k++) {
         const int i = sheet->n_released + k;

@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "fish/fish.h"
 #include "vortex/ring.h"
+#include "wake/free_sheet.h"
 #include "wake/wake.h"
 
 /* Points of all stretches, oldest stretch first, then the points of the nascent stretch. */
@@ -17,6 +18,8 @@ struct ring_sheet {
     double *xi, *part;
     double *smoothing[2], *leg[2]; /* delta(d) and s at the start and at the end of the interval, m, m2 */
     struct rings rings;            /* at one time */
+    struct nascent_end end;        /* of the nascent stretch */
+    double way[2];                 /* from the tail to this end, m */
 };
 
 /* Both views of the wake of a fish: graded points for the own control points, and the middle of every stretch for all
@@ -38,9 +41,11 @@ void ring_sheets_place(struct ring_sheets *sheets, const struct school *school, 
                        double tau);
 
 /* Set the nascent points to the time tau with the tail position at this time; shed: total circulation shed by the fish,
- * m2 s-1. Returns the circulation of the nascent stretch. */
+ * m2 s-1. The stretch ends at the newest marker (tangent NULL), or for the own control points, with the direction of
+ * the body at the tail, where free_sheet_nascent_end ends it. Returns the circulation of the nascent stretch. */
 double ring_sheet_place_nascent(struct ring_sheet *sheet, const struct school *school, const struct wake *markers,
-                                double t, double tau, const double tail[2], double shed);
+                                double t, double tau, const double tail[2], const struct direction *tangent,
+                                double shed);
 
 /* Nascent point i: fraction of the way from the tail to the newest marker, and fraction of the stretch. */
 double ring_sheet_xi(const struct ring_sheet *sheet, int i);

@@ -404,27 +404,29 @@ static void bodies_under_pressure_throw_each_other_back(void **state) {
 // A body that is thrown back moves tail first, and the tail overtakes the newest marker.
 static void bodies_that_are_thrown_back_go_on_tail_first(void **state) {
     (void)state;
-#define PRESSED(fish)                                                                                             \
-    SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, pressure: {span: infinite}, sheet_points: 33, " fish \
-                         "}}"                                                                                     \
-                         "\n"
-    static const char *const cases[] = {
-        // at a wall, at a right angle: the tail turns back within an interval
-        PRESSED("nodes: 9, body: {modulus: 5.394e+6}") "fluid: {walls: [-0.4974]}\n"
-        "fish: [{start: {heading: 265.83, speed: 4}, wave: {phase: 33.9}}]\n",
-        // the same with a softer body: the tail turns back later
-        PRESSED("nodes: 17, body: {modulus: 9.907e+5}") "fluid: {walls: [-0.6660]}\n"
-        "fish: [{start: {heading: 259.75, speed: 2}, wave: {phase: 257}}]\n",
-        // head on: one body at rest; both fast
-        PRESSED("nodes: 9, wave: {amplitude: 0}")
-        "fish: [{start: {position: [-0.15, 0.01], heading: 0, speed: 1}}, {start: {position: [0.15, 0], heading: "
-        "187}}]\n",
-        PRESSED("nodes: 9, wave: {amplitude: 0}")
-        "fish: [{start: {position: [-0.15, 0.01], heading: 0, speed: 4}}, {start: {position: [0.15, 0], heading: 178, "
-        "speed: 4}}]\n"};
-#undef PRESSED
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct simulation *const simulation = school_simulation(cases[i]);
+    static const struct {
+        const char *defaults, *text;
+    } cases[] = {// at a wall, at a right angle: the tail turns back within an interval
+                 {"nodes: 9, body: {modulus: 5.394e+6}",
+                  "fluid: {walls: [-0.4974]}\nfish: [{start: {heading: 265.83, speed: 4}, wave: {phase: 33.9}}]\n"},
+                 // the same with a softer body: the tail turns back later
+                 {"nodes: 17, body: {modulus: 9.907e+5}",
+                  "fluid: {walls: [-0.6660]}\nfish: [{start: {heading: 259.75, speed: 2}, wave: {phase: 257}}]\n"},
+                 // head on: one body at rest; both fast
+                 {"nodes: 9, wave: {amplitude: 0}",
+                  "fish: [{start: {position: [-0.15, 0.01], heading: 0, speed: 1}},\n"
+                  "  {start: {position: [0.15, 0], heading: 187}}]\n"},
+                 {"nodes: 9, wave: {amplitude: 0}",
+                  "fish: [{start: {position: [-0.15, 0.01], heading: 0, speed: 4}},\n"
+                  "  {start: {position: [0.15, 0], heading: 178, speed: 4}}]\n"}};
+    const size_t n_cases = sizeof cases / sizeof *cases;
+    for (size_t i = 0; i < 2 * n_cases; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS TIME
+                 "defaults: {fish: {force: pressure, pressure: {span: %s}, sheet_points: 33, %s}}\n%s",
+                 i < n_cases ? "infinite" : "finite", cases[i % n_cases].defaults, cases[i % n_cases].text);
+        struct simulation *const simulation = school_simulation(text);
         double stored = 0;
         while (simulation->state->t < 0.6) {
             school_ok(simulate_step(simulation));

@@ -207,6 +207,50 @@ static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_str
     school_clear(&setup);
 }
 
+// for the own control points the nascent stretch ends beside the tail, for all others at the marker
+static void a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_rings_beside_it(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, ONE_STRIP);
+    school_stir(&setup);
+    const struct fish *const fish = setup.school->fish;
+    struct wake *const wake = setup.state->wake;
+    const double *const y = setup.state->y, tail[2] = {y[fish->at.x + 4], y[fish->at.y + 4]};
+    const struct direction at = fish_direction(fish, &fish->tail_tangent, y);
+    for (int is_behind = 0; is_behind < 2; is_behind++) {
+        const double along = is_behind ? 0.03 : -0.03;
+        double marker[2], moved[2];
+        wake_marker(wake, wake->n_vortex - 1, setup.school->interval, setup.t - setup.state->t, marker);
+        for (int k = 0; k < 2; k++) moved[k] = tail[k] + along * at.t[k] + 0.01 * at.n[k] - marker[k];
+        wake->x[wake->n_vortex - 1] += moved[0];
+        wake->y[wake->n_vortex - 1] += moved[1];
+        wake->version++;
+
+        school_flow(&setup, y);
+        const struct ring_sheets *const sheets = &setup.residual->flow->rings->fish[0].wake;
+        const struct rings *const graded = &sheets->graded.rings, *const middles = &sheets->middles.rings;
+        const double shed = y[fish->at.circulation], nascent = setup.residual->flow->nascent.circulation[0];
+        assert_int_equal(sheets->graded.end.is_overtaken, !is_behind);
+        for (int i = 0; i < FREE_SHEET_PANEL; i++) {
+            const int source = sheets->graded.n_released + i;
+            const double xi = free_sheet_xi[i], label = -(shed - xi * nascent) * free_sheet_part[i];
+            const double way[2] = {0.01 * at.n[0] + fmax(0, along) * at.t[0],
+                                   0.01 * at.n[1] + fmax(0, along) * at.t[1]};
+            NEAR(graded->x[source], tail[0] + xi * way[0], 1e-15, 1e-14);
+            NEAR(graded->y[source], tail[1] + xi * way[1], 1e-15, 1e-14);
+            NEAR(graded->dx[source], label * way[0], 1e-15, 1e-13);
+            NEAR(graded->dy[source], label * way[1], 1e-15, 1e-13);
+            NEAR(graded->q[source], free_sheet_part[i] * nascent, 1e-15, 1e-13);
+        }
+
+        const int middle = sheets->middles.n_released;
+        NEAR(middles->x[middle], tail[0] + (along * at.t[0] + 0.01 * at.n[0]) / 2, 1e-15, 1e-14);
+        NEAR(middles->y[middle], tail[1] + (along * at.t[1] + 0.01 * at.n[1]) / 2, 1e-15, 1e-14);
+    }
+
+    school_clear(&setup);
+}
+
 // the newborn marker has the velocity of the own body at h/(2 pi) behind the tail, without smoothing
 static void the_newborn_marker_feels_its_body_behind_the_tail(void **state) {
     (void)state;
@@ -562,6 +606,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_of_others_feel_bodies_wakes_and_images_with_twice_the_span),
         cmocka_unit_test(control_points_feel_their_own_body_and_wake_with_the_span_of_the_strip),
+        cmocka_unit_test(a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_rings_beside_it),
         cmocka_unit_test(the_newborn_marker_feels_its_body_behind_the_tail),
         cmocka_unit_test(markers_feel_all_bodies_all_markers_and_all_images),
         cmocka_unit_test(the_far_wake_is_interpolated_along_the_body),

@@ -273,15 +273,17 @@ static void jacobian_agrees_with_differences_where_the_suction_ends(void **state
 }
 
 // The newest markers lie beside the bodies, ahead of their tails; in a channel, with a second fish.
-static void jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake(void **state) {
-    (void)state;
+static void compare_overtaken(const char *keys, int with_rings) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             TIME FAR
+             "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
+             "fluid: {walls: [-1.2, 1.3]}\n"
+             "defaults: {fish: {nodes: 5, %s, force: pressure}}\n"
+             "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n",
+             keys);
     struct setup setup;
-    school_build(&setup, TIME FAR
-                 "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
-                 "fluid: {walls: [-1.2, 1.3]}\n"
-                 "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, body: "
-                 "{modulus: 1}}}\n"
-                 "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n");
+    school_build(&setup, text);
     school_stir(&setup);
     for (int f = 0; f < 2; f++) {
         const struct fish *const fish = &setup.school->fish[f];
@@ -292,8 +294,25 @@ static void jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake
         wake->version++;
     }
     school_compare(&setup, value_of_school, NULL, "overtaken");
-    for (int f = 0; f < 2; f++) assert_true(setup.residual->flow->free_sheet[f].is_overtaken);
+    const struct flow *const flow = setup.residual->flow;
+    for (int f = 0; f < 2; f++) {
+        assert_int_equal(flow->rings != NULL, with_rings);
+        assert_true(with_rings ? flow->rings->fish[f].wake.graded.end.is_overtaken
+                               : flow->free_sheet[f].end.is_overtaken);
+    }
+
     school_clear(&setup);
+}
+
+static void jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake(void **state) {
+    (void)state;
+    compare_overtaken("sheet_points: 9, pressure: {span: infinite}, body: {modulus: 1}", 0);
+    compare_overtaken("sheet_points: 21, pressure: {span: finite}, body: {modulus: 1}", 1);
+    // the depth varies: force of the side edges
+    compare_overtaken(
+        "sheet_points: 21, pressure: {span: finite}, body: {modulus: 1, profile: table, "
+        "thickness_table: [0.1, 0.2, 0.15, 0.05], depth_table: [0.5, 0.7, 0.6, 0.4]}",
+        1);
 }
 
 static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **state) {

@@ -179,7 +179,7 @@ static void a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_be
         school_flow(&setup, y);
         const struct free_sheet *const sheet = setup.residual->flow->free_sheet;
         const int first = sheet->n - (FREE_SHEET_PANEL + 1);
-        assert_int_equal(sheet->is_overtaken, !is_behind);
+        assert_int_equal(sheet->end.is_overtaken, !is_behind);
         for (int i = 0; i < FREE_SHEET_PANEL; i++) {
             // a marker ahead of the tail: end beside the tail; else the end is the marker
             const double along = is_behind ? 0.03 : 0, xi = free_sheet_xi[i];
