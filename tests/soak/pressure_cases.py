@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """pressure_cases.py PROGRAM contact: run random fish with the force of the pressure into each other and into walls: 60
-schools side by side, 20 fish sent into a wall at 2 and 4 m/s, 20 pairs head on, all from soft to stiff. Five minutes.
+schools side by side, 20 fish sent into a wall at 2 and 4 m/s, 20 pairs head on, all from soft to stiff, each with
+infinite and with finite span. A quarter of an hour.
 
 pressure_cases.py PROGRAM [CASES [FIRST [BEATS]]]: run random legal schools with the force of the pressure (CASES of
 them, numbers FIRST on, for BEATS beats): plates that are driven and fish that swim, 1 to 4 of them in a school, side by
@@ -130,7 +131,9 @@ def cases():
             text = "format: 1\n" + drawn(random.Random(number))
             if not overlaps(text):
                 count -= 1
-                yield f"{number} of {drawn.__name__[5:]}", text, 1, 1
+                for span in ("infinite", "finite"):
+                    chosen = text.replace("span: infinite", f"span: {span}")
+                    yield f"{number} of {drawn.__name__[5:]}, {span}", chosen, 1, 1
             number += 1
 
 
