@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Random fish with the force of the pressure (tests/soak/pressure_cases.py): 100 cases of contact, then 500 schools, each
-# for 1.5 beats.
+# Random fish with the force of the pressure (tests/soak/pressure_cases.py): 100 cases of contact, each with infinite and
+# with finite span, then 500 schools, each for 1.5 beats.
 #
 #   tests/soak/pressure_cases.sh PROGRAM
 set -euo pipefail
