@@ -5,7 +5,7 @@
 #
 #   tests/app/test_cases.sh PROGRAM [long]
 #
-# long: the studies that take 10 s or more, and nothing else (make soak).
+# long: the studies that take 5 s or more, and nothing else (make soak).
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
@@ -16,7 +16,7 @@ import numpy as np
 
 program, cases, table, which = sys.argv[1:]
 counts = {"ok": 0, "FAILED": 0, "skipped": 0}
-LONG = ["depth", "start_speed", "stiffness", "added_mass", "plate_stiffness", "steady_resonance", "stiffness_elastic", "step_response"]  # 10 s to 30 min
+LONG = ["depth", "start_speed", "stiffness", "added_mass", "plate_stiffness", "steady_resonance", "stiffness_elastic", "step_response", "follower_spacing"]  # 5 s to 30 min
 
 
 def check(name, good, words=""):
