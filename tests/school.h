@@ -70,7 +70,7 @@ void school_same_bits(const struct simulation *got, const struct simulation *wan
 /* The integration fails within 50 events, and the message has this text. */
 void school_fails(struct simulation *simulation, const char *message);
 
-/* A fish with one step in each interval: the rate of circulation is the difference over the step. */
+/* A fish with one step in each interval: the rate of circulation is the slope of the parabola through three steps. */
 void school_shed_step_by_step(struct simulation *simulation);
 
 /* Fail the test with the message unless the status is STATUS_OK. */

@@ -157,7 +157,7 @@ static enum status ida_fill(struct ida *solver) {
     }
 
     TRY(jacobian_create(&solver->jacobian, school));
-    TRY(integrator_rates_create(&solver->algebraic_rates, school));
+    TRY(integrator_rates_create(&solver->algebraic_rates, school, 0));
     integrator_rates_begin(solver->algebraic_rates, solver->state);
     residual_mask(solver->residual, solver->jacobian);
 

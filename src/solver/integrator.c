@@ -10,14 +10,16 @@ enum { N_KEPT = 2 };
 
 struct integrator_rates {
     const struct school *school;
+    int of_circulation;
     int n;             /* number of stored steps, newest first */
     double t[N_KEPT];  /* s */
     double *y[N_KEPT]; /*                                                                    (n_unknowns) */
 };
 
-enum status integrator_rates_create(struct integrator_rates **rates, const struct school *school) {
+enum status integrator_rates_create(struct integrator_rates **rates, const struct school *school, int of_circulation) {
     TRY(MEMORY_NEW(*rates, 1, "the rates of the unknowns"));
     (*rates)->school = school;
+    (*rates)->of_circulation = of_circulation;
     enum status status = STATUS_OK;
     for (int i = 0; i < N_KEPT && status == STATUS_OK; i++) {
         status = MEMORY_NEW((*rates)->y[i], school->n_unknowns, "the rates of the unknowns");
@@ -62,10 +64,12 @@ void integrator_rates_step(struct integrator_rates *rates, double t, struct stat
     if (t <= rates->t[0]) return;
     for (int f = 0; f < rates->school->n_fish; f++) {
         const struct fish *fish = &rates->school->fish[f];
-        if (!fish_has_momentum(fish)) continue;
-        for (int i = fish->at.vx; i < fish->at.px; i++) state->yp[i] = rates_slope(rates, t, state->y[i], i);
-        for (int i = fish->at.gamma; i <= fish->at.circulation; i++) {
-            state->yp[i] = rates_slope(rates, t, state->y[i], i);
+        const int shed = fish->at.circulation;
+        if (fish_has_momentum(fish)) {
+            for (int i = fish->at.vx; i < fish->at.px; i++) state->yp[i] = rates_slope(rates, t, state->y[i], i);
+            for (int i = fish->at.gamma; i <= shed; i++) state->yp[i] = rates_slope(rates, t, state->y[i], i);
+        } else if (rates->of_circulation) {
+            state->yp[shed] = rates_slope(rates, t, state->y[shed], shed);
         }
     }
     rates_keep(rates, t, state->y);

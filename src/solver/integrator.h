@@ -94,8 +94,9 @@ static inline enum status integrator_ask(const volatile sig_atomic_t *stop) {
  * last three steps. doc/numerics.md, section 3. */
 struct integrator_rates;
 
-/* For a school, which must outlive the rates. Fails with STATUS_MEMORY; integrator_rates_free accepts NULL. */
-enum status integrator_rates_create(struct integrator_rates **rates, const struct school *school);
+/* For a school, which must outlive the rates; of_circulation: also of the shed circulations of bodies with force:
+ * reactive where they are algebraic. Fails with STATUS_MEMORY; integrator_rates_free accepts NULL. */
+enum status integrator_rates_create(struct integrator_rates **rates, const struct school *school, int of_circulation);
 void integrator_rates_free(struct integrator_rates *rates);
 
 /* Discard the history at an event: at the start, or after a jump. */

@@ -61,7 +61,8 @@ static enum status one_step_fill(struct one_step *solver) {
                                residual_undamped(solver->residual->school, i);
     }
     TRY(jacobian_create(&solver->jacobian, solver->residual->school));
-    TRY(integrator_rates_create(&solver->algebraic_rates, solver->residual->school));
+    TRY(integrator_rates_create(&solver->algebraic_rates, solver->residual->school,
+                                residual_shed_is_algebraic(solver->residual)));
     integrator_rates_begin(solver->algebraic_rates, solver->state);
     residual_mask(solver->residual, solver->jacobian);
     return linear_create(&solver->linear, solver->jacobian, solver->tolerance,
@@ -109,7 +110,7 @@ static void one_step_rates(struct one_step *solver, double h) {
     const int is_trapezoid = solver->options.method == METHOD_TRAPEZOID;
     for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
         const double change = (state->y[i] - solver->before[i]) / h;
-        // rates of algebraic unknowns are unused, except for the circulation
+        // integrator_rates_step replaces the rates of algebraic unknowns that are used
         state->yp[i] = is_trapezoid && solver->kind[i] > 0 ? 2 * change - solver->rates[i] : change;
     }
 }

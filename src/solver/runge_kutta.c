@@ -23,8 +23,7 @@ struct runge_kutta {
     int known;            /* whether they are valid */
     double known_t;
     long known_event;
-    long evaluations;    /* so far */
-    double *circulation; /* of each fish at the end of the last step                     (n_fish) */
+    long evaluations; /* so far */
     struct integrator_rates *algebraic_rates;
 
     struct sundials_context context;
@@ -100,7 +99,6 @@ static void runge_kutta_free(void *data) {
     ode_rhs_free(solver->rhs);
     free(solver->work);
     free(solver->rates);
-    free(solver->circulation);
     integrator_rates_free(solver->algebraic_rates);
     free(solver->tolerance);
     sundials_context_free(&solver->context);
@@ -127,27 +125,19 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     return failed ? status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message()) : STATUS_OK;
 }
 
-static void keep_circulation(struct runge_kutta *solver) {
-    const struct school *school = solver->residual->school;
-    for (int f = 0; f < school->n_fish; f++) {
-        solver->circulation[f] = solver->state->y[school->fish[f].at.circulation];
-    }
-}
-
 static enum status runge_kutta_fill(struct runge_kutta *solver) {
     const int n = solver->residual->school->n_unknowns;
     double **const arrays[] = {&solver->work, &solver->tolerance, &solver->rates};
     TRY(MEMORY_ARRAYS(arrays, n, "the unknowns"));
-    TRY(MEMORY_NEW(solver->circulation, solver->residual->school->n_fish, "the unknowns"));
 
     // algebraic unknowns have no rate and no error here; only a tolerance for velocities reveals an instability
     for (int i = 0; i < n; i++) {
         solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual->school, i) *
                                residual_undamped(solver->residual->school, i);
     }
-    keep_circulation(solver);
     TRY(ode_rhs_create(&solver->rhs, solver->residual));
-    TRY(integrator_rates_create(&solver->algebraic_rates, solver->residual->school));
+    TRY(integrator_rates_create(&solver->algebraic_rates, solver->residual->school,
+                                residual_shed_is_algebraic(solver->residual)));
     integrator_rates_begin(solver->algebraic_rates, solver->state);
     TRY(sundials_context_create(&solver->context, n, 1, &solver->failure));
     TRY(sundials_context_vector(&solver->context, &solver->y, solver->state->y));
@@ -194,7 +184,6 @@ static void runge_kutta_count(const void *data, struct integrator_counts *counts
 static enum status runge_kutta_restart(void *data) {
     struct runge_kutta *const solver = data;
     runge_kutta_count(solver, &solver->before);
-    keep_circulation(solver);
     integrator_rates_begin(solver->algebraic_rates, solver->state);
     if (ARKStepReInit(solver->arkode, rates_callback, NULL, solver->state->t, solver->y)) {
         return status_fail(STATUS_SOLVER, "ARKODE cannot start again: %s", status_message());
@@ -238,22 +227,14 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
 }
 
 // the algebraic unknowns and all rates at the end of a step, for the energy balance and the event
-static enum status runge_kutta_close_step(struct runge_kutta *solver, double before, double reached) {
+static enum status runge_kutta_close_step(struct runge_kutta *solver, double reached) {
     struct state *const state = solver->state;
     const struct school *school = solver->residual->school;
     const enum status status = runge_kutta_evaluate(solver, reached, state->y);
     if (status > 0) return unstable(solver, reached, status_message());
     TRY(status);
     memcpy(state->yp, solver->rates, (size_t)school->n_unknowns * sizeof *state->yp);
-    // the rate of an algebraic circulation is a difference over the step
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct layout *at = &school->fish[f].at;
-        if (residual_shed_is_algebraic(solver->residual)) {
-            state->yp[at->circulation] = (solver->work[at->circulation] - solver->circulation[f]) / (reached - before);
-        }
-    }
     memcpy(state->y, solver->work, (size_t)school->n_unknowns * sizeof *state->y);
-    keep_circulation(solver);
     integrator_rates_step(solver->algebraic_rates, reached, state);
     return STATUS_OK;
 }
@@ -270,13 +251,12 @@ static enum status runge_kutta_advance(void *data, double t, const volatile sig_
         if (ARKodeSetStopTime(solver->arkode, t)) return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
         solver->failure = STATUS_OK;
         status_clear();
-        const double before = reached;
         const int code = ARKodeEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
         TRY(sundials_context_check(&solver->context));
         if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
         if (code < 0) return unstable(solver, reached, status_message());
         if (code == ARK_TSTOP_RETURN) reached = t;
-        TRY(runge_kutta_close_step(solver, before, reached));
+        TRY(runge_kutta_close_step(solver, reached));
         diagnostics_step(solver->residual, state, reached, state->y);
     }
     return STATUS_OK;

@@ -289,8 +289,10 @@ static int find_entries(const struct run *of, struct entry *entry) {
 
 static double tolerance_of(const struct entry *entry) {
     // multipliers and growth rates are quotients of small differences
-    const int is_difference =
-        strstr(entry->name, "multiplier") || strstr(entry->name, "growth") || strstr(entry->name, "exponent");
+    const int is_difference = strstr(entry->name, "multiplier") || strstr(entry->name, "growth") ||
+                              strstr(entry->name, "exponent") ||
+                              // over steps that ARKODE chooses, versions 6 and 7 differently
+                              (strcmp(entry->run, "dormand_prince") == 0 && strcmp(entry->name, "shedding_rate") == 0);
     return is_difference ? of_differences : tolerance;
 }
 

@@ -113,7 +113,7 @@ static void a_jacobian_is_kept_for_many_steps(void **state) {
     simulate_free(simulation);
 }
 
-static void rates_of_algebraic_unknowns_are_differences_over_the_step(void **state) {
+static void rates_of_algebraic_unknowns_are_of_second_order(void **state) {
     (void)state;
     static const char *const methods[] = {"implicit_euler", "trapezoid"};
     for (int i = 0; i < 2; i++) {
@@ -269,7 +269,7 @@ int main(void) {
         cmocka_unit_test(a_very_stiff_body_needs_no_shorter_steps),
         cmocka_unit_test(soft_rods_of_many_nodes_converge_whatever_the_step),
         cmocka_unit_test(a_jacobian_is_kept_for_many_steps),
-        cmocka_unit_test(rates_of_algebraic_unknowns_are_differences_over_the_step),
+        cmocka_unit_test(rates_of_algebraic_unknowns_are_of_second_order),
         cmocka_unit_test(a_failure_tells_the_time),
         cmocka_unit_test(steps_converge_with_the_square_of_their_length),
         cmocka_unit_test(steps_back_lead_to_the_start),

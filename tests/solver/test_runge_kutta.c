@@ -150,7 +150,7 @@ static void a_failure_without_a_reason_is_not_explained_by_an_old_message(void *
     }
 }
 
-static void rate_of_an_algebraic_circulation_is_a_difference_over_the_step(void **state) {
+static void rate_of_an_algebraic_circulation_is_of_second_order(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.005}\n"
@@ -170,7 +170,7 @@ int main(void) {
         cmocka_unit_test(a_torn_body_is_no_result),
         cmocka_unit_test(an_unstable_step_ends_with_a_message_that_tells_the_time),
         cmocka_unit_test(a_failure_without_a_reason_is_not_explained_by_an_old_message),
-        cmocka_unit_test(rate_of_an_algebraic_circulation_is_a_difference_over_the_step),
+        cmocka_unit_test(rate_of_an_algebraic_circulation_is_of_second_order),
         cmocka_unit_test(impulses_restart_the_explicit_method_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
