@@ -141,12 +141,12 @@ static void compare_with_differences(const char *keys, const char *fish, int n_m
     double before[MOST], rate[MOST], most = 0, error = 0;
     assert_true(of->n_control <= MOST);
 
-    school_run(simulation, 0.1975);
+    school_run(simulation, 0.0975);
     for (int c = 0; c < of->n_control; c++) before[c] = potential(simulation, 0, c, n_mirrors, mirrors);
-    school_run(simulation, 0.2);
+    school_run(simulation, 0.1);
     simulate_measure(simulation);
     for (int c = 0; c < of->n_control; c++) rate[c] = simulation->residual->pressure[0]->point[c].potential_rate;
-    school_run(simulation, 0.2025);
+    school_run(simulation, 0.1025);
     // the last two points are nearer to the tail than the stretches of an interval
     for (int c = 0; c < of->n_control - 2; c++) {
         const double difference = (potential(simulation, 0, c, n_mirrors, mirrors) - before[c]) / 0.005;

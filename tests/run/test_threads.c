@@ -15,7 +15,8 @@ enum { N_PAIRS = 9 };
 
 static void meeting_text(size_t size, char *text, const char *settings, const char *force, int threads) {
     static const char *const law[] = {"none", "heading", "course, desired_heading: 170"};
-    size_t used = (size_t)snprintf(text, size, "%s" MEETING "solver: {threads: %d}\nfish:\n", settings, threads);
+    size_t used =
+        (size_t)snprintf(text, size, "%s" MEETING "solver: {threads: %d, rtol: 1e-3}\nfish:\n", settings, threads);
     for (int f = 0; f < 2 * N_PAIRS; f++) {
         const int right = f % 2;
         used += (size_t)snprintf(text + used, size - used,

@@ -99,9 +99,9 @@ static void a_diamond_of_plates_is_found_and_stable(void **state) {
     NEAR(place[1], place[2], 0.02, 0);
     // a displaced follower returns, as in a run from the same place
     const struct steady_unknown ahead = {3, STEADY_AHEAD};
-    const double add = 0.2;
+    const double add = 0.1;
     school_ok(steady_map_add(&setup.problem.map, 1, &ahead, &add));
-    steady_setup_beats(&setup, 30);
+    steady_setup_beats(&setup, 20);
     for (int f = 1; f < 4; f++) NEAR(setup.problem.map.last[f].place[0], place[f], 0.02, 0);
     steady_setup_close(&setup);
 }

@@ -191,7 +191,7 @@ static struct simulation *in_channel(double y, double phase) {
 // flow through the walls, mirror symmetry, momentum of a fish that swims between walls
 static void check_channel_fish(void) {
     enum { N = 42 };
-    const int n_tenths = verify_is_fast() ? 5 : 10;
+    const int n_tenths = verify_is_fast() ? 3 : 10;
     struct simulation *const one = in_channel(0.2, 0), *const mirrored = in_channel(-0.2, 180);
     double most = 0, momentum = 0, through = 0, along = 0, asymmetry = 0;
     for (int i = 1; i <= n_tenths; i++) {
@@ -283,7 +283,7 @@ void verify_depth(void) {
     check_lift();
     check_added_mass();
     check_deep();
-    check_energy("a fish, w/L = 0.25", "", 4);
+    check_energy("a fish, w/L = 0.25", "", verify_is_fast() ? 2 : 4);
     check_momentum("a fish, w/L = 0.25: momentum lost", "{}", 1e-3);
     check_momentum("two fish, w = 0.25 and 0.4 m: momentum lost",
                    "{}, {body: {depth: 0.4}, start: {position: [0.3, 0.4]}}", 1e-3);

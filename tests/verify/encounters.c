@@ -262,7 +262,7 @@ static void free_plate(void) {
     const struct fish *const fish = &simulation->school->fish[0];
     const double *const y = simulation->state->y;
     for (int n = 0; n <= N_STEPS; n++) plate.phi[n] = n == 0 ? 0.5 : linear_theory_wagner(2 * n * step);
-    for (int n = 0; n < (verify_is_fast() ? 300 : N_STEPS); n++) {
+    for (int n = 0; n < (verify_is_fast() ? 200 : N_STEPS); n++) {
         advance(&plate, n);
         if ((n + 1) % 100 > 0 || n + 1 == 100) continue;
         const double t = (n + 1) * step;
