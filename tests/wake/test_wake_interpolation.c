@@ -292,6 +292,62 @@ static void a_run_is_as_exact_as_the_tolerance(void **state) {
     assert_true(memcmp(interpolated, exact, sizeof exact) != 0);
 }
 
+// the largest displacement of a whole fish, m, for which the far field of the fish is interpolated
+static double largest_drift(const struct simulation *simulation, int f) {
+    struct flow *const flow = simulation->residual->flow;
+    double u[POINTS], v[POINTS], low = 0, high = 1;
+    for (int i = 0; i < 40; i++) {
+        const double drift = (low + high) / 2;
+        double *const y = later(simulation, 0.5, 0);
+        for (int g = 0; g < simulation->school->n_fish; g++) {
+            const struct fish *const fish = &simulation->school->fish[g];
+            for (int k = 0; k < fish->n_nodes; k++) y[fish->at.x + k] += drift;
+        }
+        evaluate(simulation, 0.5, y, u, v);
+        *(flow->by_interpolation[f] ? &low : &high) = drift;
+        free(y);
+    }
+    return low;
+}
+
+static void near_and_far_fields_do_not_depend_on_the_order_of_the_fish(void **state) {
+    (void)state;
+    static const char *const fish[2] = {
+        "nodes: 5, sheet_points: 9, force: reactive",
+        "nodes: 6, sheet_points: 11, force: reactive, length: 0.9, start: {position: [1.3, 0.4]}"};
+    static const char *const fluids[] = {"", "fluid: {walls: [-0.8]}\n"};
+    for (int w = 0; w < 2; w++) {
+        for (double tolerance = 1e-2; tolerance > 1e-8; tolerance /= 1000) {
+            double drift[2][2];
+            int n_near[2][2];
+            for (int order = 0; order < 2; order++) {
+                struct simulation *const simulation = school_simulation_of(
+                    "%stime: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\n"
+                    "wake: {tolerance: %g, smoothing: 0.1, lifetime: 0.3, decay: 0.2}\n"
+                    "fish: [{%s}, {%s}]\n",
+                    fluids[w], tolerance, fish[order], fish[1 - order]);
+                school_run(simulation, 0.35);
+                struct flow *const flow = simulation->residual->flow;
+                school_ok(flow_interpolate(flow, simulation->state));
+                for (int f = 0; f < 2; f++) {
+                    const int k = order == 0 ? f : 1 - f;
+                    n_near[order][k] = wake_interpolation_n_near(flow->interpolation, f);
+                    drift[order][k] = largest_drift(simulation, f);
+                }
+                simulate_free(simulation);
+            }
+            for (int k = 0; k < 2; k++) {
+                print_message("tolerance %g, fish %d: %d near, drift up to %.6g\n", tolerance, k, n_near[0][k],
+                              drift[0][k]);
+                assert_int_equal(n_near[1][k], n_near[0][k]);
+                // steps of the integrator differ
+                NEAR(drift[1][k], drift[0][k], 0, 1e-3);
+                assert_true(drift[0][k] > 0 && drift[0][k] < 0.5);
+            }
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_error_stays_below_the_tolerance),
@@ -300,6 +356,7 @@ int main(void) {
         cmocka_unit_test(at_the_end_of_an_interval_drift_counts_with_the_gradient_there),
         cmocka_unit_test(the_equations_do_not_depend_on_what_was_evaluated_before),
         cmocka_unit_test(the_gradient_is_that_of_the_interpolated_velocity),
+        cmocka_unit_test(near_and_far_fields_do_not_depend_on_the_order_of_the_fish),
         cmocka_unit_test(without_a_tolerance_nothing_is_interpolated),
         cmocka_unit_test(a_run_is_as_exact_as_the_tolerance),
     };
