@@ -34,15 +34,15 @@ struct initial_conditions {
     struct jacobian *jacobian;
     int n;
     double t;
-    /* unknowns, rates of zero, kinds, scales of the unknowns, inverse scales of unknowns and of equations      (n) */
-    double *y, *zero, *kind, *scale, *solution_scale, *value_scale;
+    /* unknowns, rates of zero, kinds, scales of the unknowns and of the equations in their rows, and inverses  (n) */
+    double *y, *zero, *kind, *scale, *inverse_scale;
     double *value;       /* residual of the last evaluation                                             (n) */
     double *start;       /* initial guess and solution of KINSOL                                        (n) */
     enum status failure; /* of the last callback */
     const volatile sig_atomic_t *stop;
 
     struct sundials_context context;
-    N_Vector solution, solution_scales, value_scales;
+    N_Vector solution, inverse_scales;
     struct linear_sundials linear;
     void *kinsol;
     long iterations;
@@ -52,12 +52,12 @@ void initial_conditions_free(struct initial_conditions *c) {
     if (!c) return;
     if (c->kinsol) KINFree(&c->kinsol);
     linear_sundials_free(&c->linear);
-    const N_Vector vectors[] = {c->solution, c->solution_scales, c->value_scales};
+    const N_Vector vectors[] = {c->solution, c->inverse_scales};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         if (vectors[i]) N_VDestroy(vectors[i]);
     }
     jacobian_free(c->jacobian);
-    double *const owned[] = {c->y, c->zero, c->kind, c->scale, c->solution_scale, c->value_scale, c->value, c->start};
+    double *const owned[] = {c->y, c->zero, c->kind, c->scale, c->inverse_scale, c->value, c->start};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     sundials_context_free(&c->context);
     free(c);
@@ -97,17 +97,6 @@ static int is_loose(const struct residual *residual, int i) {
     return is_acceleration && fish_has_momentum(&residual->school->fish[place.fish]);
 }
 
-// the scale of an equation: for most equations the scale of the unknown of the same row
-static double row_scale(const struct residual *residual, int i) {
-    const struct unknown_place place = residual_place(residual->school, i);
-    const struct layout *at = &residual->school->fish[place.fish].at;
-    const double speed = residual_scale(residual->school, at->gamma);
-    if (place.kind == UNKNOWN_GAMMA) return speed;
-    // the relation of p and v has the scale of p in both rows
-    const int is_velocity = place.kind == UNKNOWN_VX || place.kind == UNKNOWN_VY;
-    return residual_scale(residual->school, is_velocity && at->px < at->ax ? i + (at->px - at->vx) : i);
-}
-
 static enum status initial_set_up_kinsol(struct initial_conditions *c) {
     c->kinsol = KINCreate(c->context.context);
     TRY(memory_check(c->kinsol, "KINSOL"));
@@ -126,21 +115,18 @@ static enum status initial_set_up_kinsol(struct initial_conditions *c) {
 
 static enum status initial_fill(struct initial_conditions *c) {
     const int n = c->n;
-    double **const arrays[] = {&c->y,     &c->zero,           &c->kind,        &c->scale,
-                               &c->value, &c->solution_scale, &c->value_scale, &c->start};
+    double **const arrays[] = {&c->y, &c->zero, &c->kind, &c->scale, &c->value, &c->inverse_scale, &c->start};
     TRY(MEMORY_ARRAYS(arrays, n, "initial conditions"));
     for (int i = 0; i < n; i++) {
         c->scale[i] = residual_scale(c->residual->school, i);
         const double factor = is_loose(c->residual, i) ? loose : 1;
-        c->solution_scale[i] = 1 / (factor * c->scale[i]);
-        c->value_scale[i] = 1 / (factor * row_scale(c->residual, i));
+        c->inverse_scale[i] = 1 / (factor * c->scale[i]);
         c->kind[i] = -1;  // unknown
     }
     TRY(jacobian_create(&c->jacobian, c->residual->school));
     TRY(sundials_context_create(&c->context, n, 1, &c->failure));
     TRY(sundials_context_vector(&c->context, &c->solution, c->start));
-    TRY(sundials_context_vector(&c->context, &c->solution_scales, c->solution_scale));
-    TRY(sundials_context_vector(&c->context, &c->value_scales, c->value_scale));
+    TRY(sundials_context_vector(&c->context, &c->inverse_scales, c->inverse_scale));
     TRY(linear_sundials_create(&c->linear, c->context.context, c->jacobian, c->scale, linear_tolerance, &c->failure));
     return initial_set_up_kinsol(c);
 }
@@ -189,7 +175,7 @@ static const char *initial_reason(int code) {
 static double largest_residual(const struct initial_conditions *c, int *worst) {
     double max = -1;
     for (int i = 0; i < c->n; i++) {
-        const double size = c->kind[i] > 0 ? 0 : fabs(c->value[i] * c->value_scale[i]);
+        const double size = c->kind[i] > 0 ? 0 : fabs(c->value[i] * c->inverse_scale[i]);
         if (!(size <= max)) {
             max = size;
             *worst = i;
@@ -241,7 +227,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
     flow_sum_exactly(c->residual->flow);
     initial_update_kinds(c);
     c->failure = STATUS_OK;
-    const int code = KINSol(c->kinsol, c->solution, KIN_NONE, c->solution_scales, c->value_scales);
+    const int code = KINSol(c->kinsol, c->solution, KIN_NONE, c->inverse_scales, c->inverse_scales);
     long iterations = 0;
     KINGetNumNonlinSolvIters(c->kinsol, &iterations);
     c->iterations += iterations;

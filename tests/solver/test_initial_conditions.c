@@ -184,6 +184,23 @@ static void stiffness_takes_no_iterations_where_momenta_are_kept(void **state) {
     }
 }
 
+static void light_bodies_take_no_iterations_either(void **state) {
+    (void)state;
+    // the momentum over the mass is many times the velocity
+    static const char *const densities[] = {"1.0e+3", "1.0e-1", "1.0e-5"};
+    for (int i = 0; i < 3; i++) {
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS
+                                 "time: {end: 1, shedding_interval: 0.01}\n"
+                                 "fish: [{force: pressure, pressure: {span: infinite}, body: {density: %s}, wave: "
+                                 "{ramp: 0}, start: {speed: 1},\n"
+                                 "        motion: {prescribed: head}}]\n",
+                                 densities[i]);
+        assert_in_range(initial_conditions_iterations(simulation->consistent), 1, 2);
+        simulate_free(simulation);
+    }
+}
+
 static void a_second_solution_changes_nothing(void **state) {
     (void)state;
     struct setup setup;
@@ -263,6 +280,7 @@ int main(void) {
         cmocka_unit_test(differential_unknowns_stay_as_they_are),
         cmocka_unit_test(momenta_follow_at_the_start_and_velocities_later),
         cmocka_unit_test(stiffness_takes_no_iterations_where_momenta_are_kept),
+        cmocka_unit_test(light_bodies_take_no_iterations_either),
         cmocka_unit_test(a_second_solution_changes_nothing),
         cmocka_unit_test(a_state_that_is_not_a_number_is_refused_and_kept),
         cmocka_unit_test(a_singular_jacobian_is_named),
