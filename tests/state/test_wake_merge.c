@@ -167,8 +167,7 @@ static void the_newest_vortices_are_never_merged(void **state) {
     for (int i = 0; i < 4; i++) {
         struct setup setup;
         char text[256];
-        snprintf(text, sizeof text, TIME "wake: {lifetime: 16, shedding: %s, merge: 0.1}\nfish: [{}]\n",
-                 kinds[i % 2]);
+        snprintf(text, sizeof text, TIME "wake: {lifetime: 16, shedding: %s, merge: 0.1}\nfish: [{}]\n", kinds[i % 2]);
         trail(&setup, text);
         struct wake *const wake = &setup.state->wake[0];
         wake->n_vortex -= i / 2;
