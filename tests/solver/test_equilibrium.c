@@ -179,6 +179,28 @@ static void the_stiffness_is_that_of_differences_with_sheets_that_follow(void **
     for (size_t i = 0; i < sizeof spans / sizeof *spans; i++)
         stiffness_is_that_of_differences(spans[i][0], spans[i][1]);
 }
+static void only_displacements_that_grow_without_oscillation_are_counted(void **state) {
+    (void)state;
+    // between the streams at which nothing and at which every bending displacement grows, the eigenvalues with a
+    // negative real part are pairs: at 6 m/s one pair, at 12 m/s two
+    static const struct {
+        const char *stream;
+        int n_negative;
+    } rows[] = {{"2.5", 0}, {"6", 0}, {"12", 0}, {"40", 6}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS TIME "fluid: {density: 1, velocity: [%s, 0], viscosity: 0}\nfish: [{" PLATE "}]\n",
+                 rows[i].stream);
+        struct rig rig = rig_of(text);
+        struct equilibrium_stiffness stiffness;
+        school_ok(equilibrium_solve(rig.equilibrium));
+        school_ok(equilibrium_stiffness(rig.equilibrium, &stiffness));
+        assert_int_equal(stiffness.n_negative, rows[i].n_negative);
+        clear(&rig);
+    }
+}
+
 static void nothing_bends_where_the_whole_motion_is_given(void **state) {
     (void)state;
     struct rig rig = rig_of(SCHOOL_DEFAULTS STREAM
@@ -198,6 +220,7 @@ int main(void) {
         cmocka_unit_test(the_equations_of_a_run_hold_at_rest),
         cmocka_unit_test(bodies_that_go_on_together_are_at_rest_in_their_frame),
         cmocka_unit_test(the_stiffness_is_that_of_differences_with_sheets_that_follow),
+        cmocka_unit_test(only_displacements_that_grow_without_oscillation_are_counted),
         cmocka_unit_test(nothing_bends_where_the_whole_motion_is_given),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
