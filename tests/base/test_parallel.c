@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include <omp.h>
 #include <sched.h>
+#include <time.h>
 
 #include "base/parallel.h"
 #include "near.h"
@@ -158,6 +159,31 @@ static void parallel_loops_take_the_threads_of_the_choice(void **state) {
     assert_int_equal(choice.window.n_steps, 2);
 }
 
+static double processor_time(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void a_step_is_timed_by_the_wall_clock_and_the_processor(void **state) {
+    (void)state;
+    struct parallel_choice choice = {0};
+    parallel_choice_begin(&choice, 2);
+    nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+    parallel_choice_end(&choice, 2);
+    const double slept = choice.window.time, used = choice.window.processor_time;
+    assert_true(slept >= 0.02 && slept < 60);
+    assert_true(used >= 0 && used < slept / 2);
+
+    parallel_choice_begin(&choice, 2);
+    const double begin = processor_time();
+    while (processor_time() - begin < 0.005) continue;
+    parallel_choice_end(&choice, 2);
+    assert_int_equal(choice.window.n_steps, 2);
+    assert_true(choice.window.processor_time - used >= 0.005 - 1e-6);
+    assert_true(choice.window.time - slept >= choice.window.processor_time - used - 1e-3);
+}
+
 static int n_processors(void) {
     cpu_set_t set;
     return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
@@ -208,6 +234,7 @@ int main(void) {
         cmocka_unit_test(equal_times_change_nothing),
         cmocka_unit_test(a_trial_that_waits_for_its_processor_is_repeated_on_another_one),
         cmocka_unit_test(parallel_loops_take_the_threads_of_the_choice),
+        cmocka_unit_test(a_step_is_timed_by_the_wall_clock_and_the_processor),
         cmocka_unit_test(one_thread_may_use_all_processors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
