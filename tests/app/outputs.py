@@ -25,7 +25,8 @@ NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|nan|inf)(?![A-Za-z_])")
 # Parts of lines that depend on the machine, on the version or on the time; and counts of the steps of an integrator,
 # which depend on rounding. Both are compared without numbers.
 FREE = (
-    r"^! .* s left .*",  # progress: the number of lines too
+    r"^! (?!t ).* s left .*",  # progress of a study: the number of lines too
+    r"(?<=%)  .* steps/event",
     r"^! beat .*",
     r"about [^:]* on this machine|about .* at once",
     r"(?<= )[\d.]+ +[\d.-]+ +\d+ +\d+ +\d+ +\d+ +[\d.]+(?=  (complete|failed))",  # of a setting of a comparison
@@ -37,13 +38,18 @@ FREE = (
     r"(?<=\]) +[\d. ]+$| <- spend here.*|\+- \S+ times|CPU x [\d.]+",  # times of a plan
     r"unstable at t = \S+ s?.*|(?<=after )\d+ steps.*",
     r"^(wall_time|beat_time|steps|\w+_evaluations|\w+_iterations|\w+_failures|step_size|order|energy_balance) .*",
+    r"^  \"(program|history|wall_time|beat_time|steps|\w+_evaluations|\w+_iterations|\w+_failures|step_size|energy_\w+)\": .*",
 )
+
+# the last column of a plan: times
+PLAN = re.compile(r"^([a-z]+\.[a-z_]+ .*\[.*\S)  +[\d. ]+$")
 
 # quotients of small differences
 LOOSE = re.compile(r"multiplier|growth|exponent|order|residual|steady_error|fixed point|extrapolat|levels|beats")
 
 
 def masked(line):
+    line = PLAN.sub(r"\1 @", line)
     for pattern in FREE:
         line = re.sub(pattern, "@", line)
     return line
@@ -137,7 +143,11 @@ def sums_of_netcdf(path):
     with netCDF4.Dataset(path) as data:
         data.set_auto_mask(False)
         data.set_auto_chartostring(False)
+        yield "attributes " + " ".join(sorted(data.ncattrs()))
         for name, variable in sorted(data.variables.items()):
+            kinds = " ".join(f"{key} {getattr(variable, key)}" for key in variable.ncattrs() if key != "long_name")
+            if kinds != "units 1":
+                yield f"{name}: {kinds}"
             values = np.atleast_1d(variable[...])
             shape = ", ".join(f"{d} {n}" for d, n in zip(variable.dimensions, values.shape))
             if values.dtype.kind in "SU":
