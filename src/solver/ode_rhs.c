@@ -313,14 +313,11 @@ static enum status find_accelerations(struct ode_rhs *d, int f, double t, double
     return STATUS_OK;
 }
 
-// the momenta of nodes whose velocity is given
+// the momenta of nodes whose velocity is given, after find_accelerations, which updates the pressure
 static void find_given_momenta(const struct ode_rhs *d, int f, double *y) {
     const struct fish *fish = &d->residual->school->fish[f];
-    const struct flow_at_body flow = flow_at_body(d->residual->flow, f);
-    struct pressure *const pressure = d->residual->pressure[f];
-    if (!pressure || fish_n_prescribed(fish) == 0) return;
-    pressure_update(pressure, &flow, y);
-    for (int m = 0; m < 2 * fish->n_nodes; m++) {
+    const struct pressure *const pressure = d->residual->pressure[f];
+    for (int m = 0; m < 2 * fish->n_nodes && pressure; m++) {
         const int k = m % fish->n_nodes;
         if (fish_is_prescribed(fish, k, m / fish->n_nodes)) {
             y[fish->at.px + m] = y[fish->at.vx + m] + pressure->momentum[m] / fish->mass[k];

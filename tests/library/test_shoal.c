@@ -429,6 +429,18 @@ static void a_failed_run_makes_no_step_and_says_why(void **state) {
     shoal_close(run);
 }
 
+static void a_run_that_ends_in_contact_has_failed(void **state) {
+    const char *const assignments[] = {"contact.action=stop", "fish[1].start.position=[0.2,0.25]",
+                                       "fish[1].start.heading=225"};
+    struct shoal *const run = opened(*state, 3, assignments);
+    assert_int_equal(shoal_advance(run, shoal_end(run)), SHOAL_SOLVER);
+    const char *const message = shoal_message();
+    if (!strstr(message, "come within") && !strstr(message, "contact")) fail_msg("%s", message);
+    assert_int_equal(shoal_step(run), SHOAL_SOLVER);
+    assert_non_null(strstr(shoal_message(), "the run has failed before: "));
+    shoal_close(run);
+}
+
 // ---- a case from text
 
 static void the_text_of_a_case_is_a_case(void **state) {
@@ -1270,6 +1282,7 @@ int main(void) {
         cmocka_unit_test(a_step_past_the_end_is_refused),
         cmocka_unit_test(a_run_advances_to_the_event_at_or_after_a_time),
         cmocka_unit_test(a_failed_run_makes_no_step_and_says_why),
+        cmocka_unit_test(a_run_that_ends_in_contact_has_failed),
         cmocka_unit_test(the_text_of_a_case_is_a_case),
         cmocka_unit_test(an_error_in_a_text_has_its_line),
         cmocka_unit_test(a_variable_is_read_with_its_shape),
