@@ -118,7 +118,8 @@ class Frames(Results):
         known = np.minimum(order, max(bb.size - 1, 0))
         stays = (order < bb.size) & (np.abs((bb[known] if bb.size else np.full(ba.size, np.inf)) - ba) < 1e-6)
         j = known[stays]
-        # a circulation is constant from an interval after the release on, but for merging
+        # a circulation is constant from an interval after the release on, but for merging and, with pressure.span: finite, for
+        # the flow along the span
         part = np.where(t - ba[stays] > self.shedding - 1e-9, np.where(self.rows[a] - ba[stays] < self.shedding - 1e-9, 1, q), q)
         moved = (1 - q) * xa[stays] + q * xb[j], (1 - part) * ca[stays] + part * cb[j], ba[stays]
         gone = xa[~stays], (1 - q) * ca[~stays], ba[~stays]  # removed or merged until the next row

@@ -25,7 +25,7 @@ CASES = {
 format: 1
 time: {end: 2, shedding_interval: 0.02, output_interval: 0.04}
 fluid: {density: 0}
-defaults: {fish: {nodes: 13, sheet_points: 13}}
+defaults: {fish: {force: reactive, nodes: 13, sheet_points: 13}}
 fish:
   - {name: default}
   - {name: half a wave, start: {position: [0, 1]}, wave: {number: -3.1}}
@@ -40,7 +40,7 @@ fish:
 format: 1
 time: {end: 1.6, shedding_interval: 0.02, output_interval: 0.2}
 solver: {rtol: 1e-8}
-fish: [{nodes: 7, sheet_points: 65, force: pressure, start: {speed: 1}}]
+fish: [{nodes: 7, sheet_points: 65, force: pressure, pressure: {span: infinite}, start: {speed: 1}}]
 sweep: [{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true}]
 """,
     "bars.yaml": """\
@@ -54,7 +54,7 @@ sweep:
     "fine.yaml": """\
 format: 1
 time: {end: 4, shedding_interval: 0.02, output_interval: 0.1}
-fish: [{nodes: 9, sheet_points: 17, start: {speed: 0.8}}]
+fish: [{force: reactive, nodes: 9, sheet_points: 17, start: {speed: 0.8}}]
 sweep:
   - {key: "fish[*].wave.amplitude", values: [0.14, 0.18, 0.22, 0.26, 0.3, 0.34, 0.38]}
   - {key: "fish[*].wave.frequency", values: [0.8, 1, 1.2, 1.4, 1.6, 1.8]}

@@ -249,12 +249,14 @@ def open_study(path):
 
 @table("case", "fish", "speed [m/s]", "cost [m/s2]", "largest share")
 def error_bars(bench):
-    """speed and cost of transport with error bars (some minutes)"""
+    """speed and cost of transport with error bars (some minutes; of the school with the default force an hour)"""
+    reactive = ["--set", "fish[*].force=reactive", "--set", "fish[*].start.speed=0.87"]
     for name, fish, of in (("swim", 0, "steady_"), ("fish_pressure", 0, "steady_"), ("school", 0, ""), ("school", 3, "")):
         quantities = [f"{of}speed", f"{of}cost_of_transport"]
         folder = os.path.join(bench.folder, f"{name}-error")
         if not os.path.exists(folder):
-            bench.call("error", bench.case(name), "--of", quantities[0], "--of", quantities[1], "-q", "-o", folder)
+            bench.call("error", bench.case(name), "--of", quantities[0], "--of", quantities[1], "-q", "-o", folder,
+                       *(reactive if name == "school" else []))
         study = open_study(os.path.join(folder, "study.nc"))
         keys, is_choice = strings(study["key_name"]), study["key_is_choice"][:] > 0
         cells, shares = [], np.zeros(len(keys))
@@ -286,7 +288,7 @@ def coverage_cases():
     for body in ("body: {profile: uniform, modulus: 1e6}", "body: {modulus: 1e7}", "wave: {frequency: 2}",
                  "wave: {amplitude: 1.5}, body: {modulus: 3e6}", "body: {tail_thickness: 0.1, modulus: 5e5}",
                  "wave: {frequency: 0.5}", "body: {profile: uniform, modulus: 1e8}"):
-        yield "reactive fish", STEADY, "[nodes]", text(25, 69, body)
+        yield "reactive fish", STEADY, "[nodes]", text(25, 69, f"force: reactive, {body}")
     for body in ("body: {profile: uniform, modulus: 1e6}", "body: {modulus: 1e7}", "body: {}",
                  "wave: {frequency: 2}, body: {depth: 0.5, modulus: 5e6}"):
         yield "fish with pressure", STEADY, "[nodes]", text(13, 69, f"force: pressure, pressure: {{span: infinite}}, {body}")
@@ -309,10 +311,10 @@ def coverage_cases():
     for place, phase, body in (("[0, 0.5]", 90, "body: {}"), ("[1.4, 0.2]", 0, "body: {modulus: 1e7}")):
         fish = ("[{name: right, start: {position: [0, 0], speed: 0.8}}, "
                 f"{{name: left, start: {{position: {place}, speed: 0.8}}, wave: {{phase: {phase}}}}}]")
-        yield "two fish", RUN, "[nodes]", text(25, 69, body, fish, 3)
-        yield "two fish", RUN, OTHERS, text(25, 49, body, fish, 3)
-    for force, nodes, sheet in (("reactive", 25, 49), ("pressure", 13, 33)):
-        body = f"force: {force}, start: {{speed: 0.8}}, control: {{bias: 0.3}}"
+        yield "two fish", RUN, "[nodes]", text(25, 69, f"force: reactive, {body}", fish, 3)
+        yield "two fish", RUN, OTHERS, text(25, 49, f"force: reactive, {body}", fish, 3)
+    for force, nodes, sheet in (("force: reactive", 25, 49), ("force: pressure, pressure: {span: infinite}", 13, 33)):
+        body = f"{force}, start: {{speed: 0.8}}, control: {{bias: 0.3}}"
         yield "turn", RUN, "[nodes]", text(nodes, 69, body, end=3)
         yield "turn", RUN, OTHERS, text(nodes, sheet, body, end=3)
 
@@ -384,12 +386,12 @@ def stiff_fish(bench):
                    *per_event(run))
 
 
-@table("nodes", "speed, 1e6 Pa [m/s]", "cost [m/s2]", "speed, 1e8 Pa", "cost", "speed, pressure", "cost")
+@table("nodes", "speed, 1e6 Pa [m/s]", "cost [m/s2]", "speed, 1e8 Pa", "cost", "speed, reactive", "cost")
 def nodes(bench):
     """speed and cost of the default fish over the number of nodes (two minutes)"""
     for n in (9, 13, 17, 25, 35, 49):
         row = [n]
-        for keys in ((f"{MODULUS}=1e6",), (f"{MODULUS}=1e8",), ("fish[*].force=pressure",)):
+        for keys in ((f"{MODULUS}=1e6",), (f"{MODULUS}=1e8",), ("fish[*].force=reactive",)):
             state = bench.steady("swim", f"fish[*].nodes={n}", "steady.multipliers=false", *keys)
             row += ["none", ""] if state is None else [f"{state['steady_speed'][0]:.4f}",
                                                       f"{state['steady_cost_of_transport'][0]:.4f}"]

@@ -24,7 +24,7 @@ cd "$folder"
 cat >small.yaml <<'end'
 format: 1
 time: {end: 0.1, shedding_interval: 0.01, output_interval: 0.02}
-fish: [{nodes: 7, sheet_points: 13}, {nodes: 7, sheet_points: 13, start: {position: [0, 1]}}]
+fish: [{force: reactive, nodes: 7, sheet_points: 13}, {nodes: 7, sheet_points: 13, start: {position: [0, 1]}}]
 end
 printf 'sweep: [{key: solver.rtol, values: [1e-4, 1e-5]}]\n' | cat small.yaml - >study.yaml
 for command in "check small.yaml" "run small.yaml -q --checkpoint-at 0.06" "info small.nc" "info small.ckpt" \

@@ -31,7 +31,7 @@ def swim(gait, rtol=1e-6):
         {
             "time": {"end": BEATS * EVENTS * interval, "shedding_interval": interval},
             "solver": {"rtol": rtol},
-            "fish": [{"nodes": 9, "sheet_points": 33, "start": {"speed": speed},
+            "fish": [{"force": "reactive", "nodes": 9, "sheet_points": 33, "start": {"speed": speed},
                       "wave": {"amplitude": amplitude, "frequency": frequency}}],
         }
     )

@@ -20,7 +20,7 @@ import shoal  # noqa: E402
 
 PLACE = (1.5, 0.5)  # behind and beside the leader, m
 ACT_EVERY = 0.48  # s
-FISH = {"nodes": 7, "sheet_points": 21, "start": {"speed": 1.1}}  # near the speed that they end up with
+FISH = {"force": "reactive", "nodes": 7, "sheet_points": 21, "start": {"speed": 1.1}}  # near the speed that they end up with
 CASE = {
     "time": {"end": 24, "shedding_interval": 0.04},
     "solver": {"rtol": 1e-4},

@@ -448,7 +448,7 @@ static void check_vortices(const struct check *check) {
     complain_if(
         school->fish[0].force == FORCE_REACTIVE, check, path,
         "belongs to the wake of the first fish, and with 'force: reactive' that fish is not affected by its own "
-        "wake: use 'force: pressure'");
+        "wake: use 'force: pressure' and 'pressure.span: infinite'");
     for (int f = 0; f < school->n_fish; f++) {
         if (school->fish[f].force != FORCE_PRESSURE || school->fish[f].span != SPAN_FINITE) continue;
         complain_if(true, check, path, "a single vortex is not a ring: use 'pressure.span: infinite'");

@@ -235,7 +235,7 @@ const char case_template[] =
     "fish:\n"
     "  - name: fish\n"
     "    length: 1            # m\n"
-    "    force: reactive      # or pressure: a bound vortex sheet, slower\n"
+    "    force: pressure      # or reactive: for slender bodies, 0.6 of the time\n"
     "    start:\n"
     "      position: [0, 0]   # m, of the nose\n"
     "      heading: 180       # degree: 0 is along x, 180 to the left\n"

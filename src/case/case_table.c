@@ -190,6 +190,18 @@ static enum status derive_wave_ramp(const struct key_place *at) {
     return set_default(&at->fish->wave.ramp, wave_period(at->fish));
 }
 
+static enum status derive_force(const struct key_place *at) {
+    const struct school_parameters *const school = &at->values->school;
+    const bool is_possible = school->wake.shedding == SHEDDING_SHEET && school->sheet.curve == BODY_LINE_SMOOTH;
+    if ((int)at->fish->force < 0) at->fish->force = is_possible ? FORCE_PRESSURE : FORCE_REACTIVE;
+    return STATUS_OK;
+}
+
+static enum status derive_span(const struct key_place *at) {
+    if ((int)at->fish->span < 0) at->fish->span = at->fish->force == FORCE_PRESSURE ? SPAN_FINITE : SPAN_INFINITE;
+    return STATUS_OK;
+}
+
 static enum status derive_skin(const struct key_place *at) {
     const bool has_pressure = at->fish->force == FORCE_PRESSURE;
     if ((int)at->fish->drag.skin < 0) at->fish->drag.skin = has_pressure ? SKIN_BOUNDARY_LAYER : SKIN_QUADRATIC;
@@ -422,6 +434,29 @@ const struct key case_table[] = {
     {"fish.name", STRING, IN_FISH(name), NULL, FROM_TO(1, NAME_BYTES), "",
      .meaning = "name of the fish, unique in the school", .derived = "fish1, fish2, ...", .derive = derive_fish_name},
     {"fish.length", REAL, IN_FISH(length), "1", ABOVE(0), "m", .meaning = "body length L", .synonyms = "size chord"},
+
+    {"fish.force", CHOICE, IN_FISH(force), NULL, ANY, "",
+     .meaning =
+         "force of the fluid besides drag; pressure: pressure jump across the bound sheet; reactive: "
+         "accelerated fluid of a slender body, with the flux at the tail; published: added mass across each edge",
+     .words = WORDS("reactive", "published", "pressure"), .published = "published",
+     .derived = "pressure with wake.shedding sheet and sheet.curve smooth, else reactive", .derive = derive_force},
+    {"fish.pressure.span", CHOICE, IN_FISH(span), NULL, ANY, "",
+     .meaning = "force pressure: span of the sheets; finite: the depth of the body, with vortex rings; infinite: "
+                "two-dimensional flow",
+     .words = WORDS("finite", "infinite"), .derived = "finite with force pressure", .derive = derive_span},
+    {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
+     .meaning = "force pressure: fraction of the leading-edge suction that acts on the body"},
+    {"fish.pressure.suction_limit", REAL, IN_FISH(suction_limit), "0.18", FROM(0), "",
+     .meaning = "force pressure: A_0 above which the flow at the nose separates, 0.11 (sharp nose, low Reynolds "
+                "number) to 0.25 (round nose, high); 0: no limit",
+     .synonyms = "lesp critical a0 leading_edge"},
+    {"fish.sensors", NUMBERS, IN_FISH(sensors), "[]", FROM_TO(0, 1), "",
+     .meaning =
+         "force pressure: places of a lateral line, as fractions of the length from the nose; the result has the "
+         "pressure on both sides of the body there",
+     .synonyms = "lateral_line sensor probes"},
+
     {"fish.nodes", INTEGER, IN_FISH(nodes), "25", FROM_TO(4, MAX_NODES), "", .meaning = "number of nodes of the body",
      .synonyms = "n_nodes segments points resolution", .published = "7"},
     {"fish.reference_nodes", INTEGER, IN_FISH(reference_nodes), "7", FROM_TO(2, MAX_NODES), "",
@@ -495,26 +530,6 @@ const struct key case_table[] = {
     {"fish.wave.ramp", REAL, IN_FISH(wave.ramp), NULL, FROM(0), "s",
      .meaning = "time over which the amplitude is ramped up", .derived = "one period, 1/frequency (0 for frequency 0)",
      .derive = derive_wave_ramp, .published = "0"},
-
-    {"fish.force", CHOICE, IN_FISH(force), "reactive", ANY, "",
-     .meaning = "force of the fluid besides drag; reactive: accelerated fluid, with the flux at the tail; published: "
-                "added mass across each edge; pressure: pressure jump across the bound sheet",
-     .words = WORDS("reactive", "published", "pressure"), .published = "published"},
-    {"fish.pressure.span", CHOICE, IN_FISH(span), "infinite", ANY, "",
-     .meaning = "force pressure: span of the sheets; finite: the depth of the body, with vortex rings; infinite: "
-                "two-dimensional flow",
-     .words = WORDS("finite", "infinite")},
-    {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
-     .meaning = "force pressure: fraction of the leading-edge suction that acts on the body"},
-    {"fish.pressure.suction_limit", REAL, IN_FISH(suction_limit), "0.18", FROM(0), "",
-     .meaning = "force pressure: A_0 above which the flow at the nose separates, 0.11 (sharp nose, low Reynolds "
-                "number) to 0.25 (round nose, high); 0: no limit",
-     .synonyms = "lesp critical a0 leading_edge"},
-    {"fish.sensors", NUMBERS, IN_FISH(sensors), "[]", FROM_TO(0, 1), "",
-     .meaning =
-         "force pressure: places of a lateral line, as fractions of the length from the nose; the result has the "
-         "pressure on both sides of the body there",
-     .synonyms = "lateral_line sensor probes"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},

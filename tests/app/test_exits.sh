@@ -9,13 +9,13 @@ cat >small.yaml <<'end'
 format: 1
 name: small
 time: {end: 0.1, shedding_interval: 0.02, output_interval: 0.02}
-fish: [{nodes: 7, sheet_points: 9}]
+fish: [{force: reactive, nodes: 7, sheet_points: 9}]
 end
 cat >steady.yaml <<'end'
 format: 1
 name: steady
 time: {end: 1, shedding_interval: 0.02}
-fish: [{nodes: 9, sheet_points: 17, wave: {frequency: 1}}]
+fish: [{force: reactive, nodes: 9, sheet_points: 17, wave: {frequency: 1}}]
 steady: {tolerance: 1.0e-10, beats: 5000}
 end
 ended() { ((code == $1)); }

@@ -132,20 +132,20 @@ refuses 2 "--times 100: the run covers 0 to 1 s" plot.py seven.nc --times 0.5 10
 "$program" run "$root/cases/demo.yaml" -q -o swim.nc --set time.end=0.2 --set "fish[0].nodes=7"
 for interval in 0.1 0.02; do
     "$program" run "$root/cases/demo.yaml" -q -o rows_$interval.nc --set time.end=1.2 --set time.shedding_interval=0.02 \
-        --set "time.output_interval=$interval" --set "fish[0].nodes=9" --set "fish[0].sheet_points=17" 2>/dev/null
+        --set "time.output_interval=$interval" --set "fish[0].nodes=9" --set "fish[0].force=reactive" 2>/dev/null
 done
 "$program" run seven.yaml -q -o turned.nc --set "fish[2].start.heading=-178"
 cat >refine.yaml <<'end'
 format: 1
 time: {end: 0.4, shedding_interval: 0.04}
-fish: [{nodes: 5, sheet_points: 9, start: {speed: 0.5}}]
+fish: [{force: reactive, nodes: 5, sheet_points: 9, start: {speed: 0.5}}]
 sweep: [{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true}]
 end
 "$program" study refine.yaml -q -o refine >/dev/null 2>&1
 cat >map.yaml <<'end'
 format: 1
 time: {end: 0.1, shedding_interval: 0.05, output_interval: 0.05}
-fish: [{nodes: 5, sheet_points: 9}]
+fish: [{force: reactive, nodes: 5, sheet_points: 9}]
 sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.3, 0.4]}, {key: "fish[0].wave.frequency", values: [1, 2]}]
 end
 "$program" study map.yaml -q -o map >/dev/null 2>&1
@@ -412,7 +412,7 @@ done
 cat >sweep.yaml <<'end'
 format: 1
 time: {end: 0.1, shedding_interval: 0.05, output_interval: 0.05}
-fish: [{nodes: 5, sheet_points: 9}]
+fish: [{force: reactive, nodes: 5, sheet_points: 9}]
 sweep:
   - {key: "fish[0].wave.amplitude", values: [0.2, 0.3]}
   - {key: "fish[0].wave.frequency", values: [1, 2]}

@@ -118,7 +118,7 @@ format: 1
 time: {end: 59.9, shedding_interval: 0.1, output_interval: 0.1}
 wake: {lifetime: 40, tolerance: 1e-3}
 fluid: {density: 0}
-defaults: {fish: {nodes: 5, sheet_points: 5, wave: {amplitude: 0.001}}}
+defaults: {fish: {force: reactive, nodes: 5, sheet_points: 5, wave: {amplitude: 0.001}}}
 fish: [{}, {start: {position: [0, 5]}}, {start: {position: [0, 10]}}, {start: {position: [0, 15]}}, {start: {position: [0, 20]}}, {start: {position: [0, 25]}}, {start: {position: [0, 30]}}]
 end
 run run long.yaml -q -o long.nc
@@ -151,7 +151,7 @@ check what_is_left_out_is_said grep -q '"thinned":"[^"]*wakes: one of ' long.htm
 
 # 200 fish, with headings on both sides of 180 degrees, without fluid: one fish jerks
 { printf 'format: 1\ntime: {end: 1, shedding_interval: 0.1, output_interval: 0.1}\nfluid: {density: 0}\nwake: {lifetime: 0.3}\n'
-  printf 'defaults: {fish: {nodes: 5, sheet_points: 5}}\nfish:\n'
+  printf 'defaults: {fish: {force: reactive, nodes: 5, sheet_points: 5}}\nfish:\n'
   for i in {0..199}; do
       printf '  - {start: {position: [%d, %d], heading: %d}, wave: {phase: %d}}\n' $((i / 20 * 2)) $((i % 20)) $((175 + i % 11)) $((i * 37 % 360))
   done; } >crowd.yaml

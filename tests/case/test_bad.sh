@@ -166,7 +166,7 @@ set_fails set_index_after_a_dot '--set fish.0.length=2: error: fish.0.length: wr
 set_fails set_star_after_a_dot 'fish.*.wave.phase: write fish[*].wave.phase' 'fish.*.wave.phase=2'
 set_fails set_in_another_section 'unknown key here; the key belongs to fish[0].wave or fish[0].motion' 'fish[0].body.frequency=2'
 set_fails set_in_one_other_section 'unknown key here; the key belongs to fish[0].body' 'fish[0].wave.modulus=2'
-set_fails set_viscosity "has no effect: all fish have 'drag.skin: quadratic' with the coefficient drag.tangential" fluid.viscosity=1e-3
+set_fails set_viscosity "has no effect: all fish have 'drag.skin: quadratic' with the coefficient drag.tangential" 'fish[*].force=reactive' fluid.viscosity=1e-3
 set_fails set_reynolds 'the friction is set by drag.tangential of a fish, or by fluid.viscosity with' fluid.reynolds=1000
 set_fails set_index_open 'expects the number of a fish, as in fish[0]' 'fish[0=7'
 set_fails set_no_dot_after_index "fish[0]nodes: expects a '.' after the ']'" 'fish[0]nodes=7'

@@ -71,7 +71,8 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     assert_int_equal(fish->nodes, 25);
     assert_int_equal(fish->reference_nodes, 7);
     assert_int_equal(fish->sheet_points, 49);
-    assert_int_equal(fish->force, FORCE_REACTIVE);
+    assert_int_equal(fish->force, FORCE_PRESSURE);
+    assert_int_equal(fish->span, SPAN_FINITE);
     assert_int_equal(fish->body.section, SECTION_MEAN);
     assert_int_equal(fish->body.profile, PROFILE_JOUKOWSKI);
     assert_int_equal(fish->body.second_moment, SECOND_MOMENT_ELLIPSE);
@@ -83,7 +84,8 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     NEAR(fish->body.modulus, 1e6, 0, 0);
     NEAR(fish->wave.number, -6, 0, 0);
     NEAR(fish->drag.tangential, 4e-3, 0, 0);
-    NEAR(fish->drag.normal, 1, 0, 0);
+    NEAR(fish->drag.normal, 0, 0, 0);
+    assert_int_equal(fish->drag.skin, SKIN_BOUNDARY_LAYER);
     NEAR(fish->added_mass.coefficient, 1, 0, 0);
     assert_int_equal(fish->added_mass.extent, EXTENT_DEPTH);
     assert_int_equal(fish->drag.law, DRAG_QUADRATIC);

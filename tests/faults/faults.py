@@ -18,7 +18,7 @@ program, shim, every = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]
 CASE = """format: 1
 name: victim
 time: {end: 0.1, shedding_interval: 0.01, output_interval: 0.01, checkpoint_interval: 0.03}
-fish: [{nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}}]
+fish: [{force: reactive, nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}}]
 """
 CALLS = ["open", "read", "write", "pwrite", "lseek", "fsync", "ftruncate", "rename", "link", "close"]
 REASONS = {

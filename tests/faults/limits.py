@@ -16,11 +16,11 @@ SCHOOL = """format: 1
 name: school
 time: {end: 0.04, shedding_interval: 0.02, output_interval: 0.02, checkpoint_interval: 0.02}
 fish:
-""" + "".join(f"  - {{nodes: 21, sheet_points: 41, start: {{position: [0, {0.7 * i:.1f}]}}}}\n" for i in range(15))
+""" + "".join(f"  - {{force: reactive, nodes: 21, sheet_points: 41, start: {{position: [0, {0.7 * i:.1f}]}}}}\n" for i in range(15))
 STEADY = """format: 1
 name: steady
 time: {end: 1, shedding_interval: 0.05}
-fish: [{nodes: 41, sheet_points: 65, wave: {frequency: 1}}]
+fish: [{force: reactive, nodes: 41, sheet_points: 65, wave: {frequency: 1}}]
 steady: {tolerance: 0.03, multipliers: false}
 """
 AXIS = "sweep=[{key: 'fish[0].wave.amplitude', values: [0.2, 0.3]}]"

@@ -15,14 +15,14 @@ CASE = """format: 1
 name: small
 time: {end: 0.04, shedding_interval: 0.01, output_interval: 0.02, checkpoint_interval: 0.02}
 fish:
-  - {nodes: 5, sheet_points: 9, body: {tail_thickness: 0.4}}
-  - {nodes: 5, sheet_points: 9, body: {tail_thickness: 0.4}, start: {position: [0, 0.7]}, control: {law: heading, desired_heading: 170}}
+  - {force: reactive, nodes: 5, sheet_points: 9, body: {tail_thickness: 0.4}}
+  - {force: reactive, nodes: 5, sheet_points: 9, body: {tail_thickness: 0.4}, start: {position: [0, 0.7]}, control: {law: heading, desired_heading: 170}}
 """
 AXIS = "sweep=[{key: 'fish[0].wave.amplitude', values: [0.2, 0.3]}]"
 STEADY = """format: 1
 name: steady
 time: {end: 1, shedding_interval: 0.1}
-fish: [{nodes: 5, sheet_points: 9, body: {tail_thickness: 0.4}, wave: {frequency: 1}}]
+fish: [{force: reactive, nodes: 5, sheet_points: 9, body: {tail_thickness: 0.4}, wave: {frequency: 1}}]
 steady: {tolerance: 0.01, multipliers: false}
 """
 # what each command is, and what it makes; what it replaces is in the folder kept

@@ -21,7 +21,7 @@ SECTOR = 512
 CASE = """format: 1
 name: victim
 time: {end: 0.16, shedding_interval: 0.01, output_interval: 0.01, checkpoint_interval: 0.04}
-fish: [{nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}}]
+fish: [{force: reactive, nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}}]
 """
 KINDS = ["create", "write", "truncate", "sync", "sync folder", "rename", "link", "unlink"]
 Entry = collections.namedtuple("Entry", "kind inode offset length name other data")

@@ -12,7 +12,7 @@ cat >small.yaml <<'end'
 format: 1
 name: small
 time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.02}
-fish: [{nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}}]
+fish: [{force: reactive, nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}}]
 end
 ended() { ((code == $1)); }
 # the attribute of a file that holds whole rows
@@ -77,7 +77,7 @@ else
     # a school; from the minimum of the program to enough memory: each step ends well or with a message about memory
     sed 's/^fish.*/fish:/' small.yaml >many.yaml
     for i in $(seq 25); do
-        echo "  - {name: f$i, nodes: 40, sheet_points: 41, start: {position: [0, $i]}}"
+        echo "  - {name: f$i, force: reactive, nodes: 40, sheet_points: 41, start: {position: [0, $i]}}"
     done >>many.yaml
     n_out=0 n_good=0
     least=60000

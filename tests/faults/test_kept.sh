@@ -10,13 +10,13 @@ cat >small.yaml <<'end'
 format: 1
 name: small
 time: {end: 0.1, shedding_interval: 0.02, output_interval: 0.02}
-fish: [{nodes: 7, sheet_points: 9, body: {tail_thickness: 0.3}}]
+fish: [{force: reactive, nodes: 7, sheet_points: 9, body: {tail_thickness: 0.3}}]
 end
 cat >still.yaml <<'end'
 format: 1
 name: still
 time: {end: 1, shedding_interval: 0.1}
-fish: [{nodes: 7, sheet_points: 9, body: {tail_thickness: 0.3}, wave: {frequency: 1}}]
+fish: [{force: reactive, nodes: 7, sheet_points: 9, body: {tail_thickness: 0.3}, wave: {frequency: 1}}]
 steady: {beats: 3}
 end
 run run small.yaml -q -o good.nc

@@ -17,7 +17,7 @@ cat >small.yaml <<'end'
 format: 1
 name: small
 time: {end: 0.04, shedding_interval: 0.02, output_interval: 0.02}
-fish: [{nodes: 4, sheet_points: 5}]
+fish: [{force: reactive, nodes: 4, sheet_points: 5}]
 end
 "$program" run small.yaml -q --force -o results/run.nc
 "$program" field results/run.nc -q --force --at 0.04 --grid 4,4 -o results/field.nc

@@ -17,8 +17,8 @@ format: 1
 name: pair
 time: {end: 0.1, shedding_interval: 0.02, output_interval: 0.02}
 fish:
-  - {name: a, nodes: 7, sheet_points: 21}
-  - {name: b, nodes: 9, sheet_points: 21, start: {position: [0.2, 0.7]}}
+  - {name: a, force: reactive, nodes: 7, sheet_points: 21}
+  - {name: b, force: reactive, nodes: 9, sheet_points: 21, start: {position: [0.2, 0.7]}}
 CASE
 
 install_it() {

@@ -24,7 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("SHOAL_MODULE", str(ROOT / "scripts")))
 import shoal  # noqa: E402
 
-SMALL = {"nodes": 7, "sheet_points": 21}
+SMALL = {"force": "reactive", "nodes": 7, "sheet_points": 21}
 PAIR = {
     "time": {"end": 0.2, "shedding_interval": 0.02, "output_interval": 0.02},
     "fish": [{"name": "a", **SMALL, "wave": {"ramp": 0.1}},

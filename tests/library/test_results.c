@@ -356,11 +356,13 @@ static const char school[] =
     "    {nodes: 5, sheet_points: 23, start: {position: [0.1, -0.7], heading: 180, speed: 0.5}, wave: {frequency: 3},\n"
     "     motion: {prescribed: head, heave: 0.05, pitch: 8, pitch_phase: 80, frequency: 3, phase: 20, pivot: "
     "0.1}%s}]\n";
+#define REACTIVE ", force: reactive"
+#define PLANE ", force: pressure, pressure: {span: infinite}"
 static const char *const school_parts[][4] = {
-    {", viscosity: 2e-6, gust: {amplitude: 0.15, frequency: 2.2}", "", ", force: pressure, sensors: [0.2, 0.7]", ""},
+    {", viscosity: 2e-6, gust: {amplitude: 0.15, frequency: 2.2}", REACTIVE, PLANE ", sensors: [0.2, 0.7]", REACTIVE},
     // the rows that begin with r, p
-    {"", "", "", ""},
-    {"", ", force: pressure", ", force: pressure", ", force: pressure"},
+    {"", REACTIVE, REACTIVE, REACTIVE},
+    {"", PLANE, PLANE, PLANE},
 };
 
 #define RATE "sheet.kutta=rate; sheet.kutta_ramp=0.05"
@@ -457,7 +459,7 @@ static const char *const assignments[] = {
     "fish[0].force=published",
     "fish[0].force=published; fish[0].added_mass.extent=thickness",
     "fish[0].force=published; fish[0].added_mass.coefficient=1.5; " LINEAR,
-    "fish[0].force=pressure",
+    "fish[0].force=pressure; fish[0].pressure.span=infinite",
     "",
     "r ",
     "p ",
@@ -512,7 +514,7 @@ static const char *const assignments[] = {
     "fish[0].control.waypoints=[[-1, -1], [-2, -3]]",
     "fish[0].control.waypoints=[[-1, -1], [-2, -3]]; fish[0].control.acceptance_radius=3",
     "fish[0].control.bias=0.2",
-    "r preset=published",
+    "r preset=published; fish[*].force=published",
 };
 enum { N_ASSIGNMENTS = sizeof assignments / sizeof *assignments, MAX_ASSIGNED = 6 };
 

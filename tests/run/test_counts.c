@@ -75,7 +75,7 @@ static void a_default_fish_costs_as_little(void **state) {
         print_cost("default fish", moduli[i], &cost);
         assert_true(cost.steps <= 2.5);
         assert_true(cost.iterations <= 6);
-        assert_true(cost.jacobians <= 0.4);
+        assert_true(cost.jacobians <= 0.5);  // most where the slowest mode beats with the muscle
         // stiff bodies: some convergence failures with old Jacobians that an age limit would have replaced
         assert_true(cost.failures <= 0.04);
     }
@@ -121,7 +121,7 @@ static void a_light_or_stiff_body_under_pressure_costs_as_little(void **state) {
         snprintf(text, sizeof text,
                  SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1.0e-4}\n"
-                 "fish: [{force: pressure, drag: {skin: laminar}, start: {speed: 0.65},\n"
+                 "fish: [{force: pressure, pressure: {span: infinite}, drag: {skin: laminar}, start: {speed: 0.65},\n"
                  "        wave: {amplitude: 0.83, constant: 0.2, linear: 0.8, quadratic: 0, number: -6.28, ramp: 1},\n"
                  "        body: {profile: uniform, thickness: 0.17888544, depth: 1, relaxation_time: 0,\n"
                  "               density: %g, modulus: %g}}]\n",

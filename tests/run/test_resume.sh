@@ -11,8 +11,8 @@ format: 1
 time: {end: 1, shedding_interval: 0.01, output_interval: 0.02}
 output: {wake_interval: 0.1}
 fish:
-  - {name: a, nodes: 7, sheet_points: 21}
-  - {name: b, nodes: 9, sheet_points: 21, start: {position: [0.2, 1.5]}, control: {law: heading, desired_heading: 170}}
+  - {name: a, force: reactive, nodes: 7, sheet_points: 21}
+  - {name: b, force: reactive, nodes: 9, sheet_points: 21, start: {position: [0.2, 1.5]}, control: {law: heading, desired_heading: 170}}
 CASE
 
 # Start a run in the background, and wait for the first rows.
@@ -213,7 +213,7 @@ done
 
 # an event at t = 0 that takes seconds: there is no earlier event to return to
 rm -f ./*.nc ./*.ckpt*
-sed 's/nodes: [79], sheet_points: 21/nodes: 600, sheet_points: 600/' small.yaml >large.yaml
+sed 's/nodes: [79], sheet_points: 21/force: reactive, nodes: 600, sheet_points: 600/' small.yaml >large.yaml
 env --default-signal=TERM "$program" run large.yaml -q -o run.nc >out 2>err </dev/null &
 pid=$!
 wait_for handles "$pid" TERM

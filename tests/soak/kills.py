@@ -22,8 +22,8 @@ CASE = """format: 1
 time: {end: 0.8, shedding_interval: 0.01, output_interval: 0.02}
 output: {wake_interval: 0.1}
 fish:
-  - {name: a, nodes: 7, sheet_points: 21}
-  - {name: b, nodes: 9, sheet_points: 21, start: {position: [0.2, 1.5]}, control: {law: heading, desired_heading: 170}}
+  - {name: a, force: reactive, nodes: 7, sheet_points: 21}
+  - {name: b, force: reactive, nodes: 9, sheet_points: 21, start: {position: [0.2, 1.5]}, control: {law: heading, desired_heading: 170}}
 """
 # options of the runs: the second one writes a checkpoint at every event
 WAYS = [

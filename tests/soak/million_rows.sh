@@ -12,7 +12,7 @@ time: {end: 10000, shedding_interval: 0.01, output_interval: 0.01, checkpoint_in
 output: {wake_interval: 10000}
 fluid: {density: 0}
 wake: {lifetime: 0.02, decay: 0}
-fish: [{nodes: 4, sheet_points: 5, body: {tail_thickness: 0.4}}]
+fish: [{force: reactive, nodes: 4, sheet_points: 5, body: {tail_thickness: 0.4}}]
 end
 run run long.yaml -q
 check "a run writes a million rows" test "$code" = 0

@@ -51,7 +51,7 @@ def draw_fish(draw, number, length, rate, density):
         # sqrt(EI/(m L^4)) or, with a held head, 0.56 of that root, is not below its beat
         stiffness = max(stiffness, mass * (3.2 if prescribed == "head" else 0.08))
     modulus = bending_modulus(stiffness, density, speed, length, thickness)
-    keys = [f"name: f{number}", f"length: {length}", f"nodes: {nodes}", f"sheet_points: {points}", f"force: {force}",
+    keys = [f"name: f{number}", f"length: {length}", f"nodes: {nodes}", f"sheet_points: {points}", f"force: {force}", "pressure: {span: infinite}",
             f"start: {{position: [{start[0]:.4f}, {start[1]:.4f}], heading: {heading:.3f}, speed: {start_speed}}}",
             f"body: {{profile: {profile}, thickness: {thickness:.4f}, depth: {width}, density: "
             f"{mass * density / (math.pi / 4 * thickness):.6g}, modulus: {modulus:.6g}, relaxation_time: {relaxation}}}"]

@@ -12,7 +12,7 @@ import netCDF4
 program, shim = (os.path.abspath(path) for path in sys.argv[1:3])
 CASE = """format: 1
 time: {end: 0.3, shedding_interval: 0.02, output_interval: 0.04, checkpoint_interval: 0.04}
-fish: [{nodes: 7, sheet_points: 21}]
+fish: [{force: reactive, nodes: 7, sheet_points: 21}]
 """
 RUN = ["run", "case.yaml", "-o", "victim.nc"]
 # how a call fails, and whether all later ones do; or the program is killed before or after it

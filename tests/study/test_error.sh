@@ -84,7 +84,7 @@ cat >swimmer.yaml <<'end'
 format: 1
 time: {end: 0.5, shedding_interval: 0.02}
 steady: {tolerance: 1e-4}
-fish: [{name: fish, nodes: 9, sheet_points: 17, body: {profile: uniform, modulus: 1e7, thickness: 0.1}}]
+fish: [{name: fish, force: reactive, nodes: 9, sheet_points: 17, body: {profile: uniform, modulus: 1e7, thickness: 0.1}}]
 error: {of: [steady_speed, steady_cost_of_transport], keys: [nodes, shedding_interval, rtol, smoothing]}
 end
 run study swimmer.yaml -j 2

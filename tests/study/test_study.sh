@@ -269,7 +269,7 @@ if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     cat >held.yaml <<'end'
 format: 1
 time: {end: 3, shedding_interval: 0.05}
-defaults: {fish: {nodes: 5, sheet_points: 11}}
+defaults: {fish: {force: reactive, nodes: 5, sheet_points: 11}}
 fish: [{motion: {prescribed: head}}]
 sweep: [{key: "fish[*].start.speed", values: [0.5, 1]}]
 end

@@ -9,7 +9,7 @@ cat >study.yaml <<'end'
 format: 1
 name: slow
 time: {end: 1000, shedding_interval: 0.02, output_interval: 1}
-fish: [{nodes: 7, sheet_points: 9}]
+fish: [{force: reactive, nodes: 7, sheet_points: 9}]
 sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.25, 0.3]}]
 end
 

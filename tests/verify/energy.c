@@ -105,8 +105,8 @@ static void fifth_order(void) {
 
 // means over the last beat of a run, W, and the stored energy of the body
 struct beat {
-    double actuation, damping, drag, added_mass, wake, stored; /* W */
-    double speed;                                              /* m/s */
+    double actuation, damping, drag, pressure, suction, stored; /* W */
+    double speed;                                               /* m/s */
 };
 
 static double body_energy(const struct diagnostics_fish *fish) {
@@ -130,8 +130,8 @@ static struct beat last_beat(double speed, int n_beats) {
         beat.actuation += part * fish->actuation_power;
         beat.damping += part * fish->damping_power;
         beat.drag += part * fish->drag_power;
-        beat.added_mass += part * fish->added_mass_power;
-        beat.wake += part * fish->wake_power;
+        beat.pressure += part * fish->pressure.pressure_power;
+        beat.suction += part * fish->pressure.suction_power;
         if (i == 0) beat.stored = -body_energy(fish);
     }
     beat.stored += body_energy(fish);
@@ -143,8 +143,8 @@ static struct beat last_beat(double speed, int n_beats) {
 static void default_fish(void) {
     const int n_beats = verify_is_fast() ? 10 : 40;
     const struct beat beat = last_beat(0, n_beats);
-    const double power[] = {beat.actuation, beat.damping, beat.drag, beat.added_mass, beat.wake};
-    static const char *const name[] = {"muscle", "damping", "drag", "added mass", "wake"};
+    const double power[] = {beat.actuation, beat.damping, beat.drag, beat.pressure, beat.suction};
+    static const char *const name[] = {"muscle", "damping", "drag", "pressure", "suction"};
     double left = -beat.stored;
     for (int i = 0; i < 5; i++) {
         verify_show(verify_text("default fish from rest, beat %d: power of %s, W", n_beats, name[i]), "mean", power[i]);

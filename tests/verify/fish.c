@@ -1,5 +1,6 @@
-/* fish.c: the section "fish": the numbers of a default fish converge in the nodes and in the stiffness, and do not
- * depend on numerical parameters of the wake. doc/model.md, sections 1, 3, 9, 13. */
+/* fish.c: the section "fish": the numbers of a default fish with the reactive force converge in the nodes and in the
+ * stiffness, and do not depend on numerical parameters of the wake; the numbers of the default fish itself converge in
+ * nodes, sheet points and shedding interval. doc/model.md, sections 1, 3, 9, 13, 18. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -30,6 +31,7 @@ static struct swim steady_swim(const char *school, const char *keys) {
 }
 
 #define COARSE "time: {end: 1, shedding_interval: 0.02}\n"
+#define REACTIVE "force: reactive, "
 
 // ---- nodes
 
@@ -39,7 +41,7 @@ static void refine(const char *modulus, const struct swim *limit, double speed_b
     struct swim swim[N];
     char keys[96];
     for (int i = 0; i < N; i++) {
-        snprintf(keys, sizeof keys, "nodes: %d, body: {modulus: %s}", nodes[i], modulus);
+        snprintf(keys, sizeof keys, REACTIVE "nodes: %d, body: {modulus: %s}", nodes[i], modulus);
         swim[i] = steady_swim(COARSE, keys);
         verify_point("fish_nodes", verify_text("speed [m/s], %s Pa", modulus), nodes[i], swim[i].speed);
     }
@@ -60,37 +62,48 @@ static void refine(const char *modulus, const struct swim *limit, double speed_b
 // ---- parameters without an effect on the fish
 
 static void leave_out_the_wake(void) {
-    const struct swim standard = steady_swim(COARSE, "");
+    const struct swim standard = steady_swim(COARSE, REACTIVE);
     static const double smoothing[] = {0.05, 0.4};
     for (int i = 0; i < 2; i++) {
         char school[96];
         snprintf(school, sizeof school, COARSE "wake: {smoothing: %g}\n", smoothing[i]);
         verify_relative(verify_text("wake.smoothing %g: speed, m/s", smoothing[i]), "smoothing 0.1: not felt",
-                        standard.speed, steady_swim(school, "").speed, 1e-4);
+                        standard.speed, steady_swim(school, REACTIVE).speed, 1e-4);
     }
 }
 
 // the same swimming motion at another frequency: modulus proportional to the square
 static void scale(void) {
-    const struct swim standard = steady_swim("time: {end: 1}\n", "");
+    const struct swim standard = steady_swim("time: {end: 1}\n", REACTIVE);
     static const double frequency[] = {0.2, 4, 20};
     for (int i = 0; i < 3; i++) {
         const double f = frequency[i];
         char keys[96];
-        snprintf(keys, sizeof keys, "wave: {frequency: %g}, body: {modulus: %.1f}", f, 1e6 * f * f);
+        snprintf(keys, sizeof keys, REACTIVE "wave: {frequency: %g}, body: {modulus: %.1f}", f, 1e6 * f * f);
         const struct swim swim = steady_swim("time: {end: 1}\n", keys);
         verify_relative(verify_text("%g Hz: lengths per beat", f), "1 Hz", standard.speed, swim.speed / f, 1e-5);
         verify_relative(verify_text("%g Hz: cost over f^2, m", f), "1 Hz", standard.cost, swim.cost / (f * f), 1e-4);
     }
 }
 
+// ---- the default fish
+
+// all lengths and the interval halved at once; bounds: the error bars of `shoal error cases/swim.yaml`
+static void refine_all(void) {
+    const struct swim standard = steady_swim("time: {end: 1}\n", "");
+    const struct swim fine = steady_swim("time: {end: 1, shedding_interval: 0.005}\n", "nodes: 49, sheet_points: 137");
+    static const char source[] = "49 nodes, 137 sheet points, half the interval";
+    verify_relative("default fish: speed, m/s", source, fine.speed, standard.speed, 4.4e-3);
+    verify_relative("default fish: cost, m/s2", source, fine.cost, standard.cost, 2.3e-2);
+}
+
 // ---- stiff bodies
 
 // the cost of the last of eight beats from rest
 static double cost_from_rest(double modulus, double rtol) {
-    struct simulation *const simulation =
-        verify_open("format: 1\n" VERIFY_DEFAULTS "time: {end: 8}\nsolver: {rtol: %g}\nfish: [{body: {modulus: %g}}]\n",
-                    rtol, modulus);
+    struct simulation *const simulation = verify_open(
+        "format: 1\n" VERIFY_DEFAULTS "time: {end: 8}\nsolver: {rtol: %g}\nfish: [{" REACTIVE "body: {modulus: %g}}]\n",
+        rtol, modulus);
     verify_run(simulation, 8);
     simulate_measure(simulation);
     const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
@@ -120,4 +133,5 @@ void verify_fish(void) {
     leave_out_the_wake();
     scale();
     stiffen();
+    refine_all();
 }

@@ -122,7 +122,7 @@ void verify_interval(void) {
     static const char *const removed[] = {"retained", "dropped"};
     for (int is_moving = verify_is_fast(); is_moving < 2; is_moving++) {
         for (int d = 0; d < (verify_is_fast() ? 1 : 2); d++) {
-            const struct variant free_sheet = {"sheet", "pressure", removed[d], is_moving};
+            const struct variant free_sheet = {"sheet", "pressure, pressure: {span: infinite}", removed[d], is_moving};
             const struct variant one = {"continuous", "published", removed[d], is_moving};
             halve_interval(&free_sheet, sheet);
             halve_interval(&one, continuous);
