@@ -191,6 +191,21 @@ static void the_examples_of_the_standard(void **state) {
     is_written_as("\xff\xfe\xfd", "//79");
 }
 
+static void a_text_doubles_its_memory(void **state) {
+    (void)state;
+    struct text text = {0};
+    const int most = 20;
+    n_until_failure = most;
+    for (int i = 0; i < 4000; i++) text_add(&text, "%04d ", i);
+    const int n_allocations = most - n_until_failure;
+    n_until_failure = -1;
+    assert_false(text.failed);
+    assert_in_range(n_allocations, 1, 9);  // 20,000 bytes
+    assert_int_equal(text.length, 20000);
+    assert_int_equal(strlen(text.text), 20000);
+    free(text.text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers_are_decimal_and_whole_strings),
@@ -204,6 +219,7 @@ int main(void) {
         cmocka_unit_test(columns_are_aligned_without_blanks_at_the_end),
         cmocka_unit_test(a_string_of_json_has_no_bare_quote_or_control_character),
         cmocka_unit_test(the_examples_of_the_standard),
+        cmocka_unit_test(a_text_doubles_its_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
