@@ -422,6 +422,24 @@ static void a_formation_turns_with_its_first_fish(void **state) {
     simulate_free(simulation);
 }
 
+static void a_fish_is_not_placed_on_another(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(COARSE "defaults: {fish: {" FISH
+                                 "}}\nfish: [{name: a}, {name: b, start: {position: [1, 2]}}, "
+                                 "{name: c, start: {position: [3, 1]}}]\n");
+    struct steady_map map;
+    school_ok(steady_map_create(&map, simulation));
+    const struct steady_unknown place[] = {{2, STEADY_AHEAD}, {2, STEADY_ASIDE}, {1, STEADY_AHEAD}, {1, STEADY_ASIDE}};
+    double value[4];
+    steady_map_read(&map, 4, place, value);
+    const double add[] = {value[2] - value[0] + 0.1, value[3] - value[1]};
+    assert_int_equal(steady_map_add(&map, 2, place, add), STATUS_SOLVER);
+    if (!strstr(status_message(), "makes b and c overlap")) fail_msg("%s", status_message());
+    steady_map_free(&map);
+    simulate_free(simulation);
+}
+
 static void speed_and_slip_are_those_through_the_water(void **state) {
     (void)state;
     struct steady_setup setup;
@@ -530,6 +548,7 @@ int main(void) {
         cmocka_unit_test(of_a_held_fish_thrust_and_power_must_repeat),
         cmocka_unit_test(headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is_steered),
         cmocka_unit_test(a_formation_turns_with_its_first_fish),
+        cmocka_unit_test(a_fish_is_not_placed_on_another),
         cmocka_unit_test(speed_and_slip_are_those_through_the_water),
         cmocka_unit_test(what_can_have_no_steady_state_is_refused_with_the_reason),
         cmocka_unit_test(a_search_that_takes_too_long_says_how_far_it_came),
