@@ -36,6 +36,7 @@ FREE = (
     r"(?<=^! )(shoal: warning: )?(.* cannot be unstable|.* steps of).*",
     r"^  (total circulation|momentum balance|size|program|history|wall_time|steps|\w+_(evaluations|iterations|failures)) .*",
     r"(?<=\]) +[\d. ]+$| <- spend here.*|\+- \S+ times|CPU x [\d.]+",  # times of a plan
+    r"^made by .*|^           SUNDIALS .*|^on  .*|^so far .*|(?<=\d)  [0-9a-f]{8}$",  # of a checkpoint
     r"unstable at t = \S+ s?.*|(?<=after )\d+ steps.*",
     r"^(wall_time|beat_time|steps|\w+_evaluations|\w+_iterations|\w+_failures|step_size|order|energy_balance) .*",
     r"^  \"(program|history|wall_time|beat_time|steps|\w+_evaluations|\w+_iterations|\w+_failures|step_size|energy_\w+)\": .*",
