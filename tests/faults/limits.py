@@ -28,7 +28,7 @@ RUN = ["new.nc", "new.ckpt", "new.ckpt.previous"]
 # what each command is, and the files that it would replace
 COMMANDS = {
     "run": (["run", "school.yaml", "-o", "new.nc", "--force"], RUN),
-    "run with pressure": (["run", "school.yaml", "-o", "new.nc", "--force", "--set", "fish[*].force=pressure"], RUN),
+    "run with pressure": (["run", "school.yaml", "-o", "new.nc", "--force", "--set", "fish[*].force=pressure", "--set", "fish[*].pressure.span=infinite"], RUN),
     "run with threads": (["run", "school.yaml", "-o", "new.nc", "--force", "--threads", "4"], RUN),
     "resume": (["resume", "new.ckpt", "--end", "0.06"], RUN),
     "steady": (["steady", "steady.yaml", "-o", "steady.nc", "--force"], ["steady.nc"]),

@@ -32,7 +32,7 @@ COMMANDS = {
     "run": (["run", "small.yaml", "-q", "-o", "new.nc"], ["new.nc", "new.ckpt", "new.ckpt.previous"]),
     "run --force": (["run", "small.yaml", "-q", "-o", "new.nc", "--force", "--set", "fish[0].wave.amplitude=0.2"],
                     ["new.nc", "new.ckpt", "new.ckpt.previous"]),
-    "run with pressure": (["run", "small.yaml", "-q", "-o", "new.nc", "--force", "--set", "fish[*].force=pressure"],
+    "run with pressure": (["run", "small.yaml", "-q", "-o", "new.nc", "--force", "--set", "fish[*].force=pressure", "--set", "fish[*].pressure.span=infinite"],
                           ["new.nc", "new.ckpt", "new.ckpt.previous"]),
     "run with threads": (["run", "small.yaml", "-q", "-o", "new.nc", "--force", "--threads", "2"],
                          ["new.nc", "new.ckpt", "new.ckpt.previous"]),

@@ -78,7 +78,7 @@ stopped sheet 'TERM HUP' small.yaml
 stopped two_threads USR1 small.yaml --threads 2 --set output.precision=single
 stopped impulsive INT small.yaml --set wake.shedding=impulsive --set time.shedding_interval=0.02
 stopped finite_span TERM small.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=finite' --set wake.merge=0.1
-stopped pressure TERM small.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.suction_limit=0.01'
+stopped pressure TERM small.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=infinite' --set 'fish[*].pressure.suction_limit=0.01'
 stopped merged TERM small.yaml --set 'fish[*].start.speed=3' --set wake.merge=0.1 --set time.end=1.6
 check "merged: number of merged vortices" test "$("$program" info run.nc | sed -n 's/^ *merged vortices *\([0-9]*\) merged with.*/\1/p')" -gt 20
 check "merged: the total circulation stays" test "$("$program" info run.nc | awk '/total circulation/ { print ($3 * $3 < 1e-26) }')" = 1
@@ -213,7 +213,7 @@ done
 
 # an event at t = 0 that takes seconds: there is no earlier event to return to
 rm -f ./*.nc ./*.ckpt*
-sed 's/nodes: [79], sheet_points: 21/force: reactive, nodes: 600, sheet_points: 600/' small.yaml >large.yaml
+sed 's/nodes: [79], sheet_points: 21/nodes: 600, sheet_points: 600/' small.yaml >large.yaml
 env --default-signal=TERM "$program" run large.yaml -q -o run.nc >out 2>err </dev/null &
 pid=$!
 wait_for handles "$pid" TERM
