@@ -249,14 +249,12 @@ def open_study(path):
 
 @table("case", "fish", "speed [m/s]", "cost [m/s2]", "largest share")
 def error_bars(bench):
-    """speed and cost of transport with error bars (some minutes; of the school with the default force an hour)"""
-    reactive = ["--set", "fish[*].force=reactive", "--set", "fish[*].start.speed=0.87"]
+    """speed and cost of transport with error bars (an hour, for the school)"""
     for name, fish, of in (("swim", 0, "steady_"), ("fish_pressure", 0, "steady_"), ("school", 0, ""), ("school", 3, "")):
         quantities = [f"{of}speed", f"{of}cost_of_transport"]
         folder = os.path.join(bench.folder, f"{name}-error")
         if not os.path.exists(folder):
-            bench.call("error", bench.case(name), "--of", quantities[0], "--of", quantities[1], "-q", "-o", folder,
-                       *(reactive if name == "school" else []))
+            bench.call("error", bench.case(name), "--of", quantities[0], "--of", quantities[1], "-q", "-o", folder)
         study = open_study(os.path.join(folder, "study.nc"))
         keys, is_choice = strings(study["key_name"]), study["key_is_choice"][:] > 0
         cells, shares = [], np.zeros(len(keys))
