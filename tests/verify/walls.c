@@ -24,7 +24,7 @@ static double circulation_between(double distance) {
         "time: {end: %.17g, shedding_interval: 0.04, output_interval: 0.04}\n"
         "fluid: {velocity: [1, 0], walls: [%.17g, %.17g]}\n"
         "wake: {lifetime: %.17g}\n"
-        "fish: [{nodes: 4, wave: {amplitude: 0}, start: {heading: %.17g, position: [%.17g, %.17g]},\n"
+        "fish: [{force: reactive, nodes: 4, wave: {amplitude: 0}, start: {heading: %.17g, position: [%.17g, %.17g]},\n"
         "        motion: {prescribed: all, speed: 0}}]\n",
         12 * distance, -distance / 2, distance / 2, 6 * distance, 180 - degree, -0.5 * cos(angle), 0.5 * sin(angle));
     // a vortex at the distance x acts like exp(-pi x/H); the circulation approaches the limit like exp(-0.7 U t/H)
