@@ -11,7 +11,7 @@ time: {end: 0.6, shedding_interval: 0.02, output_interval: 0.1}
 wake: {lifetime: 0.4, decay: 0.04}
 output: {wake_interval: 0.2}
 defaults: {fish: {wave: {ramp: 0.2}}}
-fish: [{nodes: 9}, {force: pressure, pressure: {span: infinite}, length: 0.7, nodes: 7, sheet_points: 21, start: {position: [1.4, 0.4]}}]
+fish: [{force: reactive, nodes: 9}, {force: pressure, pressure: {span: infinite}, length: 0.7, nodes: 7, sheet_points: 21, start: {position: [1.4, 0.4]}}]
 end
 run run pair.yaml -q -o 'a <pair>.nc'
 run export 'a <pair>.nc' --vtk out_of_it

@@ -119,7 +119,8 @@ static void levels_that_are_no_valid_cases_are_replaced(void **state) {
     levels_are(&study, "fish.nodes", 4, (double[]){35, 25, 17, 13}, 25);
     error_plan_free(&study);
     // fewer points do not resolve the momentum of the nodes
-    study = open_study("format: 1\ntime: {end: 4}\nfish: [{nodes: 25, sheet_points: 48}]\n", "{of: steady_speed}");
+    study = open_study("format: 1\ntime: {end: 4}\nfish: [{force: reactive, nodes: 25, sheet_points: 48}]\n",
+                       "{of: steady_speed}");
     assert_non_null(strstr(key_of(&study, "fish.sheet_points")->objection, "fewer sheet_points than 2 nodes - 1"));
     error_plan_free(&study);
     // a table has a value for each edge

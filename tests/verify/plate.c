@@ -40,18 +40,19 @@ static const struct resolution smoothed = {0.01, 0.2, 0.05, 21, "edge", "chebysh
 /* A straight prescribed plate; motion: further keys of the motion. */
 static struct simulation *open_plate(const struct resolution *with, double end, const double velocity[2],
                                      const char *motion) {
-    return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                       "fluid: {velocity: [%.17g, %.17g]}\n"
-                       "wake: {smoothing: %.17g, lifetime: 1000, shedding: %s}\n"
-                       "sheet: {smoothing: %.17g, kutta: %s, collocation: %s}\n"
-                       "solver: {rtol: 1e-6}\n"
-                       "fish:\n"
-                       "  - {nodes: 4, sheet_points: %d, wave: {amplitude: 0}, start: {heading: 180, speed: 0},\n"
-                       "     motion: {prescribed: all, %s}}\n",
-                       end, with->interval, with->interval, velocity[0], velocity[1], with->smoothing, with->shedding,
-                       with->sheet_smoothing, with->kutta, with->collocation, with->n_sheet, motion);
+    return verify_open(
+        VERIFY_DEFAULTS
+        "format: 1\n"
+        "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "fluid: {velocity: [%.17g, %.17g]}\n"
+        "wake: {smoothing: %.17g, lifetime: 1000, shedding: %s}\n"
+        "sheet: {smoothing: %.17g, kutta: %s, collocation: %s}\n"
+        "solver: {rtol: 1e-6}\n"
+        "fish:\n"
+        "  - {force: reactive, nodes: 4, sheet_points: %d, wave: {amplitude: 0}, start: {heading: 180, speed: 0},\n"
+        "     motion: {prescribed: all, %s}}\n",
+        end, with->interval, with->interval, velocity[0], velocity[1], with->smoothing, with->shedding,
+        with->sheet_smoothing, with->kutta, with->collocation, with->n_sheet, motion);
 }
 
 static double bound_circulation(const struct simulation *simulation) {

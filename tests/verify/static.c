@@ -24,8 +24,8 @@ static const char pressure[] = VERIFY_ATTACHED,
                   finite[] =
                       "force: pressure, drag: {skin: laminar}, pressure: {span: "
                       "finite, suction_limit: 0}",
-                  slender[] = "drag: {tangential: 0}",
-                  drag_alone[] = "drag: {tangential: 0}, added_mass: {coefficient: 0}";
+                  slender[] = "force: reactive, drag: {tangential: 0}",
+                  drag_alone[] = "force: reactive, drag: {tangential: 0}, added_mass: {coefficient: 0}";
 
 static struct simulation *open_body(const struct body *body) {
     return verify_open(VERIFY_DEFAULTS
