@@ -22,7 +22,13 @@ static const char table[] = "tests/data/results.tsv", key_table[] = "tests/data/
 /* Over the sum of the magnitudes: steps of the integrator may differ between machines and with the rounding of the
  * Jacobian. Smaller sums are rounding. Two intervals with errors of 1e-8 are the same within 1e-11 with gcc -O3 and
  * clang -O1. */
-static const double tolerance = 1e-4, of_differences = 1e-2, rounding = 1e-9, of_keys = 1e-7;
+static const double tolerance = 1e-4, of_differences = 1e-2, rounding = 1e-9;
+/* On another processor the integrator may choose another step: arm64 with SUNDIALS 7 differs by 1.8e-6. */
+#ifdef __x86_64__
+static const double of_keys = 1e-7;
+#else
+static const double of_keys = 1e-5;
+#endif
 
 #define TIME "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {rtol: 1e-6}\n"
 #define STREAM "fluid: {velocity: [0.2, -0.1], shear: 0.3, gust: {amplitude: 0.15, frequency: 2.2}}\n"
