@@ -164,7 +164,8 @@ static void print_cost(const struct checked *checked) {
     printf("    %s about %s and %.2g MB on this machine%s: estimated from a few events",
            is_study(checked) ? "the runs take" : "the run takes", duration, 1e-6 * checked->bytes,
            is_study(checked) ? ", one after the other" : "");
-    if (n_examined < checked->n_members) printf(" of %d members", checked->n_estimated);
+    if (n_examined < checked->n_members)
+        printf(" of %d member%s", checked->n_estimated, checked->n_estimated == 1 ? "" : "s");
     printf(", often within a factor of two\n");
 }
 

@@ -159,7 +159,11 @@ void text_duration(char text[TEXT_DURATION_BYTES], double seconds) {
     } units[] = {{86400, "days"}, {3600, "h"}, {60, "min"}, {0, "s"}};
     int i = 0;
     while (seconds < 1.5 * units[i].seconds) i++;
-    snprintf(text, TEXT_DURATION_BYTES, "%.2g %s", seconds / fmax(units[i].seconds, 1), units[i].name);
+
+    // two significant digits, without an exponent below 1e9
+    char digits[TEXT_DURATION_BYTES];
+    snprintf(digits, sizeof digits, "%.1e", seconds / fmax(units[i].seconds, 1));
+    snprintf(text, TEXT_DURATION_BYTES, "%.9g %s", strtod(digits, NULL), units[i].name);
 }
 
 void text_print_base64(FILE *stream, size_t n, const void *bytes) {

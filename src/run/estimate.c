@@ -93,7 +93,7 @@ static enum status measure_first_events(struct simulation *simulation, double pa
     double first = 0, spent = 0;
     struct integrator_counts after_first = {0};
     long n = 0;
-    while (n < simulation->n_events && (n == 0 || spent < patience)) {
+    while (n < simulation->n_events && (n < 2 || spent < patience)) {
         const enum status status = simulate_step(simulation);
         if (status == STATUS_STOPPED) break;
         TRY(status);

@@ -15,9 +15,9 @@ struct estimate {
 };
 
 /* Estimate the cost of a run from a simulation at the start; the simulation can only be freed afterwards. The estimate
- * takes at most `patience` [s] of CPU time, but always completes the first event. If simulation->stop interrupts the
- * first event, the estimate has no event and extrapolates from the completed part. Fails as simulate_step if one of
- * the first events fails; the run then fails at the same event. */
+ * takes at most `patience` [s] of CPU time, but completes the first two events: the first costs more than the others.
+ * If simulation->stop interrupts the first event, the estimate has no event and extrapolates from the completed part.
+ * Fails as simulate_step if one of the first events fails; the run then fails at the same event. */
 enum status estimate_run(struct simulation *simulation, double patience, struct estimate *estimate);
 
 #endif

@@ -77,8 +77,8 @@ before_the_first_step() {
         '  start: {position: [0, 0.115]}}]' >near.yaml
     run check near.yaml
     check "bodies that begin near each other" has err "shoal: warning: fish1 and fish2 come within"
-    # few members, so that a slow machine examines all members
-    run check "$demo" --set 'sweep=[{key: "fish[0].body.modulus", values: [1e5, 9e4, 1e7]}]'
+    # few members of few nodes, so that a slow machine examines all members
+    run check "$demo" --set 'fish[0].nodes=9' --set 'sweep=[{key: "fish[0].body.modulus", values: [1e5, 9e4, 1e7]}]'
     check "a study says which members" has err "shoal: warning: member 0 and 1 other: the slowest bending mode"
 
     run run "$demo" --set time.end=0.1 -o demo.nc -q
@@ -97,7 +97,7 @@ seconds_only() {
     check "in a channel" spends 5000 long.yaml --set 'fluid.walls=[-1, 1]'
     check "without a tree" spends 5000 long.yaml --set wake.tolerance=0
     check "a study of 88 members, of which some take long" spends 5000 "$cases/studies/stiffness.yaml"
-    check "says of how many it knows" grep -q 'estimated from a few events of [0-9]* members' out
+    check "says of how many it knows" grep -q 'estimated from a few events of [0-9]* members\?' out
 }
 
 estimates

@@ -125,8 +125,9 @@ static void a_duration_has_at_least_one_and_a_half_units(void **state) {
     static const struct {
         double seconds;
         const char *want;
-    } durations[] = {{0.02, "0.02 s"}, {89, "89 s"}, {90, "1.5 min"}, {5400, "1.5 h"}, {129600, "1.5 days"}};
-    for (int i = 0; i < 5; i++) {
+    } durations[] = {{0.02, "0.02 s"}, {89, "89 s"},         {90, "1.5 min"},
+                     {5400, "1.5 h"},  {129600, "1.5 days"}, {238 * 86400., "240 days"}};
+    for (int i = 0; i < 6; i++) {
         char text[TEXT_DURATION_BYTES];
         text_duration(text, durations[i].seconds);
         assert_string_equal(text, durations[i].want);
