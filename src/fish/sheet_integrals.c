@@ -16,35 +16,44 @@ static const double pi = 3.14159265358979323846;
  * series, and the error is below 1e-10 of this term. */
 enum { GAUSS = 6 };
 
-/* Both series run over m = 1 .. n-1 with the factors cos(m theta_j), the last term halved: of sin(m theta)/m, of
- * cos(m theta). Multiples of an angle follow by cos((m+1) a) = 2 cos(a) cos(m a) - cos((m-1) a), and so for sin. */
-static void series_sum(int n, int j, double theta, double *of_sines, double *of_cosines) {
-    const double step = pi * j / (n - 1), twice_step = 2 * cos(step), twice = 2 * cos(theta);
-    double factor[2] = {1, cos(step)}, cosine[2] = {1, cos(theta)}, sine[2] = {0, sin(theta)};
-    *of_sines = *of_cosines = 0;
+/* The cosine series through the circulations. Column m - 1 of `cosine` has the factors cos(m theta_j) of all vortices
+ * j, for m = 1 .. n-1; the factors of the last term are halved. */
+struct series {
+    int n;
+    double *cosine; /* (n, n - 1) by columns */
+    double *term;   /* scratch (n - 1) */
+};
+
+static enum status series_create(struct series *series, int n) {
+    *series = (struct series){.n = n};
+    TRY(MEMORY_NEW(series->cosine, n * (n - 1), "the integrals over a sheet"));
+    TRY(MEMORY_NEW(series->term, n - 1, "the integrals over a sheet"));
 
     for (int m = 1; m < n; m++) {
-        const double weight = (m < n - 1 ? 1 : 0.5) * factor[m % 2];
-        *of_sines += weight * sine[m % 2] / m;
-        *of_cosines += weight * cosine[m % 2];
-        const int next = (m + 1) % 2;
-        factor[next] = twice_step * factor[m % 2] - factor[next];
-        cosine[next] = twice * cosine[m % 2] - cosine[next];
-        sine[next] = twice * sine[m % 2] - sine[next];
+        double *const column = series->cosine + (long)(m - 1) * n;
+        for (int j = 0; j < n; j++) column[j] = (m < n - 1 ? 1 : 0.5) * cos(m * j % (2 * (n - 1)) * pi / (n - 1));
     }
+
+    return STATUS_OK;
 }
 
-double sheet_integrals_circulation(int n, int j, double theta) {
-    double of_sines, of_cosines;
-    series_sum(n, j, theta, &of_sines, &of_cosines);
-    return (theta + 2 * of_sines) / pi;
+static void series_free(struct series *series) {
+    free(series->cosine);
+    free(series->term);
 }
 
-// G of the control point at theta
-static double strength_between(int n, int j, double theta) {
-    double of_sines, of_cosines;
-    series_sum(n, j, theta, &of_sines, &of_cosines);
-    return (1 + 2 * of_cosines) / (n - 1);
+// C_j of all vortices j at theta
+static void series_circulation(const struct series *series, double theta, double *of_each) {
+    for (int m = 1; m < series->n; m++) series->term[m - 1] = 2 / pi * sin(m * theta) / m;
+    for (int j = 0; j < series->n; j++) of_each[j] = theta / pi;
+    kernel_multiply(series->n, series->n - 1, series->cosine, series->term, of_each);
+}
+
+// G of all vortices j for a control point at theta
+static void series_strength(const struct series *series, double theta, double *of_each) {
+    for (int m = 1; m < series->n; m++) series->term[m - 1] = 2 * cos(m * theta) / (series->n - 1);
+    for (int j = 0; j < series->n; j++) of_each[j] = 1.0 / (series->n - 1);
+    kernel_multiply(series->n, series->n - 1, series->cosine, series->term, of_each);
 }
 
 // the kink for a vortex strength equal to the position: g = sin(theta) (1 - cos(theta)) minus the series of g
@@ -65,22 +74,10 @@ static void kink_fill(struct sheet_integrals *to) {
     }
 }
 
-// add a point theta with its weight to the integrals of every j
-static void integrals_add_point(struct sheet_integrals *to, double theta, double weight, const struct stencil *point,
-                                const struct stencil *slope) {
-    const int n = to->n_nodes;
-    for (int j = 0; j < to->n_sheet; j++) {
-        double *const matrix = to->momentum + (long)j * n * n;
-        const double value = weight * sheet_integrals_circulation(to->n_sheet, j, theta);
-        for (int i = 0; i < n; i++) {
-            for (int k = 0; k < n; k++) matrix[i * n + k] += value * point->weight[k] * slope->weight[i];
-        }
-    }
-}
-
-// one edge, in pieces of equal length in theta
-static enum status edge_integrate(struct sheet_integrals *to, int edge, double density) {
-    const int n_edges = to->n_nodes - 1;
+// the momentum of one edge, in pieces of equal length in theta
+static enum status edge_integrate(struct sheet_integrals *to, const struct series *series, int edge, double density,
+                                  double *of_each) {
+    const int n = to->n_nodes, n_edges = to->n_nodes - 1;
     const double first = acos(1 - 2.0 * edge / n_edges), last = acos(1 - 2.0 * (edge + 1) / n_edges);
     const int needed = (int)ceil((last - first) / (pi / to->n_control)), n_pieces = needed < 2 ? 2 : needed;
     const double piece = (last - first) / n_pieces;
@@ -89,18 +86,28 @@ static enum status edge_integrate(struct sheet_integrals *to, int edge, double d
     struct curve *curve;
     TRY(curve_create(&curve, to->n_nodes, 0, 2 * GAUSS * n_pieces));
 
-    for (int i = 0; i < GAUSS * n_pieces; i++) {
-        const double theta = first + (i / GAUSS + node[i % GAUSS]) * piece;
+    for (int p = 0; p < GAUSS * n_pieces; p++) {
+        const double theta = first + (p / GAUSS + node[p % GAUSS]) * piece;
         const double u = n_edges * (1 - cos(theta)) / 2;
+        const double weight = density * gauss[p % GAUSS] * piece * n_edges * sin(theta) / 2;
         const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
-        integrals_add_point(to, theta, density * gauss[i % GAUSS] * piece * n_edges * sin(theta) / 2, &point, &slope);
+        series_circulation(series, theta, of_each);
+
+        for (int j = 0; j < to->n_sheet; j++) {
+            double *const matrix = to->momentum + (long)j * n * n;
+            for (int i = 0; i < n; i++) {
+                const double value = weight * of_each[j] * slope.weight[i];
+                for (int k = 0; k < n; k++) matrix[i * n + k] += value * point.weight[k];
+            }
+        }
     }
 
     curve_free(curve);
     return STATUS_OK;
 }
 
-static enum status integrals_fill(struct sheet_integrals *to, const double *density) {
+static enum status integrals_fill(struct sheet_integrals *to, const struct series *series, double *of_each,
+                                  const double *density) {
     const size_t n_nodes = (size_t)to->n_nodes, n_sheet = (size_t)to->n_sheet, n_control = (size_t)to->n_control;
     TRY(MEMORY_NEW(to->momentum, n_sheet * n_nodes * n_nodes, "the integrals over a sheet"));
     TRY(MEMORY_NEW(to->strength, n_control * n_sheet, "the integrals over a sheet"));
@@ -111,14 +118,14 @@ static enum status integrals_fill(struct sheet_integrals *to, const double *dens
     // strength and circulation at the control points
     for (int c = 0; c < to->n_control; c++) {
         const double theta = pi * (c + 0.5) / to->n_control;
-        for (int j = 0; j < to->n_sheet; j++) {
-            to->strength[j * to->n_control + c] = strength_between(to->n_sheet, j, theta);
-            to->circulation[j * to->n_control + c] = sheet_integrals_circulation(to->n_sheet, j, theta);
-        }
+        series_strength(series, theta, of_each);
+        for (int j = 0; j < to->n_sheet; j++) to->strength[j * to->n_control + c] = of_each[j];
+        series_circulation(series, theta, of_each);
+        for (int j = 0; j < to->n_sheet; j++) to->circulation[j * to->n_control + c] = of_each[j];
     }
 
     kink_fill(to);
-    for (int k = 0; k < to->n_nodes - 1; k++) TRY(edge_integrate(to, k, density[k]));
+    for (int k = 0; k < to->n_nodes - 1; k++) TRY(edge_integrate(to, series, k, density[k], of_each));
 
     return STATUS_OK;
 }
@@ -131,7 +138,13 @@ enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nod
     new->n_nodes = n_nodes;
     new->n_sheet = n_sheet;
     new->n_control = n_sheet - 1;
-    const enum status status = integrals_fill(new, density);
+    struct series series;
+    double *of_each = NULL;
+    enum status status = series_create(&series, n_sheet);
+    if (status == STATUS_OK) status = MEMORY_NEW(of_each, n_sheet, "the integrals over a sheet");
+    if (status == STATUS_OK) status = integrals_fill(new, &series, of_each, density);
+    series_free(&series);
+    free(of_each);
 
     if (status != STATUS_OK) {
         sheet_integrals_free(new);

@@ -29,7 +29,4 @@ void sheet_integrals_free(struct sheet_integrals *integrals);
 void sheet_integrals_around(const struct sheet_integrals *integrals, const double *circulation, double *around);
 void sheet_integrals_before(const struct sheet_integrals *integrals, const double *circulation, double *before);
 
-/* C_j(theta) of a sheet of n vortices. */
-double sheet_integrals_circulation(int n, int j, double theta);
-
 #endif

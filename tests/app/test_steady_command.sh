@@ -207,7 +207,7 @@ check in_the_file_too /usr/bin/python3 -c 'import netCDF4; assert "upper and low
 
 # ---- less than the errors of the integrator
 
-run steady swim.yaml -q -o least.nc --set "fish[0].nodes=9" --set steady.tolerance=1e-8 --set steady.beats=1000 --set steady.multipliers=true
+run steady swim.yaml -q -o least.nc --set "fish[0].nodes=5" --set steady.tolerance=1e-8 --set steady.beats=1000 --set steady.multipliers=true
 check what_the_rows_do_not_keep_is_warned_of test "$code" = 0
 check with_the_remedy grep -q 'more than steady.tolerance, 1e-08: .* lower solver.rtol$' err
 

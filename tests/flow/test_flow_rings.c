@@ -554,8 +554,8 @@ static double largest_difference(int n, const double *one, const double *other) 
 static void large_schools_are_summed_by_the_tree_to_half_the_tolerance(void **state) {
     (void)state;
     struct setup exact, fast;
-    build_large(&exact, "0", 6000);
-    build_large(&fast, "1e-7", 6000);
+    build_large(&exact, "0", 3000);
+    build_large(&fast, "1e-7", 3000);
     const struct flow *const a = exact.residual->flow, *const b = fast.residual->flow;
     const struct flow_rings *const of_a = a->rings, *const of_b = b->rings;
     school_ok(flow_gradient(exact.residual->flow, exact.state, exact.t, exact.state->y));
@@ -570,8 +570,8 @@ static void large_schools_are_summed_by_the_tree_to_half_the_tolerance(void **st
     school_clear(&exact);
     school_clear(&fast);
 
-    build_large(&exact, "0", 1200);
-    build_large(&fast, "1e-7", 1200);
+    build_large(&exact, "0", 800);
+    build_large(&fast, "1e-7", 800);
     school_ok(flow_at_wake(exact.residual->flow, exact.state));
     school_ok(flow_at_wake(fast.residual->flow, fast.state));
     const struct flow *const c = exact.residual->flow, *const d = fast.residual->flow;
@@ -589,7 +589,7 @@ static void large_schools_are_summed_by_the_tree_to_half_the_tolerance(void **st
 
     // the bits do not depend on the number of threads
     struct setup threads;
-    build_large(&threads, "1e-7", 1200);
+    build_large(&threads, "1e-7", 800);
     const int n_threads = threads.school->threads;
     threads.school->threads = 3;
     school_ok(flow_at_wake(threads.residual->flow, threads.state));

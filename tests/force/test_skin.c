@@ -131,8 +131,8 @@ static void compare_with_differences(const char *keys, const char *fish, int n_m
              "wake: {smoothing: 1e-3, lifetime: 100, decay: 0}\n"
              "sheet: {smoothing: 1e-3}\n"
              "%s"
-             "defaults: {fish: {force: pressure, start: {speed: 0.5}, nodes: 17, "
-             "sheet_points: 49, sensors: [0.5],\n"
+             "defaults: {fish: {force: pressure, start: {speed: 0.5}, nodes: 9, "
+             "sheet_points: 33, sensors: [0.5],\n"
              "                  wave: {ramp: 0.2}%s}}\n"
              "fish: [{}, {start: {position: [0.1, 0.4]}, wave: {phase: 70}}]\n",
              keys, fish);

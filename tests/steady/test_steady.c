@@ -94,7 +94,6 @@ static void a_fish_that_is_steered_to_one_side_goes_in_a_circle(void **state) {
            22);
     circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n", 0.2,
            22);
-    circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", control: {bias: 0.4}}]\n", 0.4, 30);
     circle(COARSE
            "steady: {tolerance: 2e-5}\nfish: [{nodes: 7, sheet_points: 13,"
            " force: pressure, pressure: {span: infinite}, control: {bias: 0.2}}]\n",
