@@ -18,7 +18,7 @@ changed() {
 cat >small.yaml <<'end'
 format: 1
 time: {end: 0.2, shedding_interval: 0.02}
-fish: [{nodes: 17, body: {relaxation_time: 0.001}}]
+fish: [{force: reactive, nodes: 9, body: {relaxation_time: 0.001}}]
 sweep:
   - {key: "fish[*].wave.amplitude", values: [0.2, 0.3]}
   - {keys: [solver.method, solver.max_steps], values: [[ida, 1000], [rk4, 1000], [euler, 2]]}
@@ -96,7 +96,7 @@ refused bundles_of_words 2 '--bundle few: expects an integer' study small.yaml -
 # ---- folders with something else
 
 refused another_study_is_refused 4 'small-study/member-0000.nc is a result of another study' \
-    study small.yaml --set fish[0].nodes=9 -o small-study
+    study small.yaml --set fish[0].nodes=13 -o small-study
 check nothing_was_changed test "$(changed small-study/member-0001.nc)" = "$finished"
 sed 's/0.2, 0.3/0.2/' small.yaml >shorter.yaml
 run study shorter.yaml -o small-study --force
@@ -208,7 +208,7 @@ cat >stated.yaml <<end
 format: 1
 include: ["$article"]
 time: {end: 0.2, shedding_interval: 0.02}
-fish: [{name: one}, {name: two, start: {position: [0, 3]}}]
+fish: [{name: one, force: reactive, nodes: 9}, {name: two, force: reactive, nodes: 9, start: {position: [0, 3]}}]
 sweep:
   - {key: "fish[*].wave.amplitude", values: [0.2, 0.3]}
   - {key: solver.method, values: [ida, rk4]}
@@ -321,7 +321,7 @@ fi
 cat >long.yaml <<'end'
 format: 1
 time: {end: 60, shedding_interval: 0.02}
-fish: [{}]
+fish: [{force: reactive, nodes: 9}]
 sweep:
   - {keys: [time.end, time.shedding_interval], values: [[0.2, 0.02], [60, 0.02], [60.02, 0.02], [60.04, 0.02]]}
 end
@@ -411,7 +411,7 @@ check gather_reports_it_too has out 'failed: killed by signal 9 (Killed)'
 cat >disk.yaml <<'end'
 format: 1
 time: {end: 0.2, shedding_interval: 0.02, output_interval: 0.02}
-fish: [{}]
+fish: [{force: reactive, nodes: 9}]
 sweep:
   - {keys: ["fish[*].nodes", "fish[*].sheet_points"], values: [[7, 21], [25, 81], [8, 21]]}
 end
