@@ -38,7 +38,8 @@ static int nearest(const struct found *found, double omega) {
 }
 
 /* A plate of mass 1 and bending stiffness 1/64 per length and span, clamped at its nose. */
-#define PLATE "body: {profile: uniform, thickness: 0.02, depth: 1, density: 63.662, modulus: 39788, "
+#define PLATE_OF(modulus) "body: {profile: uniform, thickness: 0.02, depth: 1, density: 63.662, modulus: " modulus ", "
+#define PLATE PLATE_OF("39788")
 #define CLAMPED \
     "force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: head}, "
 
@@ -88,6 +89,7 @@ static void modes_without_damping_are_told_apart(void **state) {
     ", viscosity: 0}\n"                          \
     "solver: {rtol: 1e-7}\nwake: {lifetime: 12, decay: 9}\n"
 #define FLAG "nodes: 9, sheet_points: 17, " CLAMPED PLATE "relaxation_time: 0}, "
+#define SOFT_FLAG "nodes: 9, sheet_points: 17, " CLAMPED PLATE_OF("10000") "relaxation_time: 0}, "
 
 /* A flag disturbed by 1e-5 rad: logarithmic decrement of the tail over three periods. */
 static void a_run_grows_as_fast(void **state) {
@@ -153,6 +155,28 @@ static void the_lifetime_of_a_long_wake_does_not_matter(void **state) {
         NEAR(found[k].omega[0], found[0].omega[0], 2e-4, 0);
     }
     for (int k = 0; k < 3; k++) simulate_free(found[k].simulation);
+}
+
+/* Growth has no limit: only modes that decay within the life of the wake are left out. */
+static void a_mode_that_grows_fast_in_a_long_wake_is_found(void **state) {
+    (void)state;
+    struct found found[2];
+    static const char *const wake[] = {"lifetime: 4, decay: 3", "lifetime: 24, decay: 18"};
+    for (int k = 0; k < 2; k++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS
+                 "time: {end: 1, shedding_interval: 0.04}\n"
+                 "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\nwake: {%s}\n"
+                 "fish: [{" SOFT_FLAG "start: {heading: 180, speed: 0}}]\n",
+                 wake[k]);
+        find(&found[k], text);
+        print_message("%g %g\n", found[k].rate[0], found[k].omega[0]);
+    }
+    assert_true(found[1].rate[0] * 24 > 6);
+    NEAR(found[1].rate[0], found[0].rate[0], 0, 1e-2);
+    NEAR(found[1].omega[0], found[0].omega[0], 0, 1e-2);
+    for (int k = 0; k < 2; k++) simulate_free(found[k].simulation);
 }
 
 static void bodies_far_apart_have_the_modes_of_one(void **state) {
@@ -273,6 +297,7 @@ int main(void) {
         cmocka_unit_test(a_run_grows_as_fast),
         cmocka_unit_test(they_do_not_depend_on_who_moves),
         cmocka_unit_test(the_lifetime_of_a_long_wake_does_not_matter),
+        cmocka_unit_test(a_mode_that_grows_fast_in_a_long_wake_is_found),
         cmocka_unit_test(bodies_far_apart_have_the_modes_of_one),
         cmocka_unit_test(what_has_no_stiffness_left_diverges),
         cmocka_unit_test(the_simulation_stays_where_it_is),
