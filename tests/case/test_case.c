@@ -333,15 +333,20 @@ static void an_include_is_weaker_than_the_file_that_includes_it(void **state) {
 static void includes_are_relative_to_their_file_and_the_last_is_strongest(void **state) {
     (void)state;
     assert_int_equal(system("mkdir below"), 0);
-    write_file("below/more.yaml", "include: ../water.yaml\nwake: {lifetime: 3}\n");
-    write_file("water.yaml", "wake: {lifetime: 4, smoothing: 0.4}\n");
+    write_file("below/more.yaml", "include: ../water.yaml\nname: more\nwake: {lifetime: 3}\n");
+    write_file("water.yaml", "name: water\nwake: {lifetime: 4, smoothing: 0.4}\n");
     write_file("case.yaml", "include: [below/more.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n");
     struct case_values s;
     if (case_read(&s, "case.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
     NEAR(s.school.wake.lifetime.seconds, 3, 0, 0);
     NEAR(s.school.wake.smoothing, 0.4, 0, 0);
+    assert_string_equal(s.name, "case");  // of no include, however deep and at any place of the list
     case_free(&s);
     static const char text[] = "include: [below/more.yaml, water.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n";
+    write_file("case.yaml", text);
+    if (case_read(&s, "case.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
+    assert_string_equal(s.name, "case");
+    case_free(&s);
     if (case_parse(&s, text, strlen(text), "memory", *state, 0, NULL)) fail_msg("%s", status_message());
     NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
     case_free(&s);
