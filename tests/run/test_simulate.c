@@ -226,6 +226,11 @@ static void notes_of_a_run_count_the_vortices_of_all_fish(void **state) {
     // 25 events of three fish
     assert_string_equal(text, "0 merged with a neighbour; 75 vortices in the wakes at the end");
     free(text);
+    // nothing is said of what does not happen
+    run_into(TIME "fish: [{}]\n", &options, STATUS_OK);
+    char *const none = read_attribute(path, "merged_vortices");
+    assert_int_equal(strspn(none, " "), strlen(none));
+    free(none);
 }
 
 static void the_times_of_checkpoints_are_a_list_in_the_result(void **state) {
