@@ -21,13 +21,15 @@ enum { GAUSS = 6 };
 struct series {
     int n;
     double *cosine; /* (n, n - 1) by columns */
-    double *term;   /* scratch (n - 1) */
+    double *term;   /* coefficients of the terms (n - 1) */
+    double *sum;    /* of all vortices j, from the last call of series_circulation or series_strength (n) */
 };
 
 static enum status series_create(struct series *series, int n) {
     *series = (struct series){.n = n};
     TRY(MEMORY_NEW(series->cosine, n * (n - 1), "the integrals over a sheet"));
     TRY(MEMORY_NEW(series->term, n - 1, "the integrals over a sheet"));
+    TRY(MEMORY_NEW(series->sum, n, "the integrals over a sheet"));
 
     for (int m = 1; m < n; m++) {
         double *const column = series->cosine + (long)(m - 1) * n;
@@ -40,20 +42,24 @@ static enum status series_create(struct series *series, int n) {
 static void series_free(struct series *series) {
     free(series->cosine);
     free(series->term);
+    free(series->sum);
+}
+
+static void series_sum(const struct series *series, double constant) {
+    for (int j = 0; j < series->n; j++) series->sum[j] = constant;
+    kernel_multiply(series->n, series->n - 1, series->cosine, series->term, series->sum);
 }
 
 // C_j of all vortices j at theta
-static void series_circulation(const struct series *series, double theta, double *of_each) {
+static void series_circulation(const struct series *series, double theta) {
     for (int m = 1; m < series->n; m++) series->term[m - 1] = 2 / pi * sin(m * theta) / m;
-    for (int j = 0; j < series->n; j++) of_each[j] = theta / pi;
-    kernel_multiply(series->n, series->n - 1, series->cosine, series->term, of_each);
+    series_sum(series, theta / pi);
 }
 
 // G of all vortices j for a control point at theta
-static void series_strength(const struct series *series, double theta, double *of_each) {
+static void series_strength(const struct series *series, double theta) {
     for (int m = 1; m < series->n; m++) series->term[m - 1] = 2 * cos(m * theta) / (series->n - 1);
-    for (int j = 0; j < series->n; j++) of_each[j] = 1.0 / (series->n - 1);
-    kernel_multiply(series->n, series->n - 1, series->cosine, series->term, of_each);
+    series_sum(series, 1.0 / (series->n - 1));
 }
 
 // the kink for a vortex strength equal to the position: g = sin(theta) (1 - cos(theta)) minus the series of g
@@ -75,8 +81,7 @@ static void kink_fill(struct sheet_integrals *to) {
 }
 
 // the momentum of one edge, in pieces of equal length in theta
-static enum status edge_integrate(struct sheet_integrals *to, const struct series *series, int edge, double density,
-                                  double *of_each) {
+static enum status edge_integrate(struct sheet_integrals *to, const struct series *series, int edge, double density) {
     const int n = to->n_nodes, n_edges = to->n_nodes - 1;
     const double first = acos(1 - 2.0 * edge / n_edges), last = acos(1 - 2.0 * (edge + 1) / n_edges);
     const int needed = (int)ceil((last - first) / (pi / to->n_control)), n_pieces = needed < 2 ? 2 : needed;
@@ -91,12 +96,12 @@ static enum status edge_integrate(struct sheet_integrals *to, const struct serie
         const double u = n_edges * (1 - cos(theta)) / 2;
         const double weight = density * gauss[p % GAUSS] * piece * n_edges * sin(theta) / 2;
         const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
-        series_circulation(series, theta, of_each);
+        series_circulation(series, theta);
 
         for (int j = 0; j < to->n_sheet; j++) {
             double *const matrix = to->momentum + (long)j * n * n;
             for (int i = 0; i < n; i++) {
-                const double value = weight * of_each[j] * slope.weight[i];
+                const double value = weight * series->sum[j] * slope.weight[i];
                 for (int k = 0; k < n; k++) matrix[i * n + k] += value * point.weight[k];
             }
         }
@@ -106,8 +111,7 @@ static enum status edge_integrate(struct sheet_integrals *to, const struct serie
     return STATUS_OK;
 }
 
-static enum status integrals_fill(struct sheet_integrals *to, const struct series *series, double *of_each,
-                                  const double *density) {
+static enum status integrals_fill(struct sheet_integrals *to, const struct series *series, const double *density) {
     const size_t n_nodes = (size_t)to->n_nodes, n_sheet = (size_t)to->n_sheet, n_control = (size_t)to->n_control;
     TRY(MEMORY_NEW(to->momentum, n_sheet * n_nodes * n_nodes, "the integrals over a sheet"));
     TRY(MEMORY_NEW(to->strength, n_control * n_sheet, "the integrals over a sheet"));
@@ -118,14 +122,14 @@ static enum status integrals_fill(struct sheet_integrals *to, const struct serie
     // strength and circulation at the control points
     for (int c = 0; c < to->n_control; c++) {
         const double theta = pi * (c + 0.5) / to->n_control;
-        series_strength(series, theta, of_each);
-        for (int j = 0; j < to->n_sheet; j++) to->strength[j * to->n_control + c] = of_each[j];
-        series_circulation(series, theta, of_each);
-        for (int j = 0; j < to->n_sheet; j++) to->circulation[j * to->n_control + c] = of_each[j];
+        series_strength(series, theta);
+        for (int j = 0; j < to->n_sheet; j++) to->strength[j * to->n_control + c] = series->sum[j];
+        series_circulation(series, theta);
+        for (int j = 0; j < to->n_sheet; j++) to->circulation[j * to->n_control + c] = series->sum[j];
     }
 
     kink_fill(to);
-    for (int k = 0; k < to->n_nodes - 1; k++) TRY(edge_integrate(to, series, k, density[k], of_each));
+    for (int k = 0; k < to->n_nodes - 1; k++) TRY(edge_integrate(to, series, k, density[k]));
 
     return STATUS_OK;
 }
@@ -139,12 +143,9 @@ enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nod
     new->n_sheet = n_sheet;
     new->n_control = n_sheet - 1;
     struct series series;
-    double *of_each = NULL;
     enum status status = series_create(&series, n_sheet);
-    if (status == STATUS_OK) status = MEMORY_NEW(of_each, n_sheet, "the integrals over a sheet");
-    if (status == STATUS_OK) status = integrals_fill(new, &series, of_each, density);
+    if (status == STATUS_OK) status = integrals_fill(new, &series, density);
     series_free(&series);
-    free(of_each);
 
     if (status != STATUS_OK) {
         sheet_integrals_free(new);

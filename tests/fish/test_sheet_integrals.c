@@ -86,14 +86,12 @@ static double integral(const struct sheet_integrals *integrals, const double *we
     return sum;
 }
 
+static const double one[N_NODES] = {1, 1, 1, 1, 1, 1, 1}, u[N_NODES] = {0, 1, 2, 3, 4, 5, 6};
+
 static void momentum_of_a_sheet_of_constant_g_is_the_exact_one(void **state) {
     (void)state;
-    double q[N_SHEET], one[N_NODES], u[N_NODES];
+    double q[N_SHEET];
     cosine(0, q);
-    for (int k = 0; k < N_NODES; k++) {
-        one[k] = 1;
-        u[k] = k;
-    }
     // C = theta, and with u = (N-1)(1 - cos theta)/2: integral of theta du, and of theta u du
     const double half = (N_NODES - 1) / 2.0;
     struct sheet_integrals *const integrals = make(three);
@@ -115,12 +113,8 @@ static void momentum_of_every_cosine_is_the_exact_one(void **state) {
     struct sheet_integrals *const part = make(first_two_edges);
     const double half = (N_NODES - 1) / 2.0, end = acos(1 - 2 / half);
     for (int m = 1; m < N_SHEET; m++) {
-        double q[N_SHEET], one[N_NODES], u[N_NODES];
+        double q[N_SHEET];
         cosine(m, q);
-        for (int k = 0; k < N_NODES; k++) {
-            one[k] = 1;
-            u[k] = k;
-        }
         const double less = m == 1 ? end : sin((m - 1) * end) / (m - 1), more = sin((m + 1) * end) / (m + 1);
         NEAR(integral(part, one, u, q), half * (less - more) / (2 * m), 1e-10, 0);
     }
