@@ -8,6 +8,9 @@
 #   CC=clang      another compiler; CFLAGS, CPPFLAGS and LDFLAGS too are taken from here or from the environment
 #   SUNDIALS_DIR=... and SUITESPARSE_DIR, NETCDF_DIR, LAPACKE_DIR, YAML_DIR, ZLIB_DIR
 #                 the folder with include/ and lib/ of a library that is not found (scripts/find-libraries.sh)
+#   LIST=1, ALL=1, NAME="demo gallery/swim"
+#                 of `make figures`: say which are older than their inputs; draw all; draw these
+#   WRITE=1       let `make numbers` replace output and tables that differ
 #   TEST="rod x"  let `make test` run tests/*/test_rod.c and tests/*/test_x.sh only
 
 VERSION   = 0.1.0
@@ -39,7 +42,7 @@ CC = clang
 B = build-sanitize-thread
 sanitize = -fsanitize=thread
 # flags for threads; `make test SANITIZE=thread TEST="..."` for other tests
-TEST = parallel velocity_sum treecode images flow residual linear simulate shoal clearance sundials threads
+TEST = parallel tree images flow flow_sources residual linear simulate shoal clearance sundials threads
 else
 B = build-sanitize$(if $(is_clang),-clang)
 # gcc 12 warns of possibly unset variables in code of the sanitizer
@@ -97,7 +100,7 @@ shared  = $(B)/$(soname)
 program = $(B)/shoal
 
 # the rooms of src/, lowest first: scripts/check-layers.sh
-rooms           = base vortex fish body wake control state flow force contact school case solver result view run steady study library app
+rooms           = base fish body wake control state flow force contact school case solver result view run steady study library app
 folders         = $(addprefix $(B)/,doc verify bench fuzz $(rooms) $(rooms:%=tests/%))
 app_objects     = $(patsubst src/%.c,$(B)/%.o,$(wildcard src/app/*.c))
 library_objects = $(patsubst src/%.c,$(B)/%.o,$(wildcard $(patsubst %,src/%/*.c,$(filter-out app,$(rooms)))))
@@ -106,7 +109,7 @@ test_names   = $(or $(TEST),*)
 c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/*/test_%.c)))
 shell_tests  = $(filter-out tests/slurm/%,$(wildcard $(test_names:%=tests/*/test_%.sh)))
 # C tests of more than three seconds, not in make check
-long_c_tests = contact diagnostics diagnostics_momentum estimate flow_at_markers simulate skin steady steady_formation take_up treecode warnings
+long_c_tests = contact diagnostics diagnostics_momentum estimate flow_at_markers flow_sources simulate skin steady steady_formation take_up tree warnings
 quick_c_tests = $(filter-out $(foreach test,$(long_c_tests),%/test_$(test)),$(c_tests))
 test_helpers = $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/*.c))
 
@@ -136,7 +139,7 @@ python_modules = $(shell $(PYTHON) -c 'import site, sys; \
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers gallery soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers figures soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -172,15 +175,15 @@ verify: deps  ## check the program against classical results (minutes): build/ve
 	@$(parallel) $(verify_program)
 	@scripts/verify.sh $(verify_program) $(B)/verify doc/verification.md
 
-numbers: deps  ## measure all tables of README.md and doc/*.md again, and draw doc/figures (an hour)
+numbers: deps  ## list output and tables of README.md and doc/*.md that differ from the program (an hour); WRITE=1: replace
 	@$(parallel) all
-	@scripts/measure.py --write README.md doc/*.md
-	@scripts/measure.py --figures doc/figures
+	@code=0; scripts/documents.py $(if $(WRITE),--write) README.md doc/*.md || code=1; \
+	scripts/measure.py $(if $(WRITE),--write,--compare) README.md doc/*.md || code=1; exit $$code
 
-gallery: deps  ## draw every kind of figure by its command, and write doc/gallery.md (minutes; results are kept)
+figures: deps  ## draw the figures of the documents that are older than case, script or results (LIST=1: say which; ALL=1; NAME=...)
 	@scripts/install-deps.sh python3-pil
 	@$(parallel) all
-	@scripts/make-gallery.py --data $(B)/gallery
+	@scripts/figures.py $(if $(LIST),--list) $(if $(ALL),--all) $(NAME)
 
 valgrind: deps  ## let valgrind watch the tests in C (TEST="..."), and a run of the program (an hour)
 	@scripts/install-deps.sh valgrind
@@ -255,7 +258,7 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
-	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/measure.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/measure.py scripts/documents.py scripts/figures.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -d '$(DESTDIR)$(python_modules)/shoal' '$(DESTDIR)$(prefix)/share/shoal/doc/'{examples,figures/gallery}
 	$(quiet)rm -f '$(DESTDIR)$(python_modules)/shoal.py'
 	$(quiet)install -m 644 scripts/shoal/*.py '$(DESTDIR)$(python_modules)/shoal'
@@ -337,13 +340,6 @@ $(B)/base/version.o: $(B)/commit
 
 $(B)/view/page.o: src/view/page.html
 $(B)/view/page.o: shoal_cflags += -Wa,-I$(abspath src/view)
-
-# with the sanitizers of clang this one, of long sums, takes minutes; the targets of `make fuzz` do not come here
-ifdef FUZZER
-$(B)/vortex/expansions.o: sanitize =
-else ifneq ($(and $(SANITIZE),$(is_clang)),)
-$(B)/vortex/expansions.o: CFLAGS = -O0 -g
-endif
 
 # rewritten only when the commit changes
 $(B)/commit: FORCE | $(folders)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measure the program: inner loops, fast multipole sums, phases of runs, schools, whole processes.
+# Measure the program: inner loops and trees, phases of runs, schools, whole processes.
 #
 #   scripts/bench.sh BUILD      BUILD: the folder with shoal and bench/
 #
@@ -91,8 +91,6 @@ column() {
 missed=0
 heading 'Inner loops (tests/bench/kernels.c)'
 bench kernels
-heading 'Fast multipole sums (tests/bench/treecode.c)'
-bench treecode
 heading 'Where the time goes (tests/bench/phases.c)'
 bench phases "$cases" | tee phases.txt
 heading 'Schools with full wakes (tests/bench/phases.c)'
@@ -186,7 +184,7 @@ check_limit 'diamond, 2 threads: CPU time over the lower bound' "$(column diamon
 check_limit 'diamond: wall clock with 2 threads over that with 1' \
     "$(awk "BEGIN { printf \"%.2f\", $two / $one }")" 0.556
 check_limit 'beside a busy loop: wall clock with 2 threads over that with 1' "$beside" 1.1
-check_limit 'diamond: output, % of the CPU time' "$(column diamond 1 15)" 3
+check_limit 'diamond: output, % of the CPU time' "$(column diamond 1 14)" 3
 check_limit 'an action in Python: CPU time over that in C' "$(sed -n 's/.* ratio //p' actions.txt | head -1)" 1.2
 check_limit 'environments: 1 thread over 2, actions a second' \
     "$(sed -n 's/.*with two (ratio \([0-9.]*\)).*/\1/p' actions.txt | awk '{ printf "%.2f", 1 / $1 }')" 0.556

@@ -6,7 +6,8 @@
 In doc/*.md, README.md and CONTRIBUTING.md: files and folders, links and their anchors, names with a low line or brackets
 (functions, keys, variables; in doc/model.md those in backticks), tests of `make test TEST=...`, tables of
 `scripts/measure.py NAME`, sections of `build/verify/verify NAME`. In the comments of src, include and tests: files, and
-sections of documents. And no two tests have one name. Exit codes: 0 all is there, 1 some is not.
+sections of documents. And no two tests have one name. Fenced blocks state their language, and a block of output follows the block of
+its command (scripts/documents.py). Exit codes: 0 all is there, 1 some is not.
 """
 
 import glob
@@ -84,6 +85,12 @@ def faults_of_document(path, words, tests, numerics, sections):
             yield f"a link to {target}, which is not there"
         elif anchor and file.endswith(".md") and anchor not in [anchor_of(h) for h in headings(file)]:
             yield f"a link to {target}: {file} has no such heading"
+    blocks = re.findall(r"^```([^\n]*)\n.*?^```$", text, re.M | re.S)
+    for before, block in zip([""] + blocks, blocks):
+        if not re.fullmatch(r"(sh|python)( minutes)?|yaml|c|console|output", block):
+            yield f"a block of '{block}': scripts/documents.py lists the languages"
+        if block == "output" and before.partition(" ")[0] not in ("sh", "python"):
+            yield "a block of output without a block of commands above"
     inline = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
     for name in re.findall(r"`([a-z]\w*_\w*|[a-z]\w*\(\))`", inline):
         if not is_known(name.removesuffix("()"), words):

@@ -8,7 +8,7 @@
 set -euo pipefail
 
 # Lowest first. doc/architecture.md states the subject of each folder.
-readonly rooms=(base vortex fish body wake control state flow force contact school case solver result view run steady study library app)
+readonly rooms=(base fish body wake control state flow force contact school case solver result view run steady study library app)
 
 # Headers (first folder, or name without .h), the beginnings of the functions they declare, and the folders that may use
 # them. base/version asks every library for its version, and calls nothing else of it.

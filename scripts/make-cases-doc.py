@@ -39,8 +39,21 @@ fish:
 of the run, `shoal show CASE` prints every key, value and unit, `shoal keys` the tables below, and `shoal keys WORD`
 the keys with a word in name or meaning. All errors of a case are listed at once, each with a remedy:
 
+```yaml
+# x.yaml
+format: 1
+time: {end: 1}
+fish:
+  - name: leader
+    stifness: 1e6
 ```
-cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'? The key belongs to fish[2].body
+
+```sh
+shoal check x.yaml
+```
+
+```output
+x.yaml:6:5: error: fish[0].stifness: unknown key; did you mean 'modulus'? The key belongs to fish[0].body
     stifness: 1e6
     ^
 ```
@@ -50,7 +63,8 @@ cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'?
 - Units are SI, angles are in degrees; a value is written without a unit: `length: 0.5`, not `length: 0.5 m`.
 - The key decides how a value is read: `name: no` is a string, `end: 1e1` is the number 10. `nan` and `inf` are
   refused.
-- A default in *italics* is computed from other values; *published* precedes the value of `preset: published`.
+- A default in *italics* is computed from other values; *published* precedes the value of `preset: published`. If a key
+  selects another model by such defaults, as `force: reactive` does, `check` and `run` print a note with these defaults.
 - `end`, `output_interval` and `checkpoint_interval` are integer multiples of `shedding_interval`, `wake_interval` is
   one of `output_interval`. Every row of output and every checkpoint ([reliability.md](reliability.md)) is then the
   state at an event.
@@ -76,7 +90,7 @@ The `name` of an included case has no effect.
 
 `--set` takes the path of any key and a value in YAML. Fish are counted from 0; `fish[*]` is every fish.
 
-```
+```console
 shoal run pair.yaml --set time.end=20 --set 'fish[*].nodes=13' --set 'fish[1].start.position=[0, -1]'
 ```
 

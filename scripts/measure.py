@@ -2,14 +2,15 @@
 """Measure the tables of README.md and doc/, and write them into the documents.
 
     scripts/measure.py NAME...              print tables as markdown
-    scripts/measure.py --write FILE...      measure every table of these documents again, in place; print the
-                                            tables that only the text names, to compare the numbers in the text
-    scripts/measure.py --figures FOLDER     draw the pictures of doc/figures again
+    scripts/measure.py --compare FILE...    measure every table of these documents again and list the rows that differ;
+                                            print the tables that only the text names, to compare the numbers in the text
+    scripts/measure.py --write FILE...      the same, and replace the tables in place
     scripts/measure.py --list               names of the tables, with a line about each
 
 The line above a table contains the command of the table, for example "`scripts/measure.py tolerance`". The script runs
 build/shoal in a temporary folder. Counts are exact; seconds are CPU seconds of one machine, and ratios of seconds come
-from the same table.
+from the same table. Rows agree like the output of commands (scripts/documents.py), CPU times to a factor of two. Exit
+codes: 0 all rows agree, 1 some differ.
 """
 
 import argparse
@@ -23,8 +24,10 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from itertools import zip_longest
 
 import netCDF4
+from documents import NUMBER, is_same_line
 from shoal._files import Results, np
 
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -247,7 +250,7 @@ def open_study(path):
     return study
 
 
-@table("case", "fish", "speed [m/s]", "cost [m/s2]", "largest share")
+@table("case", "fish", "speed [m/s]", "largest share", "cost [m/s2]", "largest share")
 def error_bars(bench):
     """speed and cost of transport with error bars (an hour, for the school)"""
     for name, fish, of in (("swim", 0, "steady_"), ("fish_pressure", 0, "steady_"), ("school", 0, ""), ("school", 3, "")):
@@ -257,12 +260,12 @@ def error_bars(bench):
             bench.call("error", bench.case(name), "--of", quantities[0], "--of", quantities[1], "-q", "-o", folder)
         study = open_study(os.path.join(folder, "study.nc"))
         keys, is_choice = strings(study["key_name"]), study["key_is_choice"][:] > 0
-        cells, shares = [], np.zeros(len(keys))
+        cells = []
         for quantity in quantities:
             value, bar = float(study[f"stated_{quantity}"][fish]), float(study[f"bar_{quantity}"][fish])
-            cells.append(with_bar(value, bar))
-            shares = np.fmax(shares, np.where(is_choice, 0, study[f"part_{quantity}"][:, fish] / bar))
-        yield name, strings(study["fish_name"])[fish], *cells, f"`{keys[np.argmax(shares)]}`"
+            part = np.where(is_choice, 0, study[f"part_{quantity}"][:, fish])
+            cells += [with_bar(value, bar), f"`{keys[np.argmax(part)]}`"]
+        yield name, strings(study["fish_name"])[fish], *cells
 
 
 # ---- are true errors below the bars? ----
@@ -327,7 +330,7 @@ def finer(key, finest):
 
 
 def coverage_of(bench, number, of, keys, text):
-    """Bars and true errors, both over the value, and whether the key is flagged: of each key, quantity and fish."""
+    """Bars and true errors, both over the value, and whether the levels are flagged: of each key, quantity and fish."""
     path = bench.case(text)
     plain = os.path.join(bench.folder, f"plain-{number}.yaml")
     shutil.copy(path, plain)
@@ -335,7 +338,6 @@ def coverage_of(bench, number, of, keys, text):
     folder = os.path.join(bench.folder, f"coverage-{number}")
     bench.call("study", path, "-q", "-o", folder)
     study = open_study(os.path.join(folder, "study.nc"))
-    reasons = strings(study["key_reason"])
     for k, key in enumerate(strings(study["key_name"])):
         if study["key_levels"][k] < 2:
             continue
@@ -348,14 +350,19 @@ def coverage_of(bench, number, of, keys, text):
         base = int(study["key_member"][k, study["key_stated"][k]])
         # a study computes some quantities, which a result does not state
         for quantity in [name for name in of if name in result.variables]:
-            values = study[quantity][base]
+            values, flags = study[quantity][base], study[f"key_flag_{quantity}"][k]
             for f, value in enumerate(np.atleast_1d(values)):
                 last = result[quantity][:] if is_steady else result[quantity][-1]
                 yield (float(study[f"part_{quantity}"][k, f]) / abs(value),
-                       abs(float(np.atleast_1d(last)[f]) - value) / abs(value), reasons[k] != "")
+                       abs(float(np.atleast_1d(last)[f]) - value) / abs(value), bytes(flags[f]).strip(b"\0 ") != b"")
 
 
-@table("cases", "sequences", "covered", "of them flagged", "covered", "bar over error, median", "below 1e-4, not counted")
+def share(covered):
+    """63 of 64 (98 %)"""
+    return f"{sum(covered)} of {len(covered)} ({100 * sum(covered) / len(covered):.0f} %)" if covered else "none"
+
+
+@table("cases", "covered", "not flagged", "bar over error, median", "flagged", "bar over error", "below 1e-4, not counted")
 def error_coverage(bench):
     """how many true errors are within their bars, on cases that were not used to choose the rule (15 minutes)"""
     kinds = {}
@@ -364,11 +371,12 @@ def error_coverage(bench):
     kinds["all"] = [one for kind in kinds.values() for one in kind]
     for kind, found in kinds.items():
         counted = [one for one in found if max(one[:2]) > 1e-4]
-        flagged = [one for one in counted if one[2]]
-        ratios = [bar / error for bar, error, _ in counted if error > 0]
-        covered = sum(error <= bar for bar, error, _ in counted)
-        yield (kind, len(counted), f"{covered} ({100 * covered / len(counted):.0f} %)", len(flagged),
-               sum(error <= bar for bar, error, _ in flagged), f"{np.median(ratios):.1f}", len(found) - len(counted))
+        cells = []
+        for is_flagged in (False, True):
+            part = [one[:2] for one in counted if one[2] == is_flagged]
+            ratios = [bar / error for bar, error in part if error > 0]
+            cells += [share([error <= bar for bar, error in part]), f"{np.median(ratios):.1f}" if ratios else ""]
+        yield kind, share([error <= bar for bar, error, _ in counted]), *cells, len(found) - len(counted)
 
 
 @table("modulus [Pa]", "speed [m/s]", "cost [m/s2]", "steps", "Newton iterations", "Jacobians")
@@ -677,18 +685,37 @@ def article(bench):
         yield ("steps per event, made to converge", "single_free", per_event(other)[0], "", "")
 
 
-# ---- documents and figures ----
+# ---- documents ----
 
 COMMAND = re.compile(r"^`scripts/measure\.py ([a-z_]+)`")
 IN_TEXT = re.compile(r"`scripts/measure\.py\s([a-z_]+)`")
 
 
-def write(bench, path):
-    """Replace every table of a document below a command, and print the tables with numbers in the text."""
+def is_same_row(heads, shown, printed):
+    """Whether two rows of a table agree, CPU times to a factor of two."""
+    if len(shown) != len(printed):
+        return False
+    for head, one, other in zip(heads, shown, printed):
+        if "CPU time" in head and NUMBER.fullmatch(one) and NUMBER.fullmatch(other) and float(other) > 0:
+            if not 0.5 <= float(one) / float(other) <= 2:
+                return False
+        elif not is_same_line(one, other):
+            return False
+    return True
+
+
+def rows_of(lines):
+    """The cells of the rows of a table in markdown, without its two head lines."""
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+
+
+def compare(bench, path, is_write):
+    """Measure the tables of a document below their commands, list rows that differ, and print the tables with numbers in
+    the text; with is_write replace the tables. The number of tables that differ."""
     with open(path, encoding="utf-8") as file:
         lines = file.read().split("\n")
     named = IN_TEXT.findall("\n".join(lines))
-    out, at = [], 0
+    out, at, n_different = [], 0, 0
     while at < len(lines):
         found = COMMAND.match(lines[at]) if at == 0 or not lines[at - 1] else None
         if not found:
@@ -700,66 +727,40 @@ def write(bench, path):
             sys.exit(f"measure.py: {path}: there is no table {name}")
         named.remove(name)
 
-        # the paragraph of the command, then the new table in the place of the old one, if there is one
+        # the paragraph of the command, then the table, if there is one
         while at < len(lines) and lines[at]:
             out.append(lines[at])
             at += 1
+        begin = at + 1
         while at + 1 < len(lines) and (lines[at].startswith("|") or lines[at + 1].startswith("|")):
             at += 1
         print(f"{path}: {name}", file=sys.stderr)
         heads, rows = TABLES[name]
-        out += ["", *markdown(list(heads), [list(row) for row in rows(bench)]).rstrip("\n").split("\n"), ""]
+        now = markdown(list(heads), [list(row) for row in rows(bench)]).rstrip("\n").split("\n")
+        shown, printed = rows_of(lines[begin:at]), rows_of(now)
+        different = [pair for pair in zip_longest(shown, printed, fillvalue=[]) if not is_same_row(heads, *pair)]
+        if different:
+            n_different += 1
+            print(f"{path}:{begin + 1}: `scripts/measure.py {name}` differs",
+                  *(f"    {sign} {' | '.join(row)}" for pair in different for sign, row in zip("-+", pair)), sep="\n")
+        out += ["", *now, ""]
         at += 1
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join(out))
+    if is_write:
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("\n".join(out))
 
     for name in named:
         print(f"{path}: compare the numbers in the text with the table {name}")
         heads, rows = TABLES[name]
         print(markdown(list(heads), [list(row) for row in rows(bench)]))
-
-
-# Per figure: cases to run, and the options of scripts/plot.py.
-FIGURES = {
-    "demo.png": (["run demo"], ["swim", "demo.nc"]),
-    "gait.png": (["run gait"], ["gait", "gait.nc", "--shapes", "20"]),
-    "single_turn.png": (["run single_turn"], ["swim", "single_turn.nc", "--no-follow", "--times", "3", "5", "8", "15"]),
-    "diamond.png": (["run diamond"], ["swim", "diamond.nc", "--no-follow", "--times", "2", "10", "25"]),
-    "school.png": (["run school"], ["swim", "school.nc", "--times", "2", "10", "30"]),
-    "steady_frequency.png": (["study studies/steady_frequency"], ["study", "steady_frequency/study.nc"]),
-    "steady_amplitude.png": (["study studies/steady_amplitude"], ["study", "steady_amplitude/study.nc"]),
-    "steady_resonance.png": (["study studies/steady_resonance"], ["study", "steady_resonance/study.nc"]),
-    "steady_thrust.png": (["study studies/steady_thrust"], ["study", "steady_thrust/study.nc"]),
-    "depth.png": (["study studies/depth"], ["study", "depth/study.nc"]),
-    "crowd.png": (["run crowd"], ["swim", "crowd.nc", "--times", "3"]),
-    "crowd_distances.png": (["run crowd"], ["school", "crowd.nc"]),
-    "stiffness.png": (["study studies/stiffness"], ["study", "stiffness/study.nc"]),
-}
-
-
-def figures(bench, folder, names):
-    """Draw pictures of doc/figures."""
-    done = set()
-    for figure in names or FIGURES:
-        commands, plot = FIGURES[figure]
-        for command in commands:
-            if command not in done:
-                verb, name = command.split()
-                bare = os.path.basename(name)
-                bench.call(verb, bench.case(name), "-q", *(["-j", "1"] if verb == "study" else []), "-o",
-                           bare if verb == "study" else f"{bare}.nc")
-                done.add(command)
-        target = os.path.join(os.path.abspath(folder), figure)
-        print(target, file=sys.stderr)
-        subprocess.run([sys.executable, os.path.join(HERE, "scripts", "plot.py"), *plot[:2], target, *plot[2:]],
-                       cwd=bench.folder, check=True)
+    return n_different
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", metavar="NAME", help="tables, documents or figures")
-    parser.add_argument("--write", action="store_true", help="NAMEs are documents")
-    parser.add_argument("--figures", metavar="FOLDER", help="NAMEs are figures, by default all")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="tables or documents")
+    parser.add_argument("--compare", action="store_true", help="NAMEs are documents")
+    parser.add_argument("--write", action="store_true", help="NAMEs are documents, to be changed")
     parser.add_argument("--list", action="store_true", help="list the tables")
     parser.add_argument("--program", default=os.path.join(HERE, "build", "shoal"), help="default: build/shoal")
     parser.add_argument("--verbose", action="store_true", help="show the commands")
@@ -769,12 +770,11 @@ def main():
             print(f"{name:14s} {rows.__doc__}")
         return
     bench = Bench(os.path.abspath(options.program), options.verbose)
+    n_different = 0
     try:
-        if options.figures:
-            figures(bench, options.figures, options.names)
-        for name in [] if options.figures else options.names:
-            if options.write:
-                write(bench, name)
+        for name in options.names:
+            if options.compare or options.write:
+                n_different += compare(bench, name, options.write)
             elif name in TABLES:
                 heads, rows = TABLES[name]
                 print(markdown(list(heads), [list(row) for row in rows(bench)]), end="")
@@ -782,6 +782,7 @@ def main():
                 parser.error(f"there is no table {name}: {', '.join(TABLES)}")
     finally:
         shutil.rmtree(bench.folder)
+    sys.exit(1 if n_different else 0)
 
 
 if __name__ == "__main__":

@@ -59,15 +59,16 @@ def write(path, text):
 
 
 def read_table():
-    """The mutants, of three lines each; the table says which."""
-    lines = [line for line in read(os.path.join(ROOT, TABLE)).splitlines() if line.strip() and line[0] != "#"]
+    """The mutants, one in a line; the table says how."""
     mutants = []
-    for i in range(0, len(lines), 3):
-        match = re.fullmatch(r"(\w+) +(\S+) +: (.+)\n- (.+)\n\+ ?(.*)", "\n".join(lines[i : i + 3]))
+    for line in read(os.path.join(ROOT, TABLE)).splitlines():
+        if not line.strip() or line[0] == "#":
+            continue
+        match = re.fullmatch(r"(\w+) (\S+): ([\w ]+): (.+?) =>(.*)", line)
         if not match:
-            give_up([f"{TABLE}: not a mutant: {lines[i]}"])
+            give_up([f"{TABLE}: not a mutant: {line}"])
         name, file, tests, old, new = match.groups()
-        mutants.append(Mutant(name, file, tests.split(), old, new))
+        mutants.append(Mutant(name, file, tests.split(), old, new.strip()))
     return mutants
 
 

@@ -19,6 +19,7 @@ import re
 import sys
 
 EXIT_USAGE, EXIT_FILE = 2, 4  # as the program itself: doc/cases.md
+sys.stdout.reconfigure(errors="surrogateescape")  # the name of a file may have any bytes
 
 
 def stop(message, code):
@@ -111,7 +112,7 @@ def parse(arguments):
         options[kind].add_argument("--beats", type=int, help=f"the last beats, 0: the whole run ({n})")
     options["field"].add_argument("--speed", action="store_true", help="draw the speed, not the vorticity")
     options["field"].add_argument("--no-streamlines", action="store_true", help="draw no streamlines")
-    options["study"].add_argument("--of", metavar="QUANTITY", help="what a map is of (speed), or the only curves")
+    options["study"].add_argument("--of", metavar="QUANTITY", help="of a map (speed), or the only one of curves and refined axes")
     options["time"].add_argument(
         "--each", nargs="?", const="speed", metavar="VARIABLE", help="a panel per fish, of one variable (speed)"
     )

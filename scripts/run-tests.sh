@@ -6,11 +6,11 @@
 # A TEST with the suffix .sh is a shell test: the argument is PROGRAM, the last line "N passed, N failed, N skipped".
 # Any other TEST is a cmocka program. Those in shell take longest and begin; one more runs at a time than there are
 # processors, since some of them wait. The report has the whole output of what failed. A test that crashes, exits early,
-# runs longer than the limit or tests nothing has failed.
+# runs longer than the limit or tests nothing has failed. The limit grows with the load of the machine.
 # The last line printed is the sum: "N passed, N failed, N skipped".
 set -euo pipefail
 
-readonly time_limit=${TIME_LIMIT:-300}  # seconds for one test
+readonly time_limit=${TIME_LIMIT:-300}  # seconds for one test on a machine that does nothing else
 readonly at_once=$(($(nproc) + 1))
 
 if (($# < 1)); then
@@ -66,8 +66,11 @@ count_shell() {
 start() {
     local command=("${tests[$1]}")
     [[ ${tests[$1]} != *.sh ]] || command=(bash "${tests[$1]}" "$program")
+    local load
+    read -r load _ </proc/loadavg
+    limits[$1]=$((time_limit * (at_once + ${load%.*}) / at_once))
     started[$1]=$EPOCHREALTIME
-    timeout --kill-after=10 "$time_limit" "${command[@]}" >"$folder/$1" 2>&1 </dev/null &
+    TIME_LIMIT=${limits[$1]} timeout --kill-after=10 "${limits[$1]}" "${command[@]}" >"$folder/$1" 2>&1 </dev/null &
     number_of[$!]=$1
 }
 
@@ -79,7 +82,7 @@ report() {
         *) read -r passed failed skipped < <(count_cmocka "$folder/$1") ;;
     esac
     if ((code == 124 || code == 137)); then
-        note="stopped after $time_limit s"
+        note="stopped after ${limits[$1]} s"
     elif ((code > 128)); then
         note="died of signal $((code - 128))"
     elif ((passed + failed + skipped == 0)); then
@@ -98,7 +101,7 @@ report() {
 }
 
 declare -A number_of
-started=() exit_code=() seconds=()
+limits=() started=() exit_code=() seconds=()
 all_passed=0 all_failed=0 all_skipped=0
 next=0 shown=0 running=0
 while ((shown < ${#tests[@]})); do

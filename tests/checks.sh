@@ -20,7 +20,7 @@ leave() {
 trap leave EXIT
 cd "$folder" || exit 2
 
-readonly time_limit=${TIME_LIMIT:-300}  # seconds for one call: a guard against a hang, not a limit to reach
+readonly time_limit=${TIME_LIMIT:-600}  # seconds for one call: a guard against a hang, not a limit to reach
 n_passed=0 n_failed=0 n_skipped=0
 
 pass() {
@@ -43,6 +43,15 @@ check() {  # name, command...
     local name=$1
     shift
     if "$@" >check.out 2>&1; then pass "$name"; else fail "$name" "$* : $(head -c 600 check.out) $(head -c 600 err)"; fi
+}
+
+# As check; skip where a program, or with "import MODULE" a module of Python, is missing.
+check_with() {  # program or import, name, command...
+    if [[ $1 == import\ * ]] && /usr/bin/python3 -c "$1" 2>/dev/null || command -v "$1" >/dev/null; then
+        check "${@:2}"
+    else
+        skip "$2" "${1#import } is missing"
+    fi
 }
 
 # Run the program; sets $code, and leaves the files out and err.

@@ -9,6 +9,7 @@
 
 static _Atomic int n_until_failure = -1;  // -1: never
 static _Atomic int n_live;                // allocations that have not been freed
+static _Atomic size_t n_bytes;            // requested of malloc and calloc so far
 
 static int may_allocate(void) {
     return n_until_failure < 0 || n_until_failure-- > 0;
@@ -35,10 +36,12 @@ char *__wrap_strndup(const char *text, size_t length);
 void __wrap_free(void *memory);
 
 void *__wrap_malloc(size_t size) {
+    n_bytes += size;
     return may_allocate() ? counted(__real_malloc(size)) : NULL;
 }
 
 void *__wrap_calloc(size_t n, size_t size) {
+    n_bytes += n * size;
     return may_allocate() ? counted(__real_calloc(n, size)) : NULL;
 }
 

@@ -3,6 +3,7 @@
 #ifndef SCHOOL_H
 #define SCHOOL_H
 
+#include "base/arena.h"
 #include "base/sparse.h"
 #include "case/case.h"
 #include "near.h"
@@ -10,7 +11,11 @@
 #include "school/jacobian.h"
 #include "school/residual.h"
 
+/* The arena of the test program, freed at its end. */
+struct arena *test_arena(void);
+
 struct setup {
+    struct arena *arena;
     struct case_values values;
     struct school *school;
     struct state *state;
@@ -70,8 +75,8 @@ void school_same_bits(const struct simulation *got, const struct simulation *wan
 /* The integration fails within 50 events, and the message has this text. */
 void school_fails(struct simulation *simulation, const char *message);
 
-/* A fish with one step in each interval: the rate of circulation is the slope of the parabola through three steps. */
-void school_shed_step_by_step(struct simulation *simulation);
+/* The rate of the shed circulation at an event is the slope of the quartic through the last five events. */
+void school_shed_event_by_event(struct simulation *simulation);
 
 /* Fail the test with the message unless the status is STATUS_OK. */
 void school_ok(enum status status);

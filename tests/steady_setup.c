@@ -10,7 +10,6 @@ void steady_setup_open(struct steady_setup *setup, const char *text) {
 }
 
 void steady_setup_close(struct steady_setup *setup) {
-    steady_problem_free(&setup->problem);
     simulate_free(setup->simulation);
     case_free(&setup->values);
 }

@@ -20,6 +20,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import shoal  # noqa: E402
 
 BEATS, EVENTS = 6, 25  # beats that are swum, events in a beat
+STEADY = 0.01  # a gait whose speed changes by more in the last beat, m/s, coasts or accelerates: its cost is not comparable
 START = np.array([0.4, 1.0, 0.6])  # amplitude, frequency (Hz), speed of the start (m/s)
 
 
@@ -95,12 +96,16 @@ def draw(path, speed, widths, slope, found, kept):
              title=f"slope {best:.7g} by differences")
     left.legend(frameon=False)
     gaits, results = np.array(list(kept)), np.array(list(kept.values()))
-    points = right.scatter(results[:, 1], results[:, 0], c=gaits[:, 1], s=14, cmap="viridis")
+    is_steady = np.abs(results[:, 2]) <= STEADY
+    right.plot(*results[~is_steady, 1::-1].T, "x", color="0.6", markersize=5, label=f"speed changes by more than {STEADY:g} m/s a beat")
+    points = right.scatter(*results[is_steady, 1::-1].T, c=gaits[is_steady, 1], s=18, cmap="viridis", label="steady")
+    right.set_ylim(top=1.2 * results[:, 0].max())  # room for the legend
+    right.legend(frameon=False, fontsize=8)
     cost, reached, _ = swim(found.x)
     right.plot(reached, cost, "r*", markersize=12)
     right.axvline(speed, color="0.7", linewidth=1)
     right.set(xlabel="speed (m/s)", ylabel="cost of transport (m s$^{-2}$)", 
-              title=f"gaits tried; star: A = {found.x[0]:.3f}, f = {found.x[1]:.2f} Hz")
+              title=f"gaits tried; star, the best: A = {found.x[0]:.3f}, f = {found.x[1]:.2f} Hz")
     figure.colorbar(points, label="frequency (Hz)")
     figure.savefig(path, dpi=110)
 

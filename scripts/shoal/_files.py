@@ -7,7 +7,7 @@
 
 import os
 
-from ._library import FileError
+from ._library import FileError, netcdf_path
 
 try:
     import netCDF4
@@ -90,9 +90,9 @@ KINDS = {"shoal_schema": "run", "shoal_study": "study", "shoal_field": "field"}
 def kind_of(path):
     """What a file of shoal is of: run, study or field; None where it is no file of shoal."""
     try:
-        with netCDF4.Dataset(path) as data:
+        with netCDF4.Dataset(netcdf_path(path)) as data:
             return next((kind for name, kind in KINDS.items() if hasattr(data, name)), None)
-    except (OSError, RuntimeError, UnicodeError):
+    except (OSError, RuntimeError):
         return None
 
 
@@ -108,7 +108,9 @@ def open_dataset(path, kind="shoal_schema"):
     if os.path.isdir(path):
         raise FileError(f"{path}: a folder, not a result file")
     try:
-        data = netCDF4.Dataset(path)
+        data = netCDF4.Dataset(netcdf_path(path))
+    except FileError:
+        raise
     except OSError as error:
         raise FileError(f"{path}: not a result file of shoal ({error.strerror or error})") from error
     if not hasattr(data, kind):

@@ -145,10 +145,24 @@ def text_of(value, what: str) -> bytes:
     """A string or path for the library, which would take its first zero byte for its end."""
     if not isinstance(value, (str, bytes, os.PathLike)):
         raise TypeError(f"{what} is a string or a path, not {kind(value)}")
-    encoded = os.fsencode(value)
+    try:
+        encoded = os.fsencode(value)
+    except UnicodeEncodeError as error:
+        raise CaseError(f"{what}: {value!r} has a surrogate in it, which is no character") from error
     if b"\0" in encoded:
         raise CaseError(f"{what}: {value!r} has a zero byte in it")
     return encoded
+
+
+def netcdf_path(path):
+    """A path for netCDF4 and xarray, which take names in UTF-8 only."""
+    try:
+        os.fspath(path).encode()
+    except UnicodeEncodeError as error:
+        raise FileError(f"{os.fspath(path)!r}: the name is not UTF-8: rename the file or its folder") from error
+    except AttributeError:  # bytes
+        return netcdf_path(os.fsdecode(path))
+    return path
 
 
 def number_of(value, what: str) -> float:

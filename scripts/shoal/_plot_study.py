@@ -3,14 +3,14 @@
     the errors of a case            what each key has in them, and the values at its levels
     a refined axis                  the error of each level by Richardson with the next finer one, over the grid spacing, with a
                                     triangle of the design slope and the orders that are accepted; with another axis of three
-                                    numbers or more values with error bars over that
+                                    numbers or more values with error bars over that, and the errors in per cent
     solver.method as an axis        cost against the first axis, a line per method; where there are several settings of a
                                     method the cheapest that is accurate, also as a table
     a position as the only axis     a map of the places; lines where the places are in a row
     two axes of numbers             a map over both: cells with their values, contours where there are many
-    anything else                   speed, cost of transport and Strouhal number, over depth thrust, over the first axis; of
-                                    fish that are held thrust, power and efficiency; of bodies that a heave drives the
-                                    efficiency in place of the Strouhal number; of bodies without a beat drag, lift and deflection
+    anything else                   speed, cost of transport and Strouhal number over the first axis; of fish that are held
+                                    thrust, power and efficiency; of bodies that a heave drives the efficiency in place of the
+                                    Strouhal number; of bodies without a beat drag, lift and deflection
     a comparison of methods         error against wall time and evaluations
 """
 
@@ -20,7 +20,7 @@ from ._plot_style import (
     DASHES, GRID, MARKS, calm, colour_bar, few_ticks, matplotlib, number_text, scale_of, unit_text, with_unit,
 )
 from ._files import FileError, netCDF4, np
-from ._library import CaseError
+from ._library import CaseError, netcdf_path
 
 COLOURS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#aa4499", "#b06000", "#3366aa", "#666666"]  # all dark
 NAMES = {
@@ -28,6 +28,7 @@ NAMES = {
     "rtol": "relative tolerance",
     "com": "centre of mass",
     "strouhal": "Strouhal number",
+    "depth": "depth / body length",
 }
 
 
@@ -42,7 +43,9 @@ class Study:
     def __init__(self, path):
         self.path = path
         try:
-            self.data = netCDF4.Dataset(path)
+            self.data = netCDF4.Dataset(netcdf_path(path))
+        except FileError:
+            raise
         except OSError as error:
             raise FileError(f"{path}: cannot be read ({error.strerror or error})") from error
         if not hasattr(self.data, "shoal_study"):
@@ -96,7 +99,7 @@ def case_of(study, member, refined):
     return ", ".join(f"{v.long_name.split('.')[-1]} {text}" for v, text in zip(others, texts))
 
 
-SLACK, FAR_ABOVE = 1, 1.5  # orders that are accepted, below and above the design order: src/study/error_budget.c
+LEAST_PART, MOST_ABOVE = 0.5, 0.5  # accepted orders, over and above the design order: src/study/error_budget.c
 
 
 def draw_design(axes, size, drawn, design):
@@ -106,9 +109,9 @@ def draw_design(axes, size, drawn, design):
     """
     if not np.isfinite(design) or size.size < 2:
         return
-    low, high = max(design - SLACK, 0), design + FAR_ABOVE
+    low, high = LEAST_PART * design, design + MOST_ABOVE
     ends = size[[0, -1]]
-    words = f"accepted orders, {low:g} and more" if low > 0 else "accepted orders, above 0"
+    words = f"accepted orders, {low:g} to {high:g}"
     axes.fill_between(ends, (ends / size[0]) ** low, (ends / size[0]) ** high, color="#e8e8e8", zorder=0, label=words)
 
     # the triangle: from 0.45 to 0.9 of the way to the coarsest level, with the legs 1 and the order
@@ -125,8 +128,8 @@ def draw_design(axes, size, drawn, design):
 
 
 def quantities_of(study):
-    """What is drawn of a refinement: positions of a run; speed and costs of steady states."""
-    names = ["nose", "tail", "com", "shed_circulation"]
+    """What is drawn of a refinement: positions, speed and cost of a run; speed and costs of steady states."""
+    names = ["nose", "tail", "com", "shed_circulation", "speed", "cost_of_transport"]
     if f"error_{names[0]}" not in study.data.variables:
         names = ["steady_speed", "steady_cost_of_transport", "steady_strouhal", "steady_drag", "steady_lift"]
     return [name for name in names if np.isfinite(study[f"error_{name}"]).any()]
@@ -160,13 +163,14 @@ def level_errors(study, name, design):
     return errors
 
 
-def plot_convergence(study, refined, figure):
-    """The errors of the levels of some quantities over that of the coarsest one; one panel per fish."""
+def plot_convergence(study, refined, figure, asked=None):
+    """The errors of the levels of some quantities, or of the one that is asked for, over that of the coarsest one; one panel
+    per fish."""
     level, size, first = study["level_value"], study["level_size"], study["group_member"]
     design = float(study["group_design_order"][0])
     names = list(study["fish_name"])
     all_axes = figure.subplots(1, len(names), squeeze=False, sharey=True)[0]
-    errors = {name: level_errors(study, name, design) for name in quantities_of(study)}
+    errors = {name: level_errors(study, name, design) for name in ([asked] if asked else quantities_of(study))}
     known = np.concatenate([np.zeros(0), *(e[np.isfinite(e) & (e > 0)] for e in errors.values())])
     if known.size == 0:
         raise FileError(f"{study.path}: no errors to draw: all levels are equal, or too few are complete")
@@ -190,6 +194,8 @@ def plot_convergence(study, refined, figure):
             draw_design(axes, drawn, np.array(lines), design)
         axes.set_xlabel(study.label(refined.name))
         axes.set_xticks(drawn, [f"{x:g}" for x in level[is_known]])
+        if level[0] < level[-1]:  # numbers of points rise from left to right
+            axes.invert_xaxis()
         axes.minorticks_off()
         few_ticks(axes.yaxis)
         if len(names) > 1:
@@ -199,15 +205,16 @@ def plot_convergence(study, refined, figure):
     legend_above(all_axes[0], figure, 2)
 
 
-def plot_values(study, refined, parameter, figure):
-    """Values of the finest level with their errors over a parameter; a line per fish and per value of the rest."""
+def plot_values(study, refined, parameter, figure, asked=None):
+    """Values of the finest level, or of the quantity that is asked for, with their errors over a parameter, and on the
+    right the errors in per cent, since most bars are shorter than a mark; a line per fish and per value of the rest."""
     first, x = study["group_member"], study[parameter.name]
     finest = study[refined.name] == study["level_value"][-1]
     others = [v.name for axis in study.axes for v in axis if v.axis != refined.axis]
     settings = [tuple(str(study[name][m]) for name in others) for m in range(x.size)]
     steady = ["steady_speed", "steady_cost_of_transport", "steady_strouhal", "steady_drag", "steady_lift", "steady_deflection"]
     run = ["speed", "cost_of_transport", "mean_actuation_power"]
-    known = [q for q in (steady if f"error_{steady[0]}" in study.data.variables else run)]
+    known = [asked] if asked else steady if f"error_{steady[0]}" in study.data.variables else run
     known = [q for q in known if np.isfinite(study[f"error_{q}"]).any()][:3]
     if not known:
         raise FileError(f"{study.path}: no errors to draw: too few levels are complete")
@@ -215,8 +222,8 @@ def plot_values(study, refined, parameter, figure):
     words = [", ".join(f"{n} {study[n][m]}" for n in others if n != parameter.name) for m in members]
     names = list(study["fish_name"])
     figure.set_figheight(1.2 + 1.4 * len(known))
-    stack = figure.subplots(len(known), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, quantity in zip(stack, known):
+    stack = figure.subplots(len(known), 2, sharex=True, squeeze=False, width_ratios=[3, 2])
+    for (axes, right), quantity in zip(stack, known):
         i = 0
         flagged = study.data[f"objection_{quantity}"][:]
         for word in dict.fromkeys(words):
@@ -228,16 +235,23 @@ def plot_values(study, refined, parameter, figure):
                 label = ", ".join(filter(None, [word, name if len(names) > 1 else ""]))
                 line = style(i)
                 axes.errorbar(at, value, bar, label=label or None, capsize=3, elinewidth=0.8, **line)
-                # hollow where the levels state no order, so that the bar is a largest difference
+                percent = 100 * bar / np.abs(value)
+                right.plot(at, percent, **line)
+                # a ring where the levels state no order, so that the bar is a largest difference
                 doubtful = [k for k, g in enumerate(rows) if str(flagged[g][f]).strip("\0")]
-                axes.plot(at[doubtful], value[doubtful], ls="", marker="o", ms=9, mfc="none", color=line["color"], mew=0.8)
+                for panel, y in ((axes, value), (right, percent)):
+                    panel.plot(at[doubtful], y[doubtful], ls="", marker="o", ms=9, mfc="none", color=line["color"], mew=0.8)
                 i += 1
         axes.set_ylabel(study.label(quantity).replace(" [", "\n["))
-        axes.grid(lw=0.3, color=GRID)
-    stack[-1].set_xscale(scale_of(x))
-    stack[-1].set_xlabel(f"{study.label(parameter.name)}   (ring: flagged, the bar is the largest difference)")
+        right.set_ylabel("error [%]")
+        right.set_ylim(0, 1.1 * right.dataLim.y1)
+        for panel in (axes, right):
+            panel.grid(lw=0.3, color=GRID)
+    stack[-1, 0].set_xscale(scale_of(x))
+    for panel, note in zip(stack[-1], ("   (ring: flagged)", "")):
+        panel.set_xlabel(study.label(parameter.name) + note)
     if i > 1:
-        legend_above(stack[0], figure, 2)
+        legend_above(stack[0, 0], figure, 2)
 
 
 def plot_budget(study, figure):
@@ -258,7 +272,7 @@ def plot_budget(study, figure):
         percent = 100 / abs(value)
         bottom = 0
         for i, k in enumerate(keys):
-            is_flagged = bool(str(study.data["key_reason"][k]).strip("\0"))
+            is_flagged = bool(str(study.data[f"key_flag_{quantity}"][k, fish]).strip("\0"))
             left.bar(0, part[k] * percent, bottom=bottom, color=COLOURS[(i + 1) % 8], width=0.6, hatch="//" if is_flagged else None,
                      edgecolor="white", lw=0)
             if part[k] > 0.06 * bar:
@@ -276,7 +290,7 @@ def plot_budget(study, figure):
             values = all_values[members, fish]
             differences = np.abs(values - values[0]) * percent
             of_finest = max(part[k] * percent - differences[stated], 0)
-            is_flagged = bool(str(study.data["key_reason"][k]).strip("\0"))
+            is_flagged = bool(str(study.data[f"key_flag_{quantity}"][k, fish]).strip("\0"))
             for level in reversed(range(n)):
                 mark = {"edgecolor": "black", "lw": 1} if level == stated else {"edgecolor": "white", "lw": 0}
                 right.bar(at, differences[level] + of_finest, color=COLOURS[(i + 1) % 8], alpha=0.35, width=0.8,
@@ -469,8 +483,7 @@ def is_known(study, name):
 
 
 def panels_of(study, first):
-    """What is drawn over an axis: speed, cost and Strouhal number, over depth thrust; of bodies that a heave drives the
-    efficiency; of held ones the forces, power and efficiency; of bodies at rest what the stream does to them."""
+    """What is drawn over an axis: speed, cost and Strouhal number; of bodies that a heave drives the efficiency; of held ones the forces, power and efficiency; of bodies at rest what the stream does to them."""
     if is_known(study, "steady_drag"):
         return ["steady_drag", "steady_lift", "steady_deflection"]
     speed = study["speed"][study.complete]
@@ -484,8 +497,6 @@ def panels_of(study, first):
         np.abs(study["mean_thrust"] * study["speed"])[study.complete] > 0.01 * np.abs(study["mean_power"][study.complete])))
     if is_given or is_driven and is_same:
         return ["mean_thrust", "mean_power", "efficiency"]
-    if first.long_name.endswith(".depth") and is_known(study, "steady_thrust"):
-        return ["speed", "cost_of_transport", "steady_thrust"]
     return ["speed", "cost_of_transport", "efficiency" if is_driven and is_known(study, "efficiency") else "strouhal"]
 
 
@@ -503,8 +514,6 @@ def plot_lines(study, figure, asked=None, x=None, label=None):
     stack = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
     for axes, quantity in zip(stack, quantities):
         value, title = study[quantity], study.label(quantity)
-        if quantity == "steady_thrust" and first.long_name.endswith(".depth"):
-            value, title = value / x[:, None], "thrust over depth [N]"
         i = 0
         for words in dict.fromkeys(map(tuple, rest)):
             rows = np.array([tuple(r) == words for r in rest]) & study.complete
@@ -529,11 +538,13 @@ def plot_comparison(study, figure):
     repeats = {}  # of each setting, in the order of the first round
     for m in range(N_REFERENCES, study.complete.size):
         repeats.setdefault(tuple(study[name][m] for name in COMPARISON), []).append(m)
-    lines = {}
-    for (word, order, _, step), members in repeats.items():
+    lines, failed = {}, {}
+    for (word, order, rtol, step), members in repeats.items():
+        label = f"ida{order:.0f}" if word == "ida" else word
         if study.complete[members].all():
-            label = f"ida{order:.0f}" if word == "ida" else word
             lines.setdefault(label, {}).setdefault(step > 0, []).append(members)
+        else:
+            failed.setdefault(label, []).append(f"step {step:g}" if step > 0 else f"rtol {rtol:g}")
     error = np.max(study["tail_error"], axis=1)
     panels = figure.subplots(1, 2, sharey=True)
     for axes, name in zip(panels, ["wall_time", "residual_evaluations"]):
@@ -543,6 +554,8 @@ def plot_comparison(study, figure):
                 cost = [np.median(study[name][members]) for members in points]
                 axes.loglog(cost, [error[members[0]] for members in points], label=label, **style(i))
                 label = None
+        for label, settings in failed.items():
+            axes.plot([], [], ls="", label=f"{label} failed: {', '.join(settings)}")
         # what is below the error of the reference itself says nothing
         axes.axhspan(0, error[N_REFERENCES - 1], color="#eeeeee", zorder=0)
         axes.axhline(error[N_REFERENCES - 1], color="#888888", lw=0.8, zorder=1)
@@ -561,7 +574,7 @@ def plot_comparison(study, figure):
                 size=7,
                 color="#666666",
             )
-    legend_above(panels[0], figure, 6)
+    legend_above(panels[0], figure, 6 if not failed else 2)
 
 
 PLACE = ["x of the nose at the start [m]", "y of the nose at the start [m]"]
@@ -596,13 +609,11 @@ def map_axes(study):
 
 def own_words(study):
     """What a study is drawn as that has its quantities given."""
-    if study.is_comparison or "solver_method" in study.data.variables:
-        return "a comparison of methods"
-    return "an error budget" if "key_name" in study.data.variables else "orders of convergence"
+    return "an error budget" if "key_name" in study.data.variables else "a comparison of methods"
 
 
 def draw(path, figure, asked=None):
-    """Draw what a file calls for on an empty figure; asked: the quantity of a map or of lines over an axis."""
+    """Draw what a file calls for on an empty figure; asked: the quantity of a map, or of lines over an axis."""
     study, quantity = Study(path), asked or "speed"
     drawn = study.data.variables.get(quantity)
     if drawn is None or drawn.dimensions[1:] != ("fish",) or not study.is_number(quantity):
@@ -610,9 +621,11 @@ def draw(path, figure, asked=None):
     over = map_axes(study)
     if over:
         return plot_map(study, *over, quantity, figure)
-    has_own = study.is_comparison or any(name in study.data.variables for name in ("key_name", "level_value", "solver_method"))
+    has_own = study.is_comparison or any(name in study.data.variables for name in ("key_name", "solver_method"))
     if asked and has_own:
-        raise CaseError(f"--of: only maps and curves of a sweep take it, and {path} is drawn as {own_words(study)}")
+        raise CaseError(f"--of: only maps, curves and refined axes take it, and {path} is drawn as {own_words(study)}")
+    if asked and "level_value" in study.data.variables and f"error_{asked}" not in study.data.variables:
+        raise CaseError(f"--of: {path} has no errors of {asked}: see {', '.join(quantities_of(study))}")
     if study.is_comparison:
         return plot_comparison(study, figure)
     if "key_name" in study.data.variables:
@@ -626,8 +639,8 @@ def draw(path, figure, asked=None):
     if refined:
         others = [axis[0] for axis in study.axes if axis[0].axis != refined[0].axis]
         if len(others) == 1 and study.is_number(others[0].name) and np.unique(study[others[0].name]).size >= 3:
-            return plot_values(study, refined[0], others[0], figure)
-        return plot_convergence(study, refined[0], figure)
+            return plot_values(study, refined[0], others[0], figure, asked)
+        return plot_convergence(study, refined[0], figure, asked)
     if "solver_method" in study.data.variables and study.is_number(keys[0].name):
         return plot_methods(study, keys[0].name, figure)
     if is_place(keys):

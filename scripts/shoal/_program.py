@@ -87,7 +87,8 @@ def _words(command, arguments, assignments):
 def _call(words, path, progress=False, shown=None) -> str:
     """Run the program; returns its output. Warnings become Python's, errors exceptions; shown: the path in messages."""
     said, complaints = [], []
-    with subprocess.Popen([*words, path], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen([*words, path], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          errors="surrogateescape") as process:
         try:
             for line in process.stderr:
                 if "warning: " in line:
@@ -259,7 +260,7 @@ class Page:
 
 def frame_of(page: str) -> str:
     """A page as an element of another one."""
-    return f'<iframe srcdoc="{html.escape(page)}" style="depth: 100%; height: 560px; border: 0"></iframe>'
+    return f'<iframe srcdoc="{html.escape(page)}" style="width: 100%; height: 560px; border: 0"></iframe>'
 
 
 def view(path, page=None, overwrite: bool = True) -> Page:

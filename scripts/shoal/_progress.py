@@ -17,11 +17,11 @@ def in_notebook() -> bool:
 
 
 class Report:
-    """Calls a function several times a second; n_events is the number of events until the next call."""
+    """Calls a function, or nothing for None, several times a second."""
 
-    def __init__(self, function):
+    def __init__(self, function=None):
         self.function = function
-        self.n_events, self._last = 1, time.monotonic()
+        self._last = -EVERY
 
     def __enter__(self):
         return self
@@ -29,25 +29,22 @@ class Report:
     def __exit__(self, *_):
         pass
 
-    def __call__(self, part, whole, now, end):
-        elapsed = time.monotonic() - self._last
-        # aim at the interval between two reports
-        if elapsed < EVERY / 2:
-            self.n_events = min(2 * self.n_events, 10**6)
-        elif elapsed > 2 * EVERY:
-            self.n_events = max(1, self.n_events // 2)
+    def __call__(self, part, whole, now, end, is_due=False):
+        if not is_due and time.monotonic() - self._last < EVERY:
+            return
         self.show(part / whole if whole > 0 else 1.0, now, end)
         self._last = time.monotonic()
 
     def show(self, share, now, end):
-        self.function(now, end)
+        if self.function:
+            self.function(now, end)
 
 
 class Bar(Report):
     """One line that is drawn again: on standard error, or as an element of a notebook."""
 
     def __init__(self):
-        super().__init__(None)
+        super().__init__()
         self._started, self._display = time.monotonic(), None
         self._notebook = in_notebook()
 
@@ -91,11 +88,11 @@ def somebody_looks() -> bool:
 
 
 def report(progress):
-    """The receiver of progress reports, or None."""
+    """The receiver of progress reports."""
     if progress is None:
         progress = somebody_looks()
     if callable(progress):
         return Report(progress)
     if isinstance(progress, bool):
-        return Bar() if progress else None
+        return Bar() if progress else Report()
     raise TypeError(f"progress is a function of (time, end), True, False or None, not {progress!r}")

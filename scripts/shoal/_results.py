@@ -6,7 +6,7 @@ import os
 
 import numpy as np
 
-from ._library import CaseError, FileError, index_of, kind
+from ._library import CaseError, FileError, index_of, kind, netcdf_path
 
 
 def _xarray():
@@ -55,6 +55,7 @@ def open(path: str | os.PathLike):  # noqa: A001 - shoal.open, as gzip.open
     xarray = _xarray()
     if not os.path.isfile(path):
         raise FileError(f"{os.fspath(path)}: no such file")
+    path = netcdf_path(path)
     try:
         data = xarray.open_dataset(path, engine="netcdf4")
     except Exception as error:  # the exception of a damaged file depends on the versions of two libraries

@@ -303,31 +303,20 @@ class Run:
         """Advance to the first event at or after a time, s, which must not be before the last event.
 
         progress: a function of (time, time to reach), called several times a second; True: a bar on standard error or
-        in a notebook; None: a bar on a terminal or in a notebook. Ctrl-C stops at an event; the run can continue.
+        in a notebook; None: a bar on a terminal or in a notebook. Ctrl-C stops at the next event; the run can continue.
         """
         target = number_of(time, "advance: a time, s,")
-        show = report(progress)
-        if show is None:
-            with self._using() as pointer:
-                check(lib.library.shoal_advance(pointer, target))
-            return
-        with show:
-            self._advance_in_parts(target, show)
+        with report(progress) as show, self._using() as pointer:
+            first, interval = lib.library.shoal_time(pointer), lib.library.shoal_interval(pointer)
+            end = lib.library.shoal_end(pointer)
 
-    def _advance_in_parts(self, target, show):
-        interval = self.interval
-        first, last = self.time, min(target, self.end)
-        while True:
-            now = self.time
-            show(now - first, last - first, now, last)
-            if now >= last - 1e-9 * interval:
-                break
-            n = show.n_events
-            with self._using() as pointer:
-                check(lib.library.shoal_advance(pointer, min(now + n * interval, last)))
-        if target > last:
-            with self._using() as pointer:
-                check(lib.library.shoal_advance(pointer, target))
+            # event by event: Python looks for signals between two calls
+            while (now := lib.library.shoal_time(pointer)) + interval < target <= end * (1 + 1e-9):
+                show(now - first, target - first, now, target)
+                check(lib.library.shoal_advance(pointer, now + interval))
+
+            check(lib.library.shoal_advance(pointer, target))
+            show(1, 1, lib.library.shoal_time(pointer), target, is_due=True)
 
     # -- from outside
 

@@ -7,7 +7,7 @@
 #include "app/main_options.h"
 #include "app/main_signals.h"
 #include "app/say.h"
-#include "base/memory.h"
+#include "base/arena.h"
 #include "base/text.h"
 #include "base/version.h"
 
@@ -179,37 +179,25 @@ static enum status describe(void) {
     return STATUS_OK;
 }
 
-static char *join(int argc, char **argv) {
-    size_t length = 1;
-    for (int i = 0; i < argc; i++) length += strlen(argv[i]) + 1;
-    char *const text = calloc(1, length);
-    for (int i = 0; i < argc && text; i++) {
-        strcat(text, argv[i]);
-        if (i + 1 < argc) strcat(text, " ");
+static enum status dispatch(struct arena *arena, const struct command *command, int argc, char **argv) {
+    // the command line, to be repeated in a shell
+    struct text line = {0};
+    for (int i = 0; i < argc; i++) {
+        if (i > 0) text_add(&line, " ");
+        text_add_word(&line, argv[i]);
     }
-    return text;
-}
+    if (line.failed) arena_lack(arena, 0);
+    arena_defer(arena, free, line.text);
 
-static enum status dispatch(const struct command *command, int argc, char **argv) {
-    char *const command_line = join(argc, argv);
     // allocate one element more than the command line can fill: main_error adds an assignment
-    const char **const assignments = calloc((size_t)argc + 1, sizeof *assignments);
-    const char **const of = calloc((size_t)argc + 1, sizeof *of);
-    enum status status = STATUS_OK;
+    struct request request = {.arena = arena, .command_line = line.text};
+    NEW(arena, request.assignments, argc + 1);
+    NEW(arena, request.of, argc + 1);
 
-    if (command_line && assignments && of) {
-        struct request request = {.command_line = command_line, .assignments = assignments, .of = of};
-        // getopt starts after the name of the command
-        if (main_parse(command, argc - 1, argv + 1, &request, &status) == 0 && status == STATUS_OK) {
-            status = command->run(&request);
-        }
-    } else {
-        status = memory_check(NULL, "the command line");
-    }
-    free(command_line);
-    free(assignments);
-    free(of);
-    return status;
+    // getopt starts after the name of the command
+    enum status status = STATUS_OK;
+    const int is_done = main_parse(command, argc - 1, argv + 1, &request, &status);
+    return is_done || status != STATUS_OK ? status : command->run(&request);
 }
 
 static enum status print_version(void) {
@@ -219,7 +207,7 @@ static enum status print_version(void) {
     return STATUS_OK;
 }
 
-static enum status main_choose(int argc, char **argv) {
+static enum status main_choose(struct arena *arena, int argc, char **argv) {
     if (argc < 2) {
         print_help(stderr);
         return status_fail(STATUS_CASE, "no command");
@@ -234,9 +222,15 @@ static enum status main_choose(int argc, char **argv) {
     }
 
     for (int i = 0; i < N_COMMANDS; i++) {
-        if (strcmp(argv[1], commands[i].name) == 0) return dispatch(&commands[i], argc, argv);
+        if (strcmp(argv[1], commands[i].name) == 0) return dispatch(arena, &commands[i], argc, argv);
     }
     return refuse_command(argv[1]);
+}
+
+static enum status main_run_command(int argc, char **argv, struct arena **arena) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    *arena = arena_create(NULL, "the command");
+    return main_choose(*arena, argc, argv);
 }
 
 // Errors of a case begin with file, line and column, so only other messages get the prefix.
@@ -250,7 +244,9 @@ int main(int argc, char **argv) {
     main_open_standard();
     main_reset_signals();
     main_guard_exit();
-    enum status status = main_choose(argc, argv);
+    struct arena *arena = NULL;
+    enum status status = main_run_command(argc, argv, &arena);
+    arena_free(arena);
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
         status = status_fail(STATUS_FILE, "cannot write to standard output");
     }

@@ -72,8 +72,11 @@ enum status main_new(const struct request *request) {
     }
 
     const int failed = fputs(case_template, file) == EOF;
-    if (fclose(file) != 0 || failed)
-        return status_fail(STATUS_FILE, "%s: cannot be written: %s", path, strerror(errno));
+    if (fclose(file) != 0 || failed) {
+        const int code = errno;
+        remove(path);
+        return status_fail(STATUS_FILE, "%s: cannot be written: %s", path, strerror(code));
+    }
     if (!request->quiet) say_line(stdout, "%s\n", path);
     return STATUS_OK;
 }

@@ -10,7 +10,6 @@
 #include "base/text.h"
 #include "case/case.h"
 #include "case/sweep.h"
-#include "fish/fish_school.h"
 #include "result/target.h"
 #include "run/estimate.h"
 #include "run/record.h"
@@ -83,19 +82,11 @@ static enum status check_estimate_member(struct checked *checked, int member, st
     return STATUS_OK;
 }
 
-// Start a member as `shoal run` does. Create only the school once the CPU time is spent.
+// Start a member as `shoal run` does. Once the CPU time is spent, the start ends after the checks of the bodies.
 static enum status check_start(struct checked *checked, int member, const struct case_values *values) {
-    const volatile sig_atomic_t *const stop = main_stop_signal();
     struct simulation *simulation = NULL;
-    enum status status = *stop ? STATUS_STOPPED : simulate_start(&simulation, values, stop);
-
-    if (status == STATUS_STOPPED) {
-        struct school *school;
-        TRY(fish_school_create(&school, &values->school));
-        fish_school_free(school);
-        return STATUS_OK;
-    }
-
+    enum status status = simulate_start(NULL, &simulation, values, main_stop_signal());
+    if (status == STATUS_STOPPED) return STATUS_OK;
     TRY(status);
     if (checked->n_unknowns == 0) checked->n_unknowns = simulation->school->n_unknowns;
     check_warnings(checked, member, simulation);

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 
 /* Options without a letter. */
@@ -42,6 +43,7 @@ enum option_code {
 
 /* The parsed command line. A string is NULL if the option is absent. */
 struct request {
+    struct arena *arena; /* of the command */
     const char *command_line;
     const char *output;
     int quiet, verbose, force, json, schema, of_output, case_only;

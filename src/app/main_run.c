@@ -163,7 +163,7 @@ enum status main_demo(const struct request *request) {
     demo.verbose = !request->quiet;
     TRY(main_run(&demo));
     TRY(draw_demo(share, "demo.nc", "demo.png"));
-    TRY(page_write("demo.nc", "demo.html", request->force));
+    TRY(page_write(request->arena, "demo.nc", "demo.html", request->force));
     if (!request->quiet)
         say_line(stdout, "\nPicture: demo.png. Movie: demo.html (open in a browser). Case: %s.\n", path);
     return STATUS_OK;

@@ -52,6 +52,9 @@ void main_open_standard(void) {
 
 void main_reset_signals(void) {
     signal(SIGCHLD, SIG_DFL);
+
+    // report a file size limit as an error of the write; the default action kills
+    signal(SIGXFSZ, SIG_IGN);
 }
 
 void main_catch_signals(void) {
@@ -61,9 +64,6 @@ void main_catch_signals(void) {
         const int is_ignored = asking[i].before.sa_handler == SIG_IGN;
         sigaction(asking[i].number, is_ignored ? &asking[i].before : &action, NULL);
     }
-
-    // report a full disk or a file size limit as an error; the default action kills
-    signal(SIGXFSZ, SIG_IGN);
 
     // report a closed pipe as an error; progress ignores a closed stderr
     signal(SIGPIPE, SIG_IGN);

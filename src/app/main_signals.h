@@ -11,7 +11,8 @@
  * descriptor, and printed text would go into that file. */
 void main_open_standard(void);
 
-/* Restore the default action of SIGCHLD: if the parent process ignores SIGCHLD, waiting for child processes fails. */
+/* For all commands: restore the default action of SIGCHLD, because waiting for child processes fails if the parent
+ * process ignores SIGCHLD; ignore SIGXFSZ, so that a write beyond the limit of a file size fails with a message. */
 void main_reset_signals(void);
 
 /* Let SIGINT, SIGTERM, SIGHUP, SIGUSR1 and SIGXCPU request a stop; a second SIGINT ends the program at once. Signals

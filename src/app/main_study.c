@@ -18,12 +18,12 @@
 
 // ---- study, error, gather
 
-/* Read the value of an option: a non-negative integer. */
+/* Read the value of an option: a positive integer. */
 static enum status read_count(const char *option, const char *text, int *count) {
     char *end;
     const long number = strtol(text, &end, 10);
-    if (end == text || *end || number < 0 || number > 1000000) {
-        return status_fail(STATUS_CASE, "%s %s: expects an integer", option, text);
+    if (end == text || *end || number < 1 || number > 1000000) {
+        return status_fail(STATUS_CASE, "%s %s: expects an integer above 0", option, text);
     }
     *count = (int)number;
     return STATUS_OK;

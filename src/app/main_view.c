@@ -1,24 +1,16 @@
 /* main_view.c: shoal view, export and field: results for other programs, and the flow of a result on a grid. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/main_commands.h"
 #include "app/say.h"
-#include "base/memory.h"
+#include "base/arena.h"
 #include "base/text.h"
 #include "result/netcdf.h"
 #include "result/target.h"
 #include "view/export.h"
 #include "view/field_file.h"
-
-/* Add the name of a file without folders and ending. */
-static void add_stem(struct text *text, const char *path) {
-    const char *const slash = strrchr(path, '/'), *const name = slash ? slash + 1 : path,
-                      *const dot = strrchr(name, '.');
-    text_add(text, "%.*s", (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name)), name);
-}
 
 /* Print a note on rows that are missing because the file is truncated. */
 static void note_missing(const char *path) {
@@ -29,31 +21,30 @@ static void note_missing(const char *path) {
 }
 
 enum status main_view(const struct request *request) {
-    struct text path = {0};
-    if (request->output) TRY(target_refuse_input(request->output, request->positional));
-    if (request->output) {
-        text_add(&path, "%s", request->output);
+    const char *const run = request->positional, *path = request->output;
+    if (path) {
+        TRY(target_refuse_input(path, run));
     } else {
-        add_stem(&path, request->positional);
-        text_add(&path, ".html");
+        // the name of the run without folders and ending
+        const char *const slash = strrchr(run, '/'), *const name = slash ? slash + 1 : run;
+        const char *const dot = strrchr(name, '.');
+        const size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
+        path = arena_text(request->arena, "%.*s.html", (int)length, name);
     }
 
-    const enum status status =
-        path.failed ? memory_check(NULL, "a file name") : page_write(request->positional, path.text, request->force);
-    if (status == STATUS_OK) note_missing(request->positional);
-    if (status == STATUS_OK && !request->quiet) say_line(stdout, "%s\n", path.text);
-    text_free(&path);
-    return status;
+    TRY(page_write(request->arena, run, path, request->force));
+    note_missing(run);
+    if (!request->quiet) say_line(stdout, "%s\n", path);
+    return STATUS_OK;
 }
 
 enum status main_export(const struct request *request) {
-    char *list = NULL;
+    const char *list;
     if (!request->vtk)
         return status_fail(STATUS_CASE, "export: choose a format: --vtk FOLDER; see shoal export --help");
-    TRY(vtk_export(request->positional, request->vtk, request->force, &list));
+    TRY(vtk_export(request->arena, request->positional, request->vtk, request->force, &list));
     note_missing(request->positional);
     if (!request->quiet) say_line(stdout, "%s\n", list);
-    free(list);
     return STATUS_OK;
 }
 
@@ -121,35 +112,25 @@ static enum status read_grid(const char *text, struct field_grid *grid) {
     return STATUS_OK;
 }
 
-/* RUN-field.nc of RUN.nc; the caller frees it. */
-static char *default_path(const char *run) {
-    static const char ending[] = ".nc", field[] = "-field.nc";
-    const size_t length = strlen(run), cut = strlen(ending);
-    const int has_ending = length > cut && strcmp(run + length - cut, ending) == 0;
-    char *const path = malloc(length + sizeof field);
-    if (path) sprintf(path, "%.*s%s", (int)(has_ending ? length - cut : length), run, field);
-    return path;
-}
-
-static enum status write_field(const struct request *request, const struct field_row *row, const char *path) {
-    struct field_grid grid;
-    TRY(read_box(request->box, row, &grid));
-    TRY(read_grid(request->grid, &grid));
-    TRY(field_file_write(path, request->force, request->positional, request->command_line, row, &grid));
-    if (!request->quiet) say_line(stdout, "%s: %d x %d points at t = %g s\n", path, grid.nx, grid.ny, row->state->t);
-    return STATUS_OK;
-}
-
 enum status main_field(const struct request *request) {
-    struct field_row row;
+    const char *const run = request->positional, *path = request->output;
+    struct field_row *row;
+    struct field_grid grid;
     double t;
     TRY(read_time(request->at, &t));
-    if (request->output) TRY(target_refuse_input(request->output, request->positional));
-    TRY(field_row_read(&row, request->positional, t, request->n_assignments, request->assignments));
-    char *const path = request->output ? strdup(request->output) : default_path(request->positional);
-    enum status status = memory_check(path, "a file name");
-    if (status == STATUS_OK) status = write_field(request, &row, path);
-    free(path);
-    field_row_free(&row);
-    return status;
+    if (path) TRY(target_refuse_input(path, run));
+    TRY(field_row_read(request->arena, &row, run, t, request->n_assignments, request->assignments));
+
+    // RUN-field.nc of RUN.nc
+    if (!path) {
+        const size_t length = strlen(run);
+        const int has_ending = length > 3 && strcmp(run + length - 3, ".nc") == 0;
+        path = arena_text(request->arena, "%.*s-field.nc", (int)(has_ending ? length - 3 : length), run);
+    }
+
+    TRY(read_box(request->box, row, &grid));
+    TRY(read_grid(request->grid, &grid));
+    TRY(field_file_write(request->arena, path, request->force, run, request->command_line, row, &grid));
+    if (!request->quiet) say_line(stdout, "%s: %d x %d points at t = %g s\n", path, grid.nx, grid.ny, row->state->t);
+    return STATUS_OK;
 }

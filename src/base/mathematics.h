@@ -2,6 +2,16 @@
 #ifndef MATHEMATICS_H
 #define MATHEMATICS_H
 
+#include <math.h>
+
+/* The larger and the smaller of two numbers; NaN, unlike fmax and fmin, if one of the numbers is NaN. */
+static inline double larger(double a, double b) {
+    return a > b || isnan(a) ? a : b;
+}
+static inline double smaller(double a, double b) {
+    return a < b || isnan(a) ? a : b;
+}
+
 /* The angle [rad] minus an integer number of turns, in [-pi, pi]. */
 double angle_wrap(double angle);
 

@@ -1,40 +1,16 @@
 /* sparse.c: the order of additions is recorded once and replayed afterwards. */
 #include "base/sparse.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
-
-enum status sparse_create(struct sparse **matrix, int first, int n) {
-    struct sparse *new;
-    *matrix = NULL;
-    TRY(MEMORY_NEW(new, 1, "a sparse matrix"));
-    new->first = first;
-    new->n = n;
-    new->recording = 1;
-
-    enum status status = MEMORY_NEW(new->masked, n, "a sparse matrix");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->column_start, n + 1, "a sparse matrix");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->value, 1, "a sparse matrix");
-    if (status == STATUS_OK) {
-        *matrix = new;
-    } else {
-        sparse_free(new);
-    }
-    return status;
-}
-
-void sparse_free(struct sparse *matrix) {
-    if (!matrix) return;
-    free(matrix->column_start);
-    free(matrix->row_index);
-    free(matrix->value);
-    free(matrix->entry_row);
-    free(matrix->entry_column);
-    free(matrix->slot);
-    free(matrix->masked);
-    free(matrix);
+struct sparse *sparse_create(struct arena *arena, int first, int n) {
+    struct sparse *matrix;
+    NEW(arena, matrix, 1);
+    *matrix = (struct sparse){.arena = arena, .first = first, .n = n, .recording = 1};
+    NEW(arena, matrix->masked, n);
+    NEW(arena, matrix->column_start, n + 1);
+    NEW(arena, matrix->value, 1);
+    return matrix;
 }
 
 void sparse_forget(struct sparse *matrix) {
@@ -51,20 +27,12 @@ int sparse_is_masked(const struct sparse *matrix, int row) {
     return matrix->masked[row - matrix->first];
 }
 
-static enum status record_grow(struct sparse *matrix) {
-    const int64_t capacity = matrix->capacity > 0 ? 2 * matrix->capacity : 1024;
-    TRY(MEMORY_RESIZE(matrix->entry_row, capacity, "recording a Jacobian"));
-    TRY(MEMORY_RESIZE(matrix->entry_column, capacity, "recording a Jacobian"));
-    TRY(MEMORY_RESIZE(matrix->slot, capacity, "recording a Jacobian"));
-    matrix->capacity = capacity;
-    return STATUS_OK;
-}
-
 void sparse_record(struct sparse *matrix, int row, int column, double value) {
-    if (matrix->out_of_memory) return;
-    if (matrix->n_entries == matrix->capacity && record_grow(matrix) != STATUS_OK) {
-        matrix->out_of_memory = 1;
-        return;
+    if (matrix->n_entries == matrix->capacity) {
+        matrix->capacity = matrix->capacity > 0 ? 2 * matrix->capacity : 1024;
+        GROW(matrix->arena, matrix->entry_row, matrix->capacity);
+        GROW(matrix->arena, matrix->entry_column, matrix->capacity);
+        GROW(matrix->arena, matrix->slot, matrix->capacity);
     }
 
     // while recording, the array of slots holds the values
@@ -78,7 +46,6 @@ void sparse_begin(struct sparse *matrix) {
     matrix->next = 0;
     if (matrix->recording) {
         matrix->n_entries = 0;
-        matrix->out_of_memory = 0;
     } else {
         memset(matrix->value, 0, (size_t)(matrix->n_nonzeros + 1) * sizeof *matrix->value);
     }
@@ -122,26 +89,20 @@ static int64_t entries_sort(const struct sparse *matrix, int64_t *order, int64_t
 }
 
 // assign a position in the compressed columns to every distinct entry, and a slot to every recorded addition
-static enum status record_compile(struct sparse *matrix) {
+static void record_compile(struct sparse *matrix) {
+    struct arena *const scratch = arena_create(matrix->arena, "the entries of a Jacobian");
     const size_t n_entries = (size_t)matrix->n_entries + 1;
-    int64_t *order = NULL, *by_row = NULL, *count = NULL, *row_index = NULL;
-    double *recorded = NULL, *value = NULL;
-    enum status status = MEMORY_NEW(order, n_entries, "the entries of a Jacobian");
-    if (status == STATUS_OK) status = MEMORY_NEW(by_row, n_entries, "the entries of a Jacobian");
-    if (status == STATUS_OK) status = MEMORY_NEW(count, matrix->n + 1, "the entries of a Jacobian");
-    if (status == STATUS_OK) status = MEMORY_NEW(recorded, n_entries, "the entries of a Jacobian");
-    if (status == STATUS_OK) status = MEMORY_NEW(row_index, n_entries, "the entries of a Jacobian");
-    if (status == STATUS_OK) status = MEMORY_NEW(value, n_entries + 1, "the entries of a Jacobian");
-    if (status != STATUS_OK) {
-        free(row_index);
-        goto done;
-    }
+    int64_t *order, *by_row, *count;
+    double *recorded;
+    NEW(scratch, order, n_entries);
+    NEW(scratch, by_row, n_entries);
+    NEW(scratch, count, matrix->n + 1);
+    NEW(scratch, recorded, n_entries);
     const int64_t n_sorted = entries_sort(matrix, order, by_row, count);
     if (matrix->n_entries > 0) memcpy(recorded, matrix->slot, (size_t)matrix->n_entries * sizeof *recorded);
-    free(matrix->row_index);
-    free(matrix->value);
-    matrix->row_index = row_index;
-    matrix->value = value;
+    GROW(matrix->arena, matrix->row_index, n_entries);
+    GROW(matrix->arena, matrix->value, n_entries + 1);
+    memset(matrix->value, 0, (n_entries + 1) * sizeof *matrix->value);
 
     int64_t n_nonzeros = 0;
     int row = -1, column = -1;
@@ -152,7 +113,7 @@ static enum status record_compile(struct sparse *matrix) {
         if (matrix->entry_row[entry] - matrix->first != row || matrix->entry_column[entry] - matrix->first != column) {
             row = matrix->entry_row[entry] - matrix->first;
             column = matrix->entry_column[entry] - matrix->first;
-            row_index[n_nonzeros++] = row;
+            matrix->row_index[n_nonzeros++] = row;
             matrix->column_start[column + 1]++;
         }
         matrix->slot[entry] = n_nonzeros - 1;
@@ -162,23 +123,17 @@ static enum status record_compile(struct sparse *matrix) {
     // add in recorded order, as in a replay: recording and replay give the same bits
     for (int64_t i = 0; i < matrix->n_entries; i++) {
         if (matrix->slot[i] < 0) matrix->slot[i] = n_nonzeros;
-        value[matrix->slot[i]] += recorded[i];
+        matrix->value[matrix->slot[i]] += recorded[i];
     }
     matrix->recording = 0;
     matrix->version++;
-done:
-    free(order);
-    free(by_row);
-    free(count);
-    free(recorded);
-    return status;
+    arena_free(scratch);
 }
 
-enum status sparse_end(struct sparse *matrix) {
-    if (!matrix->recording) {
+void sparse_end(struct sparse *matrix) {
+    if (matrix->recording) {
+        record_compile(matrix);
+    } else {
         assert(matrix->next == matrix->n_entries);
-        return STATUS_OK;
     }
-    if (matrix->out_of_memory) return memory_check(NULL, "recording a Jacobian");
-    return record_compile(matrix);
 }

@@ -13,9 +13,10 @@
 #include <assert.h>
 #include <stdint.h>
 
-#include "base/status.h"
+#include "base/arena.h"
 
 struct sparse {
+    struct arena *arena;
     int first; /* index of the first row and column, in additions */
     int n;     /* order */
 
@@ -27,7 +28,7 @@ struct sparse {
     unsigned version;      /* incremented with every new pattern */
 
     /* the record */
-    int recording, out_of_memory;
+    int recording;
     int n_masked; /* number of ones of masked rows, which are the first entries */
     int64_t n_entries, capacity, next;
     int *entry_row, *entry_column; /* (n_entries) */
@@ -35,11 +36,8 @@ struct sparse {
     unsigned char *masked;         /* (n) */
 };
 
-/* An empty matrix of order n that records at its first pass. Fails with STATUS_MEMORY. */
-enum status sparse_create(struct sparse **matrix, int first, int n);
-
-/* Release the matrix. Accepts NULL. */
-void sparse_free(struct sparse *matrix);
+/* An empty matrix of order n that records at its first pass. */
+struct sparse *sparse_create(struct arena *arena, int first, int n);
 
 /* Forget the pattern: the next pass records a new one. */
 void sparse_forget(struct sparse *matrix);
@@ -63,7 +61,7 @@ static inline void sparse_add(struct sparse *matrix, int row, int column, double
     matrix->value[matrix->slot[i]] += value;
 }
 
-/* End a pass. Fails with STATUS_MEMORY; the next pass then records again. */
-enum status sparse_end(struct sparse *matrix);
+/* End a pass. */
+void sparse_end(struct sparse *matrix);
 
 #endif

@@ -6,6 +6,8 @@
 #ifndef STATUS_H
 #define STATUS_H
 
+#include <signal.h>
+
 enum status {
     STATUS_OK = 0,
     STATUS_RETRY = 1,    /* not a number here: a smaller step may help */
@@ -26,6 +28,11 @@ const char *status_message(void);
 
 /* Clear the message, so that a later failure without a message does not show an old message. */
 void status_clear(void);
+
+/* STATUS_STOPPED once *stop is no longer 0; stop may be NULL. */
+static inline enum status status_ask(const volatile sig_atomic_t *stop) {
+    return stop && *stop ? status_fail(STATUS_STOPPED, "stopped by a signal") : STATUS_OK;
+}
 
 /* The exit code of the program for a status: 0, 1 (solver), 2 (case, usage), 3 (missed, contact), 4 (file, memory),
  * 75 (stopped by a signal). */

@@ -1,6 +1,7 @@
 /* text.c: growing strings, and numbers without a locale. */
 #include "base/text.h"
 
+#include <float.h>
 #include <limits.h>
 #include <locale.h>
 #include <math.h>
@@ -115,6 +116,33 @@ void text_add_number(struct text *text, double number) {
 
     restore_locale(before, c_locale);
     text_add(text, "%s", digits);
+}
+
+double text_round(double number) {
+    locale_t c_locale;
+    const locale_t before = use_c_locale(&c_locale);
+    char digits[40];
+    snprintf(digits, sizeof digits, "%.12g", number);
+    const double decimal = strtod(digits, NULL);
+    restore_locale(before, c_locale);
+    return fabs(decimal - number) <= 2 * DBL_EPSILON * fabs(number) ? decimal : number;
+}
+
+void text_add_word(struct text *text, const char *word) {
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789%+,-./:=@_";
+    if (*word && word[strspn(word, plain)] == '\0') {
+        text_add(text, "%s", word);
+        return;
+    }
+
+    // between quotes only a quote ends the word
+    text_add(text, "'");
+    for (const char *at = word; *at;) {
+        const size_t n = strcspn(at, "'");
+        text_add(text, "%.*s%s", (int)n, at, at[n] ? "'\\''" : "");
+        at += n + (at[n] != '\0');
+    }
+    text_add(text, "'");
 }
 
 /* Skip decimal digits and count them. */

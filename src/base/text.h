@@ -23,6 +23,12 @@ void text_add(struct text *text, const char *format, ...) __attribute__((format(
 /* Append the shortest decimal that reads back as exactly this number. */
 void text_add_number(struct text *text, double number);
 
+/* The decimal number of 12 digits if it is at most two roundings from the number, else the number. */
+double text_round(double number);
+
+/* Append a word of a command line, quoted for a shell where needed. */
+void text_add_word(struct text *text, const char *word);
+
 /* Print a string of JSON with quotes; null if string is NULL. */
 void text_print_json(FILE *stream, const char *string);
 

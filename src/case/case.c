@@ -192,6 +192,20 @@ static enum status case_read_values(struct reading *reading, struct case_values 
 
 // ---- the complete case
 
+/* Read the case with one fish, a preset, and no other key. */
+static enum status read_initial(struct case_values *values, enum preset preset) {
+    char text[96];
+    snprintf(text, sizeof text, "{format: 1, preset: %s, time: {end: 1}, fish: [{}]}",
+             case_table_word(case_table_row("preset"), (int)preset));
+    struct reading reading = {0};
+    enum status status = case_merge_read_text(&reading.tree, text, strlen(text), "default", NULL, &reading.errors);
+    if (status == STATUS_OK && reading.tree.root) status = case_read_values(&reading, values);
+    if (status == STATUS_OK) status = yaml_errors_status(&reading.errors);
+    yaml_errors_free(&reading.errors);
+    case_merge_free(&reading.tree);
+    return status;
+}
+
 /* Keep the texts: of the case file, the merged case, and the notes on the values of a case without errors. */
 static enum status keep_texts(struct case_values *values, const struct case_tree *tree) {
     const struct yaml_source *const source = tree->source[0];
@@ -212,10 +226,15 @@ static enum status keep_texts(struct case_values *values, const struct case_tree
     }
     TRY(text_take(&text, &values->merged, "the text of the case"));
 
+    struct case_values initial = {0};
     struct yaml_errors notes = {0};
-    case_notes(values, tree, &notes);
-    const enum status status = yaml_errors_list(&notes, "note", &values->notes);
+    enum status status = read_initial(&initial, values->preset);
+    if (status == STATUS_OK) {
+        case_notes(values, &initial, tree, &notes);
+        status = yaml_errors_list(&notes, "note", &values->notes);
+    }
     yaml_errors_free(&notes);
+    case_free(&initial);
     return status;
 }
 

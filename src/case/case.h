@@ -53,7 +53,10 @@ struct yaml_errors;
 /* Add an error for every inconsistency. Skips values that were not read (see case_table.h). */
 void case_check(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors);
 
-/* Add a note for every implausible value of a case without errors, once per place in the sources. */
-void case_notes(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *notes);
+/* Add a note for every implausible value of a case without errors, and for every key whose value switches derived
+ * defaults of other keys, once per place in the sources. initial: a case with one fish and the same preset, without
+ * other keys. */
+void case_notes(const struct case_values *values, const struct case_values *initial, const struct case_tree *tree,
+                struct yaml_errors *notes);
 
 #endif

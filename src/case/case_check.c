@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "case/case.h"
 #include "case/case_merge.h"
@@ -32,19 +33,20 @@ struct check {
 __attribute__((format(printf, 4, 5))) static void complain_if(bool condition, const struct check *check,
                                                               const char *path, const char *format, ...) {
     if (!condition) return;
-    const struct yaml_mark mark = case_merge_mark(check->tree, path, check->index);
-    for (int i = 0; check->is_of_notes && i < check->errors->n && i < YAML_ERRORS_KEPT; i++) {
-        const struct yaml_mark other = check->errors->kept[i].mark;
-        const bool is_same = other.source == mark.source && other.line == mark.line && other.column == mark.column;
-        const char *const text = check->errors->kept[i].text;  // NULL without memory
-        if (is_same && text && strstr(text, strchr(path, '.'))) return;
-    }
-
     char reason[512];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(reason, sizeof reason, format, arguments);
     va_end(arguments);
+
+    const struct yaml_mark mark = case_merge_mark(check->tree, path, check->index);
+    for (int i = 0; check->is_of_notes && i < check->errors->n && i < YAML_ERRORS_KEPT; i++) {
+        const struct yaml_mark other = check->errors->kept[i].mark;
+        const bool is_same = other.source == mark.source && other.line == mark.line && other.column == mark.column;
+        const char *const text = check->errors->kept[i].text;  // NULL without memory
+        const char *const name = text ? strstr(text, strchr(path, '.')) : NULL;
+        if (is_same && name && strstr(name, reason)) return;
+    }
     case_merge_complain(check->tree, path, check->index, reason, check->errors);
 }
 
@@ -92,11 +94,15 @@ static void check_swept_interval(const struct check *check, const char *path, do
             double value = 0;
             const bool is_interval = strcmp(axis->key[i % axis->n_keys].path, interval) == 0;
             if (!is_interval || !text_number(axis->value[i], &value) || !(value > 0)) continue;
-            complain_if(fabs(time - round(time / value) * value) > 1e-9 * time, check, "sweep",
-                        "value %s of %s does not divide %s, %g s: choose a divisor, or sweep both keys in one axis: "
-                        "{keys: [%s, %s], values: [[%s, %g], ...]}",
-                        axis->value[i], interval, path, time, interval, path, axis->value[i],
-                        fmax(1, round(time / value)) * value);
+            if (!(fabs(time - round(time / value) * value) > 1e-9 * time)) continue;
+            const struct yaml_node *const sweep = yaml_tree_find(check->tree->root, "sweep");
+            const int row = i / axis->n_keys;
+            const struct yaml_mark mark = yaml_tree_find(sweep->entry[a].value, "values")->entry[row].value->mark;
+            yaml_errors_add(check->errors, mark,
+                            "sweep[%d].values[%d]: value %s of %s does not divide %s, %g s: choose a divisor, or sweep "
+                            "both keys in one axis: {keys: [%s, %s], values: [[%s, %g], ...]}",
+                            a, row, axis->value[i], interval, path, time, interval, path, axis->value[i],
+                            fmax(1, round(time / value)) * value);
         }
     }
 }
@@ -353,9 +359,20 @@ static void check_motion(const struct check *check) {
     static const char constant[] = "has no effect with motion.frequency 0";
 
     if (motion->prescribed == PRESCRIBED_NONE) {
-        complain_if(fabs(motion->heave) > 0, check, "fish.motion.heave", not_prescribed);
-        complain_if(fabs(motion->pitch) > 0, check, "fish.motion.pitch", not_prescribed);
-        complain_if(motion->surge == SURGE_FREE, check, "fish.motion.surge", not_prescribed);
+        const struct {
+            const char *path;
+            bool is_given;
+        } keys[] = {{"fish.motion.heave", fabs(motion->heave) > 0},
+                    {"fish.motion.pitch", fabs(motion->pitch) > 0},
+                    {"fish.motion.pitch_phase", fabs(motion->pitch_phase) > 0},
+                    {"fish.motion.frequency", motion->frequency > 0},
+                    {"fish.motion.phase", fabs(motion->phase) > 0},
+                    {"fish.motion.pivot", motion->pivot > 0},
+                    {"fish.motion.speed", fabs(motion->speed - check->fish->start_speed) > 1e-12 * fabs(motion->speed)},
+                    {"fish.motion.surge", motion->surge == SURGE_FREE}};
+        for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+            complain_if(keys[i].is_given, check, keys[i].path, not_prescribed);
+        }
         return;
     }
 
@@ -474,12 +491,12 @@ static void check_span(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
     const struct fish_parameters *const fish = check->fish;
     static const char path[] = "fish.pressure.span";
-    for (int f = 0; f < check->index; f++) {
-        const bool differs = school->fish[f].force == FORCE_PRESSURE && school->fish[f].span != fish->span;
-        complain_if(differs, check, path, "fish[%d] has another span: use one span for all fish with 'force: pressure'",
-                    f);
-        if (differs) return;
-    }
+    int first = 0;
+    while (school->fish[first].force != FORCE_PRESSURE) first++;
+    const bool differs = school->fish[first].span != fish->span;
+    complain_if(differs, check, path, "fish[%d] has another span: use one span for all fish with 'force: pressure'",
+                first);
+    if (differs) return;
 
     if (fish->span != SPAN_FINITE) return;
     const int least = fish_sheet_least(fish);
@@ -564,7 +581,8 @@ static void check_control(const struct check *check) {
     complain_if(is_free && fabs(control->gain - free_gain) > 0, check, "fish.control.gain",
                 "has no effect with 'law: none': remove the key");
     const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
-    complain_if(!has_moment(control) && fabs(control->filter - period) > 0, check, "fish.control.filter",
+    const bool has_filter = fabs(control->filter - period) > 1e-9 * period;  // durations are rounded
+    complain_if(!has_moment(control) && has_filter, check, "fish.control.filter",
                 "has no effect without feedforward: remove the key");
     complain_if(!has_points && is_given(check, "fish.control.acceptance_radius"), check,
                 "fish.control.acceptance_radius", "has no effect without control.waypoints: remove the key");
@@ -585,6 +603,96 @@ static void check_control(const struct check *check) {
                 "needs fluid.density above 0, or feedforward: 0");
 }
 
+// ---- derived defaults
+
+/* The key that decides the frequency of the beat of the fish being checked. */
+static const char *beat_path(const struct check *check) {
+    const struct motion_parameters *const motion = &check->fish->motion;
+    const bool is_prescribed = (int)motion->prescribed > PRESCRIBED_NONE && motion->frequency > 0;
+    return is_prescribed ? "fish.motion.frequency" : "fish.wave.frequency";
+}
+
+/* The key that puts a derived number out of its range. */
+static const char *cause_of(const struct check *check, const struct key *key) {
+    const struct fish_parameters *const fish = check->fish;
+    if (strcmp(key->path, "fish.sheet_points") == 0) {
+        if (2 * fish->nodes - 1 > key->bounds.max) return "fish.nodes";
+        return fish->body.profile == PROFILE_TABLE ? "fish.body.depth_table" : key->cause;
+    }
+    return strcmp(key->cause, "fish.wave.frequency") == 0 ? beat_path(check) : key->cause;
+}
+
+/* Refuse a derived default out of the range of its key, at the place of its cause. */
+static void check_derived(const struct check *check, bool is_of_fish) {
+    for (int k = 0; k < case_table_n; k++) {
+        const struct key *const key = &case_table[k];
+        if (!key->cause || case_table_is_of_fish(key) != is_of_fish || check_is_written(check, key->path)) continue;
+        const void *const field =
+            (const char *)(is_of_fish ? (const void *)check->fish : (const void *)check->values) + key->offset;
+        const double value = key->type == INTEGER    ? *(const int *)field
+                             : key->type == DURATION ? ((const struct duration *)field)->seconds
+                                                     : *(const double *)field;
+        const struct bounds *const bounds = &key->bounds;
+        const bool is_low = value < bounds->min || (bounds->is_min_open && value <= bounds->min);
+        // NaN: not derived
+        if (isnan(value) || !check_is_written(check, cause_of(check, key)) ||
+            (!is_low && value <= bounds->max && !isinf(value)))
+            continue;
+
+        struct text range = {0};
+        case_table_range(key, &range);
+        complain_if(true, check, cause_of(check, key),
+                    "the default of %s would be %.9g, and must be %s: change this value, or set %s", key->path, value,
+                    isinf(value) || !range.text ? "finite" : range.text, key->path);
+        text_free(&range);
+    }
+}
+
+/* The fish with the extreme beat, which decides the derived times of the school. */
+static int extreme_beat(const struct school_parameters *school) {
+    int extreme = 0;
+    double size = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish_parameters *const fish = &school->fish[f];
+        const bool is_prescribed = (int)fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
+        const double frequency = is_prescribed ? fish->motion.frequency : fish->wave.frequency;
+        if (!(frequency > 0) || fabs(log(frequency)) <= size) continue;
+        size = fabs(log(frequency));
+        extreme = f;
+    }
+    return extreme;
+}
+
+static int by_name(const void *a, const void *b) {
+    const struct fish_parameters *const one = *(const struct fish_parameters *const *)a,
+                                        *const other = *(const struct fish_parameters *const *)b;
+    const int order = strcmp(one->name, other->name);
+    return order != 0 ? order : (one > other) - (one < other);
+}
+
+/* Refuse a name that an earlier fish has; in the order of the names, fish of one name are neighbours. */
+static void check_names(struct check *check) {
+    const struct school_parameters *const school = &check->values->school;
+    const struct fish_parameters **sorted;
+    if (MEMORY_NEW(sorted, school->n_fish, "the names of the fish") != STATUS_OK) {
+        check->errors->out_of_memory = true;
+        return;
+    }
+    int n = 0, first = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        if (school->fish[f].name) sorted[n++] = &school->fish[f];
+    }
+    qsort(sorted, (size_t)n, sizeof *sorted, by_name);
+    for (int i = 1; i < n; i++) {
+        const bool is_same = strcmp(sorted[first]->name, sorted[i]->name) == 0;
+        if (!is_same) first = i;
+        check->index = (int)(sorted[i] - school->fish);
+        complain_if(is_same, check, "fish.name", "fish[%d] has the same name, '%.60s'; names must be unique",
+                    (int)(sorted[first] - school->fish), sorted[i]->name);
+    }
+    free(sorted);
+}
+
 void case_check(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors) {
     struct check check = {.values = values, .tree = tree, .errors = errors};
     check_time(&check);
@@ -597,21 +705,19 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
     check_fluid(&check);
     complain_if(values->name && strchr(values->name, '/'), &check, "name", "cannot contain a '/'");
 
+    check_names(&check);
+    check.index = extreme_beat(&values->school);
+    check.fish = &values->school.fish[check.index];
+    if (values->school.n_fish > 0) check_derived(&check, false);
     for (int f = 0; f < values->school.n_fish; f++) {
         const struct fish_parameters *const fish = check.fish = &values->school.fish[f];
         check.index = f;
 
-        for (int i = 0; i < f && fish->name; i++) {
-            const char *const other = values->school.fish[i].name;
-            const bool is_same = other && strcmp(other, fish->name) == 0;
-            complain_if(is_same, &check, "fish.name", "fish[%d] has the same name, '%.60s'; names must be unique", i,
-                        fish->name);
-            if (is_same) break;
-        }
         for (int i = 0; i < 2; i++) check_place(&check, "fish.start.position", fish->start_position[i], fish->length);
         check_place(&check, "fish.motion.heave", fish->motion.heave, fish->length);
         check_cycles(&check, "fish.wave.frequency", fish->wave.frequency);
         check_cycles(&check, "fish.motion.frequency", fish->motion.frequency);
+        check_derived(&check, true);
         check_verlet(&check);
         check_body(&check);
         check_wave_form(&check);
@@ -685,9 +791,62 @@ static void note_fish(const struct check *check) {
     }
 }
 
-void case_notes(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *notes) {
+// ---- switched models
+
+/* True if a value selects another model than the initial value: another word, a term that vanishes or appears, or a
+ * list that is empty or not. */
+static bool is_switched(const struct key *key, const struct case_values *values, const struct fish_parameters *fish,
+                        const struct case_values *initial) {
+    const bool is_of_fish = case_table_is_of_fish(key);
+    const void *const field = (const char *)(is_of_fish ? (const void *)fish : values) + key->offset;
+    const void *const other = (const char *)(is_of_fish ? (const void *)initial->school.fish : initial) + key->offset;
+    if (key->type == CHOICE) return *(const int *)field != *(const int *)other;
+    if (key->type != REAL) return ((const struct number_list *)field)->n > 0;
+    return (fabs(*(const double *)field) > 0) != (fabs(*(const double *)other) > 0);
+}
+
+/* The written key that switches the derived default of a key of the fish being checked; NULL: none. */
+static const struct key *switching_key(const struct check *check, const struct key *key,
+                                       const struct case_values *initial) {
+    if (!is_switched(key, check->values, check->fish, initial)) return NULL;
+    if (check_is_written(check, key->path)) return key;
+    const struct key *cause = NULL;
+    for (int i = 0; key->follows && key->follows[i] && !cause; i++) {
+        cause = switching_key(check, case_table_row(key->follows[i]), initial);
+    }
+    return cause;
+}
+
+/* Note each written key that switches derived defaults for the fish being checked, with these defaults. */
+static void note_switched(const struct check *check, const struct case_values *initial) {
+    for (int first = 0; first < case_table_n; first++) {
+        const struct key *const cause =
+            case_table[first].follows ? switching_key(check, &case_table[first], initial) : NULL;
+        if (!cause || cause == &case_table[first]) continue;
+
+        // list all keys with this cause; the same list of a later key is skipped
+        struct text list = {0};
+        for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
+            if (!key->follows || key == cause || switching_key(check, key, initial) != cause) continue;
+            const bool is_of_fish = case_table_is_of_fish(key);
+            const void *const base = is_of_fish ? (const void *)check->fish : (const void *)check->values;
+            text_add(&list, "%s%s ", list.text ? ", " : "", key->path);
+            case_value_write(&list, key, (const char *)base + key->offset);
+        }
+        check->errors->out_of_memory |= list.failed;
+        complain_if(list.text != NULL, check, cause->path, "changes the defaults of other keys: %s", list.text);
+        text_free(&list);
+    }
+}
+
+void case_notes(const struct case_values *values, const struct case_values *initial, const struct case_tree *tree,
+                struct yaml_errors *notes) {
     struct check check = {.values = values, .tree = tree, .errors = notes, .is_of_notes = true};
     static const char interval[] = "time.shedding_interval";
+    bool has_layer = false;
+    for (int f = 0; f < values->school.n_fish; f++) has_layer |= values->school.fish[f].drag.skin != SKIN_QUADRATIC;
+    complain_if(has_layer && values->school.fluid.density > 0 && values->school.fluid.viscosity == 0, &check,
+                "fluid.viscosity", "0 removes the friction of the skin");
     note_rounded(&check, "time.end", values->time.end, interval);
     note_rounded(&check, "time.output_interval", values->time.output_interval, interval);
     note_rounded(&check, "time.checkpoint_interval", values->time.checkpoint_interval, interval);
@@ -695,5 +854,6 @@ void case_notes(const struct case_values *values, const struct case_tree *tree, 
     for (check.index = 0; check.index < values->school.n_fish; check.index++) {
         check.fish = &values->school.fish[check.index];
         note_fish(&check);
+        note_switched(&check, initial);
     }
 }

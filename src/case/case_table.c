@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "fish/fish_school.h"
 
 #define AT(field) offsetof(struct case_values, field)
@@ -33,8 +34,9 @@ enum { NAME_BYTES = 200, FILE_BYTES = 4000, MAX_NODES = 10000, MAX_THREADS = 102
 
 // ---- derived defaults, in the order of the table
 
+// a product or quotient of decimals is the decimal, without the rounding of the operation: 0.3, not 3 * 0.1
 static enum status set_default(double *value, double standard) {
-    if (isnan(*value)) *value = standard;
+    if (isnan(*value)) *value = text_round(standard);
     return STATUS_OK;
 }
 
@@ -264,10 +266,11 @@ const struct key case_table[] = {
      .meaning = "time between two events; at each event every fish sheds a vortex",
      .derived = "1/100 of the period of the fastest beat or prescribed motion, 0.01 s without a beat; time.end and the "
                 "output intervals are then rounded to events",
-     .derive = derive_shedding_interval, .synonyms = "dt delta_t timestep time_step", .published = "0.01"},
+     .derive = derive_shedding_interval, .cause = "fish.wave.frequency", .synonyms = "dt delta_t timestep time_step",
+     .published = "0.01"},
     {"time.output_interval", REAL, AT(time.output_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two rows of output, an integer multiple of shedding_interval",
-     .derived = "ten shedding intervals", .derive = derive_output_interval,
+     .derived = "ten shedding intervals", .derive = derive_output_interval, .cause = "time.shedding_interval",
      .synonyms = "output_every save_interval dt_out"},
     {"time.checkpoint_interval", REAL, AT(time.checkpoint_interval), "0", FROM(0), "s",
      .meaning = "time between two checkpoints for `shoal resume`, an integer multiple of shedding_interval; 0: only "
@@ -298,7 +301,8 @@ const struct key case_table[] = {
      .meaning = "profile sine, step: place along the stream of a zero, or of the middle of the step, at the start"},
     {"fluid.gust.gradient_distance", REAL, AT(school.fluid.gust_gradient_distance), NULL, ABOVE(0), "m",
      .meaning = "profile step: distance over which the gust rises to the amplitude",
-     .derived = "a fifth of the length of the longest fish", .derive = derive_gradient_distance},
+     .derived = "a fifth of the length of the longest fish", .derive = derive_gradient_distance,
+     .cause = "fish.length"},
     {"fluid.walls", NUMBERS, AT(school.fluid.walls), "[]", ANY, "m",
      .meaning = "straight walls along x: y of one wall, or of both walls of a channel",
      .synonyms = "wall channel boundary tank ground bottom"},
@@ -309,17 +313,17 @@ const struct key case_table[] = {
     {"wake.taper", REAL, AT(school.wake.taper), NULL, FROM(0), "",
      .meaning = "shedding sheet: distance from the tail, in body lengths, over which the smoothing of the wake at the "
                 "body grows from 0; 0: no taper",
-     .derived = "0.6 with shedding sheet, else 0", .derive = derive_taper},
+     .derived = "0.6 with shedding sheet, else 0", .derive = derive_taper, .follows = WORDS("wake.shedding")},
     {"wake.taper_beside", REAL, AT(school.wake.taper_beside), NULL, FROM(0), "",
      .meaning = "shedding sheet: the same for vortices beside the body", .derived = "0.07 with shedding sheet, else 0",
-     .derive = derive_taper_beside},
+     .derive = derive_taper_beside, .follows = WORDS("wake.shedding")},
     {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
      .meaning = "age at which a vortex is removed, in s or in beats of the slowest fish, such as '3 beats'",
-     .derived = "3 beats; 2 s if no fish beats", .derive = derive_lifetime, .published = "2",
-     .synonyms = "life max_age age"},
+     .derived = "3 beats; 2 s if no fish beats", .derive = derive_lifetime, .cause = "fish.wave.frequency",
+     .published = "2", .synonyms = "life max_age age"},
     {"wake.decay", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
      .meaning = "last part of the lifetime, in which the circulation decays to 0", .derived = "3/4 of the lifetime",
-     .derive = derive_decay, .published = "0", .former = "wake.fade"},
+     .derive = derive_decay, .cause = "wake.lifetime", .published = "0", .former = "wake.fade"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "sheet", ANY, "",
      .meaning = "sheet: a vortex sheet grows from the tail; continuous: a vortex grows between events; impulsive: a "
                 "vortex appears at each event",
@@ -330,7 +334,8 @@ const struct key case_table[] = {
     {"wake.tolerance", REAL, AT(school.wake.tolerance), NULL, FROM_TO(0, 0.01), "",
      .meaning = "estimated error allowed in the velocity that far vortices induce at the bodies, in body lengths per "
                 "beat; 0: direct summation",
-     .derived = "solver.rtol/100", .derive = derive_wake_tolerance, .synonyms = "accuracy theta"},
+     .derived = "solver.rtol/100", .derive = derive_wake_tolerance, .cause = "solver.rtol",
+     .synonyms = "accuracy theta"},
     {"wake.merge", REAL, AT(school.wake.merge), "0", FROM_TO(0, 0.1), "",
      .meaning = "error allowed in the velocity at the bodies due to merging of distant vortices, in body lengths per "
                 "beat; 0: no merging",
@@ -351,7 +356,7 @@ const struct key case_table[] = {
      .meaning = "distance of neighbouring vortices of a row"},
     {"wake.street.row_distance", REAL, AT(school.wake.street.row_distance), NULL, FROM(0), "m",
      .meaning = "distance of the two rows", .derived = "0.2805 spacing, the stable street of von Karman",
-     .derive = derive_row_distance, .synonyms = "width"},
+     .derive = derive_row_distance, .cause = "wake.street.spacing", .synonyms = "width"},
     {"wake.street.circulation", REAL, AT(school.wake.street.circulation), "0", ANY, "m2 s-1",
      .meaning = "circulation of a vortex to the right of the stream; the row to the left has the opposite: positive "
                 "behind a body with drag, negative behind a swimmer"},
@@ -411,7 +416,7 @@ const struct key case_table[] = {
      .words = WORDS("totals", "edges", "sides")},
     {"output.wake_interval", REAL, AT(output.wake_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two records of the wake, an integer multiple of output_interval",
-     .derived = "time.output_interval", .derive = derive_wake_interval},
+     .derived = "time.output_interval", .derive = derive_wake_interval, .cause = "time.output_interval"},
 
     {"steady.tolerance", REAL, AT(steady.tolerance), "1e-5", FROM_TO(1e-12, 0.1), "",
      .meaning = "maximum change per beat of a steady state: of the speed in body lengths per beat, and of other "
@@ -440,11 +445,13 @@ const struct key case_table[] = {
          "force of the fluid besides drag; pressure: pressure jump across the bound sheet; reactive: "
          "accelerated fluid of a slender body, with the flux at the tail; published: added mass across each edge",
      .words = WORDS("reactive", "published", "pressure"), .published = "published",
-     .derived = "pressure with wake.shedding sheet and sheet.curve smooth, else reactive", .derive = derive_force},
+     .derived = "pressure with wake.shedding sheet and sheet.curve smooth, else reactive", .derive = derive_force,
+     .follows = WORDS("wake.shedding", "sheet.curve")},
     {"fish.pressure.span", CHOICE, IN_FISH(span), NULL, ANY, "",
      .meaning = "force pressure: span of the sheets; finite: the depth of the body, with vortex rings; infinite: "
                 "two-dimensional flow",
-     .words = WORDS("finite", "infinite"), .derived = "finite with force pressure", .derive = derive_span},
+     .words = WORDS("finite", "infinite"), .derived = "finite with force pressure", .derive = derive_span,
+     .follows = WORDS("fish.force")},
     {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
      .meaning = "force pressure: fraction of the leading-edge suction that acts on the body"},
     {"fish.pressure.suction_limit", REAL, IN_FISH(suction_limit), "0.18", FROM(0), "",
@@ -464,7 +471,7 @@ const struct key case_table[] = {
     {"fish.sheet_points", INTEGER, IN_FISH(sheet_points), NULL, FROM_TO(5, MAX_NODES), "",
      .meaning = "number of vortices of the bound sheet", .synonyms = "vortices panels bound_vortices",
      .published = "21", .derived = "2 nodes - 1, at least 33; with pressure.span finite at least 1 + 5 L/w",
-     .derive = derive_sheet_points},
+     .derive = derive_sheet_points, .cause = "fish.body.depth"},
 
     {"fish.body.profile", CHOICE, IN_FISH(body.profile), "joukowski", ANY, "",
      .meaning = "thickness along the body: a Joukowski foil, uniform, or the lists thickness_table and depth_table",
@@ -499,7 +506,8 @@ const struct key case_table[] = {
     {"fish.body.relaxation_time", REAL, IN_FISH(body.relaxation_time), NULL, FROM(0), "s",
      .meaning = "Kelvin-Voigt damping: ratio of damping to stiffness", .published = "0",
      .derived = "1/50 of the period of the beat or of the prescribed motion (0 without a beat)",
-     .derive = derive_relaxation_time},
+     .derive = derive_relaxation_time, .cause = "fish.wave.frequency",
+     .follows = WORDS("fish.wave.frequency", "fish.motion.frequency")},
     {"fish.body.damping", CHOICE, IN_FISH(body.damping), "strain", ANY, "",
      .meaning = "internal damping of bending; strain: of the curvature minus the natural curvature; curvature: of the "
                 "total curvature",
@@ -529,7 +537,7 @@ const struct key case_table[] = {
     {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANGLE, "degree", .meaning = "phase at time 0"},
     {"fish.wave.ramp", REAL, IN_FISH(wave.ramp), NULL, FROM(0), "s",
      .meaning = "time over which the amplitude is ramped up", .derived = "one period, 1/frequency (0 for frequency 0)",
-     .derive = derive_wave_ramp, .published = "0"},
+     .derive = derive_wave_ramp, .cause = "fish.wave.frequency", .published = "0"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},
@@ -537,7 +545,8 @@ const struct key case_table[] = {
      .meaning = "law of the tangential drag; quadratic: drag.law with drag.tangential; laminar: laminar boundary layer "
                 "of a plate; boundary_layer: the same with transition, and factors for waving and thickness",
      .words = WORDS("quadratic", "laminar", "boundary_layer"),
-     .derived = "boundary_layer with force pressure, else quadratic", .derive = derive_skin},
+     .derived = "boundary_layer with force pressure, else quadratic", .derive = derive_skin,
+     .follows = WORDS("fish.force")},
     {"fish.drag.transition", REAL, IN_FISH(drag.transition), "2e5", FROM(0), "",
      .meaning = "skin boundary_layer: transition Reynolds number, based on the distance from the nose; 0: turbulent "
                 "from the nose",
@@ -550,7 +559,7 @@ const struct key case_table[] = {
      .derived = "1 + 2 h/L + 60 (h/L)^4 with the largest thickness h of an edge", .synonyms = "form_factor"},
     {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "", .meaning = "normal drag coefficient",
      .synonyms = "c_d cd lateral", .published = "0.5", .derived = "1, or 0 with force pressure",
-     .derive = derive_normal_drag},
+     .derive = derive_normal_drag, .follows = WORDS("fish.force")},
     {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "",
      .meaning = "dependence of both drag forces on the velocity v: v |v|, or v (V1 + |v|)", .published = "quadratic",
      .words = WORDS("quadratic", "linear_quadratic")},
@@ -601,7 +610,8 @@ const struct key case_table[] = {
      .meaning = "law of the steering bias; none: the key bias; heading: error of the heading; averaged_heading: of its "
                 "mean over a period; course: of the course over the last period",
      .words = WORDS("none", "heading", "averaged_heading", "course"), .synonyms = "controller type",
-     .derived = "course with waypoints, else none", .derive = derive_control_law},
+     .derived = "course with waypoints, else none", .derive = derive_control_law,
+     .follows = WORDS("fish.control.waypoints")},
     {"fish.control.bias", REAL, IN_FISH(control.bias), "0", ANY, "",
      .meaning = "law none: the steering bias; positive turns right", .synonyms = "phi0 offset"},
     {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANGLE, "degree",
@@ -624,12 +634,14 @@ const struct key case_table[] = {
      .meaning = "weight of the feedforward: the filtered moment of the flow", .published = "1"},
     {"fish.control.filter", REAL, IN_FISH(control.filter), NULL, FROM(0), "s",
      .meaning = "time constant of the filter of feedforward; 0: the moment at the last event",
-     .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_control_filter},
+     .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_control_filter,
+     .cause = "fish.wave.frequency"},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading, course: maximum rate of change of the steering bias"},
     {"fish.control.ramp", REAL, IN_FISH(control.ramp), NULL, ABOVE(0), "s",
      .meaning = "duration of a change by a program (doc/python.md)",
-     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_control_ramp},
+     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_control_ramp,
+     .cause = "fish.wave.frequency"},
 
     {"sweep", AXES, 0, "[]", ANY, "",
      .meaning = "axes of a study, {key: PATH, values: [...]} or {keys: [...], values: [[...], ...]}",

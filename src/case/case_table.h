@@ -55,10 +55,12 @@ struct key {
     const char *meaning;
     const char *derived;                               /* how the program computes the default, in words */
     enum status (*derive)(const struct key_place *at); /* set the default in a field that was not read; rows in order */
-    const char *published;    /* the default under preset: published; NULL: as without the preset */
-    const char *const *words; /* of a CHOICE, in the order of its enum, NULL at the end */
-    const char *synonyms;     /* words that users write instead, separated by blanks */
-    const char *former;       /* the path of the key in former versions; NULL: as now */
+    const char *const *follows; /* paths of the keys that switch the model by the derived default, NULL at the end */
+    const char *cause;          /* path of the key that can put the derived number out of its range; NULL: none */
+    const char *published;      /* the default under preset: published; NULL: as without the preset */
+    const char *const *words;   /* of a CHOICE, in the order of its enum, NULL at the end */
+    const char *synonyms;       /* words that users write instead, separated by blanks */
+    const char *former;         /* the path of the key in former versions; NULL: as now */
 };
 
 extern const struct key case_table[];

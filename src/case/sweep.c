@@ -55,8 +55,8 @@ void sweep_free(struct case_values *values) {
 enum status sweep_refuse(const struct case_values *values) {
     if (values->n_axes == 0) return STATUS_OK;
     return status_fail(STATUS_CASE,
-                       "error: sweep: `shoal run` runs one case; this case has a sweep of %d ax%cs: use `shoal study`, "
-                       "or remove the sweep with --set 'sweep=[]'",
+                       "error: sweep: this case has a sweep of %d ax%cs: use `shoal study`, or remove the sweep with "
+                       "--set 'sweep=[]'",
                        values->n_axes, values->n_axes == 1 ? 'i' : 'e');
 }
 
@@ -108,7 +108,7 @@ enum status sweep_member_text(const struct case_values *study, int member, char 
 uint64_t sweep_refine_orders(const struct case_values *study) {
     uint64_t all = 0;
     for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-        const int of_steady = (sweep_quantities[q].traits & SWEEP_OF_STEADY) != 0;
+        const int of_steady = sweep_quantities[q].of_steady;
         if (of_steady == sweep_is_steady(study)) all |= UINT64_C(1) << q;
     }
     return all;

@@ -96,16 +96,11 @@ int sweep_expects_of(const struct case_values *study, const struct sweep_expecta
 // ---- sweep_quantity.c: the quantities of studies, for expectations and references. Tested by tests/case/test_sweep.c
 // and tests/study/test_study_file.c.
 
-enum {
-    SWEEP_OF_STEADY = 1, /* of a steady state, or of an equilibrium */
-    SWEEP_JUDGE = 2      /* speed, cost and Strouhal number: also evaluated for the error of any other quantity */
-};
-
 struct sweep_quantity {
     const char *name;
     int of_fish, of_xy;         /* one value for every fish; a point in the plane */
     const char *unit, *meaning; /* NULL: as of the variable of a result file with this name */
-    unsigned traits;
+    int of_steady;              /* of a steady state, or of an equilibrium */
 };
 
 enum {

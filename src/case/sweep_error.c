@@ -92,19 +92,27 @@ static const struct sweep_error_key *error_find_key(const char *name, struct yam
 static enum status read_levels(struct sweep_error_levels *levels, const struct yaml_node *node,
                                struct yaml_errors *errors) {
     if (node->kind == YAML_SCALAR && strcmp(node->text, "default") == 0) return STATUS_OK;
-    int is_wrong = node->kind != YAML_LIST || node->n < 2;
+    int is_wrong = node->kind != YAML_LIST || node->n < 2, are_wrong_points = 0;
     TRY(MEMORY_NEW(levels->value, node->n, "the errors of a study"));
 
     for (int i = 0; i < node->n && !is_wrong; i++) {
         const struct yaml_node *const number = node->entry[i].value;
         is_wrong = number->kind != YAML_SCALAR || !text_number(number->text, &levels->value[i]) ||
                    !(levels->value[i] > 0) || !isfinite(levels->value[i]);
+        are_wrong_points |=
+            !is_wrong && levels->key->kind == SWEEP_POINTS && fabs(rint(levels->value[i]) - levels->value[i]) > 0;
         for (int j = 0; j < i && !is_wrong; j++) is_wrong = !(fabs(levels->value[j] - levels->value[i]) > 0);
         levels->n++;
     }
 
-    if (!is_wrong) return STATUS_OK;
-    yaml_errors_add(errors, node->mark, "error.keys: expects 'default', or at least two different levels above 0");
+    if (is_wrong) {
+        yaml_errors_add(errors, node->mark, "error.keys: expects 'default', or at least two different levels above 0");
+    } else if (are_wrong_points) {
+        yaml_errors_add(errors, node->mark, "error.keys: levels of '%s' are integers", levels->key->path);
+    } else if (node->n > SWEEP_ERROR_LEVELS) {
+        yaml_errors_add(errors, node->mark, "error.keys: more than %d levels of '%s'", SWEEP_ERROR_LEVELS,
+                        levels->key->path);
+    }
     return STATUS_OK;
 }
 

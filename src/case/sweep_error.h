@@ -39,6 +39,8 @@ double sweep_error_order(const struct case_values *values, const struct sweep_er
 
 // ---- settings of a case
 
+enum { SWEEP_ERROR_LEVELS = 9 /* at most so many given levels of a key, without the level of the case */ };
+
 /* The levels of a key. */
 struct sweep_error_levels {
     const struct sweep_error_key *key;

@@ -120,7 +120,7 @@ enum status yaml_errors_list(const struct yaml_errors *errors, const char *word,
 }
 
 enum status yaml_errors_status(const struct yaml_errors *errors) {
-    if (errors->n == 0) return STATUS_OK;
+    if (errors->n == 0 && !errors->out_of_memory) return STATUS_OK;
     char *list;
     TRY(yaml_errors_list(errors, "error", &list));
     const enum status status = status_fail(STATUS_CASE, "%s", list);

@@ -2,43 +2,24 @@
 #include "contact/clearance.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "body/rod.h"
 #include "fish/fish.h"
 
 // ---- sort by x, sweep, and list the overlaps of each box
 
-enum status neighbours_create(struct neighbours **neighbours, int n) {
-    *neighbours = NULL;
-    struct neighbours *new;
-    TRY(MEMORY_NEW(new, 1, "the neighbours of bodies"));
-    new->n = n;
-    enum status status = MEMORY_NEW(new->box, n, "the neighbours of bodies");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->order, n, "the neighbours of bodies");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->filled, n, "the neighbours of bodies");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->first, n + 1, "the neighbours of bodies");
-    if (status != STATUS_OK) {
-        neighbours_free(new);
-        return status;
-    }
-
-    for (int i = 0; i < n; i++) new->order[i] = i;
-    *neighbours = new;
-    return STATUS_OK;
-}
-
-void neighbours_free(struct neighbours *neighbours) {
-    if (!neighbours) return;
-    free(neighbours->box);
-    free(neighbours->order);
-    free(neighbours->filled);
-    free(neighbours->first);
-    free(neighbours->other);
-    free(neighbours->pair);
-    free(neighbours);
+struct neighbours *neighbours_create(struct arena *arena, int n) {
+    struct neighbours *neighbours;
+    NEW(arena, neighbours, 1);
+    neighbours->arena = arena;
+    neighbours->n = n;
+    NEW(arena, neighbours->box, n);
+    NEW(arena, neighbours->order, n);
+    NEW(arena, neighbours->filled, n);
+    NEW(arena, neighbours->first, n + 1);
+    for (int i = 0; i < n; i++) neighbours->order[i] = i;
+    return neighbours;
 }
 
 // insertion sort by low x: the order hardly changes between two calls
@@ -53,17 +34,7 @@ static void order_sort(struct neighbours *neighbours) {
     }
 }
 
-// reserve memory for one more pair
-static enum status pairs_reserve(struct neighbours *neighbours, int n) {
-    if (n + 2 <= neighbours->capacity) return STATUS_OK;
-    const int capacity = neighbours->capacity > 0 ? 2 * neighbours->capacity : 64;
-    TRY(MEMORY_RESIZE(neighbours->pair, capacity, "the neighbours of bodies"));
-    TRY(MEMORY_RESIZE(neighbours->other, capacity, "the neighbours of bodies"));
-    neighbours->capacity = capacity;
-    return STATUS_OK;
-}
-
-// store the overlapping pairs in sweep order; returns twice the number of pairs, or -1 if out of memory
+// store the overlapping pairs in sweep order; returns twice the number of pairs
 static int pairs_sweep(struct neighbours *neighbours) {
     int n = 0;
     for (int i = 0; i < neighbours->n; i++) {
@@ -74,12 +45,15 @@ static int pairs_sweep(struct neighbours *neighbours) {
             const struct box *const b = &neighbours->box[there];
             if (b->low[0] > a->high[0]) break;
             if (b->low[1] > a->high[1] || b->high[1] < a->low[1]) continue;
-            if (pairs_reserve(neighbours, n) != STATUS_OK) return -1;
+            if (n + 2 > neighbours->capacity) {
+                neighbours->capacity = neighbours->capacity > 0 ? 2 * neighbours->capacity : 64;
+                GROW(neighbours->arena, neighbours->pair, neighbours->capacity);
+                GROW(neighbours->arena, neighbours->other, neighbours->capacity);
+            }
             neighbours->pair[n++] = here;
             neighbours->pair[n++] = there;
         }
     }
-
     return n;
 }
 
@@ -89,24 +63,20 @@ static void ascending_insert(int *list, int n, int number) {
     list[n] = number;
 }
 
-enum status neighbours_find(struct neighbours *neighbours) {
-    int *const first = neighbours->first;
+void neighbours_find(struct neighbours *neighbours) {
+    int *const first = neighbours->first, *const filled = neighbours->filled;
     memset(first, 0, ((size_t)neighbours->n + 1) * sizeof *first);
+    memset(filled, 0, (size_t)neighbours->n * sizeof *filled);
     order_sort(neighbours);
     const int n = pairs_sweep(neighbours);
-    if (n < 0) return STATUS_MEMORY;
     for (int i = 0; i < n; i++) first[neighbours->pair[i] + 1]++;
     for (int i = 0; i < neighbours->n; i++) first[i + 1] += first[i];
-    int *const filled = neighbours->filled;
-    memset(filled, 0, (size_t)neighbours->n * sizeof *filled);
 
     for (int i = 0; i < n; i += 2) {
         const int a = neighbours->pair[i], b = neighbours->pair[i + 1];
         ascending_insert(neighbours->other + first[a], filled[a]++, b);
         ascending_insert(neighbours->other + first[b], filled[b]++, a);
     }
-
-    return STATUS_OK;
 }
 
 enum { MAX_ADVANCES = 200 };
@@ -242,8 +212,7 @@ static int candidates_find(const struct school *school, const struct closest *cl
         neighbours->box[f] = clearance_box(&school->fish[f], closest->distance, closest->before, y);
     }
 
-    // without memory for neighbours every pair is a candidate
-    if (neighbours_find(neighbours) != STATUS_OK) return 0;
+    neighbours_find(neighbours);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) neighbours->filled[f] = may_be_nearest(school, closest, y, neighbours, f);
 

@@ -3,8 +3,8 @@
 #ifndef CLEARANCE_H
 #define CLEARANCE_H
 
+#include "base/arena.h"
 #include "base/mathematics.h"
-#include "base/status.h"
 #include "fish/fish.h"
 #include "state/state.h"
 
@@ -12,6 +12,7 @@
  * Boxes widened by half a distance find all bodies closer than this distance. */
 
 struct neighbours {
+    struct arena *arena;
     int n;
     struct box *box; /* set by the caller                                                        (n) */
     int *order;      /* boxes sorted by low x, from the last call                                    (n) */
@@ -25,13 +26,12 @@ struct neighbours {
     int *filled; /* scratch: number of overlaps of each box entered so far; then free               (n) */
 };
 
-/* Allocate n boxes. Fails with STATUS_MEMORY; neighbours_free accepts NULL. */
-enum status neighbours_create(struct neighbours **neighbours, int n);
-void neighbours_free(struct neighbours *neighbours);
+/* A list of n boxes. */
+struct neighbours *neighbours_create(struct arena *arena, int n);
 
 /* Find all overlaps of the present boxes. The cost is proportional to the overlaps in x, plus the changes of order
- * since the last call. Fails with STATUS_MEMORY; there are then no overlaps. */
-enum status neighbours_find(struct neighbours *neighbours);
+ * since the last call. */
+void neighbours_find(struct neighbours *neighbours);
 
 /* The box of a body on straight node paths from the positions in before to the positions in y, widened by half the
  * thickness and half a distance, m: bodies with disjoint boxes stay further apart than this distance. */

@@ -2,15 +2,14 @@
 #include "contact/contact.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "contact/clearance.h"
 #include "fish/fish.h"
 #include "fish/fish_motion.h"
 
 struct contact {
+    struct arena *arena;
     const struct school *school;
     struct neighbours *neighbours; /* NULL: no repulsion between bodies */
     int *first;                    /* the partners of each fish in other                       (n_fish + 1) */
@@ -20,38 +19,17 @@ struct contact {
     double *between;        /* scratch                                                   (n_unknowns) */
 };
 
-static enum status contact_allocate(struct contact *contact) {
-    const struct school *school = contact->school;
-    TRY(MEMORY_NEW(contact->first, school->n_fish + 1, "contacts"));
-    TRY(MEMORY_NEW(contact->between, school->n_unknowns, "contacts"));
-    if (school->contact != CONTACT_REPEL || school->n_fish == 1) return STATUS_OK;
-    return neighbours_create(&contact->neighbours, school->n_fish);
-}
-
-enum status contact_create(struct contact **contact, const struct school *school) {
-    *contact = NULL;
-    struct contact *new;
-    TRY(MEMORY_NEW(new, 1, "contacts"));
-    new->school = school;
-    const enum status status = contact_allocate(new);
-
-    if (status != STATUS_OK) {
-        contact_free(new);
-        return status;
+struct contact *contact_create(struct arena *arena, const struct school *school) {
+    struct contact *contact;
+    NEW(arena, contact, 1);
+    contact->arena = arena;
+    contact->school = school;
+    NEW(arena, contact->first, school->n_fish + 1);
+    NEW(arena, contact->between, school->n_unknowns);
+    if (school->contact == CONTACT_REPEL && school->n_fish > 1) {
+        contact->neighbours = neighbours_create(arena, school->n_fish);
     }
-
-    *contact = new;
-    return STATUS_OK;
-}
-
-void contact_free(struct contact *contact) {
-    if (!contact) return;
-    neighbours_free(contact->neighbours);
-    free(contact->first);
-    free(contact->other);
-    free(contact->is_near);
-    free(contact->between);
-    free(contact);
+    return contact;
 }
 
 // ---- pairs in contact
@@ -103,14 +81,6 @@ static unsigned char pair_is_near(const struct contact *contact, int f, int g) {
     return contact->is_near[i];
 }
 
-static enum status partners_reserve(struct contact *contact, int capacity) {
-    if (capacity <= contact->capacity) return STATUS_OK;
-    TRY(MEMORY_RESIZE(contact->other, capacity, "contacts"));
-    TRY(MEMORY_RESIZE(contact->is_near, capacity, "contacts"));
-    contact->capacity = capacity;
-    return STATUS_OK;
-}
-
 enum status contact_find(struct contact *contact, const struct state *state, double t, const double *y) {
     struct neighbours *const neighbours = contact->neighbours;
     const struct school *const school = contact->school;
@@ -130,8 +100,12 @@ enum status contact_find(struct contact *contact, const struct state *state, dou
     }
 
     // candidates: fish with overlapping boxes
-    TRY(neighbours_find(neighbours));
-    TRY(partners_reserve(contact, neighbours->capacity));
+    neighbours_find(neighbours);
+    if (neighbours->capacity > contact->capacity) {
+        contact->capacity = neighbours->capacity;
+        GROW(contact->arena, contact->other, contact->capacity);
+        GROW(contact->arena, contact->is_near, contact->capacity);
+    }
     partners_find(contact, state, y);
     int n = 0;
 

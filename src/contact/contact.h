@@ -12,19 +12,18 @@
 #ifndef CONTACT_H
 #define CONTACT_H
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "flow/flow_derivative.h"
 #include "state/state.h"
 
 struct contact;
 
-/* Fails with STATUS_MEMORY; contact_free accepts NULL. */
-enum status contact_create(struct contact **contact, const struct school *school);
-void contact_free(struct contact *contact);
+struct contact *contact_create(struct arena *arena, const struct school *school);
 
 /* Find the bodies in contact at the positions in y; none unless contact.action is repel. Fails with STATUS_RETRY if two
  * bodies (not both prescribed) touch or cross at y, or on the straight paths to y from the end of the last step of the
- * integrator, or if a body touches a wall. Fails with STATUS_MEMORY. */
+ * integrator, or if a body touches a wall. */
 enum status contact_find(struct contact *contact, const struct state *state, double t, const double *y);
 
 /* The partners of fish f, in contact at the last contact_find: return the number, and set *other to the fish numbers in

@@ -6,10 +6,15 @@
 
 #include "base/mathematics.h"
 #include "base/parallel.h"
-#include "vortex/kernel.h"
+#include "base/wide.h"
 
 int fish_threads(const struct school *school) {
     return parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+}
+
+double fish_event_time(const struct school *school, long event) {
+    // a product of integers below 2^53 is exact, so the quotient has the only rounding
+    return (double)event * school->interval_ratio[0] / school->interval_ratio[1];
 }
 
 double fish_mean(const struct stencil *point, const double *value) {
@@ -20,7 +25,7 @@ double fish_mean(const struct stencil *point, const double *value) {
 
 void fish_of_nodes(int n_points, int n_nodes, const double *matrix, const double *of_nodes, double *of_points) {
     memset(of_points, 0, (size_t)n_points * sizeof *of_points);
-    kernel_multiply(n_points, n_nodes, matrix, of_nodes, of_points);
+    wide_multiply(n_points, n_nodes, matrix, of_nodes, of_points);
 }
 
 double fish_mass_mean(const struct fish *fish, const double *value) {
@@ -86,6 +91,12 @@ double fish_point_distance(const struct fish *fish, const double *y, const doubl
     }
 
     return min;
+}
+
+double fish_walls_distance(const struct walls *walls, double y) {
+    double distance = INFINITY;
+    for (int i = 0; i < walls->n; i++) distance = fmin(distance, walls->inward[i] * (y - walls->y[i]));
+    return distance;
 }
 
 double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y, int *wall) {

@@ -24,7 +24,6 @@
 #include "fish/parameters.h"
 #include "fish/shape.h"
 #include "fish/sheet_integrals.h"
-#include "vortex/images.h"
 
 /* First index of each slice in the vector of all unknowns, and one past the last. The equations have the same layout:
  * rows x, y: dx/dt - v; vx, vy: dv/dt - a; ax, ay: law of motion; sheet: M - 1 times impermeability, then Kelvin;
@@ -60,8 +59,6 @@ struct control_law_data {
     double torque_scale;             /* N m: unit of the feedforward moment */
     double filter_share;             /* weight of the newest moment in the moving mean: 1 - exp(-Dt/T_f) */
 };
-
-enum { FISH_FAR_CONTROL = 16, FISH_FAR_EDGES = 15, FISH_FAR = FISH_FAR_CONTROL + FISH_FAR_EDGES + 1 };
 
 struct fish {
     char *name;
@@ -99,13 +96,14 @@ struct fish {
     double ramp;            /* s */
 
     enum force force;
-    double *drag_tangential; /* c_t, kg m-1                                       (n_edges) */
-    double *drag_normal;     /* c_n, kg m-1                                       (n_edges) */
-    double *added_mass;      /* mu, kg                                            (n_edges) */
-    double *displaced_mass;  /* rho_f A lbar, kg                                  (n_edges) */
-    double tail_added_mass;  /* m_L, kg m-1; 0: no momentum shed at the tail */
-    int has_cusp;            /* whether the outline ends in a cusp: joukowski with tail thickness 0 */
-    double linear_speed;     /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
+    double
+        *drag_tangential;   /* c_t, kg m-1; Blasius' factor with other skins than quadratic, kg m-0.5 s-0.5 (n_edges) */
+    double *drag_normal;    /* c_n, kg m-1                                       (n_edges) */
+    double *added_mass;     /* mu, kg                                            (n_edges) */
+    double *displaced_mass; /* rho_f A lbar, kg                                  (n_edges) */
+    double tail_added_mass; /* m_L, kg m-1; 0: no momentum shed at the tail */
+    int has_cusp;           /* whether the outline ends in a cusp: joukowski with tail thickness 0 */
+    double linear_speed;    /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
     enum skin skin;
     double friction_speed;   /* u0 of laminar friction and of a boundary layer, m s-1 */
     double *drag_turbulent;  /* c_T of a boundary layer, kg m-0.8 s-0.2           (n_edges) */
@@ -118,6 +116,7 @@ struct fish {
     double suction;              /* full_suction S, kg m-1 */
     double suction_limit;        /* A_c; 0: none */
     double nose_factor;          /* (M-1) ds_0/(pi L): qhat over the unknown at the nose, 1 */
+    double *edge_density;        /* density of the fluid times depth, kg m-2         (n_edges) */
     double *control_density;     /* density of the fluid times depth, kg m-2         (n_control) */
     double *control_interval;    /* u of the interval around a control point, 1      (n_control) */
     struct tangent nose_tangent; /* the direction of the body at the nose */
@@ -126,6 +125,7 @@ struct fish {
     double viscosity;                  /* kinematic, of the fluid, m2 s-1 */
     double nose_radius;                /* h^2/(2 L) with the largest thickness h, m */
     struct sheet_integrals *integrals; /* NULL with other forces, unless there are rings */
+    int shares_integrals;              /* whether an earlier fish owns the integrals */
 
     /* rings: section 18 */
     double strip_depth;       /* w_L, depth of the last edge, m; 0: sheets of infinite span */
@@ -133,12 +133,6 @@ struct fish {
     double *sheet_half;       /* b^2/2 at the bound vortices, b = w/4, m2                  (n_sheet) */
     double *point_half;       /* b^2/2 at the points of the flow (flow.h), m2   (n_control + n_edges + 1) */
     double *control_widening; /* b db/du at control points, m2                             (n_control) */
-
-    /* The far part of the own wake is summed at a few points and interpolated; NULL: summed at all points. Positions of
-     * the points from the nodes (n_nodes, FISH_FAR), values at the points of the flow from the points
-     * (FISH_FAR, n_control + n_edges + 1), full matrices by columns. Points: Chebyshev points of the line of the body
-     * for the control points, Chebyshev points of the line of edge midpoints, the tail. */
-    double *far_by_node, *point_by_far;
 
     double *sheet_weight;            /* ds_j: circulation over unknown, m           (n_sheet) */
     struct curve *curve;             /* line of the body; owns the stencils below     */
@@ -169,10 +163,20 @@ struct fish {
     struct control_law_data control;
 };
 
-/* Constants of a run. */
+/* Impermeable straight walls along x. */
+struct walls {
+    int n;            /* 0, 1, or 2: a channel, the lower one first */
+    double y[2];      /* m */
+    double inward[2]; /* 1: the fluid is above the wall; -1: below */
+};
+
+/* The distance of a point at height y from the nearest wall, m: negative outside; INFINITY without walls. */
+double fish_walls_distance(const struct walls *walls, double y);
+
 /* Vortices of a wake that a vortex from outside takes: markers of a sheet, src/wake/wake.c. */
 enum { WAKE_PER_VORTEX = 3 };
 
+/* Constants of a run. */
 struct school {
     int n_fish;
     struct fish *fish;
@@ -188,8 +192,9 @@ struct school {
 
     struct walls walls;
 
-    double interval;        /* between two events, s */
-    double lifetime, decay; /* of a free vortex, s */
+    double interval;          /* between two events, s */
+    double interval_ratio[2]; /* the interval as a ratio of two integers, such as 1 and 50, or interval and 1 */
+    double lifetime, decay;   /* of a free vortex, s */
     enum shedding shedding;
     enum kutta kutta;
     double kutta_ramp; /* s */
@@ -211,6 +216,10 @@ struct school {
 
 /* The number of threads of a loop over the unknowns of all fish: one or all. */
 int fish_threads(const struct school *school);
+
+/* The time of an event, s: the double nearest to the multiple of the decimal or rational interval of the case, 0.7 and
+ * not 7 * 0.1. */
+double fish_event_time(const struct school *school, long event);
 
 /* sum of weight * value over the nodes of the point. */
 double fish_mean(const struct stencil *point, const double *value);

@@ -27,9 +27,33 @@ static enum status body_allocate(struct fish *fish) {
     return MEMORY_ARRAYS(per_joint, fish->n_joints, "the joints of a fish");
 }
 
-static void edges_shape(struct fish *fish, const struct fish_parameters *from) {
+/* Fish that share a shape with one of the SHARED fish before them also share the cost of the shape. The search is
+ * bounded, so that the set-up grows linearly with the number of fish. */
+enum { SHARED = 64 };
+
+static int same_outline(const struct fish_parameters *a, const struct fish_parameters *b) {
+    const double of_a[] = {a->length, a->body.thickness, a->body.depth, a->body.tail_thickness},
+                 of_b[] = {b->length, b->body.thickness, b->body.depth, b->body.tail_thickness};
+    return a->body.profile == PROFILE_JOUKOWSKI && b->body.profile == PROFILE_JOUKOWSKI && a->nodes == b->nodes &&
+           a->body.section == b->body.section && memcmp(of_a, of_b, sizeof of_a) == 0;
+}
+
+// fish f of an array of fish
+static void edges_shape(struct fish *fish, int f, const struct fish_parameters *from) {
     fish->has_mean_section = from->body.section == SECTION_MEAN;
     for (int k = 0; k < fish->n_nodes; k++) fish->arc[k] = k * fish->edge_length;
+    int back = 1;
+    while (back <= f && back <= SHARED && !same_outline(from, from - back)) back++;
+    if (back <= f && back <= SHARED) {
+        const size_t size = (size_t)fish->n_edges * sizeof *fish->thickness;
+        const struct fish *const other = fish - back;
+        memcpy(fish->thickness, other->thickness, size);
+        memcpy(fish->depth, other->depth, size);
+        memcpy(fish->square, other->square, size);
+        memcpy(fish->cube, other->cube, size);
+        return;
+    }
+
     for (int k = 0; k < fish->n_edges; k++) {
         const struct profile_edge edge = profile_edge(from, k);
         fish->thickness[k] = edge.h;
@@ -145,10 +169,10 @@ static void fluid_forces_set(struct fish *fish, const struct fish_parameters *fr
 
 /* Set all data per node, edge and joint except the gait. Numbers of nodes, length and edge_length of the fish are set.
  * Fails with STATUS_MEMORY. */
-static enum status fish_body_set(struct fish *fish, const struct fish_parameters *from,
+static enum status fish_body_set(struct fish *fish, int f, const struct fish_parameters *from,
                                  const struct fluid_parameters *fluid) {
     TRY(body_allocate(fish));
-    edges_shape(fish, from);
+    edges_shape(fish, f, from);
     body_weigh(fish, from);
     fluid_forces_set(fish, from, fluid);
     return STATUS_OK;
@@ -184,9 +208,10 @@ static void sheet_set_on_polygon(struct fish *fish, enum collocation collocation
     fish->tail_tangent = fish->control_tangent[fish->n_control - 1];
 }
 
-static void sheet_set_on_smooth_curve(struct fish *fish, enum collocation collocation) {
+static enum status sheet_set_on_smooth_curve(struct fish *fish, const struct school_parameters *parameters) {
     const int last = fish->n_sheet - 1;
     for (int j = 0; j <= last; j++) {
+        TRY(status_ask(parameters->stop));
         const double u = cosine_place(fish, j) * fish->n_edges;
         fish->sheet_point[j] = curve_smooth_point(fish->curve, u);
         if (j == 0 || j == last) continue;  // quadrature weight 0
@@ -195,13 +220,15 @@ static void sheet_set_on_smooth_curve(struct fish *fish, enum collocation colloc
     }
 
     for (int c = 0; c < last; c++) {
-        const double u = control_place(fish, c, collocation) * fish->n_edges;
+        TRY(status_ask(parameters->stop));
+        const double u = control_place(fish, c, parameters->sheet.collocation) * fish->n_edges;
         fish->control_point[c] = curve_smooth_point(fish->curve, u);
         fish->control_tangent[c].to = curve_smooth_slope(fish->curve, u);
     }
 
     fish->tail_tangent.to = curve_smooth_slope(fish->curve, fish->n_edges);
     fish->nose_tangent.to = curve_smooth_slope(fish->curve, 0);
+    return STATUS_OK;
 }
 
 // add the weights of a point to a matrix by columns
@@ -245,7 +272,8 @@ static void end_correction_set(struct fish *fish) {
 }
 
 // bound vortices and control points: doc/model.md, section 6
-static enum status sheet_set(struct fish *fish, const struct sheet_parameters *sheet, enum shedding shedding) {
+static enum status sheet_set(struct fish *fish, const struct school_parameters *parameters) {
+    const struct sheet_parameters *const sheet = &parameters->sheet;
     for (int j = 1; j < fish->n_sheet; j++) {
         const double distance = cosine_place(fish, j) - cosine_place(fish, j - 1);
         fish->sheet_weight[j - 1] += distance * fish->length / 2;
@@ -258,13 +286,13 @@ static enum status sheet_set(struct fish *fish, const struct sheet_parameters *s
                      is_smooth ? 4 * fish->n_sheet + 1 : 0));
 
     if (is_smooth) {
-        sheet_set_on_smooth_curve(fish, sheet->collocation);
+        TRY(sheet_set_on_smooth_curve(fish, parameters));
     } else {
         sheet_set_on_polygon(fish, sheet->collocation);
     }
 
     TRY(sheet_set_by_node(fish));
-    if (shedding == SHEDDING_SHEET) end_correction_set(fish);
+    if (parameters->wake.shedding == SHEDDING_SHEET) end_correction_set(fish);
     fish->heading_point = curve_polygon_point(fish->curve, 1.0 / 3.0 * fish->n_edges);
     return STATUS_OK;
 }
@@ -294,52 +322,6 @@ static double strip_half(const struct fish *fish, double u) {
     return depth * depth / 32;
 }
 
-// Lagrange's polynomials of the n Chebyshev points of 0 .. 1 at x, into column elements `stride` apart
-static void lagrange_at(int n, double x, int stride, double *value) {
-    double sum = 0;
-    for (int m = 0; m < n; m++) {
-        const double angle = M_PI * (m + 0.5) / n, distance = x - (1 - cos(angle)) / 2;
-        value[m * stride] = (m % 2 == 0 ? 1 : -1) * sin(angle) / (fabs(distance) > 1e-14 ? distance : 1e-14);
-        sum += value[m * stride];
-    }
-    for (int m = 0; m < n; m++) value[m * stride] /= sum;
-}
-
-// points of the far part of the own wake; few points of the flow need none, and with a depth that varies the kernel is
-// no smooth function of the place
-static enum status far_points_set(struct fish *fish) {
-    const int n_points = fish->n_control + fish->n_edges + 1;
-    if (fish->depth_varies || n_points < 3 * FISH_FAR / 2) return STATUS_OK;
-    TRY(MEMORY_NEW(fish->far_by_node, fish->n_nodes * FISH_FAR, "the sheet of a fish"));
-    TRY(MEMORY_NEW(fish->point_by_far, FISH_FAR * n_points, "the sheet of a fish"));
-
-    struct curve *curve;
-    TRY(curve_create(&curve, fish->n_nodes, 0, 2 * FISH_FAR));
-    for (int m = 0; m < FISH_FAR; m++) {
-        // an edge midpoint is the mean of two points of the line one edge apart; the tail is a point of the line
-        const int k = m - FISH_FAR_CONTROL, is_edge = k >= 0 && k < FISH_FAR_EDGES, is_tail = k == FISH_FAR_EDGES;
-        const double angle = M_PI * (is_edge ? (k + 0.5) / FISH_FAR_EDGES : (m + 0.5) / FISH_FAR_CONTROL);
-        const double sigma = is_tail ? 1 : (1 - cos(angle)) / 2;
-        for (int end = 0; end <= is_edge; end++) {
-            const struct stencil point = curve_smooth_point(curve, sigma * (fish->n_edges - is_edge) + end);
-            for (int i = 0; i < point.n; i++) {
-                fish->far_by_node[point.node[i] * FISH_FAR + m] += point.weight[i] / (1 + is_edge);
-            }
-        }
-    }
-    curve_free(curve);
-
-    for (int c = 0; c < fish->n_control; c++) {
-        lagrange_at(FISH_FAR_CONTROL, cosine_place(fish, c + 0.5), n_points, fish->point_by_far + c);
-    }
-    for (int k = 0; k < fish->n_edges; k++) {
-        lagrange_at(FISH_FAR_EDGES, (double)k / (fish->n_edges - 1), n_points,
-                    fish->point_by_far + FISH_FAR_CONTROL * n_points + fish->n_control + k);
-    }
-    fish->point_by_far[FISH_FAR * n_points - 1] = 1;
-    return STATUS_OK;
-}
-
 // the strip of the sheets of the body: doc/model.md, section 18
 static enum status strip_set(struct fish *fish) {
     const int n_points = fish->n_control + fish->n_edges + 1;
@@ -360,16 +342,31 @@ static enum status strip_set(struct fish *fish) {
 
     for (int k = 0; k < fish->n_edges; k++) fish->point_half[fish->n_control + k] = strip_half(fish, k + 0.5);
     fish->point_half[n_points - 1] = strip_half(fish, fish->n_edges);
-    return far_points_set(fish);
+    return STATUS_OK;
+}
+
+// integrals over the sheet: of an earlier fish with the same nodes, sheet and densities, or new
+static enum status integrals_set(struct fish *fish, int f, const double *density, const volatile sig_atomic_t *stop) {
+    for (int back = 1; back <= f && back <= SHARED; back++) {
+        const struct fish *const other = fish - back;
+        if (!other->integrals || other->n_nodes != fish->n_nodes || other->n_sheet != fish->n_sheet) continue;
+        if (memcmp(other->edge_density, density, (size_t)fish->n_edges * sizeof *density) != 0) continue;
+        fish->integrals = other->integrals;
+        fish->shares_integrals = 1;
+        return STATUS_OK;
+    }
+    return sheet_integrals_create(&fish->integrals, fish->n_nodes, fish->n_sheet, density, stop);
 }
 
 // the pressure of the bound sheet: doc/model.md, section 15
-static enum status pressure_set(struct fish *fish, const struct fish_parameters *from, double density, int is_strip) {
+static enum status pressure_set(struct fish *fish, int f, const struct fish_parameters *from,
+                                const struct school_parameters *parameters, int is_strip) {
+    const double density = parameters->fluid.density;
     if (fish->force != FORCE_PRESSURE && !is_strip) return STATUS_OK;
     const double h = M_PI / fish->n_control;
-    double *per_edge;
     if (is_strip) TRY(strip_set(fish));
-    TRY(MEMORY_NEW(per_edge, fish->n_edges, "the pressure of a fish"));
+    TRY(MEMORY_NEW(fish->edge_density, fish->n_edges, "the pressure of a fish"));
+    double *const per_edge = fish->edge_density;
     for (int k = 0; k < fish->n_edges; k++) per_edge[k] = density * (is_strip ? fish->strip_depth : fish->depth[k]);
 
     for (int c = 0; c < fish->n_control; c++) {
@@ -384,10 +381,7 @@ static enum status pressure_set(struct fish *fish, const struct fish_parameters 
     fish->full_suction = M_PI * (density * fish->depth[0]) * fish->length;
     fish->suction = from->suction * fish->full_suction;
     fish->suction_limit = from->suction_limit;
-    const enum status status = sheet_integrals_create(&fish->integrals, fish->n_nodes, fish->n_sheet, per_edge);
-    free(per_edge);
-
-    return status;
+    return integrals_set(fish, f, per_edge, parameters->stop);
 }
 
 /* Whether the sheets of the fish consist of vortex rings: force: pressure with span: finite. */
@@ -397,8 +391,9 @@ static int fish_is_strip(const struct fish_parameters *from) {
 
 /* Set all data per vortex and per control point. Numbers of nodes and points, length and depth of the fish are set.
  * Fails with STATUS_MEMORY. */
-static enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
-                                  const struct school_parameters *parameters) {
+static enum status fish_sheet_set(struct fish *fish, int f, const struct school_parameters *parameters, int is_strip) {
+    const struct fish_parameters *const from = &parameters->fish[f];
+
     // reserve the sheet
     double **const per_control[] = {&fish->end_correction, &fish->control_density, &fish->control_interval};
     TRY(MEMORY_NEW(fish->sheet_weight, fish->n_sheet, "the sheet of a fish"));
@@ -408,10 +403,8 @@ static enum status fish_sheet_set(struct fish *fish, const struct fish_parameter
     TRY(MEMORY_NEW(fish->control_point, fish->n_control, "the sheet of a fish"));
     TRY(MEMORY_NEW(fish->control_tangent, fish->n_control, "the sheet of a fish"));
 
-    TRY(sheet_set(fish, &parameters->sheet, parameters->wake.shedding));
-    int is_strip = 0;
-    for (int f = 0; f < parameters->n_fish; f++) is_strip |= fish_is_strip(&parameters->fish[f]);
-    return pressure_set(fish, from, parameters->fluid.density, is_strip);
+    TRY(sheet_set(fish, parameters));
+    return pressure_set(fish, f, from, parameters, is_strip);
 }
 
 int fish_sheet_least(const struct fish_parameters *from) {
@@ -422,7 +415,8 @@ int fish_sheet_least(const struct fish_parameters *from) {
     }
 
     const double least = ceil(1 + 5 * from->length / depth * (1 - 1e-9));
-    return least < 1e6 ? (int)least : 1000000;
+    // NaN: the depth was not read
+    return isnan(least) ? 0 : (int)fmin(least, 1e9);
 }
 
 static void motion_set(struct fish *fish, const struct fish_parameters *from) {
@@ -490,8 +484,9 @@ static enum status control_set(struct fish *fish, const struct fish_parameters *
     return STATUS_OK;
 }
 
-static enum status fish_fill(struct fish *fish, const struct school_parameters *parameters,
-                             const struct fish_parameters *from) {
+// fish f of an array of fish
+static enum status fish_fill(struct fish *fish, int f, const struct school_parameters *parameters) {
+    const struct fish_parameters *const from = &parameters->fish[f];
     TRY(memory_copy_string(&fish->name, from->name, "the name of a fish"));
     fish->n_nodes = from->nodes;
     fish->n_edges = from->nodes - 1;
@@ -504,9 +499,8 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     fish->sheet_smoothing = parameters->sheet.smoothing * fish->length;
     fish->taper = parameters->wake.taper * fish->length;
     fish->taper_beside = parameters->wake.taper_beside * fish->length;
-    TRY(fish_body_set(fish, from, &parameters->fluid));
+    TRY(fish_body_set(fish, f, from, &parameters->fluid));
     TRY(fish_gait_set(fish, from));
-    TRY(fish_sheet_set(fish, from, parameters));
     motion_set(fish, from);
 
     return control_set(fish, from, parameters);
@@ -527,6 +521,37 @@ static struct layout layout_after(int first, int n_nodes, int n_momenta, int n_s
     at.end = at.phi0 + 1;
 
     return at;
+}
+
+/* A number as a ratio of two integers that rounds to exactly this number: with a decimal denominator, else the first
+ * convergent of the continued fraction; without a ratio of small integers the number and 1. */
+static void find_ratio(double number, double ratio[2]) {
+    const double most = 1e9;  // times an event below 2^53
+    for (double q = 1; q <= 1e15; q *= 10) {
+        const double p = round(number * q);
+        if (p > most) break;
+        ratio[0] = p;
+        ratio[1] = q;
+        if (p / q == number) return;
+    }
+
+    double p[2] = {1, 0}, q[2] = {0, 1}, rest = number;
+    while (p[0] <= most && q[0] <= most) {
+        const double whole = floor(rest);
+        for (int i = 0; i < 2; i++) {
+            double *const of = i == 0 ? p : q;
+            const double next = whole * of[0] + of[1];
+            of[1] = of[0];
+            of[0] = next;
+        }
+        ratio[0] = p[0];
+        ratio[1] = q[0];
+        if (p[0] / q[0] == number) return;
+        rest = 1 / (rest - whole);
+    }
+
+    ratio[0] = number;
+    ratio[1] = 1;
 }
 
 // a single wall bounds the fluid on the side of the first nose at the start
@@ -572,6 +597,7 @@ static void fluid_set(struct school *school, const struct school_parameters *par
 
     walls_set(school, parameters);
     school->interval = parameters->shedding_interval;
+    find_ratio(school->interval, school->interval_ratio);
     school->lifetime = parameters->wake.lifetime.seconds;
     school->decay = parameters->wake.decay.seconds;
     school->shedding = parameters->wake.shedding;
@@ -629,30 +655,73 @@ static enum status vortices_set(struct school *school, const struct wake_paramet
     return STATUS_OK;
 }
 
+// the box around a fish at the start
+struct place {
+    int fish;
+    double from; /* lower side of the box along the axis of the sort */
+    struct box box;
+};
+
+static int by_place(const void *a, const void *b) {
+    const double one = ((const struct place *)a)->from, other = ((const struct place *)b)->from;
+    return (one > other) - (one < other);
+}
+
+// find the overlapping fish f and g < f with the least f; sort the boxes along the longer side of the school
+static int find_overlap(const struct school *school, const double *y, struct place *place, int *g) {
+    const int n = school->n_fish;
+    struct box all = box_around(0, NULL, NULL);
+    for (int f = 0; f < n; f++) {
+        const struct fish *const fish = &school->fish[f];
+        double half = 0;
+        for (int k = 0; k < fish->n_edges; k++) half = fmax(half, fish->thickness[k] / 2);
+        place[f].fish = f;
+        place[f].box = box_widen(box_around(fish->n_nodes, y + fish->at.x, y + fish->at.y), half);
+        all = box_union(all, place[f].box);
+    }
+    const int axis = all.high[1] - all.low[1] > all.high[0] - all.low[0];
+    for (int f = 0; f < n; f++) place[f].from = place[f].box.low[axis];
+    qsort(place, (size_t)n, sizeof *place, by_place);
+
+    int found = n;
+    for (int i = 0; i < n; i++) {
+        for (int j = i + 1; j < n && place[j].from <= place[i].box.high[axis]; j++) {
+            const int first = place[i].fish < place[j].fish ? place[i].fish : place[j].fish;
+            const int last = place[i].fish + place[j].fish - first;
+            if (last > found || (last == found && first > *g) || box_gap(&place[i].box, &place[j].box) > 0) continue;
+            if (fish_distance(&school->fish[last], &school->fish[first], y, 0) > 0) continue;
+            found = last;
+            *g = first;
+        }
+    }
+    return found;
+}
+
 static enum status refuse_overlap(const struct school *school) {
     double *y;
+    struct place *place;
     TRY(MEMORY_NEW(y, school->n_unknowns, "the unknowns"));
-    enum status status = STATUS_OK;
+    enum status status = MEMORY_NEW(place, school->n_fish, "the places of the fish");
 
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         fish_start(&school->fish[f], y);
-        if (fish_wall_distance(school, &school->fish[f], y, NULL) <= 0) {
-            status = status_fail(STATUS_CASE,
-                                 "error: fish[%d] (%s) touches a wall or is outside the fluid at the start: change "
-                                 "start.position or fluid.walls",
-                                 f, school->fish[f].name);
-        }
-
-        for (int g = 0; g < f && status == STATUS_OK; g++) {
-            if (fish_distance(&school->fish[f], &school->fish[g], y, 0) <= 0) {
-                status = status_fail(STATUS_CASE,
-                                     "error: fish[%d] (%s) and fish[%d] (%s) overlap at the start: change "
-                                     "start.position of one of them",
-                                     g, school->fish[g].name, f, school->fish[f].name);
-            }
-        }
+        if (fish_wall_distance(school, &school->fish[f], y, NULL) > 0) continue;
+        status = status_fail(STATUS_CASE,
+                             "error: fish[%d] (%s) touches a wall or is outside the fluid at the start: change "
+                             "start.position or fluid.walls",
+                             f, school->fish[f].name);
     }
 
+    int g = 0;
+    const int f = status == STATUS_OK ? find_overlap(school, y, place, &g) : school->n_fish;
+    if (f < school->n_fish) {
+        status = status_fail(STATUS_CASE,
+                             "error: fish[%d] (%s) and fish[%d] (%s) overlap at the start: change start.position of "
+                             "one of them",
+                             g, school->fish[g].name, f, school->fish[f].name);
+    }
+
+    free(place);
     free(y);
     return status;
 }
@@ -667,7 +736,7 @@ enum status fish_school_create(struct school **school, const struct school_param
     fluid_set(new, parameters);
     status = vortices_set(new, &parameters->wake);
     for (int f = 0; f < new->n_fish &&status == STATUS_OK; f++) {
-        status = fish_fill(&new->fish[f], parameters, &parameters->fish[f]);
+        status = fish_fill(&new->fish[f], f, parameters);
         if (status != STATUS_OK) goto failed;
         struct fish *const fish = &new->fish[f];
         if (sensors_set(fish, &parameters->fish[f].sensors) != STATUS_OK) goto failed;
@@ -681,6 +750,13 @@ enum status fish_school_create(struct school **school, const struct school_param
         new->n_unknowns = fish->at.end;
     }
     if (status == STATUS_OK) status = refuse_overlap(new);
+
+    // the sheets take most of the time: last, and until a stop
+    int is_strip = 0;
+    for (int f = 0; f < new->n_fish; f++) is_strip |= fish_is_strip(&parameters->fish[f]);
+    for (int f = 0; f < new->n_fish &&status == STATUS_OK; f++) {
+        status = fish_sheet_set(&new->fish[f], f, parameters, is_strip);
+    }
     if (status != STATUS_OK) goto failed;
     *school = new;
     return STATUS_OK;
@@ -723,12 +799,11 @@ void fish_school_free(struct school *school) {
                                fish->control_by_node[0],
                                fish->control_by_node[1],
                                fish->end_correction,
+                               fish->edge_density,
                                fish->control_density,
                                fish->control_interval,
                                fish->sheet_half,
                                fish->point_half,
-                               fish->far_by_node,
-                               fish->point_by_far,
                                fish->control_widening,
                                fish->sensor,
                                fish->control.heading_time,
@@ -738,7 +813,7 @@ void fish_school_free(struct school *school) {
 
         for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
         curve_free(fish->curve);
-        sheet_integrals_free(fish->integrals);
+        if (!fish->shares_integrals) sheet_integrals_free(fish->integrals);
     }
 
     free(school->vortices);

@@ -4,6 +4,8 @@
 #ifndef PARAMETERS_H
 #define PARAMETERS_H
 
+#include <signal.h>
+
 enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE, SHEDDING_SHEET };
 enum kutta { KUTTA_EDGE, KUTTA_RATE };
 enum body_line { BODY_LINE_SMOOTH, BODY_LINE_POLYGON };
@@ -177,7 +179,8 @@ struct school_parameters {
     double coupling_distance; /* body lengths of the longest fish */
     int threads;
     int n_fish;
-    struct fish_parameters *fish; /* (n_fish) */
+    struct fish_parameters *fish;      /* (n_fish) */
+    const volatile sig_atomic_t *stop; /* the set-up of a school ends once *stop is not 0; may be NULL */
 };
 
 #endif

@@ -36,15 +36,7 @@ enum status curve_create(struct curve **curve, int n_nodes, int n_polygon, int n
 
     for (int k = 0; k < n_nodes; k++) new->every[k] = k;
 
-    // c_k = (-1)^k sum over j = max(0, k - 3) .. min(k, N - 4) of the binomial coefficients (3, k - j)
-    static const double binomial[] = {1, 3, 3, 1};
-    const int degree = 3, last = new->n_nodes - 1 - degree;
-    for (int k = 0; k < new->n_nodes; k++) {
-        double sum = 0;
-        for (int j = k > degree ? k - degree : 0; j <= k && j <= last; j++) sum += binomial[k - j];
-        new->barycentric[k] = k % 2 == 0 ? sum : -sum;
-    }
-
+    curve_smooth_factors(n_nodes, new->barycentric);
     *curve = new;
     return STATUS_OK;
 }
@@ -56,6 +48,17 @@ void curve_free(struct curve *curve) {
     free(curve->weight);
     free(curve->barycentric);
     free(curve);
+}
+
+/* c_k = (-1)^k sum over j = max(0, k - 3) .. min(k, N - 4) of the binomial coefficients (3, k - j) */
+void curve_smooth_factors(int n_nodes, double *factor) {
+    static const double binomial[] = {1, 3, 3, 1};
+    const int degree = 3, last = n_nodes - 1 - degree;
+    for (int k = 0; k < n_nodes; k++) {
+        double sum = 0;
+        for (int j = k > degree ? k - degree : 0; j <= k && j <= last; j++) sum += binomial[k - j];
+        factor[k] = k % 2 == 0 ? sum : -sum;
+    }
 }
 
 static double *new_weights(struct curve *curve, int n) {

@@ -42,6 +42,9 @@ struct stencil curve_edge_middle(const struct curve *curve, int edge);
 struct stencil curve_smooth_point(struct curve *curve, double u);
 struct stencil curve_smooth_slope(struct curve *curve, double u);
 
+/* c_k of the smooth curve, b_k(u) = (c_k/(u - k))/sum over i of c_i/(u - i); factor: (n_nodes), at least four. */
+void curve_smooth_factors(int n_nodes, double *factor);
+
 /* The outline of a body: thickness h in the plane of motion, depth w normal to the plane of motion.
  * doc/model.md, section 1.
  *

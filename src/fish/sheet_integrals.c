@@ -7,8 +7,8 @@
 
 #include "base/mathematics.h"
 #include "base/memory.h"
+#include "base/wide.h"
 #include "fish/shape.h"
-#include "vortex/kernel.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -47,7 +47,7 @@ static void series_free(struct series *series) {
 
 static void series_sum(const struct series *series, double constant) {
     for (int j = 0; j < series->n; j++) series->sum[j] = constant;
-    kernel_multiply(series->n, series->n - 1, series->cosine, series->term, series->sum);
+    wide_multiply(series->n, series->n - 1, series->cosine, series->term, series->sum);
 }
 
 // C_j of all vortices j at theta
@@ -80,40 +80,68 @@ static void kink_fill(struct sheet_integrals *to) {
     }
 }
 
-// the momentum of one edge, in pieces of equal length in theta
-static enum status edge_integrate(struct sheet_integrals *to, const struct series *series, int edge, double density) {
+/* Partial fractions of b_k b_i' with b_k = c_k/(D (u - k)) and the mean slope M = sum over k of b_k/(u - k), k != i:
+ *
+ *     b_k b_i' = c_k c_i/D^2 1/((u - k)(u - i)) (M - 1/(u - i))                                          m = k - i
+ *     P_kij = c_k c_i ((A_k - A_i + E_i)/m - (B_k - B_i)/m^2)
+ *     A, B, E: integrals of density C_j/D^2 times M/(u - k), 1/(u - k), 1/(u - k)^2
+ *
+ * The terms at a point u; the diagonal is b_k b_k', with the slope of the nearest node as minus the sum of all other
+ * slopes: exact, without cancellation. */
+static void parts_at(const struct sheet_integrals *to, double u, double weight, double *part) {
+    const int n = to->n_nodes, nearest = (int)(u + 0.5);
+    double *const a = part, *const b = part + n, *const e = part + 2 * n, *const own = part + 3 * n;
+    double sum = 0, mean = 0, slopes = 0;
+    for (int k = 0; k < n; k++) {
+        const double inverse = 1 / (u - k);
+        b[k] = inverse;
+        sum += to->factor[k] * inverse;
+        mean += to->factor[k] * inverse * inverse;
+    }
+    mean /= sum;
+
+    for (int k = 0; k < n; k++) {
+        const double value = to->factor[k] * b[k] / sum, slope = value * (mean - b[k]);
+        own[k] = weight * value * slope;
+        if (k != nearest) slopes += slope;
+    }
+    own[nearest] = -weight * to->factor[nearest] * b[nearest] / sum * slopes;
+
+    const double share = weight / (sum * sum);
+    for (int k = 0; k < n; k++) {
+        a[k] = share * mean * b[k];
+        e[k] = share * b[k] * b[k];
+        b[k] *= share;
+    }
+}
+
+// the momentum of one edge, in pieces of equal length in theta with these Gauss points; part: workspace (4 n_nodes)
+static enum status edge_integrate(struct sheet_integrals *to, const struct series *series, int edge, double density,
+                                  const double *node, const double *gauss, double *part,
+                                  const volatile sig_atomic_t *stop) {
     const int n = to->n_nodes, n_edges = to->n_nodes - 1;
     const double first = acos(1 - 2.0 * edge / n_edges), last = acos(1 - 2.0 * (edge + 1) / n_edges);
     const int needed = (int)ceil((last - first) / (pi / to->n_control)), n_pieces = needed < 2 ? 2 : needed;
     const double piece = (last - first) / n_pieces;
-    double node[GAUSS], gauss[GAUSS];
-    quadrature_legendre(GAUSS, node, gauss);
-    struct curve *curve;
-    TRY(curve_create(&curve, to->n_nodes, 0, 2 * GAUSS * n_pieces));
-
     for (int p = 0; p < GAUSS * n_pieces; p++) {
+        TRY(status_ask(stop));
         const double theta = first + (p / GAUSS + node[p % GAUSS]) * piece;
         const double u = n_edges * (1 - cos(theta)) / 2;
-        const double weight = density * gauss[p % GAUSS] * piece * n_edges * sin(theta) / 2;
-        const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
+        parts_at(to, u, density * gauss[p % GAUSS] * piece * n_edges * sin(theta) / 2, part);
         series_circulation(series, theta);
-
         for (int j = 0; j < to->n_sheet; j++) {
-            double *const matrix = to->momentum + (long)j * n * n;
-            for (int i = 0; i < n; i++) {
-                const double value = weight * series->sum[j] * slope.weight[i];
-                for (int k = 0; k < n; k++) matrix[i * n + k] += value * point.weight[k];
-            }
+            wide_multiply(4 * n, 1, part, &series->sum[j], to->part + (long)j * 4 * n);
         }
     }
-
-    curve_free(curve);
     return STATUS_OK;
 }
 
-static enum status integrals_fill(struct sheet_integrals *to, const struct series *series, const double *density) {
+static enum status integrals_fill(struct sheet_integrals *to, const struct series *series, const double *density,
+                                  const volatile sig_atomic_t *stop) {
     const size_t n_nodes = (size_t)to->n_nodes, n_sheet = (size_t)to->n_sheet, n_control = (size_t)to->n_control;
-    TRY(MEMORY_NEW(to->momentum, n_sheet * n_nodes * n_nodes, "the integrals over a sheet"));
+    TRY(MEMORY_NEW(to->part, n_sheet * 4 * n_nodes, "the integrals over a sheet"));
+    TRY(MEMORY_NEW(to->factor, n_nodes, "the integrals over a sheet"));
+    TRY(MEMORY_NEW(to->inverse, 2 * n_nodes - 1, "the integrals over a sheet"));
     TRY(MEMORY_NEW(to->strength, n_control * n_sheet, "the integrals over a sheet"));
     TRY(MEMORY_NEW(to->circulation, n_control * n_sheet, "the integrals over a sheet"));
     TRY(MEMORY_NEW(to->kink_strength, n_control, "the integrals over a sheet"));
@@ -121,6 +149,7 @@ static enum status integrals_fill(struct sheet_integrals *to, const struct serie
 
     // strength and circulation at the control points
     for (int c = 0; c < to->n_control; c++) {
+        TRY(status_ask(stop));
         const double theta = pi * (c + 0.5) / to->n_control;
         series_strength(series, theta);
         for (int j = 0; j < to->n_sheet; j++) to->strength[j * to->n_control + c] = series->sum[j];
@@ -129,13 +158,26 @@ static enum status integrals_fill(struct sheet_integrals *to, const struct serie
     }
 
     kink_fill(to);
-    for (int k = 0; k < to->n_nodes - 1; k++) TRY(edge_integrate(to, series, k, density[k]));
 
-    return STATUS_OK;
+    // momentum
+    curve_smooth_factors(to->n_nodes, to->factor);
+    for (int m = 1; m < to->n_nodes; m++) {
+        to->inverse[to->n_nodes - 1 + m] = 1.0 / m;
+        to->inverse[to->n_nodes - 1 - m] = -1.0 / m;
+    }
+    double *part, node[GAUSS], gauss[GAUSS];
+    quadrature_legendre(GAUSS, node, gauss);
+    TRY(MEMORY_NEW(part, 4 * n_nodes, "the integrals over a sheet"));
+    enum status status = STATUS_OK;
+    for (int k = 0; k < to->n_nodes - 1 && status == STATUS_OK; k++) {
+        status = edge_integrate(to, series, k, density[k], node, gauss, part, stop);
+    }
+    free(part);
+    return status;
 }
 
-enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet,
-                                   const double *density) {
+enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet, const double *density,
+                                   const volatile sig_atomic_t *stop) {
     *integrals = NULL;
     struct sheet_integrals *new;
     TRY(MEMORY_NEW(new, 1, "the integrals over a sheet"));
@@ -144,7 +186,7 @@ enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nod
     new->n_control = n_sheet - 1;
     struct series series;
     enum status status = series_create(&series, n_sheet);
-    if (status == STATUS_OK) status = integrals_fill(new, &series, density);
+    if (status == STATUS_OK) status = integrals_fill(new, &series, density, stop);
     series_free(&series);
 
     if (status != STATUS_OK) {
@@ -158,7 +200,9 @@ enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nod
 
 void sheet_integrals_free(struct sheet_integrals *integrals) {
     if (!integrals) return;
-    free(integrals->momentum);
+    free(integrals->part);
+    free(integrals->factor);
+    free(integrals->inverse);
     free(integrals->strength);
     free(integrals->circulation);
     free(integrals->kink_strength);
@@ -169,7 +213,7 @@ void sheet_integrals_free(struct sheet_integrals *integrals) {
 static void integrals_multiply(const struct sheet_integrals *integrals, const double *matrix, const double *circulation,
                                double *sum) {
     memset(sum, 0, (size_t)integrals->n_control * sizeof *sum);
-    kernel_multiply(integrals->n_control, integrals->n_sheet, matrix, circulation, sum);
+    wide_multiply(integrals->n_control, integrals->n_sheet, matrix, circulation, sum);
 }
 
 void sheet_integrals_around(const struct sheet_integrals *integrals, const double *circulation, double *around) {
@@ -178,4 +222,45 @@ void sheet_integrals_around(const struct sheet_integrals *integrals, const doubl
 
 void sheet_integrals_before(const struct sheet_integrals *integrals, const double *circulation, double *before) {
     integrals_multiply(integrals, integrals->circulation, circulation, before);
+}
+
+// add P_kij x_i/c_k of one vortex or of a sum over vortices for all nodes k, except k = i
+static inline __attribute__((always_inline)) void add_node(int n, int i, double x, const double *part,
+                                                           const double *factor, const double *inverse,
+                                                           double *restrict to) {
+    const double *const a = part, *const b = part + n, *const over = inverse + n - 1 - i;
+    const double scale = factor[i] * x, shift = part[2 * n + i] - a[i], here = b[i];
+    for (int k = 0; k < n; k++) to[k] += scale * over[k] * (a[k] + shift - over[k] * (b[k] - here));
+}
+
+WIDE(void, sheet_integrals_columns,
+     (int n, const double *part, const double *factor, const double *inverse, double *matrix),
+     (n, part, factor, inverse, matrix)) {
+    for (int i = 0; i < n; i++) {
+        double *const column = matrix + (long)i * n;
+        for (int k = 0; k < n; k++) column[k] = 0;
+        add_node(n, i, 1, part, factor, inverse, column);
+        for (int k = 0; k < n; k++) column[k] *= factor[k];
+        column[i] = part[3 * n + i];
+    }
+}
+
+void sheet_integrals_matrix(const struct sheet_integrals *integrals, const double *circulation, double *parts,
+                            double *matrix) {
+    memset(parts, 0, 4 * (size_t)integrals->n_nodes * sizeof *parts);
+    wide_multiply(4 * integrals->n_nodes, integrals->n_sheet, integrals->part, circulation, parts);
+    sheet_integrals_columns(integrals->n_nodes, parts, integrals->factor, integrals->inverse, matrix);
+}
+
+WIDE(void, sheet_integrals_sum,
+     (int n, const double *part, const double *factor, const double *inverse, const double *x, double *product),
+     (n, part, factor, inverse, x, product)) {
+    for (int k = 0; k < n; k++) product[k] = 0;
+    for (int i = 0; i < n; i++) add_node(n, i, x[i], part, factor, inverse, product);
+    for (int k = 0; k < n; k++) product[k] = factor[k] * product[k] + part[3 * n + k] * x[k];
+}
+
+void sheet_integrals_product(const struct sheet_integrals *integrals, int j, const double *x, double *product) {
+    const int n = integrals->n_nodes;
+    sheet_integrals_sum(n, integrals->part + (long)j * 4 * n, integrals->factor, integrals->inverse, x, product);
 }

@@ -6,12 +6,17 @@
 #ifndef SHEET_INTEGRALS_H
 #define SHEET_INTEGRALS_H
 
+#include <signal.h>
+
 #include "base/status.h"
 
 struct sheet_integrals {
     int n_nodes, n_sheet, n_control;
-    double *momentum;    /* P: integral over u of density C_j b_k b_i'; for each j a matrix (k, i) by columns, kg m-2
-                                                                                      (n_sheet, n_nodes, n_nodes) */
+    /* P_kij, the integral over u of density C_j b_k b_i', kg m-2, in partial fractions: of each vortex j the numbers A,
+     * B, E and the diagonal P_kkj of each node                                           (n_sheet, 4, n_nodes) */
+    double *part;
+    double *factor;      /* c_k of the smooth curve                                               (n_nodes) */
+    double *inverse;     /* 1/m for m = 1 - n_nodes .. n_nodes - 1; 0 for m = 0             (2 n_nodes - 1) */
     double *strength;    /* G: circulation of the interval around a control point, 1        (n_sheet, n_control) */
     double *circulation; /* C_j at the control points, 1                                  (n_sheet, n_control) */
     /* Corrections of both sums at the control points for a finite strength at the tail, per q_M-2 - 2 q_M-1: g then has
@@ -20,13 +25,21 @@ struct sheet_integrals {
 };
 
 /* Integrals on the smooth curve; density: fluid density times depth of every edge, kg m-2 (n_nodes - 1). Fails with
- * STATUS_MEMORY. sheet_integrals_free accepts NULL. */
-enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet, const double *density);
+ * STATUS_MEMORY, or with STATUS_STOPPED once *stop is not 0 (stop may be NULL). sheet_integrals_free accepts NULL. */
+enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet, const double *density,
+                                   const volatile sig_atomic_t *stop);
 void sheet_integrals_free(struct sheet_integrals *integrals);
 
 /* Of a sheet with the given circulations (n_sheet), m2 s-1: Q_c, the circulation of the interval around each control
  * point (n_control), and the circulation between the nose and each control point (n_control). */
 void sheet_integrals_around(const struct sheet_integrals *integrals, const double *circulation, double *around);
 void sheet_integrals_before(const struct sheet_integrals *integrals, const double *circulation, double *before);
+
+/* sum over j of P_kij times circulation j, kg s-1, as a matrix (k, i) by columns; parts: workspace (4 n_nodes). */
+void sheet_integrals_matrix(const struct sheet_integrals *integrals, const double *circulation, double *parts,
+                            double *matrix);
+
+/* sum over i of P_kij x_i of vortex j for all nodes k (n_nodes). */
+void sheet_integrals_product(const struct sheet_integrals *integrals, int j, const double *x, double *product);
 
 #endif

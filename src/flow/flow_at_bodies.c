@@ -1,19 +1,17 @@
-/* flow_at_bodies.c: velocity of all sources at all points, in chunks of points. */
+/* flow_at_bodies.c: direct sums, fish by fish, in chunks of points; the tree for the other fish of large schools. */
 #include "flow/flow_at_bodies.h"
 
 #include <math.h>
-#include <stddef.h>
+#include <string.h>
 
 #include "flow/flow.h"
-#include "flow/flow_rings.h"
-#include "vortex/kernel.h"
 
 struct flow_at_body flow_at_body(const struct flow *flow, int f) {
     const int first = flow->points[f].first;
     struct flow_at_body at = {.u = flow->u + first, .v = flow->v + first};
-    if (flow->rings) {
-        at.div = flow->rings->div + first;
-        at.edge = flow->rings->edge + first;
+    if (flow->kernel->has_legs) {
+        at.div = flow->div + first;
+        at.edge = flow->edge + first;
         at.edge_stride = flow->n_points;
     }
 
@@ -34,256 +32,251 @@ void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]) 
     slip[1] = flow->v[tail] - y[fish->at.vy + fish->n_nodes - 1];
 }
 
-void flow_sum_exactly(struct flow *flow) {
-    flow->is_interpolated = 0;
+// ---- other fish and images
+
+const struct sources *flow_sources(const struct flow *flow, int g, const struct flow_sum *sum) {
+    const struct flow_fish *const of = &flow->fish[g];
+    switch (sum->pair) {
+        case WAKE_AT_BODY: return sum->of_images ? &of->wake_image : &of->wake.middles.sources;
+        case WAKE_AT_WAKE: return sum->of_images ? &of->markers_image : &of->markers;
+        default: return sum->of_images ? &of->body_image : &of->body;
+    }
 }
 
-// all points of all fish as targets
-static struct induced flow_targets(const struct flow *flow, int with_gradient) {
-    struct induced all = {.n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->u, .v = flow->v};
+struct kernel_pair flow_pair_of(const struct flow *flow, int f, int g, const struct flow_sum *sum) {
+    const double square =
+        flow_square(flow, sum->pair, &flow->class[flow->class_of[f]], &flow -> class[flow->class_of[g]]);
+    return flow->kernel->other(flow->school->fish[g].strip_depth, square);
+}
+
+static int *by_tree(const struct flow *flow, const struct flow_sum *sum, int targets, int sources) {
+    const int n = flow->n_classes, is_wake = sum->pair == WAKE_AT_BODY || sum->pair == WAKE_AT_WAKE;
+    return &flow->by_tree[((2 * is_wake + sum->of_images) * n + targets) * n + sources];
+}
+
+bool flow_is_by_tree(const struct flow *flow, int f, int g, const struct flow_sum *sum) {
+    return *by_tree(flow, sum, flow->class_of[f], flow->class_of[g]);
+}
+
+void flow_select_by_tree(struct flow *flow, bool at_wakes, const struct range *targets) {
+    const struct school *const school = flow->school;
+    for (int i = 0; i < 4; i++) {
+        const struct flow_sum sum = {
+            at_wakes ? (i < 2 ? BODY_AT_WAKE : WAKE_AT_WAKE) : (i < 2 ? BODY_AT_BODY : WAKE_AT_BODY), i % 2};
+        for (int c = 0; c < flow->n_classes; c++) {
+            for (int k = 0; k < flow->n_classes; k++) {
+                // the tree includes the own sources of a fish, which are then subtracted, except of wakes without legs
+                const bool keeps_own = sum.of_images || (sum.pair == WAKE_AT_WAKE && !flow->kernel->has_legs);
+                int n_targets = 0, n_sources = 0;
+                double own = 0;
+                for (int f = 0; f < school->n_fish; f++) {
+                    const int n = targets[f].n, n_own = flow_sources(flow, f, &sum)->n;
+                    n_targets += flow->class_of[f] == c ? n : 0;
+                    n_sources += flow->class_of[f] == k ? n_own : 0;
+                    if (flow->class_of[f] == c && c == k && !keeps_own) own += (double)n * n_own;
+                }
+                *by_tree(flow, &sum, c, k) = tree_is_faster(
+                    flow->kernel, n_sources, (double)n_targets * n_sources - 2 * own, school->wake_tolerance);
+            }
+        }
+    }
+}
+
+// append sources with their span in the strengths
+static enum status append_with_span(struct sources *many, const struct sources *sources, double span) {
+    const int first = many->n;
+    TRY(sources_append(many, sources->n));
+    for (int i = 0; i < sources->n; i++) {
+        many->x[first + i] = sources->x[i];
+        many->y[first + i] = sources->y[i];
+        many->q[first + i] = span * sources->q[i];
+        many->dx[first + i] = span * sources->dx[i];
+        many->dy[first + i] = span * sources->dy[i];
+        many->half[first + i] = sources->half[i];
+        many->leg[first + i] = sources->leg[i];
+    }
+
+    return STATUS_OK;
+}
+
+enum status flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads,
+                             const struct targets *at) {
+    const struct school *const school = flow->school;
+    int f = 0; /* the first fish of the targets: all have one length */
+    while (flow->class_of[f] != c) f++;
+    const struct fish *const fish = &school->fish[f];
+    struct kernel_pair pair = {0};
+    flow->many.n = 0;
+    for (int g = 0; g < school->n_fish; g++) {
+        if (flow->class_of[g] != k) continue;
+        pair = flow_pair_of(flow, f, g, sum);
+        TRY(append_with_span(&flow->many, flow_sources(flow, g, sum), pair.span));
+    }
+
+    // half of wake.tolerance, in lengths per beat, shared by bodies, wakes and images
+    pair.span = 1;
+    const int n_sums = school->walls.n > 0 ? 4 : 2;
+    const double tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish) / (2 * n_sums);
+    return tree_induce(flow->tree, &pair, &flow->many, fish->length, tolerance, threads, at);
+}
+
+void flow_induce_other(const struct flow *flow, int f, int g, const struct flow_sum *sum, bool is_excluded,
+                       const struct targets *at) {
+    if (is_excluded != flow_is_by_tree(flow, f, g, sum)) return;
+    struct kernel_pair pair = flow_pair_of(flow, f, g, sum);
+    if (is_excluded) pair.span = -pair.span;
+    const struct sources *const sources = flow_sources(flow, g, sum);
+    kernel_induce(&pair, sources, (struct range){0, sources->n}, at);
+}
+
+// ---- bodies
+
+static struct targets flow_targets(const struct flow *flow, int with_gradient) {
+    struct targets all = {
+        .n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->u, .v = flow->v, .div = flow->div};
     if (with_gradient) {
         all.u_x = flow->u_x;
         all.u_y = flow->u_y;
         all.v_x = flow->v_x;
+        all.div_x = flow->div_x;
+        all.div_y = flow->div_y;
     }
-
     return all;
 }
 
-// plan the tree sum of the bound vortices at the points until the next event; the single plan requires a single class
-static enum status flow_plan_sheets(struct flow *flow) {
-    const struct induced at = flow_targets(flow, 0);
-    const double tolerance = flow->school->wake_tolerance;
-    if (flow->n_classes > 1 || !velocity_sum_by_tree(&flow->sheet, at.n, tolerance)) return STATUS_OK;
-    return velocity_sum_plan(flow->velocity_sum, &flow->class[0].sheet, tolerance, flow->school->threads, &at);
+// a range of the points of fish f
+static struct targets points_of(const struct flow *flow, const struct targets *all, int f, struct range which) {
+    struct targets at = kernel_targets_part(all, which);
+    if (flow->kernel->has_legs) at.half = flow->school->fish[f].point_half + which.first - flow->points[f].first;
+    return at;
 }
 
-enum status flow_interpolate(struct flow *flow, const struct state *state) {
-    if (!flow->interpolation) return STATUS_OK;
-    TRY(flow_place(flow, state, state->t, state->y));
-    flow_sum_exactly(flow);
-
-    const int threads = fish_threads(flow->school);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < flow->school->n_fish; f++) {
-        const struct fish *const fish = &flow->school->fish[f];
-
-        // with momenta as unknowns, the acceleration is the rate of the velocity
-        const double *const acceleration = fish_has_momentum(fish) ? state->yp + fish->at.vx : state->y + fish->at.ax;
-        for (int i = 0; i < 2; i++) {
-            flow_from_nodes(flow, f, state->y + fish->at.vx + i * fish->n_nodes, flow->motion[i]);
-            flow_from_nodes(flow, f, acceleration + i * fish->n_nodes, flow->motion[2 + i]);
-        }
-    }
-
-    const struct wake_interpolation_points points = {flow->x,         flow->y,         flow->motion[0],
-                                                     flow->motion[1], flow->motion[2], flow->motion[3]};
-    TRY(wake_interpolation_build(flow->interpolation, flow_seen_wakes(flow, state), state->t, &points));
-    wake_interpolation_update(flow->interpolation, flow->t);
-    TRY(flow_plan_sheets(flow));
-
-    flow->is_interpolated = 1;
-    flow->interpolated_version = flow->version;
-    return STATUS_OK;
+static struct range range_overlap(struct range one, struct range other) {
+    const int first = one.first > other.first ? one.first : other.first;
+    const int end = one.first + one.n < other.first + other.n ? one.first + one.n : other.first + other.n;
+    return (struct range){first, end > first ? end - first : 0};
 }
 
-// overlap of a chunk and a range of points
-static struct range overlap(const struct chunk *chunk, struct range range) {
-    const int first = chunk->at.first > range.first ? chunk->at.first : range.first;
-    const int end = chunk->at.first + chunk->at.n, range_end = range.first + range.n;
-    return (struct range){first, (end < range_end ? end : range_end) - first};
-}
-
-// add the velocity of the own bound sheet, with one smoothing and the given circulations, at a range of points of the
-// fish
-static void bodies_induce_own(const struct flow *flow, const struct chunk *chunk, struct range points, double smoothing,
-                              double *circulation, const struct induced *all) {
-    const struct range which = overlap(chunk, points);
-    if (which.n <= 0) return;
-    const struct vortices sheet = {.n = flow->sheet.n,
-                                   .x = flow->sheet.x,
-                                   .y = flow->sheet.y,
-                                   .circulation = circulation,
-                                   .n_groups = 1,
-                                   .group = &(struct vortex_group){{0, flow->sheet.n}, smoothing}};
-
-    const struct induced at = vortices_targets(all, which);
-    vortices_induce(&sheet, flow->sheet_range[chunk->fish], &at);
-}
-
-// bound sheets at a chunk: the sheets of other fish, and the own sheet at control points without smoothing, at the tail
-// with smoothing, not at the midpoints
-static void induce_sheets(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
-    const struct fish *fish = &flow->school->fish[chunk->fish];
+// own body and own wake
+static void induce_own(const struct flow *flow, const struct chunk *chunk, const struct targets *all,
+                       int with_gradient) {
+    const struct fish *const fish = &flow->school->fish[chunk->fish];
+    const struct flow_fish *const of = &flow->fish[chunk->fish];
     const struct flow_class *const class = &flow->class[flow->class_of[chunk->fish]];
-    const struct range own = flow->sheet_range[chunk->fish], points = flow->points[chunk->fish];
-    const struct range control = {points.first, fish->n_control}, tail = {points.first + flow_tail(fish), 1};
+    const int first = flow->points[chunk->fish].first, is_sheet = flow_has_free_sheets(flow);
+    const struct range control = range_overlap(chunk->at, (struct range){first, fish->n_control});
+    const struct range tail = range_overlap(chunk->at, (struct range){first + flow_tail(fish), 1});
+    const double wake_square = flow_square(flow, WAKE_AT_BODY, class, class);
+    const struct kernel_pair exact = flow->kernel->own(fish->strip_depth, 0);
+    const struct kernel_pair smooth = flow->kernel->own(fish->strip_depth, wake_square);
+    const struct sources *const seen = &of->wake.middles.sources;
 
-    bodies_induce_own(flow, chunk, control, 0, flow->sheet.circulation, all);
-    if (class->sheet_by_tree) {
-        // the tree has summed all sheets at all points: subtract the own sheet
-        const struct range but_tail = {points.first, points.n - 1};
-        bodies_induce_own(flow, chunk, but_tail, fish->sheet_smoothing, flow->opposite, all);
-        return;
+    // control points: all sources of the own body, and the wake of a sheet, with legs
+    struct targets at = points_of(flow, all, chunk->fish, control);
+    if (fish->depth_varies && control.n > 0) {
+        at.edge = flow->edge + control.first;
+        at.edge_gradient = with_gradient ? flow->edge_gradient + control.first : NULL;
+        at.edge_stride = flow->n_points;
     }
+    const struct sources *const graded = &of->wake.graded.sources;
+    kernel_induce(&exact, &of->own, (struct range){0, of->own.n}, &at);
+    if (is_sheet) kernel_induce(&exact, graded, (struct range){0, graded->n}, &at);
 
-    const struct induced at = vortices_targets(all, chunk->at);
-    const int behind = own.first + own.n;
-    vortices_induce(&class->sheet, (struct range){0, own.first}, &at);
-    vortices_induce(&class->sheet, (struct range){behind, flow->sheet.n - behind}, &at);
-    bodies_induce_own(flow, chunk, tail, fish->sheet_smoothing, flow->sheet.circulation, all);
+    // the middles of a sheet behind the control points, or the queue at all points; not at midpoints without own wake
+    const int begin = is_sheet ? flow_midpoint(fish, 0) : 0, end = flow_midpoint(fish, 0), n = flow_n_points(fish);
+    const int is_felt = fish_feels_own_wake(fish);
+    const struct range parts[2] = {{begin, (is_felt ? n : end) - begin}, {flow_tail(fish), is_felt ? 0 : 1}};
+    for (int i = 0; i < 2; i++) {
+        const struct range part = {first + parts[i].first, parts[i].n};
+        at = points_of(flow, all, chunk->fish, range_overlap(chunk->at, part));
+        kernel_induce(&smooth, seen, (struct range){0, seen->n}, &at);
+    }
+    if (is_sheet) return;
+
+    // with point vortices, the slip at the tail includes the bound vortices
+    at = points_of(flow, all, chunk->fish, tail);
+    const struct kernel_pair bound =
+        flow->kernel->own(fish->strip_depth, flow_square(flow, BODY_AT_WAKE, class, class));
+    kernel_induce(&bound, &of->own, (struct range){0, fish->n_sheet}, &at);
 }
 
-// correction of the own free sheet at the control points of a fish
-static void induce_free_sheet(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
-    const struct free_sheet *const sheet = &flow->free_sheet[chunk->fish];
-    const struct range control = {flow->points[chunk->fish].first, flow->school->fish[chunk->fish].n_control};
-    const struct range which = overlap(chunk, control);
-
-    if (which.n <= 0) return;
-    const struct induced at = vortices_targets(all, which);
-    const double smoothing = flow->school->fish[chunk->fish].smoothing;
-    const struct kernel_changes tapered = {sheet->n_tapered,      sheet->x,     sheet->y, sheet->circulation,
-                                           smoothing * smoothing, sheet->square};
-    const int first = sheet->n_tapered, n = sheet->n - first;
-    const double *const x = sheet->x + first, *const y = sheet->y + first,
-                        *const circulation = sheet->circulation + first, *const square = sheet->square + first;
-    if (at.u_x) {
-        kernel_add_gradient_change(at.n, at.x, at.y, &tapered, at.u, at.v, at.u_x, at.u_y, at.v_x);
-        kernel_add_gradient_each(at.n, at.x, at.y, n, x, y, circulation, square, at.u, at.v, at.u_x, at.u_y, at.v_x);
-    } else {
-        kernel_add_velocity_change(at.n, at.x, at.y, &tapered, at.u, at.v);
-        kernel_add_velocity_each(at.n, at.x, at.y, n, x, y, circulation, square, at.u, at.v);
-    }
-}
-
-// wakes at a chunk; the own wake is omitted at the points of without_own
-static void induce_wakes(const struct flow *flow, const struct chunk *chunk, const struct induced *at) {
-    const struct range unfelt = {flow->without_own[chunk->fish].first - chunk->at.first,
-                                 flow->without_own[chunk->fish].n};
-    if (flow->by_interpolation[chunk->fish]) {
-        wake_interpolation_induce(flow->interpolation, chunk->fish, chunk->at.first, at);
-    } else {
-        vortices_induce_without(&flow->released, flow->released_range[chunk->fish], unfelt, at);
-    }
-
-    vortices_induce_without(&flow->nascent, (struct range){chunk->fish, 1}, unfelt, at);
-}
-
-// images of all fish, with the smoothing of the class
-static void induce_images(const struct flow *flow, const struct chunk *chunk, const struct induced *at) {
-    const struct walls *const walls = &flow->school->walls;
-    const struct flow_class *const class = &flow->class[flow->class_of[chunk->fish]];
-    if (!flow->by_interpolation[chunk->fish]) {
-        images_induce(walls, &flow->released, (struct range){0, flow->released.n}, at);
-    }
-
-    images_induce(walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
-    if (!class->images_by_many) images_induce(walls, &class->sheet, (struct range){0, class->sheet.n}, at);
-}
-
-static void flow_evaluate_chunk(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
+static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, int with_gradient) {
     const struct school *school = flow->school;
-    const struct induced at = vortices_targets(all, chunk->at);
-
-    // external flow
+    const struct targets all = flow_targets(flow, with_gradient);
+    const struct targets at = points_of(flow, &all, chunk->fish, chunk->at);
     for (int p = 0; p < at.n; p++) {
-        double u, v;
+        double u, v, gradient[3];
         flow_external(school, flow->t, at.x[p], at.y[p], &u, &v);
         at.u[p] += u;
         at.v[p] += v;
-    }
-
-    for (int p = 0; at.u_x && p < at.n; p++) {
-        double gradient[3];
+        if (!with_gradient) continue;
         flow_external_gradient(school, flow->t, at.x[p], at.y[p], gradient);
         at.u_x[p] += gradient[0];
         at.u_y[p] += gradient[1];
         at.v_x[p] += gradient[2];
     }
 
-    if (flow->rings) {
-        flow_rings_at_chunk(flow, chunk, at.u_x != NULL);
-        return;
+    induce_own(flow, chunk, &all, with_gradient);
+    for (int g = 0; g < school->n_fish; g++) {
+        for (int i = 0; i < (school->walls.n > 0 ? 4 : 2); i++) {
+            const struct flow_sum sum = {i % 2 == 0 ? BODY_AT_BODY : WAKE_AT_BODY, i >= 2};
+            flow_induce_other(flow, chunk->fish, g, &sum, g == chunk->fish && !sum.of_images, &at);
+        }
     }
-
-    induce_wakes(flow, chunk, &at);
-    induce_sheets(flow, chunk, all);
-    if (flow_has_free_sheets(flow)) induce_free_sheet(flow, chunk, all);
-    if (school->walls.n > 0) induce_images(flow, chunk, &at);
 }
 
-// all bound sheets at all points of a class by the tree, and the images of the sheets by tree or cells
-static enum status flow_sum_sheets(struct flow *flow, const struct flow_class *class, int threads,
-                                   const struct induced *all) {
-    const double tolerance = flow->school->wake_tolerance;
-    const struct induced at = vortices_targets(all, class->points);
-    if (class->sheet_by_tree) {
-        const int is_planned = flow->is_interpolated && flow->n_classes == 1 && !at.u_x;
-        TRY((is_planned ? velocity_sum_by_plan : velocity_sum_induce)(flow->velocity_sum, &class->sheet, tolerance,
-                                                                      threads, &at));
-    }
-
-    if (!class->images_by_many) return STATUS_OK;
-    return images_induce_many(&flow->school->walls, flow->velocity_sum, &class->sheet, tolerance, threads, &at);
+static void flow_zero(const struct flow *flow, int with_gradient) {
+    const size_t size = (size_t)flow->n_points * sizeof(double);
+    double *const sums[] = {flow->u, flow->v, flow->div, flow->u_x, flow->u_y, flow->v_x, flow->div_x, flow->div_y};
+    for (int i = 0; i < (with_gradient ? 8 : 3); i++) memset(sums[i], 0, size);
+    memset(flow->edge, 0, 2 * size);
+    if (with_gradient) memset(flow->edge_gradient, 0, 4 * size);
 }
 
-// select the sums over all points of a class, and evaluate these sums
-static enum status flow_sum_many(struct flow *flow, int threads, const struct induced *all) {
-    const double tolerance = flow->school->wake_tolerance;
+// select the sums by the tree, and evaluate these sums
+static enum status sum_many(struct flow *flow, int threads, int with_gradient) {
+    flow_select_by_tree(flow, false, flow->points);
+    const struct targets all = flow_targets(flow, with_gradient);
     for (int c = 0; c < flow->n_classes; c++) {
-        struct flow_class *const class = &flow->class[c];
-        const struct induced at = vortices_targets(all, class->points);
-        const int by_cells = images_by_cells(&flow->school->walls, &class->sheet, tolerance, &at);
+        struct targets at = kernel_targets_part(&all, flow->class[c].points);
+        struct sources *const places = &flow->places;
+        places->n = 0;
+        TRY(sources_append(places, at.n));
+        for (int f = 0; f < flow->school->n_fish && flow->kernel->has_legs; f++) {
+            if (flow->class_of[f] != c) continue;
+            memcpy(places->half + flow->points[f].first - flow->class[c].points.first, flow->school->fish[f].point_half,
+                   (size_t)flow->points[f].n * sizeof(double));
+        }
+        at.half = places->half;
 
-        class->sheet_by_tree = velocity_sum_by_tree(&class->sheet, at.n, tolerance);
-        class->images_by_many = class->sheet_by_tree || by_cells;
-        TRY(flow_sum_sheets(flow, class, threads, all));
+        for (int k = 0; k < flow->n_classes; k++) {
+            for (int i = 0; i < 4; i++) {
+                const struct flow_sum sum = {i < 2 ? BODY_AT_BODY : WAKE_AT_BODY, i % 2};
+                if (*by_tree(flow, &sum, c, k)) TRY(flow_sum_by_tree(flow, c, k, &sum, threads, &at));
+            }
+        }
     }
-
     return STATUS_OK;
-}
-
-// number of interactions of an evaluation that depend on the unknowns
-static double flow_work(const struct flow *flow) {
-    if (flow->rings) return flow_rings_work(flow);
-    const int n_sources = flow->sheet.n + flow->nascent.n + (flow->has_released ? flow->released.n : 0);
-    double work = (double)flow->n_points * n_sources;
-    for (int f = 0; flow_has_free_sheets(flow) && f < flow->school->n_fish; f++) {
-        // an interaction with individual smoothing costs about two
-        work += 2.0 * flow->school->fish[f].n_control * flow->free_sheet[f].n;
-    }
-
-    return work;
-}
-
-static void flow_evaluate(struct flow *flow, int with_gradient) {
-    const struct induced all = flow_targets(flow, with_gradient);
-    const int threads = parallel_threads(flow->school->threads, flow->n_chunks, flow_work(flow), PARALLEL_INTERACTIONS);
-
-    vortices_zero(&all);
-    if (flow->rings) flow_rings_zero(flow, with_gradient);
-    if (flow->rings && flow_rings_many(flow, threads, with_gradient) != STATUS_OK) {
-        flow_rings_direct(flow);
-        vortices_zero(&all);
-        flow_rings_zero(flow, with_gradient);
-    }
-    if (flow->rings && !with_gradient) flow_rings_far(flow);
-    if (!flow->rings && flow_sum_many(flow, threads, &all) != STATUS_OK) {
-        // out of memory for a tree: use the direct sum
-        for (int c = 0; c < flow->n_classes; c++) flow->class[c].sheet_by_tree = flow->class[c].images_by_many = 0;
-        vortices_zero(&all);
-    }
-
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int c = 0; c < flow->n_chunks; c++) flow_evaluate_chunk(flow, &flow->chunk[c], &all);
 }
 
 static enum status flow_sum(struct flow *flow, const struct state *state, double t, const double *y,
                             int with_gradient) {
     TRY(flow_place(flow, state, t, y));
-    if (!flow->all_interpolated && !flow->rings) TRY(flow_place_released(flow, state));
-    flow_evaluate(flow, with_gradient);
+    double n_sources = 0;
+    for (int f = 0; f < flow->school->n_fish; f++)
+        n_sources += flow->fish[f].body.n + flow->fish[f].wake.middles.sources.n;
+    const double work = flow->kernel->cost * (1.0 + flow->n_images) * flow->n_points * n_sources;
+    const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work, PARALLEL_INTERACTIONS);
+
+    flow_zero(flow, with_gradient);
+    if (sum_many(flow, threads, with_gradient) != STATUS_OK) {
+        // out of memory for a tree: use the direct sum
+        memset(flow->by_tree, 0, 4 * (size_t)flow->n_classes * (size_t)flow->n_classes * sizeof *flow->by_tree);
+        flow_zero(flow, with_gradient);
+    }
+
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], with_gradient);
     return STATUS_OK;
 }
 
@@ -295,98 +288,65 @@ enum status flow_gradient(struct flow *flow, const struct state *state, double t
     return flow_sum(flow, state, t, y, 1);
 }
 
+// ---- images alone; any points
+
 enum status flow_images(struct flow *flow, const struct state *state) {
-    const struct school *const school = flow->school;
-    const struct induced all = {
-        .n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->image_u, .v = flow->image_v};
-
+    const int n_fish = flow->school->n_fish;
+    const size_t size = (size_t)flow->n_points * sizeof(double);
+    const struct targets all = {.n = flow->n_points,
+                                .x = flow->x,
+                                .y = flow->y,
+                                .u = flow->image_u,
+                                .v = flow->image_v,
+                                .div = flow->image_div};
     TRY(flow_place(flow, state, state->t, state->y));
-    if (flow->rings) {
-        flow_rings_images(flow);
-        return STATUS_OK;
-    }
+    memset(flow->image_u, 0, size);
+    memset(flow->image_v, 0, size);
+    memset(flow->image_div, 0, size);
 
-    TRY(flow_place_released(flow, state));
-    vortices_zero(&all);
-    for (int c = 0; c < flow->n_classes; c++) {
-        const struct induced at = vortices_targets(&all, flow->class[c].points);
-        const struct vortices *const sources[] = {&flow->released, &flow->nascent, &flow->class[c].sheet};
-        for (int i = 0; i < 3; i++) {
-            TRY(images_induce_many(&school->walls, flow->velocity_sum, sources[i], school->wake_tolerance,
-                                   school->threads, &at));
+    for (int f = 0; f < n_fish; f++) {
+        const struct targets at = points_of(flow, &all, f, flow->points[f]);
+        for (int i = 0; i < 2 * n_fish; i++) {
+            const struct flow_sum sum = {i % 2 == 0 ? BODY_AT_BODY : WAKE_AT_BODY, true};
+            const struct kernel_pair pair = flow_pair_of(flow, f, i / 2, &sum);
+            const struct sources *const sources = flow_sources(flow, i / 2, &sum);
+            kernel_induce(&pair, sources, (struct range){0, sources->n}, &at);
         }
     }
-
     return STATUS_OK;
 }
 
-// ---- velocity of all sources at any points, for pictures and evaluation of results
-
-// set velocity and gradient to the external flow
-static void field_external(const struct flow *flow, const struct induced *at) {
-    for (int i = 0; i < at->n; i++) {
-        double gradient[3];
-        flow_external(flow->school, flow->t, at->x[i], at->y[i], &at->u[i], &at->v[i]);
-        flow_external_gradient(flow->school, flow->t, at->x[i], at->y[i], gradient);
-        at->u_x[i] = gradient[0];
-        at->u_y[i] = gradient[1];
-        at->v_x[i] = gradient[2];
-    }
-}
-
-// external flow, nascent vortices, and sources that are not summed by the tree, at any points
-static void field_induce(const struct flow *flow, const int *by_tree, const struct induced *at) {
-    field_external(flow, at);
-    vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, at);
-    images_induce(&flow->school->walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
-    if (!by_tree[0]) vortices_induce(&flow->released, (struct range){0, flow->released.n}, at);
-    if (!by_tree[1]) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, at);
-}
-
-// NaN beyond the walls
-static void field_mask_solid(const struct flow *flow, const struct induced *at) {
-    double *const values[] = {at->u, at->v, at->u_x, at->u_y, at->v_x};
-    for (int i = 0; flow->school->walls.n > 0 && i < at->n; i++) {
-        if (images_distance(&flow->school->walls, at->y[i]) >= 0) continue;
-        for (size_t k = 0; k < sizeof values / sizeof *values; k++) values[k][i] = NAN;
-    }
-}
-
-enum status flow_field(struct flow *flow, const struct state *state, const struct induced *all) {
-    static const double tolerance = 1e-6;
+enum status flow_field(struct flow *flow, const struct state *state, const struct targets *all) {
+    const struct school *const school = flow->school;
+    const int n_chunks = parallel_n_chunks(all->n);
     TRY(flow_place(flow, state, state->t, state->y));
-    vortices_zero(all);
-    if (flow->rings) {
-        const int n_parts = parallel_n_chunks(all->n);
-#pragma omp parallel for num_threads(flow->school->threads) schedule(static)
-        for (int chunk = 0; chunk < n_parts; chunk++) {
-            const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
-            field_external(flow, &at);
-            flow_rings_at(flow, &at);
+#pragma omp parallel for num_threads(school->threads) schedule(static)
+    for (int chunk = 0; chunk < n_chunks; chunk++) {
+        const struct targets at = kernel_targets_part(all, parallel_chunk(chunk, all->n));
+        for (int i = 0; i < at.n; i++) {
+            double gradient[3];
+            flow_external(school, flow->t, at.x[i], at.y[i], &at.u[i], &at.v[i]);
+            flow_external_gradient(school, flow->t, at.x[i], at.y[i], gradient);
+            at.u_x[i] = gradient[0];
+            at.u_y[i] = gradient[1];
+            at.v_x[i] = gradient[2];
         }
 
-        field_mask_solid(flow, all);
-        return STATUS_OK;
-    }
+        for (int g = 0; g < school->n_fish; g++) {
+            for (int i = 0; i < (school->walls.n > 0 ? 4 : 2); i++) {
+                const struct flow_sum sum = {i % 2 == 0 ? BODY_AT_BODY : WAKE_AT_BODY, i >= 2};
+                const struct kernel_pair pair = flow_pair_of(flow, g, g, &sum);
+                const struct sources *const sources = flow_sources(flow, g, &sum);
+                kernel_induce(&pair, sources, (struct range){0, sources->n}, &at);
+            }
+        }
 
-    TRY(flow_place_released(flow, state));
-    const struct vortices *const many[2] = {&flow->released, &flow->sheet};
-    const int n_chunks = parallel_n_chunks(all->n);
-    const int threads = parallel_threads(flow->school->threads, n_chunks, (double)all->n * (many[0]->n + many[1]->n),
-                                         PARALLEL_INTERACTIONS);
-    int by_tree[2];
-    for (int i = 0; i < 2; i++) by_tree[i] = velocity_sum_by_tree(many[i], all->n, tolerance);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int chunk = 0; chunk < n_chunks; chunk++) {
-        const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
-        field_induce(flow, by_tree, &at);
+        // beyond the walls
+        double *const values[] = {at.u, at.v, at.u_x, at.u_y, at.v_x};
+        for (int i = 0; i < at.n; i++) {
+            if (fish_walls_distance(&school->walls, at.y[i]) >= 0) continue;
+            for (size_t k = 0; k < sizeof values / sizeof *values; k++) values[k][i] = NAN;
+        }
     }
-
-    for (int i = 0; i < 2; i++) {
-        if (by_tree[i]) TRY(velocity_sum_induce(flow->velocity_sum, many[i], tolerance, threads, all));
-        TRY(images_induce_many(&flow->school->walls, flow->velocity_sum, many[i], tolerance, threads, all));
-    }
-
-    field_mask_solid(flow, all);
     return STATUS_OK;
 }

@@ -1,5 +1,5 @@
-/* flow_at_bodies.h: velocity of the fluid and velocity gradient at the points of all bodies: external flow, free
- * sheets, nascent vortices, bound sheets, and their images in walls. doc/model.md, sections 6 to 9, 17. Tested by
+/* flow_at_bodies.h: velocity of the fluid and velocity gradient at the points of all bodies, and at any points:
+ * external flow, wakes, bodies, and their images in walls. doc/model.md, sections 6 to 9, 17, 18. Tested by
  * tests/flow/test_flow.c. */
 #ifndef FLOW_AT_BODIES_H
 #define FLOW_AT_BODIES_H
@@ -11,23 +11,15 @@
 enum status flow_velocity(struct flow *flow, const struct state *state, double t, const double *y);
 enum status flow_gradient(struct flow *flow, const struct state *state, double t, const double *y);
 
-/* Build the interpolation in time of the velocity of the released vortices at the bodies, until the next event. Until
- * the wakes change, the released vortices are not summed for a fish that stays near its predicted path. Call at an
- * event, after the vortices have their velocities. Fails with STATUS_MEMORY. */
-enum status flow_interpolate(struct flow *flow, const struct state *state);
-
-/* Sum every released vortex until the next flow_interpolate. */
-void flow_sum_exactly(struct flow *flow);
-
-/* Set image_u and image_v to the velocity of all images in walls at the points of all bodies, at the event of the
- * state. Fails with STATUS_MEMORY. */
+/* Set image_u, image_v, image_div to the velocity and div u of all images in walls at the points of all bodies, at the
+ * event of the state. Fails with STATUS_MEMORY. */
 enum status flow_images(struct flow *flow, const struct state *state);
 
 /* The flow at one body, from the last sum. */
 struct flow_at_body {
     const double *u, *v; /* velocity of the fluid at the points, m s-1 (flow_n_points) */
-    const double *div;   /* divergence of the velocity in the plane, s-1 (flow_n_points); NULL without rings */
-    const double *edge;  /* a of the edge force: x, then y edge_stride later, m-1 s-1; NULL without rings */
+    const double *div;   /* divergence of the velocity in the plane, s-1 (flow_n_points); NULL without legs */
+    const double *edge;  /* a of the edge force: x, then y edge_stride later, m-1 s-1; NULL without legs */
     int edge_stride;
     double acceleration[2]; /* of the external flow, m s-2 */
 };
@@ -40,11 +32,37 @@ void flow_relative_velocity(const struct fish *fish, int edge, const double velo
 /* Velocity of the fluid relative to the tail of fish f, u - v_tail. After flow_velocity. */
 void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]);
 
-/* Velocity of the fluid at any point. */
+/* Set velocity and velocity gradient of the targets, any points, at the event of the state: external flow, and every
+ * wake and every body with the full smoothing, as for another body; NaN beyond the walls. No result of the run depends
+ * on this function. Fails with STATUS_MEMORY. */
+enum status flow_field(struct flow *flow, const struct state *state, const struct targets *at);
 
-/* Velocity of the fluid and velocity gradient at any points, at the event of the state: every wake and every bound
- * sheet with the full smoothing, as for another body; NaN beyond the walls. Many points are summed by the tree, to 1e-7
- * (velocity_sum.h). No result of the run depends on this function. Fails with STATUS_MEMORY. */
-enum status flow_field(struct flow *flow, const struct state *state, const struct induced *at);
+// ---- sums of one kind of sources of many fish, for flow_at_wake.c too
+
+/* The sources of a fish for all other targets: the body or the wake, at points or at markers, themselves or the
+ * images. */
+struct flow_sum {
+    enum flow_pair pair;
+    bool of_images;
+};
+const struct sources *flow_sources(const struct flow *flow, int g, const struct flow_sum *sum);
+
+/* The pair of these sources of fish g and targets of fish f. */
+struct kernel_pair flow_pair_of(const struct flow *flow, int f, int g, const struct flow_sum *sum);
+
+/* Select the sums at bodies, or at wakes, that are by the tree; n_targets: of each fish. */
+void flow_select_by_tree(struct flow *flow, bool at_wakes, const struct range *targets);
+
+/* Whether the sources of the class of fish g at the class of fish f are in a sum by the tree. */
+bool flow_is_by_tree(const struct flow *flow, int f, int g, const struct flow_sum *sum);
+
+/* Add the sum of the sources of class k at targets of class c by the tree. Fails with STATUS_MEMORY. */
+enum status flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads,
+                             const struct targets *at);
+
+/* Add the sources of fish g at targets of fish f, if they are not in a sum by the tree; if the sum by the tree contains
+ * sources that do not act on the targets (is_excluded), subtract them. */
+void flow_induce_other(const struct flow *flow, int f, int g, const struct flow_sum *sum, bool is_excluded,
+                       const struct targets *at);
 
 #endif

@@ -1,4 +1,4 @@
-/* flow_at_wake.c: velocity of bodies and wakes at wakes of point vortices; by the tree for many vortices. */
+/* flow_at_wake.c: own wake in pairs, own body, other fish, images; by the tree for many markers. */
 #include "flow/flow_at_wake.h"
 
 #include <math.h>
@@ -6,333 +6,301 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "flow/flow.h"
-#include "flow/flow_rings.h"
-#include "vortex/kernel.h"
-#include "vortex/velocity_sum.h"
-
-// ---- velocity of all fish with the full smoothing, class after class; then corrections of the own
-// bodies near the tails
+#include "flow/flow_at_bodies.h"
 
 static const double two_pi = 6.28318530717958647692;
 
-// ---- positions and strengths
+enum { MARKERS = 64 };  // markers of one fish that a thread evaluates at once
 
-static enum status convecting_place_markers(struct flow *flow, const struct state *state, int f) {
-    const struct wake *const wake = &state->wake[f];
-    struct vortices *const to = &flow->convecting;
-    const int first = to->n, n = wake->n_vortex;
-
-    flow->wake_range[f] = (struct range){first, n};
-    TRY(vortices_append(to, n, flow->school->fish[f].smoothing));
-    if (n == 0) return STATUS_OK;
-    memcpy(to->x + first, wake->x, (size_t)n * sizeof *to->x);
-    memcpy(to->y + first, wake->y, (size_t)n * sizeof *to->y);
-    free_sheet_strengths(wake, flow->school, state->t, flow->nascent.circulation[f], to->circulation + first);
-    return STATUS_OK;
-}
-
-// the sheet of a body as a source at markers: control points with the circulations of the force, or bound vortices
-static enum status convecting_place_body(struct flow *flow, int f) {
-    const struct fish *const fish = &flow->school->fish[f];
-    const int has_control = fish_has_momentum(fish), n = has_control ? fish->n_control : fish->n_sheet;
-    struct vortices *const to = &flow->convecting;
-    const int first = to->n, bound = flow->sheet_range[f].first;
-
-    flow->body_range[f] = (struct range){first, n};
-
-    // the smoothing depends on the marker: see convecting_for_class
-    TRY(vortices_append(to, n, 0));
-    const size_t size = (size_t)n * sizeof *to->x;
-    memcpy(to->x + first, has_control ? flow->x + flow->points[f].first : flow->sheet.x + bound, size);
-    memcpy(to->y + first, has_control ? flow->y + flow->points[f].first : flow->sheet.y + bound, size);
-
-    const double *const circulation = flow->sheet.circulation + bound;
-    if (has_control) {
-        sheet_integrals_around(fish->integrals, circulation, to->circulation + first);
-    } else {
-        memcpy(to->circulation + first, circulation, size);
-    }
-
-    return STATUS_OK;
-}
-
-/* Set the vortices `convecting`, wake_range and body_range to markers and bodies of all fish at the event of the state,
- * after flow_place. Fails with STATUS_MEMORY. */
-static enum status flow_at_markers_place(struct flow *flow, const struct state *state) {
-    const int n_fish = flow->school->n_fish;
-    vortices_clear(&flow->convecting);
-    for (int c = 0; c < flow->n_classes; c++) {
-        const int first = flow->convecting.n;
-        for (int f = 0; f < n_fish; f++) {
-            if (flow->class_of[f] == c) TRY(convecting_place_markers(flow, state, f));
+static enum status wakes_place(struct flow *flow, const struct state *state) {
+    const struct school *const school = flow->school;
+    flow->n_markers = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        struct flow_fish *const of = &flow->fish[f];
+        of->markers.n = 0;
+        if (flow_has_free_sheets(flow)) {
+            TRY(sheet_markers(&of->markers, &school->fish[f], school, &state->wake[f], state->t, of->nascent));
+        } else {
+            const struct sources *const queue = &of->wake.middles.sources;
+            TRY(sources_append(&of->markers, queue->n));
+            memcpy(of->markers.x, queue->x, (size_t)queue->n * sizeof *queue->x);
+            memcpy(of->markers.y, queue->y, (size_t)queue->n * sizeof *queue->y);
+            memcpy(of->markers.q, queue->q, (size_t)queue->n * sizeof *queue->q);
         }
-        flow->class[c].markers = (struct range){first, flow->convecting.n - first};
+        flow->wake_range[f] = (struct range){flow->n_markers, of->markers.n};
+        flow->n_markers += of->markers.n;
+        TRY(images_write(&of->markers, flow->n_images, flow->image, &of->markers_image));
     }
 
-    flow->n_markers = flow->convecting.n;
-    for (int f = 0; f < n_fish; f++) TRY(convecting_place_body(flow, f));
-    return STATUS_OK;
-}
-
-// ---- velocity of all fish, with the full smoothing
-
-// the vortices that convect markers, with the smoothing of one class of markers
-static struct vortices convecting_for_class(const struct flow *flow, const struct flow_class *class) {
-    struct vortices felt = flow->convecting;
-    felt.group = class->group + flow->school->n_fish;
-    felt.n_groups = flow->n_classes + 1;
-
-    for (int c = 0; c < flow->n_classes; c++) {
-        const struct flow_class *const other = &flow->class[c];
-        felt.group[c] =
-            (struct vortex_group){other->markers, vortices_pair_smoothing(class->smoothing, other->smoothing)};
-    }
-
-    const struct range bodies = {flow->n_markers, felt.n - flow->n_markers};
-    felt.group[flow->n_classes] = (struct vortex_group){bodies, class->smoothing};
-    return felt;
-}
-
-// external flow, and direct sum over the vortices `which`: the bodies if markers are summed in pairs, else all or none
-static void markers_induce_directly(const struct flow *flow, const struct vortices *felt, struct range which,
-                                    const struct induced *all) {
-    const int n_chunks = parallel_n_chunks(all->n);
-    const int threads =
-        parallel_threads(flow->school->threads, n_chunks, (double)all->n * which.n, PARALLEL_INTERACTIONS);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
-    for (int chunk = 0; chunk < n_chunks; chunk++) {
-        const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
-        for (int i = 0; i < at.n; i++) {
-            flow_external(flow->school, flow->t, at.x[i], at.y[i], &at.u[i], &at.v[i]);
-        }
-        if (which.n > 0) vortices_induce(felt, which, &at);
-    }
-}
-
-// mutual velocity of all markers, each pair once
-static enum status markers_induce_pairs(const struct flow *flow, int threads) {
-    struct vortices markers = flow->convecting;
-    markers.n = flow->n_markers;
-    // remove the last group, the bodies
-    markers.n_groups--;
-    return velocity_sum_pairwise(&markers, PAIRWISE_OF_PAIR, threads, flow->wake_u, flow->wake_v);
-}
-
-// velocity of all images at the markers of a class, also stored in wake_image_u and wake_image_v
-static enum status markers_induce_images(const struct flow *flow, const struct vortices *felt, int threads,
-                                         const struct induced *at) {
-    const long first = at->u - flow->wake_u;
-    struct induced images = *at;
-    images.u = flow->wake_image_u + first;
-    images.v = flow->wake_image_v + first;
-    vortices_zero(&images);
-    TRY(images_induce_many(&flow->school->walls, flow->velocity_sum, felt, flow->school->wake_tolerance, threads,
-                           &images));
-    for (int i = 0; i < at->n; i++) {
-        at->u[i] += images.u[i];
-        at->v[i] += images.v[i];
-    }
-
-    return STATUS_OK;
-}
-
-static enum status markers_induce_all(const struct flow *flow, const struct induced *at) {
-    const double tolerance = flow->school->wake_tolerance;
-    const struct range bodies = {flow->n_markers, flow->convecting.n - flow->n_markers};
-    const int threads =
-        parallel_threads(flow->school->threads, at->n, (double)at->n * flow->convecting.n, PARALLEL_INTERACTIONS);
-    int n_by_tree = 0;
-
-    for (int c = 0; c < flow->n_classes; c++) {
-        n_by_tree += velocity_sum_by_tree(&flow->convecting, flow->class[c].markers.n, tolerance);
-    }
-
-    for (int c = 0; c < flow->n_classes; c++) {
-        const struct vortices felt = convecting_for_class(flow, &flow->class[c]);
-        const struct induced part = vortices_targets(at, flow->class[c].markers);
-        const int by_tree = velocity_sum_by_tree(&felt, part.n, tolerance);
-
-        const struct range all = {0, felt.n}, none = {0, 0};
-        markers_induce_directly(flow, &felt, by_tree ? none : n_by_tree > 0 ? all : bodies, &part);
-        if (by_tree) TRY(velocity_sum_induce(flow->velocity_sum, &felt, tolerance, threads, &part));
-        if (flow->school->walls.n > 0) TRY(markers_induce_images(flow, &felt, threads, &part));
-    }
-
-    return n_by_tree > 0 || at->n == 0 ? STATUS_OK : markers_induce_pairs(flow, threads);
-}
-
-// ---- own body: tapered smoothing near the tail
-
-/* A chunk of markers of one fish. */
-struct near_tail {
-    int n, index[KERNEL_CHUNK];
-    double x[KERNEL_CHUNK], y[KERNEL_CHUNK], square[KERNEL_CHUNK];
-};
-
-static void induce_near_tail(const struct flow *flow, int f, const struct near_tail *near) {
-    const struct vortices *const body = &flow->convecting;
-    const int first = flow->body_range[f].first;
-    const double smoothing = flow->school->fish[f].smoothing;
-    double u[KERNEL_CHUNK] = {0}, v[KERNEL_CHUNK] = {0};
-
-    kernel_add_velocity_change_at(near->n, near->x, near->y, near->square, flow->body_range[f].n, body->x + first,
-                                  body->y + first, body->circulation + first, smoothing * smoothing, u, v);
-
-    for (int i = 0; i < near->n; i++) {
-        flow->wake_u[near->index[i]] += u[i];
-        flow->wake_v[near->index[i]] += v[i];
-    }
-}
-
-// The velocity of the own body at a newborn marker is evaluated h/(2 pi) behind the tail, because the velocity of the
-// sheet is singular at the tail; h: length of the stretch between the newborn marker and the tail after the interval.
-// The first step then equals the step of steady shedding.
-static void induce_at_newborn(const struct flow *flow, const struct wake *wake, int f, const double tail[2],
-                              const double tangent[2]) {
-    const struct vortices *const body = &flow->convecting;
-    const int first = flow->body_range[f].first, n = flow->body_range[f].n;
-    const int newborn = flow->wake_range[f].first + wake->n_vortex - 1;
-    const double along = wake->slip[0] * tangent[0] + wake->slip[1] * tangent[1];
-    const double behind = fmax(0, along) * flow->school->interval / two_pi;
-    const double x = tail[0] + behind * tangent[0], y = tail[1] + behind * tangent[1];
-
-    double u[2] = {0}, v[2] = {0};
-
-    kernel_add_velocity(1, &tail[0], &tail[1], n, body->x + first, body->y + first, body->circulation + first,
-                        flow->school->fish[f].smoothing, &u[0], &v[0]);
-    kernel_add_velocity(1, &x, &y, n, body->x + first, body->y + first, body->circulation + first, 0, &u[1], &v[1]);
-    flow->wake_u[newborn] += u[1] - u[0];
-    flow->wake_v[newborn] += v[1] - v[0];
-}
-
-static void markers_taper_own(const struct flow *flow, const struct state *state, int f) {
-    const struct fish *const fish = &flow->school->fish[f];
-    const struct wake *const wake = &state->wake[f];
-    if (wake->n_vortex == 0 || fish->taper <= 0) return;
-    const int at_tail = flow->points[f].first + flow_tail(fish);
-    const double tail[2] = {flow->x[at_tail], flow->y[at_tail]};
-    const struct direction body = fish_direction(fish, &fish->tail_tangent, state->y);
-
-    struct near_tail near = {.n = 0};
-    for (int i = wake->n_vortex - 2; i >= 0; i--) {
-        const double from_tail[2] = {wake->x[i] - tail[0], wake->y[i] - tail[1]};
-        if (free_sheet_is_far(fish, from_tail)) continue;
-        const double smoothing = free_sheet_smoothing(fish, from_tail, body.t);
-
-        near.index[near.n] = flow->wake_range[f].first + i;
-        near.x[near.n] = wake->x[i];
-        near.y[near.n] = wake->y[i];
-        near.square[near.n++] = smoothing * smoothing;
-
-        if (near.n < KERNEL_CHUNK) continue;
-        induce_near_tail(flow, f, &near);
-        near.n = 0;
-    }
-
-    induce_near_tail(flow, f, &near);
-    induce_at_newborn(flow, wake, f, tail, body.t);
-}
-
-/* Set wake_u and wake_v to the velocity at the markers. Fails with STATUS_MEMORY. */
-static enum status flow_at_markers(struct flow *flow, const struct state *state) {
-    const struct vortices *const markers = &flow->convecting;
-    TRY(markers_induce_all(
-        flow, &(struct induced){
-                  .n = flow->n_markers, .x = markers->x, .y = markers->y, .u = flow->wake_u, .v = flow->wake_v}));
-    const int threads = fish_threads(flow->school);
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int f = 0; f < flow->school->n_fish; f++) markers_taper_own(flow, state, f);
-    return STATUS_OK;
-}
-
-// external flow, nascent vortices, and direct sums of sheets and images at the free vortices
-static void others_at_wake(const struct flow *flow, int sheets_by_tree, int images_by_cells,
-                           const struct induced *all) {
-    const struct walls *const walls = &flow->school->walls;
-    const int n_chunks = parallel_n_chunks(all->n);
-    const int threads =
-        parallel_threads(flow->school->threads, n_chunks, (double)all->n * flow->sheet.n, PARALLEL_INTERACTIONS);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
-    for (int chunk = 0; chunk < n_chunks; chunk++) {
-        const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
-        for (int i = 0; i < at.n; i++) {
-            flow_external(flow->school, flow->t, at.x[i], at.y[i], &at.u[i], &at.v[i]);
-        }
-        vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
-        if (!sheets_by_tree) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, &at);
-        images_induce(walls, &flow->nascent, (struct range){0, flow->nascent.n}, &at);
-        if (!images_by_cells) images_induce(walls, &flow->sheet, (struct range){0, flow->sheet.n}, &at);
-    }
-}
-
-static enum status reserve_at_wake(struct flow *flow, int n) {
-    if (n <= flow->wake_capacity) return STATUS_OK;
-    const int capacity = n + n / 2;
-    double **const all[] = {&flow->wake_u, &flow->wake_v, &flow->wake_image_u, &flow->wake_image_v};
-    const int has_images = flow->school->walls.n > 0 && flow_has_free_sheets(flow);
-
+    if (flow->n_markers <= flow->wake_capacity) return STATUS_OK;
+    const int capacity = flow->n_markers + flow->n_markers / 2;
+    double **const all[] = {&flow->wake_u,         &flow->wake_v,     &flow->wake_div,   &flow->wake_image_u,
+                            &flow->wake_image_v,   &flow->wake_leg_u, &flow->wake_leg_v, &flow->wake_leg_div,
+                            &flow->wake_image_div, &flow->wake_rate};
     flow->wake_capacity = 0;
-    for (int i = 0; i < (has_images ? 4 : 2); i++) {
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(*all[i]);
-        TRY(MEMORY_NEW(*all[i], capacity, "velocities of vortices"));
+        TRY(MEMORY_NEW(*all[i], capacity, "velocities of markers"));
     }
-
     flow->wake_capacity = capacity;
     return STATUS_OK;
 }
 
-// mutual velocity of all free vortices, and velocity of sheets that are not summed directly; one tree sums both
-static enum status induce_many(struct flow *flow, int sheets_too, const struct vortices *moving, int threads,
-                               const struct induced *at) {
-    const double tolerance = flow->school->wake_tolerance;
-    const int by_tree = velocity_sum_by_tree(moving, moving->n, tolerance);
-    struct velocity_sum *const sum = flow->velocity_sum;
-
-    if (by_tree) {
-        const struct vortices *const all[] = {moving, &flow->sheet};
-        TRY(velocity_sum_induce_all(sum, sheets_too ? 2 : 1, all, tolerance, threads, at));
-    } else if (sheets_too) {
-        TRY(velocity_sum_induce(sum, &flow->sheet, tolerance, threads, at));
-    }
-
-    return by_tree ? STATUS_OK : velocity_sum_pairwise(moving, PAIRWISE_OF_SOURCE, threads, at->u, at->v);
+// the markers of a fish from first on as targets, with the velocities of all sources
+static struct targets markers_of(const struct flow *flow, int f, struct range which) {
+    const struct sources *const markers = &flow->fish[f].markers;
+    const int first = flow->wake_range[f].first + which.first;
+    return (struct targets){.n = which.n,
+                            .x = markers->x + which.first,
+                            .y = markers->y + which.first,
+                            .half = markers->half + which.first,
+                            .leg = markers->leg + which.first,
+                            .u = flow->wake_u + first,
+                            .v = flow->wake_v + first,
+                            .leg_u = flow->wake_leg_u + first,
+                            .leg_v = flow->wake_leg_v + first,
+                            .div = flow->wake_div + first};
 }
 
-static enum status flow_at_vortices(struct flow *flow) {
-    const struct vortices *const moving = &flow->released;
-    const struct walls *const walls = &flow->school->walls;
-    const double tolerance = flow->school->wake_tolerance;
-    const struct induced at = {.n = moving->n, .x = moving->x, .y = moving->y, .u = flow->wake_u, .v = flow->wake_v};
-    const int sheets_by_tree = velocity_sum_by_tree(&flow->sheet, at.n, tolerance);
-    const int by_cells = images_by_cells(walls, &flow->sheet, tolerance, &at);
-    const int threads =
-        parallel_threads(flow->school->threads, moving->n, (double)moving->n * moving->n, PARALLEL_INTERACTIONS);
+// whether the own wake acts like any other: with one pair of constants, and in a sum by the tree
+static bool own_is_in_tree(const struct flow *flow, int f) {
+    const struct flow_sum sum = {WAKE_AT_WAKE, false};
+    return !flow->kernel->has_legs && flow_is_by_tree(flow, f, f, &sum);
+}
 
-    others_at_wake(flow, sheets_by_tree, by_cells, &at);
-    if (by_cells) TRY(images_induce_many(walls, flow->velocity_sum, &flow->sheet, tolerance, threads, &at));
-    TRY(images_induce_many(walls, flow->velocity_sum, moving, tolerance, threads, &at));
-    return induce_many(flow, sheets_by_tree, moving, threads, &at);
+// set the velocity of the own wake at all markers of a fish
+static void induce_own_wake(const struct flow *flow, int f) {
+    const struct flow_class *const class = &flow->class[flow->class_of[f]];
+    const struct kernel_pair smooth =
+        flow->kernel->own(flow->school->fish[f].strip_depth, flow_square(flow, WAKE_AT_WAKE, class, class));
+    const struct targets at = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
+    double *const sums[] = {at.u, at.v, at.leg_u, at.leg_v, at.div};
+    for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) memset(sums[i], 0, (size_t)at.n * sizeof **sums);
+    if (!own_is_in_tree(flow, f)) kernel_induce_mutual(&smooth, &flow->fish[f].markers, &at);
+}
+
+// add the velocity of the own body: with the smoothing of the sheet tapered near the tail; at the newborn marker the
+// velocity is evaluated h/(2 pi) behind the tail
+static void induce_own_body(const struct flow *flow, const struct state *state, int f, struct range which,
+                            const struct targets *markers) {
+    const struct fish *const fish = &flow->school->fish[f];
+    const struct flow_class *const class = &flow->class[flow->class_of[f]];
+    const struct sources *const body = &flow->fish[f].body;
+    const struct wake *const wake = &state->wake[f];
+    const int is_sheet = flow_has_free_sheets(flow);
+    const struct kernel_pair pair =
+        flow->kernel->own(fish->strip_depth, is_sheet ? 0 : flow_square(flow, BODY_AT_WAKE, class, class));
+    const struct direction direction = fish_direction(fish, &fish->tail_tangent, state->y);
+    const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
+    double x[MARKERS], y[MARKERS], square[MARKERS];
+    struct targets at = *markers;
+
+    for (int i = 0; i < which.n && is_sheet; i++) {
+        const double from_tail[2] = {markers->x[i] - tail[0], markers->y[i] - tail[1]};
+        const double smoothing = sheet_taper(fish, from_tail, direction.t);
+        x[i] = markers->x[i];
+        y[i] = markers->y[i];
+        square[i] = smoothing * smoothing;
+
+        // newborn marker
+        if (which.first + i < wake->n_vortex - 1 || fish->taper <= 0) continue;
+        const double along = wake->slip[0] * direction.t[0] + wake->slip[1] * direction.t[1];
+        const double behind = fmax(0, along) * flow->school->interval / two_pi;
+        x[i] = tail[0] + behind * direction.t[0];
+        y[i] = tail[1] + behind * direction.t[1];
+        square[i] = 0;
+    }
+
+    if (is_sheet) {
+        at.x = x;
+        at.y = y;
+        at.square = square;
+    }
+    kernel_induce(&pair, body, (struct range){0, body->n}, &at);
+}
+
+// add the velocity of the external flow, of the own body and of all others
+static void induce_at_markers(const struct flow *flow, const struct state *state, int f, struct range which) {
+    const struct school *const school = flow->school;
+    const int first = flow->wake_range[f].first + which.first;
+    struct targets at = markers_of(flow, f, which);
+    for (int i = 0; i < which.n; i++) {
+        double u, v;
+        flow_external(school, flow->t, at.x[i], at.y[i], &u, &v);
+        at.u[i] += u;
+        at.v[i] += v;
+    }
+
+    induce_own_body(flow, state, f, which, &at);
+    memcpy(flow->wake_leg_div + first, at.div, (size_t)which.n * sizeof *at.div);
+
+    // other fish
+    at.leg_u = at.leg_v = NULL;
+    for (int g = 0; g < school->n_fish; g++) {
+        const struct flow_sum body = {BODY_AT_WAKE, false}, wake = {WAKE_AT_WAKE, false};
+        flow_induce_other(flow, f, g, &body, g == f, &at);
+        if (g != f || !own_is_in_tree(flow, f)) flow_induce_other(flow, f, g, &wake, g == f, &at);
+    }
+    if (school->walls.n == 0) return;
+
+    // images
+    struct targets image = at;
+    image.u = flow->wake_image_u + first;
+    image.v = flow->wake_image_v + first;
+    image.div = flow->wake_image_div + first;
+    for (int i = 0; i < which.n; i++) image.u[i] = image.v[i] = image.div[i] = 0;
+    for (int g = 0; g < school->n_fish; g++) {
+        flow_induce_other(flow, f, g, &(struct flow_sum){BODY_AT_WAKE, true}, false, &image);
+        flow_induce_other(flow, f, g, &(struct flow_sum){WAKE_AT_WAKE, true}, false, &image);
+    }
+    for (int i = 0; i < which.n; i++) {
+        at.u[i] += image.u[i];
+        at.v[i] += image.v[i];
+        at.div[i] += image.div[i];
+    }
+}
+
+// add one sum by the tree at the markers of class c, which are not consecutive
+static enum status add_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads) {
+    struct sources *const places = &flow->places;
+    const int n_fish = flow->school->n_fish;
+    places->n = 0;
+    for (int f = 0; f < n_fish; f++) {
+        if (flow->class_of[f] != c) continue;
+        const struct sources *const markers = &flow->fish[f].markers;
+        const int first = places->n;
+        TRY(sources_append(places, markers->n));
+        const double *const from[] = {markers->x, markers->y, markers->half, markers->leg};
+        double *const to[] = {places->x, places->y, places->half, places->leg};
+        for (int i = 0; i < 4 && markers->n > 0; i++) {
+            memcpy(to[i] + first, from[i], (size_t)markers->n * sizeof(double));
+        }
+    }
+
+    // the sums take the place of the strengths
+    const struct targets at = {.n = places->n,
+                               .x = places->x,
+                               .y = places->y,
+                               .half = places->half,
+                               .leg = places->leg,
+                               .u = places->q,
+                               .v = places->dx,
+                               .div = places->dy};
+    TRY(flow_sum_by_tree(flow, c, k, sum, threads, &at));
+    for (int f = 0, p = 0; f < n_fish; f++) {
+        if (flow->class_of[f] != c) continue;
+        for (int i = flow->wake_range[f].first; i < flow->wake_range[f].first + flow->wake_range[f].n; i++, p++) {
+            flow->wake_u[i] += at.u[p];
+            flow->wake_v[i] += at.v[p];
+            flow->wake_div[i] += at.div[p];
+            if (!sum->of_images) continue;
+            flow->wake_image_u[i] += at.u[p];
+            flow->wake_image_v[i] += at.v[p];
+            flow->wake_image_div[i] += at.div[p];
+        }
+    }
+    return STATUS_OK;
 }
 
 enum status flow_at_wake(struct flow *flow, const struct state *state) {
     TRY(flow_place(flow, state, state->t, state->y));
+    TRY(wakes_place(flow, state));
+    const struct school *const school = flow->school;
+    int n_chunks = 0;
+    for (int f = 0; f < school->n_fish; f++) n_chunks += (flow->wake_range[f].n + MARKERS - 1) / MARKERS;
+    const double work = (double)flow->kernel->cost * flow->n_markers * flow->n_markers * (1 + flow->n_images);
+    const int threads = parallel_threads(school->threads, n_chunks, work, PARALLEL_INTERACTIONS);
+    flow_select_by_tree(flow, true, flow->wake_range);
 
-    if (flow->rings) {
-        int n = 0;
-        for (int f = 0; f < flow->school->n_fish; f++) n += state->wake[f].n_vortex;
-        TRY(reserve_at_wake(flow, n));
-        return flow_rings_at_markers(flow, state);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int f = 0; f < school->n_fish; f++) {
+        if (flow->wake_range[f].n > 0) induce_own_wake(flow, f);
+    }
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int chunk = 0; chunk < n_chunks; chunk++) {
+        int f = 0, before = 0, n = (flow->wake_range[0].n + MARKERS - 1) / MARKERS;
+        while (chunk >= before + n) {
+            before += n;
+            f++;
+            n = (flow->wake_range[f].n + MARKERS - 1) / MARKERS;
+        }
+
+        const int first = (chunk - before) * MARKERS, left = flow->wake_range[f].n - first;
+        induce_at_markers(flow, state, f, (struct range){first, left < MARKERS ? left : MARKERS});
     }
 
-    if (flow_has_free_sheets(flow)) {
-        TRY(flow_at_markers_place(flow, state));
-        TRY(reserve_at_wake(flow, flow->n_markers));
-        return flow_at_markers(flow, state);
+    for (int c = 0; c < flow->n_classes; c++) {
+        for (int k = 0; k < flow->n_classes; k++) {
+            int f = 0, g = 0;
+            while (flow->class_of[f] != c) f++;
+            while (flow->class_of[g] != k) g++;
+            for (int i = 0; i < 4; i++) {
+                const struct flow_sum sum = {i < 2 ? BODY_AT_WAKE : WAKE_AT_WAKE, i % 2};
+                if (flow_is_by_tree(flow, f, g, &sum)) TRY(add_by_tree(flow, c, k, &sum, threads));
+            }
+        }
     }
 
-    TRY(flow_place_released(flow, state));
-    memcpy(flow->wake_range, flow->released_range, (size_t)flow->school->n_fish * sizeof *flow->wake_range);
-    TRY(reserve_at_wake(flow, flow->released.n));
-    return flow_at_vortices(flow);
+    // [p] = 0 on the wake
+    for (int f = 0; f < school->n_fish; f++) {
+        const int first = flow->wake_range[f].first;
+        const double *const label = state->wake[f].circulation;
+        for (int i = 0; i < state->wake[f].n_vortex; i++) {
+            flow->wake_rate[first + i] = -label[i] * flow->wake_div[first + i];
+        }
+    }
+    return STATUS_OK;
+}
+
+// ---- momentum
+
+// add the momentum rate of sources in the velocity of legs: sum of q E3 u + div E3 d, and its moment
+static void add_rate(const struct sources *sources, const double *u, const double *v, const double *div,
+                     double rate[3]) {
+    for (int i = 0; i < sources->n; i++) {
+        const double x = -sources->q[i] * v[i] - div[i] * sources->dy[i];
+        const double y = sources->q[i] * u[i] + div[i] * sources->dx[i];
+        rate[0] += x;
+        rate[1] += y;
+        rate[2] += sources->x[i] * y - sources->y[i] * x;
+    }
+}
+
+void flow_leg_rate(const struct flow *flow, int f, double rate[3]) {
+    const struct fish *const fish = &flow->school->fish[f];
+    const struct flow_fish *const of = &flow->fish[f];
+    const struct kernel_pair exact = flow->kernel->own(fish->strip_depth, 0);
+    const int wake = flow->wake_range[f].first, n = fish->n_control;
+    rate[0] = rate[1] = rate[2] = 0;
+    if (!flow->kernel->has_legs) return;
+
+    // u and v contain all parts; only the parts of the legs are used
+    double *const *const sum = flow->legs;
+    const struct targets at = {.n = n,
+                               .x = of->body.x,
+                               .y = of->body.y,
+                               .half = of->body.half,
+                               .u = sum[0],
+                               .v = sum[1],
+                               .leg_u = sum[2],
+                               .leg_v = sum[3],
+                               .div = sum[4],
+                               .edge = fish->depth_varies ? sum[5] : NULL,
+                               .edge_stride = (int)(sum[6] - sum[5])};
+
+    for (int i = 0; i < N_LEG_SUMS; i++) memset(sum[i], 0, (size_t)n * sizeof(double));
+    kernel_induce(&exact, &of->body, (struct range){0, of->body.n}, &at);
+    kernel_induce(&exact, &of->markers, (struct range){0, of->markers.n}, &at);
+    add_rate(&of->body, at.leg_u, at.leg_v, at.div, rate);
+    add_rate(&of->markers, flow->wake_leg_u + wake, flow->wake_leg_v + wake, flow->wake_leg_div + wake, rate);
+
+    // exclude the force along the side edges, which acts on the body
+    for (int c = 0; c < n && fish->depth_varies; c++) {
+        const double square = of->line[0][c] * of->line[0][c] + of->line[1][c] * of->line[1][c];
+        const double along = (of->body.dx[c] * of->line[0][c] + of->body.dy[c] * of->line[1][c]) / square;
+        const double size = along * fish->control_widening[c] * fish->control_interval[c];
+        rate[0] -= size * sum[5][c];
+        rate[1] -= size * sum[6][c];
+        rate[2] -= size * (of->body.x[c] * sum[6][c] - of->body.y[c] * sum[5][c]);
+    }
 }

@@ -1,25 +1,19 @@
-/* flow_at_wake.h: the velocity of the fluid at the released vortices, or at the markers of free sheets, of all fish.
- * doc/model.md, sections 8 and 9. Tested by tests/flow/test_flow.c. */
+/* flow_at_wake.h: the velocity of the fluid at the markers of free sheets, or at the released vortices, of all fish.
+ * doc/model.md, sections 8, 9 and 18. Tested by tests/flow/test_flow.c, tests/flow/test_flow_at_markers.c.
+ *
+ * The velocity at markers and the force on bodies have the same sources, with the same smoothing for the same pair, so
+ * that the impulse of bodies and wakes is conserved. The own body acts on markers with the tapered smoothing delta(d),
+ * sheet.h; images are never tapered. */
 #ifndef FLOW_AT_WAKE_H
 #define FLOW_AT_WAKE_H
 
 #include "flow/flow.h"
 
-/* Velocity of the fluid at the markers of all free sheets. doc/model.md, section 8. Part of
- * flow_at_wake.h.
- *
- * The velocity at markers and the force on bodies have the same sources, with the same smoothing for the same pair, so
- * that the impulse of bodies and wakes is conserved:
- *
- *     markers of all fish     mean of squares of delta of both fish
- *     sheets of bodies        delta of the fish of the marker; own body: tapered delta(d), free_sheet.h
- *     images                  as above, never tapered
- *
- * Sources of a body with force: pressure: the control points with the circulations of section 15, which also determine
- * the force; of any other body: the bound vortices. */
-
-/* The velocity of the fluid at the released vortices, or markers, of all fish at the event of the state: wake_u,
- * wake_v, of fish f from wake_range[f].first on. Fails with STATUS_MEMORY. */
+/* Set wake_range, wake_u, wake_v and all arrays at markers for the event of the state. Fails with STATUS_MEMORY. */
 enum status flow_at_wake(struct flow *flow, const struct state *state);
+
+/* Rate of momentum from the interaction of the legs of a fish at different lengths s, over density and depth: x, y,
+ * about the origin; at the event of the state, after flow_at_wake. 0 without legs. */
+void flow_leg_rate(const struct flow *flow, int f, double rate[3]);
 
 #endif

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/wide.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
-#include "vortex/kernel.h"
 
 /* Values at the control points by full matrices: X' in x and y, velocity in x and y, circulation of the interval, and
  * circulation between nose and point. */
@@ -31,6 +31,7 @@ enum status pressure_create(struct pressure **pressure, const struct fish *fish)
         if (status == STATUS_OK) status = MEMORY_NEW(matrices[i]->value, n * n, "the pressure on a fish");
     }
     if (status == STATUS_OK) status = MEMORY_NEW(new->product, n, "the pressure on a fish");
+    if (status == STATUS_OK) status = MEMORY_NEW(new->parts, 4 * n, "the pressure on a fish");
     if (status == STATUS_OK)
         status = MEMORY_NEW(new->at_points, N_AT_POINTS * fish->n_control, "the pressure on a fish");
     if (status == STATUS_OK) status = MEMORY_NEW(new->share, fish->n_control * n, "the pressure on a fish");
@@ -67,6 +68,7 @@ void pressure_free(struct pressure *pressure) {
     free(pressure->momentum_rate);
     free(pressure->force);
     free(pressure->product);
+    free(pressure->parts);
     free(pressure->spread);
     free(pressure->at_points);
     free(pressure->share);
@@ -77,8 +79,8 @@ void pressure_free(struct pressure *pressure) {
 
 // R = sum over j: P_j times the circulation of vortex j; strength: the unknowns or the rates of the unknowns. R of the
 // same circulations is kept: the energy balance of a step needs R twice.
-static void pressure_find_matrix(const struct fish *fish, const double *strength, struct pressure_matrix *to) {
-    const int n = fish->n_nodes;
+static void pressure_find_matrix(struct pressure *p, const double *strength, struct pressure_matrix *to) {
+    const struct fish *const fish = p->fish;
     int is_new = 0;
     for (int j = 0; j < fish->n_sheet; j++) {
         const double circulation = fish->sheet_weight[j] * strength[fish->at.gamma + j];
@@ -86,9 +88,7 @@ static void pressure_find_matrix(const struct fish *fish, const double *strength
         to->circulation[j] = circulation;
     }
 
-    if (!is_new) return;
-    memset(to->value, 0, (size_t)n * (size_t)n * sizeof *to->value);
-    kernel_multiply(n * n, fish->n_sheet, fish->integrals->momentum, to->circulation, to->value);
+    if (is_new) sheet_integrals_matrix(fish->integrals, to->circulation, p->parts, to->value);
 }
 
 // add E3 R x to the pairs of all nodes; x: x components of all nodes, then y components
@@ -96,9 +96,9 @@ static void pressure_add_product(struct pressure *p, const struct pressure_matri
                                  double *to) {
     const int n = p->fish->n_nodes;
     memset(p->product, 0, (size_t)n * sizeof *p->product);
-    kernel_multiply(n, n, matrix->value, x + n, p->product);
+    wide_multiply(n, n, matrix->value, x + n, p->product);
     for (int k = 0; k < n; k++) to[k] -= p->product[k];
-    kernel_multiply(n, n, matrix->value, x, to + n);
+    wide_multiply(n, n, matrix->value, x, to + n);
 }
 
 // tau: tangential velocity of the fluid relative to the body
@@ -199,7 +199,7 @@ static void pressure_suck(struct pressure *p, const double *y) {
 void pressure_update(struct pressure *p, const struct flow_at_body *flow, const double *y) {
     const struct fish *fish = p->fish;
     const size_t size = 2 * (size_t)fish->n_nodes * sizeof *p->momentum;
-    pressure_find_matrix(fish, y, &p->matrix);
+    pressure_find_matrix(p, y, &p->matrix);
     memset(p->momentum, 0, size);
     memset(p->force, 0, size);
     pressure_add_product(p, &p->matrix, y + fish->at.x, p->momentum);
@@ -241,20 +241,15 @@ void pressure_residual(const struct pressure *p, double *residual) {
 
 // sums over the nodes i of P_kij x_i, times the weight of vortex j, for all nodes k
 static void momentum_by_strength(const struct fish *fish, int j, const double *x, double *momentum) {
-    const int n = fish->n_nodes;
-    memset(momentum, 0, (size_t)n * sizeof *momentum);
-    kernel_multiply(n, n, fish->integrals->momentum + (long)j * n * n, x, momentum);
-    for (int k = 0; k < n; k++) momentum[k] *= fish->sheet_weight[j];
+    sheet_integrals_product(fish->integrals, j, x, momentum);
+    for (int k = 0; k < fish->n_nodes; k++) momentum[k] *= fish->sheet_weight[j];
 }
 
-void pressure_momentum_by_strength(const struct fish *fish, int k, int j, const double *x, double momentum[2]) {
+void pressure_momentum_by_strength(const struct fish *fish, int j, const double *x, double *momentum) {
     const int n = fish->n_nodes;
-    const double *const row = fish->integrals->momentum + (long)j * n * n + k;
-    momentum[0] = momentum[1] = 0;
-    for (int i = 0; i < n; i++) {
-        momentum[0] -= fish->sheet_weight[j] * row[i * n] * x[n + i];
-        momentum[1] += fish->sheet_weight[j] * row[i * n] * x[i];
-    }
+    momentum_by_strength(fish, j, x + n, momentum);
+    momentum_by_strength(fish, j, x, momentum + n);
+    for (int k = 0; k < n; k++) momentum[k] = -momentum[k];
 }
 
 void pressure_momentum_jacobian(struct pressure *p, int at_start, const double *y, struct sparse *jacobian) {
@@ -322,8 +317,8 @@ void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
 // add forces at the control points, x then y, to the rows ax, ay of all nodes, in one column
 static void spread_forces(const struct pressure *p, double *column) {
     const int n = p->fish->n_nodes, n_control = p->fish->n_control;
-    kernel_multiply(n, n_control, p->share, p->spread, column);
-    kernel_multiply(n, n_control, p->share, p->spread + n_control, column + n);
+    wide_multiply(n, n_control, p->share, p->spread, column);
+    wide_multiply(n, n_control, p->share, p->spread + n_control, column + n);
 }
 
 // by the positions of the nodes. Convection: the tangent turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|;
@@ -448,7 +443,7 @@ void pressure_update_rate(struct pressure *p, const double *y, const double *yp)
     const struct fish *fish = p->fish;
     memset(p->momentum_rate, 0, 2 * (size_t)fish->n_nodes * sizeof *p->momentum_rate);
     pressure_add_product(p, &p->matrix, y + fish->at.vx, p->momentum_rate);
-    pressure_find_matrix(fish, yp, &p->rate);
+    pressure_find_matrix(p, yp, &p->rate);
     pressure_add_product(p, &p->rate, y + fish->at.x, p->momentum_rate);
 }
 

@@ -46,8 +46,8 @@ struct pressure {
     double by_slip;        /* derivative of the size of the suction by tau, N s m-1 */
     double *share; /* share of a force at a control point in the row of a node, kg-1       (n_control, n_nodes) */
     struct pressure_point *point; /* (n_control) */
-    /* workspace: a product with R; values at the control points; forces at the control points */
-    double *product, *at_points, *spread;
+    /* workspace: a product with R; of sheet_integrals_matrix; values and forces at the control points */
+    double *product, *parts, *at_points, *spread;
     double *sensor[2]; /* pressure on the left and right side of the fish, Pa: set by skin_update   (n_sensors) */
 };
 
@@ -67,8 +67,8 @@ void pressure_free(struct pressure *pressure);
  * below require this update with the same y. */
 void pressure_update(struct pressure *pressure, const struct flow_at_body *flow, const double *y);
 
-/* Derivative of the added momentum of node k, kg m s-1, by the unknown of vortex j; x: x of all nodes, then y. */
-void pressure_momentum_by_strength(const struct fish *fish, int k, int j, const double *x, double momentum[2]);
+/* Derivative of the added momentum, kg m s-1, by the unknown of vortex j; x and momentum: x of all nodes, then y. */
+void pressure_momentum_by_strength(const struct fish *fish, int j, const double *x, double *momentum);
 
 /* Estimated ratio of p to v of node k: 1 plus the ratio of the added mass of a plate to the mass of the node. */
 double pressure_momentum_ratio(const struct fish *fish, int k);

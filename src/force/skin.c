@@ -5,18 +5,15 @@
 #include <stddef.h>
 
 #include "body/rod.h"
-#include "flow/flow_rings.h"
+#include "flow/flow_at_bodies.h"
 
 static const double pi = 3.14159265358979323846;
 
-/* One source: a vortex of circulation q, a dipole dC/dt dx, and legs C dx of a ring. */
+/* One source: with the rate dC/dt of the circulation before the source, a dipole dC/dt dx. */
 struct skin_source {
-    double x[2], velocity[2]; /* m, m s-1 */
-    double q;                 /* m2 s-1 */
-    double dipole[2];         /* m3 s-2 */
-    double legs[2];           /* m3 s-1 */
-    double square;            /* contribution to e^2, m2 */
-    double half, leg;         /* as in vortex/ring.h, m2 */
+    struct source at;
+    double velocity[2]; /* m s-1 */
+    double dipole[2];   /* m3 s-2 */
 };
 
 /* The control points of a body. */
@@ -29,86 +26,46 @@ struct skin_targets {
     struct pressure *pressure;
 };
 
-/* The mirror image of a source in the wall y = shift/2: circulation, legs and dipole have the opposite sign. */
-static struct skin_source skin_mirror(const struct skin_source *of, double shift) {
-    struct skin_source image = *of;
-    image.x[1] = shift - of->x[1];
-    image.velocity[1] = -of->velocity[1];
-    image.q = -of->q;
-    image.dipole[0] = -of->dipole[0];
-    image.legs[0] = -of->legs[0];
-    return image;
-}
-
-// K . (q (v - V) + dC/dt dx) for the velocity K of a unit vortex, at a point of velocity v
-static double skin_term(const struct skin_source *source, const double v[2], double k_x, double k_y) {
-    return k_x * (source->q * (v[0] - source->velocity[0]) + source->dipole[0]) +
-           k_y * (source->q * (v[1] - source->velocity[1]) + source->dipole[1]);
-}
-
 static void skin_velocity(const struct skin_targets *at, int c, double v[2]) {
     v[0] = at->at.u[c] - at->pressure->point[c].slip[0];
     v[1] = at->at.v[c] - at->pressure->point[c].slip[1];
 }
 
-// add one source to all control points; pair: of rings, NULL in two dimensions
-static void skin_add(const struct skin_targets *at, const struct ring_pair *pair, const struct skin_source *source) {
-    for (int c = 0; c < at->fish->n_control; c++) {
-        const double r[2] = {at->x[c] - source->x[0], at->y[c] - source->x[1]}, r2 = r[0] * r[0] + r[1] * r[1];
-        double v[2];
-        skin_velocity(at, c, v);
-
-        // legs alone may lie at the point
-        const double square = r2 + source->square + (pair ? pair->square : 0);
-        double k = square > 0 ? 1 / (2 * pi * square) : 0;
-
-        double of_legs = 0;
-        if (pair) {
-            const double t = r2 + pair->factor * (at->fish->point_half[c] + source->half) + source->leg;
-            k *= pair->span / sqrt(t);
-            of_legs = pair->span / (2 * pi * t * sqrt(t)) *
-                      ((v[1] - source->velocity[1]) * source->legs[0] - (v[0] - source->velocity[0]) * source->legs[1]);
+// add one source at all control points: K . (q (v - V) + dC/dt dx), and g (v - V) x d of the legs
+static void skin_add(const struct skin_targets *at, const struct kernel_pair *pair, const struct skin_source *source) {
+    const int has_legs = at->flow->kernel->has_legs;
+    for (int first = 0; first < at->fish->n_control; first += KERNEL_CHUNK) {
+        const int n = at->fish->n_control - first < KERNEL_CHUNK ? at->fish->n_control - first : KERNEL_CHUNK;
+        struct unit_values unit;
+        kernel_unit(pair, &source->at, n, at->x + first, at->y + first, has_legs ? at->fish->point_half + first : NULL,
+                    &unit);
+        for (int i = 0; i < n; i++) {
+            double v[2];
+            skin_velocity(at, first + i, v);
+            const double slip[2] = {v[0] - source->velocity[0], v[1] - source->velocity[1]};
+            const double of_legs = has_legs ? unit.leg[i] * (slip[1] * source->at.dx - slip[0] * source->at.dy) : 0;
+            at->pressure->point[first + i].potential_rate +=
+                unit.unit_u[i] * (source->at.q * slip[0] + source->dipole[0]) +
+                unit.unit_v[i] * (source->at.q * slip[1] + source->dipole[1]) + of_legs;
         }
-
-        at->pressure->point[c].potential_rate += skin_term(source, v, -k * r[1], k * r[0]) + of_legs;
     }
 }
 
-// add all images of one source in a channel, in two dimensions
-static void skin_add_rows(const struct skin_targets *at, const struct skin_source *source) {
-    const struct walls *const walls = &at->flow->school->walls;
-    const double rate = pi / image_rows_width(walls);
-    const struct image_height height = image_height_of(walls, source->x[1]);
-    const struct skin_source mirrored = skin_mirror(source, 0);
-
-    for (int c = 0; c < at->fish->n_control; c++) {
-        const struct image_height target = image_height_of(walls, at->y[c]);
-        const double r[2] = {at->x[c] - source->x[0], at->y[c] - source->x[1]};
-        const struct image_column column = image_column_of(rate, r[0], source->square);
-        const struct image_rows rows = image_rows_of(&column, r, &target, &height, source->square, 0);
-        double v[2];
-        skin_velocity(at, c, v);
-        at->pressure->point[c].potential_rate += skin_term(source, v, rows.shifted.u, rows.shifted.v) +
-                                                 skin_term(&mirrored, v, rows.mirrored.u, rows.mirrored.v);
-    }
-}
-
-static void skin_add_images(const struct skin_targets *at, const struct ring_pair *pair,
+// add all images of one source; in a mirror image circulation, legs and dipole have the opposite sign
+static void skin_add_images(const struct skin_targets *at, const struct kernel_pair *pair,
                             const struct skin_source *source) {
-    const struct walls *const walls = &at->flow->school->walls;
-    for (int k = 0; pair && k < at->flow->rings->n_images; k++) {
-        const struct ring_image *const of = &at->flow->rings->image[k];
-        struct skin_source image = of->sign < 0 ? skin_mirror(source, of->shift) : *source;
-        if (of->sign > 0) image.x[1] += of->shift;
-        struct ring_pair weighted = *pair;
+    for (int k = 0; k < at->flow->n_images; k++) {
+        const struct image *const of = &at->flow->image[k];
+        struct skin_source image = *source;
+        image.at.y = of->sign * source->at.y + of->shift;
+        image.velocity[1] *= of->sign;
+        image.at.q *= of->sign;
+        image.at.dx *= of->sign;
+        image.dipole[0] *= of->sign;
+        struct kernel_pair weighted = *pair;
         weighted.span *= of->weight;
         skin_add(at, &weighted, &image);
     }
-    if (!pair && walls->n == 1) {
-        const struct skin_source image = skin_mirror(source, 2 * walls->y[0]);
-        skin_add(at, NULL, &image);
-    }
-    if (!pair && walls->n == 2) skin_add_rows(at, source);
 }
 
 // ---- bodies
@@ -156,141 +113,96 @@ static void sheet_dipole(const struct fish *fish, int j, const double *y, const 
 static struct skin_source sheet_source(const struct fish *fish, int j, const double *y, const double *yp) {
     const struct stencil *const point = &fish->sheet_point[j];
     struct skin_source source = {
-        .x = {fish_mean(point, y + fish->at.x), fish_mean(point, y + fish->at.y)},
+        .at = {.x = fish_mean(point, y + fish->at.x),
+               .y = fish_mean(point, y + fish->at.y),
+               .q = fish->sheet_weight[j] * y[fish->at.gamma + j],
+               .half = fish->sheet_half ? fish->sheet_half[j] : 0},
         .velocity = {fish_mean(point, y + fish->at.vx), fish_mean(point, y + fish->at.vy)},
-        .q = fish->sheet_weight[j] * y[fish->at.gamma + j],
     };
     sheet_dipole(fish, j, y, yp, source.dipole);
     return source;
 }
 
-// ring source c of a body: its legs, and for other fish circulation and dipole
-static struct skin_source ring_source(const struct skin_targets *at, int g, int c, int is_own) {
+// control point c of a body: the legs, and for other fish circulation and dipole
+static struct skin_source control_source(const struct skin_targets *at, int g, int c, bool is_own) {
     const struct fish *const fish = &at->flow->school->fish[g];
-    const struct fish_rings *const of = &at->flow->rings->fish[g];
-    const double *const y = at->state->y;
-    struct skin_source source = {.x = {of->body.x[c], of->body.y[c]},
-                                 .velocity = {fish_mean(&fish->control_point[c], y + fish->at.vx),
-                                              fish_mean(&fish->control_point[c], y + fish->at.vy)},
-                                 .legs = {of->body.dx[c], of->body.dy[c]},
-                                 .half = of->body.half[c]};
+    const struct sources *const body = &at->flow->fish[g].body;
+    const double *const y = at->state->y, rate = rate_before(fish, c, at->state->yp);
+    struct skin_source source = {
+        .at = {.x = body->x[c], .y = body->y[c], .dx = body->dx[c], .dy = body->dy[c], .half = body->half[c]},
+        .velocity = {fish_mean(&fish->control_point[c], y + fish->at.vx),
+                     fish_mean(&fish->control_point[c], y + fish->at.vy)}};
     if (is_own) return source;
-    const double rate = rate_before(fish, c, at->state->yp);
-    source.q = of->body.q[c];
-    for (int i = 0; i < 2; i++) source.dipole[i] = rate * of->line[i][c];
+    source.at.q = body->q[c];
+    source.dipole[0] = rate * fish->control_interval[c] * fish_mean(&fish->control_tangent[c].to, y + fish->at.x);
+    source.dipole[1] = rate * fish->control_interval[c] * fish_mean(&fish->control_tangent[c].to, y + fish->at.y);
     return source;
 }
 
 static void skin_add_body(const struct skin_targets *at, int f, int g) {
     const struct fish *const fish = &at->flow->school->fish[g];
-    const double *const y = at->state->y, *const yp = at->state->yp, smoothing = flow_sheet_smoothing(at->flow, f, g);
-    const struct ring_pair own = {.span = fish->strip_depth / 4, .factor = 1},
-                           other = {.span = fish->strip_depth / 2, .factor = 4, .square = smoothing * smoothing};
-    const int is_ring = at->flow->rings != NULL;
+    const struct flow_sum sum = {BODY_AT_BODY, false};
+    const struct kernel_pair own = at->flow->kernel->own(fish->strip_depth, 0),
+                             other = flow_pair_of(at->flow, f, g, &sum);
+    const int n_body = at->flow->fish[g].body.n;
 
-    // bound vortices: of other fish only in two dimensions
-    for (int j = 0; j < fish->n_sheet && (g == f || !is_ring); j++) {
-        struct skin_source source = sheet_source(fish, j, y, yp);
-        if (is_ring) source.half = fish->sheet_half[j];
-        if (!is_ring && g != f) source.square = smoothing * smoothing;
-        skin_add(at, is_ring ? &own : NULL, &source);
-        if (is_ring) continue;
-        source.square = smoothing * smoothing;
-        skin_add_images(at, NULL, &source);
+    // own bound vortices and legs
+    for (int j = 0; g == f && j < fish->n_sheet; j++) {
+        const struct skin_source source = sheet_source(fish, j, at->state->y, at->state->yp);
+        skin_add(at, &own, &source);
+    }
+    for (int c = 0; g == f && at->flow->kernel->has_legs && c < n_body; c++) {
+        const struct skin_source source = control_source(at, g, c, true);
+        skin_add(at, &own, &source);
     }
 
-    // rings of control points
-    for (int c = 0; is_ring && c < fish->n_control; c++) {
-        const struct skin_source source = ring_source(at, g, c, g == f), seen = ring_source(at, g, c, 0);
-        skin_add(at, g == f ? &own : &other, &source);
+    // other bodies, and all images
+    for (int c = 0; c < n_body; c++) {
+        const struct skin_source seen =
+            fish->integrals ? control_source(at, g, c, false) : sheet_source(fish, c, at->state->y, at->state->yp);
+        if (g != f) skin_add(at, &other, &seen);
         skin_add_images(at, &other, &seen);
     }
 }
 
 // ---- wakes
 
-// velocity at the fraction xi of the way from the newer to the older end of a stretch, and the rate of the label there
-static double stretch_velocity(const struct wake *wake, int stretch, double xi, double velocity[2]) {
-    const int newer = stretch + 1;
-    velocity[0] = (1 - xi) * wake->u[newer] + xi * wake->u[stretch];
-    velocity[1] = (1 - xi) * wake->v[newer] + xi * wake->v[stretch];
-    return (1 - xi) * wake->rate[newer] + xi * wake->rate[stretch];
-}
-
-// a point of a stretch in two dimensions; smoothing: for the own body tapered
-static struct skin_source stretch_source(const struct skin_targets *at, const struct wake *wake, int stretch, double xi,
-                                         double part, const struct fish *own, double smoothing) {
-    const int newer = stretch + 1, newest = wake->n_vortex - 1;
-    struct skin_source source = {
-        .x = {(1 - xi) * wake->x[newer] + xi * wake->x[stretch], (1 - xi) * wake->y[newer] + xi * wake->y[stretch]}};
-    stretch_velocity(wake, stretch, xi, source.velocity);
-    source.q = part * wake_source(wake, stretch) *
-               wake_strength_within(at->flow->school, at->state->t - wake->birth[newer], 0);
-    if (own) {
-        const double from_tail[2] = {source.x[0] - wake->x[newest], source.x[1] - wake->y[newest]};
-        smoothing = free_sheet_smoothing(own, from_tail, wake->tail_tangent);
-    }
-
-    source.square = smoothing * smoothing;
-    return source;
+// released source i of a view of a wake, with the rate of the label as a dipole; middles: source i is the middle of
+// stretch i
+static struct skin_source wake_source_of(const struct skin_targets *at, int g, const struct sheet_points *points,
+                                         bool is_middle, int i) {
+    const struct wake *const wake = &at->state->wake[g];
+    const struct sources *const from = &points->sources;
+    const int older = is_middle ? i : points->stretch[i], newer = older + 1;
+    const double xi = is_middle ? 0.5 : points->xi[i], part = is_middle ? 1 : points->part[i];
+    const double decay = wake_strength_within(at->flow->school, at->state->t - wake->birth[newer], 0);
+    const double rate = ((1 - xi) * wake->rate[newer] + xi * wake->rate[older]) * part * decay;
+    return (struct skin_source){
+        .at = {.x = from->x[i],
+               .y = from->y[i],
+               .q = from->q[i],
+               .dx = from->dx[i],
+               .dy = from->dy[i],
+               .half = from->half[i],
+               .leg = from->leg[i],
+               .square = from->square[i]},
+        .velocity = {(1 - xi) * wake->u[newer] + xi * wake->u[older], (1 - xi) * wake->v[newer] + xi * wake->v[older]},
+        .dipole = {-rate * (wake->x[older] - wake->x[newer]), -rate * (wake->y[older] - wake->y[newer])}};
 }
 
 static void skin_add_wake(const struct skin_targets *at, int f, int g) {
     const struct fish *const fish = &at->flow->school->fish[g];
-    const struct wake *const wake = &at->state->wake[g];
-    const int n_stretches = wake->n_vortex - 1, has_images = at->flow->school->walls.n > 0;
-    for (int i = 0; i < n_stretches; i++) {
-        const struct skin_source middle = stretch_source(at, wake, i, 0.5, 1, NULL, fish->smoothing);
-        if (has_images) skin_add_images(at, NULL, &middle);
-        if (g != f) skin_add(at, NULL, &middle);
-
-        // own wake: the points of the newest stretches, with tapered smoothing
-        const int age = n_stretches - i, n = age <= FREE_SHEET_GRADED   ? FREE_SHEET_PANEL
-                                             : age <= FREE_SHEET_PAIRED ? 2
-                                                                        : 1;
-        for (int k = 0; g == f && k < n; k++) {
-            const double xi = n == 1 ? 0.5 : n == 2 ? free_sheet_pair_xi[k] : free_sheet_xi[k];
-            const double part = n <= 2 ? 1.0 / n : free_sheet_part[k];
-            const struct skin_source source = stretch_source(at, wake, i, xi, part, fish, 0);
-            skin_add(at, NULL, &source);
-        }
-    }
-}
-
-// released ring i of a wake, with the rate of the label as a dipole; middles: ring i is the middle of stretch i
-static struct skin_source ring_wake_source(const struct skin_targets *at, int g, int is_own, int i) {
-    const struct wake *const wake = &at->state->wake[g];
-    const struct ring_sheets *const sheets = &at->flow->rings->fish[g].wake;
-    const struct ring_sheet *const graded = &sheets->graded;
-    const struct rings *const rings = is_own ? &graded->rings : &sheets->middles.rings;
-    const int stretch = is_own ? graded->stretch[i] : i;
-    const double xi = is_own ? graded->xi[i] : 0.5, part = is_own ? graded->part[i] : 1;
-    struct skin_source source = {.x = {rings->x[i], rings->y[i]},
-                                 .q = rings->q[i],
-                                 .legs = {rings->dx[i], rings->dy[i]},
-                                 .square = rings->square[i],
-                                 .half = rings->half[i],
-                                 .leg = rings->leg[i]};
-    const double rate = stretch_velocity(wake, stretch, xi, source.velocity) * part *
-                        wake_strength_within(at->flow->school, at->state->t - wake->birth[stretch + 1], 0);
-    source.dipole[0] = -rate * (wake->x[stretch] - wake->x[stretch + 1]);
-    source.dipole[1] = -rate * (wake->y[stretch] - wake->y[stretch + 1]);
-    return source;
-}
-
-static void skin_add_rings(const struct skin_targets *at, int f, int g) {
-    const struct fish *const fish = &at->flow->school->fish[g];
-    const struct fish_rings *const of = &at->flow->rings->fish[g];
-    const struct ring_pair own = {.span = fish->strip_depth / 4, .factor = 1},
-                           other = {
-                               .span = fish->strip_depth / 2, .factor = 4, .square = fish->smoothing * fish->smoothing};
-    for (int i = 0; g == f && i < of->wake.graded.n_released; i++) {
-        const struct skin_source source = ring_wake_source(at, g, 1, i);
+    const struct sheet *const sheet = &at->flow->fish[g].wake;
+    const struct flow_sum sum = {WAKE_AT_BODY, false};
+    const struct kernel_pair own = at->flow->kernel->own(fish->strip_depth, 0),
+                             other = flow_pair_of(at->flow, f, g, &sum);
+    for (int i = 0; g == f && i < sheet->graded.n_released; i++) {
+        const struct skin_source source = wake_source_of(at, g, &sheet->graded, false, i);
         skin_add(at, &own, &source);
     }
 
-    for (int i = 0; i < of->wake.middles.n_released; i++) {
-        const struct skin_source source = ring_wake_source(at, g, 0, i);
+    for (int i = 0; i < sheet->middles.n_released; i++) {
+        const struct skin_source source = wake_source_of(at, g, &sheet->middles, true, i);
         if (g != f) skin_add(at, &other, &source);
         skin_add_images(at, &other, &source);
     }
@@ -301,7 +213,7 @@ static void skin_add_rings(const struct skin_targets *at, int f, int g) {
 /* Values at a control point that are smooth in theta up to the nose; s: distance from the nose, m. */
 struct skin_values {
     double mean;     /* |v - u_ext|^2/2 - Phi, m2 s-2 */
-    double jump;     /* dC/dt, with rings + C div u, m2 s-2 */
+    double jump;     /* dC/dt, with legs + C div u, m2 s-2 */
     double slip;     /* w_t, m s-1 */
     double strength; /* gamma sqrt(s), m3/2 s-1 */
 };
@@ -370,7 +282,7 @@ void skin_update(const struct flow *flow, const struct state *state, int f, stru
     for (int c = 0; c < at.fish->n_control; c++) pressure->point[c].potential_rate = 0;
     for (int g = 0; g < school->n_fish; g++) {
         skin_add_body(&at, f, g);
-        (flow->rings ? skin_add_rings : skin_add_wake)(&at, f, g);
+        skin_add_wake(&at, f, g);
     }
 
     for (int i = 0; i < at.fish->n_sensors; i++) {

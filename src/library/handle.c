@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/mathematics.h"
 #include "base/memory.h"
 #include "fish/fish_motion.h"
@@ -48,7 +49,7 @@ enum status handle_create(struct shoal **run) {
     }
 
     atomic_init(&(*run)->shared->n_users, 1);
-    (*run)->lock.descriptor = -1;
+    (*run)->claim.descriptor[0] = (*run)->claim.descriptor[1] = -1;
     return STATUS_OK;
 }
 
@@ -89,8 +90,14 @@ void handle_forget_row(struct shoal *run) {
 }
 
 enum status handle_evaluate(const struct simulation *simulation) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct state *const state = simulation->state;
     return residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch);
+}
+
+static enum status renew_simulation(struct simulation *simulation) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    return simulate_renew(simulation);
 }
 
 enum status handle_renew(struct shoal *run) {
@@ -100,7 +107,7 @@ enum status handle_renew(struct shoal *run) {
     // a restart that ran out of memory leaves no solver
     if (run->simulation->solver) run->simulation->integrator->count(run->simulation->solver, &run->when_reached);
 
-    enum status status = simulate_renew(run->simulation);
+    enum status status = renew_simulation(run->simulation);
     if (status == STATUS_OK) status = handle_evaluate(run->simulation);
     if (status == STATUS_OK) {
         run->is_renewed = 1;
@@ -113,6 +120,7 @@ enum status handle_renew(struct shoal *run) {
 enum status handle_take_up(struct shoal *run,
                            enum status (*fill)(struct state *state, const struct school *school, const void *from),
                            const void *from, const struct integrator_counts *totals) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct case_values *const values = &run->shared->values;
     struct school *school;
     struct state *state = NULL;
@@ -126,7 +134,8 @@ enum status handle_take_up(struct shoal *run,
     }
 
     // the simulation owns school and state
-    TRY(simulate_take_up(&run->simulation, values, school, state, totals));
+    run->arena = arena_create(NULL, "a run");
+    TRY(simulate_take_up(run->arena, &run->simulation, values, school, state, totals));
     run->is_renewed = 1;
     run->when_reached = *totals;
     return handle_evaluate(run->simulation);

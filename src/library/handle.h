@@ -8,8 +8,8 @@
 #include <stdatomic.h>
 
 #include "case/case.h"
+#include "result/durable.h"
 #include "result/result_file.h"
-#include "result/result_lock.h"
 #include "run/checkpoints.h"
 #include "run/record.h"
 #include "run/simulate.h"
@@ -26,6 +26,7 @@ struct shared {
 
 /* A run in memory: the handle of include/shoal.h. */
 struct shoal {
+    struct arena *arena; /* of the simulation */
     struct shared *shared;
     struct simulation *simulation;
     int is_renewed;                        /* the integrator has restarted at this event */
@@ -35,7 +36,7 @@ struct shoal {
     struct record record;
     char *record_path;              /* path of the result file */
     struct checkpoints checkpoints; /* beside the result file */
-    struct result_lock lock;
+    struct durable_claim claim;
     char *result_path; /* path of the result file by the case */
 
     /* variables read since the last step */

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/arena.h"
 #include "base/memory.h"
 #include "base/version.h"
 #include "case/sweep.h"
@@ -42,11 +43,22 @@ static enum status check_can_step(const struct shoal *run, const char *function)
 
 // ---- the life of a run
 
+static enum status create_simulation(struct shoal *run) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    run->arena = arena_create(NULL, "a run");
+    return simulate_create(run->arena, &run->simulation, &run->shared->values);
+}
+
+static enum status step_simulation(struct shoal *run) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    return simulate_step(run->simulation);
+}
+
 // create the simulation of a new run, unless reading the case failed; set *run, or release the new run
 static int finish_opening(struct shoal **run, struct shoal *new, enum status status) {
     if (status == STATUS_OK) status = sweep_refuse(&new->shared->values);
     if (status == STATUS_OK) status = record_path(&new->shared->values, &new->result_path);
-    if (status == STATUS_OK) status = simulate_create(&new->simulation, &new->shared->values);
+    if (status == STATUS_OK) status = create_simulation(new);
     if (status == STATUS_OK) {
         *run = new;
     } else {
@@ -83,21 +95,20 @@ static int has_ended(const struct shoal *run) {
     return run->simulation->state->event >= run->simulation->n_events;
 }
 
-// release path, checkpoints and lock of a closed result file
+// release path, checkpoints and claim of a closed result file
 static void release_record(struct shoal *run) {
     free(run->record_path);
     run->record_path = NULL;
     checkpoints_free(&run->checkpoints);
-    result_lock_release(&run->lock);
-    run->lock = (struct result_lock){.descriptor = -1};
+    durable_claim_release(&run->claim);
 }
 
 /* Fail with STATUS_FILE in a fork of the process that writes the result file, and detach the run from the file. */
 static enum status check_process(struct shoal *run, const char *function) {
-    if (!run->record.file || run->lock.owner == getpid()) return STATUS_OK;
+    if (!run->record.file || run->claim.process == getpid()) return STATUS_OK;
     status_fail(STATUS_FILE,
                 "%s: %s is written by process %ld, not by this fork: the run continues without a result file", function,
-                run->record_path, (long)run->lock.owner);
+                run->record_path, (long)run->claim.process);
 
     result_file_abandon(run->record.file);
     run->record = (struct record){0};
@@ -129,6 +140,7 @@ void shoal_close(struct shoal *run) {
 
     for (int i = 0; i < RESULT_TABLE_MAX; i++) free(run->buffer[i]);
     simulate_free(run->simulation);
+    arena_free(run->arena);
 
     // the last copy of the run releases the case
     if (atomic_fetch_sub(&run->shared->n_users, 1) == 1) {
@@ -153,6 +165,7 @@ static enum status write_due_row(struct shoal *run) {
     enum status status = shoal_write_row(run);
     if (status != STATUS_OK) status = record_close(&run->record, status);
     pthread_mutex_unlock(&handle_netcdf_lock);
+    if (status == STATUS_SOLVER) handle_fail(run);
     if (status != STATUS_OK) release_record(run);
     return status;
 }
@@ -180,7 +193,7 @@ int shoal_step(struct shoal *run) {
     TRY(check_can_step(run, __func__));
     handle_forget_row(run);
 
-    const enum status status = simulate_step(run->simulation);
+    const enum status status = step_simulation(run);
     if (status == STATUS_OK) {
         TRY(write_due_row(run));
         return is_checkpoint(run) ? write_checkpoint(run) : STATUS_OK;
@@ -217,7 +230,7 @@ double shoal_time(const struct shoal *run) {
 
 double shoal_end(const struct shoal *run) {
     if (handle_need(run, __func__, "run") != STATUS_OK) return NAN;
-    return (double)run->simulation->n_events * run->simulation->school->interval;
+    return fish_event_time(run->simulation->school, run->simulation->n_events);
 }
 
 double shoal_interval(const struct shoal *run) {
@@ -300,7 +313,7 @@ const char *shoal_variable(int i) {
 static enum status flow_at_points(struct shoal *run, int n, const double *points, double *work, double *velocity,
                                   double *vorticity) {
     double *const x = work, *const y = x + n;
-    const struct induced at = {
+    const struct targets at = {
         .n = n, .x = x, .y = y, .u = y + n, .v = y + 2 * n, .u_x = y + 3 * n, .u_y = y + 4 * n, .v_x = y + 5 * n};
 
     for (int i = 0; i < n; i++) {
@@ -393,11 +406,11 @@ static enum status create_result_file(struct shoal *run, int overwrite) {
     return status == STATUS_OK ? STATUS_OK : record_close(&run->record, status);
 }
 
-// lock the path, create the result file, and remove the checkpoints of an earlier run
+// claim the path, create the result file, and remove the checkpoints of an earlier run
 static enum status start_record(struct shoal *run, const char *path, int overwrite) {
     TRY(memory_copy_string(&run->record_path, path, "a path"));
     TRY(target_check(path, TARGET_NETCDF, overwrite));
-    TRY(result_lock_take(&run->lock, path));
+    TRY(durable_claim_take(&run->claim, path));
     TRY(checkpoints_create(&run->checkpoints, &run->shared->values, path, NULL));
 
     pthread_mutex_lock(&handle_netcdf_lock);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/memory.h"
 #include "contact/clearance.h"
 #include "library/handle.h"
@@ -116,6 +117,7 @@ static enum status change_images(const struct simulation *simulation) {
 }
 
 static enum status change_make(struct shoal *run, const struct change *change) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct simulation *const simulation = run->simulation;
     struct state *const state = simulation->state;
 
@@ -141,10 +143,10 @@ static enum status change_make(struct shoal *run, const struct change *change) {
     // replace the newest sample of each fish; discard all earlier samples of a fish with new positions
     for (int f = 0; f < simulation->school->n_fish; f++) {
         struct history *const history = &state->history[f];
-        history->n = change->position && f == change->fish ? 0 : history->n - (history->n > 0);
-        history->last = (history->last + history->capacity - 1) % history->capacity;
+        state_forget_newest(history);
+        if (change->position && f == change->fish) history->n = 0;
     }
-    diagnostics_remember(simulation->residual, state);
+    TRY(diagnostics_remember(simulation->residual, state));
 
     TRY(change_images(simulation));
     diagnostics_after_jump(simulation->residual, state);
@@ -170,8 +172,13 @@ static enum status change_run(struct shoal *run, const struct change *change) {
     const struct integrator_counts when_reached = run->when_reached;
     TRY(state_create(&kept, simulation->school));
     enum status status = state_table_copy(kept, simulation->state, simulation->school);
+    if (status != STATUS_OK) {
+        // an incomplete copy restores nothing
+        state_free(kept, simulation->school);
+        return status;
+    }
 
-    if (status == STATUS_OK) status = change_make(run, change);
+    status = change_make(run, change);
     if (status != STATUS_OK) {
         // restore the state before the change, and keep the message of the failure
         char reason[sizeof run->failure];

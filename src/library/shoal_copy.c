@@ -25,7 +25,7 @@ int shoal_clone(struct shoal **copy, struct shoal *run) {
     TRY(MEMORY_NEW(new, 1, "a run"));
     new->shared = run->shared;
     atomic_fetch_add(&new->shared->n_users, 1);
-    new->lock.descriptor = -1;
+    new->claim.descriptor[0] = new->claim.descriptor[1] = -1;
 
     enum status status = memory_copy_string(&new->result_path, run->result_path, "a path");
     if (status == STATUS_OK) {

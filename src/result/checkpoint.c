@@ -170,12 +170,13 @@ static enum status take_row(const struct checkpoint *checkpoint, const struct st
     return section.is_short || section.left > 0 ? unfit(row->name) : STATUS_OK;
 }
 
-// numbers of vortices that no file of this size can have
-static enum status check_wakes(const struct checkpoint *checkpoint, const struct state *state,
-                               const struct school *school) {
+// numbers of vortices or of samples that no file of this size can have
+static enum status check_numbers(const struct checkpoint *checkpoint, const struct state *state,
+                                 const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
-        const int n = state->wake[f].n_vortex;
-        if (n < 0 || (size_t)n > checkpoint->n / sizeof(double)) return unfit("wake.n_vortex");
+        const int n_vortices = state->wake[f].n_vortex, n_slots = state->history[f].n_slots;
+        if (n_vortices < 0 || (size_t)n_vortices > checkpoint->n / sizeof(double)) return unfit("wake.n_vortex");
+        if (n_slots < 0 || (size_t)n_slots > checkpoint->n / sizeof(struct sample)) return unfit("history.n_slots");
     }
     return STATUS_OK;
 }
@@ -186,8 +187,8 @@ enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct sta
         const struct state_row *const row = &state_table[i];
         if (row->type == STATE_UNKEPT) continue;
         TRY(take_row(checkpoint, row, state, school));
-        if (strcmp(row->name, "wake.n_vortex") != 0) continue;
-        TRY(check_wakes(checkpoint, state, school));
+        if (strcmp(row->name, "wake.n_vortex") != 0 && strcmp(row->name, "history.n_slots") != 0) continue;
+        TRY(check_numbers(checkpoint, state, school));
         TRY(state_table_make_room(state, school));
     }
 

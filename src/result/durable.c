@@ -1,11 +1,9 @@
 /* durable.c: write, fsync, rename, fsync of the folder. */
-#define _GNU_SOURCE  // F_OFD_SETLK
+#define _GNU_SOURCE  // F_OFD_SETLK, renameat2
 #include "result/durable.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,67 +61,81 @@ int durable_lock(int descriptor, uint64_t first, uint64_t n) {
 #endif
 }
 
-void durable_narrow(int descriptor, uint64_t first, uint64_t n) {
-#ifdef F_OFD_SETLK
-    const off_t begin = (off_t)first, end = begin + (off_t)n;
-    struct flock before = {.l_type = F_UNLCK, .l_whence = SEEK_SET, .l_len = begin}, after = before;
-    after.l_start = end;
-    after.l_len = 0;
-    if (begin > 0) fcntl(descriptor, F_OFD_SETLK, &before);
-    if (n > 0) fcntl(descriptor, F_OFD_SETLK, &after);
-#else
-
-    // flock has no ranges
-    if (first > 0 || n > 0) flock(descriptor, LOCK_UN);
-#endif
-}
-
 bool durable_has_name(int descriptor, const char *path) {
     struct stat open_file, named;
     return fstat(descriptor, &open_file) == 0 && lstat(path, &named) == 0 && open_file.st_ino == named.st_ino &&
            open_file.st_dev == named.st_dev;
 }
 
-// ---- a file in the making
+/* The bytes of a file that are locked: by the claim of a run, and by a part in the making. */
+enum { BYTE_OF_CLAIM = 0, BYTE_OF_PART = 1 };
 
-/* Create a part under a unique name, and lock the part before durable_sweep can remove it; errno or 0. */
-static int create_part(struct durable_part *part, char *name, size_t size, unsigned permissions) {
-    enum { TRIES = 100 };
-    static atomic_ulong number;
+/* Open a file and lock a byte of the inode that then still has the name; errno or 0. */
+static int open_locked(const char *name, int flags, unsigned permissions, uint64_t byte, int *descriptor) {
+    for (;;) {
+        const int file = open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | flags, permissions);
+        if (file < 0) return errno;
+        const int code = durable_lock(file, byte, 1);
 
-    for (int i = 0; i < TRIES; i++) {
-        snprintf(name, size, "%s.%ld-%lu.part", part->target, (long)getpid(), atomic_fetch_add(&number, 1));
-        const int descriptor = open(name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, permissions);
-        if (descriptor < 0 && errno == EEXIST) continue;
-        if (descriptor < 0) return errno;
-        if (durable_lock(descriptor, 0, 0) != EAGAIN && durable_has_name(descriptor, name)) {
-            part->name = name;
-            part->descriptor = descriptor;
+        // meanwhile another process may have renamed or removed the file
+        if (code != EAGAIN && durable_has_name(file, name)) {
+            *descriptor = file;
             return 0;
         }
-        close(descriptor);
+        close(file);
+        if (code == EAGAIN) return EAGAIN;
     }
-
-    return EBUSY;
 }
+
+/* Open and lock a part, new or left by a process that died; errno or 0. */
+static int open_part(const char *name, unsigned permissions, uint64_t byte, int *descriptor) {
+    unsigned char head[16];
+    struct stat facts;
+    int code = open_locked(name, O_CREAT, permissions, byte, descriptor);
+    if (code != 0) return code == ELOOP || code == EISDIR || code == ENXIO ? ENOTUNIQ : code;
+
+    // never empty a file of another program, or a file with another name
+    const bool is_file = fstat(*descriptor, &facts) == 0 && S_ISREG(facts.st_mode) && facts.st_nlink == 1;
+    const ssize_t n = is_file ? pread(*descriptor, head, sizeof head, 0) : -1;
+    if (n >= 0 && target_may_begin(head, (size_t)n)) return 0;
+    close(*descriptor);
+    *descriptor = -1;
+    return ENOTUNIQ;
+}
+
+static char *part_name_of(const char *target) {
+    const size_t size = strlen(target) + sizeof ".part";
+    char *const name = malloc(size);
+    if (name) snprintf(name, size, "%s.part", target);
+    return name;
+}
+
+// ---- a file in the making
 
 int durable_begin(struct durable_part *part, const char *target, unsigned permissions) {
-    enum { ENDING = 64 };
-    const size_t size = strlen(target) + ENDING;
     *part = (struct durable_part){.target = strdup(target), .descriptor = -1};
-    char *const name = part->target ? malloc(size) : NULL;
+    char *const name = part->target ? part_name_of(target) : NULL;
     if (!name) return ENOMEM;
-    const int code = create_part(part, name, size, permissions);
-    if (code != 0) free(name);
-    return code;
+    const int code = open_part(name, permissions, BYTE_OF_PART, &part->descriptor);
+    if (code != 0) {
+        free(name);
+        return code;
+    }
+    part->name = name;
+    return ftruncate(part->descriptor, 0) == 0 ? 0 : errno;
 }
 
-/* A link, unlike a renaming, refuses to replace a file that was made in the meantime; a file system without links has
- * to do with the renaming. Errno or 0. */
+/* Rename the part to the target; overwrite: replace a file, else EEXIST. Errno or 0. */
 static int give_name(const struct durable_part *part, bool overwrite) {
     if (!overwrite) {
-        if (link(part->name, part->target) == 0) return unlink(part->name) == 0 ? 0 : errno;
-        if (errno == EEXIST) return EEXIST;
+#ifdef RENAME_NOREPLACE
+        if (renameat2(AT_FDCWD, part->name, AT_FDCWD, part->target, RENAME_NOREPLACE) == 0) return 0;
+        if (errno != EINVAL && errno != ENOSYS) return errno;
+#endif
+
+        // a file system without this kind of renaming
+        struct stat facts;
+        if (lstat(part->target, &facts) == 0) return EEXIST;
     }
     return rename(part->name, part->target) == 0 ? 0 : errno;
 }
@@ -145,45 +157,55 @@ void durable_end(struct durable_part *part) {
     *part = (struct durable_part){.descriptor = -1};
 }
 
-// ---- parts of processes that died
-
-// True if the rest of a name, after `length` letters, is the ending of a part.
-static bool is_part(const char *name, size_t length) {
-    for (const char *at = name + length; (at = strchr(at, '.')); at++) {
-        int end = 0;
-        sscanf(at, ".%*[0-9]-%*[0-9].part%n", &end);
-        if (end > 0 && at[end] == '\0') return true;
+void durable_discard(const char *target) {
+    struct durable_part part;
+    char *const name = part_name_of(target);
+    if (name && access(name, F_OK) == 0) {
+        durable_begin(&part, target, 0666);
+        durable_end(&part);
     }
-    return false;
+    free(name);
 }
 
-/* Remove a file of a folder if no process holds a lock and the file begins like a file of shoal. */
-static void sweep_one(int folder, const char *name) {
-    unsigned char head[16];
-    struct stat facts, named;
-    const int file = openat(folder, name, O_RDWR | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
-    if (file < 0) return;
-    const bool is_file = fstat(file, &facts) == 0 && S_ISREG(facts.st_mode) && facts.st_nlink == 1;
-    const ssize_t n = is_file ? pread(file, head, sizeof head, 0) : -1;
-    if (n >= 0 && target_may_begin(head, (size_t)n) && durable_lock(file, 0, 0) == 0 &&
-        fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && named.st_ino == facts.st_ino)
-        unlinkat(folder, name, 0);
-    close(file);
-}
+// ---- the claim of a run
 
-void durable_sweep(const char *path) {
-    char folder[PATH_MAX];
-    target_folder(path, folder);
-    const char *const slash = strrchr(path, '/'), *const base = slash ? slash + 1 : path;
-    DIR *const entries = opendir(folder);
-    if (!entries) return;
+enum status durable_claim_take(struct durable_claim *claim, const char *path) {
+    *claim = (struct durable_claim){.part = part_name_of(path), .descriptor = {-1, -1}, .process = getpid()};
+    TRY(memory_check(claim->part, "a file name"));
+    int code = open_part(claim->part, 0666, BYTE_OF_CLAIM, &claim->descriptor[0]);
 
-    for (const struct dirent *entry; (entry = readdir(entries));) {
-        const bool begins_so = strncmp(entry->d_name, base, strlen(base)) == 0;
-        if (begins_so && is_part(entry->d_name, strlen(base))) sweep_one(dirfd(entries), entry->d_name);
+    if (code == 0) {
+        // a result that cannot be opened for writing has no writer
+        code = open_locked(path, 0, 0, BYTE_OF_CLAIM, &claim->descriptor[1]);
+        if (code != EAGAIN) return STATUS_OK;
     }
 
-    closedir(entries);
+    durable_claim_release(claim);
+    if (code != EAGAIN) return target_failed(path, code, strerror(code));
+    return status_fail(STATUS_FILE,
+                       "%s: another run writes this result: wait until it has ended, or choose another name with -o",
+                       path);
+}
+
+void durable_claim_release(struct durable_claim *claim) {
+    // remove the name before unlocking
+    const bool is_mine = claim->part && claim->process == getpid();
+    if (is_mine && durable_has_name(claim->descriptor[0], claim->part)) unlink(claim->part);
+
+    for (int i = 0; i < 2; i++) {
+        if (claim->descriptor[i] >= 0) close(claim->descriptor[i]);
+    }
+    free(claim->part);
+    *claim = (struct durable_claim){.descriptor = {-1, -1}};
+}
+
+enum status durable_claim_hold(const char *path, enum status (*work)(void *data), void *data) {
+    struct durable_claim claim;
+    TRY(target_check(path, TARGET_NETCDF, true));
+    TRY(durable_claim_take(&claim, path));
+    const enum status status = work(data);
+    durable_claim_release(&claim);
+    return status;
 }
 
 // ---- replacing, and keeping the one before
@@ -268,6 +290,9 @@ enum status plain_file_open(struct plain_file *file, const char *path, enum targ
 enum status plain_file_close(struct plain_file *file, enum status status) {
     errno = 0;
     const bool is_broken = fflush(file->stream) != 0 || ferror(file->stream);
+
+    // after a failure of an earlier write the reason is lost: another byte fails for the same reason
+    if (is_broken && errno == 0) errno = durable_write(file->part.descriptor, "", 1);
     if (status == STATUS_OK && is_broken) status = durable_failed(file->path, errno);
     if (status == STATUS_OK) status = target_check(file->path, file->kind, file->overwrite);
 

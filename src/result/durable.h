@@ -1,12 +1,13 @@
 /* durable.h: files that survive a power cut, and files that are there as a whole or not at all. Tested by
  * tests/result/test_durable.c.
  *
- *     durable_begin      a new file TARGET.PROCESS-NUMBER.part, locked
+ *     durable_begin      the empty file TARGET.part, locked
  *     write              to part.descriptor, or to a file opened by part.name
  *     durable_publish    fsync, rename to TARGET, fsync of the folder
  *     durable_end        removes a part that has not been published
  *
- * A part without a lock was left by a process that died. */
+ * A part without a lock was left by a process that died, and is used again. A lock belongs to the inode, under every
+ * name of the file. */
 #ifndef DURABLE_H
 #define DURABLE_H
 
@@ -14,6 +15,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <sys/types.h>
 
 #include "base/status.h"
 #include "result/target.h"
@@ -38,14 +40,12 @@ int durable_write(int descriptor, const void *bytes, size_t n);
  * the system or the file system has no such locks. */
 int durable_lock(int descriptor, uint64_t first, uint64_t n);
 
-/* Unlock all but n bytes from first on, 0: all from there on, of a file that is locked as a whole. Where locks have no
- * ranges, unlock the file. */
-void durable_narrow(int descriptor, uint64_t first, uint64_t n);
-
 /* Whether the file of a descriptor is the one at this path. */
 bool durable_has_name(int descriptor, const char *path);
 
-/* Create a part of the file at target with these permissions; errno or 0. Call durable_end also after a failure. */
+/* Create a part of the file at target with these permissions, or empty the part of a process that died; errno or 0.
+ * EAGAIN: another process makes this file; ENOTUNIQ: a file of another program, or a link, has the name of the part.
+ * Call durable_end also after a failure. */
 int durable_begin(struct durable_part *part, const char *target, unsigned permissions);
 
 /* Flush the part to disk and rename the part to the target; the descriptor stays open. overwrite: replace an existing
@@ -55,8 +55,27 @@ int durable_publish(struct durable_part *part, bool overwrite);
 /* Close the part; remove an unpublished part. */
 void durable_end(struct durable_part *part);
 
-/* Remove parts of files whose path begins like this, if the process of the part has died. */
-void durable_sweep(const char *path);
+/* Remove the part that a process left when it died. */
+void durable_discard(const char *target);
+
+/* The right to write a result: locks on the part, which becomes the result, and on an existing result. Initialise to
+ * zero with descriptors -1. */
+struct durable_claim {
+    char *part;        /* owned; NULL: there is no claim */
+    int descriptor[2]; /* part, result; -1: none */
+    pid_t process;     /* a fork does not release the claim */
+};
+
+/* Claim the result at a path, new or existing. Fails at once with STATUS_FILE if another run has the claim, in this
+ * process or another one. On a file system without locks the claim excludes nobody. */
+enum status durable_claim_take(struct durable_claim *claim, const char *path);
+
+/* Release the claim and remove a part that was not published. In a fork of the process: only clear *claim. */
+void durable_claim_release(struct durable_claim *claim);
+
+/* Do the work under the claim of the result at this path, new or existing (target_check). Fails with STATUS_FILE before
+ * the work if the path is not writable or another run has the claim; then as the work. */
+enum status durable_claim_hold(const char *path, enum status (*work)(void *data), void *data);
 
 /* Replace the contents of a file; the old file is renamed to previous, or discarded if previous is NULL. After any
  * failure or power cut, path or previous is a complete file. Fails with STATUS_FILE and a message that begins with the

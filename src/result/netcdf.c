@@ -14,14 +14,14 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "base/version.h"
 #include "result/durable.h"
 #include "result/target.h"
 
 enum {
-    SPARE_BYTES = 4096,     /* kept at the end of the header for attributes that other programs add later */
-    BUFFER_BYTES = 1 << 14, /* buffer of NetCDF for writing */
-    HISTORY_LENGTH = 4096   /* bytes of a longer command line are cut */
+    SPARE_BYTES = 4096,    /* kept at the end of the header for attributes that other programs add later */
+    BUFFER_BYTES = 1 << 14 /* buffer of NetCDF for writing */
 };
 
 /* Do a call of the library unless one has failed before. */
@@ -67,17 +67,20 @@ static enum status netcdf_failed(const char *path, int code) {
 
 /* Write the attributes on the origin of the file. */
 static void write_origin(struct netcdf_writer *writer, const char *title, const char *command) {
-    char libraries[VERSION_LENGTH], source[2 * VERSION_LENGTH], history[HISTORY_LENGTH], date[32];
+    char libraries[VERSION_LENGTH], source[2 * VERSION_LENGTH], date[32];
     version_libraries(libraries);
     snprintf(source, sizeof source, "%s, %s", version_short(), libraries);
     const time_t now = time(NULL);
     struct tm utc;
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
-    snprintf(history, sizeof history, "%s %s", date, command);
+    struct text history = {0};
+    text_add(&history, "%s %s", date, command);
+    if (history.failed) CALL(writer, ENOMEM);
     netcdf_write_string(writer, NETCDF_GLOBAL, "Conventions", "CF-1.10");
     netcdf_write_string(writer, NETCDF_GLOBAL, "title", title);
-    netcdf_write_string(writer, NETCDF_GLOBAL, "history", history);
+    netcdf_write_string(writer, NETCDF_GLOBAL, "history", history.failed ? "" : history.text);
     netcdf_write_string(writer, NETCDF_GLOBAL, "source", source);
+    text_free(&history);
 }
 
 // whether all went well; a writer that is not open is closed
@@ -102,7 +105,6 @@ static void keep_path(struct netcdf_writer *writer) {
 
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command) {
     char *const local = writer_begin(writer, path);
-    if (local) durable_sweep(local);
     CALL(writer, durable_begin(&writer->part, local, 0666));
     free(local);
     keep_path(writer);
@@ -114,7 +116,6 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
 
 enum status netcdf_continue(struct netcdf_writer *writer, const char *path) {
     writer->part.target = writer_begin(writer, path);
-    if (writer->part.target) durable_sweep(writer->part.target);
     keep_path(writer);
     size_t buffer_bytes = BUFFER_BYTES;
     CALL(writer, nc__open(writer->part.target, NC_WRITE, &buffer_bytes, &writer->file));
@@ -540,6 +541,16 @@ enum status netcdf_open(struct netcdf_reader *reader, const char *path) {
 void netcdf_close(struct netcdf_reader *reader) {
     if (reader->file >= 0) nc_close(reader->file);
     reader->file = -1;
+}
+
+static void netcdf_release(void *reader) {
+    netcdf_close(reader);
+}
+
+enum status netcdf_open_in(struct arena *arena, struct netcdf_reader *reader, const char *path) {
+    TRY(netcdf_open(reader, path));
+    arena_defer(arena, netcdf_release, reader);
+    return STATUS_OK;
 }
 
 enum status netcdf_print(const char *path, enum status (*print)(const struct netcdf_reader *reader, FILE *stream),

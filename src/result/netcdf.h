@@ -1,4 +1,4 @@
-/* netcdf.h: the only caller of the NetCDF library. A file is written under a temporary name and renamed when complete;
+/* netcdf.h: the only caller of the NetCDF library. A file is written as a part and renamed when complete;
  * reading checks every variable, because a file can come from another program. Tested by tests/result/test_netcdf.c. */
 #ifndef NETCDF_H
 #define NETCDF_H
@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "result/durable.h"
 
@@ -119,6 +120,9 @@ struct netcdf_slice {
  * variable without rows. Incomplete rows do not count. The path must outlive the reader. */
 enum status netcdf_open(struct netcdf_reader *reader, const char *path);
 void netcdf_close(struct netcdf_reader *reader);
+
+/* Open a file that the arena closes. The reader must be a part of the arena. */
+enum status netcdf_open_in(struct arena *arena, struct netcdf_reader *reader, const char *path);
 
 /* Open a file, print the contents, close the file. Fails as netcdf_open or print. */
 enum status netcdf_print(const char *path, enum status (*print)(const struct netcdf_reader *reader, FILE *stream),

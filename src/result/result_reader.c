@@ -51,41 +51,21 @@ static enum status read_lengths(struct result_reader *reader) {
 }
 
 /* The counts of a variable over the fish, each from min to max. */
-static enum status read_counts(const struct result_reader *reader, const char *name, size_t min, size_t max,
-                               int **counts) {
-    double *values;
-    TRY(result_reader_new(reader, name, 0, &values));
-    enum status status = MEMORY_NEW(*counts, reader->length[FISH], reader->file.path);
+static enum status read_counts(struct arena *arena, const struct result_reader *reader, const char *name, size_t min,
+                               size_t max, int **counts) {
+    const double *const values = reader->scratch;
+    TRY(result_reader_row(reader, name, 0, reader->scratch));
+    NEW(arena, *counts, reader->length[FISH]);
 
-    for (size_t f = 0; status == STATUS_OK && f < reader->length[FISH]; f++) {
-        if (values[f] >= (double)min && values[f] <= (double)max) {
-            (*counts)[f] = (int)values[f];
-        } else {
-            status = status_fail(STATUS_FILE, "%s: variable %s has an invalid value, %g, for a fish", reader->file.path,
-                                 name, values[f]);
+    for (size_t f = 0; f < reader->length[FISH]; f++) {
+        if (!(values[f] >= (double)min && values[f] <= (double)max)) {
+            return status_fail(STATUS_FILE, "%s: variable %s has an invalid value, %g, for a fish", reader->file.path,
+                               name, values[f]);
         }
+        (*counts)[f] = (int)values[f];
     }
 
-    free(values);
-    return status;
-}
-
-/* Read fish.body.section and fish.force of each fish. */
-static enum status read_words(struct result_reader *reader) {
-    const size_t n_fish = reader->length[FISH];
-    double *section = NULL, *force = NULL;
-    enum status status = MEMORY_NEW(reader->has_mean_section, n_fish, reader->file.path);
-    if (status == STATUS_OK) status = result_reader_new(reader, "mean_section", 0, &section);
-    if (status == STATUS_OK) status = result_reader_new(reader, "fluid_force", 0, &force);
-
-    for (size_t f = 0; status == STATUS_OK && f < n_fish; f++) {
-        reader->has_mean_section[f] = fabs(section[f] - 1) < 0.5;
-        reader->has_pressure |= fabs(force[f] - FORCE_PRESSURE) < 0.5;
-    }
-
-    free(section);
-    free(force);
-    return status;
+    return STATUS_OK;
 }
 
 /* Read the walls; most files have none. */
@@ -95,45 +75,38 @@ static enum status read_walls(struct result_reader *reader) {
     return result_reader_row(reader, "wall_y", 0, reader->wall_y);
 }
 
-static enum status fill_reader(struct result_reader *reader) {
+enum status result_reader_open(struct arena *arena, struct result_reader **opened, const char *path) {
+    struct result_reader *reader;
+    NEW(arena, reader, 1);
+    *opened = reader;
+    TRY(netcdf_open_in(arena, &reader->file, path));
     TRY(check_kind(reader));
     TRY(read_lengths(reader));
     TRY(read_walls(reader));
     TRY(netcdf_read_string(&reader->file, "title", &reader->title));
+    arena_defer(arena, free, reader->title);
     TRY(netcdf_read_string(&reader->file, "run_status", &reader->run_status));
+    arena_defer(arena, free, reader->run_status);
 
-    // names of the fish
-    TRY(MEMORY_NEW(reader->name, reader->length[FISH], reader->file.path));
-    for (size_t f = 0; f < reader->length[FISH]; f++) {
+    // name, fish.body.section and fish.force of each fish
+    const size_t n_fish = reader->length[FISH];
+    NEW(arena, reader->scratch, 2 * n_fish);
+    NEW(arena, reader->name, n_fish);
+    NEW(arena, reader->has_mean_section, n_fish);
+    double *const section = reader->scratch, *const force = section + n_fish;
+    TRY(result_reader_row(reader, "mean_section", 0, section));
+    TRY(result_reader_row(reader, "fluid_force", 0, force));
+    for (size_t f = 0; f < n_fish; f++) {
         TRY(result_reader_name(&reader->file, f, &reader->name[f]));
+        arena_defer(arena, free, reader->name[f]);
+        reader->has_mean_section[f] = fabs(section[f] - 1) < 0.5;
+        reader->has_pressure |= fabs(force[f] - FORCE_PRESSURE) < 0.5;
     }
-
-    TRY(read_words(reader));
 
     // an outline needs the edges between the nodes
     const size_t n_nodes = reader->length[NODE], n_edges = reader->length[EDGE];
-    TRY(read_counts(reader, "n_nodes", 4, n_edges < n_nodes ? n_edges + 1 : n_nodes, &reader->n_nodes));
-    return read_counts(reader, "n_sheet", 1, reader->length[SHEET], &reader->n_sheet);
-}
-
-enum status result_reader_open(struct result_reader *reader, const char *path) {
-    *reader = (struct result_reader){.file.file = -1};
-    TRY(netcdf_open(&reader->file, path));
-    const enum status status = fill_reader(reader);
-    if (status != STATUS_OK) result_reader_close(reader);
-    return status;
-}
-
-void result_reader_close(struct result_reader *reader) {
-    netcdf_close(&reader->file);
-    for (size_t f = 0; reader->name && f < reader->length[FISH]; f++) free(reader->name[f]);
-    free(reader->name);
-    free(reader->title);
-    free(reader->run_status);
-    free(reader->n_nodes);
-    free(reader->n_sheet);
-    free(reader->has_mean_section);
-    *reader = (struct result_reader){.file.file = -1};
+    TRY(read_counts(arena, reader, "n_nodes", 4, n_edges < n_nodes ? n_edges + 1 : n_nodes, &reader->n_nodes));
+    return read_counts(arena, reader, "n_sheet", 1, reader->length[SHEET], &reader->n_sheet);
 }
 
 // ---- values
@@ -172,26 +145,19 @@ enum status result_reader_row(const struct result_reader *reader, const char *na
     return netcdf_read_doubles(&reader->file, name, slice, values);
 }
 
-enum status result_reader_new(const struct result_reader *reader, const char *name, size_t row, double **values) {
-    TRY(MEMORY_NEW(*values, result_reader_n(reader, name) + 1, reader->file.path));
-    const enum status status = result_reader_row(reader, name, row, *values);
-    if (status == STATUS_OK) return STATUS_OK;
-    free(*values);
-    *values = NULL;
-    return status;
+enum status result_reader_new(struct arena *arena, const struct result_reader *reader, const char *name, size_t row,
+                              double **values) {
+    NEW(arena, *values, result_reader_n(reader, name) + 1);
+    return result_reader_row(reader, name, row, *values);
 }
 
 enum status result_reader_has_wake(const struct result_reader *reader, size_t row, bool *has_wake) {
     const size_t n_fish = reader->length[FISH];
-    double *count;
-    TRY(result_reader_new(reader, "wake_count", row, &count));
+    double *const count = reader->scratch, *const first = count + n_fish;
     const struct netcdf_slice slice[] = {{"time", row, 1}, {"fish", 0, n_fish}, {"vortex", 0, 1}, {NULL}};
-    double *first = NULL;
-    enum status status = MEMORY_NEW(first, n_fish, reader->file.path);
-    if (status == STATUS_OK) status = netcdf_read_doubles(&reader->file, "wake_circulation", slice, first);
-    *has_wake = status == STATUS_OK;
+    TRY(result_reader_row(reader, "wake_count", row, count));
+    TRY(netcdf_read_doubles(&reader->file, "wake_circulation", slice, first));
+    *has_wake = true;
     for (size_t f = 0; *has_wake && f < n_fish; f++) *has_wake = count[f] == 0 || isfinite(first[f]);
-    free(count);
-    free(first);
-    return status;
+    return STATUS_OK;
 }

@@ -26,7 +26,6 @@ static const struct {
     [TARGET_PICTURE] = {"picture", "\x89PNG", {"shoal plot.py"}},
     [TARGET_SCRIPT] = {"script", "#", {TARGET_SCRIPT_MARK}},
     [TARGET_TABLE] = {"table of errors", TARGET_TABLE_MARK, {TARGET_TABLE_MARK}},
-    [TARGET_LOCK] = {"lock", TARGET_LOCK_MARK, {" on "}},
 };
 enum { N_KINDS = sizeof kinds / sizeof *kinds };
 
@@ -115,6 +114,13 @@ enum status target_failed(const char *path, int code, const char *reason) {
         case ENOMEM: return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
         case EEXIST:
             return status_fail(STATUS_FILE, "%s exists: choose another name with -o or replace it with --force", path);
+        case EAGAIN:
+            return status_fail(
+                STATUS_FILE,
+                "%s: another process writes this file: wait until it has ended, or choose another name with -o", path);
+        case ENOTUNIQ:
+            return status_fail(STATUS_FILE,
+                               "%s.part exists and is no file of shoal: move it, or choose another name with -o", path);
         default:
             return status_fail(STATUS_FILE, "%s: cannot be written (%s): make room or choose another place with -o",
                                path, reason);

@@ -18,16 +18,14 @@ enum target_kind {
     TARGET_CHECKPOINT,
     TARGET_PICTURE,
     TARGET_SCRIPT,
-    TARGET_TABLE,
-    TARGET_LOCK
+    TARGET_TABLE
 };
 
-/* First line of the files of VTK after the declaration of XML, a line near the beginning of every script, the first
- * line of an error.csv, and the beginning of a lock file, before the process and " on HOST". */
+/* First line of the files of VTK after the declaration of XML, a line near the beginning of every script, and the first
+ * line of an error.csv. */
 #define TARGET_VTK_MARK "<!-- Written by shoal export. -->"
 #define TARGET_SCRIPT_MARK "# Written by shoal study --slurm."
 #define TARGET_TABLE_MARK "fish,quantity,unit,value,key,levels,order,error,percent,verdict"
-#define TARGET_LOCK_MARK "process "
 
 /* The folder of a file. */
 void target_folder(const char *path, char folder[PATH_MAX]);

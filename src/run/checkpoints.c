@@ -73,12 +73,14 @@ enum status checkpoints_create(struct checkpoints *checkpoints, const struct cas
     checkpoints->path = checkpoints_path(result);
     checkpoints->previous = checkpoints->path ? checkpoints_previous(checkpoints->path) : NULL;
     TRY(memory_check(checkpoints->previous, "a file name"));
+    text_add_word(&checkpoints->word, checkpoints->path);
+    if (checkpoints->word.failed) return memory_check(NULL, "a file name");
     TRY(memory_copy_string(&checkpoints->result, file_name_of(result), "a file name"));
 
     if (at) TRY(checkpoint_places_read(checkpoints, values, at));
     TRY(checkpoint_check_target(checkpoints->path, checkpoints->result));
     TRY(checkpoint_check_target(checkpoints->previous, checkpoints->result));
-    durable_sweep(checkpoints->path);
+    durable_discard(checkpoints->path);
     return case_show(values, &checkpoints->effective);
 }
 
@@ -89,6 +91,7 @@ void checkpoints_free(struct checkpoints *checkpoints) {
     free(checkpoints->effective);
     free(checkpoints->at);
     text_free(&checkpoints->places);
+    text_free(&checkpoints->word);
     *checkpoints = (struct checkpoints){0};
 }
 

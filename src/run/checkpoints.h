@@ -16,6 +16,7 @@
 
 struct checkpoints {
     char *path, *previous; /* owned */
+    struct text word;      /* the path for a command line */
     char *result;          /* name of the result file, in the same folder; owned */
     char *effective;       /* the complete case; owned */
     long interval;         /* in events; 0: none */

@@ -5,8 +5,8 @@
 #include <sys/resource.h>
 #include <time.h>
 
+#include "flow/tree.h"
 #include "run/event.h"
-#include "vortex/velocity_sum.h"
 
 /* A synthetic wake drifts away from the tail by `drift` body lengths per beat; the lateral amplitude is `width` body
  * lengths. */
@@ -175,7 +175,14 @@ static double run_bytes(const struct simulation *simulation, const struct costs 
     const double missing = wake_most(simulation->school, simulation->n_events) - costs->vortices[last];
     const double more = last > 0 ? (costs->vortices[last] - costs->vortices[last - 1]) * n_fish : 0;
     const double each = more > enough ? (costs->bytes[last] - costs->bytes[last - 1]) / more : usual_bytes;
-    return bytes_so_far() + bytes_of_file + fmax(0, missing) * n_fish * each;
+
+    // the samples of a period
+    double samples = 0;
+    for (int f = 0; f < n_fish; f++) {
+        const struct history *const history = &simulation->state->history[f];
+        samples += fmax(0, fmin(history->capacity, (double)simulation->n_events) - history->n_slots);
+    }
+    return bytes_so_far() + bytes_of_file + fmax(0, missing) * n_fish * each + samples * sizeof(struct sample);
 }
 
 enum status estimate_run(struct simulation *simulation, double patience, struct estimate *estimate) {
@@ -189,8 +196,9 @@ enum status estimate_run(struct simulation *simulation, double patience, struct 
 
     // the cost of the velocity sum grows as n log n by tree, else as n^2
     const struct school *const school = simulation->school;
-    const struct vortices wakes = {.n = (int)fmin(costs.vortices[costs.n - 1] * school->n_fish, 1e9)};
-    costs.power = velocity_sum_by_tree(&wakes, wakes.n, school->wake_tolerance) ? 1.1 : 2;
+    const double n = fmin(costs.vortices[costs.n - 1] * school->n_fish, 1e9);
+    const struct kernel *const kernel = simulation->residual->flow->kernel;
+    costs.power = tree_is_faster(kernel, (int)n, n * n, school->wake_tolerance) ? 1.1 : 2;
 
     estimate->seconds = run_seconds(simulation, &costs, each);
     estimate->bytes = run_bytes(simulation, &costs);

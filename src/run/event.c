@@ -7,11 +7,11 @@
 #include "contact/clearance.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_at_wake.h"
-#include "flow/flow_rings.h"
 #include "force/drag.h"
 #include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
+#include "school/warnings.h"
 #include "state/impulse.h"
 #include "state/wake_merge.h"
 
@@ -59,7 +59,6 @@ static enum status event_release_impulse(struct state *state, struct residual *r
         TRY(status);
     } else {
         // shedding rate times the interval
-        flow_sum_exactly(residual->flow);
         TRY(event_evaluate(residual, state));
         for (int f = 0; f < school->n_fish; f++) {
             state->y[school->fish[f].at.circulation] +=
@@ -122,7 +121,7 @@ static enum status event_wake_velocities(struct state *state, struct residual *r
         }
         if (state->wake[f].n_vortex > 0) {
             const int n = n_new == ALL ? state->wake[f].n_vortex : n_new;
-            const double *const rate = flow->rings ? flow->rings->wake_rate + first : NULL;
+            const double *const rate = flow->kernel->has_legs ? flow->wake_rate + first : NULL;
             wake_set_velocity(&state->wake[f], flow->wake_u + first, flow->wake_v + first, rate, n);
         }
     }
@@ -130,9 +129,8 @@ static enum status event_wake_velocities(struct state *state, struct residual *r
     return STATUS_OK;
 }
 
-// interpolate the flow for the next interval, and evaluate the slip at every tail
+// evaluate the slip at every tail
 static enum status event_flow(struct state *state, struct residual *residual) {
-    TRY(flow_interpolate(residual->flow, state));
     TRY(event_evaluate(residual, state));
     for (int f = 0; f < residual->school->n_fish; f++) {
         if (!state->wake[f].has_markers) flow_slip(residual->flow, f, state->y, state->wake[f].slip);
@@ -181,17 +179,17 @@ static enum status event_finish(struct state *state, struct residual *residual, 
                                 int jumps, int *jumped) {
     TRY(event_flow(state, residual));
     TRY(diagnostics_momentum_event(residual, state));
-    diagnostics_remember(residual, state);
+    TRY(diagnostics_remember(residual, state));
     self_crossing_remember(residual->school, state, residual->scratch);
+    warnings_remember(residual->school, state);
 
     const int steered = event_control(state, residual);
     if (steered) {
         if (!jumps) diagnostics_before_jump(residual, state);
         TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-        TRY(flow_interpolate(residual->flow, state));
     }
 
-    TRY(residual_couple(&residual->couplings, state->y));
+    residual_couple(&residual->couplings, state->y);
     *jumped = jumps || steered;
     if (*jumped) diagnostics_after_jump(residual, state);
     return STATUS_OK;
@@ -222,19 +220,24 @@ static enum status event_start_sheets(struct state *state, struct residual *resi
     return status;
 }
 
+// solve for the state at the start, with given velocities of the bodies
+static enum status event_start_bodies(struct state *state, struct residual *residual,
+                                      struct initial_conditions *initial) {
+    if (residual->school->shedding == SHEDDING_SHEET) {
+        TRY(event_start_sheets(state, residual, initial));
+        return initial_conditions_solve(initial, state->t, state->y, state->yp);
+    }
+    TRY(event_add_vortices(state, residual->school));
+    TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+    return residual->school->n_vortices > 0 ? event_wake_velocities(state, residual, ALL) : STATUS_OK;
+}
+
 enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
     int jumped;
     residual->at_start = 1;
-    if (residual->school->shedding == SHEDDING_SHEET) {
-        TRY(event_start_sheets(state, residual, initial));
-        TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-    } else {
-        TRY(event_add_vortices(state, residual->school));
-        TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-        if (residual->school->n_vortices > 0) TRY(event_wake_velocities(state, residual, ALL));
-    }
-
+    const enum status started = event_start_bodies(state, residual, initial);
     residual->at_start = 0;
+    TRY(started);
 
     if (residual->school->shedding == SHEDDING_IMPULSIVE) {
         TRY(event_release_impulse(state, residual, initial));
@@ -251,6 +254,7 @@ enum status event_next(struct state *state, struct residual *residual, struct in
                        int *jumped) {
     const struct school *school = residual->school;
     const int threads = fish_threads(school);
+    state_find_rates(state, school, residual_shed_is_algebraic(residual));
 
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
@@ -260,7 +264,7 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     }
 
     state->event++;
-    state->t = (double)state->event * school->interval;
+    state->t = fish_event_time(school, state->event);
 
     // shed
     const int jumps = school->shedding == SHEDDING_IMPULSIVE;
@@ -294,5 +298,6 @@ enum status event_change(struct state *state, struct residual *residual, struct 
     TRY(status);
     TRY(event_wake_velocities(state, residual, ALL));
     TRY(event_flow(state, residual));
-    return residual_couple(&residual->couplings, state->y);
+    residual_couple(&residual->couplings, state->y);
+    return STATUS_OK;
 }

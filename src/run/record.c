@@ -79,6 +79,7 @@ int record_is_due(const struct record *record, long event) {
 }
 
 enum status record_row(const struct record *record, struct result_row *row) {
+    TRY(warnings_refuse(row->school, row->state, row->diagnostics));
     const long event = row->state->event;
     row->with_wake = (event - record->first) % record->events_per_wake == 0 || event == record->n_events;
     return result_file_row(record->file, row);

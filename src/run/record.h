@@ -43,7 +43,8 @@ enum status record_publish(const struct record *record, int is_complete);
 /* Whether an event is a row: every output interval, and the end. A record without a file has no rows. */
 int record_is_due(const struct record *record, long event);
 
-/* Append a row; rows at multiples of output.wake_interval and the last row contain the wake. Fails with STATUS_FILE. */
+/* Append a row; rows at multiples of output.wake_interval and the last row contain the wake. Fails with STATUS_FILE,
+ * or, for a run that has diverged (warnings_refuse), with STATUS_SOLVER. */
 enum status record_row(const struct record *record, struct result_row *row);
 
 /* Close the file with the status of the run: STATUS_OK "complete", STATUS_STOPPED "stopped", else "failed: " and the

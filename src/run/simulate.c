@@ -3,10 +3,8 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <time.h>
 
-#include "base/memory.h"
 #include "body/rod.h"
 #include "fish/fish.h"
 #include "fish/fish_school.h"
@@ -23,39 +21,46 @@ static double wall_clock(void) {
 
 /* Set the highest order of ida. Default (doc/numerics.md, section 3): 2 if the stiffness of a body is not damped, 5 if
  * the slowest bending mode of every fish is below 0.6 of the beat frequency, else 3. */
-static enum status simulation_set_order(struct simulation *simulation, const struct case_values *values) {
+static void simulation_set_order(struct simulation *simulation, const struct case_values *values) {
     const struct school *const school = simulation->school;
     simulation->options.order = values->solver.order;
-    if (values->solver.order > 0 || values->solver.method != METHOD_IDA) return STATUS_OK;
+    if (values->solver.order > 0 || values->solver.method != METHOD_IDA) return;
 
     bool are_soft = true;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         const double periods = values->school.fish[f].body.relaxation_time * fish->frequency;
         simulation->options.order = 2;
-        if (!(periods > 0.001 * (1 - 1e-9))) return STATUS_OK;
+        if (!(periods > 0.001 * (1 - 1e-9))) return;
         if (!are_soft) continue;
 
         double *scratch;
-        TRY(MEMORY_NEW(scratch, 6 * fish->n_nodes, "the bending modes"));
+        NEW(simulation->arena, scratch, 6 * fish->n_nodes);
         are_soft = bending_mode_frequency(fish, scratch) < 0.6 * fish->frequency;
-        free(scratch);
     }
 
     simulation->options.order = are_soft ? 5 : 3;
-    return STATUS_OK;
+}
+
+static void simulation_release(void *object) {
+    struct simulation *const simulation = object;
+    state_free(simulation->state, simulation->school);
+    fish_school_free(simulation->school);
 }
 
 // an empty simulation of a case
-static enum status simulation_begin(struct simulation **simulation, const struct case_values *values) {
-    TRY(MEMORY_NEW(*simulation, 1, "a simulation"));
-    struct simulation *const new = *simulation;
+static struct simulation *simulation_begin(struct arena *parent, const struct case_values *values) {
+    struct arena *const arena = arena_create(parent, "a simulation");
+    struct simulation *new;
+    NEW(arena, new, 1);
+    new->arena = arena;
+    arena_defer(arena, simulation_release, new);
     new->started = wall_clock();
     new->n_events = lround(values->time.end / values->school.shedding_interval);
     new->integrator = integrator_of(values->solver.method);
     new->options = (struct integrator_options){
         .method = values->solver.method, .step = values->solver.step, .max_steps = values->solver.max_steps};
-    return STATUS_OK;
+    return new;
 }
 
 // discard a simulation that could not be built
@@ -67,45 +72,46 @@ static enum status simulation_discard_failed(struct simulation **simulation, enu
 }
 
 static enum status simulation_create_equations(struct simulation *simulation) {
-    TRY(residual_create(&simulation->residual, simulation->school, simulation->state));
-    return initial_conditions_create(&simulation->consistent, simulation->residual);
+    arena_free(simulation->renewed);
+    simulation->renewed = NULL;
+    simulation->solver = NULL;
+    simulation->residual = NULL;
+    simulation->renewed = arena_create(simulation->arena, "the equations and the solver");
+    TRY(residual_create(simulation->renewed, &simulation->residual, simulation->school, simulation->state));
+    return initial_conditions_create(simulation->renewed, &simulation->consistent, simulation->residual);
 }
 
 static enum status simulation_create_integrator(struct simulation *simulation) {
-    return simulation->integrator->create(&simulation->solver, simulation->residual, simulation->state,
-                                          &simulation->options);
-}
-
-static void simulation_free_solvers(struct simulation *simulation) {
-    if (simulation->integrator) simulation->integrator->free(simulation->solver);
-    initial_conditions_free(simulation->consistent);
-    residual_free(simulation->residual);
-    simulation->solver = NULL;
-    simulation->consistent = NULL;
-    simulation->residual = NULL;
+    return simulation->integrator->create(simulation->renewed, &simulation->solver, simulation->residual,
+                                          simulation->state, &simulation->options);
 }
 
 static enum status simulation_start(struct simulation *simulation, const struct case_values *values,
                                     const volatile sig_atomic_t *stop) {
     simulation->stop = stop;
-    TRY(fish_school_create(&simulation->school, &values->school));
-    TRY(simulation_set_order(simulation, values));
+    struct school_parameters parameters = values->school;
+    parameters.stop = stop;
+    TRY(fish_school_create(&simulation->school, &parameters));
+    simulation_set_order(simulation, values);
     TRY(state_create(&simulation->state, simulation->school));
+    TRY(status_ask(stop));
     TRY(simulation_create_equations(simulation));
-    TRY(diagnostics_create(&simulation->diagnostics, simulation->school));
+    simulation->diagnostics = diagnostics_create(simulation->arena, simulation->school);
+    simulation->residual->stop = stop;
     initial_conditions_listen(simulation->consistent, stop);
     TRY(event_start(simulation->state, simulation->residual, simulation->consistent));
+    TRY(status_ask(stop));
     return simulation_create_integrator(simulation);
 }
 
-enum status simulate_start(struct simulation **simulation, const struct case_values *values,
+enum status simulate_start(struct arena *parent, struct simulation **simulation, const struct case_values *values,
                            const volatile sig_atomic_t *stop) {
-    TRY(simulation_begin(simulation, values));
+    *simulation = simulation_begin(parent, values);
     return simulation_discard_failed(simulation, simulation_start(*simulation, values, stop));
 }
 
-enum status simulate_create(struct simulation **simulation, const struct case_values *values) {
-    return simulate_start(simulation, values, NULL);
+enum status simulate_create(struct arena *parent, struct simulation **simulation, const struct case_values *values) {
+    return simulate_start(parent, simulation, values, NULL);
 }
 
 const char *simulate_stopped_by(const volatile sig_atomic_t *stop) {
@@ -113,39 +119,24 @@ const char *simulate_stopped_by(const volatile sig_atomic_t *stop) {
 }
 
 enum status simulate_renew(struct simulation *simulation) {
-    simulation_free_solvers(simulation);
     simulation->options.before = simulation->totals;
     TRY(simulation_create_equations(simulation));
-    TRY(flow_interpolate(simulation->residual->flow, simulation->state));
     return simulation_create_integrator(simulation);
 }
 
-enum status simulate_take_up(struct simulation **simulation, const struct case_values *values, struct school *school,
-                             struct state *state, const struct integrator_counts *totals) {
-    const enum status begun = simulation_begin(simulation, values);
-    if (begun != STATUS_OK) {
-        state_free(state, school);
-        fish_school_free(school);
-        return begun;
-    }
-
-    struct simulation *const new = *simulation;
+enum status simulate_take_up(struct arena *parent, struct simulation **simulation, const struct case_values *values,
+                             struct school *school, struct state *state, const struct integrator_counts *totals) {
+    struct simulation *const new = *simulation = simulation_begin(parent, values);
     new->school = school;
     new->state = state;
     new->totals = *totals;
-    enum status status = simulation_set_order(new, values);
-    if (status == STATUS_OK) status = diagnostics_create(&new->diagnostics, school);
-    if (status == STATUS_OK) status = simulate_renew(new);
-    return simulation_discard_failed(simulation, status);
+    simulation_set_order(new, values);
+    new->diagnostics = diagnostics_create(new->arena, school);
+    return simulation_discard_failed(simulation, simulate_renew(new));
 }
 
 void simulate_free(struct simulation *simulation) {
-    if (!simulation) return;
-    simulation_free_solvers(simulation);
-    diagnostics_free(simulation->diagnostics);
-    state_free(simulation->state, simulation->school);
-    fish_school_free(simulation->school);
-    free(simulation);
+    if (simulation) arena_free(simulation->arena);
 }
 
 // contact.action: stop takes precedence over the status of the integrator
@@ -215,7 +206,7 @@ static enum status simulation_name_contact(const struct simulation *simulation, 
 
 static enum status simulation_advance(struct simulation *simulation) {
     struct state *const state = simulation->state;
-    const double next = (double)(state->event + 1) * simulation->school->interval;
+    const double next = fish_event_time(simulation->school, state->event + 1);
     const enum status advanced = simulation->integrator->advance(simulation->solver, next, simulation->stop);
     TRY(simulation_refuse_contact(simulation));
     TRY(advanced);

@@ -16,6 +16,8 @@ struct result_row; /* result/result_table.h */
 
 /* Callers read the fields; only the functions below change the simulation. */
 struct simulation {
+    struct arena *arena;
+    struct arena *renewed; /* of residual, consistent and solver */
     struct school *school;
     struct state *state;
     struct residual *residual;
@@ -31,22 +33,23 @@ struct simulation {
     double started;                    /* wall clock, s; for a resumed run: less the wall time before the checkpoint */
 };
 
-/* Create a simulation and perform the event at t = 0; stop when *stop is not 0. stop may be NULL. Fails with
- * STATUS_CASE, STATUS_MEMORY, STATUS_SOLVER or STATUS_STOPPED. simulate_create is simulate_start without stop. */
-enum status simulate_start(struct simulation **simulation, const struct case_values *values,
+/* Create a simulation and perform the event at t = 0; stop when *stop is not 0. stop may be NULL. The simulation is an
+ * arena of its own, released with the parent (NULL: none) or by simulate_free. Fails with STATUS_CASE, STATUS_SOLVER or
+ * STATUS_STOPPED. simulate_create is simulate_start without stop. */
+enum status simulate_start(struct arena *parent, struct simulation **simulation, const struct case_values *values,
                            const volatile sig_atomic_t *stop);
-enum status simulate_create(struct simulation **simulation, const struct case_values *values);
+enum status simulate_create(struct arena *parent, struct simulation **simulation, const struct case_values *values);
 
 /* Create a simulation from a state at an event, with given totals; the run continues as after simulate_renew. The
  * simulation takes ownership of school and state, also on failure. Fails as simulate_create. */
-enum status simulate_take_up(struct simulation **simulation, const struct case_values *values, struct school *school,
-                             struct state *state, const struct integrator_counts *totals);
+enum status simulate_take_up(struct arena *parent, struct simulation **simulation, const struct case_values *values,
+                             struct school *school, struct state *state, const struct integrator_counts *totals);
 
 /* Cause of the stop, for messages: --max-wall or a signal. */
 const char *simulate_stopped_by(const volatile sig_atomic_t *stop);
 
-/* At an event: discard everything but state and totals (the integrator with history, the Jacobians with factors, the
- * wake interpolation) and create these parts again from state and totals. The simulation is then identical to a
+/* At an event: discard everything but state and totals (the integrator with history, the Jacobians with factors)
+ * and create these parts again from state and totals. The simulation is then identical to a
  * simulation made by simulate_take_up. Fails with STATUS_MEMORY or STATUS_SOLVER; the simulation can then only be
  * freed. */
 enum status simulate_renew(struct simulation *simulation);

@@ -8,13 +8,14 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/arena.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "fish/fish_school.h"
 #include "result/checkpoint.h"
+#include "result/durable.h"
 #include "result/netcdf.h"
-#include "result/result_lock.h"
 #include "result/target.h"
 #include "run/checkpoints.h"
 #include "run/record.h"
@@ -67,21 +68,22 @@ static enum status run_stop(struct run *run) {
     const double t = run->simulation->state->t;
     TRY(checkpoints_write(&run->checkpoints, run->simulation, &run->record));
     return status_fail(STATUS_STOPPED, "stopped %s at t = %.10g s: continue with 'shoal resume %s'",
-                       simulate_stopped_by(run->options->stop), t, run->checkpoints.path);
+                       simulate_stopped_by(run->options->stop), t, run->checkpoints.word.text);
 }
 
 // advance to the next event, or restore the state at the last event and stop
 static enum status run_step(struct run *run) {
     struct simulation *const simulation = run->simulation;
     if (run->options->stop && *run->options->stop) return run_stop(run);
-    if (run->before) TRY(state_table_copy(run->before, simulation->state, simulation->school));
+    if (run->before) TRY(state_table_keep(run->before, simulation->state, simulation->school));
     const enum status status = simulate_step(simulation);
     if (status != STATUS_STOPPED) return status;
-    TRY(state_table_copy(simulation->state, run->before, simulation->school));
+    TRY(state_table_keep(simulation->state, run->before, simulation->school));
     return run_stop(run);
 }
 
 static enum status run_loop(struct run *run) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct simulation *const simulation = run->simulation;
     simulation->stop = run->options->stop;
     if (simulation->stop) TRY(state_create(&run->before, simulation->school));
@@ -135,6 +137,7 @@ int simulate_can_resume(const char *result, const char *checkpoint, const char *
 }
 
 static enum status run_start(struct run *run) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct simulate_options *const options = run->options;
     struct checkpoints *const checkpoints = &run->checkpoints;
     TRY(checkpoints_create(checkpoints, run->values, options->path, options->checkpoint_at));
@@ -144,14 +147,14 @@ static enum status run_start(struct run *run) {
             return status_fail(STATUS_FILE,
                                "%s is an unfinished result of this case: continue from t = %.6g s with 'shoal resume "
                                "%s', or start again with --force",
-                               options->path, t, checkpoints->path);
+                               options->path, t, checkpoints->word.text);
         }
         TRY(target_check(options->path, TARGET_NETCDF, false));
     }
 
     if (options->begin) TRY(options->begin(run->values, options->path, options->data));
 
-    const enum status started = simulate_start(&run->simulation, run->values, options->stop);
+    const enum status started = simulate_start(NULL, &run->simulation, run->values, options->stop);
     if (started == STATUS_STOPPED)
         return status_fail(started, "stopped %s during the event at t = 0: start the run again",
                            simulate_stopped_by(run->options->stop));
@@ -179,7 +182,7 @@ static enum status run_all(void *data) {
 
 enum status simulate_run(const struct case_values *values, const struct simulate_options *options) {
     struct run run = {.values = values, .options = options};
-    return result_lock_hold(options->path, run_all, &run);
+    return durable_claim_hold(options->path, run_all, &run);
 }
 
 // ---- a run that is resumed
@@ -187,7 +190,7 @@ enum status simulate_run(const struct case_values *values, const struct simulate
 struct resume {
     struct checkpoint checkpoint;
     char *result; /* path of the result */
-    struct result_lock lock;
+    struct durable_claim claim;
     struct result_checksum checksum; /* of the rows of the result */
     int is_complete;                 /* the run of the result has reached the end */
     char *note;                      /* reason for not using the newest checkpoint; NULL: used */
@@ -207,7 +210,10 @@ static enum status resume_try(struct resume *resume, const char *path) {
         status = text_take(&result, &resume->result, "a file name");
     }
 
-    if (status == STATUS_OK && !resume->lock.path) status = result_lock_take(&resume->lock, resume->result);
+    if (status == STATUS_OK && !resume->claim.part) {
+        status = access(resume->result, F_OK) == 0 ? target_check(resume->result, TARGET_NETCDF, true) : STATUS_OK;
+        if (status == STATUS_OK) status = durable_claim_take(&resume->claim, resume->result);
+    }
     if (status == STATUS_OK) {
         status = result_mark_check(resume->result, &checkpoint->rows, checkpoint->effective, &resume->checksum,
                                    &resume->is_complete);
@@ -216,11 +222,11 @@ static enum status resume_try(struct resume *resume, const char *path) {
     return status;
 }
 
-/* Open the checkpoint at path or, if this checkpoint cannot be used, the previous checkpoint, and lock the result.
- * Fails with STATUS_FILE and the reason, or with STATUS_MEMORY. resume_close releases everything, including the lock,
+/* Open the checkpoint at path or, if this checkpoint cannot be used, the previous checkpoint, and claim the result.
+ * Fails with STATUS_FILE and the reason, or with STATUS_MEMORY. resume_close releases everything, including the claim,
  * also after a failure. */
 static enum status resume_open(struct resume *resume, const char *path) {
-    *resume = (struct resume){.lock = {.descriptor = -1}};
+    *resume = (struct resume){.claim.descriptor = {-1, -1}};
     const enum status status = resume_try(resume, path);
     if (status != STATUS_FILE) return status;
     char reason[4096];
@@ -241,10 +247,10 @@ static enum status resume_open(struct resume *resume, const char *path) {
 
 static void resume_close(struct resume *resume) {
     checkpoint_free(&resume->checkpoint);
-    result_lock_release(&resume->lock);
+    durable_claim_release(&resume->claim);
     free(resume->result);
     free(resume->note);
-    *resume = (struct resume){.lock = {.descriptor = -1}};
+    *resume = (struct resume){.claim.descriptor = {-1, -1}};
 }
 
 /* Read the case of the checkpoint with assignments, as case_read does. The values include the text of the case file and
@@ -276,6 +282,7 @@ static enum status resume_case(const struct resume *resume, int n_assignments, c
 }
 
 static enum status run_take_up(struct run *run, const struct resume *resume) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct school *school = NULL;
     struct state *state = NULL;
     TRY(fish_school_create(&school, &run->values->school));
@@ -293,7 +300,7 @@ static enum status run_take_up(struct run *run, const struct resume *resume) {
         return status;
     }
 
-    TRY(simulate_take_up(&run->simulation, run->values, school, state, &resume->checkpoint.totals));
+    TRY(simulate_take_up(NULL, &run->simulation, run->values, school, state, &resume->checkpoint.totals));
     run->simulation->started -= resume->checkpoint.wall_time;
     return STATUS_OK;
 }

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 #include "contact/clearance.h"
 #include "control/control.h"
 #include "fish/fish.h"
@@ -38,9 +37,11 @@ static void continue_sample(const struct history *history, double interval, stru
     }
 }
 
-void diagnostics_remember(struct residual *residual, struct state *state) {
+enum status diagnostics_remember(struct residual *residual, struct state *state) {
     const double interval = residual->school->interval;
     const int threads = fish_threads(residual->school);
+    TRY(state_reserve(state, residual->school));
+
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) {
         const struct fish *fish = &residual->school->fish[f];
@@ -75,6 +76,7 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         }
         state_remember(history, &sample);
     }
+    return STATUS_OK;
 }
 
 int diagnostics_course(const struct history *history, double *course, double *rate) {
@@ -253,27 +255,13 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
     to->separation_share = fish->suction_limit > 0 ? separation_share(history, fish->suction_limit) : 0;
 }
 
-enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school) {
-    *diagnostics = NULL;
-    struct diagnostics *new;
-    TRY(MEMORY_NEW(new, 1, "the diagnostics"));
-    enum status status = MEMORY_NEW(new->fish, school->n_fish, "the diagnostics");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->body, school->n_fish, "the diagnostics");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->wake, school->n_fish, "the diagnostics");
-    if (status == STATUS_OK) {
-        *diagnostics = new;
-    } else {
-        diagnostics_free(new);
-    }
-    return status;
-}
-
-void diagnostics_free(struct diagnostics *diagnostics) {
-    if (!diagnostics) return;
-    free(diagnostics->fish);
-    free(diagnostics->body);
-    free(diagnostics->wake);
-    free(diagnostics);
+struct diagnostics *diagnostics_create(struct arena *arena, const struct school *school) {
+    struct diagnostics *diagnostics;
+    NEW(arena, diagnostics, 1);
+    NEW(arena, diagnostics->fish, school->n_fish);
+    NEW(arena, diagnostics->body, school->n_fish);
+    NEW(arena, diagnostics->wake, school->n_fish);
+    return diagnostics;
 }
 
 static double shedding_rate(const struct residual *residual, const struct state *state, int f) {

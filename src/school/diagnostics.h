@@ -10,8 +10,9 @@
 /* Samples of every fish at the events of the last period, and quantities over the period: means,
  * course, amplitude of the tail. doc/model.md, section 13. */
 
-/* Add a sample to the history of every fish; call at every event, before diagnostics_event. */
-void diagnostics_remember(struct residual *residual, struct state *state);
+/* Add a sample to the history of every fish; call at every event, before diagnostics_event. Fails with
+ * STATUS_MEMORY. */
+enum status diagnostics_remember(struct residual *residual, struct state *state);
 
 /* Course: direction of the displacement of the centre of mass over the last period, rad, and rate of the course, rad
  * s-1. Returns 0 in the first period, or without displacement, else 1. */
@@ -25,9 +26,7 @@ double diagnostics_mean_heading(const struct history *history);
 void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
                         struct diagnostics_fish *to);
 
-/* Fails with STATUS_MEMORY. diagnostics_free accepts NULL. */
-enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school);
-void diagnostics_free(struct diagnostics *diagnostics);
+struct diagnostics *diagnostics_create(struct arena *arena, const struct school *school);
 
 /* Fill *diagnostics at the event of the state; the residual must have been evaluated at this event. */
 void diagnostics_event(struct residual *residual, const struct state *state, struct diagnostics *diagnostics);

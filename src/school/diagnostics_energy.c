@@ -218,6 +218,7 @@ void diagnostics_begin(struct residual *residual, struct state *state, int f) {
 
 void diagnostics_after_jump(struct residual *residual, struct state *state) {
     const int threads = fish_threads(residual->school);
+    state_begin_rates(state, residual->school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) {
         // strains and stresses of a consistent state: initial values of advance_strains
@@ -252,5 +253,6 @@ void diagnostics_restart(struct residual *residual, struct state *state) {
     diagnostics_momentum_start(residual, state);
     clearance_start(residual->school, state, residual->neighbours, residual->scratch);
     state->crossed = -1;
+    memset(state->divergence, 0, sizeof state->divergence);
     self_crossing_remember(residual->school, state, residual->scratch);
 }

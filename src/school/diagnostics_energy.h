@@ -41,8 +41,9 @@ void diagnostics_restart(struct residual *residual, struct state *state);
  * next step begins with the present powers. */
 void diagnostics_begin(struct residual *residual, struct state *state, int f);
 
-/* Call before and after a jump of the state. The energy of the jump counts as work, and quadratures of later steps
- * begin after the jump. Example: a jump of the bias changes the natural curvature, and thereby the bending energy. */
+/* Call before and after a jump of the state. The energy of the jump counts as work, and quadratures of later steps and
+ * rates at later events begin after the jump. Example: a jump of the bias changes the natural curvature, and thereby
+ * the bending energy. */
 void diagnostics_before_jump(struct residual *residual, struct state *state);
 void diagnostics_after_jump(struct residual *residual, struct state *state);
 

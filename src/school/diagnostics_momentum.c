@@ -10,7 +10,7 @@
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
-#include "flow/flow_rings.h"
+#include "flow/flow_at_wake.h"
 #include "force/fluid_force.h"
 #include "state/impulse.h"
 
@@ -144,15 +144,15 @@ static void place_of_tail(const struct fish *fish, const double *y, double tail[
 // add the nascent vortex, or stretch, of a fish
 static void add_nascent(struct impulse_moments *sum, const struct flow *flow, const struct state *state, int f,
                         double tau, const double tail[2]) {
-    const double circulation = flow->nascent.circulation[f];
-    if (!flow_has_free_sheets(flow)) {
-        impulse_add(sum, circulation, flow->nascent.x[f], flow->nascent.y[f]);
-        return;
+    const struct wake *const wake = &state->wake[f];
+    double at[2];
+    if (flow_has_free_sheets(flow)) {
+        sheet_newest(wake, flow->school->interval, tau, tail, at);
+        impulse_add_stretch(sum, flow->fish[f].nascent, tail, at);
+    } else {
+        wake_nascent(wake, tau, tail, at);
+        impulse_add(sum, flow->fish[f].nascent, at[0], at[1]);
     }
-
-    double newest[2];
-    free_sheet_nascent_point(&state->wake[f], flow->school->interval, tau, tail, 1, newest);
-    impulse_add_stretch(sum, circulation, tail, newest);
 }
 
 // add the impulse of the bound sheet; with momenta: added momentum plus bound circulation at the tail, which equals the
@@ -161,13 +161,13 @@ static void add_bound_impulse(const struct residual *residual, int f, const doub
                               double impulse[3]) {
     const struct flow *const flow = residual->flow;
     const struct fish *const fish = &residual->school->fish[f];
-    const struct range bound = flow->sheet_range[f];
+    const struct sources *const bound = &flow->fish[f].own;
     struct impulse_moments sum = {0};
     double total = 0, of_sum[3];
 
-    for (int j = bound.first; j < bound.first + bound.n; j++) {
-        impulse_add(&sum, flow->sheet.circulation[j], flow->sheet.x[j], flow->sheet.y[j]);
-        total += flow->sheet.circulation[j];
+    for (int j = 0; j < fish->n_sheet; j++) {
+        impulse_add(&sum, bound->q[j], bound->x[j], bound->y[j]);
+        total += bound->q[j];
     }
 
     if (residual->pressure[f]) {
@@ -216,7 +216,7 @@ static void add_stream(const struct residual *residual, int f, double t, const d
     const struct fish *const fish = &school->fish[f];
     double u, v, gust[2], tail[2];
     flow_external(school, t, 0, 0, &u, &v);
-    flow_gust(school, t, 0, 0, &gust[0], &gust[1]);
+    flow_external_gust(school, t, 0, 0, &gust[0], &gust[1]);
     u -= gust[0];
     v -= gust[1];
     if (!(fabs(u) + fabs(v) + fabs(school->shear) > 0) || !residual->pressure[f]) return;
@@ -293,13 +293,13 @@ static void add_force_of(const double *u, const double *v, int n, const double *
     }
 }
 
-// add the force of velocities on rings, and of the divergence on the legs
-static void add_force_on_rings(const double *u, const double *v, const double *div, const struct rings *rings,
-                               double factor, double force[3]) {
-    add_force_of(u, v, rings->n, rings->x, rings->y, rings->q, factor, force);
-    for (int i = 0; i < rings->n; i++) {
-        add_with_moment(force, rings->x[i], rings->y[i], factor * div[i] * rings->dy[i],
-                        -factor * div[i] * rings->dx[i]);
+// add the force of velocities on sources, and of the divergence on the legs
+static void add_force_on_sources(const double *u, const double *v, const double *div, const struct sources *sources,
+                                 double factor, double force[3]) {
+    add_force_of(u, v, sources->n, sources->x, sources->y, sources->q, factor, force);
+    for (int i = 0; i < sources->n; i++) {
+        add_with_moment(force, sources->x[i], sources->y[i], factor * div[i] * sources->dy[i],
+                        -factor * div[i] * sources->dx[i]);
     }
 }
 
@@ -307,25 +307,12 @@ static void add_force_on_rings(const double *u, const double *v, const double *d
 static void force_of_images(const struct flow *flow, int f, double force[3]) {
     const struct school *const school = flow->school;
     const double factor = school->density * impulse_depth(&school->fish[f]);
-    if (flow->rings) {
-        const struct fish_rings *const rings = &flow->rings->fish[f];
-        const int point = flow->points[f].first, marker = flow->wake_range[f].first;
-        memset(force, 0, 3 * sizeof *force);
-        add_force_on_rings(flow->image_u + point, flow->image_v + point, flow->rings->image_div + point, &rings->body,
-                           factor, force);
-        add_force_on_rings(flow->wake_image_u + marker, flow->wake_image_v + marker,
-                           flow->rings->wake_image_div + marker, &rings->markers, factor, force);
-        return;
-    }
-
-    const struct range body = flow->body_range[f], wake = flow->wake_range[f];
-    const struct vortices *const all = &flow->convecting;
-    const int control = flow->points[f].first;
+    const int point = flow->points[f].first, marker = flow->wake_range[f].first;
     memset(force, 0, 3 * sizeof *force);
-    add_force_of(flow->image_u + control, flow->image_v + control, body.n, all->x + body.first, all->y + body.first,
-                 all->circulation + body.first, factor, force);
-    add_force_of(flow->wake_image_u + wake.first, flow->wake_image_v + wake.first, wake.n, all->x + wake.first,
-                 all->y + wake.first, all->circulation + wake.first, factor, force);
+    add_force_on_sources(flow->image_u + point, flow->image_v + point, flow->image_div + point, &flow->fish[f].body,
+                         factor, force);
+    add_force_on_sources(flow->wake_image_u + marker, flow->wake_image_v + marker, flow->wake_image_div + marker,
+                         &flow->fish[f].markers, factor, force);
 }
 
 // add the force of a travelling gust on n circulations
@@ -333,7 +320,7 @@ static void add_force_of_gust(const struct school *school, double t, int n, cons
                               const double *circulation, double factor, double force[3]) {
     for (int i = 0; i < n; i++) {
         double u, v;
-        flow_gust(school, t, x[i], y[i], &u, &v);
+        flow_external_gust(school, t, x[i], y[i], &u, &v);
         add_force_of(&u, &v, 1, x + i, y + i, circulation + i, factor, force);
     }
 }
@@ -343,19 +330,9 @@ static void force_of_gust(const struct flow *flow, int f, double force[3]) {
     const struct school *const school = flow->school;
     const double factor = school->density * impulse_depth(&school->fish[f]);
     memset(force, 0, 3 * sizeof *force);
-    if (flow->rings) {
-        const struct rings *const all[] = {&flow->rings->fish[f].body, &flow->rings->fish[f].markers};
-        for (int i = 0; i < 2; i++) {
-            add_force_of_gust(school, flow->t, all[i]->n, all[i]->x, all[i]->y, all[i]->q, factor, force);
-        }
-        return;
-    }
-
-    const struct range all[] = {flow->body_range[f], flow->wake_range[f]};
+    const struct sources *const all[] = {&flow->fish[f].body, &flow->fish[f].markers};
     for (int i = 0; i < 2; i++) {
-        const int first = all[i].first;
-        add_force_of_gust(school, flow->t, all[i].n, flow->convecting.x + first, flow->convecting.y + first,
-                          flow->convecting.circulation + first, factor, force);
+        add_force_of_gust(school, flow->t, all[i]->n, all[i]->x, all[i]->y, all[i]->q, factor, force);
     }
 }
 
@@ -369,7 +346,7 @@ static int any_has_reaction(const struct school *school) {
 static void book_legs(const struct flow *flow, struct state *state, int f) {
     struct momentum_balance *const momentum = &state->momentum[f];
     double rate[3];
-    flow_rings_leg_rate(flow, f, rate);
+    flow_leg_rate(flow, f, rate);
 
     // from impulse to sums of circulation times x, y and |x|^2
     const double now[3] = {-rate[1], rate[0], -2 * rate[2]};
@@ -382,7 +359,7 @@ static void book_legs(const struct flow *flow, struct state *state, int f) {
 enum status diagnostics_momentum_event(struct residual *residual, struct state *state) {
     const struct school *const school = residual->school;
     struct flow *const flow = residual->flow;
-    for (int f = 0; f < school->n_fish && flow->rings; f++) {
+    for (int f = 0; f < school->n_fish && flow->kernel->has_legs; f++) {
         if (diagnostics_has_reaction(school, &school->fish[f])) book_legs(flow, state, f);
     }
 
@@ -489,6 +466,13 @@ static double usual_momentum(const struct school *school) {
     return sum;
 }
 
+int diagnostics_momentum_is_defined(const struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) {
+        if (!diagnostics_has_reaction(school, &school->fish[f])) return 0;
+    }
+    return !(school->density > 0) || have_one_depth(school);
+}
+
 void diagnostics_momentum(struct residual *residual, const struct state *state, struct diagnostics *diagnostics) {
     const struct school *const school = residual->school;
     double size[3] = {0};
@@ -499,6 +483,5 @@ void diagnostics_momentum(struct residual *residual, const struct state *state, 
 
     const double rounding = 1e-6;
     diagnostics->momentum_size = fmax(rounding * usual_momentum(school), fmax(size[0], fmax(size[1], size[2])));
-    for (int i = 0; i < 3 && school->density > 0 && !have_one_depth(school); i++)
-        diagnostics->momentum_balance[i] = NAN;
+    for (int i = 0; i < 3 && !diagnostics_momentum_is_defined(school); i++) diagnostics->momentum_balance[i] = NAN;
 }

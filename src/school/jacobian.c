@@ -1,64 +1,36 @@
 /* jacobian.c: allocation of blocks, masks, and products with couplings. */
 #include "school/jacobian.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
-#include "vortex/kernel.h"
+#include "base/wide.h"
 
-enum status jacobian_create(struct jacobian **jacobian, const struct school *school) {
-    *jacobian = NULL;
-    struct jacobian *new;
-    TRY(MEMORY_NEW(new, 1, "a Jacobian"));
-
-    new->school = school;
-    enum status status = MEMORY_NEW(new->own, school->n_fish, "a Jacobian");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->first, school->n_fish + 1, "a Jacobian");
-    for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
-        const struct layout *at = &school->fish[f].at;
-        status = sparse_create(&new->own[f], at->x, at->end - at->x);
+struct jacobian *jacobian_create(struct arena *arena, const struct school *school) {
+    struct jacobian *jacobian;
+    NEW(arena, jacobian, 1);
+    jacobian->arena = arena;
+    jacobian->school = school;
+    NEW(arena, jacobian->own, school->n_fish);
+    NEW(arena, jacobian->first, school->n_fish + 1);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct layout *const at = &school->fish[f].at;
+        jacobian->own[f] = sparse_create(arena, at->x, at->end - at->x);
     }
-
-    if (status == STATUS_OK) {
-        *jacobian = new;
-    } else {
-        jacobian_free(new);
-    }
-    return status;
-}
-
-void jacobian_free(struct jacobian *jacobian) {
-    if (!jacobian) return;
-    for (int f = 0; jacobian->own && f < jacobian->school->n_fish; f++) sparse_free(jacobian->own[f]);
-    free(jacobian->own);
-    free(jacobian->first);
-    free(jacobian->coupling);
-    free(jacobian->values);
-    free(jacobian);
+    return jacobian;
 }
 
 static size_t block_size(const struct coupling_block *rows) {
     return (size_t)rows->n_rows * (size_t)rows->n_columns;
 }
 
-enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, unsigned pattern) {
+void jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, unsigned pattern) {
     const struct school *school = jacobian->school;
     const int n_fish = school->n_fish;
     int n = 0;
     for (int i = 0; i < n_fish * n_fish; i++) n += coupled[i] && i / n_fish != i % n_fish;
-
-    // release the old blocks
-    free(jacobian->coupling);
-    free(jacobian->values);
-    jacobian->values = NULL;
-    jacobian->n_couplings = 0;
-    memset(jacobian->first, 0, ((size_t)n_fish + 1) * sizeof *jacobian->first);
+    GROW(jacobian->arena, jacobian->coupling, n + 1);
 
     // list the couplings, fish by fish
-    jacobian->coupling = NULL;
-    TRY(MEMORY_NEW(jacobian->coupling, n + 1, "the couplings of the Jacobian"));
-
     size_t n_values = 1;
     for (int f = 0, next = 0; f < n_fish; f++) {
         for (int g = 0; g < n_fish; g++) {
@@ -71,12 +43,7 @@ enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coup
     }
 
     // place the blocks in one array
-    const enum status status = MEMORY_NEW(jacobian->values, n_values, "the couplings of the Jacobian");
-    if (status != STATUS_OK) {
-        memset(jacobian->first, 0, ((size_t)n_fish + 1) * sizeof *jacobian->first);
-        return status;
-    }
-
+    GROW(jacobian->arena, jacobian->values, n_values);
     double *value = jacobian->values;
     for (int i = 0; i < n; i++) {
         jacobian->coupling[i].rows.value = value;
@@ -85,7 +52,6 @@ enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coup
 
     jacobian->n_couplings = n;
     jacobian->pattern = pattern;
-    return STATUS_OK;
 }
 
 void jacobian_mask_couplings(struct jacobian *jacobian, int f) {
@@ -108,8 +74,8 @@ void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const d
 
         // columns of x and y, then of gamma and circulation: each group is contiguous in the unknowns
         const int n_places = 2 * other->n_nodes;
-        kernel_multiply(rows->n_rows, n_places, rows->value, unknowns + other->at.x, product);
-        kernel_multiply(rows->n_rows, rows->n_columns - n_places, rows->value + (long)n_places * rows->n_rows,
-                        unknowns + other->at.gamma, product);
+        wide_multiply(rows->n_rows, n_places, rows->value, unknowns + other->at.x, product);
+        wide_multiply(rows->n_rows, rows->n_columns - n_places, rows->value + (long)n_places * rows->n_rows,
+                      unknowns + other->at.gamma, product);
     }
 }

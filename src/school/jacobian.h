@@ -9,7 +9,6 @@
 #define JACOBIAN_H
 
 #include "base/sparse.h"
-#include "base/status.h"
 #include "fish/fish.h"
 #include "flow/flow_derivative.h"
 
@@ -20,6 +19,7 @@ struct jacobian_coupling {
 };
 
 struct jacobian {
+    struct arena *arena;
     const struct school *school;
     struct sparse **own; /* of each fish; rows and columns are numbered as in the school           (n_fish) */
 
@@ -29,16 +29,14 @@ struct jacobian {
     int n_couplings;
     int has_contacts;                   /* whether the couplings contain contact forces */
     struct jacobian_coupling *coupling; /* (n_couplings) */
-    double *values;
+    double *values;                     /* of all couplings */
 };
 
-/* A Jacobian without couplings. Fails with STATUS_MEMORY; jacobian_free accepts NULL. */
-enum status jacobian_create(struct jacobian **jacobian, const struct school *school);
-void jacobian_free(struct jacobian *jacobian);
+/* A Jacobian without couplings. */
+struct jacobian *jacobian_create(struct arena *arena, const struct school *school);
 
-/* Allocate the blocks of the pairs (f, g), f != g, for which coupled[f n_fish + g] is not 0. Fails with
- * STATUS_MEMORY; the Jacobian then has no couplings. */
-enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, unsigned pattern);
+/* Allocate the blocks of the pairs (f, g), f != g, for which coupled[f n_fish + g] is not 0. */
+void jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, unsigned pattern);
 
 /* Zero the rows of the couplings of fish f that are masked in the own block of fish f. */
 void jacobian_mask_couplings(struct jacobian *jacobian, int f);

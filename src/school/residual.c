@@ -2,10 +2,8 @@
 #include "school/residual.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "body/clamp.h"
 #include "body/rod.h"
@@ -88,20 +86,6 @@ double residual_undamped(const struct school *school, int i) {
 
 // ---- neighbours by boxes, then by the distance of outlines
 
-/* Fill *couplings without coupled pairs. The neighbours must outlive the couplings. Fails with STATUS_MEMORY; call
- * residual_couplings_free also after a failure. */
-static enum status residual_couplings_fill(struct residual_couplings *couplings, const struct school *school,
-                                           struct neighbours *neighbours) {
-    const size_t n_fish = (size_t)school->n_fish;
-    *couplings =
-        (struct residual_couplings){.school = school, .neighbours = neighbours, .reach = school->coupling_distance};
-    return MEMORY_NEW(couplings->coupled, n_fish * n_fish, "the couplings of fish");
-}
-
-static void residual_couplings_free(struct residual_couplings *couplings) {
-    free(couplings->coupled);
-}
-
 // couple exactly the fish within a distance of each other; returns whether any pair has changed
 static int couple_neighbours(struct residual_couplings *couplings, const double *y, double distance) {
     const struct school *school = couplings->school;
@@ -125,15 +109,14 @@ static int couple_neighbours(struct residual_couplings *couplings, const double 
     return changed;
 }
 
-enum status residual_couple(struct residual_couplings *couplings, const double *y) {
+void residual_couple(struct residual_couplings *couplings, const double *y) {
     const struct school *school = couplings->school;
     for (int f = 0; f < school->n_fish; f++) {
         couplings->neighbours->box[f] = clearance_box(&school->fish[f], couplings->reach, y, y);
     }
 
-    TRY(neighbours_find(couplings->neighbours));
+    neighbours_find(couplings->neighbours);
     couplings->pattern += (unsigned)couple_neighbours(couplings, y, couplings->reach);
-    return STATUS_OK;
 }
 
 // upper bound of all distances between bodies, m
@@ -163,12 +146,14 @@ int residual_couple_more(struct residual_couplings *couplings, const double *y) 
     const unsigned pattern = couplings->pattern;
     while (!couplings->couples_most && couplings->pattern == pattern && couplings->reach < all) {
         couplings->reach = fmax(2 * couplings->reach, 0.5 * couplings->school->fish[0].length);
-        if (residual_couple(couplings, y) == STATUS_OK && n_block_values(couplings) <= max_values) continue;
+        residual_couple(couplings, y);
+        if (n_block_values(couplings) <= max_values) continue;
 
         // back to the reach before
         couplings->reach = before;
         couplings->couples_most = 1;
-        if (residual_couple(couplings, y) == STATUS_OK) return 0;
+        residual_couple(couplings, y);
+        return 0;
     }
     return couplings->pattern != pattern;
 }
@@ -190,98 +175,70 @@ int residual_couple_contacts(struct residual_couplings *couplings, const struct 
     return n_contacts > 0;
 }
 
-// for every thread a block that fits any pair of fish; one array of n_unknowns
-static enum status allocate_scratch(struct residual *residual, int most_points, int most_columns, int most_rows) {
-    const int n_threads = residual->school->threads;
-    int has_edges = 0;
-    for (int f = 0; f < residual->school->n_fish; f++) has_edges |= residual->school->fish[f].depth_varies;
-
-    TRY(MEMORY_NEW(residual->jacobian_scratch, n_threads, "threads"));
-    for (int i = 0; i < n_threads; i++) {
-        struct jacobian_scratch *const scratch = &residual->jacobian_scratch[i];
-        TRY(MEMORY_NEW(scratch->block.u, most_points * most_columns, "a block of the Jacobian"));
-        TRY(MEMORY_NEW(scratch->block.v, most_points * most_columns, "a block of the Jacobian"));
-        if (residual->school->finite) {
-            TRY(MEMORY_NEW(scratch->block.div, most_points * most_columns, "a block of the Jacobian"));
-            if (has_edges)
-                TRY(MEMORY_NEW(scratch->block.edge, 2 * most_points * most_columns, "a block of the Jacobian"));
-        }
-        TRY(MEMORY_NEW(scratch->rows.value, most_rows * most_columns, "a block of the Jacobian"));
-    }
-
-    return MEMORY_NEW(residual->scratch, residual->school->n_unknowns, "the unknowns");
+static void residual_free_flow(void *flow) {
+    flow_free(flow);
 }
 
-static enum status residual_allocate(struct residual *residual) {
-    const struct school *school = residual->school;
-    const size_t n_fish = (size_t)school->n_fish;
-    int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0;
-    TRY(MEMORY_NEW(residual->joints, n_fish, "the equations"));
-    TRY(MEMORY_NEW(residual->pressure, n_fish, "the equations"));
-
-    // find the sizes of all fish
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *fish = &school->fish[f];
-        if (fish_has_momentum(fish)) TRY(pressure_create(&residual->pressure[f], fish));
-        const int points = flow_n_points(fish), columns = flow_n_columns(fish);
-        residual->joints[f] = (struct range){n_joints, fish->n_joints};
-        n_joints += fish->n_joints;
-        if (points > most_points) most_points = points;
-        if (columns > most_columns) most_columns = columns;
-        if (flow_n_rows(fish) > most_rows) most_rows = flow_n_rows(fish);
-    }
-
-    TRY(allocate_scratch(residual, most_points, most_columns, most_rows));
-    struct actuation *const muscle = &residual->muscle;
-    double **const per_joint[] = {&muscle->curvature, &muscle->rate, &muscle->curvature_by_phi0, &muscle->rate_by_phi0};
-    TRY(MEMORY_ARRAYS(per_joint, n_joints, "the joints"));
-
-    TRY(neighbours_create(&residual->neighbours, school->n_fish));
-    TRY(residual_couplings_fill(&residual->couplings, school, residual->neighbours));
-    TRY(contact_create(&residual->contact, school));
-    return flow_create(&residual->flow, school);
+static void residual_free_pressure(void *pressure) {
+    pressure_free(pressure);
 }
 
-enum status residual_create(struct residual **residual, const struct school *school, const struct state *state) {
-    *residual = NULL;
+enum status residual_create(struct arena *arena, struct residual **residual, const struct school *school,
+                            const struct state *state) {
     struct residual *new;
-    TRY(MEMORY_NEW(new, 1, "the equations"));
+    NEW(arena, new, 1);
     new->school = school;
     new->state = state;
+    NEW(arena, new->joints, school->n_fish);
+    NEW(arena, new->pressure, school->n_fish);
+    NEW(arena, new->scratch, school->n_unknowns);
 
-    enum status status = residual_allocate(new);
-    if (status == STATUS_OK) status = residual_couple(&new->couplings, state->y);
-    if (status != STATUS_OK) {
-        residual_free(new);
-        return status;
+    // find the sizes of all fish
+    int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0, has_edges = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        if (fish_has_momentum(fish)) {
+            TRY(pressure_create(&new->pressure[f], fish));
+            arena_defer(arena, residual_free_pressure, new->pressure[f]);
+        }
+        new->joints[f] = (struct range){n_joints, fish->n_joints};
+        n_joints += fish->n_joints;
+        const int points = flow_n_points(fish), columns = flow_n_columns(fish), rows = flow_n_rows(fish);
+        if (points > most_points) most_points = points;
+        if (columns > most_columns) most_columns = columns;
+        if (rows > most_rows) most_rows = rows;
+        has_edges |= fish->depth_varies;
     }
+
+    // the actuation of all joints
+    NEW(arena, new->muscle.curvature, n_joints);
+    NEW(arena, new->muscle.rate, n_joints);
+    NEW(arena, new->muscle.curvature_by_phi0, n_joints);
+    NEW(arena, new->muscle.rate_by_phi0, n_joints);
+
+    TRY(flow_create(&new->flow, school));
+    arena_defer(arena, residual_free_flow, new->flow);
+
+    // for every thread a block that fits any pair of fish
+    NEW(arena, new->jacobian_scratch, school->threads);
+    for (int i = 0; i < school->threads; i++) {
+        struct jacobian_scratch *const scratch = &new->jacobian_scratch[i];
+        NEW(arena, scratch->block.u, most_points * most_columns);
+        NEW(arena, scratch->block.v, most_points * most_columns);
+        if (new->flow->kernel->has_legs) NEW(arena, scratch->block.div, most_points * most_columns);
+        if (new->flow->kernel->has_legs && has_edges) NEW(arena, scratch->block.edge, 2 * most_points * most_columns);
+        NEW(arena, scratch->rows.value, most_rows * most_columns);
+    }
+
+    // the partners of each fish: by contact, and by couplings in the Jacobian
+    new->neighbours = neighbours_create(arena, school->n_fish);
+    new->couplings = (struct residual_couplings){
+        .school = school, .neighbours = new->neighbours, .reach = school->coupling_distance};
+    NEW(arena, new->couplings.coupled, (size_t)school->n_fish * (size_t)school->n_fish);
+    new->contact = contact_create(arena, school);
+    residual_couple(&new->couplings, state->y);
     *residual = new;
     return STATUS_OK;
-}
-
-void residual_free(struct residual *residual) {
-    if (!residual) return;
-    flow_free(residual->flow);
-    for (int f = 0; residual->pressure && f < residual->school->n_fish; f++) pressure_free(residual->pressure[f]);
-    free(residual->pressure);
-    contact_free(residual->contact);
-    neighbours_free(residual->neighbours);
-    free(residual->joints);
-    residual_couplings_free(&residual->couplings);
-    free(residual->muscle.curvature);
-    free(residual->muscle.rate);
-    free(residual->muscle.curvature_by_phi0);
-    free(residual->muscle.rate_by_phi0);
-    free(residual->scratch);
-    for (int i = 0; residual->jacobian_scratch && i < residual->school->threads; i++) {
-        free(residual->jacobian_scratch[i].block.u);
-        free(residual->jacobian_scratch[i].block.v);
-        free(residual->jacobian_scratch[i].block.div);
-        free(residual->jacobian_scratch[i].block.edge);
-        free(residual->jacobian_scratch[i].rows.value);
-    }
-    free(residual->jacobian_scratch);
-    free(residual);
 }
 
 enum bound_sheet_law residual_sheet_law(const struct residual *residual) {

@@ -3,6 +3,8 @@
 #ifndef RESIDUAL_H
 #define RESIDUAL_H
 
+#include <signal.h>
+
 #include "base/status.h"
 #include "body/rod.h"
 #include "contact/clearance.h"
@@ -64,11 +66,11 @@ struct residual_couplings {
     unsigned char *coupled; /* whether the Jacobian holds the block of fish g in the rows of fish f (n_fish, n_fish) */
 };
 
-/* Couple fish by the positions in y. Fails with STATUS_MEMORY; the coupled pairs are then unchanged. */
-enum status residual_couple(struct residual_couplings *couplings, const double *y);
+/* Couple fish by the positions in y. */
+void residual_couple(struct residual_couplings *couplings, const double *y);
 
 /* Double the reach until more fish couple at the positions in y; the new reach is kept. Returns whether more fish
- * couple: 0 if the blocks would exceed 400 MB, or without memory. */
+ * couple: 0 if the blocks would exceed 400 MB. */
 int residual_couple_more(struct residual_couplings *couplings, const double *y);
 
 /* Couple all fish in contact, for any reach; returns whether any fish are in contact. */
@@ -94,7 +96,8 @@ struct residual {
     struct range *joints;    /* of each fish                                     (n_fish) */
     struct actuation muscle; /* actuation at the last evaluation                 (joints of all fish) */
     struct jacobian_scratch *jacobian_scratch; /* scratch of each thread                          (threads) */
-    double *scratch; /* scratch of diagnostics; fish f uses the slices of fish f     (n_unknowns) */
+    double *scratch;                   /* scratch of diagnostics; fish f uses the slices of fish f     (n_unknowns) */
+    const volatile sig_atomic_t *stop; /* residual_jacobian fails with STATUS_STOPPED once *stop is not 0; or NULL */
 };
 
 /* Scratch of the derivatives through the flow, large enough for any pair of fish. */
@@ -103,10 +106,9 @@ struct jacobian_scratch {
     struct coupling_block rows;
 };
 
-/* Every evaluation reads the state, which must outlive the residual. Fails with STATUS_MEMORY; residual_free accepts
- * NULL. */
-enum status residual_create(struct residual **residual, const struct school *school, const struct state *state);
-void residual_free(struct residual *residual);
+/* Every evaluation reads the state, which must outlive the residual. Fails with STATUS_MEMORY. */
+enum status residual_create(struct arena *arena, struct residual **residual, const struct school *school,
+                            const struct state *state);
 
 /* value = F(t, y, yp). Returns STATUS_RETRY if a value is not finite, or if repelling bodies touch. */
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);
@@ -144,7 +146,7 @@ int residual_shed_is_algebraic(const struct residual *residual);
 // ---- residual_jacobian.c: the derivatives of the residual. doc/numerics.md, section 6.
 
 /* jacobian = dF/dy + cj dF/dyp, with the blocks of the coupled fish; fish in contact couple from this call on. Fails
- * with STATUS_MEMORY, and as residual_evaluate if bodies touch. */
+ * as residual_evaluate if bodies touch. */
 enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
                               struct jacobian *jacobian);
 

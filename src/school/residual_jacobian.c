@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "body/clamp.h"
 #include "body/rod.h"
@@ -12,13 +11,6 @@
 #include "force/fluid_force.h"
 #include "force/reactive.h"
 #include "school/residual.h"
-
-// zero the last column: circulation infinitely far away induces no velocity
-static void zero_nascent_column(struct influence_block *block) {
-    const long n = block->n_points, first = (block->n_columns - 1) * n;
-    memset(block->u + first, 0, (size_t)n * sizeof *block->u);
-    memset(block->v + first, 0, (size_t)n * sizeof *block->v);
-}
 
 // derivatives of the equations of fish f by the unknowns of fish g through the flow velocity
 static void flow_jacobian(const struct residual *residual, int f, int g, double t, const double *y,
@@ -30,7 +22,6 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
     memset(rows->value, 0, (size_t)rows->n_rows * (size_t)rows->n_columns * sizeof *rows->value);
 
     flow_derivative(residual->flow, f, g, block);
-    if (residual->shed_now == SHED_IS_FAR && !residual->flow->rings) zero_nascent_column(block);
 
     fluid_force_flow_jacobian(fish, &flow, block, y, rows);
     if (residual->pressure[f]) pressure_flow_jacobian(residual->pressure[f], block, rows);
@@ -85,8 +76,8 @@ static void kinematics_jacobian(const struct residual *residual, const struct fi
 }
 
 // the derivatives of the equations of one fish, in the order of evaluate_fish
-static enum status fish_jacobian(struct residual *residual, int f, double t, double cj, const double *y,
-                                 struct jacobian_scratch *jacobian_scratch, struct jacobian *jacobian) {
+static void fish_jacobian(struct residual *residual, int f, double t, double cj, const double *y,
+                          struct jacobian_scratch *jacobian_scratch, struct jacobian *jacobian) {
     const struct school *school = residual->school;
     const struct fish *fish = &school->fish[f];
     struct sparse *const own = jacobian->own[f];
@@ -120,33 +111,31 @@ static enum status fish_jacobian(struct residual *residual, int f, double t, dou
         contact_jacobian(residual->contact, f, coupling->other, y, &coupling->rows);
     }
     jacobian_mask_couplings(jacobian, f);
-    return sparse_end(own);
+    sparse_end(own);
 }
 
 enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
                               struct jacobian *jacobian) {
     const struct school *school = residual->school;
-    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
+    int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
 
     TRY(residual_contact(residual, t, y));
     jacobian->has_contacts = residual_couple_contacts(&residual->couplings, residual->contact);
     TRY(flow_gradient(residual->flow, residual->state, t, y));
     if (jacobian->pattern != residual->couplings.pattern) {
-        TRY(jacobian_couple(jacobian, residual->couplings.coupled, residual->couplings.pattern));
+        jacobian_couple(jacobian, residual->couplings.coupled, residual->couplings.pattern);
     }
 
-    int n_failed = 0;
+    // a recording requests memory, which no parallel region may
+    for (int f = 0; f < school->n_fish; f++) {
+        if (jacobian->own[f]->recording) threads = 1;
+    }
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
-        struct jacobian_scratch *const jacobian_scratch = &residual->jacobian_scratch[omp_get_thread_num()];
-        if (fish_jacobian(residual, f, t, cj, y, jacobian_scratch, jacobian) != STATUS_OK) {
-#pragma omp atomic
-            n_failed++;
-        }
+        if (residual->stop && *residual->stop) continue;
+        fish_jacobian(residual, f, t, cj, y, &residual->jacobian_scratch[omp_get_thread_num()], jacobian);
     }
-
-    // messages are per thread: repeat the message in this thread
-    return n_failed == 0 ? STATUS_OK : memory_check(NULL, "the Jacobian");
+    return status_ask(residual->stop);
 }
 
 void residual_by_shed(struct residual *residual, const double *y, double *value) {

@@ -84,7 +84,7 @@ static void move_wake(struct wake *wake, const double centre[2], double angle, c
 
 // rotate every vector of the samples of the last period with the fish: means over the period do not jump
 static void move_history(struct history *history, const double centre[2], double angle, const double way[2]) {
-    for (int i = 0; i < history->n; i++) {
+    for (int i = 0; i < history->n_slots; i++) {
         struct sample *const sample = &history->sample[i];
         rotate(centre, angle, &sample->com[0], &sample->com[1]);
         rotate(centre, angle, &sample->tail[0], &sample->tail[1]);

@@ -3,7 +3,9 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
+#include "base/mathematics.h"
 #include "body/rod.h"
 
 /* Input of a warning about one fish. */
@@ -32,7 +34,7 @@ struct kind {
 static double largest_work(const struct subject *subject) {
     const double *const work = subject->state->balance[subject->f].work;
     double max = 0;
-    for (int i = 0; i < N_WORKS; i++) max = fmax(max, fabs(work[i]));
+    for (int i = 0; i < N_WORKS; i++) max = larger(max, fabs(work[i]));
     return max;
 }
 
@@ -45,9 +47,10 @@ static double energy_size(const struct subject *subject) {
     // the works are small in the first beat: include the energy of the body, and of one length per beat
     if (subject->state->t < subject->fish->period) {
         const double speed = subject->fish->length / subject->fish->period;
-        work = fmax(work, fmax(energy, subject->fish->total_mass * speed * speed));
+        work = larger(work, larger(energy, subject->fish->total_mass * speed * speed));
     }
-    return balance > rounding ? balance / (0.01 * work) : 0;
+    if (!isfinite(balance) || isnan(work)) return INFINITY;
+    return balance > rounding && work > 0 ? balance / (0.01 * work) : 0;
 }
 
 static void energy_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
@@ -62,36 +65,18 @@ static void energy_say(const struct subject *subject, const char *who, char line
 
 // upper bound of the speeds prescribed by the case, m s-1: sum for one fish of beat, motion, start, external flow, and
 // free acceleration by the load; the largest sum of all fish
-static double case_speed(const struct subject *subject) {
-    const struct school *const school = subject->school;
+static double case_speed(const struct school *school, const struct state *state) {
     double most = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         const double beat = 2 * 3.14159265358979323846 * fish->length * fish_rate(school, fish);
         const double motion = fish->motion.omega * (fabs(fish->motion.heave) + fabs(fish->motion.pitch) * fish->length);
-        const double load = hypot(fish->load_tip[0], fish->load_tip[1]) * subject->state->t / fish->total_mass;
+        const double load = hypot(fish->load_tip[0], fish->load_tip[1]) * state->t / fish->total_mass;
         const double stream = hypot(school->velocity[0], school->velocity[1]) +
                               hypot(school->gust[0], school->gust[1]) +
-                              fabs(school->shear * subject->diagnostics->fish[f].com[1]);
-        most = fmax(most, beat + motion + load + stream + fabs(fish->start_speed) + fabs(fish->motion.speed));
+                              fabs(school->shear * fish_mass_mean(fish, state->y + fish->at.y));
+        most = larger(most, beat + motion + load + stream + fabs(fish->start_speed) + fabs(fish->motion.speed));
     }
-    return most;
-}
-
-static double largest_speed(const struct subject *subject) {
-    const struct layout *const at = &subject->fish->at;
-    const double *const y = subject->state->y;
-    double most = 0;
-    for (int k = 0; k < subject->fish->n_nodes; k++) most = fmax(most, hypot(y[at->vx + k], y[at->vy + k]));
-    return most;
-}
-
-// largest magnitude of the circulation shed, and of the wake; a marker holds the circulation shed until the birth, m2
-// s-1
-static double largest_circulation(const struct subject *subject) {
-    const struct wake *const wake = &subject->state->wake[subject->f];
-    double most = fabs(subject->state->y[subject->fish->at.circulation]);
-    for (int i = 0; i < wake->n_vortex; i++) most = fmax(most, fabs(wake->circulation[i]));
     return most;
 }
 
@@ -99,24 +84,73 @@ static double largest_circulation(const struct subject *subject) {
 // result
 static const double most_of_case = 100;
 
-static double divergence_size(const struct subject *subject) {
-    const double speed = most_of_case * case_speed(subject);
-    return fmax(largest_speed(subject), largest_circulation(subject) / subject->fish->length) / speed;
+// replace the worst divergence and its fish by a worse divergence of the present state
+static void divergence_find(const struct school *school, const struct state *state, double worst[N_DIVERGENCE],
+                            long *diverged) {
+    const double limit = most_of_case * case_speed(school, state);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const struct wake *const wake = &state->wake[f];
+        const double *const vx = state->y + fish->at.vx, *const vy = state->y + fish->at.vy;
+
+        // the circulation of a marker is the circulation shed until the birth
+        double speed = 0, circulation = fabs(state->y[fish->at.circulation]);
+        for (int k = 0; k < fish->n_nodes; k++) speed = larger(speed, hypot(vx[k], vy[k]));
+        for (int i = 0; i < wake->n_vortex; i++) circulation = larger(circulation, fabs(wake->circulation[i]));
+
+        // a value that is not finite is above every limit; a body at rest without a beat has no limit
+        const double most = larger(speed, circulation / fish->length);
+        const double size = !isfinite(most) || !isfinite(limit) ? INFINITY : limit > 0 ? most / limit : 0;
+        if (!(size > worst[DIVERGENCE_SIZE])) continue;
+        const double now[N_DIVERGENCE] = {size, state->t, speed, circulation};
+        memcpy(worst, now, sizeof now);
+        *diverged = f;
+    }
 }
 
-static void divergence_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+void warnings_remember(const struct school *school, struct state *state) {
+    divergence_find(school, state, state->divergence, &state->diverged);
+}
+
+static int divergence_line(const struct school *school, const struct state *state, char line[WARNING_BYTES]) {
+    double worst[N_DIVERGENCE];
+    long diverged = state->diverged;
+    memcpy(worst, state->divergence, sizeof worst);
+    divergence_find(school, state, worst, &diverged);
+    if (!(worst[DIVERGENCE_SIZE] > 1)) return 0;
+
     snprintf(line, WARNING_BYTES,
-             "%s has diverged: node speed %.2g m/s, circulation %.2g m2/s, more than %g times the speeds of the case: "
-             "reduce "
-             "solver.rtol, solver.step or time.shedding_interval, or stiffen the body",
-             who, largest_speed(subject), largest_circulation(subject), most_of_case);
+             "%.40s has diverged: at t = %.4g s node speed %.2g m/s, circulation %.2g m2/s, more than %g times the "
+             "speeds of the case: reduce solver.rtol, solver.step or time.shedding_interval, or stiffen the body",
+             school->fish[diverged].name, worst[DIVERGENCE_T], worst[DIVERGENCE_SPEED], worst[DIVERGENCE_CIRCULATION],
+             most_of_case);
+    return 1;
+}
+
+// ---- means over a beat
+
+// two beats, up to the rounding error of the time
+static double beats_size(const struct subject *subject) {
+    const struct fish *const fish = subject->fish;
+    const double needed = (1 - 1e-9) * 2 * fish->period;
+    const int beats = fish_has_wave(fish) || fish->motion.omega > 0;
+    return beats && subject->state->t > 0 ? needed / subject->state->t : 0;
+}
+
+static void beats_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    const double period = subject->fish->period;
+    snprintf(line, WARNING_BYTES,
+             "the run has %.3g beats of %s: means and powers are not those of a cycle; increase time.end to at least "
+             "%.4g s",
+             subject->state->t / period, who, 2 * period);
 }
 
 // ---- drift of the speed
 
 static double drift_size(const struct subject *subject) {
-    if (!(subject->school->density > 0)) return 0;
-    return fabs(subject->diagnostics->fish[subject->f].drift) / 0.01;
+    const double drift = subject->diagnostics->fish[subject->f].drift;
+    if (!(subject->school->density > 0) || isnan(drift)) return 0;
+    return fabs(drift) / 0.01;
 }
 
 static void drift_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
@@ -282,22 +316,17 @@ static void force_say(const struct subject *subject, const char *who, char line[
 // ---- all of them
 
 static const struct kind kinds[N_WARNINGS] = {
-    [WARNING_DIVERGENCE] = {divergence_size, divergence_say},
-    [WARNING_ENERGY] = {energy_size, energy_say},
-    [WARNING_DRIFT] = {drift_size, drift_say},
-    [WARNING_EVENTS] = {events_size, events_say},
-    [WARNING_SHEET] = {sheet_size, sheet_say},
-    [WARNING_MODES] = {modes_size, modes_say},
-    [WARNING_EDGE] = {edge_size, edge_say},
-    [WARNING_CHATTER] = {chatter_size, chatter_say},
-    [WARNING_CUSP] = {cusp_size, cusp_say},
-    [WARNING_TAIL] = {tail_size, tail_say},
+    [WARNING_ENERGY] = {energy_size, energy_say}, [WARNING_BEATS] = {beats_size, beats_say},
+    [WARNING_DRIFT] = {drift_size, drift_say},    [WARNING_EVENTS] = {events_size, events_say},
+    [WARNING_SHEET] = {sheet_size, sheet_say},    [WARNING_MODES] = {modes_size, modes_say},
+    [WARNING_EDGE] = {edge_size, edge_say},       [WARNING_CHATTER] = {chatter_size, chatter_say},
+    [WARNING_CUSP] = {cusp_size, cusp_say},       [WARNING_TAIL] = {tail_size, tail_say},
     [WARNING_FORCE] = {force_size, force_say},
 };
 
 // accuracy warnings are suppressed for the published force
 static int applies_to_force(enum warning warning, const struct fish *fish) {
-    return fish->force != FORCE_PUBLISHED || warning == WARNING_FORCE || warning == WARNING_DIVERGENCE;
+    return fish->force != FORCE_PUBLISHED || warning == WARNING_FORCE;
 }
 
 const struct warning_words warnings_words[N_WARNINGS] = {
@@ -307,8 +336,8 @@ const struct warning_words warnings_words[N_WARNINGS] = {
     [WARNING_CROSSING] = {"a body crosses itself",
                           "centre line or outline, at an event; contact forces do not act within a body"},
     [WARNING_DIVERGENCE] = {"a fish has diverged",
-                            "at the end a node speed, or the circulation of the wake over the length, is above 100 "
-                            "times the speeds of the case"},
+                            "at an event a node speed, or the circulation of the wake over the length, is above "
+                            "100 times the speeds of the case"},
     [WARNING_ENERGY] =
         {"the energy balance is open",
          "energy_balance is more than 1 % of the largest work of muscle, fluid, damping, prescribed motion and all "
@@ -317,6 +346,7 @@ const struct warning_words warnings_words[N_WARNINGS] = {
         {"the momentum balance is open",
          "momentum_balance is more than 1 % of the largest sum over all fish of: momentum, change of the impulse of "
          "the vortices, external_impulse; not in the first beat, or, without beat, in the first length"},
+    [WARNING_BEATS] = {"few beats", "the run is shorter than two beats: means and powers are not those of a cycle"},
     [WARNING_DRIFT] = {"the speed changes", "drift is more than 1 %: means over the last beat are not steady"},
     [WARNING_EVENTS] = {"few events", "fewer than 20 in a beat"},
     [WARNING_SHEET] =
@@ -372,7 +402,9 @@ static int momentum_line(const struct school *school, const struct state *state,
     double period = 0;
     for (int f = 0; f < school->n_fish; f++) period = fmax(period, 1 / fish_rate(school, &school->fish[f]));
 
-    if (state->t < period || !(balance > 0.01 * diagnostics->momentum_size)) return 0;
+    const int is_open =
+        isfinite(balance) ? balance > 0.01 * diagnostics->momentum_size : diagnostics_momentum_is_defined(school);
+    if (state->t < period || !is_open) return 0;
     snprintf(line, WARNING_BYTES,
              "momentum balance: residual %.2g N s for %.2g N s: reduce time.shedding_interval, increase sheet_points, "
              "or start "
@@ -381,10 +413,38 @@ static int momentum_line(const struct school *school, const struct state *state,
     return 1;
 }
 
+enum status warnings_refuse(const struct school *school, const struct state *state,
+                            const struct diagnostics *diagnostics) {
+    const char *const remedy =
+        "reduce solver.rtol, solver.step or time.shedding_interval, or stiffen the body; the rows before are kept";
+
+    if (state_table_check(state, school) != STATUS_OK) {
+        return status_fail(STATUS_SOLVER, "the run has diverged at t = %.10g s: %s: %s", state->t, status_message(),
+                           remedy);
+    }
+
+    for (int f = 0; f < school->n_fish; f++) {
+        const double balance = diagnostics->fish[f].energy_balance;
+        if (isfinite(balance)) continue;
+        return status_fail(STATUS_SOLVER, "the run has diverged at t = %.10g s: the energy balance of %s is %g J: %s",
+                           state->t, school->fish[f].name, balance, remedy);
+    }
+
+    for (int i = 0; i < 3 && diagnostics_momentum_is_defined(school); i++) {
+        const double balance = diagnostics->momentum_balance[i];
+        if (isfinite(balance)) continue;
+        return status_fail(STATUS_SOLVER, "the run has diverged at t = %.10g s: the momentum balance is %g N%s s: %s",
+                           state->t, balance, i < 2 ? "" : " m", remedy);
+    }
+
+    return STATUS_OK;
+}
+
 int warnings_line(enum warning warning, const struct school *school, const struct state *state,
                   const struct diagnostics *diagnostics, double *scratch, char line[WARNING_BYTES]) {
     if (warning == WARNING_CONTACT) return contact_line(school, state->closest, line);
     if (warning == WARNING_CROSSING) return crossing_line(school, state, line);
+    if (warning == WARNING_DIVERGENCE) return divergence_line(school, state, line);
     if (warning == WARNING_MOMENTUM) return momentum_line(school, state, diagnostics, line);
 
     // the fish with the largest size
@@ -394,7 +454,7 @@ int warnings_line(enum warning warning, const struct school *school, const struc
         struct subject subject = {school, state, diagnostics, scratch, &school->fish[f], f, 0};
         if (!applies_to_force(warning, subject.fish)) continue;
         subject.size = kinds[warning].size(&subject);
-        if (!(subject.size > 1) || isinf(subject.size)) continue;
+        if (!(subject.size > 1)) continue;
 
         n++;
         if (subject.size > worst.size) worst = subject;

@@ -11,6 +11,7 @@ enum warning {
     WARNING_DIVERGENCE,
     WARNING_ENERGY,
     WARNING_MOMENTUM,
+    WARNING_BEATS,
     WARNING_DRIFT,
     WARNING_EVENTS,
     WARNING_SHEET,
@@ -36,6 +37,14 @@ int warnings_is_of_case(enum warning warning);
 /* The bending length of the tail at the beat frequency, with the added mass at the tail, m; infinite without beat or
  * added mass. doc/numerics.md, section 5. */
 double warnings_bending_length(const struct fish *fish);
+
+/* Keep the worst divergence of the run in state->divergence; call at every event. */
+void warnings_remember(const struct school *school, struct state *state);
+
+/* Fail with STATUS_SOLVER, time and remedy if a value of the state or a balance that is defined is not finite: no row
+ * of a result. diagnostics: of the same event as the state. */
+enum status warnings_refuse(const struct school *school, const struct state *state,
+                            const struct diagnostics *diagnostics);
 
 /* Write the line of a warning, without a line break, and return 1; return 0 if the warning does not apply. diagnostics:
  * of the same event as the state. scratch: (n_unknowns). */

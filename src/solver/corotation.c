@@ -2,9 +2,7 @@
 #include "solver/corotation.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "fish/fish_motion.h"
 
@@ -25,45 +23,25 @@ struct body {
 struct corotation {
     const struct school *school;
     struct body *body; /* (n_fish) */
-    double *values;    /* all arrays of all bodies */
 };
 
-enum { N_ARRAYS = 2 + 2 * N_RIGID };
-
-enum status corotation_create(struct corotation **corotation, const struct school *school) {
-    *corotation = NULL;
-    struct corotation *new;
-    TRY(MEMORY_NEW(new, 1, "the configurations of bodies"));
-    new->school = school;
-    size_t n_nodes = 0;
-    for (int f = 0; f < school->n_fish; f++) n_nodes += (size_t)school->fish[f].n_nodes;
-    enum status status = MEMORY_NEW(new->body, school->n_fish, "the configurations of bodies");
-    if (status == STATUS_OK) {
-        status = MEMORY_NEW(new->values, n_nodes * 2 * N_ARRAYS, "the configurations of bodies");
-    }
-    if (status != STATUS_OK) {
-        corotation_free(new);
-        return status;
-    }
-
-    double *next = new->values;
+struct corotation *corotation_create(struct arena *arena, const struct school *school) {
+    struct corotation *corotation;
+    NEW(arena, corotation, 1);
+    corotation->school = school;
+    NEW(arena, corotation->body, school->n_fish);
     for (int f = 0; f < school->n_fish; f++) {
-        struct body *body = &new->body[f];
+        struct body *const body = &corotation->body[f];
         body->fish = &school->fish[f];
         body->n_rigid = fish_n_prescribed(body->fish) > 0 ? 0 : N_RIGID;
-        double **const arrays[N_ARRAYS] = {&body->reference, &body->rotation, &body->from[0], &body->from[1],
-                                           &body->from[2],   &body->to[0],    &body->to[1],   &body->to[2]};
-        for (int i = 0; i < N_ARRAYS; i++, next += 2 * body->fish->n_nodes) *arrays[i] = next;
+        NEW(arena, body->reference, 2 * body->fish->n_nodes);
+        NEW(arena, body->rotation, 2 * body->fish->n_nodes);
+        for (int i = 0; i < N_RIGID; i++) {
+            NEW(arena, body->from[i], 2 * body->fish->n_nodes);
+            NEW(arena, body->to[i], 2 * body->fish->n_nodes);
+        }
     }
-    *corotation = new;
-    return STATUS_OK;
-}
-
-void corotation_free(struct corotation *corotation) {
-    if (!corotation) return;
-    free(corotation->body);
-    free(corotation->values);
-    free(corotation);
+    return corotation;
 }
 
 static double corotation_dot(const struct fish *fish, const double *a, const double *b) {
@@ -103,7 +81,7 @@ static void corotation_rotate(const struct fish *fish, const double *u, const do
     for (int i = 0; i < 2 * fish->n_nodes; i++) a[i] += first * v[i] - both * (u[i] + v[i]);
 }
 
-// corotation_rotate the vector of each node; sign -1: backwards
+// rotate the vector of each node; sign -1: backwards
 static void rotate_nodes(const struct body *body, double sign, double *a) {
     const int n = body->fish->n_nodes;
     for (int k = 0; k < n; k++) {

@@ -16,14 +16,13 @@
 #ifndef COROTATION_H
 #define COROTATION_H
 
-#include "base/status.h"
+#include "base/arena.h"
 #include "fish/fish.h"
 
 struct corotation;
 
-/* Create the maps of a school, which must outlive them. Fails with STATUS_MEMORY. corotation_free accepts NULL. */
-enum status corotation_create(struct corotation **corotation, const struct school *school);
-void corotation_free(struct corotation *corotation);
+/* Create the maps of a school, which must outlive them. */
+struct corotation *corotation_create(struct arena *arena, const struct school *school);
 
 /* Set the reference and the current configuration from the positions in y (n_unknowns). corotation_set_reference sets
  * both, and every map becomes the identity. */

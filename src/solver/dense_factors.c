@@ -2,27 +2,18 @@
 #include "solver/dense_factors.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
-#include "vortex/kernel.h"
+#include "base/wide.h"
 
 /* Columns of a panel and rows of a tile; columns of a tile. */
 enum { PANEL = 16, TILE_COLUMNS = 8 };
 
-enum status dense_factors_create(struct dense_factors *factors, int n) {
-    *factors = (struct dense_factors){.n = n, .stride = (n + PANEL - 1) / PANEL * PANEL};
-    TRY(MEMORY_NEW(factors->value, (size_t)n * (size_t)factors->stride, "a full matrix"));
-    const enum status status = MEMORY_NEW(factors->pivot, n, "a full matrix");
-    if (status != STATUS_OK) dense_factors_free(factors);
-    return status;
-}
-
-void dense_factors_free(struct dense_factors *factors) {
-    free(factors->value);
-    free(factors->pivot);
-    *factors = (struct dense_factors){0};
+struct dense_factors dense_factors_create(struct arena *arena, int n) {
+    struct dense_factors factors = {.n = n, .stride = (n + PANEL - 1) / PANEL * PANEL};
+    NEW(arena, factors.value, (size_t)n * (size_t)factors.stride);
+    NEW(arena, factors.pivot, n);
+    return factors;
 }
 
 double *dense_factors_column(const struct dense_factors *factors, int k) {
@@ -30,7 +21,7 @@ double *dense_factors_column(const struct dense_factors *factors, int k) {
 }
 
 // eliminate the columns first to end - 1 below the diagonal; returns whether every pivot is finite and not 0
-static KERNEL_WIDE(int, factor_panel, (const struct dense_factors *of, int first, int end), (of, first, end)) {
+static WIDE(int, factor_panel, (const struct dense_factors *of, int first, int end), (of, first, end)) {
     const int n = of->n;
     for (int k = first; k < end; k++) {
         // pivot: the largest entry
@@ -58,8 +49,7 @@ static KERNEL_WIDE(int, factor_panel, (const struct dense_factors *of, int first
 }
 
 // apply the row swaps of a panel to another column; to the right of the panel also solve for the rows of the panel
-static KERNEL_WIDE(void, apply_panel, (const struct dense_factors *of, int first, int end, int j),
-                   (of, first, end, j)) {
+static WIDE(void, apply_panel, (const struct dense_factors *of, int first, int end, int j), (of, first, end, j)) {
     double *const restrict column = of->value + (long)j * of->stride;
     for (int k = first; k < end; k++) {
         const double swapped = column[k];
@@ -97,7 +87,7 @@ static inline __attribute__((always_inline)) void subtract_tile(const struct den
 }
 
 // all rows and columns behind a panel of PANEL columns; the rows up to the stride are 0
-static KERNEL_WIDE(void, subtract_panel, (const struct dense_factors *of, int first), (of, first)) {
+static WIDE(void, subtract_panel, (const struct dense_factors *of, int first), (of, first)) {
     const int end = first + PANEL;
     for (int row = end; row < of->stride; row += 8) {
         int column = end;
@@ -121,7 +111,7 @@ int dense_factors_set_up(struct dense_factors *factors) {
     return 1;
 }
 
-static KERNEL_WIDE(void, substitute, (const struct dense_factors *of, double *restrict x), (of, x)) {
+static WIDE(void, substitute, (const struct dense_factors *of, double *restrict x), (of, x)) {
     const int n = of->n;
     for (int k = 0; k < n; k++) {
         const double *const column = of->value + (long)k * of->stride, factor = x[k];

@@ -6,7 +6,7 @@
 #ifndef DENSE_FACTORS_H
 #define DENSE_FACTORS_H
 
-#include "base/status.h"
+#include "base/arena.h"
 
 struct dense_factors {
     int n, stride; /* order; distance of columns, a multiple of the rows of a tile */
@@ -14,9 +14,8 @@ struct dense_factors {
     int *pivot;    /* row that was swapped with each row                           (n) */
 };
 
-/* Create a matrix of zeros. Fails with STATUS_MEMORY; dense_factors_free accepts an empty struct. */
-enum status dense_factors_create(struct dense_factors *factors, int n);
-void dense_factors_free(struct dense_factors *factors);
+/* A matrix of zeros of order n. */
+struct dense_factors dense_factors_create(struct arena *arena, int n);
 
 /* Column k of the matrix (n). */
 double *dense_factors_column(const struct dense_factors *factors, int k);

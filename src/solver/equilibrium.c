@@ -3,10 +3,9 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "base/mathematics.h"
 #include "fish/fish_motion.h"
 #include "school/jacobian.h"
 #include "school/residual.h"
@@ -23,6 +22,7 @@ enum { MAX_ITERATIONS = 16 };
 static const double nearly_real = 1e-3;
 
 struct equilibrium {
+    struct arena *arena;
     struct residual *residual;
     struct state *state;
     struct jacobian *jacobian;
@@ -82,57 +82,38 @@ static void list_sheet(struct equilibrium *e, const struct fish *fish) {
     equilibrium_list_one(e, fish->at.circulation, fish->at.circulation, circulation, circulation);
 }
 
-static enum status equilibrium_allocate(struct equilibrium *e) {
-    const struct school *school = e->residual->school;
-    const size_t n = (size_t)school->n_unknowns;
+struct equilibrium *equilibrium_create(struct arena *arena, struct residual *residual, struct state *state) {
+    const struct school *const school = residual->school;
+    const int n = school->n_unknowns;
+    struct equilibrium *e;
+    NEW(arena, e, 1);
+    *e = (struct equilibrium){.arena = arena, .residual = residual, .state = state, .reach = residual->couplings.reach};
     int **const counts[] = {&e->unknown, &e->row, &e->number, &e->row_number};
     double **const reals[] = {&e->scale, &e->row_scale, &e->one, &e->u, &e->value, &e->all};
-    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) TRY(MEMORY_NEW(*counts[i], n, "an equilibrium"));
-    TRY(MEMORY_ARRAYS(reals, school->n_unknowns, "an equilibrium"));
-    return jacobian_create(&e->jacobian, school);
-}
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) NEW(arena, *counts[i], n);
+    for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) NEW(arena, *reals[i], n);
+    e->jacobian = jacobian_create(arena, school);
 
-static void equilibrium_list(struct equilibrium *e) {
-    const struct school *school = e->residual->school;
-    for (int i = 0; i < school->n_unknowns; i++) {
+    // couple all bodies at any distance
+    residual->couplings.reach = 1e6 * school->fish[0].length;
+    residual->shed_now = SHED_IS_FAR;
+    residual->flow->is_steady = true;
+    residual_couple(&residual->couplings, state->y);
+
+    for (int i = 0; i < n; i++) {
         e->number[i] = e->row_number[i] = -1;
         e->one[i] = 1;
     }
     for (int f = 0; f < school->n_fish; f++) list_places(e, &school->fish[f]);
     e->n_places = e->n;
     for (int f = 0; f < school->n_fish; f++) list_sheet(e, &school->fish[f]);
+    return e;
 }
 
-enum status equilibrium_create(struct equilibrium **equilibrium, struct residual *residual, struct state *state) {
-    *equilibrium = NULL;
-    struct equilibrium *new;
-    TRY(MEMORY_NEW(new, 1, "an equilibrium"));
-    *new = (struct equilibrium){.residual = residual, .state = state, .reach = residual->couplings.reach};
-    // couple all bodies at any distance
-    residual->couplings.reach = 1e6 * residual->school->fish[0].length;
-    residual->shed_now = SHED_IS_FAR;
-    if (residual->flow->rings) residual->flow->rings->is_steady = 1;
-    enum status status = equilibrium_allocate(new);
-    if (status == STATUS_OK) status = residual_couple(&residual->couplings, state->y);
-    if (status != STATUS_OK) {
-        equilibrium_free(new);
-        return status;
-    }
-    equilibrium_list(new);
-    *equilibrium = new;
-    return STATUS_OK;
-}
-
-void equilibrium_free(struct equilibrium *e) {
-    if (!e) return;
+void equilibrium_end(struct equilibrium *e) {
     e->residual->shed_now = SHED_BY_LAW;
-    if (e->residual->flow->rings) e->residual->flow->rings->is_steady = 0;
+    e->residual->flow->is_steady = false;
     e->residual->couplings.reach = e->reach;
-    void *const owned[] = {e->unknown,   e->row, e->number, e->row_number, e->scale,
-                           e->row_scale, e->one, e->u,      e->value,      e->all};
-    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
-    jacobian_free(e->jacobian);
-    free(e);
 }
 
 // ---- the equations
@@ -233,7 +214,7 @@ enum status equilibrium_solve(struct equilibrium *e) {
                                    .data = e};
     equilibrium_set_known(e);
     for (int i = 0; i < e->n; i++) e->u[i] = e->state->y[e->unknown[i]] / e->scale[i];
-    TRY(newton_solve(&problem, e->u));
+    TRY(newton_solve(e->arena, &problem, e->u));
     TRY(equilibrium_value_of(e, e->u, e->value));
     set_momenta(e);
     return equilibrium_evaluate(e);
@@ -241,7 +222,7 @@ enum status equilibrium_solve(struct equilibrium *e) {
 
 double equilibrium_residual(const struct equilibrium *e) {
     double most = 0;
-    for (int i = 0; i < e->n; i++) most = fmax(most, fabs(e->value[i]));
+    for (int i = 0; i < e->n; i++) most = larger(most, fabs(e->value[i]));
     return most;
 }
 
@@ -281,17 +262,16 @@ static enum status take_eigenvalues(const struct equilibrium *e, double *matrix,
 enum status equilibrium_stiffness(struct equilibrium *e, struct equilibrium_stiffness *stiffness) {
     *stiffness = (struct equilibrium_stiffness){.n_negative = 0};
     if (e->n_places == 0) return STATUS_OK;
+    struct arena *const scratch = arena_create(e->arena, "the static stiffness");
     const size_t n = (size_t)e->n;
-    double *matrix = NULL, *values = NULL;
-    lapack_int *pivot = NULL;
-    enum status status = MEMORY_NEW(matrix, n * n, "the static stiffness");
-    if (status == STATUS_OK) status = MEMORY_NEW(values, 2 * n, "the static stiffness");
-    if (status == STATUS_OK) status = MEMORY_NEW(pivot, n, "the static stiffness");
-    if (status == STATUS_OK) status = equilibrium_jacobian_of(e, matrix);
+    double *matrix, *values;
+    lapack_int *pivot;
+    NEW(scratch, matrix, n * n);
+    NEW(scratch, values, 2 * n);
+    NEW(scratch, pivot, n);
+    enum status status = equilibrium_jacobian_of(e, matrix);
     if (status == STATUS_OK) status = eliminate_sheets(e, matrix, pivot);
     if (status == STATUS_OK) status = take_eigenvalues(e, matrix, values, values + n, stiffness);
-    free(matrix);
-    free(values);
-    free(pivot);
+    arena_free(scratch);
     return status;
 }

@@ -4,20 +4,21 @@
 #ifndef EQUILIBRIUM_H
 #define EQUILIBRIUM_H
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "school/residual.h"
 
 struct equilibrium;
 
 /* Create the problem for all bodies of a residual, each with the prescribed velocity of its first node; the wakes of
- * the state are discarded. Residual and state must outlive the problem. Fails with STATUS_MEMORY. equilibrium_free
- * accepts NULL and restores the residual for a run. */
-enum status equilibrium_create(struct equilibrium **equilibrium, struct residual *residual, struct state *state);
-void equilibrium_free(struct equilibrium *equilibrium);
+ * the state are discarded. Residual and state must outlive the problem. equilibrium_end restores the residual for a
+ * run. */
+struct equilibrium *equilibrium_create(struct arena *arena, struct residual *residual, struct state *state);
+void equilibrium_end(struct equilibrium *equilibrium);
 
 /* Newton's method from the positions and sheets in state->y; the solution replaces state->y, the rates state->yp, and
  * the residual is evaluated at the solution. Without convergence fails with STATUS_SOLVER or STATUS_RETRY (state->y is
- * then the last iterate); or with STATUS_MEMORY. */
+ * then the last iterate). */
 enum status equilibrium_solve(struct equilibrium *equilibrium);
 
 /* The largest scaled residual of the last solution. Scale of a force: the force that bends the body by its length plus
@@ -26,7 +27,7 @@ double equilibrium_residual(const struct equilibrium *equilibrium);
 
 /* The static stiffness at the solution over the masses of the nodes, s-2, with sheets that follow the bodies without
  * delay: logarithm of the determinant, and number of negative real eigenvalues, which is the number of unstable
- * displacements. 0 and 0 without a free node. Fails with STATUS_MEMORY or STATUS_SOLVER. */
+ * displacements. 0 and 0 without a free node. Fails with STATUS_SOLVER. */
 struct equilibrium_stiffness {
     double log_determinant;
     int n_negative;

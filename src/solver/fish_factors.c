@@ -3,12 +3,10 @@
 
 #include <klu.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "base/wide.h"
 #include "solver/dense_factors.h"
-#include "vortex/kernel.h"
 
 /* A diagonal pivot keeps the factors sparse. Use a diagonal pivot of at least diagonal_tolerance (the default of KLU)
  * times the largest entry of the column. If the reciprocal pivot growth is then below min_growth, as in soft rods of
@@ -45,17 +43,18 @@ struct sparse_factors {
     struct fish_factors_counts counts;
 };
 
-static enum status sparse_factors_create(struct sparse_factors **factors) {
-    TRY(MEMORY_NEW(*factors, 1, "factors of a sparse matrix"));
-    klu_l_defaults(&(*factors)->common);
-    return STATUS_OK;
-}
-
-static void sparse_factors_free(struct sparse_factors *factors) {
-    if (!factors) return;
+static void release_sparse_factors(void *object) {
+    struct sparse_factors *const factors = object;
     klu_l_free_numeric(&factors->numeric, &factors->common);
     klu_l_free_symbolic(&factors->symbolic, &factors->common);
-    free(factors);
+}
+
+static struct sparse_factors *sparse_factors_create(struct arena *arena) {
+    struct sparse_factors *factors;
+    NEW(arena, factors, 1);
+    klu_l_defaults(&factors->common);
+    arena_defer(arena, release_sparse_factors, factors);
+    return factors;
 }
 
 // factorise with the pivots of the last factorisation; returns whether the factors are good
@@ -92,14 +91,12 @@ static enum status sparse_factors_set_up(struct sparse_factors *factors, const s
         klu_l_free_symbolic(&factors->symbolic, &factors->common);
         factors->counts.analyses++;
         factors->symbolic = klu_l_analyze(matrix->n, matrix->start, matrix->row, &factors->common);
+        if (!factors->symbolic && factors->common.status == KLU_OUT_OF_MEMORY) return STATUS_MEMORY;
         factors->version = matrix->version;
         factors->n = matrix->n;
     }
-    // without an analysis the matrix is structurally singular, or memory is lacking
-    if (!factors->symbolic) {
-        factors->version = 0;
-        return factors->common.status == KLU_OUT_OF_MEMORY ? STATUS_MEMORY : STATUS_SOLVER;
-    }
+    // without an analysis the matrix is structurally singular
+    if (!factors->symbolic) return STATUS_SOLVER;
     if (sparse_refactor(factors, matrix)) return STATUS_OK;
     const enum status status = sparse_factor(factors, matrix, diagonal_tolerance);
     return status == STATUS_OK && factors->rgrowth < min_growth ? sparse_factor(factors, matrix, 1) : status;
@@ -113,19 +110,20 @@ static void sparse_factors_solve(struct sparse_factors *factors, int n_sides, do
 // ---- the block of one fish
 
 struct fish_factors {
+    struct arena *arena;
     const struct fish *fish;
     const struct sparse *block;
     int was_factorised;
     struct sparse_factors *whole;
 
     /* in parts, if the block may be divided: the rows of A are the first rows of the block, the columns of A begin with
-     * column first */
+     * column first; in_parts: at the last set-up */
     int may_divide, in_parts;
     struct sparse_factors *a;
     unsigned version; /* version of the divided pattern; 0: none */
     int first, n_rod, n_sheet;
     int64_t *split;             /* start of the rows of the sheet in each column of the block  (n) */
-    struct sparse_columns rod;  /* A; owned */
+    struct sparse_columns rod;  /* A */
     struct dense_factors schur; /* S, later the factors of S                         (order n_sheet) */
     double *row_scale;          /* the largest entry of each row of the block                  (n) */
     int first_full, n_full;     /* the columns of A under which C is nearly full */
@@ -133,73 +131,34 @@ struct fish_factors {
     double *x_rod, *x_sheet;    /* solutions                               (AT_ONCE, n_rod), (n_sheet) */
 };
 
-void fish_factors_free(struct fish_factors *factors) {
-    if (!factors) return;
-    sparse_factors_free(factors->whole);
-    sparse_factors_free(factors->a);
-    free(factors->split);
-    free(factors->rod.start);
-    free(factors->rod.row);
-    free(factors->rod.value);
-    dense_factors_free(&factors->schur);
-    free(factors->row_scale);
-    free(factors->full);
-    free(factors->x_rod);
-    free(factors->x_sheet);
-    free(factors);
-}
-
-enum status fish_factors_create(struct fish_factors **factors, const struct fish *fish, const struct sparse *block) {
-    *factors = NULL;
-    struct fish_factors *new;
-    TRY(MEMORY_NEW(new, 1, "factors of a fish"));
-    new->fish = fish;
-    new->block = block;
+struct fish_factors *fish_factors_create(struct arena *arena, const struct fish *fish, const struct sparse *block) {
+    struct fish_factors *factors;
+    NEW(arena, factors, 1);
+    factors->arena = arena;
+    factors->fish = fish;
+    factors->block = block;
     // with momenta the law of motion is as full as the rows of the sheet, so the positions belong to the last columns
     const int is_full = fish_has_momentum(fish);
-    new->first = is_full ? fish->at.vx - fish->at.x : 0;
-    new->n_rod = (is_full ? fish->at.ax : fish->at.gamma) - fish->at.x;
-    new->n_sheet = block->n - new->n_rod;
+    factors->first = is_full ? fish->at.vx - fish->at.x : 0;
+    factors->n_rod = (is_full ? fish->at.ax : fish->at.gamma) - fish->at.x;
+    factors->n_sheet = block->n - factors->n_rod;
+    factors->whole = sparse_factors_create(arena);
+    factors->may_divide = is_full || fish->n_sheet >= MIN_POINTS;
+    if (!factors->may_divide) return factors;
 
-    enum status status = sparse_factors_create(&new->whole);
-    new->may_divide = is_full || fish->n_sheet >= MIN_POINTS;
-    if (new->may_divide) {
-        if (status == STATUS_OK) status = sparse_factors_create(&new->a);
-        if (status == STATUS_OK) status = MEMORY_NEW(new->split, block->n, "factors of a fish");
-        if (status == STATUS_OK) status = MEMORY_NEW(new->rod.start, new->n_rod + 1, "factors of a fish");
-        if (status == STATUS_OK) status = dense_factors_create(&new->schur, new->n_sheet);
-        if (status == STATUS_OK) status = MEMORY_NEW(new->row_scale, block->n, "factors of a fish");
-        if (status == STATUS_OK) status = MEMORY_NEW(new->x_rod, AT_ONCE * new->n_rod, "factors of a fish");
-        if (status == STATUS_OK) status = MEMORY_NEW(new->x_sheet, new->n_sheet, "factors of a fish");
-    }
-    if (status == STATUS_OK) {
-        *factors = new;
-    } else {
-        fish_factors_free(new);
-    }
-    return status;
+    factors->a = sparse_factors_create(arena);
+    NEW(arena, factors->split, block->n);
+    NEW(arena, factors->rod.start, factors->n_rod + 1);
+    factors->schur = dense_factors_create(arena, factors->n_sheet);
+    NEW(arena, factors->row_scale, block->n);
+    NEW(arena, factors->x_rod, AT_ONCE * factors->n_rod);
+    NEW(arena, factors->x_sheet, factors->n_sheet);
+    return factors;
 }
 
 // number in the block of column k of the sheet
 static int sheet_column(const struct fish_factors *factors, int k) {
     return k < factors->first ? k : k + factors->n_rod;
-}
-
-// find the longest run of columns with at least half of the rows of C
-static enum status find_full(struct fish_factors *factors) {
-    const struct sparse *const block = factors->block;
-    int run = 0;
-    factors->n_full = 0;
-    for (int c = 0; c < factors->n_rod; c++) {
-        const int column = factors->first + c;
-        run = 2 * (block->column_start[column + 1] - factors->split[column]) > factors->n_sheet ? run + 1 : 0;
-        if (run <= factors->n_full) continue;
-        factors->n_full = run;
-        factors->first_full = c + 1 - run;
-    }
-    free(factors->full);
-    factors->full = calloc((size_t)factors->n_full * (size_t)factors->n_sheet + 1, sizeof *factors->full);
-    return factors->full ? STATUS_OK : STATUS_MEMORY;
 }
 
 static void take_full(const struct fish_factors *factors) {
@@ -214,35 +173,43 @@ static void take_full(const struct fish_factors *factors) {
     }
 }
 
-// find the parts in the columns of the block, and the pattern of A
-static enum status factors_divide(struct fish_factors *factors) {
+void fish_factors_prepare(struct fish_factors *factors) {
     const struct sparse *const block = factors->block;
     struct sparse_columns *const rod = &factors->rod;
+    if (!factors->may_divide || factors->version == block->version) return;
+
+    // the parts in the columns of the block
     for (int c = 0; c < block->n; c++) {
         int64_t i = block->column_start[c];
         while (i < block->column_start[c + 1] && block->row_index[i] < factors->n_rod) i++;
         factors->split[c] = i;
     }
+
+    // the pattern of A
     for (int c = 0; c < factors->n_rod; c++) {
         const int column = factors->first + c;
         rod->start[c + 1] = rod->start[c] + factors->split[column] - block->column_start[column];
     }
-    const size_t n_entries = (size_t)rod->start[factors->n_rod] + 1;
-    free(rod->row);
-    free(rod->value);
-    rod->row = calloc(n_entries, sizeof *rod->row);
-    rod->value = calloc(n_entries, sizeof *rod->value);
-    if (!rod->row || !rod->value) return STATUS_MEMORY;
-
+    GROW(factors->arena, rod->row, rod->start[factors->n_rod]);
+    GROW(factors->arena, rod->value, rod->start[factors->n_rod]);
     for (int c = 0; c < factors->n_rod; c++) {
         const int64_t *const from = block->row_index + block->column_start[factors->first + c];
         memcpy(rod->row + rod->start[c], from, (size_t)(rod->start[c + 1] - rod->start[c]) * sizeof *from);
     }
-    TRY(find_full(factors));
+
+    // the longest run of columns with at least half of the rows of C
+    int run = 0;
+    factors->n_full = 0;
+    for (int c = 0; c < factors->n_rod; c++) {
+        const int column = factors->first + c;
+        run = 2 * (block->column_start[column + 1] - factors->split[column]) > factors->n_sheet ? run + 1 : 0;
+        if (run <= factors->n_full) continue;
+        factors->n_full = run;
+        factors->first_full = c + 1 - run;
+    }
+    GROW(factors->arena, factors->full, (size_t)factors->n_full * (size_t)factors->n_sheet);
     rod->n = factors->n_rod;
     rod->version = factors->version = block->version;
-    factors->in_parts = 1;
-    return STATUS_OK;
 }
 
 static void factors_take_values(struct fish_factors *factors) {
@@ -339,12 +306,12 @@ static enum status factors_set_up_parts(struct fish_factors *factors) {
 
 static enum status factors_set_up(struct fish_factors *factors) {
     const struct sparse *const block = factors->block;
-    if (factors->may_divide && factors->version != block->version) TRY(factors_divide(factors));
-    if (factors->in_parts) {
+    if (factors->may_divide) {
         const enum status status = factors_set_up_parts(factors);
+        factors->in_parts = status == STATUS_OK;
         if (status != STATUS_RETRY) return status;
-        // factorise the whole block until the pattern changes
-        factors->in_parts = 0;
+        // factorise the whole block; later values may be divided again, with new pivots
+        klu_l_free_numeric(&factors->a->numeric, &factors->a->common);
     }
     return sparse_factors_set_up(factors->whole, &(struct sparse_columns){block->n, block->version, block->column_start,
                                                                           block->row_index, block->value});
@@ -366,7 +333,7 @@ static void factors_solve_parts(struct fish_factors *factors, double *x) {
     memcpy(sheet, x + factors->n_rod, (size_t)n * sizeof *sheet);
     sparse_factors_solve(factors->a, 1, rod);
     subtract_rod(factors, rod, factors->first_full, factors->n_full, sheet);
-    kernel_multiply(n, factors->n_full, factors->full, rod + factors->first_full, sheet);
+    wide_multiply(n, factors->n_full, factors->full, rod + factors->first_full, sheet);
     dense_factors_solve(&factors->schur, sheet);
     memcpy(rod, x, (size_t)factors->n_rod * sizeof *rod);
     for (int k = 0; k < n; k++) {

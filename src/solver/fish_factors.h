@@ -10,10 +10,11 @@
  * KLU alone would also fill A, because the columns of A are as full as C, and KLU takes several times as long for a
  * full matrix. With momenta the law of motion belongs to the rows of the sheet, and the positions belong to the columns
  * of the sheet: A then has two entries in a row. KLU factorises the whole block if masked rows leave velocities
- * undetermined, or if A is singular or nearly singular. */
+ * undetermined, or while A is singular or nearly singular. */
 #ifndef FISH_FACTORS_H
 #define FISH_FACTORS_H
 
+#include "base/arena.h"
 #include "base/sparse.h"
 #include "base/status.h"
 #include "fish/fish.h"
@@ -27,14 +28,15 @@ struct fish_factors_counts {
     long refactorisations; /* with the pivots of the last factorisation */
 };
 
-/* Create factors without values. The fish and its block of the Jacobian must outlive the factors. Fails with
- * STATUS_MEMORY; fish_factors_free accepts NULL. */
-enum status fish_factors_create(struct fish_factors **factors, const struct fish *fish, const struct sparse *block);
-void fish_factors_free(struct fish_factors *factors);
+/* Create factors without values. The fish and its block of the Jacobian must outlive the factors. */
+struct fish_factors *fish_factors_create(struct arena *arena, const struct fish *fish, const struct sparse *block);
 
-/* Factorise the block with its present values. Fails with STATUS_MEMORY. A singular block fails with STATUS_SOLVER at
- * the first factorisation, later with STATUS_RETRY. Failures have no message, because threads factorise several fish.
- * */
+/* Request the memory for a new pattern of the block: before fish_factors_set_up, outside parallel regions. */
+void fish_factors_prepare(struct fish_factors *factors);
+
+/* Factorise the block with its present values. Fails with STATUS_MEMORY if KLU has no memory. A singular block fails
+ * with STATUS_SOLVER at the first factorisation, later with STATUS_RETRY. Failures have no message, because threads
+ * factorise several fish. */
 enum status fish_factors_set_up(struct fish_factors *factors);
 
 /* Replace the right-hand side x (unknowns of the fish) by the solution. Requires a successful set-up. */

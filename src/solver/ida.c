@@ -1,9 +1,7 @@
 /* ida.c: IDA applied to the residual of the school. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
-#include "base/memory.h"
 #include "body/rod.h"
 #include "school/diagnostics_energy.h"
 #include "school/residual.h"
@@ -26,8 +24,15 @@ static const int jacobian_cost = 5, max_iterations = 6, max_with_new = 20;
  * smaller tolerances save no iteration. Measured: doc/numerics.md. */
 static const double linear_relative = 1e-4, linear_absolute = 0.1;
 
+/* Keep a step size that IDA would change by a factor between these bounds, because a changed step costs a Jacobian. IDA
+ * cuts every step that its estimate asks to reduce, however little, and then doubles it. Measured: doc/numerics.md. */
+static const double kept_from = 0.85, kept_to = 1.9;
+
 /* After a restart the order is one: the first step is this fraction of the last step. */
 static const double first_step = 0.3;
+
+/* At least the number of vectors that IDA clones. */
+enum { N_CLONES = 32 };
 
 struct ida {
     struct residual *residual;
@@ -51,7 +56,7 @@ struct ida {
 
 static int residual_callback(sunrealtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
     struct ida *const solver = data;
-    solver->failure = integrator_ask(solver->stop);
+    solver->failure = status_ask(solver->stop);
     if (solver->failure == STATUS_OK) {
         solver->failure = residual_evaluate(solver->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
                                             N_VGetArrayPointer(value));
@@ -99,26 +104,6 @@ static int couple_more(void *data) {
     return residual_couple_more(&solver->residual->couplings, solver->state->y);
 }
 
-static void ida_free(void *data) {
-    struct ida *const solver = data;
-    if (!solver) return;
-    if (solver->ida) IDAFree(&solver->ida);
-    if (solver->newton) SUNNonlinSolFree(solver->newton);
-    linear_sundials_free(&solver->linear);
-    const N_Vector vectors[] = {solver->y,     solver->yp,         solver->weights,
-                                solver->kinds, solver->scratch[0], solver->scratch[1]};
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
-        if (vectors[i]) N_VDestroy(vectors[i]);
-    }
-    jacobian_free(solver->jacobian);
-    integrator_rates_free(solver->algebraic_rates);
-    free(solver->tolerance);
-    free(solver->weight);
-    free(solver->kind);
-    sundials_context_free(&solver->context);
-    free(solver);
-}
-
 // derive the first step from the last step: IDA's guess ignores the stiffness of the body
 static enum status ida_first_step(struct ida *solver) {
     const double step = first_step * solver->before.step_size;
@@ -128,55 +113,50 @@ static enum status ida_first_step(struct ida *solver) {
     return STATUS_OK;
 }
 
-static enum status ida_set_up(struct ida *solver) {
-    const struct school *school = solver->residual->school;
-    void *const ida = solver->ida;
-    if (IDASetErrHandlerFn(ida, sundials_context_message, &solver->failure) || IDASetUserData(ida, solver) ||
-        IDAInit(ida, residual_callback, solver->state->t, solver->y, solver->yp) ||
-        IDAWFtolerances(ida, weights_callback) || IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
-        IDASetLinearSolver(ida, solver->linear.solver, solver->linear.matrix) || IDASetJacFn(ida, jacobian_callback) ||
-        IDASetNonlinearSolver(ida, solver->newton) || IDASetNonlinConvCoef(ida, newton_coefficient) ||
-        IDASetMaxOrd(ida, solver->options.order) || IDASetDeltaCjLSetup(ida, cj_change) ||
-        IDASetMaxErrTestFails(ida, 20) || IDASetMaxConvFails(ida, 20) || IDASetMinStep(ida, 1e-10 * school->interval)) {
-        TRY(sundials_context_check(&solver->context));
-        return status_fail(STATUS_SOLVER, "IDA cannot be set up: %s", status_message());
-    }
-    TRY(sundials_context_check(&solver->context));
-    return ida_first_step(solver);
+static void release_ida(void *solver) {
+    IDAFree(&((struct ida *)solver)->ida);
 }
 
-static enum status ida_fill(struct ida *solver) {
-    const struct school *const school = solver->residual->school;
-    const int n = school->n_unknowns;
-    double **const arrays[] = {&solver->tolerance, &solver->weight, &solver->kind};
-    TRY(MEMORY_ARRAYS(arrays, n, "tolerances"));
-    residual_kinds(solver->residual, solver->kind);
+static enum status ida_create(struct arena *arena, void **created, struct residual *residual, struct state *state,
+                              const struct integrator_options *options) {
+    const struct school *const school = residual->school;
+    const int n = school->n_unknowns, is_sheet = school->shedding == SHEDDING_SHEET;
+    int has_momentum = 0;
+    for (int f = 0; f < school->n_fish; f++) has_momentum |= fish_has_momentum(&school->fish[f]);
+
+    struct ida *solver;
+    NEW(arena, solver, 1);
+    solver->residual = residual;
+    solver->state = state;
+    solver->options = *options;
+    solver->before = options->before;
+    solver->jacobians = options->before.jacobian_evaluations;
+
+    // tolerances and kinds of the unknowns
+    NEW(arena, solver->tolerance, n);
+    NEW(arena, solver->weight, n);
+    NEW(arena, solver->kind, n);
+    residual_kinds(residual, solver->kind);
     for (int i = 0; i < n; i++) {
-        solver->tolerance[i] = school->rtol * residual_scale(school, i);
+        solver->tolerance[i] = residual_scale(school, i) * school->rtol;
         solver->weight[i] = 1 / solver->tolerance[i];
     }
 
-    TRY(jacobian_create(&solver->jacobian, school));
-    TRY(integrator_rates_create(&solver->algebraic_rates, school, 0));
-    integrator_rates_begin(solver->algebraic_rates, solver->state);
-    residual_mask(solver->residual, solver->jacobian);
+    solver->jacobian = jacobian_create(arena, school);
+    residual_mask(residual, solver->jacobian);
+    solver->algebraic_rates = integrator_rates_create(arena, school);
+    integrator_rates_begin(solver->algebraic_rates, state);
 
     // vectors and solvers of SUNDIALS
-    TRY(sundials_context_create(&solver->context, n, school->threads, &solver->failure));
-    TRY(sundials_context_vector(&solver->context, &solver->y, solver->state->y));
-    TRY(sundials_context_vector(&solver->context, &solver->yp, solver->state->yp));
-    TRY(sundials_context_vector(&solver->context, &solver->weights, solver->weight));
-    TRY(sundials_context_vector(&solver->context, &solver->kinds, solver->kind));
-    for (int i = 0; i < 2; i++) {
-        solver->scratch[i] = N_VClone(solver->y);
-        TRY(memory_check(solver->scratch[i], "a vector of unknowns"));
-    }
+    sundials_context_create(&solver->context, arena, n, school->threads, &solver->failure);
+    solver->y = sundials_context_vector(&solver->context, state->y);
+    solver->yp = sundials_context_vector(&solver->context, state->yp);
+    solver->weights = sundials_context_vector(&solver->context, solver->weight);
+    solver->kinds = sundials_context_vector(&solver->context, solver->kind);
+    for (int i = 0; i < 2; i++) solver->scratch[i] = sundials_context_vector(&solver->context, NULL);
+    sundials_context_reserve(&solver->context, N_CLONES);
     const struct linear_tolerance linear = {linear_relative, linear_absolute * newton_coefficient};
-    TRY(linear_sundials_create(&solver->linear, solver->context.context, solver->jacobian, solver->tolerance, linear,
-                               &solver->failure));
-    const int is_sheet = school->shedding == SHEDDING_SHEET;
-    int has_momentum = 0;
-    for (int f = 0; f < school->n_fish; f++) has_momentum |= fish_has_momentum(&school->fish[f]);
+    solver->linear = linear_sundials_create(&solver->context, solver->jacobian, solver->tolerance, linear);
     const struct ida_newton_rules rules = {.max_iterations = max_iterations,
                                            .max_with_new = max_with_new,
                                            .jacobian_cost = jacobian_cost,
@@ -186,29 +166,22 @@ static enum status ida_fill(struct ida *solver) {
                                            .leading_coefficient = leading_coefficient,
                                            .update = is_sheet ? update_jacobian : NULL,
                                            .complete = couple_more};
-    TRY(ida_newton_create(&solver->newton, solver->context.context, solver->y, school, rules));
-    solver->ida = IDACreate(solver->context.context);
-    TRY(memory_check(solver->ida, "IDA"));
-    return ida_set_up(solver);
-}
+    solver->newton = ida_newton_create(&solver->context, school, rules);
 
-static enum status ida_create(void **solver, struct residual *residual, struct state *state,
-                              const struct integrator_options *options) {
-    *solver = NULL;
-    struct ida *new;
-    TRY(MEMORY_NEW(new, 1, "IDA's solver"));
-    new->residual = residual;
-    new->state = state;
-    new->options = *options;
-    new->before = options->before;
-    new->jacobians = options->before.jacobian_evaluations;
-    const enum status status = ida_fill(new);
-    if (status != STATUS_OK) {
-        ida_free(new);
-        return status;
+    void *const ida = solver->ida = arena_take(arena, IDACreate(solver->context.context));
+    arena_defer(arena, release_ida, solver);
+    if (IDASetErrHandlerFn(ida, sundials_context_message, &solver->failure) || IDASetUserData(ida, solver) ||
+        IDAInit(ida, residual_callback, state->t, solver->y, solver->yp) || IDAWFtolerances(ida, weights_callback) ||
+        IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
+        IDASetLinearSolver(ida, solver->linear.solver, solver->linear.matrix) || IDASetJacFn(ida, jacobian_callback) ||
+        IDASetNonlinearSolver(ida, solver->newton) || IDASetNonlinConvCoef(ida, newton_coefficient) ||
+        IDASetMaxOrd(ida, options->order) || IDASetDeltaCjLSetup(ida, cj_change) ||
+        IDASetEtaFixedStepBounds(ida, kept_from, kept_to) || IDASetMaxErrTestFails(ida, 20) ||
+        IDASetMaxConvFails(ida, 20) || IDASetMinStep(ida, 1e-10 * school->interval)) {
+        return status_fail(STATUS_SOLVER, "IDA cannot be set up: %s", status_message());
     }
-    *solver = new;
-    return STATUS_OK;
+    *created = solver;
+    return ida_first_step(solver);
 }
 
 static void ida_count(const void *data, struct integrator_counts *counts) {
@@ -360,4 +333,4 @@ static enum status ida_advance(void *data, double t, const volatile sig_atomic_t
 }
 
 const struct integrator ida_integrator = {
-    .create = ida_create, .advance = ida_advance, .restart = ida_restart, .count = ida_count, .free = ida_free};
+    .create = ida_create, .advance = ida_advance, .restart = ida_restart, .count = ida_count};

@@ -2,10 +2,7 @@
 #include "solver/ida_newton.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-#include "base/memory.h"
 
 /* The norms of a correction: of all unknowns, and of the differential unknowns only. In the former the algebraic
  * unknowns hide slow convergence of the positions: with a free sheet the first correction of the circulation is a
@@ -85,7 +82,7 @@ static int newton_test(struct ida_newton *newton, N_Vector weights, double toler
     return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
 
-// newton_iterate with the present Jacobian; newton->correction holds the residual
+// iterate with the present Jacobian; newton->correction holds the residual
 static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector weights, double tolerance, void *ida) {
     double *const values = N_VGetArrayPointer(newton->correction);
     newton->done = 0;
@@ -246,46 +243,30 @@ static int newton_failures(SUNNonlinearSolver solver, long *failures) {
     return 0;
 }
 
-static int newton_free(SUNNonlinearSolver solver) {
-    if (!solver) return 0;
-    struct ida_newton *const newton = newton_of(solver);
-    if (newton) {
-        corotation_free(newton->corotation);
-        if (newton->correction) N_VDestroy(newton->correction);
-        for (int i = 0; i < N_PAST; i++) {
-            if (newton->past[i]) N_VDestroy(newton->past[i]);
-        }
-        free(newton);
-    }
+static void release_newton(void *solver) {
     SUNNonlinSolFreeEmpty(solver);
-    return 0;
 }
 
-enum status ida_newton_create(SUNNonlinearSolver *solver, SUNContext context, N_Vector like,
-                              const struct school *school, struct ida_newton_rules rules) {
-    *solver = NULL;
-    struct ida_newton *const newton = calloc(1, sizeof *newton);
-    SUNNonlinearSolver const new = SUNNonlinSolNewEmpty(context);
-    if (new) new->content = newton;
-    int is_complete = newton && new;
-    if (is_complete) is_complete = corotation_create(&newton->corotation, school) == STATUS_OK;
-    if (is_complete) is_complete = (newton->correction = N_VClone(like)) != NULL;
-    for (int i = 0; i < N_PAST && is_complete; i++) is_complete = (newton->past[i] = N_VClone(like)) != NULL;
-    if (!is_complete) {
-        if (!new) free(newton);
-        newton_free(new);
-        return memory_check(NULL, "Newton's iteration");
-    }
+SUNNonlinearSolver ida_newton_create(struct sundials_context *context, const struct school *school,
+                                     struct ida_newton_rules rules) {
+    struct arena *const arena = context->arena;
+    struct ida_newton *newton;
+    NEW(arena, newton, 1);
     newton->rules = rules;
+    newton->corotation = corotation_create(arena, school);
+    newton->correction = sundials_context_vector(context, NULL);
+    for (int i = 0; i < N_PAST; i++) newton->past[i] = sundials_context_vector(context, NULL);
+
+    const SUNNonlinearSolver new = arena_take(arena, SUNNonlinSolNewEmpty(context->context));
+    arena_defer(arena, release_newton, new);
+    new->content = newton;
     new->ops->gettype = newton_type;
     new->ops->initialize = newton_initialize;
     new->ops->solve = newton_solve;
-    new->ops->free = newton_free;
     new->ops->setsysfn = newton_set_residual;
     new->ops->setlsetupfn = newton_set_set_up;
     new->ops->setlsolvefn = newton_set_solve;
     new->ops->getnumiters = newton_iterations;
     new->ops->getnumconvfails = newton_failures;
-    *solver = new;
-    return STATUS_OK;
+    return new;
 }

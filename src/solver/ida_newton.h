@@ -3,7 +3,6 @@
 #ifndef IDA_NEWTON_H
 #define IDA_NEWTON_H
 
-#include "base/status.h"
 #include "solver/corotation.h"
 #include "solver/sundials.h"
 
@@ -28,9 +27,8 @@ struct ida_newton_rules {
     int (*complete)(void *data);
 };
 
-/* Create a solver for IDASetNonlinearSolver; SUNNonlinSolFree releases the solver. Vectors are cloned from like. The
- * school must outlive the solver. Fails with STATUS_MEMORY. */
-enum status ida_newton_create(SUNNonlinearSolver *solver, SUNContext context, N_Vector like,
-                              const struct school *school, struct ida_newton_rules rules);
+/* Create a solver for IDASetNonlinearSolver. The arena of the context owns the solver; the school must outlive it. */
+SUNNonlinearSolver ida_newton_create(struct sundials_context *context, const struct school *school,
+                                     struct ida_newton_rules rules);
 
 #endif

@@ -4,10 +4,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "flow/flow_at_bodies.h"
 #include "school/residual.h"
 #include "solver/integrator.h"
@@ -48,21 +46,6 @@ struct initial_conditions {
     long iterations;
 };
 
-void initial_conditions_free(struct initial_conditions *c) {
-    if (!c) return;
-    if (c->kinsol) KINFree(&c->kinsol);
-    linear_sundials_free(&c->linear);
-    const N_Vector vectors[] = {c->solution, c->inverse_scales};
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
-        if (vectors[i]) N_VDestroy(vectors[i]);
-    }
-    jacobian_free(c->jacobian);
-    double *const owned[] = {c->y, c->zero, c->kind, c->scale, c->inverse_scale, c->value, c->start};
-    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
-    sundials_context_free(&c->context);
-    free(c);
-}
-
 // copy the algebraic unknowns only: the differential unknowns keep their bits
 static void take_algebraic(const struct initial_conditions *c, const double *from, double *y) {
     for (int i = 0; i < c->n; i++) {
@@ -75,7 +58,7 @@ static int algebraic_value(N_Vector solution, N_Vector value, void *data) {
     struct initial_conditions *const c = data;
     double *const to = N_VGetArrayPointer(value);
     take_algebraic(c, N_VGetArrayPointer(solution), c->y);
-    c->failure = integrator_ask(c->stop);
+    c->failure = status_ask(c->stop);
     if (c->failure == STATUS_OK) c->failure = residual_evaluate(c->residual, c->t, c->y, c->zero, c->value);
     for (int i = 0; i < c->n; i++) to[i] = c->kind[i] > 0 ? 0 : c->value[i];
     return c->failure;
@@ -97,9 +80,33 @@ static int is_loose(const struct residual *residual, int i) {
     return is_acceleration && fish_has_momentum(&residual->school->fish[place.fish]);
 }
 
-static enum status initial_set_up_kinsol(struct initial_conditions *c) {
-    c->kinsol = KINCreate(c->context.context);
-    TRY(memory_check(c->kinsol, "KINSOL"));
+static void release_kinsol(void *c) {
+    KINFree(&((struct initial_conditions *)c)->kinsol);
+}
+
+enum status initial_conditions_create(struct arena *arena, struct initial_conditions **solver,
+                                      struct residual *residual) {
+    const int n = residual->school->n_unknowns;
+    struct initial_conditions *c;
+    NEW(arena, c, 1);
+    c->residual = residual;
+    c->n = n;
+    double **const arrays[] = {&c->y, &c->zero, &c->kind, &c->scale, &c->value, &c->inverse_scale, &c->start};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) NEW(arena, *arrays[i], n);
+    for (int i = 0; i < n; i++) {
+        c->scale[i] = residual_scale(residual->school, i);
+        c->inverse_scale[i] = 1 / ((is_loose(residual, i) ? loose : 1) * c->scale[i]);
+        c->kind[i] = -1;  // unknown
+    }
+
+    c->jacobian = jacobian_create(arena, residual->school);
+    sundials_context_create(&c->context, arena, n, 1, &c->failure);
+    c->solution = sundials_context_vector(&c->context, c->start);
+    c->inverse_scales = sundials_context_vector(&c->context, c->inverse_scale);
+    c->linear = linear_sundials_create(&c->context, c->jacobian, c->scale, linear_tolerance);
+    sundials_context_reserve(&c->context, 12);  // KINSOL clones 5
+    c->kinsol = arena_take(arena, KINCreate(c->context.context));
+    arena_defer(arena, release_kinsol, c);
     // full Newton steps, because the equations are nearly linear, with a new Jacobian in each step
     if (KINSetErrHandlerFn(c->kinsol, sundials_context_message, &c->failure) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||
@@ -107,42 +114,9 @@ static enum status initial_set_up_kinsol(struct initial_conditions *c) {
         KINSetJacFn(c->kinsol, algebraic_jacobian) || KINSetMaxSetupCalls(c->kinsol, 1) ||
         KINSetFuncNormTol(c->kinsol, tolerance) || KINSetScaledStepTol(c->kinsol, 1e-14) ||
         KINSetNumMaxIters(c->kinsol, 50) || KINSetMaxNewtonStep(c->kinsol, 1e30)) {
-        TRY(sundials_context_check(&c->context));
         return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
     }
-    return sundials_context_check(&c->context);
-}
-
-static enum status initial_fill(struct initial_conditions *c) {
-    const int n = c->n;
-    double **const arrays[] = {&c->y, &c->zero, &c->kind, &c->scale, &c->value, &c->inverse_scale, &c->start};
-    TRY(MEMORY_ARRAYS(arrays, n, "initial conditions"));
-    for (int i = 0; i < n; i++) {
-        c->scale[i] = residual_scale(c->residual->school, i);
-        const double factor = is_loose(c->residual, i) ? loose : 1;
-        c->inverse_scale[i] = 1 / (factor * c->scale[i]);
-        c->kind[i] = -1;  // unknown
-    }
-    TRY(jacobian_create(&c->jacobian, c->residual->school));
-    TRY(sundials_context_create(&c->context, n, 1, &c->failure));
-    TRY(sundials_context_vector(&c->context, &c->solution, c->start));
-    TRY(sundials_context_vector(&c->context, &c->inverse_scales, c->inverse_scale));
-    TRY(linear_sundials_create(&c->linear, c->context.context, c->jacobian, c->scale, linear_tolerance, &c->failure));
-    return initial_set_up_kinsol(c);
-}
-
-enum status initial_conditions_create(struct initial_conditions **solver, struct residual *residual) {
-    *solver = NULL;
-    struct initial_conditions *new;
-    TRY(MEMORY_NEW(new, 1, "the initial conditions"));
-    new->residual = residual;
-    new->n = residual->school->n_unknowns;
-    const enum status status = initial_fill(new);
-    if (status != STATUS_OK) {
-        initial_conditions_free(new);
-        return status;
-    }
-    *solver = new;
+    *solver = c;
     return STATUS_OK;
 }
 
@@ -167,7 +141,7 @@ static const char *initial_reason(int code) {
         case KIN_FIRST_SYSFUNC_ERR:
         case KIN_REPTD_SYSFUNC_ERR: return "the equations have no finite value";
         case KIN_LSETUP_FAIL: return "the Jacobian is singular";
-        default: return "KINSOL initial_failed";
+        default: return "KINSOL failed";
     }
 }
 
@@ -224,7 +198,6 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
     c->t = t;
     memcpy(c->y, y, (size_t)c->n * sizeof *y);
     memcpy(c->start, y, (size_t)c->n * sizeof *y);
-    flow_sum_exactly(c->residual->flow);
     initial_update_kinds(c);
     c->failure = STATUS_OK;
     const int code = KINSol(c->kinsol, c->solution, KIN_NONE, c->inverse_scales, c->inverse_scales);

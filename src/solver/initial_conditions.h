@@ -10,15 +10,13 @@
 
 struct initial_conditions;
 
-/* Create a solver for a residual, which must outlive it. Fails with STATUS_MEMORY or STATUS_SOLVER. */
-enum status initial_conditions_create(struct initial_conditions **solver, struct residual *residual);
-
-/* Release it. Accepts NULL. */
-void initial_conditions_free(struct initial_conditions *solver);
+/* Create a solver for a residual, which must outlive it. Fails with STATUS_SOLVER. */
+enum status initial_conditions_create(struct arena *arena, struct initial_conditions **solver,
+                                      struct residual *residual);
 
 /* Solve for the algebraic unknowns of y at time t [s], and set the rates yp of the differential unknowns; both arrays
- * are (n_unknowns). The residual defines the kinds of the unknowns at each call. Fails with STATUS_SOLVER,
- * STATUS_MEMORY or STATUS_STOPPED; y and yp are then unchanged. */
+ * are (n_unknowns). The residual defines the kinds of the unknowns at each call. Fails with STATUS_SOLVER or
+ * STATUS_STOPPED; y and yp are then unchanged. */
 enum status initial_conditions_solve(struct initial_conditions *solver, double t, double *y, double *yp);
 
 /* Let every later solution end once *stop is not 0; NULL: never. */

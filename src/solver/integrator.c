@@ -1,40 +1,23 @@
-/* integrator.c: rates by divided differences of the last three steps. */
+/* integrator.c: rates of the bound strengths by divided differences of the last three steps. */
 #include "solver/integrator.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-#include "base/memory.h"
 
 enum { N_KEPT = 2 };
 
 struct integrator_rates {
     const struct school *school;
-    int of_circulation;
     int n;             /* number of stored steps, newest first */
     double t[N_KEPT];  /* s */
     double *y[N_KEPT]; /*                                                                    (n_unknowns) */
 };
 
-enum status integrator_rates_create(struct integrator_rates **rates, const struct school *school, int of_circulation) {
-    TRY(MEMORY_NEW(*rates, 1, "the rates of the unknowns"));
-    (*rates)->school = school;
-    (*rates)->of_circulation = of_circulation;
-    enum status status = STATUS_OK;
-    for (int i = 0; i < N_KEPT && status == STATUS_OK; i++) {
-        status = MEMORY_NEW((*rates)->y[i], school->n_unknowns, "the rates of the unknowns");
-    }
-    if (status == STATUS_OK) return status;
-
-    integrator_rates_free(*rates);
-    *rates = NULL;
-    return status;
-}
-
-void integrator_rates_free(struct integrator_rates *rates) {
-    if (!rates) return;
-    for (int i = 0; i < N_KEPT; i++) free(rates->y[i]);
-    free(rates);
+struct integrator_rates *integrator_rates_create(struct arena *arena, const struct school *school) {
+    struct integrator_rates *rates;
+    NEW(arena, rates, 1);
+    rates->school = school;
+    for (int i = 0; i < N_KEPT; i++) NEW(arena, rates->y[i], school->n_unknowns);
+    return rates;
 }
 
 static void rates_keep(struct integrator_rates *rates, double t, const double *y) {
@@ -64,13 +47,8 @@ void integrator_rates_step(struct integrator_rates *rates, double t, struct stat
     if (t <= rates->t[0]) return;
     for (int f = 0; f < rates->school->n_fish; f++) {
         const struct fish *fish = &rates->school->fish[f];
-        const int shed = fish->at.circulation;
-        if (fish_has_momentum(fish)) {
-            for (int i = fish->at.vx; i < fish->at.px; i++) state->yp[i] = rates_slope(rates, t, state->y[i], i);
-            for (int i = fish->at.gamma; i <= shed; i++) state->yp[i] = rates_slope(rates, t, state->y[i], i);
-        } else if (rates->of_circulation) {
-            state->yp[shed] = rates_slope(rates, t, state->y[shed], shed);
-        }
+        const int end = fish_has_momentum(fish) ? fish->at.circulation : fish->at.gamma;
+        for (int i = fish->at.gamma; i < end; i++) state->yp[i] = rates_slope(rates, t, state->y[i], i);
     }
     rates_keep(rates, t, state->y);
 }

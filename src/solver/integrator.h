@@ -1,10 +1,11 @@
-/* integrator.h: the interface of the time integrators, their table, and rates of algebraic unknowns. Tested by
+/* integrator.h: the interface of the time integrators, their table, and rates of the bound strengths. Tested by
  * tests/solver/test_integrator.c. */
 #ifndef INTEGRATOR_H
 #define INTEGRATOR_H
 
 #include <signal.h>
 
+#include "base/arena.h"
 #include "base/methods.h"
 #include "base/status.h"
 #include "school/residual.h"
@@ -29,20 +30,19 @@ struct integrator_options {
 
 /* A family of methods. A solver advances y and yp of a state in place, and reads the wakes through the residual. */
 struct integrator {
-    /* Create a solver for the present state, which must be consistent. Fails with STATUS_MEMORY or STATUS_SOLVER. */
-    enum status (*create)(void **solver, struct residual *residual, struct state *state,
+    /* Create a solver for the present state, which must be consistent. Fails with STATUS_SOLVER. */
+    enum status (*create)(struct arena *arena, void **solver, struct residual *residual, struct state *state,
                           const struct integrator_options *options);
 
-    /* Integrate to time t [s], the next event, and update the energy balance after every step. Calls integrator_ask
-     * before each step and each iteration. Fails with STATUS_SOLVER and a message with time and cause, with
-     * STATUS_MEMORY, or with STATUS_STOPPED at any time between the two events; never with STATUS_RETRY. */
+    /* Integrate to time t [s], the next event, and update the energy balance after every step. Calls status_ask
+     * before each step and each iteration. Fails with STATUS_SOLVER and a message with time and cause, or with
+     * STATUS_STOPPED at any time between the two events; never with STATUS_RETRY. */
     enum status (*advance)(void *solver, double t, const volatile sig_atomic_t *stop);
 
     /* Discard the history after a jump of the state, which must be consistent. Fails with STATUS_SOLVER. */
     enum status (*restart)(void *solver);
 
     void (*count)(const void *solver, struct integrator_counts *counts);
-    void (*free)(void *solver); /* accepts NULL */
 };
 
 /* BDF of variable order and step by IDA, with the analytic Jacobian, our linear solver (linear.h) and our nonlinear
@@ -81,23 +81,16 @@ static inline const struct integrator *integrator_of(enum method method) {
     return method == METHOD_VERLET ? &one_step_verlet : &one_step_integrator;
 }
 
-/* STATUS_STOPPED once *stop is no longer 0; stop may be NULL. */
-static inline enum status integrator_ask(const volatile sig_atomic_t *stop) {
-    return stop && *stop ? status_fail(STATUS_STOPPED, "stopped by a signal") : STATUS_OK;
-}
-
-/* ---- rates of algebraic unknowns
+/* ---- rates of the bound strengths after a step
  *
- * With force: pressure the force depends on the rates of velocities, bound strengths and shed circulation, which are
- * algebraic unknowns. IDA's derivatives of algebraic unknowns are of first order where the motion of a body is
- * prescribed, because no differential unknown controls the order. Instead, use the slope of the parabola through the
- * last three steps. doc/numerics.md, section 3. */
+ * With force: pressure the powers of the energy balance and the reactions of prescribed nodes depend on the rates of
+ * the bound strengths, which are algebraic unknowns. IDA's derivatives of algebraic unknowns are of first order where
+ * the motion of a body is prescribed, because no differential unknown controls the order. Instead, use the slope of the
+ * parabola through the last three steps. At events state_find_rates follows. doc/numerics.md, section 3. */
 struct integrator_rates;
 
-/* For a school, which must outlive the rates; of_circulation: also of the shed circulations of bodies with force:
- * reactive where they are algebraic. Fails with STATUS_MEMORY; integrator_rates_free accepts NULL. */
-enum status integrator_rates_create(struct integrator_rates **rates, const struct school *school, int of_circulation);
-void integrator_rates_free(struct integrator_rates *rates);
+/* For a school, which must outlive the rates. */
+struct integrator_rates *integrator_rates_create(struct arena *arena, const struct school *school);
 
 /* Discard the history at an event: at the start, or after a jump. */
 void integrator_rates_begin(struct integrator_rates *rates, const struct state *state);

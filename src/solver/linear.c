@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "solver/fish_factors.h"
 #include "solver/sundials.h"
@@ -28,6 +27,7 @@ struct block {
 };
 
 struct linear {
+    struct arena *arena;
     const struct jacobian *jacobian;
     struct linear_tolerance tolerance;
     struct block *block;
@@ -36,63 +36,39 @@ struct linear {
     struct sundials_context context;
     N_Vector x, b, weights;
     SUNLinearSolver gmres;
-    double *weight, *right; /* values of weights and b      (n_unknowns) */
-    enum status failure;    /* of the product */
+    double *weight, *right;   /* values of weights and b      (n_unknowns) */
+    enum status failure;      /* of the product */
+    enum status *of_callback; /* of the solver of SUNDIALS: status of the last set-up or solution */
 };
 
 static int n_unknowns(const struct linear *linear) {
     return linear->jacobian->school->n_unknowns;
 }
 
-enum status linear_create(struct linear **linear, const struct jacobian *jacobian, const double *scale,
-                          struct linear_tolerance tolerance) {
+struct linear *linear_create(struct arena *arena, const struct jacobian *jacobian, const double *scale,
+                             struct linear_tolerance tolerance) {
     const struct school *const school = jacobian->school;
-    *linear = NULL;
-    struct linear *new;
-    TRY(MEMORY_NEW(new, 1, "the linear solver"));
-    new->jacobian = jacobian;
-    new->tolerance = tolerance;
-
-    enum status status = MEMORY_NEW(new->weight, school->n_unknowns, "the linear solver");
-    for (int i = 0; i < school->n_unknowns && status == STATUS_OK; i++) {
-        new->weight[i] = 1 / (sqrt(school->n_unknowns) * scale[i]);
+    struct linear *linear;
+    NEW(arena, linear, 1);
+    linear->arena = arena;
+    linear->jacobian = jacobian;
+    linear->tolerance = tolerance;
+    NEW(arena, linear->weight, school->n_unknowns);
+    for (int i = 0; i < school->n_unknowns; i++) linear->weight[i] = 1 / (sqrt(school->n_unknowns) * scale[i]);
+    NEW(arena, linear->block, school->n_fish);
+    for (int f = 0; f < school->n_fish; f++) {
+        linear->block[f].factors = fish_factors_create(arena, &school->fish[f], jacobian->own[f]);
+        NEW(arena, linear->block[f].update, jacobian->own[f]->n);
     }
-    if (status == STATUS_OK) status = MEMORY_NEW(new->block, school->n_fish, "the linear solver");
-    for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
-        status = fish_factors_create(&new->block[f].factors, &school->fish[f], jacobian->own[f]);
-        if (status == STATUS_OK) status = MEMORY_NEW(new->block[f].update, jacobian->own[f]->n, "the linear solver");
-    }
-    if (status == STATUS_OK) {
-        *linear = new;
-    } else {
-        linear_free(new);
-    }
-    return status;
-}
-
-void linear_free(struct linear *linear) {
-    if (!linear) return;
-    for (int f = 0; linear->block && f < linear->jacobian->school->n_fish; f++) {
-        struct block *const block = &linear->block[f];
-        fish_factors_free(block->factors);
-        free(block->update);
-    }
-    if (linear->gmres) SUNLinSolFree(linear->gmres);
-    const N_Vector vectors[] = {linear->x, linear->b, linear->weights};
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
-        if (vectors[i]) N_VDestroy(vectors[i]);
-    }
-    sundials_context_free(&linear->context);
-    free(linear->block);
-    free(linear->weight);
-    free(linear->right);
-    free(linear);
+    return linear;
 }
 
 enum status linear_setup(struct linear *linear) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
+    // a new pattern requests memory, which no parallel region may
+    for (int f = 0; f < school->n_fish; f++) fish_factors_prepare(linear->block[f].factors);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         linear->block[f].is_updated = 0;
@@ -100,7 +76,7 @@ enum status linear_setup(struct linear *linear) {
     }
     for (int f = 0; f < school->n_fish; f++) {
         const enum status status = linear->block[f].status;
-        if (status == STATUS_MEMORY) return memory_check(NULL, "factorising the Jacobian");
+        if (status == STATUS_MEMORY) arena_lack(linear->arena, 0);
         if (status != STATUS_OK)
             return status_fail(status, "the Jacobian of fish %s is singular", school->fish[f].name);
     }
@@ -188,7 +164,7 @@ static int gmres_multiply(void *data, N_Vector v, N_Vector product) {
     return 0;
 }
 
-/* Whether memory for the vectors of GMRES is available: after a failed allocation SUNDIALS frees a part and crashes. */
+/* Whether memory for GMRES is available: after a failed allocation SUNDIALS frees a part and crashes. */
 static int gmres_has_memory(int n) {
     enum { VECTORS = MAX_ITERATIONS + 8, SMALL = 1 << 17 };
     void *volatile const needed = malloc((size_t)n * VECTORS * sizeof(double) + SMALL);
@@ -196,34 +172,41 @@ static int gmres_has_memory(int n) {
     return needed != NULL;
 }
 
+static void release_gmres(void *object) {
+    const struct linear *const linear = object;
+    if (linear->gmres) SUNLinSolFree(linear->gmres);
+}
+
 /* The operator of GMRES, 1 + D^-1 C, includes the preconditioner; x is set for each solution. Norms and dot products
  * are sums over all unknowns, so they use one thread. A run of 16 close fish takes 2.4 % more instructions with
  * SUNLinSol_SPGMR than with a GMRES without the vectors of SUNDIALS (callgrind); for 64 and 256 fish the difference is
  * within the noise. */
-static enum status gmres_create(struct linear *linear) {
+static void gmres_create(struct linear *linear) {
+    struct arena *const arena = linear->arena;
     const int n = n_unknowns(linear);
-    TRY(MEMORY_NEW(linear->right, n, "GMRES"));
-    if (!gmres_has_memory(n)) return memory_check(NULL, "GMRES");
-
-    TRY(sundials_context_create(&linear->context, n, 1, &linear->failure));
-    TRY(sundials_context_vector(&linear->context, &linear->x, linear->right));
-    TRY(sundials_context_vector(&linear->context, &linear->b, linear->right));
-    TRY(sundials_context_vector(&linear->context, &linear->weights, linear->weight));
-    linear->gmres = SUNLinSol_SPGMR(linear->x, SUN_PREC_NONE, MAX_ITERATIONS, linear->context.context);
-    if (!linear->gmres || SUNLinSolSetATimes(linear->gmres, linear, gmres_multiply) != SUN_SUCCESS ||
+    NEW(arena, linear->right, n);
+    sundials_context_create(&linear->context, arena, n, 1, &linear->failure);
+    linear->x = sundials_context_vector(&linear->context, linear->right);
+    linear->b = sundials_context_vector(&linear->context, linear->right);
+    linear->weights = sundials_context_vector(&linear->context, linear->weight);
+    sundials_context_reserve(&linear->context, MAX_ITERATIONS + 8);
+    if (!gmres_has_memory(n)) arena_lack(arena, 0);
+    linear->gmres =
+        arena_take(arena, SUNLinSol_SPGMR(linear->x, SUN_PREC_NONE, MAX_ITERATIONS, linear->context.context));
+    arena_defer(arena, release_gmres, linear);
+    if (SUNLinSolSetATimes(linear->gmres, linear, gmres_multiply) != SUN_SUCCESS ||
         SUNLinSolSetScalingVectors(linear->gmres, linear->weights, linear->weights) != SUN_SUCCESS) {
-        return memory_check(NULL, "GMRES");
+        arena_lack(arena, 0);
     }
     if (SUNLinSolInitialize(linear->gmres) != SUN_SUCCESS) {
         linear->gmres = NULL;  // SUNDIALS has freed the solver
-        return memory_check(NULL, "GMRES");
+        arena_lack(arena, 0);
     }
-    return sundials_context_check(&linear->context);
 }
 
 // solve the coupled system; initially x is the solution of the uncoupled system
 static enum status solve_coupled(struct linear *linear, double *x) {
-    if (!linear->gmres) TRY(gmres_create(linear));
+    if (!linear->gmres) gmres_create(linear);
     N_VSetArrayPointer(x, linear->x);
     const double start = N_VWL2Norm(linear->x, linear->weights);
     const double limit = linear->jacobian->has_contacts
@@ -279,40 +262,40 @@ static SUNLinearSolver_Type solver_type(SUNLinearSolver solver) {
 
 static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix) {
     (void)matrix;
-    const struct linear_sundials *const own = solver->content;
-    *own->failure = linear_setup(own->linear);
-    return *own->failure;
+    struct linear *const linear = solver->content;
+    *linear->of_callback = linear_setup(linear);
+    return *linear->of_callback;
 }
 
 static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance) {
     (void)matrix, (void)tolerance;
-    const struct linear_sundials *const own = solver->content;
-    *own->failure = linear_solve(own->linear, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
-    return *own->failure;
+    struct linear *const linear = solver->content;
+    *linear->of_callback = linear_solve(linear, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+    return *linear->of_callback;
 }
 
-enum status linear_sundials_create(struct linear_sundials *linear, SUNContext context, const struct jacobian *jacobian,
-                                   const double *scale, struct linear_tolerance tolerance, enum status *failure) {
-    *linear = (struct linear_sundials){.failure = failure};
-    TRY(linear_create(&linear->linear, jacobian, scale, tolerance));
-    linear->matrix = SUNMatNewEmpty(context);
-    linear->solver = SUNLinSolNewEmpty(context);
-    if (!linear->matrix || !linear->solver) {
-        linear_sundials_free(linear);
-        return memory_check(NULL, "a linear solver");
-    }
-    linear->matrix->ops->getid = matrix_id;
-    linear->matrix->ops->zero = matrix_zero;
-    linear->solver->content = linear;
-    linear->solver->ops->gettype = solver_type;
-    linear->solver->ops->setup = solver_setup;
-    linear->solver->ops->solve = solver_solve;
-    return STATUS_OK;
+static void release_matrix(void *matrix) {
+    SUNMatFreeEmpty(matrix);
 }
 
-void linear_sundials_free(struct linear_sundials *linear) {
-    if (linear->solver) SUNLinSolFreeEmpty(linear->solver);
-    if (linear->matrix) SUNMatFreeEmpty(linear->matrix);
-    linear_free(linear->linear);
-    *linear = (struct linear_sundials){0};
+static void release_solver(void *solver) {
+    SUNLinSolFreeEmpty(solver);
+}
+
+struct linear_sundials linear_sundials_create(struct sundials_context *context, const struct jacobian *jacobian,
+                                              const double *scale, struct linear_tolerance tolerance) {
+    struct arena *const arena = context->arena;
+    struct linear_sundials new = {.linear = linear_create(arena, jacobian, scale, tolerance)};
+    new.linear->of_callback = context->failure;
+    new.matrix = arena_take(arena, SUNMatNewEmpty(context->context));
+    arena_defer(arena, release_matrix, new.matrix);
+    new.solver = arena_take(arena, SUNLinSolNewEmpty(context->context));
+    arena_defer(arena, release_solver, new.solver);
+    new.matrix->ops->getid = matrix_id;
+    new.matrix->ops->zero = matrix_zero;
+    new.solver->content = new.linear;
+    new.solver->ops->gettype = solver_type;
+    new.solver->ops->setup = solver_setup;
+    new.solver->ops->solve = solver_solve;
+    return new;
 }

@@ -26,14 +26,12 @@ struct linear_tolerance {
     double absolute; /* norm; GMRES stops at the larger of both */
 };
 
-/* Create a solver for a Jacobian, which must outlive it; scale (n_unknowns) is copied. Fails with STATUS_MEMORY.
- * linear_free accepts NULL. */
-enum status linear_create(struct linear **linear, const struct jacobian *jacobian, const double *scale,
-                          struct linear_tolerance tolerance);
-void linear_free(struct linear *linear);
+/* Create a solver for a Jacobian, which must outlive it; scale (n_unknowns) is copied. */
+struct linear *linear_create(struct arena *arena, const struct jacobian *jacobian, const double *scale,
+                             struct linear_tolerance tolerance);
 
-/* Factorise the diagonal blocks with their present values. Fails with STATUS_MEMORY; a singular block fails with
- * STATUS_SOLVER at the first factorisation, later with STATUS_RETRY. */
+/* Factorise the diagonal blocks with their present values. A singular block fails with STATUS_SOLVER at the first
+ * factorisation, later with STATUS_RETRY. */
 enum status linear_setup(struct linear *linear);
 
 /* Replace derivatives by the shed circulation of the same fish until the next linear_setup: those of impermeability
@@ -42,8 +40,7 @@ enum status linear_setup(struct linear *linear);
  * matrix is singular, the solutions are not finite. Requires linear_setup. */
 void linear_update_shed(struct linear *linear, const double *value);
 
-/* Solve J x = b. Both arrays are (n_unknowns) and may be identical. Fails with STATUS_RETRY if x is not finite, or with
- * STATUS_MEMORY. */
+/* Solve J x = b. Both arrays are (n_unknowns) and may be identical. Fails with STATUS_RETRY if x is not finite. */
 enum status linear_solve(struct linear *linear, const double *b, double *x);
 
 struct linear_counts linear_count(const struct linear *linear);
@@ -52,17 +49,14 @@ struct linear_counts linear_count(const struct linear *linear);
  * tests/solver/test_initial_conditions.c and tests/solver/test_ida.c. */
 struct linear_sundials {
     struct linear *linear;
-    enum status *failure; /* status of the last callback; owned by the caller */
-    SUNMatrix matrix;     /* empty: the callback for the Jacobian fills struct jacobian */
+    SUNMatrix matrix; /* empty: the callback for the Jacobian fills struct jacobian */
     SUNLinearSolver solver;
 };
 
 /* Create the solver for a Jacobian; scale and tolerance as in linear_create. The solver declares itself as direct, so
- * IDA scales the solutions if the step has changed since the evaluation of the Jacobian. *failure receives the status
- * of each set-up and each solution. Jacobian and *failure must outlive the solver, and the struct must not move. Fails
- * with STATUS_MEMORY; nothing is then allocated. linear_sundials_free accepts a struct of zeros. */
-enum status linear_sundials_create(struct linear_sundials *linear, SUNContext context, const struct jacobian *jacobian,
-                                   const double *scale, struct linear_tolerance tolerance, enum status *failure);
-void linear_sundials_free(struct linear_sundials *linear);
+ * IDA scales the solutions if the step has changed since the evaluation of the Jacobian. context->failure receives the
+ * status of each set-up and each solution. The arena of the context owns the solver; the Jacobian must outlive it. */
+struct linear_sundials linear_sundials_create(struct sundials_context *context, const struct jacobian *jacobian,
+                                              const double *scale, struct linear_tolerance tolerance);
 
 #endif

@@ -6,11 +6,9 @@
 #define lapack_complex_double double complex
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 #include "fish/fish_motion.h"
 #include "flow/flow_at_bodies.h"
 #include "school/jacobian.h"
@@ -35,6 +33,7 @@ enum { CANDIDATES = 24, STEPS = 4, ITERATIONS = 30, INNER = 2 };
 static const double same = 1e-4;
 
 struct modes {
+    struct arena *arena; /* freed by modes_find */
     struct residual *residual;
     struct state *state;
     int n_all, n, n_slow, n_shed; /* unknowns of the school; unknowns that are not prescribed; differential unknowns;
@@ -93,7 +92,6 @@ static void modes_place(const struct modes *modes, double tau) {
 static enum status modes_evaluate(const struct modes *modes, double tau, double *value) {
     const struct state *const state = modes->state;
     modes_place(modes, tau);
-    flow_sum_exactly(modes->residual->flow);
     const enum status status = residual_evaluate(modes->residual, state->t + tau, modes->y, state->yp, value);
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
@@ -209,24 +207,20 @@ static void modes_list(struct modes *modes, const struct jacobian *jacobian, con
 static enum status modes_reduce(struct modes *modes, const double *by_value, const double *by_rate) {
     const int n = modes->n, slow = modes->n_slow, fast = n - slow, rows = slow + modes->n_shed;
     const size_t n_rows = (size_t)rows, n_all = (size_t)modes->n_all;
-    double *const c = calloc((size_t)n * (size_t)(fast + 1), sizeof *c), *const q =
-                                                                             calloc((size_t)n * (size_t)n, sizeof *q);
-    double *const tau = calloc((size_t)n, sizeof *tau);
-    modes->eliminate = calloc(n_rows * (size_t)n, sizeof *modes->eliminate);
-    modes->by_value = calloc(n_rows * (size_t)slow + 1, sizeof *modes->by_value);
-    modes->by_rate = calloc(n_rows * (size_t)slow + 1, sizeof *modes->by_rate);
-    enum status status = c && q && tau && modes->eliminate && modes->by_value && modes->by_rate
-                             ? STATUS_OK
-                             : memory_check(NULL, "the modes");
-    if (status != STATUS_OK) goto end;
+    double *c, *q, *tau;
+    NEW(modes->arena, c, (size_t)n * (size_t)(fast + 1));
+    NEW(modes->arena, q, (size_t)n * (size_t)n);
+    NEW(modes->arena, tau, n);
+    NEW(modes->arena, modes->eliminate, n_rows * (size_t)n);
+    NEW(modes->arena, modes->by_value, n_rows * (size_t)slow);
+    NEW(modes->arena, modes->by_rate, n_rows * (size_t)slow);
 
     for (int j = 0; j < fast; j++) {
         const size_t column = n_all * (size_t)modes->unknown[slow + j];
         for (int i = 0; i < n; i++) c[i + n * j] = by_value[(size_t)modes->unknown[i] + column];
     }
     if (fast > 0 && LAPACKE_dgeqrf(LAPACK_COL_MAJOR, n, fast, c, n, tau) != 0) {
-        status = status_fail(STATUS_SOLVER, "the modes of the bodies cannot be told apart");
-        goto end;
+        return status_fail(STATUS_SOLVER, "the modes of the bodies cannot be told apart");
     }
     for (int i = 0; i < n; i++) q[i + n * i] = 1;
     if (fast > 0) LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', n, n, fast, c, n, tau, q, n);
@@ -271,12 +265,7 @@ static enum status modes_reduce(struct modes *modes, const double *by_value, con
             }
         }
     }
-
-end:
-    free(c);
-    free(q);
-    free(tau);
-    return status;
+    return STATUS_OK;
 }
 
 // ---- one mode
@@ -350,39 +339,36 @@ static enum status find_still(const struct modes *modes, const double complex *s
                               double *vectors) {
     const int slow = modes->n_slow, shed = modes->n_shed, rows = slow + shed;
     const size_t size = (size_t)slow * (size_t)slow;
-    double *const a = calloc(2 * size, sizeof *a), *const e = a + size,
-                  *const last = calloc((size_t)(shed * (shed + 2 * slow)), sizeof *last);
-    lapack_int *const pivot = calloc((size_t)rows, sizeof *pivot);
-    enum status status = a && last && pivot ? STATUS_OK : memory_check(NULL, "the modes");
-    if (status == STATUS_OK) {
-        // circulations by the slow unknowns: -(W + 1)^-1 (B, D)
-        double *const by_value = last + shed * shed, *const by_rate = by_value + shed * slow;
-        for (int f = 0; f < shed; f++) {
-            for (int g = 0; g < shed; g++) last[g + shed * f] = creal(still[slow + g + rows * f]) + (f == g);
-            for (int j = 0; j < slow; j++) {
-                by_value[f + shed * j] = -modes->by_value[slow + f + rows * j];
-                by_rate[f + shed * j] = -modes->by_rate[slow + f + rows * j];
-            }
-        }
-        int failed = LAPACKE_dgesv(LAPACK_COL_MAJOR, shed, 2 * slow, last, shed, pivot, by_value, shed) != 0;
+    double *a, *last;
+    lapack_int *pivot;
+    NEW(modes->arena, a, 2 * size);
+    NEW(modes->arena, last, shed * (shed + 2 * slow));
+    NEW(modes->arena, pivot, rows);
+    double *const e = a + size;
+
+    // circulations by the slow unknowns: -(W + 1)^-1 (B, D)
+    double *const by_value = last + shed * shed, *const by_rate = by_value + shed * slow;
+    for (int f = 0; f < shed; f++) {
+        for (int g = 0; g < shed; g++) last[g + shed * f] = creal(still[slow + g + rows * f]) + (f == g);
         for (int j = 0; j < slow; j++) {
-            for (int i = 0; i < slow; i++) {
-                a[i + slow * j] = -modes->by_value[i + rows * j];
-                e[i + slow * j] = modes->by_rate[i + rows * j];
-                for (int f = 0; f < shed; f++) {
-                    a[i + slow * j] -= creal(still[i + rows * f]) * by_value[f + shed * j];
-                    e[i + slow * j] += creal(still[i + rows * f]) * by_rate[f + shed * j];
-                }
+            by_value[f + shed * j] = -modes->by_value[slow + f + rows * j];
+            by_rate[f + shed * j] = -modes->by_rate[slow + f + rows * j];
+        }
+    }
+    int failed = LAPACKE_dgesv(LAPACK_COL_MAJOR, shed, 2 * slow, last, shed, pivot, by_value, shed) != 0;
+    for (int j = 0; j < slow; j++) {
+        for (int i = 0; i < slow; i++) {
+            a[i + slow * j] = -modes->by_value[i + rows * j];
+            e[i + slow * j] = modes->by_rate[i + rows * j];
+            for (int f = 0; f < shed; f++) {
+                a[i + slow * j] -= creal(still[i + rows * f]) * by_value[f + shed * j];
+                e[i + slow * j] += creal(still[i + rows * f]) * by_rate[f + shed * j];
             }
         }
-        failed = failed || LAPACKE_dgesv(LAPACK_COL_MAJOR, slow, slow, e, slow, pivot, a, slow) != 0 ||
-                 LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', slow, a, slow, real, imaginary, NULL, 1, vectors, slow) != 0;
-        if (failed) status = status_fail(STATUS_SOLVER, "the modes of the bodies cannot be told apart");
     }
-    free(a);
-    free(last);
-    free(pivot);
-    return status;
+    failed = failed || LAPACKE_dgesv(LAPACK_COL_MAJOR, slow, slow, e, slow, pivot, a, slow) != 0 ||
+             LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', slow, a, slow, real, imaginary, NULL, 1, vectors, slow) != 0;
+    return failed ? status_fail(STATUS_SOLVER, "the modes of the bodies cannot be told apart") : STATUS_OK;
 }
 
 /* Insert a candidate into the list of the slowest candidates; column: index of the vector. */
@@ -423,120 +409,87 @@ static void mode_keep(double complex lambda, int n_most, struct mode *mode, int 
     mode[i] = new;
 }
 
-static enum status follow_all(const struct modes *modes, struct following *at, struct candidate *candidates, int n_most,
-                              struct mode *mode, int *n) {
+static enum status modes_find_all(const struct modes *modes, int n_most, struct mode *mode, int *n) {
+    struct arena *const arena = modes->arena;
     const int slow = modes->n_slow, rows = slow + modes->n_shed;
-    double *const values = calloc(2 * (size_t)slow + 1, sizeof *values);
-    double *const vectors = calloc((size_t)slow * (size_t)slow + 1, sizeof *vectors);
-    enum status status = values && vectors ? STATUS_OK : memory_check(NULL, "the modes");
-    for (int f = 0; f < modes->n_shed && status == STATUS_OK; f++) {
-        status = wake_column(modes, f, 0, at->still + (size_t)rows * (size_t)f);
-    }
-    if (status == STATUS_OK) status = find_still(modes, at->still, values, values + slow, vectors);
+    struct following at;
+    NEW(arena, at.matrix, rows * rows);
+    NEW(arena, at.wake, rows * modes->n_shed);
+    NEW(arena, at.still, rows * modes->n_shed);
+    NEW(arena, at.next, rows);
+    NEW(arena, at.pivot, rows);
+    double *values, *vectors;
+    NEW(arena, values, 2 * slow);
+    NEW(arena, vectors, slow * slow);
+    struct candidate candidates[CANDIDATES];
+    for (int c = 0; c < CANDIDATES; c++) NEW(arena, candidates[c].vector, rows);
+
+    // the slowest modes of a wake without memory
+    for (int f = 0; f < modes->n_shed; f++) TRY(wake_column(modes, f, 0, at.still + (size_t)rows * (size_t)f));
+    TRY(find_still(modes, at.still, values, values + slow, vectors));
     int n_candidates = 0;
-    for (int j = 0; j < slow && status == STATUS_OK; j++) {
+    for (int j = 0; j < slow; j++) {
         const double complex lambda = values[j] + I * values[slow + j];
         if (is_resolved(modes, lambda, 3)) candidate_insert(modes, lambda, vectors, j, candidates, &n_candidates);
     }
-    for (int c = 0; c < n_candidates && status == STATUS_OK; c++) {
+
+    // continue each of them to the full memory of the wake
+    for (int c = 0; c < n_candidates; c++) {
         int found = 1;
-        at->vector = candidates[c].vector;
-        for (int step = 1; step <= STEPS && found && status == STATUS_OK; step++) {
-            status = mode_solve(modes, at, (double)step / STEPS, &candidates[c].lambda, &found);
+        at.vector = candidates[c].vector;
+        for (int step = 1; step <= STEPS && found; step++) {
+            TRY(mode_solve(modes, &at, (double)step / STEPS, &candidates[c].lambda, &found));
         }
-        if (status == STATUS_OK && found && is_resolved(modes, candidates[c].lambda, 1)) {
-            mode_keep(candidates[c].lambda, n_most, mode, n);
-        }
-    }
-    free(values);
-    free(vectors);
-    return status;
-}
-
-static enum status modes_find_all(struct modes *modes, int n_most, struct mode *mode, int *n) {
-    const int rows = modes->n_slow + modes->n_shed;
-    const size_t columns = (size_t)rows * (size_t)modes->n_shed;
-    struct following at = {.matrix = calloc((size_t)rows * (size_t)rows + 1, sizeof *at.matrix),
-                           .wake = calloc(columns + 1, sizeof *at.wake),
-                           .still = calloc(columns + 1, sizeof *at.still),
-                           .next = calloc((size_t)rows + 1, sizeof *at.next),
-                           .pivot = calloc((size_t)rows + 1, sizeof *at.pivot)};
-    struct candidate candidates[CANDIDATES] = {{0}};
-    double complex *const vectors = calloc((size_t)rows * CANDIDATES + 1, sizeof *vectors);
-    const int has_all = at.matrix && at.wake && at.still && at.next && at.pivot && vectors;
-    for (int c = 0; c < CANDIDATES && has_all; c++) candidates[c].vector = vectors + (size_t)rows * (size_t)c;
-    const enum status status =
-        has_all ? follow_all(modes, &at, candidates, n_most, mode, n) : memory_check(NULL, "the modes");
-    free(at.matrix);
-    free(at.wake);
-    free(at.still);
-    free(at.next);
-    free(at.pivot);
-    free(vectors);
-    return status;
-}
-
-/* Keep the labels of the wakes. */
-static enum status keep_labels(struct modes *modes) {
-    const int n_fish = modes->residual->school->n_fish;
-    modes->label = calloc((size_t)n_fish, sizeof *modes->label);
-    modes->shed = calloc((size_t)n_fish, sizeof *modes->shed);
-    if (!modes->label || !modes->shed) return memory_check(NULL, "the modes");
-    modes->n_shed = n_fish;
-    for (int f = 0; f < n_fish; f++) {
-        const struct wake *const wake = &modes->state->wake[f];
-        modes->label[f] = calloc((size_t)wake->n_vortex + 1, sizeof *modes->label[f]);
-        if (!modes->label[f]) return memory_check(NULL, "the modes");
-        for (int i = 0; i < wake->n_vortex; i++) modes->label[f][i] = wake->circulation[i];
-        modes->shed[f] = wake->shed_before;
+        if (found && is_resolved(modes, candidates[c].lambda, 1)) mode_keep(candidates[c].lambda, n_most, mode, n);
     }
     return STATUS_OK;
 }
 
-static enum status modes_pose(struct modes *modes, struct jacobian **jacobian) {
+/* Linearise the equations and reduce them to the differential unknowns and the circulations. */
+static enum status modes_pose(struct modes *modes) {
+    struct arena *const arena = modes->arena;
     const size_t n = (size_t)modes->n_all;
-    modes->unknown = calloc(n, sizeof *modes->unknown);
-    modes->y = calloc(n, sizeof *modes->y);
-    modes->plain = calloc(n, sizeof *modes->plain);
-    modes->shifted = calloc(n, sizeof *modes->shifted);
-    double *const by_value = calloc(n * n, sizeof *by_value), *const by_rate = calloc(n * n, sizeof *by_rate);
-    const int has_all = modes->unknown && modes->y && modes->plain && modes->shifted && by_value && by_rate;
-    enum status status = has_all ? keep_labels(modes) : memory_check(NULL, "the modes");
-    if (status == STATUS_OK) status = residual_couple(&modes->residual->couplings, modes->state->y);
-    if (status == STATUS_OK) status = jacobian_create(jacobian, modes->residual->school);
-    if (status == STATUS_OK) {
-        residual_mask(modes->residual, *jacobian);
-        status = modes_linearise(modes, *jacobian, by_value, by_rate);
+    NEW(arena, modes->unknown, n);
+    NEW(arena, modes->y, n);
+    NEW(arena, modes->plain, n);
+    NEW(arena, modes->shifted, n);
+
+    // keep the labels of the wakes
+    const int n_fish = modes->residual->school->n_fish;
+    NEW(arena, modes->label, n_fish);
+    NEW(arena, modes->shed, n_fish);
+    modes->n_shed = n_fish;
+    for (int f = 0; f < n_fish; f++) {
+        const struct wake *const wake = &modes->state->wake[f];
+        NEW(arena, modes->label[f], wake->n_vortex);
+        for (int i = 0; i < wake->n_vortex; i++) modes->label[f][i] = wake->circulation[i];
+        modes->shed[f] = wake->shed_before;
     }
-    if (status == STATUS_OK) {
-        modes_list(modes, *jacobian, by_rate);
-        status = modes_reduce(modes, by_value, by_rate);
-    }
-    free(by_value);
-    free(by_rate);
-    return status;
+
+    double *by_value, *by_rate;
+    NEW(arena, by_value, n * n);
+    NEW(arena, by_rate, n * n);
+    residual_couple(&modes->residual->couplings, modes->state->y);
+    struct jacobian *const jacobian = jacobian_create(arena, modes->residual->school);
+    residual_mask(modes->residual, jacobian);
+    TRY(modes_linearise(modes, jacobian, by_value, by_rate));
+    modes_list(modes, jacobian, by_rate);
+    return modes_reduce(modes, by_value, by_rate);
 }
 
-enum status modes_find(struct residual *residual, struct state *state, int n_most, struct mode *mode, int *n) {
-    struct modes modes = {.residual = residual, .state = state, .n_all = residual->school->n_unknowns};
-    struct jacobian *jacobian = NULL;
+enum status modes_find(struct arena *arena, struct residual *residual, struct state *state, int n_most,
+                       struct mode *mode, int *n) {
+    struct modes modes = {.arena = arena_create(arena, "the modes"),
+                          .residual = residual,
+                          .state = state,
+                          .n_all = residual->school->n_unknowns};
     const double reach = residual->couplings.reach;
     *n = 0;
     // couple all bodies at any distance
     residual->couplings.reach = 1e6 * residual->school->fish[0].length;
-    enum status status = modes_pose(&modes, &jacobian);
+    enum status status = modes_pose(&modes);
     if (status == STATUS_OK && modes.n_slow > 0) status = modes_find_all(&modes, n_most, mode, n);
     residual->couplings.reach = reach;
-    jacobian_free(jacobian);
-    for (int f = 0; f < modes.n_shed && modes.label; f++) free(modes.label[f]);
-    free(modes.label);
-    free(modes.shed);
-    free(modes.unknown);
-    free(modes.y);
-    free(modes.plain);
-    free(modes.shifted);
-    free(modes.by_value);
-    free(modes.by_rate);
-    free(modes.eliminate);
+    arena_free(modes.arena);
     return status;
 }

@@ -12,6 +12,7 @@
 #ifndef MODES_H
 #define MODES_H
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "school/residual.h"
 
@@ -22,8 +23,9 @@ struct mode {
 
 /* Find at most n_most modes (*n: number) at an event at which the unknowns are an equilibrium and the wakes have no
  * strength; sort them by falling rate. Omitted are modes with a period of a few events, and modes that decay so fast
- * that they outlast the wake. residual and state are restored, except for values derived from the wakes. Fails with
- * STATUS_MEMORY or STATUS_SOLVER. */
-enum status modes_find(struct residual *residual, struct state *state, int n_most, struct mode *mode, int *n);
+ * that they outlast the wake. residual and state are restored, except for values derived from the wakes. arena: for
+ * scratch. Fails with STATUS_SOLVER. */
+enum status modes_find(struct arena *arena, struct residual *residual, struct state *state, int n_most,
+                       struct mode *mode, int *n);
 
 #endif

@@ -4,10 +4,8 @@
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "solver/sundials.h"
 
 struct solver {
@@ -35,30 +33,6 @@ static int newton_jacobian_of(N_Vector u, N_Vector value, SUNMatrix matrix, void
     return solver->failure == STATUS_OK ? 0 : -1;
 }
 
-static enum status newton_set_up(struct solver *solver, double *u, double *inverse) {
-    const struct newton *const problem = solver->problem;
-    for (int i = 0; i < problem->n; i++) inverse[i] = 1 / problem->scale[i];
-    TRY(sundials_context_create(&solver->context, problem->n, 1, &solver->failure));
-    TRY(sundials_context_vector(&solver->context, &solver->unknowns, u));
-    TRY(sundials_context_vector(&solver->context, &solver->scales, inverse));
-    solver->matrix = SUNDenseMatrix(problem->n, problem->n, solver->context.context);
-    solver->linear = solver->matrix ? SUNLinSol_Dense(solver->unknowns, solver->matrix, solver->context.context) : NULL;
-    solver->kinsol = KINCreate(solver->context.context);
-    if (!solver->linear || !solver->kinsol) return memory_check(NULL, "KINSOL");
-    // steps of dead_multiplier do not end the iteration
-    if (KINSetErrHandlerFn(solver->kinsol, sundials_context_message, &solver->failure) ||
-        KINSetUserData(solver->kinsol, solver) || KINInit(solver->kinsol, newton_value_of, solver->unknowns) ||
-        KINSetLinearSolver(solver->kinsol, solver->linear, solver->matrix) ||
-        KINSetJacFn(solver->kinsol, newton_jacobian_of) || KINSetMaxSetupCalls(solver->kinsol, problem->reuse) ||
-        KINSetFuncNormTol(solver->kinsol, problem->tolerance) || KINSetScaledStepTol(solver->kinsol, 1e-14) ||
-        KINSetNumMaxIters(solver->kinsol, problem->max_iterations) ||
-        KINSetMaxNewtonStep(solver->kinsol, problem->max_step)) {
-        TRY(sundials_context_check(&solver->context));
-        return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
-    }
-    return sundials_context_check(&solver->context);
-}
-
 static const char *newton_reason(int code) {
     switch (code) {
         case KIN_MXNEWT_5X_EXCEEDED:
@@ -69,13 +43,53 @@ static const char *newton_reason(int code) {
     }
 }
 
-static enum status solve(struct solver *solver) {
+static void release_kinsol(void *solver) {
+    KINFree(&((struct solver *)solver)->kinsol);
+}
+
+static void release_matrix(void *matrix) {
+    SUNMatDestroy(matrix);
+}
+
+static void release_linear(void *linear) {
+    SUNLinSolFree(linear);
+}
+
+// solve with memory and objects of an arena, which the caller frees
+static enum status newton_solve_with(struct arena *arena, const struct newton *problem, double *u) {
+    struct solver *solver;
+    double *inverse;
+    NEW(arena, solver, 1);
+    NEW(arena, inverse, problem->n);
+    for (int i = 0; i < problem->n; i++) inverse[i] = 1 / problem->scale[i];
+    solver->problem = problem;
+    sundials_context_create(&solver->context, arena, problem->n, 1, &solver->failure);
+    solver->unknowns = sundials_context_vector(&solver->context, u);
+    solver->scales = sundials_context_vector(&solver->context, inverse);
+    const SUNContext context = solver->context.context;
+    solver->matrix = arena_take(arena, SUNDenseMatrix(problem->n, problem->n, context));
+    arena_defer(arena, release_matrix, solver->matrix);
+    solver->linear = arena_take(arena, SUNLinSol_Dense(solver->unknowns, solver->matrix, context));
+    arena_defer(arena, release_linear, solver->linear);
+    sundials_context_reserve(&solver->context, 12);  // KINSOL clones 5
+    void *const kinsol = solver->kinsol = arena_take(arena, KINCreate(context));
+    arena_defer(arena, release_kinsol, solver);
+    // small steps do not end the iteration
+    if (KINSetErrHandlerFn(kinsol, sundials_context_message, &solver->failure) || KINSetUserData(kinsol, solver) ||
+        KINInit(kinsol, newton_value_of, solver->unknowns) ||
+        KINSetLinearSolver(kinsol, solver->linear, solver->matrix) || KINSetJacFn(kinsol, newton_jacobian_of) ||
+        KINSetMaxSetupCalls(kinsol, problem->reuse) || KINSetFuncNormTol(kinsol, problem->tolerance) ||
+        KINSetScaledStepTol(kinsol, 1e-14) || KINSetNumMaxIters(kinsol, problem->max_iterations) ||
+        KINSetMaxNewtonStep(kinsol, problem->max_step)) {
+        return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
+    }
+
+    // five longest steps in a row are no reason to stop
     int code = KIN_MXNEWT_5X_EXCEEDED;
     long n_iterations = 0, n = 0;
-    // five longest steps in a row are no newton_reason to stop
-    while (code == KIN_MXNEWT_5X_EXCEEDED && n_iterations < solver->problem->max_iterations) {
-        code = KINSol(solver->kinsol, solver->unknowns, KIN_NONE, solver->scales, solver->scales);
-        KINGetNumNonlinSolvIters(solver->kinsol, &n);
+    while (code == KIN_MXNEWT_5X_EXCEEDED && n_iterations < problem->max_iterations) {
+        code = KINSol(kinsol, solver->unknowns, KIN_NONE, solver->scales, solver->scales);
+        KINGetNumNonlinSolvIters(kinsol, &n);
         n_iterations += n;
     }
     if (solver->failure != STATUS_OK) return solver->failure;
@@ -85,20 +99,10 @@ static enum status solve(struct solver *solver) {
     return status_fail(STATUS_SOLVER, "%s (%s)", newton_reason(code), cause);
 }
 
-enum status newton_solve(const struct newton *problem, double *u) {
-    struct solver solver = {.problem = problem};
-    double *const inverse = calloc((size_t)problem->n, sizeof *inverse);
-    enum status status = memory_check(inverse, "Newton's method");
-    if (status == STATUS_OK) status = newton_set_up(&solver, u, inverse);
-    if (status == STATUS_OK) status = solve(&solver);
-    if (solver.kinsol) KINFree(&solver.kinsol);
-    if (solver.linear) SUNLinSolFree(solver.linear);
-    if (solver.matrix) SUNMatDestroy(solver.matrix);
-    if (solver.unknowns) N_VDestroy(solver.unknowns);
-    if (solver.scales) N_VDestroy(solver.scales);
-    sundials_context_free(&solver.context);
-
-    free(inverse);
+enum status newton_solve(struct arena *arena, const struct newton *problem, double *u) {
+    struct arena *const scratch = arena_create(arena, "Newton's method");
+    const enum status status = newton_solve_with(scratch, problem, u);
+    arena_free(scratch);
     return status;
 }
 
@@ -106,7 +110,7 @@ enum status newton_solve(const struct newton *problem, double *u) {
 
 static int multiplier_comes_before(const double *real, const double *imaginary, int i, int j) {
     const double a = hypot(real[i], imaginary[i]), b = hypot(real[j], imaginary[j]);
-    // the two of a pair have the same value but for dead_multiplier
+    // both values of a complex pair have the same modulus up to rounding
     if (fabs(a - b) > 1e-12 * (a + b)) return a > b;
     return imaginary[i] > imaginary[j];
 }
@@ -132,43 +136,33 @@ static const double least_singular = 0.03;
 static const double dead_multiplier = 1e-10;
 
 // (I - A) way = change, with the transposed map in the first n rows of images                        (m, n)
-static enum status newton_find_fixed_point(int n, int m, const double *images, const double *change, double *way) {
-    double *matrix = NULL;
-    lapack_int *pivot = NULL;
-    enum status status = MEMORY_NEW(matrix, n * n, "the fixed point of a map");
-    if (status == STATUS_OK) status = MEMORY_NEW(pivot, n, "the fixed point of a map");
-    if (status == STATUS_OK) {
-        for (int i = 0; i < n; i++) {
-            for (int j = 0; j < n; j++) matrix[i + n * j] = (i == j) - images[j + m * i];
-        }
-        memcpy(way, change, (size_t)n * sizeof *way);
-        if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, matrix, n, pivot, way, n) != 0) {
-            memset(way, 0, (size_t)n * sizeof *way);
-        }
+static void newton_find_fixed_point(struct arena *scratch, int n, int m, const double *images, const double *change,
+                                    double *way) {
+    double *matrix;
+    lapack_int *pivot;
+    NEW(scratch, matrix, n * n);
+    NEW(scratch, pivot, n);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) matrix[i + n * j] = (i == j) - images[j + m * i];
     }
-    free(matrix);
-    free(pivot);
-    return status;
+    memcpy(way, change, (size_t)n * sizeof *way);
+    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, matrix, n, pivot, way, n) != 0) memset(way, 0, (size_t)n * sizeof *way);
 }
 
-/* A map of n dimensions and m images; results. */
-struct map {
-    int n, m;
-    const double *before, *after, *change;
-    double *real, *imaginary, *way;
-};
-
 // the transposed map is the solution X of before^T X = after^T, and has the same eigenvalues
-static enum status multipliers_solve(const struct map *map, double *matrix, double *images) {
-    const int n = map->n, m = map->m;
-    multipliers_transpose(n, m, map->before, matrix);
-    multipliers_transpose(n, m, map->after, images);
+static enum status newton_multipliers_with(struct arena *scratch, int n, int m, const double *before,
+                                           const double *after, const double *change, double *real, double *imaginary,
+                                           double *way) {
+    double *matrix, *images;
+    NEW(scratch, matrix, (size_t)n * (size_t)m);
+    NEW(scratch, images, (size_t)n * (size_t)m);
+    multipliers_transpose(n, m, before, matrix);
+    multipliers_transpose(n, m, after, images);
     // real is scratch for the singular values; rows of images below n contain the residuals
     lapack_int rank = 0;
-    double *const real = map->real, *const imaginary = map->imaginary;
     const int failed = LAPACKE_dgelsd(LAPACK_COL_MAJOR, m, n, n, matrix, m, images, m, real, least_singular, &rank);
     if (failed != 0 || rank < 1) return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
-    TRY(newton_find_fixed_point(n, m, images, map->change, map->way));
+    newton_find_fixed_point(scratch, n, m, images, change, way);
     if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, images, m, real, imaginary, NULL, 1, NULL, 1) != 0) {
         return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
     }
@@ -187,15 +181,11 @@ static enum status multipliers_solve(const struct map *map, double *matrix, doub
     return STATUS_OK;
 }
 
-enum status newton_multipliers(int n, int n_columns, const double *before, const double *after, const double *change,
-                               double *real, double *imaginary, double *way) {
-    const struct map map = {n, n_columns, before, after, change, real, imaginary, way};
-    const size_t size = (size_t)n * (size_t)n_columns;
-    double *matrix = NULL, *images = NULL;
-    enum status status = MEMORY_NEW(matrix, size, "multipliers");
-    if (status == STATUS_OK) status = MEMORY_NEW(images, size, "multipliers");
-    if (status == STATUS_OK) status = multipliers_solve(&map, matrix, images);
-    free(matrix);
-    free(images);
+enum status newton_multipliers(struct arena *arena, int n, int n_columns, const double *before, const double *after,
+                               const double *change, double *real, double *imaginary, double *way) {
+    struct arena *const scratch = arena_create(arena, "multipliers");
+    const enum status status =
+        newton_multipliers_with(scratch, n, n_columns, before, after, change, real, imaginary, way);
+    arena_free(scratch);
     return status;
 }

@@ -3,10 +3,8 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 #include "flow/flow_at_bodies.h"
@@ -24,7 +22,7 @@ struct ode_rhs {
     double *matrix, *solution; /* solution: initially the right-hand side                          (n, n), (n) */
     lapack_int *pivot;         /*                                                                           (n) */
 
-    /* lower band of the mass matrix of one fish with added mass, column after column; right-hand side */
+    /* lower band of the mass matrix of one fish with added mass, column after column; right-hand side, or a momentum */
     double *band, *force;
 };
 
@@ -46,63 +44,34 @@ static int velocity_at(const struct ode_rhs *d, int f, int i, int k) {
     return d->first[f] + n_strengths(d->residual, fish) + i * fish->n_nodes + k;
 }
 
-static enum status ode_allocate(struct ode_rhs *d) {
-    const struct school *school = d->residual->school;
+struct ode_rhs *ode_rhs_create(struct arena *arena, struct residual *residual) {
+    const struct school *const school = residual->school;
     const size_t n_fish = (size_t)school->n_fish;
     int max_nodes = 0;
-    TRY(MEMORY_NEW(d->first, n_fish, "the sheets of the fish"));
-    TRY(MEMORY_NEW(d->influence, n_fish * n_fish, "the influence of sheets"));
-    TRY(MEMORY_NEW(d->no_sheets, school->n_unknowns, "the sheets of the fish"));
+    struct ode_rhs *d;
+    NEW(arena, d, 1);
+    d->residual = residual;
+    NEW(arena, d->first, n_fish);
+    NEW(arena, d->influence, n_fish * n_fish);
+    NEW(arena, d->no_sheets, school->n_unknowns);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         d->first[f] = d->n;
-        d->n += n_strengths(d->residual, fish) + n_velocities(fish);
+        d->n += n_strengths(residual, fish) + n_velocities(fish);
         if (fish->n_nodes > max_nodes) max_nodes = fish->n_nodes;
         for (int g = 0; g < school->n_fish; g++) {
             struct influence_block *const block = &d->influence[f * school->n_fish + g];
-            const size_t size = (size_t)d->residual->flow->points[f].n * (size_t)(school->fish[g].n_sheet + 1);
-            TRY(MEMORY_NEW(block->u, size, "the influence of sheets"));
-            TRY(MEMORY_NEW(block->v, size, "the influence of sheets"));
+            const size_t size = (size_t)residual->flow->points[f].n * (size_t)(school->fish[g].n_sheet + 1);
+            NEW(arena, block->u, size);
+            NEW(arena, block->v, size);
         }
     }
-    const size_t n = (size_t)d->n;
-    TRY(MEMORY_NEW(d->matrix, n * n, "the sheets of the fish"));
-    TRY(MEMORY_NEW(d->pivot, n, "the sheets of the fish"));
-    TRY(MEMORY_NEW(d->solution, n, "the sheets of the fish"));
-    TRY(MEMORY_NEW(d->band, 2 * max_nodes * BANDWIDTH, "the sheets of the fish"));
-    return MEMORY_NEW(d->force, 2 * max_nodes, "the sheets of the fish");
-}
-
-enum status ode_rhs_create(struct ode_rhs **rhs, struct residual *residual) {
-    *rhs = NULL;
-    struct ode_rhs *new;
-    TRY(MEMORY_NEW(new, 1, "the right-hand side"));
-    new->residual = residual;
-    const enum status status = ode_allocate(new);
-    if (status != STATUS_OK) {
-        ode_rhs_free(new);
-        return status;
-    }
-    *rhs = new;
-    return STATUS_OK;
-}
-
-void ode_rhs_free(struct ode_rhs *d) {
-    if (!d) return;
-    const int n_fish = d->residual->school->n_fish;
-    for (int i = 0; d->influence && i < n_fish * n_fish; i++) {
-        free(d->influence[i].u);
-        free(d->influence[i].v);
-    }
-    free(d->influence);
-    free(d->no_sheets);
-    free(d->first);
-    free(d->matrix);
-    free(d->pivot);
-    free(d->solution);
-    free(d->band);
-    free(d->force);
-    free(d);
+    NEW(arena, d->matrix, (size_t)d->n * (size_t)d->n);
+    NEW(arena, d->pivot, d->n);
+    NEW(arena, d->solution, d->n);
+    NEW(arena, d->band, 2 * max_nodes * BANDWIDTH);
+    NEW(arena, d->force, 2 * max_nodes);
+    return d;
 }
 
 // the velocity of the fluid without sheets and nascent vortices, and the influence of sheets and nascent vortices
@@ -176,10 +145,13 @@ static void assemble_velocities(struct ode_rhs *d, int f, const double *y, doubl
         const int is_given = fish_is_prescribed(fish, k, i);
         *entry(d, row, row) = 1;
         rhs[row] = y[(is_given ? fish->at.vx : fish->at.px) + m];
-        for (int j = 0; j < fish->n_sheet && !is_given; j++) {
-            double momentum[2];
-            pressure_momentum_by_strength(fish, k, j, y + fish->at.x, momentum);
-            *entry(d, row, d->first[f] + j) = momentum[i] / fish->mass[k];
+    }
+    for (int j = 0; j < fish->n_sheet; j++) {
+        pressure_momentum_by_strength(fish, j, y + fish->at.x, d->force);
+        for (int m = 0; m < 2 * fish->n_nodes; m++) {
+            const int i = m / fish->n_nodes, k = m % fish->n_nodes;
+            if (fish_is_prescribed(fish, k, i)) continue;
+            *entry(d, velocity_at(d, f, i, k), d->first[f] + j) = d->force[m] / fish->mass[k];
         }
     }
 }
@@ -348,7 +320,12 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     TRY(residual_contact(d->residual, t, y));
     TRY(update_flow(d, t, y));
     TRY(solve_sheets(d, t, y));
-    add_sheets(d, y);
+
+    // the velocity of rings has a divergence, which the influence omits
+    const int has_legs = d->residual->flow->kernel->has_legs;
+    if (has_legs) TRY(flow_velocity(d->residual->flow, d->residual->state, t, y));
+    if (!has_legs) add_sheets(d, y);
+
     memset(yp, 0, (size_t)school->n_unknowns * sizeof *yp);
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;

@@ -11,19 +11,18 @@
 #ifndef ODE_RHS_H
 #define ODE_RHS_H
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "school/residual.h"
 
 struct ode_rhs;
 
-/* Create the right-hand side for a residual, which must outlive it. Fails with STATUS_MEMORY. ode_rhs_free accepts
- * NULL. */
-enum status ode_rhs_create(struct ode_rhs **rhs, struct residual *residual);
-void ode_rhs_free(struct ode_rhs *rhs);
+/* Create the right-hand side for a residual, which must outlive it. */
+struct ode_rhs *ode_rhs_create(struct arena *arena, struct residual *residual);
 
 /* Compute the algebraic unknowns of y at time t [s], set prescribed nodes to their paths, and set the rates yp of the
  * differential unknowns (rates of algebraic unknowns become 0); both arrays are (n_unknowns). Fails with STATUS_RETRY
- * if a value is not finite, a body is torn or a system has no solution, or with STATUS_MEMORY. */
+ * if a value is not finite, a body is torn or a system has no solution. */
 enum status ode_rhs_rates(struct ode_rhs *rhs, double t, double *y, double *yp);
 
 #endif

@@ -1,9 +1,7 @@
 /* one_step.c: implicit Euler and the trapezoidal rule applied to the residual of the school, and Verlet's method. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "school/diagnostics_energy.h"
 #include "school/residual.h"
 #include "solver/integrator.h"
@@ -37,56 +35,35 @@ struct one_step {
     struct integrator_counts counts;
 };
 
-static void one_step_free(void *data) {
-    struct one_step *const solver = data;
-    if (!solver) return;
-    linear_free(solver->linear);
-    jacobian_free(solver->jacobian);
-    integrator_rates_free(solver->algebraic_rates);
-    double *const arrays[] = {solver->kind,  solver->tolerance,  solver->before,
-                              solver->rates, solver->correction, solver->right_hand};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
-    free(solver);
-}
+static enum status one_step_create(struct arena *arena, void **created, struct residual *residual, struct state *state,
+                                   const struct integrator_options *options) {
+    const int n = residual->school->n_unknowns;
+    struct one_step *solver;
+    NEW(arena, solver, 1);
+    solver->residual = residual;
+    solver->state = state;
+    solver->options = *options;
+    solver->pattern = residual->couplings.pattern;
+    solver->counts = options->before;
+    solver->counts.step_size = options->step;
+    solver->counts.order = methods_table[options->method].order;
 
-static enum status one_step_fill(struct one_step *solver) {
-    const int n = solver->residual->school->n_unknowns;
     double **const arrays[] = {&solver->kind,  &solver->tolerance,  &solver->before,
                                &solver->rates, &solver->correction, &solver->right_hand};
-    TRY(MEMORY_ARRAYS(arrays, n, "the unknowns"));
-    residual_kinds(solver->residual, solver->kind);
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) NEW(arena, *arrays[i], n);
+    residual_kinds(residual, solver->kind);
     for (int i = 0; i < n; i++) {
         // the errors of Newton's iteration in the velocities of a stiff body add up to a spurious momentum
-        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual->school, i) *
-                               residual_undamped(solver->residual->school, i);
+        const double tolerance = residual->school->rtol * residual_scale(residual->school, i);
+        solver->tolerance[i] = tolerance * residual_undamped(residual->school, i);
     }
-    TRY(jacobian_create(&solver->jacobian, solver->residual->school));
-    TRY(integrator_rates_create(&solver->algebraic_rates, solver->residual->school,
-                                residual_shed_is_algebraic(solver->residual)));
-    integrator_rates_begin(solver->algebraic_rates, solver->state);
-    residual_mask(solver->residual, solver->jacobian);
-    return linear_create(&solver->linear, solver->jacobian, solver->tolerance,
-                         (struct linear_tolerance){linear_relative, 0});
-}
-
-static enum status one_step_create(void **solver, struct residual *residual, struct state *state,
-                                   const struct integrator_options *options) {
-    *solver = NULL;
-    struct one_step *new;
-    TRY(MEMORY_NEW(new, 1, "the implicit solver"));
-    new->residual = residual;
-    new->state = state;
-    new->options = *options;
-    new->pattern = residual->couplings.pattern;
-    new->counts = options->before;
-    new->counts.step_size = options->step;
-    new->counts.order = methods_table[options->method].order;
-    const enum status status = one_step_fill(new);
-    if (status != STATUS_OK) {
-        one_step_free(new);
-        return status;
-    }
-    *solver = new;
+    solver->algebraic_rates = integrator_rates_create(arena, residual->school);
+    integrator_rates_begin(solver->algebraic_rates, state);
+    solver->jacobian = jacobian_create(arena, residual->school);
+    residual_mask(residual, solver->jacobian);
+    solver->linear = linear_create(arena, solver->jacobian, solver->tolerance,
+                                   (struct linear_tolerance){.relative = linear_relative});
+    *created = solver;
     return STATUS_OK;
 }
 
@@ -110,7 +87,7 @@ static void one_step_rates(struct one_step *solver, double h) {
     const int is_trapezoid = solver->options.method == METHOD_TRAPEZOID;
     for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
         const double change = (state->y[i] - solver->before[i]) / h;
-        // integrator_rates_step replaces the rates of algebraic unknowns that are used
+        // integrator_rates_step and state_find_rates replace the rates of algebraic unknowns that are used
         state->yp[i] = is_trapezoid && solver->kind[i] > 0 ? 2 * change - solver->rates[i] : change;
     }
 }
@@ -153,7 +130,7 @@ static enum status one_step_iterate(struct one_step *solver, double t, double h,
     *converged = 0;
     const double cj = solver->options.method == METHOD_TRAPEZOID ? 2 / h : 1 / h;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
-        TRY(integrator_ask(solver->stop));
+        TRY(status_ask(solver->stop));
         if (solver->cj != cj || solver->pattern != solver->residual->couplings.pattern)
             TRY(one_step_set_up(solver, t, cj));
         double size = 0;
@@ -216,11 +193,8 @@ static enum status one_step_advance(void *data, double t, const volatile sig_ato
     return STATUS_OK;
 }
 
-const struct integrator one_step_integrator = {.create = one_step_create,
-                                               .advance = one_step_advance,
-                                               .restart = one_step_restart,
-                                               .count = one_step_count,
-                                               .free = one_step_free};
+const struct integrator one_step_integrator = {
+    .create = one_step_create, .advance = one_step_advance, .restart = one_step_restart, .count = one_step_count};
 
 // ---- kick, drift, kick
 
@@ -229,36 +203,21 @@ struct verlet {
     struct state *state;
     struct integrator_options options;
     struct ode_rhs *rhs;
-    double *circulation; /* shed circulation at the start of an interval                   (n_fish) */
     struct integrator_counts counts;
 };
 
-static void verlet_free(void *data) {
-    struct verlet *const solver = data;
-    if (!solver) return;
-    ode_rhs_free(solver->rhs);
-    free(solver->circulation);
-    free(solver);
-}
-
-static enum status verlet_create(void **solver, struct residual *residual, struct state *state,
+static enum status verlet_create(struct arena *arena, void **created, struct residual *residual, struct state *state,
                                  const struct integrator_options *options) {
-    *solver = NULL;
-    struct verlet *new;
-    TRY(MEMORY_NEW(new, 1, "the solver of rods"));
-    new->residual = residual;
-    new->state = state;
-    new->options = *options;
-    new->counts = options->before;
-    new->counts.step_size = options->step;
-    new->counts.order = methods_table[options->method].order;
-    enum status status = MEMORY_NEW(new->circulation, residual->school->n_fish, "the solver of rods");
-    if (status == STATUS_OK) status = ode_rhs_create(&new->rhs, residual);
-    if (status != STATUS_OK) {
-        verlet_free(new);
-        return status;
-    }
-    *solver = new;
+    struct verlet *solver;
+    NEW(arena, solver, 1);
+    solver->residual = residual;
+    solver->state = state;
+    solver->options = *options;
+    solver->counts = options->before;
+    solver->counts.step_size = options->step;
+    solver->counts.order = methods_table[options->method].order;
+    solver->rhs = ode_rhs_create(arena, residual);
+    *created = solver;
     return STATUS_OK;
 }
 
@@ -321,18 +280,10 @@ static enum status verlet_step(struct verlet *solver, double t, double h) {
     return STATUS_OK;
 }
 
-// the sheets and the rates of all unknowns; the rate of the shed circulation is a difference over the interval
+// the sheets and the rates of the differential unknowns
 static enum status close_interval(struct verlet *solver, double t) {
-    struct state *const state = solver->state;
-    const struct school *school = solver->residual->school;
-    const enum status status = ode_rhs_rates(solver->rhs, t, state->y, state->yp);
-    if (status > 0) return verlet_unstable(solver, t);
-    TRY(status);
-    for (int f = 0; f < school->n_fish; f++) {
-        const int shed = school->fish[f].at.circulation;
-        state->yp[shed] = (state->y[shed] - solver->circulation[f]) / school->interval;
-    }
-    return STATUS_OK;
+    const enum status status = ode_rhs_rates(solver->rhs, t, solver->state->y, solver->state->yp);
+    return status > 0 ? verlet_unstable(solver, t) : status;
 }
 
 static enum status verlet_advance(void *data, double t, const volatile sig_atomic_t *stop) {
@@ -348,9 +299,8 @@ static enum status verlet_advance(void *data, double t, const volatile sig_atomi
                            "solver.max_steps: raise it, or solver.step",
                            start, n);
     }
-    for (int f = 0; f < school->n_fish; f++) solver->circulation[f] = state->y[school->fish[f].at.circulation];
     for (long i = 1; i <= n; i++) {
-        TRY(integrator_ask(stop));
+        TRY(status_ask(stop));
         const double now = i < n ? start + (double)i * h : t;
         TRY(verlet_step(solver, now, h));
         if (i == n) TRY(close_interval(solver, t));
@@ -359,8 +309,5 @@ static enum status verlet_advance(void *data, double t, const volatile sig_atomi
     return STATUS_OK;
 }
 
-const struct integrator one_step_verlet = {.create = verlet_create,
-                                           .advance = verlet_advance,
-                                           .restart = verlet_restart,
-                                           .count = verlet_count,
-                                           .free = verlet_free};
+const struct integrator one_step_verlet = {
+    .create = verlet_create, .advance = verlet_advance, .restart = verlet_restart, .count = verlet_count};

@@ -1,9 +1,7 @@
 /* runge_kutta.c: ARKStep applied to the right-hand side of ode_rhs.h. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "school/diagnostics_energy.h"
 #include "solver/integrator.h"
 #include "solver/ode_rhs.h"
@@ -64,7 +62,7 @@ static enum status runge_kutta_evaluate(struct runge_kutta *solver, double t, co
 
 static int rates_callback(sunrealtype t, N_Vector y, N_Vector rates, void *data) {
     struct runge_kutta *const solver = data;
-    solver->failure = integrator_ask(solver->stop);
+    solver->failure = status_ask(solver->stop);
     if (solver->failure == STATUS_OK) solver->failure = runge_kutta_evaluate(solver, t, N_VGetArrayPointer(y));
     if (solver->failure == STATUS_OK) {
         memcpy(N_VGetArrayPointer(rates), solver->rates,
@@ -90,79 +88,58 @@ static ARKodeButcherTable tableau_of(enum method method, int adaptive) {
     return table;
 }
 
-static void runge_kutta_free(void *data) {
-    struct runge_kutta *const solver = data;
-    if (!solver) return;
-    if (solver->arkode) ARKodeFree(&solver->arkode);
-    if (solver->y) N_VDestroy(solver->y);
-    if (solver->tolerances) N_VDestroy(solver->tolerances);
-    ode_rhs_free(solver->rhs);
-    free(solver->work);
-    free(solver->rates);
-    integrator_rates_free(solver->algebraic_rates);
-    free(solver->tolerance);
-    sundials_context_free(&solver->context);
-    free(solver);
-}
-
-static enum status set_up_arkode(struct runge_kutta *solver) {
-    void *const arkode = solver->arkode;
-    const double step = solver->options.step;
-    const ARKodeButcherTable table = tableau_of(solver->options.method, step <= 0);
-    TRY(memory_check(table, "the tableau of a Runge-Kutta method"));
-    // 6.4 interpolates at the stop time, for order one by a constant: Hermite's interpolant is the mean of both ends of
-    // the step, Lagrange's interpolant the solution at the end
-    const int order = table->q;
-    const int failed = ARKStepSetErrHandlerFn(arkode, sundials_context_message, &solver->failure) ||
-                       ARKodeSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
-                       (order == 1 && ARKodeSetInterpolantType(arkode, ARK_INTERP_LAGRANGE)) ||
-                       ARKodeSVtolerances(arkode, 0, solver->tolerances) || ARKodeSetMaxNumSteps(arkode, -1) ||
-                       ARKodeSetMaxErrTestFails(arkode, 20) ||
-                       ARKodeSetMinStep(arkode, step > 0 ? 0 : 1e-10 * solver->residual->school->interval) ||
-                       (step > 0 && ARKodeSetFixedStep(arkode, step));
+static void release_tableau(void *table) {
     ARKodeButcherTable_Free(table);
-    TRY(sundials_context_check(&solver->context));
-    return failed ? status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message()) : STATUS_OK;
 }
 
-static enum status runge_kutta_fill(struct runge_kutta *solver) {
-    const int n = solver->residual->school->n_unknowns;
-    double **const arrays[] = {&solver->work, &solver->tolerance, &solver->rates};
-    TRY(MEMORY_ARRAYS(arrays, n, "the unknowns"));
+static void release_arkode(void *solver) {
+    ARKodeFree(&((struct runge_kutta *)solver)->arkode);
+}
 
+static enum status runge_kutta_create(struct arena *arena, void **created, struct residual *residual,
+                                      struct state *state, const struct integrator_options *options) {
+    const struct school *const school = residual->school;
+    const int n = school->n_unknowns;
+    const double step = options->step;
+    struct runge_kutta *solver;
+    NEW(arena, solver, 1);
+    solver->residual = residual;
+    solver->state = state;
+    solver->options = *options;
+    solver->before = options->before;
+    solver->evaluations = options->before.residual_evaluations;
+    NEW(arena, solver->work, n);
+    NEW(arena, solver->rates, n);
+    NEW(arena, solver->tolerance, n);
     // algebraic unknowns have no rate and no error here; only a tolerance for velocities reveals an instability
     for (int i = 0; i < n; i++) {
-        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual->school, i) *
-                               residual_undamped(solver->residual->school, i);
+        const double tolerance = school->rtol * residual_scale(school, i);
+        solver->tolerance[i] = tolerance * residual_undamped(school, i);
     }
-    TRY(ode_rhs_create(&solver->rhs, solver->residual));
-    TRY(integrator_rates_create(&solver->algebraic_rates, solver->residual->school,
-                                residual_shed_is_algebraic(solver->residual)));
-    integrator_rates_begin(solver->algebraic_rates, solver->state);
-    TRY(sundials_context_create(&solver->context, n, 1, &solver->failure));
-    TRY(sundials_context_vector(&solver->context, &solver->y, solver->state->y));
-    TRY(sundials_context_vector(&solver->context, &solver->tolerances, solver->tolerance));
-    solver->arkode = ARKStepCreate(rates_callback, NULL, solver->state->t, solver->y, solver->context.context);
-    TRY(memory_check(solver->arkode, "ARKODE"));
-    return set_up_arkode(solver);
-}
+    solver->rhs = ode_rhs_create(arena, residual);
+    solver->algebraic_rates = integrator_rates_create(arena, school);
+    integrator_rates_begin(solver->algebraic_rates, state);
 
-static enum status runge_kutta_create(void **solver, struct residual *residual, struct state *state,
-                                      const struct integrator_options *options) {
-    *solver = NULL;
-    struct runge_kutta *new;
-    TRY(MEMORY_NEW(new, 1, "ARKODE's solver"));
-    new->residual = residual;
-    new->state = state;
-    new->options = *options;
-    new->before = options->before;
-    new->evaluations = options->before.residual_evaluations;
-    const enum status status = runge_kutta_fill(new);
-    if (status != STATUS_OK) {
-        runge_kutta_free(new);
-        return status;
+    sundials_context_create(&solver->context, arena, n, 1, &solver->failure);
+    solver->y = sundials_context_vector(&solver->context, state->y);
+    solver->tolerances = sundials_context_vector(&solver->context, solver->tolerance);
+    sundials_context_reserve(&solver->context, 32);  // more than ARKODE clones for seven stages
+    const ARKodeButcherTable table = arena_take(arena, tableau_of(options->method, step <= 0));
+    arena_defer(arena, release_tableau, table);
+    void *const arkode = solver->arkode =
+        arena_take(arena, ARKStepCreate(rates_callback, NULL, state->t, solver->y, solver->context.context));
+    arena_defer(arena, release_arkode, solver);
+    // 6.4 interpolates at the stop time, for order one by a constant: Hermite's interpolant is the mean of both ends of
+    // the step, Lagrange's interpolant the solution at the end
+    if (ARKStepSetErrHandlerFn(arkode, sundials_context_message, &solver->failure) ||
+        ARKodeSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
+        (table->q == 1 && ARKodeSetInterpolantType(arkode, ARK_INTERP_LAGRANGE)) ||
+        ARKodeSVtolerances(arkode, 0, solver->tolerances) || ARKodeSetMaxNumSteps(arkode, -1) ||
+        ARKodeSetMaxErrTestFails(arkode, 20) || ARKodeSetMinStep(arkode, step > 0 ? 0 : 1e-10 * school->interval) ||
+        (step > 0 && ARKodeSetFixedStep(arkode, step))) {
+        return status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message());
     }
-    *solver = new;
+    *created = solver;
     return STATUS_OK;
 }
 
@@ -246,13 +223,15 @@ static enum status runge_kutta_advance(void *data, double t, const volatile sig_
     solver->stop = stop;
     for (long steps = 0; reached < t; steps++) {
         if (steps == solver->options.max_steps) {
-            return unstable(solver, reached, "more steps between two events than solver.max_steps");
+            return status_fail(STATUS_SOLVER,
+                               "limited by solver.max_steps at t = %.10g s: %ld steps since the last event; increase "
+                               "solver.max_steps or solver.rtol, or choose solver.method: ida",
+                               reached, steps);
         }
         if (ARKodeSetStopTime(solver->arkode, t)) return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
         solver->failure = STATUS_OK;
         status_clear();
         const int code = ARKodeEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
-        TRY(sundials_context_check(&solver->context));
         if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
         if (code < 0) return unstable(solver, reached, status_message());
         if (code == ARK_TSTOP_RETURN) reached = t;
@@ -265,5 +244,4 @@ static enum status runge_kutta_advance(void *data, double t, const volatile sig_
 const struct integrator runge_kutta_integrator = {.create = runge_kutta_create,
                                                   .advance = runge_kutta_advance,
                                                   .restart = runge_kutta_restart,
-                                                  .count = runge_kutta_count,
-                                                  .free = runge_kutta_free};
+                                                  .count = runge_kutta_count};

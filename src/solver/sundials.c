@@ -7,7 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 
 /* The content of a vector begins with the content that the operations of the library expect. */
@@ -52,82 +51,71 @@ static double masked_norm(N_Vector x, N_Vector weight, N_Vector mask) {
     return sqrt(sum / n);
 }
 
-static void destroy(N_Vector vector) {
-    const struct sundials_context *const context = context_of(vector);
-    if (vector == context->spare) return;
-    if (is_shared(context)) {
+// the arena releases all vectors
+static void keep(N_Vector vector) {
+    (void)vector;
+}
+
+static void release_vector(void *object) {
+    const N_Vector vector = object;
+    if (is_shared(context_of(vector))) {
         N_VDestroy_OpenMP(vector);
     } else {
         N_VDestroy_Serial(vector);
     }
 }
 
-// extend the content of a vector of the library by the context; after a failure the vector is freed
-static N_Vector give_context(N_Vector vector, struct sundials_context *context) {
-    if (!vector) return NULL;
+static N_Vector clone(N_Vector vector) {
+    struct sundials_context *const context = context_of(vector);
+    return context->n_spare > 0 ? context->spare[--context->n_spare] : sundials_context_vector(context, NULL);
+}
+
+N_Vector sundials_context_vector(struct sundials_context *context, double *values) {
+    struct arena *const arena = context->arena;
+    if (!values) NEW(arena, values, context->n);
+    const N_Vector vector =
+        arena_take(arena, is_shared(context) ? N_VMake_OpenMP(context->n, values, context->threads, context->context)
+                                             : N_VMake_Serial(context->n, values, context->context));
+
+    // extend the content of the vector by the context
     struct content *const content = realloc(vector->content, sizeof *content);
     if (!content) {
-        vector->ops->nvdestroy = is_shared(context) ? N_VDestroy_OpenMP : N_VDestroy_Serial;
         N_VDestroy(vector);
-        return NULL;
+        arena_lack(arena, sizeof *content);
     }
     content->context = context;
     vector->content = content;
+    vector->ops->nvclone = clone;
+    vector->ops->nvdestroy = keep;
+    vector->ops->nvwrmsnorm = norm;
+    vector->ops->nvwrmsnormmask = masked_norm;
+    arena_defer(arena, release_vector, vector);
     return vector;
 }
 
-static N_Vector clone(N_Vector vector) {
-    struct sundials_context *const context = context_of(vector);
-    const N_Vector new = give_context(is_shared(context) ? N_VClone_OpenMP(vector) : N_VClone_Serial(vector), context);
-    if (new) return new;
-    context->lacked_memory = 1;
-    return context->spare;
+void sundials_context_reserve(struct sundials_context *context, int n) {
+    GROW(context->arena, context->spare, n);
+    while (context->n_spare < n) context->spare[context->n_spare++] = sundials_context_vector(context, NULL);
 }
 
-enum status sundials_context_vector(struct sundials_context *context, N_Vector *vector, double *values) {
-    *vector = give_context(is_shared(context) ? N_VMake_OpenMP(context->n, values, context->threads, context->context)
-                                              : N_VMake_Serial(context->n, values, context->context),
-                           context);
-    TRY(memory_check(*vector, "a vector of unknowns"));
-    const N_Vector_Ops ops = (*vector)->ops;
-    ops->nvclone = clone;
-    ops->nvdestroy = destroy;
-    ops->nvwrmsnorm = norm;
-    ops->nvwrmsnormmask = masked_norm;
-    return STATUS_OK;
+static void release_context(void *object) {
+    SUNContext_Free(object);
 }
 
-enum status sundials_context_create(struct sundials_context *context, int n, int threads, enum status *failure) {
-    *context = (struct sundials_context){
-        .n = n, .threads = parallel_threads(threads, n, n, PARALLEL_ELEMENTS), .failure = failure};
-    double *values = NULL;
+void sundials_context_create(struct sundials_context *context, struct arena *arena, int n, int threads,
+                             enum status *failure) {
+    *context = (struct sundials_context){.arena = arena_create(arena, "vectors of SUNDIALS"),
+                                         .n = n,
+                                         .threads = parallel_threads(threads, n, n, PARALLEL_ELEMENTS),
+                                         .failure = failure};
+    if (SUNContext_Create(SUN_COMM_NULL, &context->context) != SUN_SUCCESS) arena_lack(arena, 0);
+    arena_defer(context->arena, release_context, &context->context);
     // no logger, because a logger prints warnings
-    if (SUNContext_Create(SUN_COMM_NULL, &context->context) != SUN_SUCCESS ||
-        SUNContext_SetLogger(context->context, NULL) != SUN_SUCCESS ||
+    if (SUNContext_SetLogger(context->context, NULL) != SUN_SUCCESS ||
         SUNContext_ClearErrHandlers(context->context) != SUN_SUCCESS ||
-        SUNContext_PushErrHandler(context->context, sundials_context_message, failure) != SUN_SUCCESS ||
-        !(values = calloc((size_t)n, sizeof *values)) ||
-        sundials_context_vector(context, &context->spare, values) != STATUS_OK) {
-        free(values);
-        sundials_context_free(context);
-        return memory_check(NULL, "a context of SUNDIALS");
+        SUNContext_PushErrHandler(context->context, sundials_context_message, failure) != SUN_SUCCESS) {
+        arena_lack(arena, 0);
     }
-    return STATUS_OK;
-}
-
-void sundials_context_free(struct sundials_context *context) {
-    const N_Vector spare = context->spare;
-    context->spare = NULL;
-    if (spare) {
-        free(N_VGetArrayPointer(spare));
-        N_VDestroy(spare);
-    }
-    if (context->context) SUNContext_Free(&context->context);
-    *context = (struct sundials_context){0};
-}
-
-enum status sundials_context_check(const struct sundials_context *context) {
-    return context->lacked_memory ? memory_check(NULL, "the solver") : STATUS_OK;
 }
 
 void sundials_context_message(SUNDIALS_ERROR_ARGUMENTS) {

@@ -24,6 +24,7 @@
 #include <sunlinsol/sunlinsol_spgmr.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 
 #define SUNDIALS_AT_LEAST(major, minor) \
@@ -84,25 +85,25 @@ typedef int SUNErrCode;
 /* The context of one solver, shared by its vectors. The struct must not move while vectors exist. */
 struct sundials_context {
     SUNContext context;
+    struct arena *arena; /* of the context and all vectors, also of clones by SUNDIALS; freed after later objects */
+    N_Vector *spare;     /* vectors for the next clones, so that no clone inside SUNDIALS requests memory */
+    int n_spare;
     int n, threads;       /* of every vector: number of values, threads of an operation */
     enum status *failure; /* status of the last callback; owned by the caller */
-    N_Vector spare;       /* replaces a clone after a failed allocation */
-    int lacked_memory;    /* for a clone */
 };
 
 /* Create a context for vectors of n values. Threads share the operations on long vectors; the bits of each value are
  * independent of the number of threads, and norms are sums in the order of the values. Errors of SUNDIALS go to
- * sundials_context_message with failure. Fails with STATUS_MEMORY. sundials_context_free accepts a struct of zeros. */
-enum status sundials_context_create(struct sundials_context *context, int n, int threads, enum status *failure);
-void sundials_context_free(struct sundials_context *context);
+ * sundials_context_message with failure. An object that clones vectors is deferred to the same arena later, and so is
+ * freed before its vectors. */
+void sundials_context_create(struct sundials_context *context, struct arena *arena, int n, int threads,
+                             enum status *failure);
 
-/* Create a vector on the caller's array of values. Fails with STATUS_MEMORY. */
-enum status sundials_context_vector(struct sundials_context *context, N_Vector *vector, double *values);
+/* Prepare n clones: a jump out of a function of SUNDIALS would lose the memory of that function. */
+void sundials_context_reserve(struct sundials_context *context, int n);
 
-/* Fail with STATUS_MEMORY if a clone of a vector could not be allocated. SUNDIALS 6 crashes if a clone is NULL, so the
- * spare vector is then the clone, and all results are worthless. Call after calls that may clone vectors: the set-up of
- * a solver, and the first step. */
-enum status sundials_context_check(const struct sundials_context *context);
+/* Create a vector on an array of the caller, or, if values is NULL, of zeros. */
+N_Vector sundials_context_vector(struct sundials_context *context, double *values);
 
 /* Error handler for SUNDIALS; data: status of the last callback. The message of a failed callback is the cause and
  * stays; otherwise the text of SUNDIALS becomes the message of this thread. */

@@ -16,54 +16,30 @@ void impulse_add_stretch(struct impulse_moments *sum, double circulation, const 
     impulse_add(sum, circulation / 2, other[0], other[1]);
 }
 
-// add the given fraction (part) of the circulation of source i at the position of the source tau after the event
-static void impulse_add_source(struct impulse_moments *sum, const struct wake *wake, int i, double part,
-                               double interval, double tau) {
-    double older[2], newer[2];
-    wake_marker(wake, i, interval, tau, older);
-    wake_marker(wake, i + wake->has_markers, interval, tau, newer);
-
-    impulse_add_stretch(sum, part * wake_source(wake, i), older, newer);
-}
-
-// the age of source i at the event at time t
-static double source_age(const struct wake *wake, int i, double t) {
-    return t - wake->birth[i + wake->has_markers];
-}
-
-// add the stretches of a free sheet of rings at time t + tau, multiplied by factor; labels of markers include the
-// decay; decaying: only the fraction of each label that decays within the interval
-static void add_rings(struct impulse_moments *sum, const struct wake *wake, const struct school *school, double t,
-                      double tau, int decaying, double factor) {
-    const double interval = school->interval;
-    double older[2] = {0}, before = 0;
-    for (int i = 0; i < wake->n_vortex; i++) {
-        const double age = t - wake->birth[i];
-        const double part = decaying ? wake_strength(school, age) - wake_strength(school, age + interval)
-                                     : wake_strength_within(school, age, tau / interval);
-
-        const double label = factor * part * wake_label(wake, i, interval, tau);
-        double newer[2];
-        wake_marker(wake, i, interval, tau, newer);
-        if (i > 0) impulse_add_stretch(sum, label - before, older, newer);
-
-        before = label;
-        older[0] = newer[0];
-        older[1] = newer[1];
+/* Add a wake at the time t + tau, multiplied by factor: the strengths at the fraction q of the interval, less, if
+ * less_q >= 0, the strengths at that fraction. */
+static void impulse_add_wake(struct impulse_moments *sum, const struct wake *wake, const struct school *school,
+                             double t, double tau, double q, double less_q, double factor) {
+    struct wake_decay now = {.wake = wake, .school = school, .t = t, .tau = tau, .q = q}, then = now;
+    then.q = less_q;
+    const int first = less_q >= 0 ? wake_first_decaying(wake, school, t) : wake->n_vortex - 1;
+    double newer[2] = {0, 0}, before = 0;
+    for (int i = first; i >= 0; i--) {
+        const double less = less_q >= 0 ? wake_next_strength(&then, i) : 0;
+        const double strength = factor * (wake_next_strength(&now, i) - less);
+        double at[2];
+        wake_marker(wake, i, school->interval, tau, at);
+        if (!wake->has_markers) impulse_add(sum, strength, at[0], at[1]);
+        if (wake->has_markers && i < first) impulse_add_stretch(sum, before - strength, at, newer);
+        before = strength;
+        newer[0] = at[0];
+        newer[1] = at[1];
     }
 }
 
 struct impulse_moments impulse_of_wake(const struct wake *wake, const struct school *school, double t, double tau) {
     struct impulse_moments sum = {0};
-    if (school->finite) {
-        add_rings(&sum, wake, school, t, tau, 0, 1);
-        return sum;
-    }
-
-    for (int i = 0; i < wake_n_sources(wake); i++) {
-        const double strength = wake_strength_within(school, source_age(wake, i, t), tau / school->interval);
-        impulse_add_source(&sum, wake, i, strength, school->interval, tau);
-    }
+    impulse_add_wake(&sum, wake, school, t, tau, tau / school->interval, -1, 1);
     return sum;
 }
 
@@ -105,18 +81,8 @@ void impulse_fade(const struct school *school, struct state *state, int f) {
     struct impulse_moments lost = {0};
 
     // lost moments: mean of the positions at the beginning and at the end of the interval
-    if (school->finite) {
-        add_rings(&lost, wake, school, state->t, 0, 1, 0.5);
-        add_rings(&lost, wake, school, state->t, school->interval, 1, 0.5);
-    }
-    for (int i = 0; i < wake_n_sources(wake) && !school->finite; i++) {
-        const double age = source_age(wake, i, state->t);
-        const double part = wake_strength(school, age) - wake_strength(school, age + school->interval);
-        // sources are ordered by age: all younger sources keep full strength
-        if (!(part > 0) && wake_strength(school, age + school->interval) >= 1) break;
-        impulse_add_source(&lost, wake, i, part / 2, school->interval, 0);
-        impulse_add_source(&lost, wake, i, part / 2, school->interval, school->interval);
-    }
+    impulse_add_wake(&lost, wake, school, state->t, 0, 0, 1, 0.5);
+    impulse_add_wake(&lost, wake, school, state->t, school->interval, 0, 1, 0.5);
 
     // the tail: newest marker at the beginning of the interval, node of y at the end
     const double end[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
@@ -130,10 +96,13 @@ void impulse_remove(const struct school *school, struct state *state, int f) {
     const struct fish *const fish = &school->fish[f];
 
     // labels of old rings have decayed completely
-    const int n_old = school->finite ? 0 : wake_n_old(wake, school, state->t);
+    const int n_old = wake_n_old(wake, school, state->t);
     struct impulse_moments lost = {0};
-    for (int i = 0; i < n_old; i++) {
-        impulse_add_source(&lost, wake, i, wake_strength(school, source_age(wake, i, state->t)), school->interval, 0);
+    for (int i = 0; i < n_old && !school->finite; i++) {
+        const int newer = i + wake->has_markers;
+        const double g = wake_strength(school, state->t - wake->birth[newer]) * wake_source(wake, i);
+        impulse_add_stretch(&lost, g, (const double[]){wake->x[i], wake->y[i]},
+                            (const double[]){wake->x[newer], wake->y[newer]});
     }
 
     const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};

@@ -2,6 +2,7 @@
 #include "state/state.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@ static enum status state_fill(struct state *state, const struct school *school) 
     const int n_fish = school->n_fish, n_unknowns = school->n_unknowns;
     TRY(MEMORY_NEW(state->y, n_unknowns, "the state"));
     TRY(MEMORY_NEW(state->yp, n_unknowns, "the state"));
+    TRY(MEMORY_NEW(state->past, STATE_PAST * n_unknowns, "the state"));
     TRY(MEMORY_NEW(state->wake, n_fish, "the state"));
     TRY(MEMORY_NEW(state->control, n_fish, "the state"));
     TRY(MEMORY_NEW(state->history, n_fish, "the state"));
@@ -32,7 +34,6 @@ static enum status state_fill(struct state *state, const struct school *school) 
         struct history *const history = &state->history[f];
         history->capacity = (int)fmin(floor(fish->period / school->interval + 0.5), 1e7) + 1;
         history->last = -1;
-        TRY(MEMORY_NEW(history->sample, history->capacity, "the samples of a period"));
 
         struct energy_balance *const balance = &state->balance[f];
         double **const per_strain[] = {&balance->strain, &balance->stress, &balance->stress_before};
@@ -73,6 +74,7 @@ void state_free(struct state *state, const struct school *school) {
 
     free(state->y);
     free(state->yp);
+    free(state->past);
     free(state->wake);
     free(state->control);
     free(state->history);
@@ -83,20 +85,87 @@ void state_free(struct state *state, const struct school *school) {
     free(state);
 }
 
+// the newest row of past
+static void state_keep_past(struct state *state, const struct school *school) {
+    const size_t n = (size_t)school->n_unknowns, size = sizeof *state->past;
+    memmove(state->past + n, state->past, (STATE_PAST - 1) * n * size);
+    memcpy(state->past, state->y, n * size);
+    if (state->n_past < STATE_PAST) state->n_past++;
+}
+
+void state_begin_rates(struct state *state, const struct school *school) {
+    state->n_past = 0;
+    state_keep_past(state, school);
+}
+
+void state_find_rates(struct state *state, const struct school *school, int shed_is_algebraic) {
+    // slopes at the newest of up to 5 values at equal distances of 1, newest first
+    static const double slope[STATE_PAST + 1][STATE_PAST + 1] = {
+        {0}, {1, -1}, {3. / 2, -2, 1. / 2}, {11. / 6, -3, 3. / 2, -1. / 3}, {25. / 12, -4, 3, -4. / 3, 1. / 4}};
+    const int n = school->n_unknowns;
+
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const int has_momentum = fish_has_momentum(fish);
+        for (int i = has_momentum ? fish->at.vx : fish->at.circulation; i <= fish->at.circulation; i++) {
+            const int is_differential = i == fish->at.circulation && !shed_is_algebraic;
+            if (is_differential || (i >= fish->at.px && i < fish->at.gamma)) continue;
+            double sum = slope[state->n_past][0] * state->y[i];
+            for (long k = 0; k < state->n_past; k++) sum += slope[state->n_past][k + 1] * state->past[k * n + i];
+            state->yp[i] = sum / school->interval;
+        }
+    }
+
+    state_keep_past(state, school);
+}
+
 unsigned long state_wake_version(const struct state *state, const struct school *school) {
     unsigned long version = 0;
     for (int f = 0; f < school->n_fish; f++) version += state->wake[f].version;
     return version;
 }
 
+// zeroed slots behind the slots of a history
+static enum status history_resize(struct history *history, int n_slots) {
+    const int n = history->n_slots;
+    if (n_slots == n && history->sample) return STATUS_OK;
+    TRY(MEMORY_RESIZE(history->sample, n_slots, "the samples of a period"));
+    if (n_slots > n) memset(history->sample + n, 0, (size_t)(n_slots - n) * sizeof *history->sample);
+    history->n_slots = n_slots;
+    return STATUS_OK;
+}
+
+// one slot more than samples: a new sample leaves the sample that it drops in place
+static int history_next(const struct history *history) {
+    return history->last < history->capacity ? history->last + 1 : 0;
+}
+
+enum status state_reserve(struct state *state, const struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) {
+        struct history *const history = &state->history[f];
+        const int next = history_next(history), most = history->capacity + 1;
+        if (next < history->n_slots) continue;
+        const int twice = history->n_slots > most / 2 ? most : 2 * history->n_slots;
+        TRY(history_resize(history, twice > next ? twice : next + 1));
+    }
+    return STATUS_OK;
+}
+
+void state_forget_newest(struct history *history) {
+    const int has_wrapped = history->last == 0 && history->n > 1;
+    history->last = has_wrapped ? history->capacity : history->last - 1;
+    if (history->n > 0) history->n--;
+}
+
 void state_remember(struct history *history, const struct sample *sample) {
-    history->last = (history->last + 1) % history->capacity;
+    history->last = history_next(history);
     history->sample[history->last] = *sample;
     if (history->n < history->capacity) history->n++;
 }
 
 const struct sample *state_recall(const struct history *history, int age) {
-    return &history->sample[(history->last - age + history->capacity) % history->capacity];
+    const int slot = history->last - age;
+    return &history->sample[slot < 0 ? slot + history->capacity + 1 : slot];
 }
 
 // ---- lengths of arrays
@@ -104,6 +173,11 @@ const struct sample *state_recall(const struct history *history, int age) {
 static size_t of_unknowns(const struct state *state, const struct school *school, int f) {
     (void)state, (void)f;
     return (size_t)school->n_unknowns;
+}
+
+static size_t of_past(const struct state *state, const struct school *school, int f) {
+    (void)state, (void)f;
+    return STATE_PAST * (size_t)school->n_unknowns;
 }
 
 static size_t of_wake(const struct state *state, const struct school *school, int f) {
@@ -114,7 +188,7 @@ static size_t of_wake(const struct state *state, const struct school *school, in
 // struct sample consists of doubles
 static size_t of_history(const struct state *state, const struct school *school, int f) {
     (void)school;
-    return (size_t)state->history[f].capacity * (sizeof(struct sample) / sizeof(double));
+    return (size_t)state->history[f].n_slots * (sizeof(struct sample) / sizeof(double));
 }
 
 static size_t of_strains(const struct state *state, const struct school *school, int f) {
@@ -138,6 +212,8 @@ const struct state_row state_table[] = {
     {"event", OF_STATE(STATE_COUNT, event), NULL},
     {"y", OF_STATE(STATE_REAL, y), of_unknowns},
     {"yp", OF_STATE(STATE_REAL, yp), of_unknowns},
+    {"n_past", OF_STATE(STATE_COUNT, n_past), NULL},
+    {"past", OF_STATE(STATE_REAL, past), of_past},
 
     {"wake.version", OF_WAKE(STATE_UNKEPT, version), NULL},
     {"wake.n_vortex", OF_WAKE(STATE_INTEGER, n_vortex), NULL},
@@ -180,6 +256,7 @@ const struct state_row state_table[] = {
     {"history.capacity", OF_HISTORY(STATE_UNKEPT, capacity), NULL},
     {"history.n", OF_HISTORY(STATE_INTEGER, n), NULL},
     {"history.last", OF_HISTORY(STATE_INTEGER, last), NULL},
+    {"history.n_slots", OF_HISTORY(STATE_INTEGER, n_slots), NULL},
     {"history.sample", OF_HISTORY(STATE_REAL, sample), of_history},
 
     {"balance.initial_energy", OF_BALANCE(STATE_REAL, initial_energy), NULL},
@@ -208,6 +285,8 @@ const struct state_row state_table[] = {
 
     {"crossed", OF_STATE(STATE_COUNT, crossed), NULL},
     {"crossed_t", OF_STATE(STATE_REAL, crossed_t), NULL},
+    {"diverged", OF_STATE(STATE_COUNT, diverged), NULL},
+    {"divergence", OF_STATE(STATE_REAL, divergence), NULL},
 };
 const int state_table_n = sizeof state_table / sizeof *state_table;
 
@@ -265,26 +344,44 @@ void *state_table_place(const struct state_row *row, struct state *state, int f)
 }
 
 enum status state_table_make_room(struct state *state, const struct school *school) {
-    for (int f = 0; f < school->n_fish; f++) TRY(wake_resize(&state->wake[f], state->wake[f].n_vortex));
+    for (int f = 0; f < school->n_fish; f++) {
+        struct history *const history = &state->history[f];
+        const int n_slots = history->n_slots;
+        history->n_slots = 0;
+        TRY(wake_resize(&state->wake[f], state->wake[f].n_vortex));
+        TRY(history_resize(history, n_slots));
+    }
     return STATUS_OK;
 }
 
 // ---- loops over the table
 
-enum status state_table_copy(struct state *to, const struct state *from, const struct school *school) {
+static enum status copy_rows(struct state *to, const struct state *from, const struct school *school,
+                             bool with_samples) {
     for (int f = 0; f < school->n_fish; f++) {
         TRY(wake_resize(&to->wake[f], from->wake[f].n_vortex));
         to->wake[f].version++;
+        if (with_samples) TRY(history_resize(&to->history[f], from->history[f].n_slots));
     }
 
     for (int i = 0; i < state_table_n; i++) {
         const struct state_row *const row = &state_table[i];
-        for (int f = 0; f < state_table_n_owners(row, school) && row->type != STATE_UNKEPT; f++) {
+        if (row->type == STATE_UNKEPT || (row->length == of_history && !with_samples)) continue;
+        if (strcmp(row->name, "history.n_slots") == 0) continue;
+        for (int f = 0; f < state_table_n_owners(row, school); f++) {
             const size_t bytes = state_table_length(row, from, school, f) * state_table_size(row);
-            memcpy(state_table_place(row, to, f), state_table_values(row, from, f), bytes);
+            if (bytes > 0) memcpy(state_table_place(row, to, f), state_table_values(row, from, f), bytes);
         }
     }
     return STATUS_OK;
+}
+
+enum status state_table_copy(struct state *to, const struct state *from, const struct school *school) {
+    return copy_rows(to, from, school, true);
+}
+
+enum status state_table_keep(struct state *to, const struct state *from, const struct school *school) {
+    return copy_rows(to, from, school, false);
 }
 
 /* Whether a value may be undefined: the distance of a single fish is infinite, a sample in the first period has no
@@ -319,8 +416,10 @@ enum status state_table_check(const struct state *state, const struct school *sc
     TRY(state_check_finite(state, school));
     int is_good = state->event >= 0 &&
                   fabs(state->t - (double)state->event * school->interval) <= school->interval / 2 &&
-                  state->crossed >= -1 && state->crossed < school->n_fish;
+                  state->crossed >= -1 && state->crossed < school->n_fish && state->diverged >= 0 &&
+                  state->diverged < school->n_fish;
 
+    is_good &= state->n_past >= 0 && state->n_past <= STATE_PAST;
     for (int i = 0; i < 2; i++) is_good &= state->closest->fish[i] >= 0 && state->closest->fish[i] < school->n_fish;
     for (int f = 0; f < school->n_fish; f++) {
         const struct history *const history = &state->history[f];
@@ -329,7 +428,8 @@ enum status state_table_check(const struct state *state, const struct school *sc
         const int n_waypoints = control_n_waypoints(&school->fish[f], control);
 
         is_good &= history->n >= 1 && history->n <= history->capacity;
-        is_good &= history->last >= 0 && history->last < history->capacity;
+        is_good &= history->last >= 0 && history->last < history->n_slots && history->n_slots <= history->capacity + 1;
+        is_good &= history->n <= history->n_slots;
         is_good &= balance->n >= 0 && balance->n <= 2;
         is_good &= control->waypoint >= 0 && control->waypoint <= n_waypoints;
         is_good &= control->n_waypoints >= 0 && control->n_waypoints <= CONTROL_MAX_WAYPOINTS;

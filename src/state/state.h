@@ -30,8 +30,9 @@ struct sample {
 };
 struct history {
     int capacity;          /* samples of one period plus 1; 1 without a period */
-    int n, last;           /* number of samples; index of the newest sample */
-    struct sample *sample; /* (capacity) */
+    int n, last;           /* number of samples; slot of the newest sample */
+    int n_slots;           /* grows with the samples up to capacity + 1: the slot of a new sample is free */
+    struct sample *sample; /* (n_slots) */
 };
 
 /* The energy balance of one fish: work since the start, integrated over the steps of the integrator. */
@@ -66,10 +67,18 @@ struct closest {
     double *before;  /* unknowns at before_t; only positions are used       (n_unknowns) */
 };
 
+/* Values of the worst divergence: size over the limit of the warning (school/warnings.h), 0: none; time, s; speed of a
+ * node, m s-1; circulation shed, or of a vortex, m2 s-1. */
+enum divergence { DIVERGENCE_SIZE, DIVERGENCE_T, DIVERGENCE_SPEED, DIVERGENCE_CIRCULATION, N_DIVERGENCE };
+
+enum { STATE_PAST = 4 };
+
 struct state {
     double t;                          /* time of the last event, s */
     long event;                        /* number of the last event, 0 at the start */
     double *y, *yp;                    /* unknowns and rates of the unknowns               (n_unknowns) */
+    long n_past;                       /* valid rows of past */
+    double *past;                      /* unknowns at the last events, newest first        (STATE_PAST, n_unknowns) */
     struct wake *wake;                 /* (n_fish) */
     struct control_memory *control;    /* (n_fish) */
     struct history *history;           /* (n_fish) */
@@ -78,6 +87,8 @@ struct state {
     struct closest *closest;           /* (1) */
     long crossed;                      /* the first fish with a self-crossing at an event, or -1 */
     double crossed_t;                  /* time of this event, s */
+    long diverged;                     /* the fish with the worst divergence at an event so far */
+    double divergence[N_DIVERGENCE];
 };
 
 /* Create the state before the start: bodies at the start positions, all other values zero. Fails with STATUS_MEMORY. */
@@ -86,10 +97,25 @@ enum status state_create(struct state **state, const struct school *school);
 /* Release the state with all arrays. Accepts NULL. */
 void state_free(struct state *state, const struct school *school);
 
+/* Rates of algebraic unknowns at an event, before the event changes an unknown: the slope of the quartic through the
+ * unknowns at this event and the last STATE_PAST events, of fewer after state_begin_rates. Sets yp of velocities and
+ * bound strengths of fish with force: pressure, and of the shed circulation of all fish unless differential. Within an
+ * interval the rates grow from event to event with the nascent stretch, and jump back: doc/numerics.md, section 3. */
+void state_find_rates(struct state *state, const struct school *school, int shed_is_algebraic);
+
+/* Discard the events before a jump; the next rates begin with the present unknowns. */
+void state_begin_rates(struct state *state, const struct school *school);
+
 /* A number that changes with every change of any wake. */
 unsigned long state_wake_version(const struct state *state, const struct school *school);
 
-/* Add a sample to a history; a full history drops the oldest sample. */
+/* Make room for the next sample of every fish. Fails with STATUS_MEMORY. */
+enum status state_reserve(struct state *state, const struct school *school);
+
+/* Remove the newest sample of a history. */
+void state_forget_newest(struct history *history);
+
+/* Add a sample to a history with room for the sample; a full history drops the oldest sample. */
 void state_remember(struct history *history, const struct sample *sample);
 
 /* The sample that is age events old, 0 the newest; age < history->n. */
@@ -141,13 +167,17 @@ size_t state_table_size(const struct state_row *row);
 const void *state_table_values(const struct state_row *row, const struct state *state, int f);
 void *state_table_place(const struct state_row *row, struct state *state, int f);
 
-/* Resize the arrays of all wakes to n_vortex. Code that reads a state calls this function between the numbers and the
- * arrays. Fails with STATUS_MEMORY. */
+/* Resize the arrays of all wakes to n_vortex, and the samples to n_slots. Code that reads a state calls this function
+ * between the numbers and the arrays. Fails with STATUS_MEMORY. */
 enum status state_table_make_room(struct state *state, const struct school *school);
 
 /* Copy a state into another state of the same school. The wake versions increase, so that struct flow evaluates wakes
  * again. Fails with STATUS_MEMORY; the target can then only be freed. */
 enum status state_table_copy(struct state *to, const struct state *from, const struct school *school);
+
+/* The same without the samples, which stay where they are: keep a state before an event, and return to this state after
+ * at most one further sample of each fish. */
+enum status state_table_keep(struct state *to, const struct state *from, const struct school *school);
 
 /* Fail with STATUS_FILE if a number that serves as an index is out of range for the school, if the time differs from
  * the time of the event, or if a value that is always defined is not finite. */

@@ -12,7 +12,7 @@
 static const double two_pi = 6.28318530717958647692;
 
 /* No pair is merged within this distance of a body, lengths; the taper of the wake of the body ends there too
- * (free_sheet.h). */
+ * (sheet.h). */
 static const double nearest = 2;
 
 /* The newest vortices of a queue are never merged. */

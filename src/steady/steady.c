@@ -3,12 +3,12 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "base/memory.h"
-#include "result/result_lock.h"
+#include "base/arena.h"
+#include "base/mathematics.h"
+#include "result/durable.h"
 #include "result/target.h"
 #include "run/record.h"
 #include "school/diagnostics_energy.h"
@@ -25,6 +25,7 @@ enum { CORRECTIONS = 6 };
 struct run {
     const struct case_values *values;
     const struct steady_options *options;
+    struct arena *arena;
     struct simulation *simulation;
     struct steady_problem problem;
     double *way; /* correction towards the fixed point, from the multipliers       (problem.n_unknowns) */
@@ -52,7 +53,7 @@ static double speed_distance(const struct run *run) {
     const struct steady_problem *const problem = &run->problem;
     double most = 0;
     for (int i = 0; i < problem->n_unknowns && !problem->map.is_formation; i++) {
-        if (problem->unknown[i].quantity == STEADY_SPEED) most = fmax(most, fabs(run->way[i]));
+        if (problem->unknown[i].quantity == STEADY_SPEED) most = larger(most, fabs(run->way[i]));
     }
     return most;
 }
@@ -68,10 +69,10 @@ static enum status find_multipliers(struct run *run) {
     // distance between 1 and the nearest multiplier
     double nearest = INFINITY;
     for (int i = 0; i < found->n_multipliers; i++) {
-        nearest = fmin(nearest, hypot(1 - found->real[i], found->imaginary[i]));
+        nearest = smaller(nearest, hypot(1 - found->real[i], found->imaginary[i]));
     }
 
-    found->error = fmax(found->residual / nearest, speed_distance(run));
+    found->error = larger(found->residual / nearest, speed_distance(run));
     return steady_reason_check(&run->problem, nearest);
 }
 
@@ -140,7 +141,7 @@ static enum status write_beats(struct run *run) {
     }
 
     run->problem.map.n_beats = n_beats;
-    run->found.residual = fmax(run->found.residual, steady_map_residual(&run->problem.map));
+    run->found.residual = larger(run->found.residual, steady_map_residual(&run->problem.map));
     gather_means(run);
 
     return STATUS_OK;
@@ -160,7 +161,7 @@ static enum status steady_find_fixed_point(struct run *run) {
 
     // the integrator restarts at the first row; a restart error can exceed a small tolerance
     const double tolerance = run->values->steady.tolerance;
-    if (!(run->found.residual > tolerance) || !run->options->warn) return STATUS_OK;
+    if (run->found.residual <= tolerance || !run->options->warn) return STATUS_OK;
     char line[256];
     snprintf(line, sizeof line,
              "the beats of the result change by %.2g per beat, more than steady.tolerance, %g: the state is unstable, "
@@ -186,20 +187,26 @@ static enum status refuse_gust(const struct school *school) {
                        "fluid.gust.profile to uniform");
 }
 
+// the record of the result is closed after a lack of memory too
+static enum status steady_find(struct run *run, int is_static) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    return is_static ? find_equilibrium(run) : steady_find_fixed_point(run);
+}
+
 static enum status find_and_write(struct run *run) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct steady_options *const options = run->options;
+    run->arena = arena_create(NULL, "the steady state");
     TRY(target_check(options->path, TARGET_NETCDF, options->overwrite));
     if (options->from) TRY(target_refuse_input(options->path, options->from));
 
     // start from the initial values of the case, or from another steady state
     if (options->from) {
         struct case_values values = *run->values;
-        TRY(steady_start_read(options->from, &run->values->school, &values.school.fish));
-        const enum status created = simulate_create(&run->simulation, &values);
-        free(values.school.fish);
-        TRY(created);
+        TRY(steady_start_read(run->arena, options->from, &run->values->school, &values.school.fish));
+        TRY(simulate_create(run->arena, &run->simulation, &values));
     } else {
-        TRY(simulate_create(&run->simulation, run->values));
+        TRY(simulate_create(run->arena, &run->simulation, run->values));
     }
     run->simulation->stop = options->stop;
     TRY(refuse_gust(run->simulation->school));
@@ -209,10 +216,13 @@ static enum status find_and_write(struct run *run) {
     run->problem.progress = report_progress;
     run->problem.data = run;
     const int n_fish = run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;
-    double **const arrays[] = {&run->found.real, &run->found.imaginary, &run->found.rate, &run->found.omega, &run->way};
     run->found.growth = run->found.growth_frequency = NAN;
-    TRY(MEMORY_NEW(run->found.fish, n_fish, "the steady state"));
-    TRY(memory_arrays(arrays, 5, n, "the steady state"));
+    NEW(run->arena, run->found.fish, n_fish);
+    NEW(run->arena, run->found.real, n);
+    NEW(run->arena, run->found.imaginary, n);
+    NEW(run->arena, run->found.rate, n);
+    NEW(run->arena, run->found.omega, n);
+    NEW(run->arena, run->way, n);
 
     // the largest number of events bounds the number of vortices in the file
     const long n_beats = run->values->steady.beats + run->values->steady.output_beats;
@@ -220,7 +230,7 @@ static enum status find_and_write(struct run *run) {
     TRY(record_create_steady(&run->record, run->values, run->simulation->school, n_events, options->path,
                              options->overwrite, options->command));
 
-    const enum status status = is_static ? find_equilibrium(run) : steady_find_fixed_point(run);
+    const enum status status = steady_find(run, is_static);
     if (status == STATUS_STOPPED && !is_static) {
         status_fail(status, "stopped %s in beat %d of the search; a search cannot be resumed: start the search again",
                     simulate_stopped_by(options->stop), run->problem.map.n_beats + 1);
@@ -235,30 +245,19 @@ static enum status find_and_write(struct run *run) {
     char reason[4096];
     snprintf(reason, sizeof reason, "%s", status_message());
     if (status == STATUS_OK) return record_close(&run->record, record_publish(&run->record, 1));
-    if (access(options->path, F_OK) != 0) record_publish(&run->record, 0);
+    if (status != STATUS_MEMORY && access(options->path, F_OK) != 0) record_publish(&run->record, 0);
     status_fail(status, "%s", reason);
     return record_close(&run->record, status);
-}
-
-static void steady_run_release(struct run *run) {
-    steady_problem_free(&run->problem);
-    simulate_free(run->simulation);
-    free(run->found.fish);
-    free(run->found.real);
-    free(run->found.imaginary);
-    free(run->found.rate);
-    free(run->found.omega);
-    free(run->way);
 }
 
 static enum status run_locked(void *data) {
     struct run *const run = data;
     const enum status status = find_and_write(run);
-    steady_run_release(run);
+    arena_free(run->arena);
     return status;
 }
 
 enum status steady_run(const struct case_values *values, const struct steady_options *options) {
     struct run run = {.values = values, .options = options};
-    return result_lock_hold(options->path, run_locked, &run);
+    return durable_claim_hold(options->path, run_locked, &run);
 }

@@ -1,9 +1,8 @@
 /* steady_formation.c: Newton's method for all slow quantities of a formation. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "base/mathematics.h"
 #include "solver/newton.h"
 #include "steady/steady_problem.h"
 
@@ -34,6 +33,7 @@ static const double patience = 1 / 3.0;
 
 /* All values in the scales of the quantities. */
 struct formation {
+    struct arena *arena;
     struct steady_problem *problem;
     double tolerance;
     double *start;      /*                                                (n_unknowns) */
@@ -60,7 +60,7 @@ static double euclidean_norm(int n, const double *value) {
 // the maximum norm of to - from
 static double largest_distance(int n, const double *from, const double *to) {
     double most = 0;
-    for (int i = 0; i < n; i++) most = fmax(most, fabs(to[i] - from[i]));
+    for (int i = 0; i < n; i++) most = larger(most, fabs(to[i] - from[i]));
     return most;
 }
 
@@ -88,7 +88,7 @@ static enum status settle_wake(struct formation *formation, const double *u, dou
         struct state *const oldest = formation->late[0];
         memmove(formation->late, formation->late + 1, (COLUMN_BEATS - 1) * sizeof oldest);
         formation->late[COLUMN_BEATS - 1] = oldest;
-        TRY(steady_map_save(&formation->problem->map, &formation->late[COLUMN_BEATS - 1]));
+        TRY(steady_map_save(formation->arena, formation->problem->map.simulation, &formation->late[COLUMN_BEATS - 1]));
 
         TRY(beat_from(formation, u, change));
         const double moved = largest_distance(n, formation->before, change);
@@ -160,11 +160,11 @@ static enum status formation_difference_jacobian(struct formation *formation) {
     const int n = formation->problem->n_unknowns;
     memcpy(formation->held, formation->u, (size_t)n * sizeof *formation->held);
     memcpy(formation->made_at, formation->u, (size_t)n * sizeof *formation->made_at);
-    TRY(steady_map_save(map, &formation->reached));
+    TRY(steady_map_save(formation->arena, map->simulation, &formation->reached));
 
     for (int j = 0; j < n; j++) {
         double *const column = formation->matrix + j * n;
-        TRY(steady_map_return(map, formation->late[0]));
+        TRY(steady_map_return(map->simulation, formation->late[0]));
         formation->held[j] += difference;
         for (int i = 0; i < COLUMN_BEATS; i++) TRY(beat_from(formation, formation->held, column));
         formation->held[j] = formation->u[j];
@@ -173,7 +173,7 @@ static enum status formation_difference_jacobian(struct formation *formation) {
 
     formation->has_matrix = 1;
     formation->n_slow = 0;
-    TRY(steady_map_return(map, formation->reached));
+    TRY(steady_map_return(map->simulation, formation->reached));
 
     return check_place_columns(formation);
 }
@@ -197,9 +197,12 @@ static enum status formation_jacobian(void *data, double *matrix) {
 
 // ---- the search
 
-static enum status formation_newton(struct formation *formation, double *scale, double *u) {
+static enum status formation_newton(struct formation *formation) {
     const struct steady_problem *const problem = formation->problem;
     const int n = problem->n_unknowns;
+    double *scale, *u;
+    NEW(formation->arena, scale, n);
+    NEW(formation->arena, u, n);
     for (int i = 0; i < n; i++) scale[i] = longest_step;
     steady_problem_read(problem, u);
     memcpy(formation->start, u, (size_t)n * sizeof *u);
@@ -215,53 +218,43 @@ static enum status formation_newton(struct formation *formation, double *scale, 
                                   .jacobian = formation_jacobian,
                                   .data = formation};
 
-    return newton_solve(&newton, u);
+    return newton_solve(formation->arena, &newton, u);
 }
 
-static enum status solve_or_follow(struct formation *formation, double *scale, double *u) {
+static enum status solve_or_follow(struct formation *formation) {
     struct steady_map *const map = &formation->problem->map;
     const int most_beats = formation->problem->settings->beats;
     formation->most_beats = (map->n_beats + most_beats) / 2;
-    TRY(steady_map_save(map, &formation->begun));
-    enum status status = formation_newton(formation, scale, u);
+    TRY(steady_map_save(formation->arena, map->simulation, &formation->begun));
+    enum status status = formation_newton(formation);
     if (status != STATUS_SOLVER || formation->last_norm <= 0) return status;
-    TRY(steady_map_return(map, formation->begun));
+    TRY(steady_map_return(map->simulation, formation->begun));
     if (map->n_beats < most_beats) {
         formation->follows = 1;
         formation->has_matrix = 0;
-        status = formation_newton(formation, scale, u);
+        status = formation_newton(formation);
         if (status != STATUS_SOLVER) return status;
         // the motion from the start explains more than the motion from the last iterate
-        TRY(steady_map_return(map, formation->begun));
+        TRY(steady_map_return(map->simulation, formation->begun));
     }
 
     return map->n_beats < most_beats ? steady_reason_find(formation->problem) : status;
 }
 
 enum status steady_formation_solve(struct steady_problem *problem, double tolerance) {
-    const struct school *const school = problem->map.simulation->school;
-    const size_t n = (size_t)problem->n_unknowns;
-    const int is_new = !problem->jacobian;
-    double *memory;
-    if (is_new) TRY(MEMORY_NEW(problem->jacobian, n * n, "a formation"));
-    TRY(MEMORY_NEW(memory, 9 * n, "a formation"));
-
-    struct formation formation = {.problem = problem,
-                                  .tolerance = tolerance,
-                                  .start = memory,
-                                  .u = memory + n,
-                                  .change = memory + 2 * n,
-                                  .before = memory + 3 * n,
-                                  .held = memory + 4 * n,
-                                  .step = memory + 5 * n,
-                                  .made_at = memory + 6 * n,
-                                  .matrix = problem->jacobian,
-                                  .has_matrix = !is_new};
-    const enum status status = solve_or_follow(&formation, memory + 7 * n, memory + 8 * n);
-    state_free(formation.begun, school);
-    state_free(formation.reached, school);
-    for (int i = 0; i < COLUMN_BEATS; i++) state_free(formation.late[i], school);
-    free(memory);
-
+    struct arena *const owner = problem->map.simulation->arena, *const arena = arena_create(owner, "a formation");
+    const int n = problem->n_unknowns, is_new = !problem->jacobian;
+    if (is_new) NEW(owner, problem->jacobian, (size_t)n * (size_t)n);
+    struct formation formation = {
+        .arena = arena, .problem = problem, .tolerance = tolerance, .matrix = problem->jacobian, .has_matrix = !is_new};
+    NEW(arena, formation.start, n);
+    NEW(arena, formation.u, n);
+    NEW(arena, formation.change, n);
+    NEW(arena, formation.before, n);
+    NEW(arena, formation.held, n);
+    NEW(arena, formation.step, n);
+    NEW(arena, formation.made_at, n);
+    const enum status status = solve_or_follow(&formation);
+    arena_free(arena);
     return status;
 }

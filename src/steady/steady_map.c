@@ -2,10 +2,9 @@
 #include "steady/steady_map.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "base/mathematics.h"
 #include "contact/clearance.h"
 #include "flow/flow.h"
 #include "school/diagnostics_energy.h"
@@ -60,16 +59,9 @@ enum status steady_map_create(struct steady_map *map, struct simulation *simulat
     }
 
     TRY(find_period(map));
-    enum status status = MEMORY_NEW(map->last, simulation->school->n_fish, "the beats of the fish");
-    if (status == STATUS_OK) status = MEMORY_NEW(map->before, simulation->school->n_fish, "the beats of the fish");
-    if (status != STATUS_OK) steady_map_free(map);
-    return status;
-}
-
-void steady_map_free(struct steady_map *map) {
-    free(map->last);
-    free(map->before);
-    map->last = map->before = NULL;
+    NEW(simulation->arena, map->last, simulation->school->n_fish);
+    NEW(simulation->arena, map->before, simulation->school->n_fish);
+    return STATUS_OK;
 }
 
 // ---- one beat
@@ -132,7 +124,7 @@ enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *dat
 
 // change over scale; 0 if the scale is 0
 static double relative_change(double now, double before, double scale) {
-    return scale > 0 ? fabs(now - before) / scale : 0;
+    return scale <= 0 ? 0 : fabs(now - before) / scale;
 }
 
 double steady_map_residual(const struct steady_map *map) {
@@ -140,16 +132,16 @@ double steady_map_residual(const struct steady_map *map) {
     double residual = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct steady_beat *const now = &map->last[f], *const before = &map->before[f];
-        residual = fmax(residual, relative_change(now->speed, before->speed, school->fish[f].length / map->period));
+        residual = larger(residual, relative_change(now->speed, before->speed, school->fish[f].length / map->period));
         const int circles = fabs(school->fish[f].control.bias) > 0;
-        residual = fmax(residual, relative_change(now->turn, before->turn, (circles ? 1 : 10) * 2 * M_PI));
+        residual = larger(residual, relative_change(now->turn, before->turn, (circles ? 1 : 10) * 2 * M_PI));
         for (int i = 0; i < 2 && map->is_formation; i++) {
-            residual = fmax(residual, relative_change(now->place[i], before->place[i], school->fish[f].length));
+            residual = larger(residual, relative_change(now->place[i], before->place[i], school->fish[f].length));
         }
         if (steady_map_freedom(&school->fish[f]) != STEADY_HELD) continue;
-        residual = fmax(residual, relative_change(now->thrust, before->thrust, now->rms_thrust));
-        residual = fmax(residual, relative_change(now->actuation + now->driving, before->actuation + before->driving,
-                                                  now->rms_power));
+        residual = larger(residual, relative_change(now->thrust, before->thrust, now->rms_thrust));
+        residual = larger(residual, relative_change(now->actuation + now->driving, before->actuation + before->driving,
+                                                    now->rms_power));
     }
 
     return residual;
@@ -302,12 +294,29 @@ enum status steady_map_add(struct steady_map *map, int n, const struct steady_un
     return STATUS_OK;
 }
 
-enum status steady_map_save(struct steady_map *map, struct state **state) {
-    if (!*state) TRY(state_create(state, map->simulation->school));
-    return state_table_copy(*state, map->simulation->state, map->simulation->school);
+struct saved {
+    struct state *state;
+    const struct school *school;
+};
+
+static void saved_release(void *object) {
+    const struct saved *const saved = object;
+    state_free(saved->state, saved->school);
 }
 
-enum status steady_map_return(struct steady_map *map, const struct state *state) {
-    TRY(state_table_copy(map->simulation->state, state, map->simulation->school));
-    return renew_simulation(map->simulation);
+enum status steady_map_save(struct arena *arena, const struct simulation *simulation, struct state **state) {
+    if (!*state) {
+        struct saved *saved;
+        NEW(arena, saved, 1);
+        saved->school = simulation->school;
+        TRY(state_create(&saved->state, saved->school));
+        arena_defer(arena, saved_release, saved);
+        *state = saved->state;
+    }
+    return state_table_copy(*state, simulation->state, simulation->school);
+}
+
+enum status steady_map_return(struct simulation *simulation, const struct state *state) {
+    TRY(state_table_copy(simulation->state, state, simulation->school));
+    return renew_simulation(simulation);
 }

@@ -55,10 +55,9 @@ struct steady_map {
     struct steady_beat *last, *before; /* the last two beats                                  (n_fish) */
 };
 
-/* Create the map of a simulation; the caller keeps the simulation. STATUS_CASE, with the remedy in the message, if the
- * whole case does not repeat with one beat; STATUS_MEMORY. steady_map_free accepts a zeroed map. */
+/* Create the map of a simulation, in the arena of the simulation. STATUS_CASE, with the remedy in the message, if the
+ * whole case does not repeat with one beat. */
 enum status steady_map_create(struct steady_map *map, struct simulation *simulation);
-void steady_map_free(struct steady_map *map);
 
 /* Advance by one beat; call row, unless NULL, after each event. Fails as simulate_step or row. */
 enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *data), void *data);
@@ -79,9 +78,10 @@ void steady_map_read(const struct steady_map *map, int n, const struct steady_un
  * also if bodies overlap, or with STATUS_MEMORY. */
 enum status steady_map_add(struct steady_map *map, int n, const struct steady_unknown *unknown, const double *add);
 
-/* Save the state; return to a saved state and restart the integration. steady_map_save creates *state if NULL;
- * state_free releases the saved state. Both fail with STATUS_MEMORY, steady_map_return also with STATUS_SOLVER. */
-enum status steady_map_save(struct steady_map *map, struct state **state);
-enum status steady_map_return(struct steady_map *map, const struct state *state);
+/* Save the state; return to a saved state and restart the integration. steady_map_save creates *state in the arena, a
+ * child of the arena of the simulation, if NULL. Both fail with STATUS_MEMORY, steady_map_return also with
+ * STATUS_SOLVER. */
+enum status steady_map_save(struct arena *arena, const struct simulation *simulation, struct state **state);
+enum status steady_map_return(struct simulation *simulation, const struct state *state);
 
 #endif

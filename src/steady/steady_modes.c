@@ -1,9 +1,8 @@
 /* steady_modes.c: modes of an equilibrium and multipliers of a beat. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "base/mathematics.h"
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
 #include "run/event.h"
@@ -54,12 +53,14 @@ static void hold_bodies(const struct simulation *simulation, const struct state 
     }
 }
 
-static enum status find_modes_behind_bodies(struct simulation *simulation, const struct state *equilibrium,
-                                            int n_events, struct steady_values *found) {
+static enum status find_modes_behind_bodies(struct arena *arena, struct simulation *simulation,
+                                            const struct state *equilibrium, int n_events,
+                                            struct steady_values *found) {
     struct state *const state = simulation->state;
     int n_most = STEADY_QUANTITIES * simulation->school->n_fish, jumped;
 
     // the held bodies grow a wake
+    simulation->residual->flow->is_steady = false;
     TRY(event_start(state, simulation->residual, simulation->consistent));
     hold_bodies(simulation, equilibrium, state->t);
     for (int i = 0; i < n_events; i++) {
@@ -67,20 +68,18 @@ static enum status find_modes_behind_bodies(struct simulation *simulation, const
             return status_fail(STATUS_STOPPED, "stopped %s before the modes were found",
                                simulate_stopped_by(simulation->stop));
         }
-        hold_bodies(simulation, equilibrium, (double)(state->event + 1) * simulation->school->interval);
+        hold_bodies(simulation, equilibrium, fish_event_time(simulation->school, state->event + 1));
         TRY(event_next(state, simulation->residual, simulation->consistent, &jumped));
     }
 
     struct mode *mode;
-    TRY(MEMORY_NEW(mode, n_most, "the modes"));
-    const enum status status = modes_find(simulation->residual, state, n_most, mode, &found->n_exponents);
+    NEW(arena, mode, n_most);
+    TRY(modes_find(arena, simulation->residual, state, n_most, mode, &found->n_exponents));
     for (int i = 0; i < found->n_exponents; i++) {
         found->rate[i] = mode[i].rate;
         found->omega[i] = mode[i].omega;
     }
-
-    free(mode);
-    return status;
+    return STATUS_OK;
 }
 
 enum status steady_modes_find(struct simulation *simulation, struct steady_values *found) {
@@ -92,23 +91,14 @@ enum status steady_modes_find(struct simulation *simulation, struct steady_value
         return STATUS_OK;
     }
 
+    struct arena *const arena = arena_create(simulation->arena, "the modes of the bodies");
     struct state *kept = NULL;
-    TRY(state_create(&kept, simulation->school));
-    enum status status = state_table_copy(kept, simulation->state, simulation->school);
-    if (status == STATUS_OK) {
-        status = find_modes_behind_bodies(simulation, kept, n_events, found);
-        const enum status back = state_table_copy(simulation->state, kept, simulation->school);
-        if (status == STATUS_OK) status = back;
-    }
-
-    state_free(kept, simulation->school);
-    TRY(status);
+    TRY(steady_map_save(arena, simulation, &kept));
+    TRY(find_modes_behind_bodies(arena, simulation, kept, n_events, found));
+    TRY(steady_map_return(simulation, kept));
+    arena_free(arena);
     set_growth(found);
-    TRY(simulate_renew(simulation));
-    const struct state *const state = simulation->state;
-    TRY(residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch));
     simulate_measure(simulation);
-
     return STATUS_OK;
 }
 
@@ -146,7 +136,7 @@ struct disturbances {
 
 static double largest_value(int n, const double *value) {
     double most = 0;
-    for (int i = 0; i < n; i++) most = fmax(most, fabs(value[i]));
+    for (int i = 0; i < n; i++) most = larger(most, fabs(value[i]));
     return most;
 }
 
@@ -154,7 +144,7 @@ static double largest_value(int n, const double *value) {
 static enum status follow_disturbance(struct disturbances *all, double *seen, const double *without, int *n_beats) {
     struct steady_map *const map = &all->problem->map;
     const int n = all->problem->n_unknowns;
-    TRY(steady_map_return(map, all->kept));
+    TRY(steady_map_return(map->simulation, all->kept));
     TRY(steady_map_add(map, n, all->problem->unknown, all->add));
 
     for (*n_beats = 0; *n_beats < BEATS; ++*n_beats) {
@@ -162,7 +152,7 @@ static enum status follow_disturbance(struct disturbances *all, double *seen, co
         TRY(steady_map_beat(map, NULL, NULL));
         steady_problem_read(all->problem, now);
         for (int i = 0; i < n && without; i++) now[i] -= without[i + (*n_beats + 1) * n];
-        if (without && *n_beats > 0 && largest_value(n, now) > small) break;
+        if (without && *n_beats > 0 && !(largest_value(n, now) <= small)) break;
     }
 
     return STATUS_OK;
@@ -195,31 +185,29 @@ static enum status disturb_each_unknown(struct disturbances *all) {
 
 enum status steady_multipliers_find(struct steady_problem *problem, double *real, double *imaginary, double *way,
                                     int *n_beats) {
-    const size_t n = (size_t)problem->n_unknowns, size = n * n * SLOW_BEATS, seen = n * (BEATS + 1);
+    struct simulation *const simulation = problem->map.simulation;
+    struct arena *const arena = arena_create(simulation->arena, "the multipliers");
+    const size_t n = (size_t)problem->n_unknowns;
     const int n_before = problem->map.n_beats;
-    double *memory;
-    TRY(MEMORY_NEW(memory, n + 2 * seen + 2 * size, "the multipliers"));
-    struct disturbances all = {.problem = problem,
-                               .add = memory,
-                               .base = memory + n,
-                               .seen = memory + n + seen,
-                               .before = memory + n + 2 * seen,
-                               .after = memory + n + 2 * seen + size};
+    struct disturbances all = {.problem = problem};
+    NEW(arena, all.add, n);
+    NEW(arena, all.base, n * (BEATS + 1));
+    NEW(arena, all.seen, n * (BEATS + 1));
+    NEW(arena, all.before, n * n * SLOW_BEATS);
+    NEW(arena, all.after, n * n * SLOW_BEATS);
 
-    enum status status = steady_map_save(&problem->map, &all.kept);
+    enum status status = steady_map_save(arena, simulation, &all.kept);
     if (status == STATUS_OK) status = disturb_each_unknown(&all);
     if (status == STATUS_OK) {
         // change per beat without a disturbance, mean of the last beats; stored in add, which is free now
         const double *const last = all.base + BEATS * n, *const first = last - SLOW_BEATS * n;
         for (size_t i = 0; i < n; i++) all.add[i] = (last[i] - first[i]) / SLOW_BEATS;
-        status = newton_multipliers((int)n, all.n_columns, all.before, all.after, all.add, real, imaginary, way);
+        status = newton_multipliers(arena, (int)n, all.n_columns, all.before, all.after, all.add, real, imaginary, way);
     }
 
-    if (status == STATUS_OK) status = steady_map_return(&problem->map, all.kept);
-    state_free(all.kept, problem->map.simulation->school);
-    free(memory);
+    if (status == STATUS_OK) status = steady_map_return(simulation, all.kept);
+    arena_free(arena);
     *n_beats = problem->map.n_beats - n_before;
     problem->map.n_beats = n_before;
-
     return status;
 }

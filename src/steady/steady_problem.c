@@ -3,9 +3,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
-#include "base/memory.h"
+#include "base/mathematics.h"
 #include "school/diagnostics_energy.h"
 
 // ---- which quantities are slow
@@ -37,18 +36,17 @@ static void list_fish_unknowns(struct steady_problem *problem, int f, const stru
     }
 }
 
-static enum status list_unknowns(struct steady_problem *problem) {
+static void list_unknowns(struct steady_problem *problem) {
     const struct school *const school = problem->map.simulation->school;
+    struct arena *const arena = problem->map.simulation->arena;
     const size_t most = STEADY_QUANTITIES * (size_t)school->n_fish;
-    static const char what[] = "the slow quantities of the fish";
-    TRY(MEMORY_NEW(problem->unknown, most, what));
-    TRY(MEMORY_NEW(problem->pin, most, what));
-    TRY(MEMORY_NEW(problem->pinned, most, what));
-    TRY(MEMORY_NEW(problem->scratch, 4 * most, what));
+    NEW(arena, problem->unknown, most);
+    NEW(arena, problem->pin, most);
+    NEW(arena, problem->pinned, most);
+    NEW(arena, problem->scratch, 4 * most);
 
     for (int f = 0; f < school->n_fish; f++) list_fish_unknowns(problem, f, &school->fish[f]);
     steady_map_read(&problem->map, problem->n_pins, problem->pin, problem->pinned);
-    return STATUS_OK;
 }
 
 // ---- cases without a steady state
@@ -98,17 +96,8 @@ enum status steady_problem_create(struct steady_problem *problem, const struct c
     TRY(steady_map_create(&problem->map, simulation));
     problem->map.is_formation = settings->formation == YES;
     TRY(refuse_case(problem));
-    return list_unknowns(problem);
-}
-
-void steady_problem_free(struct steady_problem *problem) {
-    steady_map_free(&problem->map);
-    free(problem->unknown);
-    free(problem->pin);
-    free(problem->pinned);
-    free(problem->scratch);
-    free(problem->jacobian);
-    *problem = (struct steady_problem){.n_unknowns = 0};
+    list_unknowns(problem);
+    return STATUS_OK;
 }
 
 // ---- beats
@@ -118,7 +107,7 @@ static double largest_difference(const struct steady_problem *problem, int apart
     double most = 0;
     for (int i = 0; i + apart < STEADY_RECENT; i++) {
         const int n = problem->map.n_beats - i;
-        most = fmax(most, fabs(problem->recent[n % STEADY_RECENT] - problem->recent[(n - apart) % STEADY_RECENT]));
+        most = larger(most, fabs(problem->recent[n % STEADY_RECENT] - problem->recent[(n - apart) % STEADY_RECENT]));
     }
     return most;
 }

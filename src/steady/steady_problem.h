@@ -27,12 +27,10 @@ struct steady_problem {
     void *data;
 };
 
-/* Pose the problem for a simulation at the initial state; the caller keeps the simulation. Fails with STATUS_CASE and
- * the reason if the case can have no steady state, or with STATUS_MEMORY; call steady_problem_free after a failure
- * too. */
+/* Pose the problem for a simulation at the initial state, in the arena of the simulation. Fails with STATUS_CASE and
+ * the reason if the case can have no steady state. */
 enum status steady_problem_create(struct steady_problem *problem, const struct case_steady *settings,
                                   struct simulation *simulation);
-void steady_problem_free(struct steady_problem *problem);
 
 /* Advance the search by one beat. Fails with STATUS_SOLVER and the reason after settings->beats beats, or as
  * steady_map_beat. */
@@ -79,16 +77,17 @@ enum status steady_search_correct(struct steady_problem *problem, const double *
 // ---- steady_start.c: the start of a search from the steady state of a similar case. Tested by
 // tests/steady/test_steady_start.c and tests/app/test_steady_command.sh.
 
-/* Copy the fish of a school into a new array *fish, which the caller frees. Free fish get the speeds of the steady
+/* Copy the fish of a school into a new array *fish. Free fish get the speeds of the steady
  * state in the file; free fish other than the first also get the places relative to the first fish. The copies share
  * the memory of the original fish. Fails with STATUS_FILE if the file contains no steady state of this number of fish,
  * or with STATUS_MEMORY; *fish is then NULL. */
-enum status steady_start_read(const char *path, const struct school_parameters *school, struct fish_parameters **fish);
+enum status steady_start_read(struct arena *arena, const char *path, const struct school_parameters *school,
+                              struct fish_parameters **fish);
 
 /* Set the positions of the free nodes to the shapes of an equilibrium in a file, relative to the nose and to the
- * prescribed direction, in body lengths. y: all unknowns of the school. Fails with STATUS_FILE if the bodies in the
- * file have other numbers of nodes, or with STATUS_MEMORY. */
-enum status steady_start_shapes(const char *path, const struct school *school, double *y);
+ * prescribed direction, in body lengths. arena: for scratch; y: all unknowns of the school. Fails with STATUS_FILE if
+ * the bodies in the file have other numbers of nodes, or with STATUS_MEMORY. */
+enum status steady_start_shapes(struct arena *arena, const char *path, const struct school *school, double *y);
 
 // ---- steady_static.c: the equilibrium of passive bodies in a stream: `shoal steady` of a case without a beat.
 // Tested by tests/steady/test_steady_static.c and tests/app/test_steady_command.sh.
@@ -108,10 +107,10 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
 // ---- steady_modes.c: growth and decay of small disturbances: modes of the bodies for an equilibrium, multipliers for
 // a beat. Tested by tests/steady/test_steady_modes.c, test_steady.c and the section "elastic" of `make verify`.
 
-/* Fill the exponents of an equilibrium; the state of the simulation is restored. Hold the bodies while a wake of zero
- * strength is convected downstream, then find the modes with solver/modes.h. No exponents with pressure.span: finite,
- * if the state jumps at events (wake.shedding: impulsive), without a stream, or without shedding. Fails with
- * STATUS_MEMORY, STATUS_SOLVER or STATUS_STOPPED. */
+/* Fill the exponents of an equilibrium; the state of the simulation is restored on success. Hold the bodies while a
+ * wake of zero strength is convected downstream, then find the modes with solver/modes.h. No exponents with
+ * pressure.span: finite, if the state jumps at events (wake.shedding: impulsive), without a stream, or without
+ * shedding. Fails with STATUS_MEMORY, STATUS_SOLVER or STATUS_STOPPED. */
 enum status steady_modes_find(struct simulation *simulation, struct steady_values *found);
 
 /* Fill the exponents of a beat from the multipliers and the period, s. */

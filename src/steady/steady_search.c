@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "solver/newton.h"
 #include "steady/steady_problem.h"
 
@@ -26,6 +27,7 @@ enum { STEPS = 12, ITERATIONS = 18 };
 
 /* All values of the n quantities are in the scales of the quantities. */
 struct solution {
+    struct arena *arena;
     struct together *together;
     struct steady_problem *problem;
     int n;
@@ -59,12 +61,12 @@ static enum status search_put_quantities(const struct solution *solution, const 
     search_read_all(solution, add);
     for (int i = 0; i < solution->n; i++) {
         add[i] = to[i] - add[i];
-        most = fmax(most, fabs(add[i]));
+        most = larger(most, fabs(add[i]));
         add[i] *= solution->unit[i];
     }
 
     // do not restart the integration without a change
-    return most > 1e-12 ? steady_map_add(&solution->problem->map, solution->n, solution->unknown, add) : STATUS_OK;
+    return most <= 1e-12 ? STATUS_OK : steady_map_add(&solution->problem->map, solution->n, solution->unknown, add);
 }
 
 // change in the last beat of an evaluation; every beat begins with the values u
@@ -81,7 +83,7 @@ static enum status evaluate_change(const struct solution *solution, const double
 static enum status together_value(void *data, const double *u, double *change) {
     struct solution *const solution = data;
     const size_t bytes = (size_t)solution->n * sizeof *u;
-    TRY(steady_map_save(&solution->problem->map, &solution->before));
+    TRY(steady_map_save(solution->arena, solution->problem->map.simulation, &solution->before));
     TRY(evaluate_change(solution, u, change));
     memcpy(solution->u, u, bytes);
     memcpy(solution->change, change, bytes);
@@ -90,20 +92,20 @@ static enum status together_value(void *data, const double *u, double *change) {
 
 // each column starts from the same state with an increment of one quantity
 static enum status search_difference_jacobian(struct solution *solution) {
-    struct steady_map *const map = &solution->problem->map;
-    TRY(steady_map_save(map, &solution->reached));
+    struct simulation *const simulation = solution->problem->map.simulation;
+    TRY(steady_map_save(solution->arena, simulation, &solution->reached));
     for (int j = 0; j < solution->n; j++) {
         double *const column = solution->together->matrix + j * solution->n, u[STEADY_QUANTITIES];
         memcpy(u, solution->u, sizeof u);
         u[j] += difference;
-        TRY(steady_map_return(map, solution->before));
+        TRY(steady_map_return(simulation, solution->before));
         TRY(evaluate_change(solution, u, column));
         for (int i = 0; i < solution->n; i++) column[i] = (column[i] - solution->change[i]) / difference;
     }
 
     solution->together->is_known = 1;
     solution->n_steps = 0;
-    return steady_map_return(map, solution->reached);
+    return steady_map_return(simulation, solution->reached);
 }
 
 static enum status together_jacobian(void *data, double *matrix) {
@@ -127,14 +129,14 @@ static enum status together_newton(struct solution *solution, double tolerance, 
                                   .value = together_value,
                                   .jacobian = together_jacobian,
                                   .data = solution};
-    TRY(steady_map_save(&problem->map, &solution->begun));
+    TRY(steady_map_save(solution->arena, problem->map.simulation, &solution->begun));
     search_read_all(solution, u);
-    const enum status status = newton_solve(&newton, u);
+    const enum status status = newton_solve(solution->arena, &newton, u);
     *is_done = status == STATUS_OK;
     if (status != STATUS_SOLVER || problem->map.n_beats >= problem->settings->beats) return status;
     solution->together->is_known = 0;
 
-    return steady_map_return(&problem->map, solution->begun);
+    return steady_map_return(problem->map.simulation, solution->begun);
 }
 
 /* Solve for slow quantities of the only fish that one beat changes by at most the tolerance. Evaluate the Jacobian
@@ -142,20 +144,20 @@ static enum status together_newton(struct solution *solution, double tolerance, 
  * steady_problem_beat, or with STATUS_MEMORY. */
 static enum status together_solve(struct together *together, struct steady_problem *problem, double tolerance,
                                   int *is_done) {
-    const struct school *const school = problem->map.simulation->school;
-    struct solution solution = {.together = together, .problem = problem};
+    struct arena *const arena = arena_create(problem->map.simulation->arena, "the slow quantities of a fish");
+    struct solution solution = {.arena = arena, .together = together, .problem = problem};
     list_quantities(&solution);
     const enum status status = together_newton(&solution, tolerance, is_done);
-    state_free(solution.begun, school);
-    state_free(solution.before, school);
-    state_free(solution.reached, school);
+    arena_free(arena);
     return status;
 }
 
 // ---- the search
 
-/* Largest change of the speed in one Newton step, in lengths per beat. */
-static const double longest_step = 1;
+/* Largest change of the speed in one Newton step, in lengths per beat. After a step with a beat that fails, the search
+ * returns to the state before the step, and takes smaller steps by the factor shorter; below least_step the fish swims
+ * without increments of the speed alone. */
+static const double longest_step = 1, shorter = 0.25, least_step = 0.01;
 
 /* Derivative of the change of the speed per beat by the speed: initial value, and upper limit, which excludes
  * growth. */
@@ -187,9 +189,11 @@ struct search {
     struct together together;
     double margin;       /* tolerance of Newton's method for a formation, over the tolerance */
     struct state *found; /* last solution for a formation; NULL: none */
+    struct state *begun; /* state before the last attempt for the speed alone; NULL: none */
     int has_failed;      /* a beat failed */
     struct steady_unknown speed;
     double scale;        /* m s-1 */
+    double step;         /* largest change of the speed in one Newton step, in lengths per beat */
     double from, change; /* speed before the last beat and change in the last beat, m s-1 */
     double slope;        /* derivative of the change by the speed: secant of the last two beats */
 };
@@ -235,18 +239,23 @@ static enum status solve_speed(struct search *search) {
     const struct newton problem = {.n = 1,
                                    .scale = &search->scale,
                                    .tolerance = ROUGH * settings->tolerance,
-                                   .max_step = longest_step,
+                                   .max_step = search->step,
                                    .reuse = 1,
                                    .max_iterations = SPEED_ITERATIONS,
                                    .value = speed_value,
                                    .jacobian = speed_slope,
                                    .data = search};
+    struct steady_map *const map = &search->problem->map;
     double speed = speed_now(search);
-    const enum status status = newton_solve(&problem, &speed);
+    TRY(steady_map_save(map->simulation->arena, map->simulation, &search->begun));
+    const enum status status = newton_solve(map->simulation->arena, &problem, &speed);
+    if (status != STATUS_SOLVER || map->n_beats >= settings->beats) return status;
 
-    if (status != STATUS_SOLVER || search->has_failed) return status;
     search->n_tries = 0;
-    return STATUS_OK;
+    if (!search->has_failed) return STATUS_OK;
+    search->step *= shorter;
+    if (search->step >= least_step) search->n_tries = TRIES;
+    return steady_map_return(map->simulation, search->begun);
 }
 
 static enum status solve_fish(struct search *search) {
@@ -263,7 +272,7 @@ static enum status solve_unknowns(struct search *search) {
     if (problem->n_unknowns == 0) return STATUS_OK;
     if (!problem->map.is_formation) return solve_fish(search);
     TRY(steady_formation_solve(problem, search->margin * problem->settings->tolerance));
-    return steady_map_save(&problem->map, &search->found);
+    return steady_map_save(problem->map.simulation->arena, problem->map.simulation, &search->found);
 }
 
 // the speed of a circling fish depends on slip and turn, which have a memory of several beats
@@ -288,15 +297,15 @@ static enum status swim_freely(struct search *search, int *is_steady) {
         const double before = change;
         TRY(steady_problem_beat(problem));
         change = steady_map_residual(&problem->map);
-        *is_steady = fmax(before, change) <= tolerance;
+        *is_steady = larger(before, change) <= tolerance;
         // the change from a beat with held quantities to the first free beat has no meaning
-        is_lost = search->found && i > 0 && change > lost * tolerance;
+        is_lost = search->found && i > 0 && !(change <= lost * tolerance);
     }
 
     if (!is_lost) return STATUS_OK;
     search->margin *= sharper;
 
-    return steady_map_return(&problem->map, search->found);
+    return steady_map_return(problem->map.simulation, search->found);
 }
 
 static enum status run_search(struct search *search) {
@@ -344,14 +353,14 @@ enum status steady_search_correct(struct steady_problem *problem, const double *
 }
 
 enum status steady_search_run(struct steady_problem *problem) {
-    struct search search = {.problem = problem, .speed = {0, STEADY_SPEED}, .slope = first_slope, .margin = margin};
+    struct search search = {
+        .problem = problem, .speed = {0, STEADY_SPEED}, .slope = first_slope, .step = longest_step, .margin = margin};
     search.scale = steady_map_scale(&problem->map, search.speed);
     const int is_circle = has_circling_fish(problem->map.simulation->school);
     search.n_tries = is_circle ? 0 : TRIES;
     search.n_together = TRIES_TOGETHER;
     search.together.beats = is_circle ? 1 : AGED;
     const enum status status = run_search(&search);
-    state_free(search.found, problem->map.simulation->school);
     const int is_late = problem->map.n_beats >= problem->settings->beats;
     if (status != STATUS_SOLVER || !is_late || !problem->map.is_formation || problem->n_unknowns == 0) return status;
 

@@ -1,11 +1,9 @@
 /* steady_start.c: see steady_problem.h. */
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 #include "fish/fish_motion.h"
 #include "result/netcdf.h"
 #include "steady/steady_problem.h"
@@ -22,26 +20,25 @@ static enum status read_nose(const struct reading *reading, size_t f, double nos
     return netcdf_read_doubles(&reading->reader, "x", slice, nose);
 }
 
-static enum status start_open(struct reading *reading, const char *path, int n_fish) {
-    TRY(netcdf_open(&reading->reader, path));
+// open a file until the arena is freed
+static enum status start_open(struct arena *arena, struct reading **opened, const char *path, int n_fish) {
+    struct reading *reading;
     size_t n_rows = 0, n = 0;
-    double degrees = 0;
-    enum status status = netcdf_read_length(&reading->reader, "time", 0, SIZE_MAX, &n_rows);
-    if (status == STATUS_OK) status = netcdf_read_length(&reading->reader, "fish", 1, INT_MAX, &n);
-    if (status == STATUS_OK && (n_rows == 0 || n != (size_t)n_fish || !netcdf_has(&reading->reader, "steady_speed"))) {
-        status = status_fail(STATUS_FILE, "%s does not contain a steady state of %d fish to start from", path, n_fish);
+    double degrees;
+    NEW(arena, reading, 1);
+    *opened = reading;
+    TRY(netcdf_open_in(arena, &reading->reader, path));
+    TRY(netcdf_read_length(&reading->reader, "time", 0, SIZE_MAX, &n_rows));
+    TRY(netcdf_read_length(&reading->reader, "fish", 1, INT_MAX, &n));
+    if (n_rows == 0 || n != (size_t)n_fish || !netcdf_has(&reading->reader, "steady_speed")) {
+        return status_fail(STATUS_FILE, "%s does not contain a steady state of %d fish to start from", path, n_fish);
     }
 
-    if (status == STATUS_OK) {
-        const struct netcdf_slice slice[] = {{"time", n_rows - 1, 1}, {"fish", 0, 1}, {NULL}};
-        reading->last = n_rows - 1;
-        status = netcdf_read_doubles(&reading->reader, "heading", slice, &degrees);
-        reading->heading = angle_radians(degrees);
-    }
-
-    if (status == STATUS_OK) status = read_nose(reading, 0, reading->nose);
-    if (status != STATUS_OK) netcdf_close(&reading->reader);
-    return status;
+    const struct netcdf_slice slice[] = {{"time", n_rows - 1, 1}, {"fish", 0, 1}, {NULL}};
+    TRY(netcdf_read_doubles(&reading->reader, "heading", slice, &degrees));
+    reading->last = n_rows - 1;
+    reading->heading = angle_radians(degrees);
+    return read_nose(reading, 0, reading->nose);
 }
 
 // transform the nose from the frame of the first fish in the file to the initial frame of the first fish
@@ -69,26 +66,19 @@ static enum status start_read_fish(const struct reading *reading, size_t f, cons
     return f > 0 ? read_place(reading, f, first, fish->start_position) : STATUS_OK;
 }
 
-enum status steady_start_read(const char *path, const struct school_parameters *school, struct fish_parameters **fish) {
-    struct reading reading;
-    *fish = NULL;
-    TRY(start_open(&reading, path, school->n_fish));
+enum status steady_start_read(struct arena *arena, const char *path, const struct school_parameters *school,
+                              struct fish_parameters **fish) {
+    struct arena *const scratch = arena_create(arena, path);
+    struct reading *reading;
     struct fish_parameters *copy;
-    enum status status = MEMORY_NEW(copy, school->n_fish, "the fish at the start");
-    if (copy) memcpy(copy, school->fish, (size_t)school->n_fish * sizeof *copy);
-
-    for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
-        status = start_read_fish(&reading, (size_t)f, school->fish, &copy[f]);
-    }
-
-    netcdf_close(&reading.reader);
-    if (status == STATUS_OK) {
-        *fish = copy;
-    } else {
-        free(copy);
-    }
-
-    return status;
+    *fish = NULL;
+    TRY(start_open(scratch, &reading, path, school->n_fish));
+    NEW(arena, copy, school->n_fish);
+    memcpy(copy, school->fish, (size_t)school->n_fish * sizeof *copy);
+    for (int f = 0; f < school->n_fish; f++) TRY(start_read_fish(reading, (size_t)f, school->fish, &copy[f]));
+    arena_free(scratch);
+    *fish = copy;
+    return STATUS_OK;
 }
 
 // ---- shapes
@@ -135,19 +125,16 @@ static void place_nodes(const struct fish *fish, const double *places, double *y
     }
 }
 
-enum status steady_start_shapes(const char *path, const struct school *school, double *y) {
-    struct reading reading;
-    TRY(start_open(&reading, path, school->n_fish));
-    enum status status = STATUS_OK;
-    for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
-        const struct fish *const fish = &school->fish[f];
+enum status steady_start_shapes(struct arena *arena, const char *path, const struct school *school, double *y) {
+    struct arena *const scratch = arena_create(arena, path);
+    struct reading *reading;
+    TRY(start_open(scratch, &reading, path, school->n_fish));
+    for (int f = 0; f < school->n_fish; f++) {
         double *places;
-        status = MEMORY_NEW(places, 2 * fish->n_nodes, "the nodes of a body");
-        if (status == STATUS_OK) status = read_nodes(&reading, (size_t)f, fish, places);
-        if (status == STATUS_OK) place_nodes(fish, places, y);
-        free(places);
+        NEW(scratch, places, 2 * school->fish[f].n_nodes);
+        TRY(read_nodes(reading, (size_t)f, &school->fish[f], places));
+        place_nodes(&school->fish[f], places, y);
     }
-
-    netcdf_close(&reading.reader);
-    return status;
+    arena_free(scratch);
+    return STATUS_OK;
 }

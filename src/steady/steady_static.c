@@ -1,10 +1,9 @@
 /* steady_static.c: the equilibrium of passive bodies in a stream. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "base/mathematics.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
@@ -85,6 +84,7 @@ enum status steady_static_refuse(const struct school *school) {
 // ---- growth of the stream and the loads from zero
 
 struct growth {
+    struct arena *arena;
     struct simulation *simulation;
     struct school
         school; /* school of the simulation with a part of the stream and loads; owns the array of fish only */
@@ -106,24 +106,22 @@ static const double least_step = 1e-4;
 static enum status growth_create(struct growth *growth) {
     const struct school *const school = growth->simulation->school;
     struct state *const state = growth->simulation->state;
-    double **const arrays[] = {&growth->last, &growth->before, &growth->kept};
+    struct arena *const arena = growth->arena =
+        arena_create(growth->simulation->arena, "the equilibrium of the bodies");
+    NEW(arena, growth->last, school->n_unknowns);
+    NEW(arena, growth->before, school->n_unknowns);
+    NEW(arena, growth->kept, school->n_unknowns);
     growth->school = *school;
-    growth->school.fish = NULL;
-    TRY(memory_arrays(arrays, 3, school->n_unknowns, "the equilibrium of the bodies"));
-    TRY(MEMORY_NEW(growth->school.fish, school->n_fish, "the equilibrium of the bodies"));
+    NEW(arena, growth->school.fish, school->n_fish);
     memcpy(growth->school.fish, school->fish, (size_t)school->n_fish * sizeof *school->fish);
-    TRY(residual_create(&growth->residual, &growth->school, state));
-
-    return equilibrium_create(&growth->equilibrium, growth->residual, state);
+    TRY(residual_create(arena, &growth->residual, &growth->school, state));
+    growth->equilibrium = equilibrium_create(arena, growth->residual, state);
+    return STATUS_OK;
 }
 
 static void growth_free(struct growth *growth) {
-    free(growth->last);
-    free(growth->before);
-    free(growth->kept);
-    equilibrium_free(growth->equilibrium);
-    residual_free(growth->residual);
-    free(growth->school.fish);
+    if (growth->equilibrium) equilibrium_end(growth->equilibrium);
+    arena_free(growth->arena);
 }
 
 // set the stream to this part of the full stream, and the loads to the square of this part, as forces of a stream scale
@@ -164,7 +162,7 @@ static double largest_turn(const struct school *school, const double *from, cons
     for (int f = 0; f < school->n_fish; f++) {
         for (int k = 0; k < school->fish[f].n_edges; k++) {
             const struct edge a = edge_at(&school->fish[f], k, from), b = edge_at(&school->fish[f], k, to);
-            most = fmax(most, fabs(atan2(a.t[0] * b.t[1] - a.t[1] * b.t[0], edge_dot(a.t, b.t))));
+            most = larger(most, fabs(atan2(a.t[0] * b.t[1] - a.t[1] * b.t[0], edge_dot(a.t, b.t))));
         }
     }
     return most;
@@ -188,7 +186,7 @@ static enum status growth_solve(struct growth *growth, double part) {
 
     static_set_part(growth, part);
     enum status status = equilibrium_solve(growth->equilibrium);
-    if (status == STATUS_OK && largest_turn(simulation->school, growth->last, state->y) > most_turn) {
+    if (status == STATUS_OK && !(largest_turn(simulation->school, growth->last, state->y) <= most_turn)) {
         status = status_fail(STATUS_SOLVER, "the solution is on another branch");
     }
 
@@ -281,7 +279,7 @@ static enum status growth_from_file(struct growth *growth, const char *from, int
     struct state *const state = growth->simulation->state;
     const size_t bytes = (size_t)growth->simulation->school->n_unknowns * sizeof *state->y;
     memcpy(growth->kept, growth->last, bytes);
-    enum status status = steady_start_shapes(from, growth->simulation->school, state->y);
+    enum status status = steady_start_shapes(growth->arena, from, growth->simulation->school, state->y);
     if (status == STATUS_OK) {
         memcpy(growth->last, state->y, bytes);
         status = growth_solve(growth, 1);
@@ -348,9 +346,9 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
     TRY(status);
 
     // evaluate the full case, which the residual of the simulation describes
-    if (simulation->residual->flow->rings) simulation->residual->flow->rings->is_steady = 1;
+    simulation->residual->flow->is_steady = true;
     TRY(residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch));
-    diagnostics_remember(simulation->residual, state);
+    TRY(diagnostics_remember(simulation->residual, state));
     diagnostics_after_jump(simulation->residual, state);
     diagnostics_restart(simulation->residual, state);
     simulate_measure(simulation);

@@ -2,10 +2,11 @@
 #include "study/error_budget.h"
 
 #include <math.h>
+#include <stdio.h>
 
-/* Bounds of the rule: slack of an order below the design order; change from p' to p; distance above the design order
- * from which the change is irrelevant, because the rule then uses the design order. */
-static const double slack = 1, most_change = 0.8, far_above = 1.5;
+/* Bounds of the rule: smallest order over the design order, largest distance above the design order, largest change
+ * from p' to p. */
+static const double least_part = 0.5, most_above = 0.5, most_change = 0.8;
 
 /* Roache's safety factor; safety factors of the largest difference of fewer than four levels, if the base is the finest
  * level and otherwise; multiple of the noise below which differences have no meaning. */
@@ -48,97 +49,82 @@ double error_budget_order(const double *size, const double (*value)[2]) {
     return order_of_ratio(coarse / fine, size[1] / size[0], size[2] / size[1]);
 }
 
-// ---- one sequence
+// ---- the rule
 
-static enum error_budget_verdict judge_one(const struct error_budget_levels *levels,
-                                           const struct error_budget_sequence *sequence,
-                                           struct error_budget_result *result) {
-    const int n = levels->n;
-    const double(*const f)[2] = sequence->value;
-    const double design = levels->design_order;
-    double largest = 0;
-    for (int i = 0; i < n; i++) {
-        const double difference = distance(f[i], f[levels->base]);
-        largest = isnan(difference) ? NAN : isnan(largest) ? largest : fmax(largest, difference);
-    }
-
-    *result = (struct error_budget_result){.error = largest, .finest_error = NAN, .order = NAN, .coarse_order = NAN};
-    if (isnan(largest)) return ERROR_BUDGET_UNKNOWN;
-    if (n >= 3) result->order = error_budget_order(levels->size, f);
-    if (n >= 4) result->coarse_order = error_budget_order(levels->size + 1, f + 1);
-
-    if (largest <= of_noise * sequence->noise * hypot(f[levels->base][0], f[levels->base][1])) return ERROR_BUDGET_NONE;
+/* The verdict on differences above the noise. result: p and p'; *first: the finest of the three levels of a flag. */
+static enum error_budget_verdict judge_differences(const struct error_budget_levels *levels, int n,
+                                                   const double (*f)[2], const struct error_budget_result *result,
+                                                   int *first) {
+    const double design = levels->design_order, p = result->order, coarse_p = result->coarse_order;
+    if (levels->objection && *levels->objection) return ERROR_BUDGET_OBJECTION;
     if (n < 3) return ERROR_BUDGET_FEW;
 
     // two neighbouring differences turn if their scalar product is negative
     for (int i = 0; i + 2 < n; i++) {
         const double x = (f[i][0] - f[i + 1][0]) * (f[i + 1][0] - f[i + 2][0]);
         const double y = (f[i][1] - f[i + 1][1]) * (f[i + 1][1] - f[i + 2][1]);
+        *first = i;
         if (x + y < 0) return ERROR_BUDGET_TURNS;
     }
 
-    // compare orders, because spacings are not halved; equal values have no order and are acceptable
+    // compare orders, because spacings are not halved
     const double least = 1e-6;
-    if (result->order < least || result->coarse_order < least) return ERROR_BUDGET_GROWS;
+    *first = p < least ? 0 : 1;
+    if (p < least || coarse_p < least) return ERROR_BUDGET_GROWS;
+    *first = 0;
     if (isnan(design)) return ERROR_BUDGET_NO_ORDER;
-    if (result->order < design - slack || result->coarse_order < design - slack) return ERROR_BUDGET_LOW;
 
-    // the rule uses the design order, so an order that rises above the design order is acceptable
-    const int is_far_above = !(result->order <= design + far_above);
-    const int is_rising = result->coarse_order >= design && result->order >= result->coarse_order;
-    if (fabs(result->order - result->coarse_order) > most_change && !is_far_above && !is_rising) {
-        return ERROR_BUDGET_CHANGES;
-    }
-    return ERROR_BUDGET_ACCEPTED;
+    // the two finest levels may be equal: the order is infinite, and p is NaN
+    if (!(p <= design + most_above)) return ERROR_BUDGET_HIGH;
+    *first = p < least_part * design ? 0 : 1;
+    if (p < least_part * design || coarse_p < least_part * design) return ERROR_BUDGET_LOW;
+    *first = 0;
+    return fabs(p - coarse_p) > most_change ? ERROR_BUDGET_CHANGES : ERROR_BUDGET_ACCEPTED;
 }
 
-// ---- all sequences
+struct error_budget_result error_budget_judge(const struct error_budget_levels *levels, const double (*f)[2],
+                                              double noise) {
+    const int n = levels->n < levels->n_judged ? levels->n : levels->n_judged;
+    const double *const base = f[levels->base];
+    struct error_budget_result result = {
+        .verdict = ERROR_BUDGET_UNKNOWN, .error = NAN, .finest_error = NAN, .order = NAN, .coarse_order = NAN};
+    if (n >= 3) result.order = error_budget_order(levels->size, f);
+    if (n >= 4) result.coarse_order = error_budget_order(levels->size + 1, f + 1);
 
-enum error_budget_verdict error_budget_judge(const struct error_budget_levels *levels, int n,
-                                             const struct error_budget_sequence *sequences,
-                                             struct error_budget_result *results, int *culprit) {
-    struct error_budget_levels judged = *levels;
-    if (judged.n > ERROR_BUDGET_LEVELS) judged.n = ERROR_BUDGET_LEVELS;
-    enum error_budget_verdict all = ERROR_BUDGET_NONE;
-    *culprit = -1;
-    for (int q = 0; q < n; q++) {
-        const enum error_budget_verdict one = judge_one(&judged, &sequences[q], &results[q]);
-        results[q].verdict = one;
-        if (one == ERROR_BUDGET_ACCEPTED && all == ERROR_BUDGET_NONE) all = one;
+    // the largest difference from the stated value
+    double largest = 0;
+    for (int i = 0; i < n; i++) {
+        const double difference = distance(f[i], base);
+        if (isnan(difference)) return result;
+        largest = fmax(largest, difference);
+    }
+    result.error = largest;
+    result.verdict = ERROR_BUDGET_NONE;
+    if (largest <= of_noise * noise * hypot(base[0], base[1])) return result;
 
-        // a missing level takes precedence over any flag
-        const int is_first = error_budget_is_flagged(one) && !error_budget_is_flagged(all);
-        if (!is_first && !(one == ERROR_BUDGET_UNKNOWN && all != ERROR_BUDGET_UNKNOWN)) continue;
-        all = one;
-        *culprit = q;
-    }
-    if (levels->objection && all != ERROR_BUDGET_UNKNOWN) {
-        all = ERROR_BUDGET_OBJECTION;
-        *culprit = -1;
+    // Richardson's estimate with the order, at most the design order; fmin ignores NaN
+    result.verdict = judge_differences(levels, n, f, &result, &result.first);
+    const double p = fmin(result.order, levels->design_order), d_0 = distance(f[0], f[1]);
+    const double richardson = safety * d_0 / (pow(levels->size[1] / levels->size[0], p) - 1);
+    if (result.verdict == ERROR_BUDGET_ACCEPTED) {
+        result.finest_error = richardson;
+        result.error = richardson + distance(f[0], base);
+    } else if (result.verdict == ERROR_BUDGET_HIGH) {
+        result.finest_error = fmax(richardson, fmax(d_0, distance(f[1], f[2])));
+        result.error = fmax(result.finest_error, richardson + distance(f[0], base));
+    } else if (n < ERROR_BUDGET_LEVELS) {
+        // fewer levels span a narrow range
+        result.error *= levels->base == 0 ? without_finer : with_finer;
     }
 
-    // four levels span a range that is wide enough
-    const double factor = judged.n >= ERROR_BUDGET_LEVELS ? 1 : judged.base == 0 ? without_finer : with_finer;
-    for (int q = 0; q < n; q++) {
-        struct error_budget_result *const result = &results[q];
-        if (result->verdict == ERROR_BUDGET_UNKNOWN) continue;
-        if (all == ERROR_BUDGET_ACCEPTED && result->verdict == ERROR_BUDGET_ACCEPTED) {
-            // extrapolate with the order, at most the design order; fmin ignores NaN
-            const double(*const f)[2] = sequences[q].value;
-            const double p = fmin(result->order, judged.design_order);
-            const double part = 1 / (pow(judged.size[1] / judged.size[0], p) - 1);
-            result->finest_error = safety * distance(f[0], f[1]) * part;
-            result->error = result->finest_error + distance(f[0], f[judged.base]);
-        } else if (error_budget_is_flagged(all) && result->verdict != ERROR_BUDGET_NONE) {
-            result->error *= factor;
-        }
-    }
-    return all;
+    return result;
 }
 
 int error_budget_is_flagged(enum error_budget_verdict verdict) {
     return verdict >= ERROR_BUDGET_OBJECTION;
 }
+
+// ---- words
 
 const char *error_budget_words(enum error_budget_verdict verdict) {
     static const char *const words[] = {
@@ -148,11 +134,39 @@ const char *error_budget_words(enum error_budget_verdict verdict) {
         [ERROR_BUDGET_NO_ORDER] = "the key has no design order",
         [ERROR_BUDGET_FEW] = "fewer than three levels",
         [ERROR_BUDGET_TURNS] = "differences change sign",
-        [ERROR_BUDGET_GROWS] = "differences do not fall towards the finest level",
-        [ERROR_BUDGET_LOW] = "the order is more than 1 below the design order",
-        [ERROR_BUDGET_CHANGES] = "the order changes from level to level",
+        [ERROR_BUDGET_GROWS] = "differences do not fall",
+        [ERROR_BUDGET_LOW] = "the order is below half of the design order",
+        [ERROR_BUDGET_HIGH] = "the order is more than 0.5 above the design order",
+        [ERROR_BUDGET_CHANGES] = "the order changes",
         [ERROR_BUDGET_UNKNOWN] = "a level is missing",
     };
 
     return words[verdict];
+}
+
+void error_budget_reason(const struct error_budget_levels *levels, const struct error_budget_result *result,
+                         const double *key, char text[ERROR_BUDGET_BYTES]) {
+    const char *const words = error_budget_words(result->verdict);
+    const double p = result->first == 0 ? result->order : result->coarse_order;
+    const int i = result->first;
+    *text = '\0';
+    if (!error_budget_is_flagged(result->verdict)) return;
+
+    switch (result->verdict) {
+        case ERROR_BUDGET_OBJECTION: snprintf(text, ERROR_BUDGET_BYTES, "%s", levels->objection); break;
+        case ERROR_BUDGET_TURNS: snprintf(text, ERROR_BUDGET_BYTES, "%s at %.4g", words, key[i + 1]); break;
+        case ERROR_BUDGET_GROWS:
+            snprintf(text, ERROR_BUDGET_BYTES, "%s from %.4g over %.4g to %.4g", words, key[i + 2], key[i + 1], key[i]);
+            break;
+        case ERROR_BUDGET_LOW:
+        case ERROR_BUDGET_HIGH:
+            snprintf(text, ERROR_BUDGET_BYTES, "%s, %g: %.2g from %.4g to %.4g", words, levels->design_order,
+                     isnan(p) ? INFINITY : p, key[i + 2], key[i]);
+            break;
+        case ERROR_BUDGET_CHANGES:
+            snprintf(text, ERROR_BUDGET_BYTES, "%s from %.2g to %.2g towards %.4g", words, result->coarse_order,
+                     result->order, key[0]);
+            break;
+        default: snprintf(text, ERROR_BUDGET_BYTES, "%s", words);
+    }
 }

@@ -452,17 +452,17 @@ static void list_objections(struct error_study *study, const struct school *scho
         for (int f = 0; f < school->n_fish && !*key->objection; f++) {
             const struct fish *const fish = &school->fish[f];
             if (strcmp(key->row->path, "fish.sheet_points") == 0 && fish->n_sheet < 2 * fish->n_nodes - 1) {
-                snprintf(key->objection, ERROR_STUDY_BYTES, "%.60s has fewer sheet_points than 2 nodes - 1",
+                snprintf(key->objection, ERROR_BUDGET_BYTES, "%.60s has fewer sheet_points than 2 nodes - 1",
                          fish->name);
             }
             if (strcmp(key->row->path, "fish.nodes") != 0 || !(school->density > 0)) continue;
             if (fish->has_cusp) {
-                snprintf(key->objection, ERROR_STUDY_BYTES, "the tail of %.60s ends in a cusp", fish->name);
+                snprintf(key->objection, ERROR_BUDGET_BYTES, "the tail of %.60s ends in a cusp", fish->name);
                 continue;
             }
             const double bending = warnings_bending_length(fish);
             if (!(2 * fish->edge_length > bending)) continue;
-            snprintf(key->objection, ERROR_STUDY_BYTES,
+            snprintf(key->objection, ERROR_BUDGET_BYTES,
                      "two edges of %.60s are longer than its tail bends over, %.2g m", fish->name, bending);
         }
     }
@@ -488,22 +488,11 @@ static enum status choose_quantities(struct error_study *study) {
             return status_fail(STATUS_CASE, "error.of: %s is of a run and %s of a steady state: ask for one kind",
                                error->of[study->is_steady ? i : 0], error->of[study->is_steady ? 0 : i]);
         }
-        if (i == ERROR_STUDY_QUANTITIES - 3) {
-            return status_fail(STATUS_CASE, "error.of: more than %d quantities", ERROR_STUDY_QUANTITIES - 3);
+        if (i == ERROR_STUDY_QUANTITIES) {
+            return status_fail(STATUS_CASE, "error.of: more than %d quantities", ERROR_STUDY_QUANTITIES);
         }
         study->is_steady = quantity->of_steady;
         study->quantity[study->n_asked++] = q;
-    }
-
-    // the judges
-    study->n_quantities = study->n_asked;
-    for (int s = 0; s < SWEEP_N_QUANTITIES; s++) {
-        const unsigned traits = sweep_quantities[s].traits;
-        if (!(traits & SWEEP_JUDGE) || ((traits & SWEEP_OF_STEADY) != 0) != study->is_steady) continue;
-        const int q = member_file_quantity_number(sweep_quantities[s].name);
-        int is_new = 1;
-        for (int i = 0; i < study->n_quantities; i++) is_new &= study->quantity[i] != q;
-        if (is_new) study->quantity[study->n_quantities++] = q;
     }
 
     return STATUS_OK;
@@ -553,7 +542,7 @@ static enum status choose_levels(struct error_study *study) {
             error_plan_insert(&study->key[k], given->value[i]);
         }
         if (study->key[k].n_levels > 1) continue;
-        snprintf(study->key[k].objection, ERROR_STUDY_BYTES, "no other level is a valid case");
+        snprintf(study->key[k].objection, ERROR_BUDGET_BYTES, "no other level is a valid case");
     }
 
     return STATUS_OK;

@@ -15,14 +15,7 @@
 #include "study/error_budget.h"
 #include "study/member_file.h"
 
-enum { ERROR_STUDY_LEVELS = 10, ERROR_STUDY_QUANTITIES = 16, ERROR_STUDY_BYTES = 256 };
-
-/* The effect of a key on one quantity of one fish. */
-struct error_study_part {
-    double error; /* of the stated value, in the unit of the quantity; for a choice of the model: the change */
-    double finest_error, order;
-    enum error_budget_verdict verdict; /* on this sequence alone */
-};
+enum { ERROR_STUDY_LEVELS = 1 + SWEEP_ERROR_LEVELS, ERROR_STUDY_QUANTITIES = 16 };
 
 /* A numerical key, or a choice of the model, and its levels from fine to coarse. */
 struct error_study_key {
@@ -31,20 +24,18 @@ struct error_study_key {
     int n_levels, stated;             /* number of levels; level of the stated value */
     double value[ERROR_STUDY_LEVELS]; /* of the first fish that has the key */
     int member[ERROR_STUDY_LEVELS];
-    int first_stated;                  /* level of the case, before any refinement */
-    int n_added;                       /* levels added for `within` */
-    char objection[ERROR_STUDY_BYTES]; /* reason to distrust any order, or ""; n_levels 1: reason for not varying */
-    enum error_budget_verdict verdict; /* on all quantities */
-    char reason[ERROR_STUDY_BYTES];    /* reason of a flag, or "" */
-    double cost_exponent;              /* exponent of the resolution in the wall time */
-    struct error_study_part *part;     /* (n_asked, n_fish) */
+    int first_stated;                   /* level of the case, before any refinement */
+    int n_added;                        /* levels added for `within` */
+    char objection[ERROR_BUDGET_BYTES]; /* reason to distrust any order, or ""; n_levels 1: reason for not varying */
+    double cost_exponent;               /* exponent of the resolution in the wall time */
+    struct error_budget_result *part;   /* of each quantity; for a choice of the model: the change (n_asked, n_fish) */
 };
 
 struct error_study {
     struct case_values study;             /* the case, with the axis of members */
     int is_steady, is_static, n_fish;     /* steady states; equilibria, without a beat */
     double beat;                          /* s; 0: none */
-    int n_asked, n_quantities;            /* requested quantities; requested quantities and judges */
+    int n_asked;                          /* requested quantities */
     int quantity[ERROR_STUDY_QUANTITIES]; /* numbers of member_file.h */
     int n_keys;
     struct error_study_key key[SWEEP_N_ERROR_KEYS];
@@ -96,18 +87,23 @@ void error_plan_shorten(struct error_study *study, int n_members);
 // With `within` the stated value moves to finer levels, which adds members. The choice depends on the case and the
 // existing members only, so the same files always give the same study.
 
-/* The next refinement: the key with the largest share. */
+/* The next refinement: the key with the largest share of the largest relative error. */
 struct error_study_next {
     int key;       /* -1: nothing to refine */
+    int place;     /* quantity and fish with the largest relative error */
     double value;  /* next level of the key; NaN: no finer level is a valid case */
     int is_member; /* a member at this level exists */
-    double cost;   /* CPU time of the stated value after over before the refinement */
-    double part;   /* predicted largest error of the key over the value of the quantity; NaN: not predictable */
-    double sum;    /* predicted largest error of all keys over the value of the quantity */
+    double cost;   /* CPU time of the stated value after over before the refinement, at least 1 */
+    double part;   /* predicted error of the key over the value of the quantity; NaN: not predictable */
+    double sum;    /* predicted largest error of all keys over the value of a quantity */
 };
 
-/* Judge all keys by the members, one member for each value of the axis. Fails with STATUS_MEMORY. */
-enum status error_study_judge(struct error_study *study, const struct member_file *members);
+/* The levels of a key as error_budget.h takes them; size: (ERROR_STUDY_LEVELS), filled. */
+struct error_budget_levels error_study_levels(const struct error_study *study, const struct error_study_key *key,
+                                              double *size);
+
+/* Judge all keys by the members, one member for each value of the axis. */
+void error_study_judge(struct error_study *study, const struct member_file *members);
 
 /* Find the next refinement of a judged study. Fails with STATUS_MEMORY. */
 enum status error_study_find_next(struct error_study *study, const struct member_file *members,
@@ -120,6 +116,6 @@ enum status error_study_refine(struct error_study *study, const struct member_fi
 
 /* Describe the cost of a judged study with errors within the bound, "fish.nodes 69: 3.1 times the CPU time", or the
  * reason why the cost is not predictable. */
-void error_study_say_cost(const struct error_study *study, char words[ERROR_STUDY_BYTES]);
+void error_study_say_cost(const struct error_study *study, char words[ERROR_BUDGET_BYTES]);
 
 #endif

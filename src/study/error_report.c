@@ -13,7 +13,7 @@
 #include "run/estimate.h"
 #include "study/study_print.h"
 
-enum { MOST_FISH = 4, LEVEL_BYTES = 160, NAME_BYTES = 80, MEANING_BYTES = 200 };
+enum { MOST_FISH = 4, OF_QUANTITY = 4 /* columns */, LEVEL_BYTES = 160, NAME_BYTES = 80, MEANING_BYTES = 200 };
 
 /* Beats of a search from the initial state of a case, from the state of a neighbour, and for the multipliers of a fish;
  * wall time of the events simulated for an estimate, s. */
@@ -21,6 +21,11 @@ static const double beats_from_start = 14, beats_from_neighbour = 11, beats_of_m
 
 static const char *name_of(const struct error_study *study, int q) {
     return member_file_quantity(study->quantity[q])->name;
+}
+
+/* Without "steady_". */
+static const char *short_name_of(const struct error_study *study, int q) {
+    return name_of(study, q) + (strncmp(name_of(study, q), "steady_", 7) == 0 ? 7 : 0);
 }
 
 static int report_of_fish(const struct error_study *study, int q) {
@@ -58,7 +63,7 @@ static enum status report_estimate_member(const struct error_study *study, int m
         values.time.end = beats * study->beat;
     }
 
-    enum status status = simulate_create(&simulation, &values);
+    enum status status = simulate_create(NULL, &simulation, &values);
     if (status == STATUS_OK) status = estimate_run(simulation, seconds, &estimate);
     simulate_free(simulation);
     case_free(&values);
@@ -161,53 +166,44 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
 
 // ---- the table
 
-/* Whether the levels of a key change all requested quantities by at most the noise. */
-static int is_below_noise(const struct error_study *study, const struct error_study_key *key) {
-    for (int place = 0; place < study->n_asked * study->n_fish; place++) {
-        const int is_there = place % study->n_fish == 0 || report_of_fish(study, place / study->n_fish);
-        if (is_there && key->part[place].verdict != ERROR_BUDGET_NONE) return 0;
-    }
-    return 1;
+/* The reason of a flag of a quantity of a fish with its levels, or "". */
+static void write_reason(const struct error_study *study, const struct error_study_key *key, int place,
+                         char text[ERROR_BUDGET_BYTES]) {
+    double size[ERROR_STUDY_LEVELS];
+    const struct error_budget_levels levels = error_study_levels(study, key, size);
+    error_budget_reason(&levels, &key->part[place], key->value, text);
 }
 
-/* "5.0*": the observed order of the first quantity with an order, and a mark. */
-static void report_write_order(const struct error_study *study, const struct error_study_key *key, int f, int *is_above,
-                               char text[16]) {
-    const double design = sweep_error_order(&study->study, key->row);
-    if (key->n_levels == 1) {
-        snprintf(text, 16, "not varied");
-    } else if (key->verdict == ERROR_BUDGET_UNKNOWN) {
-        snprintf(text, 16, "unknown");
-    } else if (is_below_noise(study, key)) {
-        snprintf(text, 16, "none");
-    } else if (error_budget_is_flagged(key->verdict)) {
-        snprintf(text, 16, "flagged");
+/* The observed order of a quantity, "1.9", or the reason for none in a word. */
+static void set_order(const struct text_table *table, int row, int column, const struct error_budget_result *part) {
+    if (part->verdict == ERROR_BUDGET_ACCEPTED) {
+        text_table_set(table, row, column, "%.1f", part->order);
     } else {
-        double order = NAN;
-        for (int q = 0; q < study->n_asked && isnan(order); q++) {
-            const struct error_study_part *const part =
-                &key->part[error_plan_place(study, q, report_of_fish(study, q) ? f : 0)];
-            if (part->verdict == ERROR_BUDGET_ACCEPTED) order = part->order;
-        }
-        const int is_high = order > design;
-        *is_above |= is_high;
-        // the sequence of a judge may have an order
-        snprintf(text, 16, isnan(order) ? "none" : "%.1f%s", order, is_high ? "*" : "");
+        text_table_set(table, row, column, "%s",
+                       part->verdict == ERROR_BUDGET_NONE      ? "none"
+                       : part->verdict == ERROR_BUDGET_UNKNOWN ? "unknown"
+                                                               : "flagged");
     }
 }
 
-/* Describe the effect of the next level of the key with the largest share. */
+/* Describe the effect of the next level of the key with the largest share of the largest relative error: cost and
+ * predicted error, where known. */
 static void write_next(const struct error_study *study, const struct error_study_next *next,
                        char text[TEXT_CELL_BYTES]) {
     const struct error_study_key *const key = &study->key[next->key];
     int n = snprintf(text, TEXT_CELL_BYTES, "<- spend here");
     if (isnan(next->value)) return;
     const char *const last = strrchr(key->row->path, '.') + 1;
-    n += snprintf(text + n, (size_t)(TEXT_CELL_BYTES - n), ": %s %.4g, CPU x %.2g", last, next->value, next->cost);
+    n += snprintf(text + n, (size_t)(TEXT_CELL_BYTES - n), ": %s %.4g", last, next->value);
+
+    // times of short runs do not tell a smaller factor from 1
+    const double least = 1.05;
+    if (next->cost > least) n += snprintf(text + n, (size_t)(TEXT_CELL_BYTES - n), ", CPU x %.2g", next->cost);
+    const char *const quantity = short_name_of(study, next->place / study->n_fish);
     if (isnan(next->sum)) {
-        snprintf(text + n, (size_t)(TEXT_CELL_BYTES - n), ", not predicted");
+        snprintf(text + n, (size_t)(TEXT_CELL_BYTES - n), ", to find an order of %.40s", quantity);
     } else {
-        snprintf(text + n, (size_t)(TEXT_CELL_BYTES - n), ", +-%.2g %%", 100 * next->sum);
+        snprintf(text + n, (size_t)(TEXT_CELL_BYTES - n), ", %.40s +-%.2g %%", quantity, 100 * next->sum);
     }
 }
 
@@ -217,54 +213,48 @@ static void report_set_part(const struct text_table *table, int row, int column,
     text_table_set(table, row, column, isnan(part) ? "unknown" : "%.*f", own < most ? own : most, part);
 }
 
-static void fill_row(const struct error_study *study, const struct text_table *table, int row, int k, int f,
-                     int *is_above) {
+static void fill_row(const struct error_study *study, const struct text_table *table, int row, int k, int f) {
     const struct error_study_key *const key = &study->key[k];
-    char levels[LEVEL_BYTES], order[16];
+    char levels[LEVEL_BYTES];
     write_levels(key, levels);
-    report_write_order(study, key, f, is_above, order);
     text_table_set(table, row, 0, "%s", key->row->path);
     text_table_set(table, row, 1, "%s", levels);
-    text_table_set(table, row, 2, "%s", order);
-    int c = 3;
-    for (int q = 0; q < study->n_asked; q++, c += 3) {
+    int c = 2;
+    for (int q = 0; q < study->n_asked; q++, c += OF_QUANTITY) {
         const int place = error_plan_place(study, q, f);
-        if (key->n_levels == 1 || (f > 0 && !report_of_fish(study, q))) continue;
+        if (f > 0 && !report_of_fish(study, q)) continue;
+        if (key->n_levels == 1) {
+            text_table_set(table, row, c + 1, "not varied");
+            continue;
+        }
         const double error = key->part[place].error;
         report_set_part(table, row, c, error, study->error[place]);
-        text_table_number(table, row, c + 1, "%.2f", 100 * error / fabs(study->value[place]));
-        text_table_number(table, row, c + 2, "%.0f", study->error[place] > 0 ? 100 * error / study->error[place] : 0);
+        set_order(table, row, c + 1, &key->part[place]);
+        text_table_number(table, row, c + 2, "%.2f", 100 * error / fabs(study->value[place]));
+        text_table_number(table, row, c + 3, "%.0f", study->error[place] > 0 ? 100 * error / study->error[place] : 0);
     }
 
-    // the basis of the error
-    if (key->n_levels == 3 && key->stated == 0) {
-        text_table_set(table, row, c, "3 levels (wider bounds)");
-    } else if (key->n_levels > 1) {
-        text_table_set(table, row, c, "%d levels", key->n_levels < 4 ? key->n_levels : 4);
-    }
+    if (key->n_levels > 1) text_table_set(table, row, c, "%d levels", key->n_levels < 4 ? key->n_levels : 4);
 }
 
 /* Print the share of each key for one fish. */
 static enum status report_print_table(const struct error_study *study, const struct error_study_next *next, int f,
                                       FILE *stream) {
-    int n_keys = 0, is_above = 0, n_moved = 0;
+    int n_keys = 0, n_moved = 0;
     for (int k = 0; k < study->n_keys; k++) {
         n_keys += report_is_error(&study->key[k]);
         n_moved += study->key[k].stated != study->key[k].first_stated;
     }
 
-    const int n_columns = 5 + 3 * study->n_asked;
+    const int n_columns = 4 + OF_QUANTITY * study->n_asked;
     struct text_table table;
     TRY(text_table_create(&table, 3 + n_keys, n_columns));
-    table.n_left = 3;
-    const char *const heads[] = {"key", "levels", "order"};
-    for (int c = 0; c < 3; c++) text_table_set(&table, 0, c, "%s", heads[c]);
-
+    table.n_left = 2;
+    text_table_set(&table, 0, 0, "key");
+    text_table_set(&table, 0, 1, "levels");
     for (int q = 0; q < study->n_asked; q++) {
-        const int is_short = strncmp(name_of(study, q), "steady_", 7) == 0;
-        text_table_set(&table, 0, 3 + 3 * q, "%s", name_of(study, q) + (is_short ? 7 : 0));
-        text_table_set(&table, 0, 4 + 3 * q, "%%");
-        text_table_set(&table, 0, 5 + 3 * q, "share");
+        const char *const heads[OF_QUANTITY] = {short_name_of(study, q), "order", "%", "share"};
+        for (int c = 0; c < OF_QUANTITY; c++) text_table_set(&table, 0, 2 + OF_QUANTITY * q + c, "%s", heads[c]);
     }
 
     text_table_set(&table, 0, n_columns - 2, "by");
@@ -274,7 +264,7 @@ static enum status report_print_table(const struct error_study *study, const str
         if (!report_is_error(&study->key[k])) continue;
         char words[TEXT_CELL_BYTES] = "";
         if (k == next->key) write_next(study, next, words);
-        fill_row(study, &table, row, k, f, &is_above);
+        fill_row(study, &table, row, k, f);
         text_table_set(&table, row++, n_columns - 1, "%s", words);
     }
 
@@ -282,8 +272,9 @@ static enum status report_print_table(const struct error_study *study, const str
         text_table_set(&table, row, 0, "together");
         for (int q = 0; q < study->n_asked; q++) {
             const int place = error_plan_place(study, q, f);
-            report_set_part(&table, row, 3 + 3 * q, study->together[place], study->error[place]);
-            text_table_number(&table, row, 4 + 3 * q, "%.2f", 100 * study->together[place] / fabs(study->value[place]));
+            report_set_part(&table, row, 2 + OF_QUANTITY * q, study->together[place], study->error[place]);
+            text_table_number(&table, row, 4 + OF_QUANTITY * q, "%.2f",
+                              100 * study->together[place] / fabs(study->value[place]));
         }
         row++;
     }
@@ -292,14 +283,14 @@ static enum status report_print_table(const struct error_study *study, const str
     for (int q = 0; q < study->n_asked; q++) {
         const int place = error_plan_place(study, q, f);
         if (f > 0 && !report_of_fish(study, q)) continue;
-        report_set_part(&table, row, 3 + 3 * q, study->error[place], study->error[place]);
-        text_table_number(&table, row, 4 + 3 * q, "%.2f", 100 * study->error[place] / fabs(study->value[place]));
+        report_set_part(&table, row, 2 + OF_QUANTITY * q, study->error[place], study->error[place]);
+        text_table_number(&table, row, 4 + OF_QUANTITY * q, "%.2f",
+                          100 * study->error[place] / fabs(study->value[place]));
     }
 
     table.n_rows = row + 1;
     text_table_print(&table, stream);
     text_table_free(&table);
-    if (is_above) fprintf(stream, "* above the design order, which is used: the error may be smaller\n");
 
     return STATUS_OK;
 }
@@ -329,18 +320,26 @@ static void print_choices(const struct error_study *study, FILE *stream) {
     if (n > 0) fprintf(stream, "\n");
 }
 
-/* Print the reasons of flagged and fixed keys, and the failed members. */
+/* Print the reasons of flags, each with its quantity, of fixed keys, and of failed members. */
 static void print_reasons(const struct error_study *study, const struct member_file *members, FILE *stream) {
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
         if (key->n_levels == 1) fprintf(stream, "not varied: %s: %s\n", key->row->path, key->objection);
-        // at least 1 % of the error of some quantity, or an unknown error
-        int has_share = 0;
+        if (key->n_levels == 1 || !report_is_error(key)) continue;
         for (int place = 0; place < study->n_asked * study->n_fish; place++) {
-            has_share |= !(key->part[place].error < 0.01 * study->error[place]);
-        }
-        if (key->n_levels > 1 && report_is_error(key) && *key->reason && has_share) {
-            fprintf(stream, "flagged: %s: %s\n", key->row->path, key->reason);
+            const int q = place / study->n_fish, f = place % study->n_fish;
+            const struct error_budget_result *const part = &key->part[place];
+            const int is_objection = part->verdict == ERROR_BUDGET_OBJECTION;
+
+            // at least 1 % of the error of the quantity, or an unknown error
+            if (!error_budget_is_flagged(part->verdict) || part->error < 0.01 * study->error[place]) continue;
+            char reason[ERROR_BUDGET_BYTES];
+            write_reason(study, key, place, reason);
+            fprintf(stream, "flagged: %s: ", key->row->path);
+            if (!is_objection) fprintf(stream, "%s", short_name_of(study, q));
+            if (!is_objection && report_of_fish(study, q)) fprintf(stream, " of %s", study->study.school.fish[f].name);
+            fprintf(stream, "%s%s\n", is_objection ? "" : ": ", reason);
+            if (is_objection) break;
         }
     }
     for (int m = 0; m < sweep_n_members(&study->study); m++) {
@@ -369,7 +368,7 @@ enum status error_report_print(struct error_study *study, const struct member_fi
     print_reasons(study, members, stream);
     if (study->stated > 0) fprintf(stream, "the stated value takes %.2g times the time of the case\n", study->cost);
     if (study->is_reached) return STATUS_OK;
-    char words[ERROR_STUDY_BYTES];
+    char words[ERROR_BUDGET_BYTES];
     error_study_say_cost(study, words);
 
     return status_fail(STATUS_MISSED, "the errors are not within %.3g %% of the values; %s",
@@ -392,13 +391,14 @@ enum status error_report_write_csv(const struct error_study *study, const char *
             for (int k = -1; k < study->n_keys; k++) {
                 const struct error_study_key *const key = k < 0 ? NULL : &study->key[k];
                 if (key && key->n_levels == 1) continue;
-                char levels[LEVEL_BYTES] = "";
+                char levels[LEVEL_BYTES] = "", reason[ERROR_BUDGET_BYTES] = "";
                 if (key) write_levels(key, levels);
+                if (key) write_reason(study, key, place, reason);
                 const double error = key ? key->part[place].error : study->error[place];
                 const char *const verdict = !key                    ? ""
                                             : !report_is_error(key) ? "a choice of the model, not in the sum"
-                                            : *key->reason          ? key->reason
-                                                                    : error_budget_words(key->verdict);
+                                            : *reason               ? reason
+                                                                    : error_budget_words(key->part[place].verdict);
                 fprintf(file, "\"%s\",%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,\"%s\"\n",
                         quantity->of_fish ? study->study.school.fish[f].name : "", quantity->name, quantity->unit,
                         study->value[place], key ? key->row->path : "sum", levels, key ? key->part[place].order : NAN,
@@ -420,7 +420,7 @@ static const struct of_key {
     int by_level;
 } of_key[N_OF_KEY] = {
     {"key_name", "numerical key that is varied alone", NETCDF_TEXT, 0},
-    {"key_reason", "reason why the levels of the key are flagged, or empty", NETCDF_TEXT, 0},
+    {"key_reason", "reason why the key is not varied, or empty", NETCDF_TEXT, 0},
     {"key_levels", "levels of the key", NETCDF_INT, 0},
     {"key_stated", "level of the stated value, from 0, the finest", NETCDF_INT, 0},
     {"key_is_choice", "1: choice of the model, not in the sum", NETCDF_INT, 0},
@@ -430,15 +430,16 @@ static const struct of_key {
 };
 
 /* Variables of each quantity: name and meaning include the name of the quantity. */
-enum { STATED, BAR, PART, KEY_ORDER, N_OF_QUANTITY };
+enum { STATED, BAR, PART, KEY_ORDER, KEY_FLAG, N_OF_QUANTITY };
 static const struct of_quantity {
     const char *name, *meaning;
-    int by_key, has_unit;
+    int by_key, has_unit, is_text;
 } of_quantity[N_OF_QUANTITY] = {
-    {"stated_%s", "stated value of %s", 0, 1},
-    {"bar_%s", "error of the stated value of %s: the sum over the keys", 0, 1},
-    {"part_%s", "error of %s by each key, or change by a choice of the model", 1, 1},
-    {"key_order_%s", "observed order of %s in each key", 1, 0},
+    {"stated_%s", "stated value of %s", 0, 1, 0},
+    {"bar_%s", "error of the stated value of %s: the sum over the keys", 0, 1, 0},
+    {"part_%s", "error of %s by each key, or change by a choice of the model", 1, 1, 0},
+    {"key_order_%s", "observed order of %s in each key", 1, 0, 0},
+    {"key_flag_%s", "reason why the levels of each key give no order of %s, or empty", 1, 0, 1},
 };
 
 int error_report_listed(int i, struct result_listed *listed) {
@@ -462,9 +463,14 @@ int error_report_listed(int i, struct result_listed *listed) {
     if (k >= N_OF_QUANTITY) return 0;
     study_fill_name(name[k], NAME_BYTES, of_quantity[k].name, "Q");
     study_fill_name(meaning[k], MEANING_BYTES, of_quantity[k].meaning, "Q");
-    *listed = (struct result_listed){
-        .name = name[k], .type = "double", .unit = of_quantity[k].has_unit ? "of Q" : "1", .meaning = meaning[k]};
-    snprintf(listed->dimensions, sizeof listed->dimensions, "%sfish", of_quantity[k].by_key ? "key, " : "");
+    *listed = (struct result_listed){.name = name[k],
+                                     .type = of_quantity[k].is_text ? "char" : "double",
+                                     .unit = of_quantity[k].has_unit  ? "of Q"
+                                             : of_quantity[k].is_text ? ""
+                                                                      : "1",
+                                     .meaning = meaning[k]};
+    snprintf(listed->dimensions, sizeof listed->dimensions, "%sfish%s", of_quantity[k].by_key ? "key, " : "",
+             of_quantity[k].is_text ? ", text" : "");
 
     return 1;
 }
@@ -490,16 +496,16 @@ void error_report_define(struct netcdf_writer *writer, const struct error_study 
             char name[NAME_BYTES], meaning[MEANING_BYTES];
             study_fill_name(name, sizeof name, of_quantity[i].name, name_of(study, q));
             study_fill_name(meaning, sizeof meaning, of_quantity[i].meaning, name_of(study, q));
-            const int by_key = of_quantity[i].by_key;
+            const int by_key = of_quantity[i].by_key, is_text = of_quantity[i].is_text;
             const char *const unit = member_file_quantity(study->quantity[q])->unit;
-            netcdf_define_variable(writer,
-                                   &(struct netcdf_variable){.name = name,
-                                                             .long_name = meaning,
-                                                             .units = of_quantity[i].has_unit ? unit : "1",
-                                                             .type = NETCDF_DOUBLE,
-                                                             .n_dimensions = 1 + by_key,
-                                                             .dimension = {by_key ? key : dimensions[0], dimensions[0]},
-                                                             .has_gaps = true});
+            netcdf_define_variable(writer, &(struct netcdf_variable){.name = name,
+                                                                     .long_name = meaning,
+                                                                     .units = of_quantity[i].has_unit ? unit : "1",
+                                                                     .type = is_text ? NETCDF_TEXT : NETCDF_DOUBLE,
+                                                                     .n_dimensions = 1 + by_key + is_text,
+                                                                     .dimension = {by_key ? key : dimensions[0],
+                                                                                   dimensions[0], dimensions[1]},
+                                                                     .has_gaps = !is_text});
         }
     }
 }
@@ -509,8 +515,7 @@ static void report_write_key(struct netcdf_writer *writer, const struct error_st
     const struct error_study_key *const key = &study->key[k];
     const size_t start[] = {(size_t)k, 0}, all_text[] = {1, n_text}, one[] = {1, 1};
     const int is_choice = !report_is_error(key);
-    const char *const texts[] = {
-        [KEY_NAME] = key->row->path, [KEY_REASON] = key->n_levels == 1 ? key->objection : key->reason};
+    const char *const texts[] = {[KEY_NAME] = key->row->path, [KEY_REASON] = key->n_levels == 1 ? key->objection : ""};
     const int *const ints[] = {
         [KEY_LEVELS] = &key->n_levels, [KEY_STATED] = &key->stated, [KEY_IS_CHOICE] = &is_choice};
 
@@ -548,10 +553,13 @@ void error_report_write(struct netcdf_writer *writer, const struct error_study *
             netcdf_write_doubles(writer, netcdf_number(writer, name[STATED]), fish, one, &study->value[place]);
             netcdf_write_doubles(writer, netcdf_number(writer, name[BAR]), fish, one, &study->error[place]);
             for (int k = 0; k < study->n_keys; k++) {
-                const struct error_study_part *const part = &study->key[k].part[place];
-                const size_t start[] = {(size_t)k, (size_t)f};
+                const struct error_budget_result *const part = &study->key[k].part[place];
+                const size_t start[] = {(size_t)k, (size_t)f, 0};
                 netcdf_write_doubles(writer, netcdf_number(writer, name[PART]), start, one, &part->error);
                 netcdf_write_doubles(writer, netcdf_number(writer, name[KEY_ORDER]), start, one, &part->order);
+                memset(text, 0, n_text);
+                if (study->key[k].n_levels > 1) write_reason(study, &study->key[k], place, text);
+                netcdf_write_text(writer, netcdf_number(writer, name[KEY_FLAG]), start, (size_t[]){1, 1, n_text}, text);
             }
         }
     }

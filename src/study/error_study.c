@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
 #include "study/error_plan.h"
@@ -87,78 +86,37 @@ static void object_to_interval(const struct error_study *study, const struct mem
         const double needed = 1 + 3.2 / sqrt(fabs(speed) * values->school.shedding_interval / fish->length);
         const double most = 1000;  // a fish that needs more sheet points does not swim
         if (!(fish->sheet_points < needed) || needed > most) continue;
-        snprintf(key->objection, ERROR_STUDY_BYTES, "%.60s needs %.0f sheet_points for this interval", fish->name,
+        snprintf(key->objection, ERROR_BUDGET_BYTES, "%.60s needs %.0f sheet_points for this interval", fish->name,
                  ceil(needed));
     }
 }
 
-/* Judge all quantities of all fish at the finest levels of a key: at most four levels, including the stated level, and
- * three levels of a duration, because a wake truncated within two body lengths is not yet a far wake. */
-static enum status judge_key(struct error_study *study, const struct member_file *members,
-                             struct error_study_key *key) {
-    enum { MOST = ERROR_BUDGET_LEVELS };
-    const int n_fish = study->n_fish, n_most = study->n_quantities * n_fish;
-    int n_levels = key->row->kind == SWEEP_DURATION ? 3 : MOST;
+// at most four levels, and three of a duration, because a wake truncated within two body lengths is not yet a far wake
+struct error_budget_levels error_study_levels(const struct error_study *study, const struct error_study_key *key,
+                                              double *size) {
+    for (int i = 0; i < key->n_levels; i++) size[i] = error_plan_size(key->row, key->value[i]);
+    return (struct error_budget_levels){.n = key->n_levels,
+                                        .n_judged = key->row->kind == SWEEP_DURATION ? 3 : ERROR_BUDGET_LEVELS,
+                                        .base = key->stated,
+                                        .size = size,
+                                        .design_order = sweep_error_order(&study->study, key->row),
+                                        .objection = key->objection};
+}
 
-    if (n_levels > key->n_levels) n_levels = key->n_levels;
-    struct judged {
-        double value[MOST][2];
-        int place; /* of quantity and fish */
-    } * judged;
-    struct error_budget_sequence *sequence = NULL;
-    struct error_budget_result *result = NULL;
-    double size[MOST];
-    int n = 0, culprit;
-    enum status status = MEMORY_NEW(judged, n_most, "the errors of a study");
-    if (status == STATUS_OK) status = MEMORY_NEW(sequence, n_most, "the errors of a study");
-    if (status == STATUS_OK) status = MEMORY_NEW(result, n_most, "the errors of a study");
-    if (status != STATUS_OK) goto end;
-
-    for (int i = 0; i < n_levels; i++) size[i] = error_plan_size(key->row, key->value[i]);
-    for (int q = 0; q < study->n_quantities; q++) {
-        for (int f = 0; f < (member_file_quantity(study->quantity[q])->of_fish ? n_fish : 1); f++) {
-            int is_known = q < study->n_asked;
-            for (int i = 0; i < n_levels; i++) {
-                judged[n].value[i][0] = errors_value_of(study, members, key->member[i], q, f);
-                is_known |= !isnan(judged[n].value[i][0]);
+/* Judge each requested quantity of each fish by the finest levels of a key. */
+static void judge_key(struct error_study *study, const struct member_file *members, struct error_study_key *key) {
+    double size[ERROR_STUDY_LEVELS], value[ERROR_STUDY_LEVELS][2] = {{0}};
+    const struct error_budget_levels levels = error_study_levels(study, key, size);
+    for (int q = 0; q < study->n_asked; q++) {
+        for (int f = 0; f < (member_file_quantity(study->quantity[q])->of_fish ? study->n_fish : 1); f++) {
+            for (int i = 0; i < key->n_levels; i++) {
+                value[i][0] = errors_value_of(study, members, key->member[i], q, f);
             }
-            // speed, cost and Strouhal number judge if known
-            if (!is_known) continue;
             const double noise = errors_noise_of(study, members, key->member[key->stated], q, f);
-            sequence[n] = (struct error_budget_sequence){(const double(*)[2])judged[n].value, noise};
-            judged[n++].place = error_plan_place(study, q, f);
+            key->part[error_plan_place(study, q, f)] = error_budget_judge(&levels, (const double(*)[2])value, noise);
         }
     }
-
-    const struct error_budget_levels levels = {n_levels, key->stated, size, sweep_error_order(&study->study, key->row),
-                                               *key->objection ? key->objection : NULL};
-    key->verdict = error_budget_judge(&levels, n, sequence, result, &culprit);
-    *key->reason = '\0';
-    if (error_budget_is_flagged(key->verdict)) {
-        const int q = culprit < 0 ? 0 : study->quantity[judged[culprit].place / n_fish];
-        const char *const fish = culprit < 0 ? "" : study->study.school.fish[judged[culprit].place % n_fish].name;
-        snprintf(key->reason, ERROR_STUDY_BYTES, "%s%s%s%s%.60s%s",
-                 key->verdict == ERROR_BUDGET_OBJECTION ? key->objection : error_budget_words(key->verdict),
-                 culprit < 0 ? "" : " (", culprit < 0 ? "" : member_file_quantity(q)->name, culprit < 0 ? "" : " of ",
-                 fish, culprit < 0 ? "" : ")");
-    }
-
-    for (int i = 0; i < n; i++) {
-        if (judged[i].place / n_fish >= study->n_asked) continue;
-        key->part[judged[i].place] = (struct error_study_part){.error = result[i].error,
-                                                               .finest_error = result[i].finest_error,
-                                                               .order = result[i].order,
-                                                               .verdict = result[i].verdict};
-    }
-
     key->cost_exponent = cost_exponent_of(study, members, key);
-
-end:
-    free(judged);
-    free(sequence);
-    free(result);
-
-    return status;
 }
 
 /* Whether the error of a key contributes to the sum. */
@@ -167,12 +125,11 @@ static int errors_is_error(const struct error_study_key *key) {
 }
 
 static void judge_choice(struct error_study *study, const struct member_file *members, struct error_study_key *key) {
-    key->verdict = ERROR_BUDGET_NONE;
     for (int q = 0; q < study->n_asked; q++) {
         for (int f = 0; f < study->n_fish; f++) {
-            struct error_study_part *const part = &key->part[error_plan_place(study, q, f)];
+            struct error_budget_result *const part = &key->part[error_plan_place(study, q, f)];
             const double base = errors_value_of(study, members, key->member[key->stated], q, f);
-            *part = (struct error_study_part){.finest_error = NAN, .order = NAN};
+            *part = (struct error_budget_result){.finest_error = NAN, .order = NAN};
             for (int i = 0; i < key->n_levels; i++) {
                 const double change = fabs(errors_value_of(study, members, key->member[i], q, f) - base);
                 part->error = isnan(change) ? NAN : fmax(part->error, change);
@@ -208,29 +165,33 @@ static void sum_errors(struct error_study *study, const struct member_file *memb
     study->cost = cost_of(study, members, study->stated) / cost_of(study, members, 0);
 }
 
-/* The largest error of a quantity over the value of the quantity; NaN: an error is unknown. */
-static double relative_error(const struct error_study *study, const double *error) {
-    double most = 0;
+/* An error over the stated value of its quantity. */
+static double relative(const struct error_study *study, int place, double error) {
+    return error > 0 ? error / fabs(study->value[place]) : error;
+}
+
+/* The quantity and the fish with the largest relative error; an unknown error is the largest. */
+static int find_worst(const struct error_study *study) {
+    int worst = 0;
     for (int q = 0; q < study->n_asked; q++) {
-        const int of_fish = member_file_quantity(study->quantity[q])->of_fish;
-        for (int f = 0; f < (of_fish ? study->n_fish : 1); f++) {
+        for (int f = 0; f < (member_file_quantity(study->quantity[q])->of_fish ? study->n_fish : 1); f++) {
             const int place = error_plan_place(study, q, f);
-            const double relative = error[place] > 0 ? error[place] / fabs(study->value[place]) : error[place];
-            if (isnan(relative)) return NAN;
-            most = fmax(most, relative);
+            const double error = relative(study, place, study->error[place]);
+            if (isnan(error)) return place;
+            if (error > relative(study, worst, study->error[worst])) worst = place;
         }
     }
 
-    return most;
+    return worst;
 }
 
-enum status error_study_judge(struct error_study *study, const struct member_file *members) {
+void error_study_judge(struct error_study *study, const struct member_file *members) {
     for (int k = 0; k < study->n_keys; k++) {
         struct error_study_key *const key = &study->key[k];
         if (key->n_levels == 1) continue;
         object_to_interval(study, members, key);
         if (errors_is_error(key)) {
-            TRY(judge_key(study, members, key));
+            judge_key(study, members, key);
         } else {
             judge_choice(study, members, key);
         }
@@ -238,69 +199,64 @@ enum status error_study_judge(struct error_study *study, const struct member_fil
 
     sum_errors(study, members);
     const double within = study->study.error->within;
-    study->is_reached = isnan(within) || relative_error(study, study->error) <= within;
-
-    return STATUS_OK;
+    const int worst = find_worst(study);
+    study->is_reached = isnan(within) || relative(study, worst, study->error[worst]) <= within;
 }
 
 // ---- refinement
 
-/* The largest error of a key over the value of a quantity. */
-static double relative_part(const struct error_study *study, const struct error_study_key *key) {
-    double most = 0;
-    for (int place = 0; place < study->n_asked * study->n_fish; place++) {
-        const double relative = key->part[place].error / fabs(study->value[place]);
-        if (key->part[place].error > 0) most = fmax(most, relative);
-    }
-    return most;
+/* Whether the error decreases if the stated value moves to the next finer level: if the levels have an order, or if a
+ * coarse stated value has a larger error than the finest level. */
+static int is_movable(const struct error_study_key *key, const struct error_budget_result *part) {
+    return !error_budget_is_flagged(part->verdict) || (part->verdict == ERROR_BUDGET_HIGH && key->stated > 1);
 }
 
-/* The predicted relative_part with the stated value at the next finer level, with or without a member. */
-static double next_part(const struct error_study *study, const struct member_file *members,
-                        const struct error_study_key *key, double next) {
-    const double design = sweep_error_order(&study->study, key->row);
-    double most = 0;
-    for (int q = 0; q < study->n_asked; q++) {
-        for (int f = 0; f < study->n_fish; f++) {
-            const int place = error_plan_place(study, q, f);
-            const struct error_study_part *const part = &key->part[place];
-            if (!(part->error > 0)) continue;
-            double error = part->finest_error;
-            if (part->verdict == ERROR_BUDGET_NONE) {
-                error = part->error;
-            } else if (key->stated == 0) {
-                const double order = fmin(design, part->order);  // fmin ignores NaN
-                error *= pow(error_plan_size(key->row, next) / error_plan_size(key->row, key->value[0]), order);
-            } else {
-                error += fabs(errors_value_of(study, members, key->member[key->stated - 1], q, f) -
-                              errors_value_of(study, members, key->member[0], q, f));
-            }
-            if (isnan(error)) return NAN;
-            most = fmax(most, error / fabs(study->value[place]));
-        }
+/* The predicted error of a quantity with the stated value at the next finer level, with or without a member; NaN: not
+ * predictable. */
+static double next_error(const struct error_study *study, const struct member_file *members,
+                         const struct error_study_key *key, double next, int place) {
+    const struct error_budget_result *const part = &key->part[place];
+    const int q = place / study->n_fish, f = place % study->n_fish;
+    if (!is_movable(key, part)) return NAN;
+    if (part->verdict == ERROR_BUDGET_NONE) return part->error;
+    if (key->stated > 0) {
+        return part->finest_error + fabs(errors_value_of(study, members, key->member[key->stated - 1], q, f) -
+                                         errors_value_of(study, members, key->member[0], q, f));
     }
+    const double order = fmin(sweep_error_order(&study->study, key->row), part->order);  // fmin ignores NaN
+    return part->finest_error * pow(error_plan_size(key->row, next) / error_plan_size(key->row, key->value[0]), order);
+}
 
-    return most;
+/* Predict the errors after a refinement: of the worst quantity by the refined key, and the largest of all keys. */
+static void predict(const struct error_study *study, const struct member_file *members, struct error_study_next *next) {
+    const struct error_study_key *const key = &study->key[next->key];
+    next->part = relative(study, next->place, next_error(study, members, key, next->value, next->place));
+    next->sum = isnan(next->part) ? NAN : 0;
+    for (int place = 0; place < study->n_asked * study->n_fish; place++) {
+        const double now = key->part[place].error, then = next_error(study, members, key, next->value, place);
+        const double sum = relative(study, place, study->error[place] + (isnan(then) ? 0 : then - now));
+        if (sum > next->sum) next->sum = sum;
+    }
 }
 
 enum status error_study_find_next(struct error_study *study, const struct member_file *members,
                                   struct error_study_next *next) {
     double most = 0;
-    *next = (struct error_study_next){.key = -1, .value = NAN, .cost = NAN, .part = NAN, .sum = NAN};
+    *next = (struct error_study_next){
+        .key = -1, .place = find_worst(study), .value = NAN, .cost = NAN, .part = NAN, .sum = NAN};
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
-        if (!errors_is_error(key) || key->verdict == ERROR_BUDGET_NONE || !(relative_part(study, key) > most)) continue;
-        most = relative_part(study, key);
+        const struct error_budget_result *const part = &key->part[next->place];
+        if (!errors_is_error(key) || part->verdict == ERROR_BUDGET_NONE || !(part->error > most)) continue;
+        most = part->error;
         next->key = k;
     }
 
     if (next->key < 0) return STATUS_OK;
 
-    // the error decreases if the stated value of a key without a flag moves to a finer level
     struct error_study_key *const key = &study->key[next->key];
-    const int is_movable = !error_budget_is_flagged(key->verdict);
     const int has_room = key->n_levels < ERROR_STUDY_LEVELS && key->n_added < MOST_ADDED;
-    if (key->stated > 0 && is_movable) {
+    if (key->stated > 0 && is_movable(key, &key->part[next->place])) {
         next->value = key->value[key->stated - 1];
         next->is_member = 1;
         next->cost =
@@ -313,8 +269,8 @@ enum status error_study_find_next(struct error_study *study, const struct member
     }
 
     if (isnan(next->value)) return STATUS_OK;
-    next->part = is_movable ? next_part(study, members, key, next->value) : NAN;
-    next->sum = relative_error(study, study->error) - most + next->part;
+    next->cost = fmax(1, next->cost);  // short runs have noisy times
+    predict(study, members, next);
 
     return STATUS_OK;
 }
@@ -352,7 +308,7 @@ enum status error_study_refine(struct error_study *study, const struct member_fi
     while (!study->is_reached) {
         struct error_study_next next;
         TRY(error_study_find_next(study, members, &next));
-        const int is_useful = next.key >= 0 && !isnan(next.value) && !isnan(relative_error(study, study->error));
+        const int is_useful = next.key >= 0 && !isnan(next.value) && !isnan(study->error[next.place]);
         if (!is_useful || study->cost * next.cost > study->study.error->most) return STATUS_OK;
         const int n_before = study->study.sweep[0].n_values, stated = study->stated;
         const struct error_study_key before = study->key[next.key];
@@ -365,21 +321,22 @@ enum status error_study_refine(struct error_study *study, const struct member_fi
             return STATUS_OK;
         }
         if (*n_new > 0) return STATUS_OK;
-        TRY(error_study_judge(study, members));
+        error_study_judge(study, members);
     }
 
     return STATUS_OK;
 }
 
-void error_study_say_cost(const struct error_study *study, char words[ERROR_STUDY_BYTES]) {
+void error_study_say_cost(const struct error_study *study, char words[ERROR_BUDGET_BYTES]) {
     const double within = study->study.error->within;
     double part[SWEEP_N_ERROR_KEYS], ratio[SWEEP_N_ERROR_KEYS], order[SWEEP_N_ERROR_KEYS], sum = 0, fixed = 0, cost = 1;
+    const int place = find_worst(study);
     const char *worst = "";
 
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
-        const int is_fixed = !errors_is_error(key) || key->verdict != ERROR_BUDGET_ACCEPTED;
-        part[k] = errors_is_error(key) ? relative_part(study, key) : 0;
+        const int is_fixed = !errors_is_error(key) || key->part[place].verdict != ERROR_BUDGET_ACCEPTED;
+        part[k] = errors_is_error(key) ? relative(study, place, key->part[place].error) : 0;
         order[k] = is_fixed ? NAN : sweep_error_order(&study->study, key->row);
         ratio[k] = 1;
         sum += part[k];
@@ -387,8 +344,8 @@ void error_study_say_cost(const struct error_study *study, char words[ERROR_STUD
         fixed += is_fixed ? part[k] : 0;
     }
 
-    if (fixed > 0.9 * within || isnan(relative_error(study, study->error))) {
-        snprintf(words, ERROR_STUDY_BYTES, "the errors of keys that are flagged or unknown cannot be predicted%s%s",
+    if (fixed > 0.9 * within || isnan(study->error[place])) {
+        snprintf(words, ERROR_BUDGET_BYTES, "the errors of keys that are flagged or unknown cannot be predicted%s%s",
                  *worst ? ": " : "", worst);
         return;
     }
@@ -412,11 +369,11 @@ void error_study_say_cost(const struct error_study *study, char words[ERROR_STUD
         const struct error_study_key *const key = &study->key[k];
         if (!(ratio[k] > 1)) continue;
         const double value = key->value[key->stated];
-        length += snprintf(words + length, (size_t)(ERROR_STUDY_BYTES - length), "%s%s %.3g", length > 0 ? ", " : "",
+        length += snprintf(words + length, (size_t)(ERROR_BUDGET_BYTES - length), "%s%s %.3g", length > 0 ? ", " : "",
                            key->row->path,
                            key->row->kind == SWEEP_POINTS ? 1 + round((value - 1) * ratio[k]) : value / ratio[k]);
-        if (length >= ERROR_STUDY_BYTES) return;
+        if (length >= ERROR_BUDGET_BYTES) return;
     }
 
-    snprintf(words + length, (size_t)(ERROR_STUDY_BYTES - length), ": about %.2g times the CPU time", cost);
+    snprintf(words + length, (size_t)(ERROR_BUDGET_BYTES - length), ": about %.2g times the CPU time", cost);
 }

@@ -3,21 +3,26 @@
 #include "study/study.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <omp.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "base/arena.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "case/case.h"
 #include "case/sweep.h"
-#include "result/result_lock.h"
+#include "result/durable.h"
+#include "result/target.h"
 #include "run/checkpoints.h"
 #include "run/simulate_run.h"
 #include "steady/steady.h"
@@ -42,9 +47,11 @@ struct job {
 };
 
 struct study {
+    struct arena *arena;
     const struct case_values *values;
     const struct study_options *options;
-    struct result_lock lock; /* on the members */
+    char *lock_path; /* FOLDER/study.lock */
+    int lock;        /* descriptor with a lock on the range of the members; -1: none */
     int n_jobs;
     struct job *job;       /* (n_jobs) */
     struct report *report; /* shared memory                                        (n_jobs) */
@@ -125,6 +132,7 @@ static enum status find_steady(const struct study *study, const struct job *job,
 }
 
 static enum status run_member(const struct study *study, const struct job *job) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct case_values values;
     TRY(case_member(&values, study->values, job->member));
     enum status status = parallel_try_threads(values.school.threads);
@@ -287,11 +295,11 @@ static enum status run_until_all_end(struct study *study, const sigset_t *mask) 
 }
 
 static enum status run_jobs(struct study *study) {
-    TRY(MEMORY_NEW(study->job, study->n_jobs, "the processes of a study"));
-    study->report = mmap(NULL, (size_t)study->n_jobs * sizeof *study->report, PROT_READ | PROT_WRITE,
-                         MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (study->report == MAP_FAILED) study->report = NULL;
-    TRY(memory_check(study->report, "the processes of a study"));
+    const size_t size = (size_t)study->n_jobs * sizeof *study->report;
+    NEW(study->arena, study->job, study->n_jobs);
+    void *const shared = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED) arena_lack(study->arena, (double)size);
+    study->report = shared;
     for (int j = 0; j < study->n_jobs; j++) study->job[j].report = &study->report[j];
 
     // a blocked signal stays pending, so the end of a process is never missed
@@ -317,17 +325,44 @@ static enum status run_jobs(struct study *study) {
 static enum status lock_members(struct study *study) {
     const struct study_options *const options = study->options;
     TRY(study_folder_create(options->folder));
-    const int n = options->last < 0 ? 0 : options->last - options->first + 1;
-    return result_lock_members(&study->lock, options->folder, options->last < 0 ? 0 : options->first, n);
+    const uint64_t n = options->last < 0 ? 0 : (uint64_t)(options->last - options->first + 1);
+    const uint64_t first = options->last < 0 ? 0 : (uint64_t)options->first;
+    study->lock_path = arena_text(study->arena, "%s/study.lock", options->folder);
+
+    // another study may remove the file between opening and locking
+    for (;;) {
+        study->lock = open(study->lock_path, O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+        if (study->lock < 0) return target_failed(study->lock_path, errno, strerror(errno));
+        const int code = durable_lock(study->lock, first, n);
+        if (code != EAGAIN && durable_has_name(study->lock, study->lock_path)) return STATUS_OK;
+        close(study->lock);
+        study->lock = -1;
+        if (code != EAGAIN) continue;
+        return status_fail(STATUS_FILE,
+                           "%s: another study runs some of the same members: wait until it has ended, or choose "
+                           "another name with -o",
+                           options->folder);
+    }
+}
+
+// remove the empty lock file unless other studies hold locks
+static void unlock_members(struct study *study) {
+    struct stat facts;
+    if (study->lock < 0) return;
+    const bool is_last = durable_lock(study->lock, 0, 0) != EAGAIN;
+    if (is_last && fstat(study->lock, &facts) == 0 && facts.st_size == 0) unlink(study->lock_path);
+    close(study->lock);
 }
 
 static enum status plan_and_run(struct study *study) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct study_options *const options = study->options;
 
     // a refused plan creates no folder
     const int exists = access(options->folder, F_OK) == 0;
     if (exists) TRY(lock_members(study));
-    TRY(study_plan_create(&study->plan, study->values, options->folder, options->first, options->last, options->force));
+    TRY(study_plan_create(study->arena, &study->plan, study->values, options->folder, options->first, options->last,
+                          options->force));
     study->progress.n_members = study->plan.n_members;
     study->progress.n_done = study->plan.n_done;
     if (!exists) TRY(lock_members(study));
@@ -340,13 +375,13 @@ static enum status plan_and_run(struct study *study) {
 }
 
 enum status study_run(const struct case_values *values, const struct study_options *options, int *n_failed) {
-    struct study study = {.values = values, .options = options, .lock.descriptor = -1};
+    struct arena *const arena = arena_create(NULL, "the processes of a study");
+    struct study study = {.arena = arena, .values = values, .options = options, .lock = -1};
     clock_gettime(CLOCK_MONOTONIC, &study.started);
     const enum status status = plan_and_run(&study);
     *n_failed = study.progress.n_failed;
     if (study.report) munmap(study.report, (size_t)study.n_jobs * sizeof *study.report);
-    free(study.job);
-    study_plan_free(&study.plan);
-    result_lock_release(&study.lock);
+    unlock_members(&study);
+    arena_free(arena);
     return status;
 }

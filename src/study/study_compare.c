@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/memory.h"
 #include "base/methods.h"
 #include "case/case.h"
@@ -81,6 +82,11 @@ static enum status sweep_add_method(struct text *sweep, const char *word, const 
     }
 
     const int by_step = options->steps && method != METHOD_IDA;
+    if (!by_step && !methods_table[method].has_adaptive_steps) {
+        return status_fail(STATUS_CASE,
+                           "--methods: %s takes fixed steps only: give them with --steps, or omit the method", word);
+    }
+
     const char *list = by_step ? options->steps : options->rtols ? options->rtols : standard_rtols;
     char value[WORD_BYTES];
     while (list_next_word(&list, value)) {
@@ -174,6 +180,7 @@ static enum status compare_run_in_folder(const char *folder, const struct case_v
                                       .progress = run->progress,
                                       .data = run->data,
                                       .stop = run->stop};
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     int n_failed;
     const enum status status = study_run(study, &all, &n_failed);
 

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
 #include "study/study_print.h"
@@ -253,16 +252,14 @@ static void fill_cost(const struct text_table *table, int row, const struct case
     }
 }
 
-/* Print the cost of each method at a common error, by power laws between the settings. */
-static enum status print_costs(const struct case_values *study, const struct member_file *members, FILE *stream) {
+/* Print the cost of each method at a common error, by power laws between the settings. buffer: (members) */
+static enum status print_costs(struct arena *arena, const struct case_values *study, const struct member_file *members,
+                               double *buffer, FILE *stream) {
     const int n = sweep_n_members(study);
-    struct text_table table = {0};
-    struct point *point = NULL;
-    double *buffer;
-    enum status status = MEMORY_NEW(buffer, n, "a comparison");
-    if (status == STATUS_OK) status = MEMORY_NEW(point, n, "a comparison");
-    if (status == STATUS_OK) status = text_table_create(&table, 1 + n, 6);
-    if (status != STATUS_OK) goto end;
+    struct text_table table;
+    struct point *point;
+    NEW(arena, point, n);
+    TRY(text_table_create(&table, 1 + n, 6));
 
     const double error = common_error(study, members, buffer, point), unsure = error_of(study, &members[1]);
     const char *const heads[] = {"method", "evaluat.", "+-", "wall, s", "+-", "settings"};
@@ -279,12 +276,9 @@ static enum status print_costs(const struct case_values *study, const struct mem
                 unsure);
         text_table_print(&table, stream);
     }
-end:
-    text_table_free(&table);
-    free(buffer);
-    free(point);
 
-    return status;
+    text_table_free(&table);
+    return STATUS_OK;
 }
 
 // ---- the table
@@ -316,18 +310,18 @@ static void fill_setting(const struct text_table *table, int row, const struct c
     text_table_set(table, row, N_COLUMNS - 1, "%.*s", (int)strcspn(member->status, ":"), member->status);
 }
 
-enum status study_comparison_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
+enum status study_comparison_print(struct arena *arena, const struct case_values *study,
+                                   const struct member_file *members, FILE *stream) {
     static const char *const heads[N_BEFORE][2] = {{"method", ""},      {"rtol", ""},        {"step", "s"},
                                                    {"nose", "lengths"}, {"tail", "lengths"}, {"power", "part"},
                                                    {"wall", "s"},       {"+-", "s"}};
     const int n = sweep_n_members(study);
-    struct text_table table = {0};
+    struct text_table table;
     double *buffer;
     int n_rows = 0;
+    NEW(arena, buffer, n);
     for (int m = STUDY_COMPARISON_N_REFERENCES; m < n; m++) n_rows += first_repeat(study, m) == m;
-    enum status status = MEMORY_NEW(buffer, n, "a comparison");
-    if (status == STATUS_OK) status = text_table_create(&table, 2 + n_rows, N_COLUMNS);
-    if (status != STATUS_OK) goto free_buffer;
+    TRY(text_table_create(&table, 2 + n_rows, N_COLUMNS));
 
     // one sentence on the reference
     char method[TEXT_CELL_BYTES], other[TEXT_CELL_BYTES];
@@ -350,8 +344,9 @@ enum status study_comparison_print(const struct case_values *study, const struct
         if (first_repeat(study, m) == m) fill_setting(&table, row++, study, members, m, buffer);
     }
     text_table_print(&table, stream);
+    text_table_free(&table);
 
-    status = print_costs(study, members, stream);
+    const enum status status = print_costs(arena, study, members, buffer, stream);
     for (int m = 0; m < n; m++) {
         if (!strchr(members[m].status, ':')) continue;
         if (m >= STUDY_COMPARISON_N_REFERENCES && first_repeat(study, m) != m) continue;
@@ -361,8 +356,5 @@ enum status study_comparison_print(const struct case_values *study, const struct
         fprintf(stream, "%s, %s %s\n", method, setting, members[m].status);
     }
 
-free_buffer:
-    text_table_free(&table);
-    free(buffer);
     return status;
 }

@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case_values.h"
 #include "study/member_file.h"
@@ -24,6 +25,7 @@ void study_comparison_fill_errors(const struct case_values *study, const struct 
 /* Print a row for each setting: largest errors over the fish, median and half range of the wall times of the repeats,
  * solver counts. Print the cost of each method at a common error, and the reasons of failed members. Fails with
  * STATUS_MEMORY. */
-enum status study_comparison_print(const struct case_values *study, const struct member_file *members, FILE *stream);
+enum status study_comparison_print(struct arena *arena, const struct case_values *study,
+                                   const struct member_file *members, FILE *stream);
 
 #endif

@@ -14,7 +14,7 @@
 #include "result/target.h"
 #include "study/study_comparison.h"
 
-enum { MIN_TEXT = 128 /* bytes of the flag of an order */, NAME_BYTES = 256 };
+enum { NAME_BYTES = 256 };
 
 /* The variables of study.nc that precede the swept keys and the quantities. */
 enum { MEMBER, STATUS, WARNINGS, FISH_NAME, N_OWN };
@@ -61,7 +61,7 @@ static const char *set_text(const struct writing *writing, int m, int axis, int 
 /* The length of the longest string in the file. */
 static size_t longest_text(const struct writing *writing) {
     const struct case_values *const study = writing->study;
-    size_t max = writing->errors ? ERROR_STUDY_BYTES : MIN_TEXT;
+    size_t max = ERROR_BUDGET_BYTES;  // the reason of a flag
 
     for (int m = 0; m < writing->n_members; m++) {
         const struct member_file *const member = &writing->member[m];
@@ -211,8 +211,9 @@ static void study_file_write_all(struct writing *writing) {
     if (writing->errors) error_report_write(&writing->writer, writing->errors, writing->n_text, writing->text);
 }
 
-enum status study_file_write(const char *path, const struct case_values *study, const struct member_file *member,
-                             const struct study_orders *orders, const struct error_study *errors, const char *command) {
+enum status study_file_write(struct arena *arena, const char *path, const struct case_values *study,
+                             const struct member_file *member, const struct study_orders *orders,
+                             const struct error_study *errors, const char *command) {
     struct writing writing = {.study = study,
                               .member = member,
                               .orders = orders,
@@ -221,23 +222,17 @@ enum status study_file_write(const char *path, const struct case_values *study, 
                               .n_fish = study->school.n_fish};
 
     writing.n_text = longest_text(&writing);
-    enum status status = MEMORY_NEW(writing.buffer, writing.n_members * writing.n_fish * 2, "study.nc");
-    if (status == STATUS_OK) status = MEMORY_NEW(writing.text, writing.n_text, "study.nc");
+    NEW(arena, writing.buffer, writing.n_members * writing.n_fish * 2);
+    NEW(arena, writing.text, writing.n_text);
 
-    // write a temporary file, then rename the file to path
-    if (status == STATUS_OK) status = target_check(path, TARGET_NETCDF, true);
-    if (status == STATUS_OK) status = netcdf_create(&writing.writer, path, study->name, command);
-    if (status == STATUS_OK) {
-        study_file_define_all(&writing);
-        study_file_write_all(&writing);
-        status = netcdf_publish(&writing.writer, true);
-        const enum status finished = netcdf_finish(&writing.writer);
-        if (status == STATUS_OK) status = finished;
-    }
-
-    free(writing.buffer);
-    free(writing.text);
-    return status;
+    // write a temporary file, then rename the file to path; no memory of the arena is requested while the file is open
+    TRY(target_check(path, TARGET_NETCDF, true));
+    TRY(netcdf_create(&writing.writer, path, study->name, command));
+    study_file_define_all(&writing);
+    study_file_write_all(&writing);
+    const enum status published = netcdf_publish(&writing.writer, true);
+    const enum status finished = netcdf_finish(&writing.writer);
+    return published == STATUS_OK ? finished : published;
 }
 
 // ---- the list of variables

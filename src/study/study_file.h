@@ -3,6 +3,7 @@
 #ifndef STUDY_FILE_H
 #define STUDY_FILE_H
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case.h"
 #include "result/result_kind.h"
@@ -14,8 +15,9 @@ enum { STUDY_FILE_SCHEMA = 1 /* attribute shoal_study */ };
 
 /* Write study.nc: all members of the study, values of the swept keys, all quantities, the orders and, unless errors is
  * NULL, the error budget. The complete new file replaces an existing file. Fails with STATUS_FILE or STATUS_MEMORY. */
-enum status study_file_write(const char *path, const struct case_values *study, const struct member_file *member,
-                             const struct study_orders *orders, const struct error_study *errors, const char *command);
+enum status study_file_write(struct arena *arena, const char *path, const struct case_values *study,
+                             const struct member_file *member, const struct study_orders *orders,
+                             const struct error_study *errors, const char *command);
 
 /* Read study.nc: the study and the *n_members members, without the effective cases. The caller frees the study with
  * case_free and the members with study_folder_free_members. On STATUS_FILE or STATUS_MEMORY the caller owns nothing. */

@@ -286,8 +286,8 @@ static enum status check_study_file(const struct planning *planning) {
     return status;
 }
 
-enum status study_plan_create(struct study_plan *plan, const struct case_values *study, const char *folder, int first,
-                              int last, int force) {
+enum status study_plan_create(struct arena *arena, struct study_plan *plan, const struct case_values *study,
+                              const char *folder, int first, int last, int force) {
     const struct planning planning = {study, folder, force};
     const int n = sweep_n_members(study), is_part = last >= 0;
     *plan = (struct study_plan){.max_threads = 1};
@@ -297,15 +297,10 @@ enum status study_plan_create(struct study_plan *plan, const struct case_values 
     }
 
     plan->n_members = last - first + 1;
-    TRY(MEMORY_NEW(plan->member, plan->n_members, "the members of a study"));
+    NEW(arena, plan->member, plan->n_members);
     for (int number = first; number <= last; number++) TRY(plan_member(&planning, plan, number));
     if (is_part) return STATUS_OK;
     TRY(check_study_file(&planning));
 
     return remove_surplus_members(&planning);
-}
-
-void study_plan_free(struct study_plan *plan) {
-    free(plan->member);
-    *plan = (struct study_plan){0};
 }

@@ -9,6 +9,7 @@
 
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case_values.h"
 #include "study/member_file.h"
@@ -50,11 +51,9 @@ struct study_plan {
 };
 
 /* Check all members from first to last (last -1: all) and list the unfinished members. force: accept results of another
- * study in the folder, and remove such results beyond the last member. The caller frees the plan, also after a failure.
- * Fails with STATUS_CASE (no such members, or a member is not a valid case), STATUS_FILE (the folder contains results
- * of another study) or STATUS_MEMORY. */
-enum status study_plan_create(struct study_plan *plan, const struct case_values *study, const char *folder, int first,
-                              int last, int force);
-void study_plan_free(struct study_plan *plan);
+ * study in the folder, and remove such results beyond the last member. Fails with STATUS_CASE (no such members, or a
+ * member is not a valid case), STATUS_FILE (the folder contains results of another study) or STATUS_MEMORY. */
+enum status study_plan_create(struct arena *arena, struct study_plan *plan, const struct case_values *study,
+                              const char *folder, int first, int last, int force);
 
 #endif

@@ -9,12 +9,15 @@
 
 #include "case/case.h"
 #include "case/sweep.h"
+#include "result/target.h"
 #include "study/error_report.h"
 #include "study/study_comparison.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
 #include "study/study_orders.h"
 #include "study/study_print.h"
+
+static const char owner[] = "the report of a study"; /* of the arenas */
 
 /* Fail if a member is incomplete and the case does not expect the failure. */
 static enum status test_completeness(const struct case_values *study, const struct member_file *members,
@@ -25,12 +28,14 @@ static enum status test_completeness(const struct case_values *study, const stru
         n_failed += !member_file_is_complete(&members[m]) && !study_expects_failure(study, members, m);
     }
     if (n_failed == 0) return STATUS_OK;
-    return status_fail(STATUS_SOLVER, "%d of %d members in %s are not complete; run `shoal study` on this folder again",
-                       n_failed, n, folder);
+    return status_fail(STATUS_SOLVER,
+                       "%d of %d members in %s are not complete; repeat `shoal %s` with the same options", n_failed, n,
+                       folder, study->error ? "error" : "study");
 }
 
-static enum status print_members(const struct case_values *study, const struct member_file *members, FILE *stream) {
-    return study_comparison_is(study) ? study_comparison_print(study, members, stream)
+static enum status print_members(struct arena *arena, const struct case_values *study,
+                                 const struct member_file *members, FILE *stream) {
+    return study_comparison_is(study) ? study_comparison_print(arena, study, members, stream)
                                       : study_print(study, members, stream);
 }
 
@@ -44,45 +49,54 @@ static enum status print_expected(const struct case_values *study, const struct 
 }
 
 /* Print the warnings, except for a comparison of methods: the warnings of short runs concern the case. */
-static enum status gather_print_warnings(const struct case_values *study, const struct member_file *members, int strict,
-                                         FILE *stream) {
+static enum status gather_print_warnings(struct arena *arena, const struct case_values *study,
+                                         const struct member_file *members, int strict, FILE *stream) {
     if (study_comparison_is(study)) return STATUS_OK;
-    const int n = study_print_warnings(members, sweep_n_members(study), stream);
+    const int n = study_print_warnings(arena, members, sweep_n_members(study), stream);
     if (!strict || n == 0) return STATUS_OK;
     return status_fail(STATUS_MISSED, "%d warning%s about the members, with --strict", n, n > 1 ? "s" : "");
 }
 
 /* Print all tables and write study.nc before a missed expectation ends the report. */
-static enum status report_study(const struct case_values *study, const struct member_file *members, const char *path,
-                                const char *command, int strict, FILE *stream, FILE *warnings) {
+static enum status report_study(struct arena *arena, const struct case_values *study, const struct member_file *members,
+                                const char *path, const char *command, int strict, FILE *stream, FILE *warnings) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct study_orders orders;
-    enum status status = study_orders_create(&orders, study, members);
-    if (status == STATUS_OK) status = print_members(study, members, stream);
-    if (status == STATUS_OK) status = study_file_write(path, study, members, &orders, NULL, command);
-    if (status == STATUS_OK) {
-        status = print_expected(study, members, &orders, stream);
-        const enum status warned = gather_print_warnings(study, members, strict && status == STATUS_OK, warnings);
-        if (status == STATUS_OK) status = warned;
-    }
-
-    study_orders_free(&orders);
-    return status;
+    study_orders_create(arena, &orders, study, members);
+    TRY(print_members(arena, study, members, stream));
+    TRY(study_file_write(arena, path, study, members, &orders, NULL, command));
+    const enum status expected = print_expected(study, members, &orders, stream);
+    const enum status warned = gather_print_warnings(arena, study, members, strict && expected == STATUS_OK, warnings);
+    return expected == STATUS_OK ? warned : expected;
 }
 
-enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
-                         int strict, FILE *stream, FILE *warnings) {
-    struct member_file *members;
-    char *const standard = study_folder_path(folder, "study.nc");
-    if (!standard) return STATUS_MEMORY;
-    enum status status = study_folder_read_members(&members, study, folder);
+/* study_report with the memory of an arena. */
+static enum status report_folder(struct arena *arena, const struct case_values *study, const char *folder,
+                                 const char *path, const char *command, int strict, FILE *stream, FILE *warnings) {
+    struct member_file *members = NULL;
+    char *const standard = study_folder_path(folder, "study.nc"), *const csv = study_folder_path(folder, "error.csv");
+    enum status status = standard && csv ? STATUS_OK : STATUS_MEMORY;
+    if (status == STATUS_OK) status = study_folder_read_members(&members, study, folder);
     if (status == STATUS_OK) {
         study_comparison_fill_errors(study, members);
-        status = report_study(study, members, path ? path : standard, command, strict, stream, warnings);
+        status = report_study(arena, study, members, path ? path : standard, command, strict, stream, warnings);
+
+        // the table of an error study that the folder contained before
+        if (target_is(csv, TARGET_TABLE)) unlink(csv);
         if (status == STATUS_OK) status = test_completeness(study, members, folder);
         study_folder_free_members(members, sweep_n_members(study));
     }
 
     free(standard);
+    free(csv);
+    return status;
+}
+
+enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
+                         int strict, FILE *stream, FILE *warnings) {
+    struct arena *const arena = arena_create(NULL, owner);
+    const enum status status = report_folder(arena, study, folder, path, command, strict, stream, warnings);
+    arena_free(arena);
     return status;
 }
 
@@ -108,8 +122,8 @@ static enum status run_and_refine(struct error_study *study, const char *folder,
         if (options) TRY(study_run(&study->study, options, &n_failed));
         const int n = sweep_n_members(&study->study);
         TRY(study_folder_read_members(members, &study->study, folder));
-        enum status status = error_study_judge(study, *members);
-        if (status == STATUS_OK) status = error_study_refine(study, *members, most_members, &n_new);
+        error_study_judge(study, *members);
+        const enum status status = error_study_refine(study, *members, most_members, &n_new);
         if (status == STATUS_OK && n_new == 0) return STATUS_OK;
         study_folder_free_members(*members, n);
         *members = NULL;
@@ -118,42 +132,42 @@ static enum status run_and_refine(struct error_study *study, const char *folder,
 }
 
 /* Print the budget and write study.nc and error.csv before a missed bound ends the report. */
-static enum status report_errors(struct error_study *study, const struct member_file *members, const char *folder,
-                                 const char *command, int strict, FILE *stream, FILE *warnings) {
-    char *const path = study_folder_path(folder, "study.nc"), *const csv = study_folder_path(folder, "error.csv");
+static enum status report_errors(struct arena *arena, struct error_study *study, const struct member_file *members,
+                                 const char *path, const char *csv, const char *command, int strict, FILE *stream,
+                                 FILE *warnings) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct study_orders none = {0};
-    enum status status = path && csv ? STATUS_OK : STATUS_MEMORY;
+    TRY(study_file_write(arena, path, &study->study, members, &none, study, command));
+    TRY(error_report_write_csv(study, csv));
+    const enum status status = error_report_print(study, members, stream);
 
-    if (status == STATUS_OK) status = study_file_write(path, &study->study, members, &none, study, command);
-    if (status == STATUS_OK) status = error_report_write_csv(study, csv);
-    if (status == STATUS_OK) {
-        status = error_report_print(study, members, stream);
-        // deliberately coarse levels have separate warnings, which are not printed
-        const int n = study_print_warnings(&members[study->stated], 1, warnings);
-        if (status == STATUS_OK && strict && n > 0) {
-            status =
-                status_fail(STATUS_MISSED, "%d warning%s about the stated value, with --strict", n, n > 1 ? "s" : "");
-        }
+    // deliberately coarse levels have separate warnings, which are not printed
+    const int n = study_print_warnings(arena, &members[study->stated], 1, warnings);
+    if (status == STATUS_OK && strict && n > 0) {
+        return status_fail(STATUS_MISSED, "%d warning%s about the stated value, with --strict", n, n > 1 ? "s" : "");
     }
-
-    if (status == STATUS_OK) status = test_completeness(&study->study, members, folder);
-    free(path);
-    free(csv);
-
     return status;
 }
 
-static enum status refine_and_report(struct error_study *study, const char *folder, const struct study_options *options,
-                                     const char *command, int strict, FILE *stream, FILE *warnings) {
+static enum status refine_and_report(struct arena *arena, struct error_study *study, const char *folder,
+                                     const struct study_options *options, const char *command, int strict, FILE *stream,
+                                     FILE *warnings) {
     struct member_file *members = NULL;
-    enum status status = run_and_refine(study, folder, options, &members);
-    if (status == STATUS_OK) status = report_errors(study, members, folder, command, strict, stream, warnings);
+    char *const path = study_folder_path(folder, "study.nc"), *const csv = study_folder_path(folder, "error.csv");
+    enum status status = path && csv ? run_and_refine(study, folder, options, &members) : STATUS_MEMORY;
+    if (status == STATUS_OK) {
+        status = report_errors(arena, study, members, path, csv, command, strict, stream, warnings);
+    }
+    if (status == STATUS_OK) status = test_completeness(&study->study, members, folder);
     study_folder_free_members(members, sweep_n_members(&study->study));
+    free(path);
+    free(csv);
     return status;
 }
 
 enum status study_errors(const struct case_values *values, const struct study_options *options, int plan, int strict,
                          FILE *stream, FILE *warnings) {
+    struct arena *const arena = arena_create(NULL, owner);
     struct error_study study;
     enum status status = error_plan_create(&study, values);
     if (status == STATUS_OK && plan > 0) {
@@ -164,38 +178,50 @@ enum status study_errors(const struct case_values *values, const struct study_op
 
     if (status == STATUS_OK && plan < 2) {
         fflush(stream);
-        status = refine_and_report(&study, options->folder, options, options->command, strict, stream, warnings);
+        status = refine_and_report(arena, &study, options->folder, options, options->command, strict, stream, warnings);
     }
 
     error_plan_free(&study);
+    arena_free(arena);
     return status;
 }
 
 enum status study_gather(const char *folder, const char *command, int strict, FILE *stream, FILE *warnings) {
-    char *text;
-    TRY(study_folder_find_study(folder, &text));
-    struct case_values study;
-    enum status status = case_parse(&study, text, strlen(text), folder, NULL, 0, NULL);
+    struct arena *const arena = arena_create(NULL, owner);
+    char *text = NULL;
+    struct case_values study = {0};
+    enum status status = study_folder_find_study(folder, &text);
+    if (status == STATUS_OK) status = case_parse(&study, text, strlen(text), folder, NULL, 0, NULL);
     free(text);
-    TRY(status);
-    if (study.error) {
+
+    if (status == STATUS_OK && study.error) {
         struct error_study errors;
         status = error_plan_create(&errors, &study);
-        if (status == STATUS_OK) status = refine_and_report(&errors, folder, NULL, command, strict, stream, warnings);
+        if (status == STATUS_OK) {
+            status = refine_and_report(arena, &errors, folder, NULL, command, strict, stream, warnings);
+        }
         error_plan_free(&errors);
-    } else {
-        status = study_report(&study, folder, NULL, command, strict, stream, warnings);
+    } else if (status == STATUS_OK) {
+        status = report_folder(arena, &study, folder, NULL, command, strict, stream, warnings);
     }
+
     case_free(&study);
+    arena_free(arena);
     return status;
 }
 
-static enum status print_study(const struct case_values *study, const struct member_file *members, FILE *stream) {
+/* Print members, orders, expectations and warnings. */
+static enum status print_study(struct arena *arena, const struct case_values *study, const struct member_file *members,
+                               FILE *stream) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     struct study_orders orders;
-    TRY(print_members(study, members, stream));
-    enum status status = study_orders_create(&orders, study, members);
-    if (status == STATUS_OK) status = print_expected(study, members, &orders, stream);
-    study_orders_free(&orders);
+    study_orders_create(arena, &orders, study, members);
+    TRY(print_members(arena, study, members, stream));
+    const enum status status = print_expected(study, members, &orders, stream);
+
+    // a missed expectation belongs to the contents of the file
+    if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());
+    if (!study_comparison_is(study)) study_print_warnings(arena, members, sweep_n_members(study), stream);
     return status;
 }
 
@@ -211,11 +237,12 @@ static enum status print_errors(const struct case_values *values, const struct m
 
     int n_new = 1;
     while (status == STATUS_OK && n_new > 0) {
-        status = error_study_judge(&study, members);
-        if (status == STATUS_OK) status = error_study_refine(&study, members, n, &n_new);
+        error_study_judge(&study, members);
+        status = error_study_refine(&study, members, n, &n_new);
     }
 
     if (status == STATUS_OK) status = error_report_print(&study, members, stream);
+    if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());
     error_plan_free(&study);
     return status;
 }
@@ -225,7 +252,12 @@ enum status study_info(const char *path, FILE *stream) {
     struct member_file *members;
     int n;
 
-    TRY(study_file_read(path, &study, &members, &n));
+    struct arena *const arena = arena_create(NULL, owner);
+    const enum status read = study_file_read(path, &study, &members, &n);
+    if (read != STATUS_OK) {
+        arena_free(arena);
+        return read;
+    }
 
     // the number of members, the number of complete members and the axes
     int n_complete = 0;
@@ -240,11 +272,8 @@ enum status study_info(const char *path, FILE *stream) {
     fprintf(stream, "\n");
 
     const enum status status =
-        study.error ? print_errors(&study, members, n, stream) : print_study(&study, members, stream);
-
-    // a missed expectation belongs to the contents of the file
-    if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());
-    if (!study.error && !study_comparison_is(&study)) study_print_warnings(members, n, stream);
+        study.error ? print_errors(&study, members, n, stream) : print_study(arena, &study, members, stream);
+    arena_free(arena);
     study_folder_free_members(members, n);
     case_free(&study);
 

@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
 #include "case/sweep_error.h"
+#include "study/error_plan.h"
 #include "study/study_print.h"
 
-enum { NAME_BYTES = 64, MEANING_BYTES = 160, WORDS_BYTES = 128 };
+enum { NAME_BYTES = 64, MEANING_BYTES = 160 };
 
 /* Error of a steady state without multipliers, over the residual change per beat (an estimate). */
 static const double of_residual = 10;
@@ -30,32 +30,20 @@ static double order_of_two(const double *size, const double (*f)[2], const doubl
     return fine > least && coarse > least ? log(coarse / fine) / log(size[1] / size[0]) : NAN;
 }
 
-struct study_order study_order_of_errors(int n, const double *size, const double (*f)[2], const double *exact) {
-    struct study_order result = {.order = order_of_two(size, f, exact),
-                                 .coarse_order = n > 2 ? order_of_two(size + 1, f + 1, exact) : NAN,
-                                 .error = hypot(f[0][0] - exact[0], f[0][1] - exact[1]),
-                                 .verdict = ERROR_BUDGET_ACCEPTED,
-                                 .culprit = -1};
-
+struct error_budget_result study_order_of_errors(int n, const double *size, const double (*f)[2], const double *exact) {
+    struct error_budget_result result = {.verdict = ERROR_BUDGET_ACCEPTED,
+                                         .order = order_of_two(size, f, exact),
+                                         .coarse_order = n > 2 ? order_of_two(size + 1, f + 1, exact) : NAN,
+                                         .error = hypot(f[0][0] - exact[0], f[0][1] - exact[1]),
+                                         .finest_error = NAN};
     for (int i = 0; i < n; i++) {
-        const int is_missing = isnan(f[i][0] + f[i][1]);
-        if (is_missing) result.verdict = ERROR_BUDGET_UNKNOWN;
-        result.is_known |= !is_missing;
+        if (isnan(f[i][0] + f[i][1])) result.verdict = ERROR_BUDGET_UNKNOWN;
     }
 
     return result;
 }
 
 // ---- all groups
-
-void study_orders_free(struct study_orders *orders) {
-    free(orders->level);
-    free(orders->grid_spacing);
-    free(orders->first);
-    free(orders->order);
-    free(orders->error);
-    *orders = (struct study_orders){0};
-}
 
 // the index of a quantity of a fish of a group
 static int place_of(const struct study_orders *orders, int group, int quantity, int fish) {
@@ -70,14 +58,12 @@ struct refinement {
     const struct sweep_error_key *key; /* refined key */
 };
 
-/* The grid spacing of a value. */
-static double orders_size_of(const struct refinement *refinement, int value) {
+/* The number of a value of the refined key. */
+static double orders_number_of(const struct refinement *refinement, int value) {
     const struct sweep_axis *const axis = &refinement->study->sweep[refinement->orders->axis];
     double number = NAN;
     text_number(axis->value[value * axis->n_keys], &number);
-    return refinement->key->kind == SWEEP_POINTS     ? 1 / (number - 1)
-           : refinement->key->kind == SWEEP_DURATION ? 1 / number
-                                                     : number;
+    return number;
 }
 
 /* The member at a level of a group. */
@@ -118,55 +104,6 @@ static double orders_noise_of(const struct refinement *refinement, const struct 
     return rtol + (isnan(error) ? of_residual * residual : error);
 }
 
-/* The judged levels of a quantity, from fine to coarse, and the noise of the values. */
-struct sequence {
-    double value[ERROR_BUDGET_LEVELS][2], noise;
-    int is_known; /* some level has a value */
-};
-
-static void read_sequence(const struct refinement *refinement, int group, int q, int f, struct sequence *sequence) {
-    const int finest = refinement->orders->n_levels - 1;
-    sequence->is_known = 0;
-    for (int i = 0; i < refinement->orders->n_judged; i++) {
-        orders_read_value(refinement, group, finest - i, q, f, sequence->value[i]);
-        sequence->is_known |= !isnan(sequence->value[i][0]);
-    }
-    sequence->noise = orders_noise_of(refinement, member_at(refinement, group, finest));
-}
-
-/* Judge a quantity of a fish together with speed, cost and Strouhal number of the fish. */
-static struct study_order judge_quantity(const struct refinement *refinement, int group, int q, int f,
-                                         const double *size) {
-    struct sequence sequence[SWEEP_N_QUANTITIES];
-    struct error_budget_sequence judged[SWEEP_N_QUANTITIES];
-    struct error_budget_result results[SWEEP_N_QUANTITIES];
-    int number[SWEEP_N_QUANTITIES] = {q}, n = 1, culprit;
-
-    // collect the sequences of the quantity and of the judges
-    read_sequence(refinement, group, q, f, &sequence[0]);
-    for (int other = 0; other < SWEEP_N_QUANTITIES; other++) {
-        const unsigned traits = sweep_quantities[other].traits;
-        const int is_alike = ((traits ^ sweep_quantities[q].traits) & SWEEP_OF_STEADY) == 0;
-        if (other == q || !(traits & SWEEP_JUDGE) || !is_alike) continue;
-        read_sequence(refinement, group, other, f, &sequence[n]);
-        if (sequence[n].is_known) number[n++] = other;
-    }
-
-    for (int i = 0; i < n; i++) {
-        judged[i] = (struct error_budget_sequence){(const double(*)[2])sequence[i].value, sequence[i].noise};
-    }
-
-    const double design = sweep_error_order(refinement->study, refinement->key);
-    const struct error_budget_levels levels = {refinement->orders->n_judged, 0, size, design, NULL};
-    const enum error_budget_verdict verdict = error_budget_judge(&levels, n, judged, results, &culprit);
-    return (struct study_order){.order = results[0].order,
-                                .coarse_order = results[0].coarse_order,
-                                .error = results[0].error,
-                                .is_known = sequence[0].is_known,
-                                .verdict = verdict,
-                                .culprit = culprit < 0 ? -1 : number[culprit]};
-}
-
 /* Fill the order of one quantity of one fish of a group. */
 static void fill_order(const struct refinement *refinement, int group, int q, int f) {
     struct study_orders *const orders = refinement->orders;
@@ -175,20 +112,33 @@ static void fill_order(const struct refinement *refinement, int group, int q, in
                              of_xy ? sweep_reference(refinement->study, orders->axis, q, f, 1) : 0};
     const int is_given = !isnan(given[0]);
 
-    // from fine to coarse
-    double size[ERROR_BUDGET_LEVELS], value[ERROR_BUDGET_LEVELS][2];
+    // judge the finest levels, from fine to coarse
+    struct study_order *const order = &orders->order[place];
+    double size[ERROR_BUDGET_LEVELS], value[ERROR_BUDGET_LEVELS][2], number[ERROR_BUDGET_LEVELS];
     for (int i = 0; i < orders->n_judged; i++) {
         size[i] = orders->grid_spacing[n - 1 - i];
+        number[i] = orders_number_of(refinement, orders->level[n - 1 - i]);
         orders_read_value(refinement, group, n - 1 - i, q, f, value[i]);
+        order->is_known |= !isnan(value[i][0]);
     }
 
-    struct study_order *const order = &orders->order[place];
-    *order = is_given ? study_order_of_errors(orders->n_judged, size, (const double(*)[2])value, given)
-                      : judge_quantity(refinement, group, q, f, size);
-    const double part = 1 / (pow(size[1] / size[0], order->order) - 1);
+    if (is_given) {
+        order->result = study_order_of_errors(orders->n_judged, size, (const double(*)[2])value, given);
+    } else {
+        const struct error_budget_levels levels = {
+            .n = orders->n_judged,
+            .n_judged = orders->n_judged,
+            .size = size,
+            .design_order = sweep_error_order(refinement->study, refinement->key)};
+        const double noise = orders_noise_of(refinement, member_at(refinement, group, n - 1));
+        order->result = error_budget_judge(&levels, (const double(*)[2])value, noise);
+        error_budget_reason(&levels, &order->result, number, order->flag);
+    }
+
+    const double part = 1 / (pow(size[1] / size[0], order->result.order) - 1);
     for (int k = 0; k < 2; k++) {
         const double limit = value[0][k] + (value[0][k] - value[1][k]) * part;
-        order->limit[k] = error_budget_is_flagged(order->verdict) ? NAN : limit;
+        order->limit[k] = error_budget_is_flagged(order->result.verdict) ? NAN : limit;
     }
 
     for (int i = 0; i < n; i++) {
@@ -199,21 +149,20 @@ static void fill_order(const struct refinement *refinement, int group, int q, in
     }
 }
 
-enum status study_orders_create(struct study_orders *orders, const struct case_values *study,
-                                const struct member_file *members) {
+void study_orders_create(struct arena *arena, struct study_orders *orders, const struct case_values *study,
+                         const struct member_file *members) {
     *orders = (struct study_orders){.n_fish = study->school.n_fish};
     while (orders->axis < study->n_axes && !study->sweep[orders->axis].refine) orders->axis++;
-    if (orders->axis == study->n_axes) return STATUS_OK;
+    if (orders->axis == study->n_axes) return;
 
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
     const int n_levels = axis->n_values, n_groups = sweep_n_members(study) / n_levels;
     const int n = n_groups * SWEEP_N_ORDERS * orders->n_fish;
-    static const char what[] = "the orders of a study";
-    TRY(MEMORY_NEW(orders->level, n_levels, what));
-    TRY(MEMORY_NEW(orders->grid_spacing, n_levels, what));
-    TRY(MEMORY_NEW(orders->first, n_groups, what));
-    TRY(MEMORY_NEW(orders->order, n, what));
-    TRY(MEMORY_NEW(orders->error, n * n_levels, what));
+    NEW(arena, orders->level, n_levels);
+    NEW(arena, orders->grid_spacing, n_levels);
+    NEW(arena, orders->first, n_groups);
+    NEW(arena, orders->order, n);
+    NEW(arena, orders->error, n * n_levels);
     orders->n_groups = n_groups;
     orders->n_levels = n_levels;
     orders->n_judged = n_levels < ERROR_BUDGET_LEVELS ? n_levels : ERROR_BUDGET_LEVELS;
@@ -221,7 +170,7 @@ enum status study_orders_create(struct study_orders *orders, const struct case_v
     // sort the levels from coarse to fine: insertion sort of few levels
     const struct refinement refinement = {study, members, orders, sweep_error_find(axis->key[0].row)};
     for (int i = 0; i < n_levels; i++) {
-        const double size = orders_size_of(&refinement, i);
+        const double size = error_plan_size(refinement.key, orders_number_of(&refinement, i));
         int j = i;
         for (; j > 0 && orders->grid_spacing[j - 1] < size; j--) {
             orders->grid_spacing[j] = orders->grid_spacing[j - 1];
@@ -241,39 +190,40 @@ enum status study_orders_create(struct study_orders *orders, const struct case_v
             for (int f = 0; f < study->school.n_fish && is_observed(study, q); f++) fill_order(&refinement, g, q, f);
         }
     }
-
-    return STATUS_OK;
-}
-
-/* The reason of a flag: "differences change sign (cost_of_transport)"; "" without a flag. */
-static void write_flag(const struct study_order *order, int q, size_t size, char *text) {
-    *text = '\0';
-    if (!error_budget_is_flagged(order->verdict)) return;
-    const int is_own = order->culprit < 0 || order->culprit == q;
-    snprintf(text, size, "%s%s%s%s", error_budget_words(order->verdict), is_own ? "" : " (",
-             is_own ? "" : sweep_quantities[order->culprit].name, is_own ? "" : ")");
 }
 
 // ---- the table
 
-/* Print the flag of an order and the test of the expected order; STATUS_MISSED for another order. */
+/* Print one line for each kind of flag with the flagged quantities; the table states their orders. */
+static void print_flags(const struct case_values *study, const struct study_orders *orders, int group, FILE *stream) {
+    for (int verdict = ERROR_BUDGET_OBJECTION; verdict <= ERROR_BUDGET_UNKNOWN; verdict++) {
+        int n = 0;
+        for (int place = 0; place < SWEEP_N_ORDERS * orders->n_fish; place++) {
+            const int q = place / orders->n_fish, f = place % orders->n_fish;
+            const struct study_order *const order = &orders->order[place_of(orders, group, q, f)];
+            if (!order->is_known || (int)order->result.verdict != verdict || !*order->flag) continue;
+            if (n == 0) fprintf(stream, "warning: %s: ", error_budget_words((enum error_budget_verdict)verdict));
+            fprintf(stream, "%s%s of %s", n++ > 0 ? ", " : "", sweep_quantities[q].name, study->school.fish[f].name);
+        }
+        if (n > 0) fprintf(stream, "\n");
+    }
+}
+
+/* Test the expected order; STATUS_MISSED for another order. */
 static enum status test_order(const struct case_values *study, const struct study_orders *orders, int group, int q,
                               int f, FILE *stream) {
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
     const struct study_order *const order = &orders->order[place_of(orders, group, q, f)];
     const char *const fish = study->school.fish[f].name, *const quantity = sweep_quantities[q].name;
-    char flag[WORDS_BYTES];
 
-    write_flag(order, q, sizeof flag, flag);
-    if (order->is_known && *flag) fprintf(stream, "warning: %s of %s: %s\n", quantity, fish, flag);
     if (!(axis->order_of >> q & 1) || !(axis->order > 0)) return STATUS_OK;
-    const int is_met = fabs(order->order - axis->order) <= axis->within;
+    const int is_met = fabs(order->result.order - axis->order) <= axis->within;
     fprintf(stream, "%s: order of %s of %s is %.2f, expected %g +- %g\n", is_met ? "met" : "MISSED", quantity, fish,
-            order->order, axis->order, axis->within);
+            order->result.order, axis->order, axis->within);
     if (is_met) return STATUS_OK;
 
     return status_fail(STATUS_MISSED, "%s of %s: observed order %.2f in %s, expected %g +- %g", quantity, fish,
-                       order->order, axis->key[0].path, axis->order, axis->within);
+                       order->result.order, axis->key[0].path, axis->order, axis->within);
 }
 
 /* Print errors and orders of one group: members that differ in the refined axis only. */
@@ -305,21 +255,23 @@ static enum status print_group(const struct case_values *study, const struct stu
         text_table_set(&table, row, 1, "%s", study->school.fish[f].name);
         text_table_set(&table, row, 2, "%s", member_file_quantity(member_file_quantity_number(quantity->name))->unit);
         for (int i = 0; i < n; i++) text_table_number(&table, row, 3 + i, "%.2e", error[i]);
-        text_table_number(&table, row, n + 3, "%.2f", order->coarse_order);
-        text_table_number(&table, row, n + 4, "%.2f", order->order);
+        text_table_number(&table, row, n + 3, "%.2f", order->result.coarse_order);
+        text_table_number(&table, row, n + 4, "%.2f", order->result.order);
         text_table_number(&table, row, n + 5, "%.9g", order->limit[0]);
         if (quantity->of_xy) text_table_number(&table, row, n + 6, "%.9g", order->limit[1]);
-        text_table_number(&table, row, n + 7, "%.1e", order->error);
+        text_table_number(&table, row, n + 7, "%.1e", order->result.error);
         text_table_set(&table, row++, n + 8, "%s",
-                       is_given                                 ? "reference"
-                       : order->verdict == ERROR_BUDGET_NONE    ? "noise"
-                       : orders->n_judged < ERROR_BUDGET_LEVELS ? "3 levels (wider bounds)"
-                                                                : "4 levels");
+                       is_given                                         ? "reference"
+                       : order->result.verdict == ERROR_BUDGET_NONE     ? "noise"
+                       : error_budget_is_flagged(order->result.verdict) ? "flagged"
+                       : orders->n_judged < ERROR_BUDGET_LEVELS         ? "3 levels"
+                                                                        : "4 levels");
     }
 
     table.n_rows = row;
     text_table_print(&table, stream);
     text_table_free(&table);
+    print_flags(study, orders, group, stream);
     enum status status = STATUS_OK;
     for (int place = 0; place < SWEEP_N_ORDERS * orders->n_fish; place++) {
         const enum status tested =
@@ -456,10 +408,10 @@ static void orders_write_order(struct netcdf_writer *writer, const struct study_
     const int place = place_of(orders, group, q, f);
     const struct study_order *const order = &orders->order[place];
     const double *const values[] = {[DIFFERENCE] = orders->error + (long)place * orders->n_levels,
-                                    [COARSE_ORDER] = &order->coarse_order,
-                                    [ORDER] = &order->order,
+                                    [COARSE_ORDER] = &order->result.coarse_order,
+                                    [ORDER] = &order->result.order,
                                     [LIMIT] = order->limit,
-                                    [ERROR] = &order->error};
+                                    [ERROR] = &order->result.error};
     const size_t start[] = {(size_t)group, (size_t)f, 0};
     const struct sweep_quantity *const quantity = &sweep_quantities[q];
     char name[NAME_BYTES];
@@ -472,7 +424,7 @@ static void orders_write_order(struct netcdf_writer *writer, const struct study_
 
     study_fill_name(name, sizeof name, kinds[FLAG].name, quantity->name);
     memset(text, 0, n_text);
-    write_flag(order, q, n_text, text);
+    snprintf(text, n_text, "%s", order->flag);
     netcdf_write_text(writer, netcdf_number(writer, name), start, (size_t[]){1, 1, n_text}, text);
 }
 

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case_values.h"
 #include "result/netcdf.h"
@@ -14,13 +15,10 @@
 
 /* Convergence of a quantity of a fish (a number, or a point in the plane) over the levels of a refinement. */
 struct study_order {
-    double order;        /* observed order of the finest levels; NaN: equal levels */
-    double coarse_order; /* observed order of the next coarser levels; NaN: too few levels */
-    double limit[2];     /* Richardson extrapolation with this order; NaN: flagged levels */
-    double error;        /* of the finest level, in the unit of the quantity: error_budget.h, or from a given value */
-    int is_known;        /* some level has a value */
-    enum error_budget_verdict verdict; /* on the quantity together with speed, cost and Strouhal number */
-    int culprit;                       /* quantity that causes the flag (sweep.h); -1: none */
+    struct error_budget_result result; /* error of the finest level by error_budget.h, or from a given value */
+    double limit[2];                   /* Richardson extrapolation with the observed order; NaN: flagged levels */
+    int is_known;                      /* some level has a value */
+    char flag[ERROR_BUDGET_BYTES];     /* reason of a flag, or "" */
 };
 
 /* Convergence along the refined axis of a study. A group: members that differ in the refined axis only. */
@@ -31,19 +29,17 @@ struct study_orders {
     double *grid_spacing;                 /* the value of the axis, or 1/(n - 1) of n points      (n_levels) */
     int *first;                           /* the first member of each group                      (n_groups) */
     struct study_order *order;            /* (n_groups, SWEEP_N_ORDERS, n_fish) */
-    double
-        *error; /* distance from the finest level or from the given value; NaN: the finest level (as order, n_levels) */
+    double *error; /* distance from the finest level or the given value; NaN: finest level (as order, n_levels) */
 };
 
 /* Convergence to a given exact value: sizes and values from fine to coarse; each order follows from two levels,
  * log(e_2/e_1)/log(h_2/h_1). */
-struct study_order study_order_of_errors(int n, const double *size, const double (*value)[2], const double *exact);
+struct error_budget_result study_order_of_errors(int n, const double *size, const double (*value)[2],
+                                                 const double *exact);
 
-/* Compute errors and orders along the refined axis; without a refined axis there are no groups. study_orders_free
- * releases and zeroes *orders, also after a failure. Fails with STATUS_MEMORY. */
-enum status study_orders_create(struct study_orders *orders, const struct case_values *study,
-                                const struct member_file *members);
-void study_orders_free(struct study_orders *orders);
+/* Compute errors and orders along the refined axis; without a refined axis there are no groups. */
+void study_orders_create(struct arena *arena, struct study_orders *orders, const struct case_values *study,
+                         const struct member_file *members);
 
 /* Print errors and orders. Fails with STATUS_MISSED if the order of a quantity differs from the order that the axis
  * expects, or with STATUS_MEMORY. */

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
 
@@ -149,66 +148,67 @@ struct warning_group {
     const char *line;  /* of the first member, without the line break */
     int length, shown; /* and its number */
     int first, last, n;
-    int differs;         /* the numbers of another member are others */
-    struct text members; /* "0-2, 5" up to the last range, which is first to last */
+    int differs;   /* the numbers of another member are others */
+    char *members; /* "0-2, 5" up to the last range, which is first to last; NULL: no earlier range */
+    int members_length;
 };
 
-static void group_add_range(struct warning_group *group, int first, int last) {
-    text_add(&group->members, group->members.length > 0 ? ", %d" : "%d", first);
-    if (last > first) text_add(&group->members, "-%d", last);
+static void group_add_range(struct arena *arena, struct warning_group *group) {
+    char range[32];
+    int length = snprintf(range, sizeof range, "%s%d", group->members ? ", " : "", group->first);
+    if (group->last > group->first) {
+        length += snprintf(range + length, sizeof range - (size_t)length, "-%d", group->last);
+    }
+    GROW(arena, group->members, group->members_length + length + 1);
+    memcpy(group->members + group->members_length, range, (size_t)length);
+    group->members_length += length;
 }
 
 /* Add a warning of a member to the group of its kind, or to a new group. */
-static enum status groups_add(struct warning_group **groups, int *n_groups, const char *line, int length, int member) {
+static void groups_add(struct arena *arena, struct warning_group **groups, int *n_groups, const char *line, int length,
+                       int member) {
     for (int g = 0; g < *n_groups; g++) {
         struct warning_group *const group = &(*groups)[g];
         if (!warnings_agree(group->line, group->length, line, length)) continue;
         group->differs |= length != group->length || memcmp(group->line, line, (size_t)length) != 0;
         if (member > group->last + 1) {
-            group_add_range(group, group->first, group->last);
+            group_add_range(arena, group);
             group->first = member;
         }
         group->last = member;
         group->n++;
-        return STATUS_OK;
+        return;
     }
 
-    TRY(MEMORY_RESIZE(*groups, *n_groups + 1, "the warnings of a study"));
+    GROW(arena, *groups, *n_groups + 1);
     (*groups)[(*n_groups)++] = (struct warning_group){
         .line = line, .length = length, .shown = member, .first = member, .last = member, .n = 1};
-    return STATUS_OK;
 }
 
-static void group_print(struct warning_group *group, FILE *stream) {
-    group_add_range(group, group->first, group->last);
-    fprintf(stream, "member%s %s: warning: %.*s", group->n > 1 ? "s" : "",
-            group->members.text ? group->members.text : "", group->length, group->line);
-    if (group->differs) fprintf(stream, " (numbers of member %d)", group->shown);
-    fprintf(stream, "\n");
-}
-
-int study_print_warnings(const struct member_file *members, int n, FILE *stream) {
+int study_print_warnings(struct arena *arena, const struct member_file *members, int n, FILE *stream) {
     struct warning_group *groups = NULL;
     int n_warnings = 0, n_groups = 0;
-    enum status status = STATUS_OK;
 
     for (int m = 0; m < n; m++) {
         for (const char *line = members[m].warnings; line && *line; line += *line == '\n') {
             const int length = (int)strcspn(line, "\n");
             n_warnings++;
-            if (status == STATUS_OK) status = groups_add(&groups, &n_groups, line, length, m);
+            groups_add(arena, &groups, &n_groups, line, length, m);
             line += length;
         }
     }
 
-    for (int g = 0; g < n_groups; g++) {
-        if (g < MAX_WARNINGS_SHOWN) group_print(&groups[g], stream);
-        text_free(&groups[g].members);
+    for (int g = 0; g < n_groups && g < MAX_WARNINGS_SHOWN; g++) {
+        struct warning_group *const group = &groups[g];
+        group_add_range(arena, group);
+        fprintf(stream, "member%s %s: warning: %.*s", group->n > 1 ? "s" : "", group->members, group->length,
+                group->line);
+        if (group->differs) fprintf(stream, " (numbers of member %d)", group->shown);
+        fprintf(stream, "\n");
     }
 
     if (n_groups > MAX_WARNINGS_SHOWN)
         fprintf(stream, "The first %d of %d kinds of warnings; study.nc has all.\n", MAX_WARNINGS_SHOWN, n_groups);
-    free(groups);
     return n_warnings;
 }
 

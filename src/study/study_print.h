@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case_values.h"
 #include "study/member_file.h"
@@ -19,7 +20,7 @@ enum status study_print(const struct case_values *study, const struct member_fil
 
 /* Print the warnings about the results of n members, one line per kind of warning with its members: warnings that
  * differ only in numbers are of one kind. Returns the number of all warnings. */
-int study_print_warnings(const struct member_file *members, int n, FILE *stream);
+int study_print_warnings(struct arena *arena, const struct member_file *members, int n, FILE *stream);
 
 /* Print the expectations and the actual values. Fails with STATUS_MISSED if an expectation is not met. */
 enum status study_expect(const struct case_values *study, const struct member_file *members, FILE *stream);

@@ -8,11 +8,12 @@
 
 #include <stdbool.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 
 /* Write the page of the result file at from to the path to. Fails with STATUS_FILE, also for a school too large for a
  * page, or with STATUS_MEMORY; no file is then left. */
-enum status page_write(const char *from, const char *to, bool overwrite);
+enum status page_write(struct arena *arena, const char *from, const char *to, bool overwrite);
 
 // ---- vtk.c: a run as VTK files for ParaView: a list of times with two or three files for each row. Tested by
 // tests/app/test_export.sh, which reads the files with VTK.
@@ -27,8 +28,7 @@ enum status page_write(const char *from, const char *to, bool overwrite);
 // [m s-1], heading [degree]. Point data of wakes: circulation [m2 s-1] with decay, age [s], fish.
 
 /* Write all rows of the result file at from to the folder; create a missing folder. Without overwrite existing files
- * are refused. The list of times is written last. name: NULL, or set to the path of the list, which the caller frees.
- * Fails with STATUS_FILE or STATUS_MEMORY. */
-enum status vtk_export(const char *from, const char *folder, bool overwrite, char **name);
+ * are refused. The list of times is written last; *list: the path. Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status vtk_export(struct arena *arena, const char *from, const char *folder, bool overwrite, const char **list);
 
 #endif

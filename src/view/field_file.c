@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
 #include "result/netcdf.h"
@@ -100,52 +99,52 @@ int field_file_listed(int i, struct result_listed *listed) {
 struct field {
     const struct field_row *row;
     double *x, *y;         /* the points, row after row of the grid                   (n) */
-    struct induced at;     /* the induced velocity at these points                    (n) */
+    struct targets at;     /* the induced velocity at these points                    (n) */
     double *vorticity;     /* (n) */
     size_t length[N_AXES]; /* of the dimensions */
 };
-
-static void free_field(struct field *field) {
-    double *const of_points[] = {field->x,      field->y,      field->at.u,   field->at.v,
-                                 field->at.u_x, field->at.u_y, field->at.v_x, field->vorticity};
-    for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++) free(of_points[i]);
-}
 
 static double coordinate(const struct field_grid *grid, int axis, int i) {
     const int last = (axis == 0 ? grid->nx : grid->ny) - 1;
     return grid->low[axis] + (grid->high[axis] - grid->low[axis]) * i / last;
 }
 
-static enum status make_points(struct field *field, const struct field_grid *grid) {
+static void make_points(struct arena *arena, struct field *field, const struct field_grid *grid) {
     const size_t n = (size_t)grid->nx * (size_t)grid->ny;
-    double **const of_points[] = {&field->x,      &field->y,      &field->at.u,   &field->at.v,
-                                  &field->at.u_x, &field->at.u_y, &field->at.v_x, &field->vorticity};
-    const enum status status = MEMORY_ARRAYS(of_points, (int)n, "the points of the grid");
-    field->at.n = (int)n;
-    field->at.x = field->x;
-    field->at.y = field->y;
-    TRY(status);
-
-    for (int i = 0; i < field->at.n; i++) {
+    struct targets *const at = &field->at;
+    NEW(arena, field->x, n);
+    NEW(arena, field->y, n);
+    NEW(arena, field->vorticity, n);
+    NEW(arena, at->u, n);
+    NEW(arena, at->v, n);
+    NEW(arena, at->u_x, n);
+    NEW(arena, at->u_y, n);
+    NEW(arena, at->v_x, n);
+    at->n = (int)n;
+    at->x = field->x;
+    at->y = field->y;
+    for (int i = 0; i < at->n; i++) {
         field->x[i] = coordinate(grid, 0, i % grid->nx);
         field->y[i] = coordinate(grid, 1, i / grid->nx);
     }
-
-    return STATUS_OK;
 }
 
-static enum status sum_field(struct field *field) {
+static void field_release_flow(void *flow) {
+    flow_free(flow);
+}
+
+static enum status sum_field(struct arena *arena, struct field *field) {
     struct flow *flow;
     TRY(flow_create(&flow, field->row->school));
+    arena_defer(arena, field_release_flow, flow);
 
     // without markers all circulation was shed infinitely long ago
     int n_markers = 0;
     for (int f = 0; f < field->row->school->n_fish; f++) n_markers += field->row->state->wake[f].n_vortex;
-    if (flow->rings) flow->rings->is_steady = n_markers == 0;
-    const enum status status = flow_field(flow, field->row->state, &field->at);
-    flow_free(flow);
+    flow->is_steady = n_markers == 0;
+    TRY(flow_field(flow, field->row->state, &field->at));
     for (int i = 0; i < field->at.n; i++) field->vorticity[i] = field->at.v_x[i] - field->at.u_y[i];
-    return status;
+    return STATUS_OK;
 }
 
 // ---- the box
@@ -271,26 +270,20 @@ static void grid_write_all(struct netcdf_writer *writer, const struct field *fie
     if (walls->n > 0) netcdf_write_doubles(writer, WALL_Y, NULL, NULL, walls->y);
 }
 
-enum status field_file_write(const char *path, int overwrite, const char *run, const char *command,
+enum status field_file_write(struct arena *arena, const char *path, int overwrite, const char *run, const char *command,
                              const struct field_row *row, const struct field_grid *grid) {
     struct field field = {.row = row};
     struct netcdf_writer writer;
     TRY(target_check(path, TARGET_NETCDF, overwrite));
     set_lengths(&field, grid);
-    enum status status = make_points(&field, grid);
-    if (status == STATUS_OK) status = sum_field(&field);
-    if (status == STATUS_OK) status = netcdf_create(&writer, path, row->values.name, command);
+    make_points(arena, &field, grid);
+    TRY(sum_field(arena, &field));
 
-    if (status == STATUS_OK) {
-        grid_define_all(&writer, &field, run);
-        grid_write_all(&writer, &field);
-        status = netcdf_publish(&writer, overwrite);
-        const enum status finished = netcdf_finish(&writer);
-        if (status == STATUS_OK) status = finished;
-    }
-
-    free_field(&field);
-    return status;
+    TRY(netcdf_create(&writer, path, row->values.name, command));
+    grid_define_all(&writer, &field, run);
+    grid_write_all(&writer, &field);
+    const enum status status = netcdf_publish(&writer, overwrite), finished = netcdf_finish(&writer);
+    return status == STATUS_OK ? finished : status;
 }
 
 // ---- info

@@ -23,9 +23,9 @@ struct field_grid {
 /* The box around all bodies and free vortices of a row, with a margin of half a body length, m. */
 void field_file_box(const struct field_row *row, double low[2], double high[2]);
 
-/* Sum the field of a row on a grid, and write the field to a file at path. run: the name of the result file; command:
- * the command line. Fails with STATUS_FILE or STATUS_MEMORY; no file is then left. */
-enum status field_file_write(const char *path, int overwrite, const char *run, const char *command,
+/* Sum the field of a row on a grid, and write the field to a file at path. arena: for scratch; run: the name of
+ * the result file; command: the command line. Fails with STATUS_FILE or STATUS_MEMORY; no file is then left. */
+enum status field_file_write(struct arena *arena, const char *path, int overwrite, const char *run, const char *command,
                              const struct field_row *row, const struct field_grid *grid);
 
 /* Print time, grid and range of such a file. Fails with STATUS_FILE or STATUS_MEMORY. */

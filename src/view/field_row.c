@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "case/case.h"
 #include "fish/fish_school.h"
 #include "force/bound_sheet.h"
@@ -19,7 +18,7 @@
 struct reading {
     struct netcdf_reader file;
     long n_rows;
-    double *time;   /* of the rows, s (n_rows) */
+    double *time;   /* of the rows, s (n_rows + 1) */
     double *buffer; /* (2 of the longest dimension) */
 };
 
@@ -203,7 +202,7 @@ static enum status field_read_case(const struct reading *reading, int n_assignme
     return state_create(&row->state, row->school);
 }
 
-static enum status field_read_row(struct reading *reading, double t, struct field_row *to) {
+static enum status field_read_row(struct arena *arena, struct reading *reading, double t, struct field_row *to) {
     const struct school *const school = to->school;
     size_t n_fish, n_rows, longest = 1;
     long row = 0;
@@ -218,8 +217,8 @@ static enum status field_read_row(struct reading *reading, double t, struct fiel
 
     TRY(netcdf_read_length(&reading->file, "time", 0, INT_MAX, &n_rows));
     reading->n_rows = (long)n_rows;
-    TRY(MEMORY_NEW(reading->time, n_rows + 1, reading->file.path));
-    TRY(MEMORY_NEW(reading->buffer, 2 * longest, reading->file.path));
+    NEW(arena, reading->time, n_rows + 1);
+    NEW(arena, reading->buffer, 2 * longest);
     const struct netcdf_slice rows[] = {{"time", 0, n_rows}, {NULL, 0, 0}};
     if (n_rows > 0) TRY(netcdf_read_doubles(&reading->file, "time", rows, reading->time));
     TRY(field_find_row(reading, school, t, &row));
@@ -233,24 +232,24 @@ static enum status field_read_row(struct reading *reading, double t, struct fiel
     return STATUS_OK;
 }
 
-enum status field_row_read(struct field_row *row, const char *path, double t, int n_assignments,
-                           const char *const *assignments) {
-    struct reading reading = {0};
-    *row = (struct field_row){0};
-    TRY(netcdf_open(&reading.file, path));
-    enum status status = field_read_case(&reading, n_assignments, assignments, row);
-    if (status == STATUS_OK) status = field_read_row(&reading, t, row);
-    netcdf_close(&reading.file);
-    free(reading.time);
-    free(reading.buffer);
-    if (status != STATUS_OK) field_row_free(row);
-    return status;
-}
-
-void field_row_free(struct field_row *row) {
+static void field_row_release(void *object) {
+    struct field_row *const row = object;
     if (row->state) state_free(row->state, row->school);
     fish_school_free(row->school);
     case_free(&row->values);
     free(row->effective);
-    *row = (struct field_row){0};
+}
+
+enum status field_row_read(struct arena *arena, struct field_row **row, const char *path, double t, int n_assignments,
+                           const char *const *assignments) {
+    struct arena *const scratch = arena_create(arena, path);
+    struct reading *reading;
+    NEW(arena, *row, 1);
+    arena_defer(arena, field_row_release, *row);
+    NEW(scratch, reading, 1);
+    TRY(netcdf_open_in(scratch, &reading->file, path));
+    TRY(field_read_case(reading, n_assignments, assignments, *row));
+    TRY(field_read_row(scratch, reading, t, *row));
+    arena_free(scratch);
+    return STATUS_OK;
 }

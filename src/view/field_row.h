@@ -6,6 +6,7 @@
 #ifndef FIELD_ROW_H
 #define FIELD_ROW_H
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case_values.h"
 #include "fish/fish.h"
@@ -19,12 +20,9 @@ struct field_row {
 };
 
 /* Read the row at time t [s], NaN: the last row with a wake, of the result file at path; assignments can set
- * solver.threads for the sums. Fails with STATUS_CASE if the file has no such row, STATUS_FILE or STATUS_MEMORY; *row
- * then owns nothing. */
-enum status field_row_read(struct field_row *row, const char *path, double t, int n_assignments,
+ * solver.threads for the sums. Fails with STATUS_CASE if the file has no such row, STATUS_FILE or STATUS_MEMORY. The
+ * path must outlive the arena. */
+enum status field_row_read(struct arena *arena, struct field_row **row, const char *path, double t, int n_assignments,
                            const char *const *assignments);
-
-/* Release a row and zero *row. */
-void field_row_free(struct field_row *row);
 
 #endif

@@ -2,9 +2,7 @@
 #include "view/outline.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "base/memory.h"
 #include "fish/shape.h"
 
 static const double pi = 3.14159265358979323846;
@@ -59,51 +57,34 @@ static void interpolate_half(const struct outline *outline, const double *thickn
     outline->half[0] = outline->half[OUTLINE_POINTS - 1] = 0;
 }
 
-static enum status fill_half(const struct outline *outline, const double *thickness, bool is_mean) {
-    const size_t n = (size_t)outline->n_nodes + 3;
-    double *scratch;
-    TRY(MEMORY_NEW(scratch, 3 * n, "the outline of a body"));
-    interpolate_half(outline, thickness, is_mean, scratch, scratch + n, scratch + 2 * n);
-    free(scratch);
-    return STATUS_OK;
-}
+struct outline outline_create(struct arena *arena, int n_nodes, const double *thickness, bool is_mean) {
+    const int n = n_nodes;
+    struct outline outline = {.n_nodes = n};
+    NEW(arena, outline.weight, n * OUTLINE_POINTS);
+    NEW(arena, outline.slope, n * OUTLINE_POINTS);
+    NEW(arena, outline.half, OUTLINE_POINTS);
 
-static enum status fill_weights(const struct outline *outline) {
-    const int n = outline->n_nodes;
+    // weights of the nodes
     struct curve *curve;
-    TRY(curve_create(&curve, n, 0, 2 * OUTLINE_POINTS));
-
+    if (curve_create(&curve, n, 0, 2 * OUTLINE_POINTS) != STATUS_OK) arena_lack(arena, 0);
     for (int i = 0; i < OUTLINE_POINTS; i++) {
         // the last point is the last node, however the cosine is rounded
         const double part = (1 - cos(pi * i / (OUTLINE_POINTS - 1))) / 2;
         const double u = i < OUTLINE_POINTS - 1 ? part * (n - 1) : n - 1;
         const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
         for (int k = 0; k < n; k++) {
-            outline->weight[i * n + k] = point.weight[k];
-            outline->slope[i * n + k] = slope.weight[k];
+            outline.weight[i * n + k] = point.weight[k];
+            outline.slope[i * n + k] = slope.weight[k];
         }
     }
 
     curve_free(curve);
-    return STATUS_OK;
-}
 
-enum status outline_create(struct outline *outline, int n_nodes, const double *thickness, bool is_mean) {
-    *outline = (struct outline){.n_nodes = n_nodes};
-    enum status status = MEMORY_NEW(outline->weight, n_nodes * OUTLINE_POINTS, "the outline of a body");
-    if (status == STATUS_OK) status = MEMORY_NEW(outline->slope, n_nodes * OUTLINE_POINTS, "the outline of a body");
-    if (status == STATUS_OK) status = MEMORY_NEW(outline->half, OUTLINE_POINTS, "the outline of a body");
-    if (status == STATUS_OK) status = fill_weights(outline);
-    if (status == STATUS_OK) status = fill_half(outline, thickness, is_mean);
-    if (status != STATUS_OK) outline_free(outline);
-    return status;
-}
-
-void outline_free(struct outline *outline) {
-    free(outline->weight);
-    free(outline->slope);
-    free(outline->half);
-    *outline = (struct outline){0};
+    // thickness between the edges
+    double *scratch;
+    NEW(arena, scratch, 3 * (n + 3));
+    interpolate_half(&outline, thickness, is_mean, scratch, scratch + n + 3, scratch + 2 * (n + 3));
+    return outline;
 }
 
 int outline_point(int i) {

@@ -11,7 +11,7 @@
 
 #include <stdbool.h>
 
-#include "base/status.h"
+#include "base/arena.h"
 
 enum { OUTLINE_POINTS = 48 /* of the curve, dense at nose and tail */, OUTLINE_SIDES = 2 * OUTLINE_POINTS - 2 };
 
@@ -24,10 +24,8 @@ struct outline {
 };
 
 /* For a body of n_nodes (at least four) with the thickness of every edge [m] (n_nodes - 1): the mean over the edge if
- * is_mean, else the sum of the half thicknesses at the two nodes (fish.body.section). Fails with STATUS_MEMORY.
- * outline_free zeroes *outline and accepts zero. */
-enum status outline_create(struct outline *outline, int n_nodes, const double *thickness, bool is_mean);
-void outline_free(struct outline *outline);
+ * is_mean, else the sum of the half thicknesses at the two nodes (fish.body.section). */
+struct outline outline_create(struct arena *arena, int n_nodes, const double *thickness, bool is_mean);
 
 /* The coordinate along the curve of point i of the polygon, counted from the nose along the left side. */
 int outline_point(int i);

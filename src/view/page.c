@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "base/arena.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "result/durable.h"
@@ -26,7 +26,8 @@ static const double body_bytes = 2.4e6, wake_bytes = 4e6, series_bytes = 0.8e6;
 enum { MIN_WAKES = 240 /* rows of wakes are left out down to so many before vortices are */, POSITIONS = 65535 };
 
 struct page {
-    struct result_reader reader;
+    struct arena *arena;
+    struct result_reader *reader;
     FILE *stream;
     size_t n_rows, n_fish, n_nodes /* of all fish */;
     struct school school; /* data for the strength of a vortex */
@@ -84,16 +85,16 @@ static void place_in_box(size_t n, const double *xy, const double box[3], uint16
 /* Find the rows with a wake, and the total number of vortices in these rows. */
 static enum status find_wakes(struct page *page, double *n_vortices) {
     *n_vortices = 0;
-    TRY(MEMORY_NEW(page->wake_row, page->n_rows, page->reader.file.path));
+    double *count;
+    NEW(page->arena, count, page->n_fish);
+    NEW(page->arena, page->wake_row, page->n_rows);
 
     for (size_t row = 0; row < page->n_rows; row++) {
         bool has_wake;
-        double *count;
-        TRY(result_reader_has_wake(&page->reader, row, &has_wake));
+        TRY(result_reader_has_wake(page->reader, row, &has_wake));
         if (!has_wake) continue;
-        TRY(result_reader_new(&page->reader, "wake_count", row, &count));
+        TRY(result_reader_row(page->reader, "wake_count", row, count));
         for (size_t f = 0; f < page->n_fish; f++) *n_vortices += count[f];
-        free(count);
         page->wake_row[page->n_wake_rows++] = row;
     }
 
@@ -113,7 +114,7 @@ static enum status page_choose(struct page *page) {
     page->series_stride = at_least_1(ceil(series / series_bytes));
     if (page->n_rows > 1 && (page->body_stride >= page->n_rows || page->series_stride >= page->n_rows))
         return status_fail(STATUS_FILE, "%s: a school of %zu fish with %zu nodes is too large for a page of 8 MB",
-                           page->reader.file.path, page->n_fish, page->n_nodes);
+                           page->reader->file.path, page->n_fish, page->n_nodes);
     double n_vortices;
     TRY(find_wakes(page, &n_vortices));
     const double wakes = (n_vortices * 3 * sizeof(uint16_t) +
@@ -137,49 +138,42 @@ static size_t row_of(size_t i, size_t n, size_t stride) {
 // ---- the fish
 
 static bool has_same_shape(const struct page *page, const double *thickness, size_t f, size_t g) {
-    const size_t n = page->reader.length[EDGE];
-    if (page->reader.n_nodes[f] != page->reader.n_nodes[g] ||
-        page->reader.has_mean_section[f] != page->reader.has_mean_section[g])
+    const size_t n = page->reader->length[EDGE];
+    if (page->reader->n_nodes[f] != page->reader->n_nodes[g] ||
+        page->reader->has_mean_section[f] != page->reader->has_mean_section[g])
         return false;
-    for (int k = 0; k < page->reader.n_nodes[f] - 1; k++)
+    for (int k = 0; k < page->reader->n_nodes[f] - 1; k++)
         if (fabs(thickness[f * n + (size_t)k] - thickness[g * n + (size_t)k]) > 0) return false;
     return true;
 }
 
-static enum status write_shape(const struct page *page, const double *thickness, size_t f) {
-    const int n = page->reader.n_nodes[f];
+static void write_shape(const struct page *page, const double *thickness, size_t f) {
+    const int n = page->reader->n_nodes[f];
     const size_t n_weights = (size_t)n * OUTLINE_POINTS;
-    struct outline outline;
+    const struct outline outline =
+        outline_create(page->arena, n, thickness + f * page->reader->length[EDGE], page->reader->has_mean_section[f]);
     float *values;
-    TRY(MEMORY_NEW(values, 2 * n_weights + OUTLINE_POINTS, page->reader.file.path));
-    const enum status status =
-        outline_create(&outline, n, thickness + f * page->reader.length[EDGE], page->reader.has_mean_section[f]);
-
-    if (status == STATUS_OK) {
-        for (size_t i = 0; i < n_weights; i++) {
-            values[i] = (float)outline.weight[i];
-            values[n_weights + i] = (float)outline.slope[i];
-        }
-        for (int i = 0; i < OUTLINE_POINTS; i++) values[2 * n_weights + (size_t)i] = (float)outline.half[i];
-        fprintf(page->stream, "{\"nodes\":%d,\"points\":%d,", n, OUTLINE_POINTS);
-        page_write_array(page->stream, "weight", n_weights * sizeof *values, values);
-        fputc(',', page->stream);
-        page_write_array(page->stream, "slope", n_weights * sizeof *values, values + n_weights);
-        fputc(',', page->stream);
-        page_write_array(page->stream, "half", OUTLINE_POINTS * sizeof *values, values + 2 * n_weights);
-        fputc('}', page->stream);
-        outline_free(&outline);
+    NEW(page->arena, values, 2 * n_weights + OUTLINE_POINTS);
+    for (size_t i = 0; i < n_weights; i++) {
+        values[i] = (float)outline.weight[i];
+        values[n_weights + i] = (float)outline.slope[i];
     }
+    for (int i = 0; i < OUTLINE_POINTS; i++) values[2 * n_weights + (size_t)i] = (float)outline.half[i];
 
-    free(values);
-    return status;
+    fprintf(page->stream, "{\"nodes\":%d,\"points\":%d,", n, OUTLINE_POINTS);
+    page_write_array(page->stream, "weight", n_weights * sizeof *values, values);
+    fputc(',', page->stream);
+    page_write_array(page->stream, "slope", n_weights * sizeof *values, values + n_weights);
+    fputc(',', page->stream);
+    page_write_array(page->stream, "half", OUTLINE_POINTS * sizeof *values, values + 2 * n_weights);
+    fputc('}', page->stream);
 }
 
 /* Write the walls, and the side with the fluid: the side of the first fish at the start. */
 static enum status page_write_walls(const struct page *page) {
-    const struct result_reader *const reader = &page->reader;
+    const struct result_reader *const reader = page->reader;
     double *x;
-    TRY(result_reader_new(reader, "x", 0, &x));
+    TRY(result_reader_new(page->arena, reader, "x", 0, &x));
     fprintf(page->stream, "\"walls\":[");
 
     for (size_t i = 0; i < reader->length[WALL]; i++) {
@@ -188,14 +182,17 @@ static enum status page_write_walls(const struct page *page) {
     }
 
     fprintf(page->stream, "],\n");
-    free(x);
     return STATUS_OK;
 }
 
-/* Write the shapes, each once, and the fish with the numbers of theirs. shape, first: (n_fish). */
-static enum status write_fish(const struct page *page, const double *thickness, const double *length, size_t *shape,
-                              size_t *first) {
-    size_t n_shapes = 0;
+/* Write the shapes, each once, and the fish with the numbers of the shapes. */
+static enum status write_fish(const struct page *page) {
+    double *thickness, *length;
+    size_t *shape, *first, n_shapes = 0;
+    NEW(page->arena, shape, page->n_fish);
+    NEW(page->arena, first, page->n_fish);
+    TRY(result_reader_new(page->arena, page->reader, "edge_thickness", 0, &thickness));
+    TRY(result_reader_new(page->arena, page->reader, "body_length", 0, &length));
     fprintf(page->stream, "\"shapes\":[");
 
     for (size_t f = 0; f < page->n_fish; f++) {
@@ -205,31 +202,18 @@ static enum status write_fish(const struct page *page, const double *thickness, 
         if (s < n_shapes) continue;
         first[n_shapes++] = f;
         if (s > 0) fputc(',', page->stream);
-        TRY(write_shape(page, thickness, f));
+        write_shape(page, thickness, f);
     }
 
     fprintf(page->stream, "],\n\"fish\":[");
     for (size_t f = 0; f < page->n_fish; f++) {
         fprintf(page->stream, "%s{", f > 0 ? ",\n" : "");
-        write_string(page->stream, "name", page->reader.name[f]);
+        write_string(page->stream, "name", page->reader->name[f]);
         fprintf(page->stream, ",\"length\":%.9g,\"shape\":%zu}", length[f], shape[f]);
     }
 
     fprintf(page->stream, "],\n");
     return STATUS_OK;
-}
-
-static enum status write_all_fish(const struct page *page) {
-    double *thickness, *length = NULL;
-    size_t *numbers;
-    TRY(MEMORY_NEW(numbers, 2 * page->n_fish, page->reader.file.path));
-    enum status status = result_reader_new(&page->reader, "edge_thickness", 0, &thickness);
-    if (status == STATUS_OK) status = result_reader_new(&page->reader, "body_length", 0, &length);
-    if (status == STATUS_OK) status = write_fish(page, thickness, length, numbers, numbers + page->n_fish);
-    free(thickness);
-    free(length);
-    free(numbers);
-    return status;
 }
 
 // ---- the rows
@@ -241,23 +225,18 @@ struct rows {
     uint16_t *place;    /* (n_places, 2) */
 };
 
-static enum status rows_create(const struct page *page, struct rows *rows, size_t n, size_t n_places) {
-    *rows = (struct rows){.n = n};
-    TRY(MEMORY_NEW(rows->time, n + 1, page->reader.file.path));
-    TRY(MEMORY_NEW(rows->box, 3 * (n + 1), page->reader.file.path));
-    return MEMORY_NEW(rows->place, 2 * (n_places + 1), page->reader.file.path);
-}
-
-static void rows_free(struct rows *rows) {
-    free(rows->time);
-    free(rows->box);
-    free(rows->place);
+static struct rows rows_create(const struct page *page, size_t n, size_t n_places) {
+    struct rows rows = {.n = n};
+    NEW(page->arena, rows.time, n + 1);
+    NEW(page->arena, rows.box, 3 * (n + 1));
+    NEW(page->arena, rows.place, 2 * (n_places + 1));
+    return rows;
 }
 
 /* Add a row at number i of n positions. */
 static enum status rows_add(const struct page *page, struct rows *rows, size_t i, size_t row, size_t n,
                             const double *xy) {
-    TRY(result_reader_row(&page->reader, "time", row, &rows->time[i]));
+    TRY(result_reader_row(page->reader, "time", row, &rows->time[i]));
     find_box(n, xy, rows->box + 3 * i);
     place_in_box(n, xy, rows->box + 3 * i, rows->place + 2 * rows->n_places);
     rows->n_places += n;
@@ -273,40 +252,29 @@ static void rows_write(const struct page *page, const struct rows *rows) {
     page_write_array(page->stream, "place", 2 * rows->n_places * sizeof *rows->place, rows->place);
 }
 
-static enum status add_bodies(const struct page *page, struct rows *rows, double *x) {
-    for (size_t i = 0; i < rows->n; i++) {
+static enum status page_write_bodies(const struct page *page) {
+    const size_t n_rows = n_of(page->n_rows, page->body_stride);
+    struct rows rows = rows_create(page, n_rows, n_rows * page->n_nodes);
+    double *x;
+    NEW(page->arena, x, result_reader_n(page->reader, "x") + 1);
+
+    for (size_t i = 0; i < rows.n; i++) {
         const size_t row = row_of(i, page->n_rows, page->body_stride);
-        TRY(result_reader_row(&page->reader, "x", row, x));
+        TRY(result_reader_row(page->reader, "x", row, x));
         // the nodes of all fish one after the other
         size_t n = 0;
         for (size_t f = 0; f < page->n_fish; f++) {
-            const size_t n_nodes = (size_t)page->reader.n_nodes[f];
-            memmove(x + 2 * n, x + 2 * f * page->reader.length[NODE], 2 * n_nodes * sizeof *x);
+            const size_t n_nodes = (size_t)page->reader->n_nodes[f];
+            memmove(x + 2 * n, x + 2 * f * page->reader->length[NODE], 2 * n_nodes * sizeof *x);
             n += n_nodes;
         }
-        TRY(rows_add(page, rows, i, row, n, x));
+        TRY(rows_add(page, &rows, i, row, n, x));
     }
 
+    fprintf(page->stream, "\"bodies\":{");
+    rows_write(page, &rows);
+    fprintf(page->stream, "},\n");
     return STATUS_OK;
-}
-
-static enum status page_write_bodies(const struct page *page) {
-    struct rows rows;
-    const size_t n = n_of(page->n_rows, page->body_stride);
-    double *const x = calloc(result_reader_n(&page->reader, "x") + 1, sizeof *x);
-    enum status status = rows_create(page, &rows, n, n * page->n_nodes);
-    if (status == STATUS_OK && !x) status = memory_check(NULL, page->reader.file.path);
-    if (status == STATUS_OK) status = add_bodies(page, &rows, x);
-
-    if (status == STATUS_OK) {
-        fprintf(page->stream, "\"bodies\":{");
-        rows_write(page, &rows);
-        fprintf(page->stream, "},\n");
-    }
-
-    rows_free(&rows);
-    free(x);
-    return status;
 }
 
 // ---- wakes
@@ -325,7 +293,7 @@ struct wakes {
 /* Append the positions of the kept vortices of a fish in a row behind the n in wakes->xy; returns the number of
  * vortices. */
 static size_t keep_vortices(const struct page *page, struct wakes *wakes, size_t i, size_t f, size_t n) {
-    const size_t slots = page->reader.length[VORTEX];
+    const size_t slots = page->reader->length[VORTEX];
     const long stride = (long)page->vortex_stride;
     const double t = wakes->rows.time[i];
     size_t kept = 0;
@@ -344,22 +312,6 @@ static size_t keep_vortices(const struct page *page, struct wakes *wakes, size_t
     return kept;
 }
 
-static enum status add_wakes(const struct page *page, struct wakes *wakes) {
-    const struct result_reader *const reader = &page->reader;
-    for (size_t i = 0; i < wakes->rows.n; i++) {
-        const size_t row = page->wake_row[row_of(i, page->n_wake_rows, page->wake_stride)];
-        TRY(result_reader_row(reader, "time", row, &wakes->rows.time[i]));
-        TRY(result_reader_row(reader, "wake_x", row, wakes->x));
-        TRY(result_reader_row(reader, "wake_circulation", row, wakes->circulation));
-        TRY(result_reader_row(reader, "wake_birth", row, wakes->birth));
-        size_t n = 0;
-        for (size_t f = 0; f < page->n_fish; f++) n += keep_vortices(page, wakes, i, f, n);
-        TRY(rows_add(page, &wakes->rows, i, row, n, wakes->xy));
-    }
-
-    return STATUS_OK;
-}
-
 /* Circulations as integers of 16 bits. */
 static void write_strength(const struct page *page, const struct wakes *wakes) {
     const size_t n = wakes->rows.n_places;
@@ -372,73 +324,69 @@ static void write_strength(const struct page *page, const struct wakes *wakes) {
 }
 
 static enum status page_write_wakes(const struct page *page) {
-    const size_t n = n_of(page->n_wake_rows, page->wake_stride);
-    const size_t slots = page->n_fish * page->reader.length[VORTEX], most = n * slots;
-    struct wakes wakes = {.first = calloc(n * page->n_fish + 1, sizeof *wakes.first),
-                          .count = calloc(n * page->n_fish + 1, sizeof *wakes.count),
-                          .strength = calloc(most + 1, sizeof *wakes.strength),
-                          .integer = calloc(most + 1, sizeof *wakes.integer),
-                          .x = calloc(slots + 1, 2 * sizeof *wakes.x),
-                          .circulation = calloc(slots + 1, sizeof *wakes.circulation),
-                          .birth = calloc(slots + 1, sizeof *wakes.birth),
-                          .xy = calloc(slots + 1, 2 * sizeof *wakes.xy)};
-    enum status status = rows_create(page, &wakes.rows, n, most);
-    const bool has_memory = wakes.first && wakes.count && wakes.strength && wakes.integer && wakes.x &&
-                            wakes.circulation && wakes.birth && wakes.xy;
-    if (status == STATUS_OK && !has_memory) status = memory_check(NULL, page->reader.file.path);
-    if (status == STATUS_OK) status = add_wakes(page, &wakes);
+    const struct result_reader *const reader = page->reader;
+    const size_t n_rows = n_of(page->n_wake_rows, page->wake_stride);
+    const size_t slots = page->n_fish * reader->length[VORTEX], most = n_rows * slots;
+    struct wakes wakes = {.rows = rows_create(page, n_rows, most)};
+    NEW(page->arena, wakes.first, n_rows * page->n_fish + 1);
+    NEW(page->arena, wakes.count, n_rows * page->n_fish + 1);
+    NEW(page->arena, wakes.strength, most + 1);
+    NEW(page->arena, wakes.integer, most + 1);
+    NEW(page->arena, wakes.x, 2 * (slots + 1));
+    NEW(page->arena, wakes.circulation, slots + 1);
+    NEW(page->arena, wakes.birth, slots + 1);
+    NEW(page->arena, wakes.xy, 2 * (slots + 1));
 
-    if (status == STATUS_OK) {
-        fprintf(page->stream, "\"wakes\":{\"interval\":%.9g,", page->school.interval * (double)page->vortex_stride);
-        rows_write(page, &wakes.rows);
-        fputs(",\n", page->stream);
-        page_write_array(page->stream, "first", n * page->n_fish * sizeof *wakes.first, wakes.first);
-        fputs(",\n", page->stream);
-        page_write_array(page->stream, "count", n * page->n_fish * sizeof *wakes.count, wakes.count);
-        write_strength(page, &wakes);
-        fprintf(page->stream, "},\n");
+    for (size_t i = 0; i < n_rows; i++) {
+        const size_t row = page->wake_row[row_of(i, page->n_wake_rows, page->wake_stride)];
+        TRY(result_reader_row(reader, "time", row, &wakes.rows.time[i]));
+        TRY(result_reader_row(reader, "wake_x", row, wakes.x));
+        TRY(result_reader_row(reader, "wake_circulation", row, wakes.circulation));
+        TRY(result_reader_row(reader, "wake_birth", row, wakes.birth));
+        size_t n = 0;
+        for (size_t f = 0; f < page->n_fish; f++) n += keep_vortices(page, &wakes, i, f, n);
+        TRY(rows_add(page, &wakes.rows, i, row, n, wakes.xy));
     }
 
-    rows_free(&wakes.rows);
-    void *const arrays[] = {wakes.first, wakes.count,       wakes.strength, wakes.integer,
-                            wakes.x,     wakes.circulation, wakes.birth,    wakes.xy};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
-    return status;
+    fprintf(page->stream, "\"wakes\":{\"interval\":%.9g,", page->school.interval * (double)page->vortex_stride);
+    rows_write(page, &wakes.rows);
+    fputs(",\n", page->stream);
+    page_write_array(page->stream, "first", n_rows * page->n_fish * sizeof *wakes.first, wakes.first);
+    fputs(",\n", page->stream);
+    page_write_array(page->stream, "count", n_rows * page->n_fish * sizeof *wakes.count, wakes.count);
+    write_strength(page, &wakes);
+    fprintf(page->stream, "},\n");
+    return STATUS_OK;
 }
 
 // ---- time series
 
-static enum status write_one_series(const struct page *page, const char *name, size_t n, double *row, float *values) {
-    for (size_t i = 0; i < n; i++) {
-        TRY(result_reader_row(&page->reader, name, row_of(i, page->n_rows, page->series_stride), row));
-        for (size_t f = 0; f < page->n_fish; f++) values[f * n + i] = (float)row[f];
-    }
-    fputs(",\n", page->stream);
-    page_write_array(page->stream, name, n * page->n_fish * sizeof *values, values);
-    return STATUS_OK;
-}
-
 static enum status write_series(const struct page *page) {
     static const char *const names[] = {"speed", "heading", "actuation_power"};
     const size_t n = n_of(page->n_rows, page->series_stride);
-    double *const time = calloc(n, sizeof *time), *const row = calloc(page->n_fish, sizeof *row);
-    float *const values = calloc(n * page->n_fish, sizeof *values);
-    enum status status = time && row && values ? STATUS_OK : memory_check(NULL, page->reader.file.path);
-    for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        status = result_reader_row(&page->reader, "time", row_of(i, page->n_rows, page->series_stride), &time[i]);
+    double *time, *row;
+    float *values;
+    NEW(page->arena, time, n);
+    NEW(page->arena, row, page->n_fish);
+    NEW(page->arena, values, n * page->n_fish);
 
-    if (status == STATUS_OK) {
-        fprintf(page->stream, "\"series\":{\"n\":%zu,", n);
-        page_write_array(page->stream, "time", n * sizeof *time, time);
+    for (size_t i = 0; i < n; i++) {
+        TRY(result_reader_row(page->reader, "time", row_of(i, page->n_rows, page->series_stride), &time[i]));
+    }
+    fprintf(page->stream, "\"series\":{\"n\":%zu,", n);
+    page_write_array(page->stream, "time", n * sizeof *time, time);
+
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        for (size_t i = 0; i < n; i++) {
+            TRY(result_reader_row(page->reader, names[k], row_of(i, page->n_rows, page->series_stride), row));
+            for (size_t f = 0; f < page->n_fish; f++) values[f * n + i] = (float)row[f];
+        }
+        fputs(",\n", page->stream);
+        page_write_array(page->stream, names[k], n * page->n_fish * sizeof *values, values);
     }
 
-    for (size_t k = 0; k < sizeof names / sizeof *names && status == STATUS_OK; k++)
-        status = write_one_series(page, names[k], n, row, values);
     fprintf(page->stream, "}");
-    free(time);
-    free(row);
-    free(values);
-    return status;
+    return STATUS_OK;
 }
 
 // ---- the page
@@ -462,20 +410,20 @@ static void write_thinned(const struct page *page) {
 
 static enum status write_data(const struct page *page) {
     FILE *const stream = page->stream;
-    const char *const slash = strrchr(page->reader.file.path, '/');
+    const char *const slash = strrchr(page->reader->file.path, '/');
     fputs("{", stream);
-    write_string(stream, "title", page->reader.title);
+    write_string(stream, "title", page->reader->title);
     fputc(',', stream);
-    write_string(stream, "file", slash ? slash + 1 : page->reader.file.path);
+    write_string(stream, "file", slash ? slash + 1 : page->reader->file.path);
     fputc(',', stream);
-    write_string(stream, "status", page->reader.run_status);
+    write_string(stream, "status", page->reader->run_status);
     fputc(',', stream);
     write_string(stream, "program", version_short());
     fprintf(stream, ",\"rows\":%zu,", page->n_rows);
     write_thinned(page);
     fputs(",\n", stream);
     TRY(page_write_walls(page));
-    TRY(write_all_fish(page));
+    TRY(write_fish(page));
     TRY(page_write_bodies(page));
     TRY(page_write_wakes(page));
     TRY(write_series(page));
@@ -483,13 +431,15 @@ static enum status write_data(const struct page *page) {
     return STATUS_OK;
 }
 
+/* Fill the file. After a lack of memory plain_file_close removes the file. */
 static enum status fill_page(struct page *page) {
-    page->n_rows = page->reader.length[TIME];
-    page->n_fish = page->reader.length[FISH];
-    for (size_t f = 0; f < page->n_fish; f++) page->n_nodes += (size_t)page->reader.n_nodes[f];
-    TRY(result_reader_row(&page->reader, "shedding_interval", 0, &page->school.interval));
-    TRY(result_reader_row(&page->reader, "wake_lifetime", 0, &page->school.lifetime));
-    TRY(result_reader_row(&page->reader, "wake_decay", 0, &page->school.decay));
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    page->n_rows = page->reader->length[TIME];
+    page->n_fish = page->reader->length[FISH];
+    for (size_t f = 0; f < page->n_fish; f++) page->n_nodes += (size_t)page->reader->n_nodes[f];
+    TRY(result_reader_row(page->reader, "shedding_interval", 0, &page->school.interval));
+    TRY(result_reader_row(page->reader, "wake_lifetime", 0, &page->school.lifetime));
+    TRY(result_reader_row(page->reader, "wake_decay", 0, &page->school.decay));
     TRY(page_choose(page));
     const char *const place = strstr(page_template, placeholder);
     fwrite(page_template, 1, (size_t)(place - page_template), page->stream);
@@ -498,19 +448,11 @@ static enum status fill_page(struct page *page) {
     return STATUS_OK;
 }
 
-enum status page_write(const char *from, const char *to, bool overwrite) {
-    struct page page = {0};
+enum status page_write(struct arena *arena, const char *from, const char *to, bool overwrite) {
+    struct page page = {.arena = arena_create(arena, from)};
     struct plain_file file;
-    durable_sweep(to);
-    TRY(result_reader_open(&page.reader, from));
-    enum status status = plain_file_open(&file, to, TARGET_PAGE, overwrite, 0666);
-
-    if (status == STATUS_OK) {
-        page.stream = file.stream;
-        status = plain_file_close(&file, fill_page(&page));
-    }
-
-    free(page.wake_row);
-    result_reader_close(&page.reader);
-    return status;
+    TRY(result_reader_open(page.arena, &page.reader, from));
+    TRY(plain_file_open(&file, to, TARGET_PAGE, overwrite, 0666));
+    page.stream = file.stream;
+    return plain_file_close(&file, fill_page(&page));
 }

@@ -102,7 +102,7 @@ void wake_marker(const struct wake *wake, int i, double interval, double tau, do
     position[1] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, interval);
 }
 
-double wake_label(const struct wake *wake, int i, double interval, double tau) {
+static double wake_label(const struct wake *wake, int i, double interval, double tau) {
     return along_path(wake->circulation[i], wake->rate[i], wake->rate_before[i], tau, interval);
 }
 
@@ -126,41 +126,45 @@ double wake_strength_within(const struct school *school, double age, double q) {
     return now + q * (next - now);
 }
 
-double wake_ring(const struct wake *wake, const struct school *school, int i, double t, double tau) {
-    const double strength = wake_strength_within(school, t - wake->birth[i], tau / school->interval);
-    return strength * wake_label(wake, i, school->interval, tau);
+double wake_newest(const struct wake *wake, const struct school *school, double t, double tau) {
+    const int i = wake->n_vortex - 1;
+    struct wake_decay decay = {.wake = wake, .school = school, .t = t, .tau = tau, .q = tau / school->interval};
+    return wake_next_strength(&decay, i);
 }
 
-// add the decay of old vortices to strengths; the queue is sorted by age
-static void wake_decay_strengths(const struct wake *wake, const struct school *school, double t, double tau,
-                                 double *strength) {
-    const double q = tau / school->interval;
-    for (int i = 0; i < wake->n_vortex; i++) {
-        const double age = t - wake->birth[i];
-        if (age + school->interval <= age_of_decay(school)) break;
-        strength[i] *= wake_strength_within(school, age, q);
-    }
-}
-
-void wake_markers_at(const struct wake *wake, double interval, double tau, double *restrict x, double *restrict y) {
+void wake_places(const struct wake *wake, double interval, double tau, double *restrict x, double *restrict y) {
     for (int i = 0; i < wake->n_vortex; i++) {
         x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], tau, interval);
         y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, interval);
     }
 }
 
-void wake_rings_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
-                   double *label) {
-    wake_markers_at(wake, school->interval, tau, x, y);
-    for (int i = 0; i < wake->n_vortex; i++) label[i] = wake_label(wake, i, school->interval, tau);
-    wake_decay_strengths(wake, school, t, tau, label);
+int wake_first_decaying(const struct wake *wake, const struct school *school, double t) {
+    int i = 0;
+    while (i < wake->n_vortex && t - wake->birth[i] + school->interval > age_of_decay(school)) i++;
+    return i < wake->n_vortex ? i : wake->n_vortex - 1;
 }
 
-void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
-             double *strength) {
-    wake_markers_at(wake, school->interval, tau, x, y);
-    for (int i = 0; i < wake->n_vortex; i++) strength[i] = wake->circulation[i];
-    wake_decay_strengths(wake, school, t, tau, strength);
+double wake_next_strength(struct wake_decay *decay, int i) {
+    const struct wake *const wake = decay->wake;
+    const double label = wake_label(wake, i, decay->school->interval, decay->tau);
+    const double part = wake_strength_within(decay->school, decay->t - wake->birth[i], decay->q);
+    if (!wake->has_markers || decay->school->finite) return part * label;
+
+    // the stretch behind the newer marker decays; the first label does not
+    decay->sum = decay->has_newer ? decay->sum - decay->part * (decay->label - label) : label;
+    decay->has_newer = true;
+    decay->label = label;
+    decay->part = part;
+    return decay->sum;
+}
+
+void wake_strengths(const struct wake *wake, const struct school *school, double t, double tau, double q,
+                    double *strength) {
+    struct wake_decay decay = {.wake = wake, .school = school, .t = t, .tau = tau, .q = q};
+    const int first = wake_first_decaying(wake, school, t);
+    for (int i = first; i >= 0; i--) strength[i] = wake_next_strength(&decay, i);
+    for (int i = first + 1; i < wake->n_vortex; i++) strength[i] = wake_label(wake, i, school->interval, tau);
 }
 
 double wake_lost(const struct wake *wake, const struct school *school, double t, double tau) {

@@ -12,6 +12,8 @@
 #ifndef WAKE_H
 #define WAKE_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 #include "fish/fish.h"
 
@@ -24,7 +26,7 @@ struct wake {
     double *circulation;         /* m2 s-1, constant after release; for a marker: the label (n_vortex) */
     double *rate, *rate_before;  /* rate of labels at the same events, m2 s-2; 0 without rings (n_vortex) */
     double *birth;               /* time of release, s                                (n_vortex) */
-    int has_markers;             /* the queue holds markers of a sheet: free_sheet.h */
+    int has_markers;             /* the queue holds markers of a sheet: sheet.h */
     int n_merged;                /* number of vortices merged with a neighbour so far: wake_merge.h */
     int n_added;                 /* number of vortices added from outside so far: at most wake_spare */
     double tail_velocity[2], tail_tangent[2]; /* at the last event, m s-1 and 1; only with markers */
@@ -49,10 +51,28 @@ void wake_set_tail(struct wake *wake, const double velocity[2], const double tan
 /* Add a vortex at the end of the queue. A full wake grows. On STATUS_MEMORY the wake is unchanged. */
 enum status wake_release(struct wake *wake, double x, double y, double circulation, double birth);
 
-/* Positions and strengths of all vortices at the time tau after the last event; strength: circulation in velocity sums,
- * less the decayed circulation; each array (n_vortex); t: time of the last event. */
-void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
-             double *strength);
+/* Positions of all vortices or markers at the time tau after the last event (n_vortex). */
+void wake_places(const struct wake *wake, double interval, double tau, double *restrict x, double *restrict y);
+
+/* Circulations of all vortices, or labels of all markers, at the time tau after the last event at time t, less the
+ * decay up to the fraction q of the interval (n_vortex). With span: finite the labels decay, so that rings stay
+ * closed, else the circulations of the stretches. */
+void wake_strengths(const struct wake *wake, const struct school *school, double t, double tau, double q,
+                    double *strength);
+
+/* wake_strengths one by one, from wake_first_decaying, or any newer vortex, to the oldest. */
+struct wake_decay {
+    const struct wake *wake;
+    const struct school *school;
+    double t, tau, q;
+    bool has_newer;
+    double sum, label, part; /* of the next newer marker: strength, label, remaining part of the circulation behind */
+};
+double wake_next_strength(struct wake_decay *decay, int i);
+
+/* The newest vortex that may decay within the interval after the event at time t, or the next newer one: no newer
+ * vortex decays. -1: an empty wake. */
+int wake_first_decaying(const struct wake *wake, const struct school *school, double t);
 
 /* Lost circulation, tau after the event at time t: removed vortices, and decayed circulation. */
 double wake_lost(const struct wake *wake, const struct school *school, double t, double tau);
@@ -66,15 +86,8 @@ enum status wake_resize(struct wake *wake, int n);
 /* Position of vortex or marker i at the time tau after the last event. */
 void wake_marker(const struct wake *wake, int i, double interval, double tau, double position[2]);
 
-/* Label of marker i at the time tau after the last event at time t; wake_ring: the label less the decayed part, m2
- * s-1. */
-double wake_label(const struct wake *wake, int i, double interval, double tau);
-double wake_ring(const struct wake *wake, const struct school *school, int i, double t, double tau);
-
-/* wake_marker, and wake_marker and wake_ring, of all markers (n_vortex). */
-void wake_markers_at(const struct wake *wake, double interval, double tau, double *restrict x, double *restrict y);
-void wake_rings_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
-                   double *label);
+/* Label of the newest marker at the time tau after the last event at time t, less the decay, m2 s-1. */
+double wake_newest(const struct wake *wake, const struct school *school, double t, double tau);
 
 /* Circulation of vortex i; for a marker: half of both adjacent stretches. */
 double wake_circulation(const struct wake *wake, int i);

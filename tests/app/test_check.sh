@@ -100,7 +100,42 @@ seconds_only() {
     check "says of how many it knows" grep -q 'estimated from a few events of [0-9]* members\?' out
 }
 
+# Lattices of default fish: the limits are five times half a second.
+lattice() {  # N, FILE
+    { printf '%s\n' 'format: 1' 'time: {end: 1}' 'fish:'
+      awk -v n="$1" 'BEGIN { m = int(sqrt(n)); for (i = 0; i < n; i++)
+          printf "  - {start: {position: [%g, %g]}}\n", 1.5 * (i % m), 0.6 * int(i / m) }'; } >"$2"
+}
+
+any_number_of_fish() {
+    lattice 400 fish400.yaml
+    check "400 fish" spends 2500 fish400.yaml
+    check "400 fish: ok" has out "fish400.yaml: ok: 400 fish"
+    lattice 10000 fish10000.yaml
+    check "10000 fish" spends 2500 fish10000.yaml
+    check "10000 fish: ok" has out "fish10000.yaml: ok: 10000 fish"
+    sed -i '$s/.*/  - {start: {position: [0.1, 0.01]}}/' fish10000.yaml
+    run check fish10000.yaml
+    check "10000 fish, of which two overlap" has err "fish[0] (fish1) and fish[9999] (fish10000) overlap at the start"
+    check "5000 nodes" spends 2500 "$demo" --set 'fish[0].nodes=5000'
+}
+
+# At 1500 nodes the set-up takes over ten seconds. A signal ends the loops of the set-up.
+signals_in_the_set_up() {
+    local pid
+    "$program" run "$demo" --set 'fish[0].nodes=1500' -o slow.nc -q >out 2>err &
+    pid=$!
+    sleep 1
+    kill -TERM "$pid"
+    code=0
+    wait "$pid" || code=$?
+    check "a run that is stopped in its set-up: exit 75" ended 75
+    check "without a result" test ! -e slow.nc
+}
+
 estimates
+any_number_of_fish
+signals_in_the_set_up
 one_verdict
 before_the_first_step
 seconds_only

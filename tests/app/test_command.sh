@@ -9,6 +9,9 @@ cases=$root/cases
 readonly demo="$cases/demo.yaml" diamond="$cases/diamond.yaml"
 export short="time.end=0.3"
 
+# true if err has one line, the warning of a run shorter than two beats
+only_few_beats() { [[ $(wc -l <err) -eq 1 ]] && grep -q '^shoal: warning: the run has [0-9.]* beats of fish' err; }
+
 says() { grep -qF -- "$1" err; }
 ended() { ((code == $1)); }
 silent() { [[ ! -s out && ! -s err ]]; }
@@ -52,6 +55,9 @@ wrong_words() {
     run rnu "$demo"
     check "mistyped command: exit 2" ended 2
     check "mistyped command: the nearest one is named" says "unknown command 'rnu'; did you mean 'run'?"
+    run heys
+    check "mistyped command: of two near ones the nearer" says "unknown command 'heys'; did you mean 'keys'?"
+    refused "a command without arguments refuses one" 2 "unexpected argument 'here'" demo here
     run swim "$demo"
     check "no command is near: none is named" test "$(grep -c 'did you mean' err)" = 0
     run run --colour "$demo"
@@ -86,7 +92,7 @@ output_paths() {
     run run "$demo" -q --set "$short"
     check "run: exit 0" ended 0
     check "run: the name of the case with .nc" status_is demo.nc complete
-    check "-q is silent" silent
+    check "-q prints warnings only" eval 'test ! -s out && only_few_beats'
 
     echo precious >mine.nc
     run run "$demo" -q --set "$short" -o mine.nc
@@ -106,7 +112,7 @@ output_paths() {
     check "check refuses the place that run refuses" says "there is no folder no/such"
     if ((EUID == 0)); then
         run run "$demo" -q --set "$short" -o /proc/x.nc
-        check "a folder that takes no files" says "/proc/x.nc: the folder takes no new files"
+        check "a folder that takes no files" says "/proc/x.nc: the folder /proc takes no new files"
     else
         skip "a folder that takes no files" "only root may try to write to /proc"
     fi
@@ -132,6 +138,11 @@ output_paths() {
     run run "$demo" --set "$short" -o log.nc
     check "progress in a log: one line per 10 %" test "$(grep -c ' x real time' err)" = 10
     check "the name of the result on standard output" grep -qx log.nc out
+    run run "$demo" --set time.end=60 -o log.nc --force
+    # the rest of the run at the speed so far, which is printed with three digits
+    check "the seconds left are the time left over the speed" awk '
+        / s left / { left = (60 - $2) / $9; n += left > 1.5; if (($6 - left) ^ 2 > (0.6 + left / 50) ^ 2) exit wrong = 1 }
+        END { exit wrong || n == 0 }' err
 }
 
 # ---- results that are not wanted, and results that can be repeated ----
@@ -177,7 +188,7 @@ warnings() {
     check "--strict: exit 3" ended 3
     check "--strict: the warning and what made it an error" grep -q 'with --strict' err
     check "--strict: the result is complete" status_is crossing.nc complete
-    run run "$demo" -q --strict --set "$short" -o strict.nc
+    run run "$demo" -q --strict --set "$short" --set 'fish[0].wave.amplitude=0' -o strict.nc
     check "--strict without a warning: exit 0" ended 0
     check "--strict without a warning: silent" silent
     run study crossing.yaml -q --strict --set 'sweep=[{key: "fish[0].motion.speed", values: [15, 16]}]'
@@ -271,7 +282,8 @@ summaries() {
 import json, netCDF4, numpy as np
 run, data = json.load(open("run.json")), netCDF4.Dataset("summary.nc")
 data.set_auto_mask(False)
-assert run["kind"] == "run" and run["status"] == "complete" and run["rows"] == len(data["time"]) and run["warnings"] == []
+assert run["kind"] == "run" and run["status"] == "complete" and run["rows"] == len(data["time"]) and len(run["warnings"]) == 1
+assert run["warnings"][0].startswith("the run has 0.3 beats of fish: means and powers are not those of a cycle")
 assert run["fish_name"] == ["fish"] and run["case"] == "demo"
 for name, variable in data.variables.items():
     if {"node", "edge", "joint", "sheet", "control", "vortex"} & set(variable.dimensions):
@@ -291,6 +303,10 @@ EOF
 # ---- progress on a terminal of 60 columns
 
 progress() {
+    if ! /usr/bin/python3 -c 'import pty; pty.openpty()' 2>no_terminal; then
+        skip "progress on a terminal" "no pseudo terminal: $(tail -n 1 no_terminal)"
+        return
+    fi
     cat >terminal.py <<'EOF'
 """Run a command in a terminal of some columns, and print what the terminal got."""
 import fcntl, os, pty, re, struct, sys, termios
@@ -431,7 +447,7 @@ notes() {
     run run "$demo" --set time.end=0.01 --set "fish[0].start.heading=3.14159" -o noted.nc
     check "run prints notes" says "note: fish[0].start.heading: 3.14159 is in degrees"
     run run "$demo" -q --set time.end=0.01 --set "fish[0].start.heading=3.14159" -o quiet.nc
-    check "-q prints none" silent
+    check "-q prints none" eval 'test ! -s out && only_few_beats'
 }
 
 # ---- full disk, closed output, out of memory ----
@@ -449,6 +465,29 @@ limits() {
     check "file too large: a message" test -s err
     check "file too large: whole rows stay readable" readable limited.nc
     check "file too large: there are rows" has_rows limited.nc 2
+
+    # every other command that writes a file: the reason, and nothing is left
+    local command
+    run run "$demo" --set "$short" -q -o whole.nc
+    printf 'format: 1\ntime: {end: 0.1}\nfish: [{nodes: 9, sheet_points: 25, force: reactive}]\n' >pair.yaml
+    printf 'sweep: [{key: "fish[0].length", values: [1, 1.1]}]\n' >>pair.yaml
+    run study pair.yaml -q -o pair-study
+    cp pair-study/study.nc study.before
+    find . -type f ! -name check.out | sort >"$folder.files"
+    for command in "view whole.nc -o cut.html" "export whole.nc --vtk cut" "field whole.nc -o cut.nc" \
+        "gather pair-study"; do
+        # shellcheck disable=SC2086
+        limited -f 4 $command
+        check "file too large: $command: exit 4" ended 4
+        check "file too large: $command: the reason" says "File too large"
+        check "file too large: $command: one message" one_line
+        [[ ! -d cut ]] || rmdir cut
+        check "file too large: $command: nothing is left" diff <(find . -type f ! -name check.out | sort) "$folder.files"
+    done
+    check "file too large: gather keeps study.nc" cmp pair-study/study.nc study.before
+    (ulimit -f 0 && exec timeout "$time_limit" "$program" new cut.yaml) 2>&1 | cat >err
+    check "file too large: new: the reason" says "File too large"
+    check "file too large: new: nothing is left" test ! -e cut.yaml
 
     code=0
     timeout "$time_limit" "$program" --help >/dev/full 2>err || code=$?
@@ -468,6 +507,35 @@ limits() {
     fi
 }
 
+# ---- the attribute history
+
+# the history of a result, without the date
+history_of() { python3 -c 'import sys
+data = open(sys.argv[1], "rb").read()
+at = data.index(b"\0\0\0\0\0\0\0\x07history\0") + 16
+n = int.from_bytes(data[at + 4:at + 12], "big")
+sys.stdout.write(data[at + 12:at + 12 + n].decode().split(" ", 1)[1])' "$1"; }
+
+history() {
+    mkdir "a folder" && cp "$demo" "a folder/it's \$mine.yaml"
+    run run "a folder/it's \$mine.yaml" --set 'fish[0].start.position=[0, 0.5]' --set time.end=0.2 -o 'my file.nc'
+    check "a result with odd names: exit 0" ended 0
+    history_of 'my file.nc' >command.sh
+    check "history ends with the arguments as given" grep -qF -- "-o 'my file.nc'" command.sh
+    mv 'my file.nc' before.nc
+    check "a shell repeats the command of the history" timeout "$time_limit" bash command.sh
+    check "the repeated command makes the same file" test -f 'my file.nc'
+    check "with the same case" cmp <(history_of before.nc) <(history_of 'my file.nc')
+
+    # more than any fixed length
+    local -a many=()
+    local i
+    for ((i = 0; i < 300; i++)); do many+=(--set "fish[0].start.position=[0, 0.5]"); done
+    run run "$demo" --set time.end=0.1 "${many[@]}" -q -o many.nc
+    check "a long command line: exit 0" ended 0
+    check "a long command line is in history to the end" grep -q -- '-o many.nc$' <(history_of many.nc; echo)
+}
+
 help_and_versions
 wrong_words
 helpers
@@ -478,6 +546,7 @@ repeats
 spread
 signals
 limits
+history
 explicit
 notes
 summaries

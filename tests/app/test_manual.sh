@@ -21,14 +21,14 @@ check page_of_results page shoal-output.5 variables.json
 no_warnings() { groff -man -Tutf8 -ww -z "$1" >warnings 2>&1 && [[ ! -s warnings ]] || { cat warnings; false; }; }
 no_complaints() { mandoc -T lint -W warning "$1" >warnings 2>&1 && [[ ! -s warnings ]] || { cat warnings; false; }; }
 for name in shoal.1 shoal-case.5 shoal-output.5; do
-    check "no_warnings_of_groff $name" no_warnings $name
-    check "no_warnings_of_mandoc $name" no_complaints $name
+    check_with groff "no_warnings_of_groff $name" no_warnings $name
+    check_with mandoc "no_warnings_of_mandoc $name" no_complaints $name
 done
 # without colours, which col keeps
 shown() { GROFF_NO_SGR=1 man --warnings -E UTF-8 -l "$1" 2>errors | col -b >"$1.txt" && [[ ! -s errors ]]; }
-check man_shows_the_page shown shoal.1
-check with_commands_and_options grep -qE -- '--members A-B' shoal.1.txt
-check with_exit_codes grep -qE '^ +75 +stopped by a signal' shoal.1.txt
+check_with man man_shows_the_page shown shoal.1
+check_with man with_commands_and_options grep -qE -- '--members A-B' shoal.1.txt
+check_with man with_exit_codes grep -qE '^ +75 +stopped by a signal' shoal.1.txt
 check every_command_is_there test "$(grep -c '^\.SS' shoal.1)" = "$("$program" --help | grep -E "^  [a-z]" | grep -cv "^  shoal")"
 check every_key_is_there test "$(grep -cE '^\.TP' shoal-case.5)" = "$(grep -c '"path"' keys.json)"
 check every_variable_is_there test "$(grep -cE '^\.TP' shoal-output.5)" = "$(grep -c '"name"' variables.json)"
@@ -93,7 +93,7 @@ for path in sys.argv[1:]:
         print(f"{path}: {'.'.join(map(str, error.absolute_path))}: {error.message}")
 end
 validate() { timeout "$time_limit" /usr/bin/python3 validate.py "$@" >wrong 2>&1 && [[ ! -s wrong ]] || { cat wrong; false; }; }
-check all_cases_are_valid validate "$root"/cases/*.yaml "$root"/cases/*/*.yaml
+check_with 'import jsonschema' all_cases_are_valid validate "$root"/cases/*.yaml "$root"/cases/*/*.yaml
 cat >wrong.yaml <<'end'
 format: 1
 time: {end: -1}
@@ -104,7 +104,7 @@ end
 validate wrong.yaml >/dev/null
 for error in "time.end: -1 is less than or equal to the minimum of 0" "'densty' was unexpected" "'none' is not one of" \
     "fish.0.nodes: 3.5 is not" "frequency: 'fast' is not of type" "[1] is too short"; do
-    check "the_schema_finds: $error" grep -qF -- "$error" wrong
+    check_with 'import jsonschema' "the_schema_finds: $error" grep -qF -- "$error" wrong
 done
 # editors find the schema by the first line of a case
 names_schema() {

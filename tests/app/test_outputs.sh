@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Whole outputs: every printed line and every file of the commands in tests/data/outputs.txt stays. Other tests verify the values; this test
-# notices every change of an output. After an intended change: tests/app/outputs.py PROGRAM --write
+# The outputs of every command: the messages, heads and key values of tests/data/outputs.txt occur in them.
 #
 #   tests/app/test_outputs.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -10,7 +9,7 @@
 while IFS= read -r line; do
     case $line in
         'ok '*) pass "${line#ok }" ;;
-        'FAILED '*) fail "${line#FAILED }" 'differs from tests/data/outputs.txt' ;;
+        'FAILED '*) fail "${line#FAILED }" 'lines of tests/data/outputs.txt are missing' ;;
         *) echo "$line" ;;
     esac
 done <same

@@ -142,6 +142,8 @@ fish: [{force: reactive, nodes: 5, sheet_points: 9, start: {speed: 0.5}}]
 sweep: [{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true}]
 end
 "$program" study refine.yaml -q -o refine >/dev/null 2>&1
+"$program" study refine.yaml -q -o bars --set 'sweep=[{key: "fish[*].body.depth", values: [0.2, 0.3, 0.4]}, {key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true}]' \
+    --set 'fish[0].wave.frequency=5' >/dev/null 2>&1
 cat >map.yaml <<'end'
 format: 1
 time: {end: 0.1, shedding_interval: 0.05, output_interval: 0.05}
@@ -150,8 +152,13 @@ sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.3, 0.4]}, {key: "fish[0]
 end
 "$program" study map.yaml -q -o map >/dev/null 2>&1
 draws plot.py study map/study.nc --of shed_circulation -- map.png
-refuses 2 "--of: only maps and curves of a sweep take it" plot.py study refine/study.nc --of speed -- no.png
+refuses 2 "--of: refine/study.nc has no errors of energy_balance: see nose, tail" plot.py study refine/study.nc --of energy_balance -- no.png
+draws plot.py study refine/study.nc --of speed -- refine_speed.png
 draws plot.py study refine/study.nc refine.png
+"$program" study refine.yaml -q -o nodes --set 'sweep=[{key: "fish[*].nodes", values: [5, 6, 7, 9], refine: true}]' \
+    --set 'fish[0].sheet_points=17' >/dev/null 2>&1
+"$program" compare refine.yaml -q -o stiff.nc --set 'sweep=[]' --set solver.max_steps=60 --set 'fish[0].body.modulus=1e9' \
+    --methods euler,ida2 --rtol 1e-2 --repeats 1 >/dev/null 2>&1
 cat >look.py <<'end'
 """Facts on what is drawn, where a picture does not tell."""
 import argparse, re, sys
@@ -237,6 +244,29 @@ study = Study("refine/study.nc")
 size, speed = study["level_size"], study["speed"][:, 0]
 wanted = np.abs(np.diff(speed)) / (1 - (size[1:] / size[:-1]) ** order)
 assert np.allclose(level_errors(study, "speed", order)[0, 0, :-1], wanted, rtol=1e-9)
+
+# numbers of nodes rise from left to right; speed and cost are drawn, or the quantity that is asked for
+axes = plot.study("nodes/study.nc")[0]
+at = [axes.transData.transform((x, 1))[0] for x in axes.get_xticks()]
+assert at == sorted(at) or at == sorted(at, reverse=True), at
+nodes = [float(text.get_text()) for _, text in sorted(zip(at, axes.get_xticklabels()), key=lambda pair: pair[0])]
+assert nodes == sorted(nodes), nodes
+drawn = [text.get_text().split(",")[0] for text in axes.get_legend().get_texts()]
+assert {"speed", "cost of transport"} <= set(drawn), drawn
+drawn = [text.get_text().split(",")[0] for text in plot.study("nodes/study.nc", of="speed")[0].get_legend().get_texts()]
+assert drawn[0] == "speed" and "nose" not in drawn, drawn
+# a method that failed is listed in the figure of a comparison
+drawn = [text.get_text() for text in plot.study("stiff.nc")[0].get_legend().get_texts()]
+assert drawn == ["ida2", "euler failed: rtol 0.01"], drawn
+
+# values of a refined axis over another one: on the right the errors in per cent, which no mark hides; a depth has its unit
+left, right = plot.study("bars/study.nc")[0:2]
+study = Study("bars/study.nc")
+finest = study["time_shedding_interval"] == 0.01
+wanted = 100 * study["error_speed"][:, 0] / study["speed"][finest, 0]
+assert np.isfinite(wanted).all() and np.allclose(right.lines[0].get_ydata(), wanted, rtol=1e-9), wanted
+assert right.get_ylabel() == "error [%]" and right.get_ylim()[0] == 0 and right.get_ylim()[1] > wanted.max()
+assert any("depth / body length" in axes.get_xlabel() for axes in left.figure.axes)
 
 # a map of few members has cells with values at the positions, a map of many members has contours
 axes = plot.study("map/study.nc", of="shed_circulation")[0]
@@ -356,45 +386,6 @@ end
 code=0
 timeout "$time_limit" /usr/bin/python3 open.py >out 2>err || code=$?
 check "names are coordinates in xarray" test "$code" = 0
-
-# ---- the gallery
-
-cat >gallery.py <<'end'
-"""The page is that of its script; each kind of figure is in it, with a picture that is small."""
-import importlib.util, os, re, sys
-root = sys.argv[1]
-sys.path.insert(0, os.path.join(root, "scripts"))
-import plot
-spec = importlib.util.spec_from_file_location("gallery", os.path.join(root, "scripts", "make-gallery.py"))
-gallery = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(gallery)
-text = open(os.path.join(root, "doc", "gallery.md"), encoding="utf-8").read()
-assert text == gallery.page(), "doc/gallery.md is out of date: run scripts/make-gallery.py"
-missing = set(plot.PICTURES) - set(re.findall(r"plot\.py (\w+) ", text))
-assert not missing, missing
-pictures = re.findall(r"!\[[^]]*\]\(([^)]*)\)", text)
-sizes = [os.path.getsize(os.path.join(root, "doc", name)) for name in pictures]
-assert len(sizes) > 20 and max(sizes) <= gallery.MOST_BYTES and sum(sizes) < 1.5e6, sizes
-there = set(os.listdir(os.path.join(root, "doc", "figures", "gallery")))
-assert there == {os.path.basename(name) for name in pictures}, there
-end
-code=0
-timeout "$time_limit" /usr/bin/python3 gallery.py "$root" >out 2>err || code=$?
-check "the gallery has every figure" test "$code" = 0
-# one of its figures by its commands
-code=0
-(cd "$root" && timeout "$time_limit" /usr/bin/python3 - "$folder/gallery" "$program" <<'end') >out 2>err || code=$?
-import importlib.util, os, sys
-spec = importlib.util.spec_from_file_location("gallery", "scripts/make-gallery.py")
-gallery = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(gallery)
-folder = sys.argv[1]
-os.mkdir(folder)
-open(os.path.join(folder, "gaits.yaml"), "w").write(gallery.CASES["gaits.yaml"])
-gallery.PICTURES, gallery.PROGRAM = folder, sys.argv[2]
-gallery.draw("gait", {n: c for _, _, some in gallery.CHAPTERS for n, _, c in some}["gait"], folder)
-end
-check "a figure of the gallery is drawn by its commands" test "$code" = 0 -a -s gallery/gait.png
 
 # ---- files without a figure
 

@@ -7,18 +7,21 @@
 
 export MPLCONFIGDIR=$folder/matplotlib
 
-# the blocks of the tutorial as files: 01-sh, 02-python, ..., and the cases by the names in the text
-/usr/bin/python3 - "$root/doc/tutorial.md" <<'end'
-import re, sys
+# the blocks of the tutorial as files: 01-sh, 02-python, ..., and the cases by the names in the text; a script begins with
+# the scripts above, whose variables it uses
+/usr/bin/python3 - "$root" <<'end'
+import sys
 
-text, number = open(sys.argv[1], encoding="utf-8").read(), 0
-for block in re.finditer(r"```(\w+)\n(.*?)```", text, re.S):
-    kind, inside = block.groups()
-    number += 1
-    name = f"{number:02}-{kind}"
-    if kind == "yaml":
-        name = re.findall(r"Write `([^`]+)`", text[: block.start()])[-1]
-    open(name, "w", encoding="utf-8").write(inside)
+sys.path.insert(0, f"{sys.argv[1]}/scripts")
+import documents
+
+scripts = ""
+for number, block in enumerate(documents.blocks_of(open(f"{sys.argv[1]}/doc/tutorial.md", encoding="utf-8").read())):
+    if block.kind == "output":
+        continue
+    scripts += block.text if block.kind == "python" else ""
+    with open(block.file or f"{number:02}-{block.kind}", "w", encoding="utf-8") as file:
+        file.write(scripts if block.kind == "python" else block.text)
 end
 
 shoal() {

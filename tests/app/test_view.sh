@@ -73,6 +73,7 @@ assert wakes["n"] == with_wake.size < rows, (wakes["n"], with_wake)
 first, count = (array(wakes[key], "i4").reshape(-1, 2) for key in ("first", "count"))
 box, place = places(wakes, count.sum())
 strength, at = array(wakes["strength"], "i2") * wakes["unit"], 0
+assert np.abs(array(wakes["strength"], "i2")).max() == 32767, "all 16 bits"
 for i, row in enumerate(with_wake):
     for f in range(2):
         n = file["wake_count"][row, f]
@@ -176,6 +177,33 @@ assert 'data-overview="200"' in page, "the school is in the corner"
 assert re.search(r'id="scale"[^>]*>heading \[degree\]', page), "a scale of colours"
 end
 
+# a steady state: the speed changes in the sixth digit
+cat >steady.yaml <<'end'
+format: 1
+time: {end: 1, shedding_interval: 0.04, output_interval: 0.2}
+steady: {tolerance: 1e-4, multipliers: false, output_beats: 2}
+fish: [{force: reactive, nodes: 9, sheet_points: 21}]
+end
+run steady steady.yaml -q -o steady.nc
+run view steady.nc -q
+cat >axes.py <<'end'
+"""Ticks of the traces: texts differ, and with the base of the axis each one is in the range; colours cover the range."""
+import html, re, sys
+
+page = html.unescape(open("browser.out", encoding="utf-8").read())
+for canvas in re.findall(r"<canvas[^>]*data-name=[^>]*>", page):
+    ticks, base, low, high = (re.search(rf'data-{key}="([^"]*)"', canvas)[1] for key in ("ticks", "base", "low", "high"))
+    ticks, base, low, high = ticks.split(), float(base or 0), float(low), float(high)
+    at, room = [base + float(text) for text in ticks], 0.07 * (high - low)
+    assert 2 <= len(ticks) == len(set(ticks)) and max(map(len, ticks)) <= 8, ticks
+    assert low - room <= min(at) and max(at) <= high + room, (low, at, high)
+    steps = [b - a for a, b in zip(at, at[1:])]
+    assert max(steps) - min(steps) < 1e-3 * max(steps), ticks
+    if sys.argv[1:] == [re.search(r'data-name="([^"]*)"', canvas)[1]]:
+        ends = re.search(r'id="scale"[^>]*>[^<]*\] ([^ <]*)<i [^>]*></i>([^<]*)<', page).groups()
+        assert [abs(float(a) - b) < 6e-3 * (high - low) for a, b in zip(ends, (low, high))] == [True, True], (ends, low, high)
+end
+
 # ---- in a browser
 
 # Open a page for some seconds of browser time; leaves the console in browser.err.
@@ -247,6 +275,11 @@ else
     check no_overview_beside_the_whole_school grep -q 'data-overview="0"' browser.out
     browse 'crowd.html#t=0.5&theme=light&colour=heading' --window-size=1280,1100 --virtual-time-budget=500 --screenshot=crowd.png
     check fish_have_the_colours_of_their_headings shows crowd.png 1000 1000 1280 True
+    browse 'steady.html' --virtual-time-budget=500 --dump-dom
+    check ticks_of_a_steady_state_differ /usr/bin/python3 axes.py
+    check its_time_does_not_begin_at_0 grep -qE '1 fish, [0-9.]+ to [0-9.]+ s' browser.out
+    browse 'pair.html#colour=actuation_power' --virtual-time-budget=500 --dump-dom
+    check colours_cover_the_range_of_the_curve /usr/bin/python3 axes.py actuation_power
     # the console is heard
     sed 's/^const run = .*/const run = nothing_of_this_name;/' pair.html >broken.html
     browse broken.html --virtual-time-budget=100 --dump-dom

@@ -4,6 +4,19 @@
 #include "base/mathematics.h"
 #include "near.h"
 
+static void the_larger_and_the_smaller_number_keep_nan(void **state) {
+    (void)state;
+    const double value[] = {-INFINITY, -2, 0, 3, INFINITY};
+    for (int i = 0; i < 5; i++) {
+        for (int k = 0; k < 5; k++) {
+            NEAR(larger(value[i], value[k]), value[i > k ? i : k], 0, 0);
+            NEAR(smaller(value[i], value[k]), value[i < k ? i : k], 0, 0);
+        }
+        assert_true(isnan(larger(NAN, value[i])) && isnan(larger(value[i], NAN)));
+        assert_true(isnan(smaller(NAN, value[i])) && isnan(smaller(value[i], NAN)));
+    }
+}
+
 static void wrap_removes_full_turns(void **state) {
     (void)state;
     const double pi = acos(-1);
@@ -94,7 +107,7 @@ static void the_gauss_rule_of_a_sum_is_exact_to_degree_2n_less_1(void **state) {
             for (int i = 0; i < n; i++) rule += of_node[i] * pow(node[i], degree);
             NEAR(rule, sum, 0, 1e-12);
         }
-        for (int i = 1; i < n; i++) assert_true(node[i] > node[i - 1]);
+        for (int i = 1; i < n; i++) ABOVE(node[i], node[i - 1]);
     }
 
     quadrature_of_sum(3, x, weight, scratch, 3, node, of_node);
@@ -111,7 +124,7 @@ static void nodes_ascend_and_are_symmetric(void **state) {
     for (int i = 0; i < 16; i++) {
         NEAR(node[i], 1 - node[15 - i], 1e-15, 0);
         NEAR(weight[i], weight[15 - i], 1e-15, 0);
-        assert_true(i == 0 || node[i] > node[i - 1]);
+        if (i > 0) ABOVE(node[i], node[i - 1]);
     }
 }
 
@@ -183,6 +196,7 @@ static void the_gap_is_that_of_the_axis_along_which_they_are_apart(void **state)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_larger_and_the_smaller_number_keep_nan),
         cmocka_unit_test(wrap_removes_full_turns),
         cmocka_unit_test(degrees_and_radians_are_inverse),
         cmocka_unit_test(step_goes_from_zero_to_one_symmetrically),

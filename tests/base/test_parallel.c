@@ -82,8 +82,8 @@ static void an_idle_machine_keeps_all_threads(void **state) {
     const struct run run = steps(&choice, idle, 20);
     assert_false(choice.is_one);
     // trials of 20 ms, at first after 0.1, 0.2, 0.4 s, later after 5 s
-    assert_true(run.time < 1.01 * 20);
-    assert_true(run.share_of_one > 0);
+    BELOW(run.time, 1.01 * 20);
+    ABOVE(run.share_of_one, 0);
 }
 
 static void a_shared_core_leaves_one_thread_soon(void **state) {
@@ -94,7 +94,7 @@ static void a_shared_core_leaves_one_thread_soon(void **state) {
         if (i == 1) steps(&choice, idle, 20);
         const struct run run = steps(&choice, shared, 20);
         assert_true(choice.is_one);
-        assert_true(run.time < 1.1 * 20);
+        BELOW(run.time, 1.1 * 20);
         // and back again once the core is free
         steps(&choice, idle, 20);
         assert_false(choice.is_one);
@@ -106,8 +106,9 @@ static void long_steps_cost_few_trials(void **state) {
     struct parallel_choice choice = {0};
     const struct run run = steps(&choice, (struct machine){.all = 0.4, .one = 0.76}, 400);
     assert_false(choice.is_one);
-    assert_true(run.share_of_one > 0 && run.share_of_one < 0.06);
-    assert_true(run.time < 1.04 * 400);
+    ABOVE(run.share_of_one, 0);
+    BELOW(run.share_of_one, 0.06);
+    BELOW(run.time, 1.04 * 400);
 }
 
 static void equal_times_change_nothing(void **state) {
@@ -129,7 +130,7 @@ static void a_trial_that_waits_for_its_processor_is_repeated_on_another_one(void
     for (int i = 0; i < 3; i++) assert_int_equal(parallel_choice_note(&choice, 1.2, 0.6), i < 2);
     assert_int_equal(choice.part, 1);
     assert_false(choice.is_one);
-    assert_true(choice.rest > 0);
+    ABOVE(choice.rest, 0);
 }
 
 static int team(void) {
@@ -172,16 +173,18 @@ static void a_step_is_timed_by_the_wall_clock_and_the_processor(void **state) {
     nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
     parallel_choice_end(&choice, 2);
     const double slept = choice.window.time, used = choice.window.processor_time;
-    assert_true(slept >= 0.02 && slept < 60);
-    assert_true(used >= 0 && used < slept / 2);
+    AT_LEAST(slept, 0.02);
+    BELOW(slept, 60);
+    AT_LEAST(used, 0);
+    BELOW(used, slept / 2);
 
     parallel_choice_begin(&choice, 2);
     const double begin = processor_time();
     while (processor_time() - begin < 0.005) continue;
     parallel_choice_end(&choice, 2);
     assert_int_equal(choice.window.n_steps, 2);
-    assert_true(choice.window.processor_time - used >= 0.005 - 1e-6);
-    assert_true(choice.window.time - slept >= choice.window.processor_time - used - 1e-3);
+    AT_LEAST(choice.window.processor_time - used, 0.005 - 1e-6);
+    AT_LEAST(choice.window.time - slept, choice.window.processor_time - used - 1e-3);
 }
 
 static int n_processors(void) {
@@ -202,7 +205,7 @@ static void one_thread_may_use_all_processors(void **state) {
     if (all < 2) skip();
     parallel_choice_spread(2);
     const int part = n_processors();
-    assert_true(part < all);
+    BELOW(part, all);
     struct parallel_choice choice = {.pause = 1};
     step(&choice, 1);  // a trial of one thread begins
     assert_true(choice.is_trial);

@@ -87,10 +87,10 @@ static void try_leaves_at_the_first_failure_and_evaluates_once(void **state) {
 static void signs_are_those_of_solver_callbacks(void **state) {
     (void)state;
     assert_int_equal(STATUS_OK, 0);
-    assert_true(STATUS_RETRY > 0);
+    ABOVE(STATUS_RETRY, 0);
     const enum status final[] = {STATUS_CASE,    STATUS_FILE,   STATUS_MEMORY, STATUS_SOLVER,
                                  STATUS_STOPPED, STATUS_MISSED, STATUS_CONTACT};
-    for (size_t i = 0; i < sizeof final / sizeof *final; i++) assert_true(final[i] < 0);
+    for (size_t i = 0; i < sizeof final / sizeof *final; i++) BELOW(final[i], 0);
 }
 
 static void exit_codes_are_the_documented_ones(void **state) {

@@ -63,6 +63,55 @@ static void a_number_is_written_with_no_more_digits_than_needed(void **state) {
     text_free(&text);
 }
 
+static void letters_that_change_places_are_one_slip(void **state) {
+    (void)state;
+    static const struct {
+        const char *a, *b;
+        int distance;
+    } words[] = {{"run", "rnu", 1},      {"wave", "Wave", 0}, {"wave", "waves", 1}, {"wave", "ave", 1},
+                 {"nodes", "ndoess", 2}, {"", "abc", 3},      {"abcd", "dcba", 3},  {"heading", "healing", 1}};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        const char *const a = words[i].a, *const b = words[i].b;
+        assert_int_equal(text_distance(a, strlen(a), b, strlen(b)), words[i].distance);
+        assert_int_equal(text_distance(b, strlen(b), a, strlen(a)), words[i].distance);
+    }
+}
+
+static void a_decimal_loses_the_rounding_of_an_operation(void **state) {
+    (void)state;
+    NEAR(text_round(3 * 0.1), 0.3, 0, 0);
+    NEAR(text_round(1e-5 / 100), 1e-7, 0, 0);
+    NEAR(text_round(-7 * 0.1), -0.7, 0, 0);
+    NEAR(text_round(1.0 / 3), 1.0 / 3, 0, 0);
+    NEAR(text_round(0.1 * (1 + 1e-15)), 0.1 * (1 + 1e-15), 0, 0);
+    NEAR(text_round(0), 0, 0, 0);
+    assert_true(isnan(text_round(NAN)));
+    assert_true(isinf(text_round(INFINITY)));
+}
+
+static void a_word_is_quoted_where_a_shell_would_change_it(void **state) {
+    (void)state;
+    static const char *const words[][2] = {{"run", "run"},
+                                           {"time.end=0.5", "time.end=0.5"},
+                                           {"/a/b-1_2,3:%@+.nc", "/a/b-1_2,3:%@+.nc"},
+                                           {"", "''"},
+                                           {"my file.nc", "'my file.nc'"},
+                                           {"fish[0].start.position=[0, 0.5]", "'fish[0].start.position=[0, 0.5]'"},
+                                           {"it's", "'it'\\''s'"},
+                                           {"'",
+                                            "''\\''"
+                                            "'"},
+                                           {"$HOME\n~", "'$HOME\n~'"},
+                                           {"~", "'~'"},
+                                           {"a;b", "'a;b'"}};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        struct text text = {0};
+        text_add_word(&text, words[i][0]);
+        assert_string_equal(text.text, words[i][1]);
+        text_free(&text);
+    }
+}
+
 static void a_text_that_lacks_memory_says_so_and_stays_as_it_was(void **state) {
     (void)state;
     struct text text = {0};
@@ -213,6 +262,9 @@ int main(void) {
         cmocka_unit_test(control_characters_are_printed_as_numbers),
         cmocka_unit_test(a_written_number_reads_back_bit_for_bit),
         cmocka_unit_test(a_number_is_written_with_no_more_digits_than_needed),
+        cmocka_unit_test(letters_that_change_places_are_one_slip),
+        cmocka_unit_test(a_decimal_loses_the_rounding_of_an_operation),
+        cmocka_unit_test(a_word_is_quoted_where_a_shell_would_change_it),
         cmocka_unit_test(a_text_that_lacks_memory_says_so_and_stays_as_it_was),
         cmocka_unit_test(the_locale_does_not_matter),
         cmocka_unit_test(the_string_of_a_text_is_taken_or_lack_of_memory_reported),

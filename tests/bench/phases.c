@@ -31,8 +31,6 @@
 #include "run/simulate_run.h"
 #include "school/residual.h"
 #include "solver/linear.h"
-#include "vortex/kernel.h"
-#include "vortex/velocity_sum.h"
 
 static double read_clock(clockid_t id) {
     struct timespec t;
@@ -53,9 +51,8 @@ static double cpu_time(void) {
 
 // ---- the clock
 
-enum { WAKE, INTERPOLATION, RESIDUAL, JACOBIAN, LINEAR, DIAGNOSTICS, OUTPUT, N_PHASES };
-static const char *const phase_name[N_PHASES] = {"wake",   "interpolation", "residual", "Jacobian",
-                                                 "linear", "diagnostics",   "output"};
+enum { WAKE, RESIDUAL, JACOBIAN, LINEAR, DIAGNOSTICS, OUTPUT, N_PHASES };
+static const char *const phase_name[N_PHASES] = {"wake", "residual", "Jacobian", "linear", "diagnostics", "output"};
 static struct seen {
     double time[N_PHASES];
     double interactions; /* of the lower bound */
@@ -75,12 +72,17 @@ static void add_time(int phase, double since) {
         add_time(phase, since);                             \
         return status;                                      \
     }
-TIMED(INTERPOLATION, flow_interpolate, (struct flow * flow, const struct state *state), (flow, state))
 TIMED(JACOBIAN, residual_jacobian,
       (struct residual * residual, double t, double cj, const double *y, struct jacobian *jacobian),
       (residual, t, cj, y, jacobian))
 TIMED(LINEAR, linear_setup, (struct linear * linear), (linear))
 TIMED(LINEAR, linear_solve, (struct linear * linear, const double *b, double *x), (linear, b, x))
+
+static double n_bound(const struct school *school) {
+    double n = 0;
+    for (int f = 0; f < school->n_fish; f++) n += school->fish[f].n_sheet;
+    return n;
+}
 
 enum status __real_flow_at_wake(struct flow *flow, const struct state *state);
 enum status __wrap_flow_at_wake(struct flow *flow, const struct state *state);
@@ -90,7 +92,7 @@ enum status __wrap_flow_at_wake(struct flow *flow, const struct state *state) {
     add_time(WAKE, since);
     double n = 0;
     for (int f = 0; f < flow->school->n_fish; f++) n += state->wake[f].n_vortex;
-    seen.interactions += n * (n + flow->sheet.n + flow->n_points);
+    seen.interactions += n * (n + n_bound(flow->school) + flow->n_points);
     return status;
 }
 
@@ -103,7 +105,7 @@ enum status __wrap_residual_evaluate(struct residual *residual, double t, const 
     const double since = cpu_time();
     const enum status status = __real_residual_evaluate(residual, t, y, yp, value);
     add_time(RESIDUAL, since);
-    seen.interactions += (double)residual->flow->n_points * residual->flow->sheet.n;
+    seen.interactions += residual->flow->n_points * n_bound(residual->school);
     return status;
 }
 
@@ -134,21 +136,23 @@ static void must(enum status status) {
 // interactions per second of wakes on themselves, with the size of the wakes of the diamond, on one core
 static double best_rate(void) {
     enum { N = 1600, RUNS = 20 };
-    struct vortices vortices = {0};
+    struct sources vortices = {0};
     static double u[N], v[N];
-    must(vortices_append(&vortices, N, 0.2));
+    must(sources_append(&vortices, N));
+    const struct kernel_pair pair = kernel_infinite.own(0, 0.04);
+    const struct targets at = {.n = N, .x = vortices.x, .y = vortices.y, .u = u, .v = v};
     for (int i = 0; i < N; i++) {
         vortices.x[i] = 0.01 * (i % 400);
         vortices.y[i] = i / 400 + 0.2 * sin(0.03 * i);
-        vortices.circulation[i] = 0.01 * cos(0.03 * i);
+        vortices.q[i] = 0.01 * cos(0.03 * i);
     }
     double best = 0;
     for (int run = 0; run < RUNS; run++) {
         const double since = now();
-        must(velocity_sum_pairwise(&vortices, PAIRWISE_OF_SOURCE, 1, u, v));
+        kernel_induce_mutual(&pair, &vortices, &at);
         best = fmax(best, (double)N * N / (now() - since));
     }
-    vortices_free(&vortices);
+    sources_free(&vortices);
     return best;
 }
 
@@ -251,7 +255,7 @@ static void school_begin(struct school_run *run, int n_fish, int is_finite, int 
     char *const text = school_text(n_fish, is_finite);
     read_case(&run->values, text, threads);
     free(text);
-    must(simulate_create(&run->simulation, &run->values));
+    must(simulate_create(NULL, &run->simulation, &run->values));
     const long full = lround(run->values.school.wake.lifetime.seconds / run->values.school.shedding_interval);
     while (run->simulation->state->event < full) must(simulate_step(run->simulation));
     run->megabytes = memory() - before;

@@ -60,7 +60,7 @@ static void force_is_minus_the_gradient_of_the_energy(void **state) {
         // truncation and rounding of the differences
         NEAR(setup.value[fish->at.ax + i], (high - low) / (2 * h), 1e-5, 1e-6);
     }
-    assert_true(clamp_energy(fish, setup.t, y) > 0.1);
+    ABOVE(clamp_energy(fish, setup.t, y), 0.1);
     school_clear(&setup);
 }
 
@@ -81,7 +81,8 @@ static void powers_are_what_the_energy_and_the_nodes_do_not_take_up(void **state
     clamp_residual(fish, setup.t, y, setup.value);
     for (int i = 0; i < 2 * fish->n_nodes; i++) power -= setup.value[fish->at.ax + i] * y[fish->at.vx + i];
     const double damping = clamp_damping_power(fish, setup.t, y), driving = clamp_driving_power(fish, setup.t, y);
-    assert_true(damping < 0 && fabs(driving) > 1e-3);
+    BELOW(damping, 0);
+    ABOVE(fabs(driving), 1e-3);
     NEAR(rate, -power + damping + driving, 1e-5, 1e-6);
     school_clear(&setup);
 }
@@ -103,7 +104,7 @@ static void energy_audit_of_a_clamped_fish_closes(void **state) {
         }
         print_message("imbalance %.1e J of %.1f J\n", worst, most);
         // a motion that begins at once: thirty tolerances, as in test_diagnostics.c
-        assert_true(worst < 30 * 1e-5 * most);
+        BELOW(worst, 30 * 1e-5 * most);
         simulate_free(simulation);
     }
 }

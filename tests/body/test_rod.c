@@ -25,7 +25,7 @@ struct energetics {
 
 static struct energetics energetics_of(const struct fish *fish, const struct actuation *asked, const double *y) {
     double strain[128], rate[128], stress[128];
-    assert_true(rod_n_strains(fish) <= 128);
+    AT_MOST(rod_n_strains(fish), 128);
     rod_strains(fish, asked, y, &(struct rod_strains){strain, rate, stress});
     return (struct energetics){.bending = rod_bending_energy(fish, strain),
                                .stretching = rod_stretching_energy(fish, strain),
@@ -161,7 +161,7 @@ static void damping_power_is_that_of_the_damping_forces_and_never_positive(void 
         }
         // rounding of the subtracted elastic forces
         NEAR(damping_power(fish, &muscle, y), power, 1e-14 * size, 1e-12);
-        assert_true(damping_power(fish, &muscle, y) < 0);
+        BELOW(damping_power(fish, &muscle, y), 0);
     }
     free(elastic);
     school_clear(&setup);
@@ -280,7 +280,7 @@ static void muscle_power_is_the_change_of_energy_at_a_fixed_shape(void **state) 
     // the energy is quadratic in the natural curvature: central differences are exact but for rounding, 1e-16 E/h
     NEAR(actuation_power(fish, y), (bending_energy(fish, &after, y) - bending_energy(fish, &before, y)) / (2 * h),
          1e-10, 1e-10);
-    assert_true(fabs(actuation_power(fish, y)) > 1e-3);
+    ABOVE(fabs(actuation_power(fish, y)), 1e-3);
     school_clear(&setup);
 }
 
@@ -319,7 +319,7 @@ static void what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes(void **s
         double work = 0;
         for (int m = 0; m < 2 * fish->n_nodes; m++) work -= setup.value[fish->at.ax + m] * y[fish->at.vx + m];
         const double power = actuation_power(fish, y) + damping_power(fish, &muscle, y);
-        assert_true(fabs(power) > 1);
+        ABOVE(fabs(power), 1);
         // truncation and rounding of the differences of an energy of 10 J
         NEAR(power, work + rate_of_energy(&setup), 1e-9 * fabs(work), 1e-9);
         school_clear(&setup);
@@ -346,7 +346,7 @@ static void a_body_that_does_what_its_muscle_asks_is_not_damped(void **state) {
     rod_curvature(fish, y, rate);
     for (int j = 0; j < 5; j++) rate[j] = damped[j] * (1 + rate[j] * rate[j] / 4);
     NEAR(damping_power(fish, &follows, y), 0, 1e-24, 0);
-    assert_true(damping_power(fish, &muscle, y) < -0.1);
+    BELOW(damping_power(fish, &muscle, y), -0.1);
     school_clear(&setup);
 }
 

@@ -15,7 +15,7 @@ static const struct actuation no_muscle = {zero, zero, zero, zero};
 /* The stresses of a body from the node positions. */
 static void stresses(const struct fish *fish, const double *y, double *stress) {
     double strain[STRAINS], rate[STRAINS];
-    assert_true(rod_n_strains(fish) <= STRAINS);
+    AT_MOST(rod_n_strains(fish), STRAINS);
     rod_strains(fish, &no_muscle, y, &(struct rod_strains){strain, rate, stress});
 }
 
@@ -65,7 +65,7 @@ static void the_balance_finds_the_stresses_that_the_accelerations_say(void **sta
         NEAR(got[i], want[i], 1e-4 * size[i >= fish->n_joints], 0);
         wrong = fmax(wrong, fabs(law[i] - want[i]) / size[i >= fish->n_joints]);
     }
-    assert_true(wrong > 0.3);
+    ABOVE(wrong, 0.3);
     school_clear(&setup);
 }
 
@@ -245,7 +245,7 @@ static void powers_and_energies_of_a_stiff_body_have_a_limit(void **state) {
     NEAR(100 * got->damping_power, want->damping_power, 0, 0.05);
     NEAR(100 * got->cost_of_transport_body, want->cost_of_transport_body, 0, 0.05);
     // energies and works are consistent
-    assert_true(fabs(got->energy_balance) < 1e-3 * got->actuation_work);
+    BELOW(fabs(got->energy_balance), 1e-3 * got->actuation_work);
     simulate_free(fine);
     simulate_free(stiff);
 }

@@ -1,5 +1,6 @@
 /* test_case.c: defaults, presets, includes, assignments; and that a case shown reads back the same. Sweeps are tested
  * by test_sweep.c, wrong cases by test_bad.sh. */
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -38,7 +39,7 @@ static int remove_folder(void **state) {
 static void write_file(const char *path, const char *text) {
     FILE *const file = fopen(path, "w");
     assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
+    AT_LEAST(fputs(text, file), 0);
     assert_int_equal(fclose(file), 0);
 }
 
@@ -156,7 +157,7 @@ static void every_default_of_the_table_is_a_value_of_its_key(void **state) {
     case_free(&published);
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
-        assert_true(strlen(key->path) < 60);  // the buffers for paths hold more
+        BELOW(strlen(key->path), 60);  // the buffers for paths hold more
         assert_true(*key->meaning && !strchr(key->meaning, '\n'));
         assert_ptr_equal(case_table_row(key->path), key);
         assert_true(!key->initial || !key->derived);
@@ -342,6 +343,16 @@ static void includes_are_relative_to_their_file_and_the_last_is_strongest(void *
     NEAR(s.school.wake.smoothing, 0.4, 0, 0);
     assert_string_equal(s.name, "case");  // of no include, however deep and at any place of the list
     case_free(&s);
+    // an absolute path is relative to nothing
+    char absolute[PATH_MAX + 100], folder[PATH_MAX];
+    assert_non_null(getcwd(folder, sizeof folder));
+    snprintf(absolute, sizeof absolute, "include: [%s/water.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n", folder);
+    write_file("below/.yaml", absolute);
+    if (case_read(&s, "below/.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
+    NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
+    assert_string_equal(s.name, ".yaml");  // a hidden file has a name and no ending
+    case_free(&s);
+    assert_int_equal(unlink("below/.yaml"), 0);
     static const char text[] = "include: [below/more.yaml, water.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n";
     write_file("case.yaml", text);
     if (case_read(&s, "case.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());

@@ -102,6 +102,14 @@ static void an_expectation_is_about_the_members_with_its_values(void **state) {
     assert_int_equal(member.n_expectations, 0);
     case_free(&member);
     case_free(&s);
+    // an expectation may be about the first member only
+    s = parse(
+        "time: {end: 1, shedding_interval: 0.1}\nformat: 1\nfish: [{}]\n"
+        "sweep: [{key: solver.rtol, values: [1e-3, 1e-4]}]\n"
+        "expect: [{of: speed, least: 1, where: [solver.rtol=1e-3]}]\n");
+    assert_int_equal(sweep_expects_of(&s, s.expect, 0), 1);
+    assert_int_equal(sweep_expects_of(&s, s.expect, 1), 0);
+    case_free(&s);
 }
 
 static void a_wrong_member_is_named(void **state) {
@@ -124,7 +132,7 @@ static void a_sweep_is_refused_as_one_run_with_a_remedy(void **state) {
     case_free(&s);
     s = parse(swept);
     assert_int_equal(sweep_refuse(&s), STATUS_CASE);
-    assert_non_null(strstr(status_message(), "`shoal run` runs one case; this case has a sweep of 3 axes"));
+    assert_non_null(strstr(status_message(), "error: sweep: this case has a sweep of 3 axes: use `shoal study`"));
     case_free(&s);
 }
 

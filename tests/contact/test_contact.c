@@ -73,7 +73,7 @@ static void forces_are_the_gradient_of_the_energy(void **state) {
             n += fabs(gradient) > 0.1;
         }
     }
-    assert_true(n > 10);
+    ABOVE(n, 10);
     school_clear(&setup);
 }
 
@@ -104,7 +104,8 @@ static void forces_and_powers_of_all_add_up_to_nothing(void **state) {
         NEAR(on.moment, -own, 1e-12, 1e-12);
         moment += own;
     }
-    assert_true(size > 1 && largest > 0.1);
+    ABOVE(size, 1);
+    ABOVE(largest, 0.1);
     NEAR_ARRAY(2, sum, ((double[]){0, 0}), 1e-14 * size, 0);
     NEAR(moment, 0, 1e-13 * size, 0);
     NEAR(power, 0, 1e-13 * largest, 0);
@@ -147,7 +148,7 @@ static void walls_push_with_the_gradient_of_the_energy(void **state) {
         // a wall is at rest: no power
         NEAR(contact_power(contact, f, y), 0, 0, 0);
     }
-    assert_true(n > 5);
+    ABOVE(n, 5);
     school_clear(&setup);
 }
 
@@ -170,7 +171,7 @@ static void the_energy_above_walls_is_that_of_all_ends(void **state) {
             }
         }
     }
-    assert_true(want > 1e-3);
+    ABOVE(want, 1e-3);
     NEAR(contact_energy(setup.residual->contact, 0, y), want, 0, 1e-12);
     school_clear(&setup);
 }
@@ -285,9 +286,9 @@ static void meet(const char *name, const char *text, double end, double audit_li
                   simulation->state->closest->distance, imbalance, energy, most);
     // without contact the momentum of the first body is constant
     momentum(simulation, 1, after);
-    assert_true(hypot(after[0] - first[0], after[1] - first[1]) > 1e-3 * scale);
-    assert_true(simulation->state->closest->distance > 0);
-    assert_true(imbalance < audit_limit * energy);
+    ABOVE(hypot(after[0] - first[0], after[1] - first[1]), 1e-3 * scale);
+    ABOVE(simulation->state->closest->distance, 0);
+    BELOW(imbalance, audit_limit * energy);
     simulate_free(simulation);
 }
 
@@ -341,10 +342,10 @@ static void plates_that_swim_in_line_do_not_cross(void **state) {
     }
     print_message("plates in line: gap %.2g m, imbalance %.1g of %.3g J\n", simulation->state->closest->distance,
                   imbalance, energy);
-    assert_true(simulation->state->closest->distance > 0);
-    assert_true(stored > 0.005 * energy);
-    assert_true(imbalance < 5e-3 * energy);
-    assert_true(simulation->diagnostics->fish[0].com[0] < simulation->diagnostics->fish[1].com[0]);
+    ABOVE(simulation->state->closest->distance, 0);
+    ABOVE(stored, 0.005 * energy);
+    BELOW(imbalance, 5e-3 * energy);
+    BELOW(simulation->diagnostics->fish[0].com[0], simulation->diagnostics->fish[1].com[0]);
     simulate_free(simulation);
 }
 
@@ -393,11 +394,11 @@ static void bodies_under_pressure_throw_each_other_back(void **state) {
     }
     print_message("under pressure: gap %.2g m, imbalance %.1g of %.3g J\n", simulation->state->closest->distance,
                   imbalance, energy);
-    assert_true(simulation->state->closest->distance > 0);
-    assert_true(stored > 0.005 * energy);
-    assert_true(imbalance < 1e-3 * energy);
+    ABOVE(simulation->state->closest->distance, 0);
+    ABOVE(stored, 0.005 * energy);
+    BELOW(imbalance, 1e-3 * energy);
     // the bodies have turned back, aside or into a spin
-    assert_true(simulation->diagnostics->fish[0].com_velocity[0] < 0.5);
+    BELOW(simulation->diagnostics->fish[0].com_velocity[0], 0.5);
     simulate_free(simulation);
 }
 
@@ -436,8 +437,8 @@ static void bodies_that_are_thrown_back_go_on_tail_first(void **state) {
         const double speed =
             hypot(simulation->diagnostics->fish[0].com_velocity[0], simulation->diagnostics->fish[0].com_velocity[1]);
         print_message("thrown back %zu: %.2g J stored, then %.2g m/s\n", i, stored, speed);
-        assert_true(stored > 0.1);
-        assert_true(speed < 4);
+        ABOVE(stored, 0.1);
+        BELOW(speed, 4);
         simulate_free(simulation);
     }
 }
@@ -466,7 +467,7 @@ static void a_fixed_step_that_is_too_long_fails_and_says_so(void **state) {
     for (int i = 0; i < 5 && status == STATUS_OK; i++) status = simulate_step(simulation);
     assert_int_equal(status, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "choose a smaller solver.step"));
-    assert_true(simulation->state->closest->distance > 0);
+    ABOVE(simulation->state->closest->distance, 0);
     simulate_free(simulation);
 }
 
@@ -499,7 +500,8 @@ static void a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap(void 
             if (!said) fail_msg("%s", status_message());
             char *end;
             const double gap = strtod(said + strlen(cases[i].message), &end);
-            assert_true(gap > 0 && gap < simulation->school->contact_range);
+            ABOVE(gap, 0);
+            BELOW(gap, simulation->school->contact_range);
             assert_string_equal(end, cases[i].unit);
         } else {
             assert_null(said);
@@ -548,7 +550,7 @@ static char *crowd(void) {
         used += (size_t)snprintf(
             text + used, BYTES - used, "  - {start: {position: [%.4f, %.4f], heading: %.4f, speed: 0.1}}\n",
             3 * column - back * cos(angle) + 0.02 * sin(angle), 3 * row - back * sin(angle), heading);
-        assert_true(used < BYTES);
+        BELOW(used, BYTES);
     }
     return text;
 }
@@ -582,8 +584,8 @@ static void of_256_fish_no_two_get_through_each_other(void **state) {
     print_message("256 fish: %d in contact, least %.2e m, %.1f steps per event\n", n_contacts,
                   simulation->state->closest->distance,
                   (double)simulation->totals.steps / (double)simulation->state->event);
-    assert_true(n_contacts > 20);
-    assert_true(simulation->state->closest->distance > 0);
+    ABOVE(n_contacts, 20);
+    ABOVE(simulation->state->closest->distance, 0);
     NEAR_ARRAY(2, after, before, 1e-10 * scale, 0);
     simulate_free(simulation);
 }
@@ -598,7 +600,7 @@ static void stop_ends_the_run_at_the_time_and_with_the_names(void **state) {
     assert_int_equal(status, STATUS_CONTACT);
     assert_int_equal(status_exit_code(status), 3);
     assert_non_null(strstr(status_message(), "contact of quick and lazy at t = "));
-    assert_true(simulation->state->closest->distance < 0.02);
+    BELOW(simulation->state->closest->distance, 0.02);
     simulate_free(simulation);
 }
 
@@ -612,7 +614,8 @@ static void stop_does_not_wait_until_bodies_touch(void **state) {
     while (status == STATUS_OK && simulation->state->t < 0.5) status = simulate_step(simulation);
     assert_int_equal(status, STATUS_CONTACT);
     const double distance = simulation->state->closest->distance;
-    assert_true(distance > 0.0015 && distance < simulation->school->contact_range);
+    ABOVE(distance, 0.0015);
+    BELOW(distance, simulation->school->contact_range);
     simulate_free(simulation);
 }
 
@@ -669,7 +672,7 @@ static void the_energy_is_that_of_all_ends_above_all_edges(void **state) {
             for (int g = 0; g < f; g++)
                 want += energy_of_pair(setup.school, &setup.school->fish[g], &setup.school->fish[f], y);
         }
-        assert_true(want > 1e-3);
+        ABOVE(want, 1e-3);
         NEAR(energy_of_school(&setup, y), want, 0, 1e-12);
         school_clear(&setup);
     }

@@ -138,7 +138,7 @@ static void a_run_remembers_the_first_fish_and_when(void **state) {
         school_ok(simulate_step(simulation));
     }
     assert_int_equal(now->crossed, 1);
-    assert_true(last > 0.1);
+    ABOVE(last, 0.1);
     NEAR(now->crossed_t, now->t, 0, 0);
     const double first = now->crossed_t;
     school_run(simulation, first + 0.1);

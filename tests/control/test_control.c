@@ -43,7 +43,7 @@ static void law_turns_towards_the_desired_heading_the_short_way(void **state) {
     // heading -175 = 185 degrees: 15 degrees too far left, so the bias is positive and turns right
     NEAR(control_law(fish, memory, 0, -175 * pi / 180, 0, setup.state->y), 0.4 * tanh(3 * 15 * pi / 180), 1e-14, 0);
     NEAR(control_law(fish, memory, 0, 170 * pi / 180, 0.2, setup.state->y), 0.4 * tanh(0.2), 1e-14, 0);
-    assert_true(fabs(control_law(fish, memory, 0, 0, 1e3, setup.state->y)) <= 0.4);
+    AT_MOST(fabs(control_law(fish, memory, 0, 0, 1e3, setup.state->y)), 0.4);
     school_clear(&setup);
 }
 
@@ -135,7 +135,7 @@ static void averaged_heading_moves_the_bias_with_bounded_rate(void **state) {
         const struct control_view view = {.t = n * interval, .interval = interval, .mean_heading = heading};
         control_event(fish, memory, &view, setup.state->y);
         NEAR(memory->phi0, before, 1e-15, 0);
-        assert_true(fabs(memory->phi0_rate) <= 2);
+        AT_MOST(fabs(memory->phi0_rate), 2);
         n_bounded += memory->phi0_rate == 2;
         before = memory->phi0 + interval * memory->phi0_rate;
         // between two events the bias is linear in time
@@ -365,7 +365,7 @@ static void a_change_of_a_change_has_three_continuous_derivatives(void **state) 
     // the differences are wrong by h^4, h^3, h^2 times derivatives of up to 1e5 after the change
     const double tolerance[4] = {1e-14, 1e-9, 1e-5, 0.05};
     for (int k = 0; k < 4; k++) NEAR(right[k], left[k], tolerance[k], 0);
-    assert_true(fabs(left[3]) > 3);
+    ABOVE(fabs(left[3]), 3);
     NEAR(lead_value(&after, 1.2), -2, 0, 0);
     NEAR(lead_rate(&after, 1.2), 0, 0, 0);
     NEAR(lead_value(&after, 1.2 - 1e-4), -2, 1e-12, 0);
@@ -408,7 +408,8 @@ static void changes_at_every_event_do_not_run_away(void **state) {
         if (seed >> 24 < 10) lead_change(&lead, i * 0.02, 0.5, -lead.target + (lead.target == 0));
         most = fmax(most, fabs(lead_value(&lead, i * 0.02)));
     }
-    assert_true(most > 0.99 && most < 1.25);
+    ABOVE(most, 0.99);
+    BELOW(most, 1.25);
 }
 
 static void it_can_begin_with_a_value_and_a_rate(void **state) {
@@ -464,7 +465,8 @@ static void rates_of_a_gait_that_changes_are_those_of_its_values(void **state) {
     const double h = 1e-5;
     const struct fish_gait left = control_gait(fish, memory, 3.2 - h), right = control_gait(fish, memory, 3.2 + h),
                            gait = control_gait(fish, memory, 3.2);
-    assert_true(gait.amplitude < 0.7 && gait.amplitude_rate < -0.1);
+    BELOW(gait.amplitude, 0.7);
+    BELOW(gait.amplitude_rate, -0.1);
     NEAR(gait.amplitude_rate, (right.amplitude - left.amplitude) / (2 * h), 1e-7, 0);
     NEAR(gait.omega, (right.angle - left.angle) / (2 * h), 1e-7, 0);
     school_clear(&setup);

@@ -20,7 +20,7 @@ name: victim
 time: {end: 0.1, shedding_interval: 0.01, output_interval: 0.01, checkpoint_interval: 0.03}
 fish: [{force: reactive, nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}}]
 """
-CALLS = ["open", "read", "write", "pwrite", "lseek", "fsync", "ftruncate", "rename", "link", "close"]
+CALLS = ["open", "read", "write", "pwrite", "lseek", "fsync", "ftruncate", "rename", "close"]
 REASONS = {
     "ENOSPC": "No space left", "EIO": "Input/output error", "EDQUOT": "quota", "EINTR": "Interrupted", "limit": "too large"
 }
@@ -39,7 +39,9 @@ def run(extra=(), limit=None, **settings):
         [program, "run", "case.yaml", "-q", *extra, "-o", "victim.nc"], env=environment, timeout=300,
         stdin=subprocess.DEVNULL, capture_output=True, text=True, preexec_fn=lower,
     )
-    return done.returncode, done.stderr
+    # every run of this case is shorter than two beats
+    short = [line for line in done.stderr.splitlines(True) if "means and powers are not those of a cycle" not in line]
+    return done.returncode, "".join(short)
 
 
 def rows(path):
@@ -102,8 +104,7 @@ def check(name, reason, killed=False, **settings):
     """A run with a fault, and all that must hold after it."""
     for left in [name for name in os.listdir(".") if name.startswith("victim.")]:
         os.remove(left)
-    # a result gets its name by a link, with --force by renaming it
-    finds_one = settings.get("CALL") == "rename" or (settings.get("CALL") != "link" and n % 2 == 0)
+    finds_one = n % 2 == 0
     if finds_one:
         for left in EARLIER:
             shutil.copy("earlier/" + left, left)
@@ -141,7 +142,6 @@ def check(name, reason, killed=False, **settings):
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     open("case.yaml", "w").write(CASE)
-    # a result gets its name by a link, with --force by renaming it
     for extra in ([], ["--force"]):
         code, message = run(extra, AT="0", COUNT="counted")
         assert code == 0, message

@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 enum { MAX_FILES = 1024, NAME = 128 };
-enum kind { CREATE, WRITE, TRUNCATE, SYNC, SYNC_FOLDER, RENAME, LINK, UNLINK };
+enum kind { CREATE, WRITE, TRUNCATE, SYNC, SYNC_FOLDER, RENAME, UNLINK };
 
 struct entry {
     uint64_t kind, inode, offset, length;
@@ -126,9 +126,9 @@ int rename(const char *from, const char *to) {
     return code;
 }
 
-int link(const char *from, const char *to) {
-    const int code = (int)syscall(SYS_linkat, AT_FDCWD, from, AT_FDCWD, to, 0);
-    if (code == 0 && matches(to)) put((struct entry){.kind = LINK}, from, to, NULL);
+int renameat2(int from_folder, const char *from, int to_folder, const char *to, unsigned flags) {
+    const int code = (int)syscall(SYS_renameat2, from_folder, from, to_folder, to, flags);
+    if (code == 0 && matches(to)) put((struct entry){.kind = RENAME}, from, to, NULL);
     return code;
 }
 

@@ -23,7 +23,7 @@ name: victim
 time: {end: 0.16, shedding_interval: 0.01, output_interval: 0.01, checkpoint_interval: 0.04}
 fish: [{force: reactive, nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}}]
 """
-KINDS = ["create", "write", "truncate", "sync", "sync folder", "rename", "link", "unlink"]
+KINDS = ["create", "write", "truncate", "sync", "sync folder", "rename", "unlink"]
 Entry = collections.namedtuple("Entry", "kind inode offset length name other data")
 LEFT = ["victim.nc", "victim.ckpt", "victim.ckpt.previous"]
 

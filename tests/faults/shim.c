@@ -1,7 +1,7 @@
 /* shim.c: calls of the system that fail on demand, to be preloaded (LD_PRELOAD): tests/faults/faults.py.
  *
  *     FAULT_PATH   the calls about files whose path contains this are counted, all others pass
- *     FAULT_CALL   name of the call that fails: open, read, write, pwrite, lseek, fsync, ftruncate, rename, link, close
+ *     FAULT_CALL   name of the call that fails: open, read, write, pwrite, lseek, fsync, ftruncate, rename, close
  *     FAULT_AT     which of these calls, from 1; 0: none
  *     FAULT_HOW    ENOSPC, EIO, EDQUOT, EINTR: it fails with this; short: it writes a half; before, after: SIGKILL
  *     FAULT_EVER   1: all later ones fail too
@@ -17,9 +17,9 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-enum { OPEN, READ, WRITE, PWRITE, LSEEK, FSYNC, FTRUNCATE, RENAME, LINK, CLOSE, N_CALLS, MAX_FILES = 1024 };
+enum { OPEN, READ, WRITE, PWRITE, LSEEK, FSYNC, FTRUNCATE, RENAME, CLOSE, N_CALLS, MAX_FILES = 1024 };
 static const char *const names[N_CALLS] = {"open",  "read",      "write",  "pwrite", "lseek",
-                                           "fsync", "ftruncate", "rename", "link",   "close"};
+                                           "fsync", "ftruncate", "rename", "close"};
 static long count[N_CALLS];
 static char is_ours[MAX_FILES];  // of a descriptor: its file is one of FAULT_PATH
 
@@ -116,7 +116,9 @@ PLAIN(int, ftruncate, FTRUNCATE, counts(file), SYS_ftruncate, (int file, off_t s
 PLAIN(int, ftruncate64, FTRUNCATE, counts(file), SYS_ftruncate, (int file, off64_t size), file, size)
 PLAIN(int, rename, RENAME, matches(to), SYS_renameat2, (const char *from, const char *to), AT_FDCWD, from, AT_FDCWD, to,
       0)
-PLAIN(int, link, LINK, matches(to), SYS_linkat, (const char *from, const char *to), AT_FDCWD, from, AT_FDCWD, to, 0)
+PLAIN(int, renameat2, RENAME, matches(to), SYS_renameat2,
+      (int from_folder, const char *from, int to_folder, const char *to, unsigned flags), from_folder, from, to_folder,
+      to, flags)
 
 int close(int file) {
     const enum fate fate = counts(file) ? fate_of(CLOSE) : PASS;

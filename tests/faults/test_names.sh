@@ -44,11 +44,17 @@ fi
 refused compare_finds_a_missing_folder_first 4 'there is no folder no/such' compare small.yaml -o no/such/x.nc
 check and_has_not_begun test ! -s out
 
-# the name under which a result is made has the number of the process: a link for each that may be next
-bash -c 'for i in $(seq 0 40); do ln -s precious "part.nc.$(($$ + i))-0.part"; done
-    exec "$0" run small.yaml -q -o part.nc' "$program" >out 2>err
+# the name under which a result is made
+ln -s precious part.nc.part
+refused run_refuses_a_link_as_part 4 'part.nc.part exists and is no file of shoal' run small.yaml -q -o part.nc
 check nothing_is_written_through_a_part precious
-check the_result_is_there test -s part.nc -a ! -L part.nc
+check the_link_stays test -L part.nc.part
+rm part.nc.part && ln precious part.nc.part
+refused run_refuses_a_second_name_as_part 4 'part.nc.part exists and is no file of shoal' run small.yaml -q -o part.nc
+check nothing_is_written_to_another_name_of_a_part precious
+rm part.nc.part && mkfifo part.nc.part
+refused run_refuses_a_fifo_as_part 4 'part.nc.part exists and is no file of shoal' run small.yaml -q -o part.nc
+rm part.nc.part
 
 # ---- studies
 

@@ -54,7 +54,7 @@ static void added_mass_takes_the_mean_square_of_the_thickness(void **state) {
     const struct fish *thick = &setup.school->fish[0], *wide = &setup.school->fish[1];
     for (int k = 0; k < thick->n_edges; k++) {
         const double h = thick->thickness[k], l = 1.0 / 6;
-        assert_true(thick->square[k] > 1);
+        ABOVE(thick->square[k], 1);
         NEAR(thick->added_mass[k], pi * 1000 * 1.5 * h * h * thick->square[k] * l / 4, 0, 1e-14);
         NEAR(thick->drag_normal[k], 1000 * 0.5 * l * h / 2, 0, 1e-14);
         NEAR(wide->added_mass[k], pi * 1000 * 1.5 * 0.25 * 0.25 * l / 4, 0, 1e-14);
@@ -369,7 +369,7 @@ static void bodies_in_boxes_apart_are_not_compared_edge_by_edge(void **state) {
     n_hypot = 0;
     school_ok(fish_school_create(&school, &values.school));
     const int per_pair = 4 * school->fish->n_edges * school->fish->n_edges;
-    assert_true(n_hypot < per_pair);
+    BELOW(n_hypot, per_pair);
     fish_school_free(school);
     case_free(&values);
 }
@@ -411,7 +411,8 @@ static void distance_of_bent_bodies_is_the_least_of_their_points(void **state) {
         // edges are up to 1.4 long
         const double want = sampled_distance(a, b, y), spacing = 1.4 / SAMPLES;
         const double got = fish_distance(a, b, y, INFINITY);
-        assert_true(got <= want + 1e-14 && got >= want - spacing);
+        AT_MOST(got, want + 1e-14);
+        AT_LEAST(got, want - spacing);
         NEAR(fish_distance(b, a, y, INFINITY), got, 1e-15, 0);
         // boxes never exclude near bodies
         NEAR(fish_distance(a, b, y, got + 1e-12), got, 0, 0);

@@ -1,17 +1,14 @@
-/* test_flow.c: sources at every point, and derivatives of the velocity. doc/model.md, sections 6 to 9. */
+/* test_flow.c: external flow; point vortices at every point; walls as mirrored fish; threads. doc/model.md, sections 6
+ * to 9, 17. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "failing_malloc.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_at_wake.h"
 #include "flow/flow_derivative.h"
 #include "school.h"
-#include "vortex/images.h"
-#include "vortex/kernel.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define TWO_FISH                                         \
@@ -20,35 +17,31 @@
     "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 0.5], heading: 165}}\n"
 #define TWO TIME "fluid: {velocity: [0.1, 0.2], shear: 0.3, gust: {amplitude: 0.2, frequency: 1}}\n" TWO_FISH
 
+static void add_vortex(double g, double x, double y, double from_x, double from_y, double e, double *u, double *v) {
+    const double r[2] = {x - from_x, y - from_y}, square = r[0] * r[0] + r[1] * r[1] + e * e;
+    const double f = square > 0 ? g / (6.28318530717958647692 * square) : 0;
+    *u -= f * r[1];
+    *v += f * r[0];
+}
+
 // velocity at (x, y) from the sources of fish g: free vortices, and the bound sheet with a smoothing (< 0: omitted)
 static void add_fish(const struct setup *setup, int g, double x, double y, double smoothing, double *u, double *v) {
     const struct fish *fish = &setup->school->fish[g];
     const struct state *state = setup->state;
     const struct wake *wake = &state->wake[g];
-    const double tau = setup->t - state->t;
-    double px[16], py[16], strength[16];
+    const double tau = setup->t - state->t, interval = setup->school->interval;
+    double px[16], py[16], strength[16], nascent[2];
 
-    wake_at(wake, setup->school, state->t, tau, px, py, strength);
+    wake_places(wake, interval, tau, px, py);
+    wake_strengths(wake, setup->school, state->t, tau, tau / interval, strength);
     const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
-    double nascent[2];
     wake_nascent(wake, tau, tail, nascent);
-    px[wake->n_vortex] = nascent[0];
-    py[wake->n_vortex] = nascent[1];
-    strength[wake->n_vortex] = state->y[fish->at.circulation] - wake->shed_before;
-    for (int i = 0; i <= wake->n_vortex; i++) {
-        struct kernel_values unit;
-        kernel_unit(1, &x, &y, px[i], py[i], fish->smoothing, &unit);
-        *u += strength[i] * *unit.u;
-        *v += strength[i] * *unit.v;
-    }
-
+    for (int i = 0; i < wake->n_vortex; i++) add_vortex(strength[i], x, y, px[i], py[i], fish->smoothing, u, v);
+    add_vortex(state->y[fish->at.circulation] - wake->shed_before, x, y, nascent[0], nascent[1], fish->smoothing, u, v);
     for (int j = 0; j < fish->n_sheet && smoothing >= 0; j++) {
-        const double q = fish->sheet_weight[j] * state->y[fish->at.gamma + j];
-        struct kernel_values unit;
-        kernel_unit(1, &x, &y, fish_mean(&fish->sheet_point[j], state->y + fish->at.x),
-                    fish_mean(&fish->sheet_point[j], state->y + fish->at.y), smoothing, &unit);
-        *u += q * *unit.u;
-        *v += q * *unit.v;
+        add_vortex(fish->sheet_weight[j] * state->y[fish->at.gamma + j], x, y,
+                   fish_mean(&fish->sheet_point[j], state->y + fish->at.x),
+                   fish_mean(&fish->sheet_point[j], state->y + fish->at.y), smoothing, u, v);
     }
 }
 
@@ -101,11 +94,11 @@ static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
     school_flow(&setup, setup.state->y);
     struct flow *const flow = setup.residual->flow;
     school_ok(flow_at_wake(flow, setup.state));
-    assert_in_range(flow->released.n, 1, 32);
+    assert_in_range(flow->n_markers, 1, 34);
     for (int f = 0; f < 2; f++) {
         const struct wake *wake = &setup.state->wake[f];
-        const double *const u = flow->wake_u + flow->released_range[f].first, *const v = flow->wake_v +
-                                                                                         flow->released_range[f].first;
+        const double *const u = flow->wake_u + flow->wake_range[f].first;
+        const double *const v = flow->wake_v + flow->wake_range[f].first;
         for (int i = 0; i < wake->n_vortex; i++) {
             double want_u, want_v;
             flow_external(setup.school, setup.t, wake->x[i], wake->y[i], &want_u, &want_v);
@@ -117,153 +110,6 @@ static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
         }
     }
 
-    school_clear(&setup);
-}
-
-enum { MANY_FISH = 30, MANY_SHEET = 100, MANY_VORTICES = 70 };
-
-// a school with sheets and wakes large enough for the tree if the tolerance is not 0
-static void build_many(struct setup *setup, const char *fluid) {
-    char text[4096];
-    size_t used = (size_t)snprintf(
-        text, sizeof text, TIME "%sdefaults: {fish: {sheet_points: %d, force: reactive}}\nfish:\n", fluid, MANY_SHEET);
-
-    for (int f = 0; f < MANY_FISH; f++) {
-        used += (size_t)snprintf(text + used, sizeof text - used, "  - {start: {position: [%g, %g]}}\n",
-                                 1.4 * (f % 6) + 0.1 * (f / 6), 0.5 * (f / 6));
-        assert_true(used < sizeof text);
-    }
-
-    school_build(setup, text);
-    school_stir(setup);
-    setup->t = setup->state->t;
-    school_fill_wakes(setup, MANY_VORTICES);
-}
-
-// largest difference of two fields of n velocities each
-static double difference(int n, const double *u, const double *v, const double *other_u, const double *other_v) {
-    double worst = 0;
-    for (int i = 0; i < n; i++) worst = fmax(worst, hypot(u[i] - other_u[i], v[i] - other_v[i]));
-    return worst;
-}
-
-static void compare_every_point(const char *fluid) {
-    struct setup setup;
-    build_many(&setup, fluid);
-    struct flow *const flow = setup.residual->flow;
-    const size_t n = (size_t)flow->n_points;
-    double *const u = malloc(2 * n * sizeof *u), *const v = u + n;
-    assert_non_null(u);
-    setup.school->wake_tolerance = 0;
-    assert_false(velocity_sum_by_tree(&flow->sheet, flow->n_points, setup.school->wake_tolerance));
-    school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
-    memcpy(u, flow->u, n * sizeof *u);
-    memcpy(v, flow->v, n * sizeof *v);
-
-    // sheets that do not act at a point, or act with another smoothing, are subtracted from the sum of all sheets
-    setup.school->wake_tolerance = 1e-6;
-    assert_true(velocity_sum_by_tree(&flow->sheet, flow->n_points, setup.school->wake_tolerance));
-    school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
-
-    // a tenth of the tolerance times the velocity of the sheets without cancellation, about ten lengths per beat
-    const double error = difference(flow->n_points, u, v, flow->u, flow->v);
-    assert_true(error > 0 && error < 1e-6);
-    free(u);
-    school_clear(&setup);
-}
-
-static void by_tree_every_point_feels_the_same_sources(void **state) {
-    (void)state;
-    compare_every_point("");
-    compare_every_point("fluid: {walls: [-1.5]}\n");
-    compare_every_point("fluid: {walls: [-1.5, 4]}\n");
-}
-
-static void compare_wake_vortices(const char *fluid) {
-    struct setup setup;
-    build_many(&setup, fluid);
-    struct flow *const flow = setup.residual->flow;
-    const size_t n = MANY_FISH * MANY_VORTICES;
-    double *const u = malloc(2 * n * sizeof *u), *const v = u + n;
-    assert_non_null(u);
-    setup.school->wake_tolerance = 0;
-    school_ok(flow_at_wake(flow, setup.state));
-    assert_int_equal(flow->released.n, (int)n);
-    memcpy(u, flow->wake_u, n * sizeof *u);
-    memcpy(v, flow->wake_v, n * sizeof *v);
-    setup.school->wake_tolerance = 1e-6;
-    assert_true(velocity_sum_by_tree(&flow->sheet, flow->released.n, setup.school->wake_tolerance));
-    school_ok(flow_at_wake(flow, setup.state));
-    const double error = difference((int)n, u, v, flow->wake_u, flow->wake_v);
-    assert_true(error > 0 && error < 1e-6);
-    free(u);
-    school_clear(&setup);
-}
-
-static void by_tree_wake_vortices_feel_every_sheet_once(void **state) {
-    (void)state;
-    compare_wake_vortices("");
-    compare_wake_vortices("fluid: {walls: [-1.5]}\n");
-}
-
-// unknowns of a school after a displacement of the bodies, with a different direction for each point
-static void move(const struct setup *setup, double far, double *y) {
-    memcpy(y, setup->state->y, (size_t)setup->school->n_unknowns * sizeof *y);
-    for (int f = 0; f < setup->school->n_fish; f++) {
-        const struct layout *const at = &setup->school->fish[f].at;
-        for (int i = at->x; i < at->vx; i++) y[i] += far * sin(0.7 * i);
-    }
-}
-
-// Between two events the tree allocates no memory, because the tree does not sort the moved points again. Without
-// memory and without a plan the flow uses the direct sum.
-static void the_tree_is_planned_at_the_event(void **state) {
-    (void)state;
-    struct setup setup;
-    build_many(&setup, "");
-    struct flow *const flow = setup.residual->flow;
-    const size_t n = (size_t)flow->n_points;
-    double *const u = malloc(4 * n * sizeof *u), *const v = u + n, *const exact_u = v + n, *const exact_v = exact_u + n;
-    double *const y = malloc((size_t)setup.school->n_unknowns * sizeof *y);
-    assert_true(u && y);
-    const double far[] = {0, 0.004, 5};
-    school_ok(flow_interpolate(flow, setup.state));
-    const double tolerance = setup.school->wake_tolerance;
-    for (int k = 0; k < 3; k++) {
-        // every sheet directly; this call also allocates the released vortices
-        move(&setup, far[k], y);
-        setup.school->wake_tolerance = 0;
-        school_ok(flow_velocity(flow, setup.state, setup.t, y));
-        setup.school->wake_tolerance = tolerance;
-        memcpy(exact_u, flow->u, n * sizeof *u);
-        memcpy(exact_v, flow->v, n * sizeof *v);
-        n_until_failure = far[k] < 1 ? 0 : -1;
-        school_ok(flow_velocity(flow, setup.state, setup.t, y));
-        n_until_failure = -1;
-        memcpy(u, flow->u, n * sizeof *u);
-        memcpy(v, flow->v, n * sizeof *v);
-        for (int threads = 2; threads < 4; threads++) {
-            setup.school->threads = threads;
-            school_ok(flow_velocity(flow, setup.state, setup.t, y));
-            assert_memory_equal(flow->u, u, n * sizeof *u);
-            assert_memory_equal(flow->v, v, n * sizeof *v);
-            setup.school->threads = 1;
-        }
-
-        // unchanged after an evaluation at other positions
-        move(&setup, 1, y);
-        school_ok(flow_velocity(flow, setup.state, setup.t, y));
-        move(&setup, far[k], y);
-        school_ok(flow_velocity(flow, setup.state, setup.t, y));
-        assert_memory_equal(flow->u, u, n * sizeof *u);
-        const double error = difference(flow->n_points, u, v, exact_u, exact_v);
-
-        // see compare_every_point
-        assert_true(error > 0 && error < tolerance);
-    }
-
-    free(u);
-    free(y);
     school_clear(&setup);
 }
 
@@ -296,14 +142,14 @@ static void a_travelling_gust_moves_along_the_stream(void **state) {
 
         // the zero of the sine and the middle of the step are 0.2 m along the stream at the start, and move at 1 m/s
         double u, v, later[2];
-        flow_gust(school, 0, 0.12, 0.16, &u, &v);
+        flow_external_gust(school, 0, 0.12, 0.16, &u, &v);
         NEAR(hypot(u, v), i == 0 ? 0 : 0.5, 1e-14, 0);
         const double ahead = 0.07, x = 0.12 + 0.6 * ahead, y = 0.16 + 0.8 * ahead;
-        flow_gust(school, 0, x, y, &u, &v);
+        flow_external_gust(school, 0, x, y, &u, &v);
         const double shape = i == 0 ? sin(2 * 3.14159265358979323846 * ahead / 0.7) : ramp_step(0.5 - ahead / 0.4);
         NEAR(u, -0.8 * shape, 1e-14, 0);
         NEAR(v, 0.6 * shape, 1e-14, 0);
-        flow_gust(school, 0.3, x + 0.3 * 0.6, y + 0.3 * 0.8, &later[0], &later[1]);
+        flow_external_gust(school, 0.3, x + 0.3 * 0.6, y + 0.3 * 0.8, &later[0], &later[1]);
         NEAR(later[0], u, 1e-14, 0);
         NEAR(later[1], v, 1e-14, 0);
 
@@ -315,7 +161,7 @@ static void a_travelling_gust_moves_along_the_stream(void **state) {
         flow_external(school, t, x - h, y, &from[0], &from[1]);
         NEAR(gradient[0], (to[0] - from[0]) / (2 * h), 1e-7, 0);
         NEAR(gradient[2], (to[1] - from[1]) / (2 * h), 1e-7, 0);
-        assert_true(fabs(gradient[0]) > 0.1);
+        ABOVE(fabs(gradient[0]), 0.1);
         flow_external(school, t, x, y + h, &to[0], &to[1]);
         flow_external(school, t, x, y - h, &from[0], &from[1]);
         NEAR(gradient[1], (to[0] - from[0]) / (2 * h), 1e-7, 0);
@@ -358,7 +204,7 @@ static void compare_derivatives(const char *text) {
     struct flow *flow = setup.residual->flow;
     struct influence_block *block = &setup.residual->jacobian_scratch[0].block;
     double velocity[4][64];
-    assert_true(2 * flow->n_points <= 64);
+    AT_MOST(2 * flow->n_points, 64);
     for (int f = 0; f < 2; f++) {
         for (int g = 0; g < 2; g++) {
             const struct fish *other = &setup.school->fish[g];
@@ -432,6 +278,8 @@ static void copy_fish(const struct setup *from, int f, struct setup *to, int g, 
         copy->u_before[i] = wake->u_before[i];
         copy->v_before[i] = sign * wake->v_before[i];
         copy->circulation[i] = sign * wake->circulation[i];
+        copy->rate[i] = sign * wake->rate[i];
+        copy->rate_before[i] = sign * wake->rate_before[i];
         copy->birth[i] = wake->birth[i];
     }
 
@@ -462,7 +310,7 @@ static void same_gradients(const struct flow *one, const struct flow *other, int
 
 static void same_wake(const struct flow *one, const struct flow *other, int f) {
     const int n = one->wake_range[f].n, i = one->wake_range[f].first, k = other->wake_range[f].first;
-    assert_true(n > 5);
+    ABOVE(n, 5);
     NEAR_ARRAY(n, one->wake_u + i, other->wake_u + k, 1e-13, 1e-12);
     NEAR_ARRAY(n, one->wake_v + i, other->wake_v + k, 1e-13, 1e-12);
 }
@@ -505,69 +353,6 @@ static void beside_a_wall_everything_feels_mirrored_fish(void **state) {
     }
 }
 
-static void the_field_does_not_go_through_walls(void **state) {
-    (void)state;
-    enum { POINTS = 50 };
-    struct setup setup;
-    school_build(&setup, TIME "fluid: {velocity: [0.3, 0], shear: 0.2, walls: [-0.4, 1.9]}\n" BESIDE);
-    school_stir(&setup);
-    double x[POINTS], y[POINTS], u[POINTS], v[POINTS], u_x[POINTS], u_y[POINTS], v_x[POINTS];
-    const struct induced at = {POINTS, x, y, u, v, u_x, u_y, v_x};
-    for (int i = 0; i < POINTS; i++) {
-        x[i] = 0.05 * i - 1;
-        y[i] = i % 2 ? -0.4 : 1.9;
-    }
-
-    school_ok(flow_field(setup.residual->flow, setup.state, &at));
-    double largest = 0;
-    for (int i = 0; i < POINTS; i++) {
-        NEAR(v[i], 0, 1e-12, 0);
-        NEAR(v_x[i], 0, 1e-11, 0);
-        largest = fmax(largest, fabs(u[i] - u[(i + 2) % POINTS]));
-    }
-
-    assert_true(largest > 0.01);
-
-    // no fluid beyond the walls
-    for (int i = 0; i < POINTS; i++) y[i] = i % 3 == 0 ? -0.41 : i % 3 == 1 ? 1.91 : 0.2;
-    school_ok(flow_field(setup.residual->flow, setup.state, &at));
-    for (int i = 0; i < POINTS; i++) {
-        assert_int_equal(isnan(u[i]) && isnan(v[i]) && isnan(u_x[i]) && isnan(u_y[i]) && isnan(v_x[i]), i % 3 != 2);
-    }
-
-    school_clear(&setup);
-}
-
-// many points at once: the tree sums the wakes, but not the few bound vortices
-static void the_field_at_many_points_is_that_at_few(void **state) {
-    (void)state;
-    enum { POINTS = 6000, VORTICES = 1200, FEW = 60 };
-    struct setup setup;
-    school_build(&setup, TWO);
-    school_stir(&setup);
-    for (int i = 0; i < VORTICES; i++) {
-        school_ok(wake_release(&setup.state->wake[0], 2 + school_random(&setup), school_random(&setup),
-                               0.01 * school_random(&setup), setup.state->t));
-    }
-
-    static double x[POINTS], y[POINTS], many[5][POINTS], few[5][POINTS];
-    for (int i = 0; i < POINTS; i++) {
-        x[i] = 3 * school_random(&setup);
-        y[i] = 2 * school_random(&setup);
-    }
-
-    const struct induced all = {POINTS, x, y, many[0], many[1], many[2], many[3], many[4]};
-    school_ok(flow_field(setup.residual->flow, setup.state, &all));
-    for (int i = 0; i < POINTS; i += FEW) {
-        const struct induced some = {FEW, x + i, y + i, few[0] + i, few[1] + i, few[2] + i, few[3] + i, few[4] + i};
-        school_ok(flow_field(setup.residual->flow, setup.state, &some));
-    }
-
-    for (int k = 0; k < 2; k++) NEAR_ARRAY(POINTS, many[k], few[k], 1e-5, 0);
-    for (int k = 2; k < 5; k++) NEAR_ARRAY(POINTS, many[k], few[k], 1e-3, 0);
-    school_clear(&setup);
-}
-
 static void changed_wakes_are_placed_again(void **state) {
     (void)state;
     struct setup setup;
@@ -579,7 +364,7 @@ static void changed_wakes_are_placed_again(void **state) {
     setup.state->wake[0].circulation[3] += 1;
     setup.state->wake[0].version++;
     school_flow(&setup, setup.state->y);
-    assert_true(fabs(flow->u[0] - before) > 1e-4);
+    ABOVE(fabs(flow->u[0] - before), 1e-4);
     school_clear(&setup);
 }
 
@@ -624,16 +409,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_point_feels_the_sources_that_the_model_says),
         cmocka_unit_test(wake_vortices_feel_everything_with_smoothed_sheets),
-        cmocka_unit_test(by_tree_every_point_feels_the_same_sources),
-        cmocka_unit_test(the_tree_is_planned_at_the_event),
-        cmocka_unit_test(by_tree_wake_vortices_feel_every_sheet_once),
         cmocka_unit_test(external_flow_is_stream_plus_shear_plus_gust),
         cmocka_unit_test(a_travelling_gust_moves_along_the_stream),
         cmocka_unit_test(external_acceleration_is_that_of_a_particle_of_the_fluid),
         cmocka_unit_test(derivative_by_every_unknown_agrees_with_differences),
         cmocka_unit_test(beside_a_wall_everything_feels_mirrored_fish),
-        cmocka_unit_test(the_field_does_not_go_through_walls),
-        cmocka_unit_test(the_field_at_many_points_is_that_at_few),
         cmocka_unit_test(changed_wakes_are_placed_again),
         cmocka_unit_test(gradient_pass_leaves_the_velocity_as_it_is),
         cmocka_unit_test(threads_change_no_bit),

@@ -92,11 +92,10 @@ static void solve_plate(const char *collocation, const char *kutta, int m, const
     struct setup setup;
     school_build(&setup, text);
     struct initial_conditions *consistent;
-    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
     school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
     const struct fish *fish = setup.school->fish;
     for (int j = 0; j < m; j++) q[j] = fish->sheet_weight[j] * setup.state->y[fish->at.gamma + j];
-    initial_conditions_free(consistent);
     school_clear(&setup);
 }
 
@@ -142,10 +141,10 @@ static double error_of_midpoints(int m) {
 static void plate_with_midpoints_converges(void **state) {
     (void)state;
     const double coarse = error_of_midpoints(41), fine = error_of_midpoints(81);
-    assert_true(fine < 0.03);
+    BELOW(fine, 0.03);
 
     // first order: midpoints of chords are not the points of a quadrature
-    assert_true(coarse / fine > 1.8);
+    ABOVE(coarse / fine, 1.8);
 
     // With Kutta's condition the sum of the strengths is exact on any mesh: (L/2) w times 2 pi, by Vieta's formula for
     // the polynomial whose zeros are the control points, the means of neighbouring bound points.
@@ -167,10 +166,9 @@ static double circulation_beside_a_vortex(int m) {
     school_build(&setup, text);
     school_ok(wake_release(&setup.state->wake[0], 0.4, 0.3, 1, 0));
     struct initial_conditions *consistent;
-    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
     school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
     const double circulation = bound_sheet_circulation(setup.school->fish, setup.state->y);
-    initial_conditions_free(consistent);
     school_clear(&setup);
     return circulation;
 }
@@ -179,12 +177,13 @@ static void chebyshev_points_converge_spectrally(void **state) {
     (void)state;
     const double limit = circulation_beside_a_vortex(161);
     double before = fabs(circulation_beside_a_vortex(11) - limit);
-    assert_true(before < 0.1 && before > 1e-9);
+    BELOW(before, 0.1);
+    ABOVE(before, 1e-9);
 
     // spectral convergence: ten more points reduce the error tenfold, down to rounding
     for (int m = 21; m <= 51; m += 10) {
         const double error = fabs(circulation_beside_a_vortex(m) - limit);
-        assert_true(error < before / 10 || error < 1e-12);
+        BELOW(error, fmax(before / 10, 1e-12));
         before = error;
     }
 }
@@ -211,10 +210,9 @@ static double circulation_of_a_bent_body(line *place, const char *curve, int n_n
     }
 
     struct initial_conditions *consistent;
-    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
     school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
     const double circulation = bound_sheet_circulation(fish, setup.state->y);
-    initial_conditions_free(consistent);
     school_clear(&setup);
     return circulation;
 }
@@ -268,9 +266,13 @@ static void smooth_curve_and_polygon_of_a_bent_fish_have_one_limit(void **state)
         polygon[i] = fabs(circulation_of_a_bent_body(beat, "polygon", n_nodes[i], 65) / limit - 1);
     }
 
-    assert_true(smooth[0] < 1e-3 && smooth[1] < 1e-4 && smooth[2] < 1e-5);
-    assert_true(log2(smooth[0] / smooth[1]) > 3 && log2(smooth[1] / smooth[2]) > 3);
-    assert_true(polygon[0] > 1e-2 && log2(polygon[1] / polygon[2]) > 1.3);
+    BELOW(smooth[0], 1e-3);
+    BELOW(smooth[1], 1e-4);
+    BELOW(smooth[2], 1e-5);
+    ABOVE(log2(smooth[0] / smooth[1]), 3);
+    ABOVE(log2(smooth[1] / smooth[2]), 3);
+    ABOVE(polygon[0], 1e-2);
+    ABOVE(log2(polygon[1] / polygon[2]), 1.3);
     NEAR(circulation_of_a_bent_body(beat, "polygon", 641, 65), limit, 0, 1e-3);
 }
 

@@ -156,7 +156,8 @@ static void powers_are_those_of_the_forces(void **state) {
         for (int k = 0; k < 2 * fish->n_nodes; k++) power -= setup.value[fish->at.ax + k] * y[fish->at.vx + k];
         const struct fluid_power got = fluid_force_power(fish, &flow, y);
         NEAR(got.drag + got.added_mass + got.wake, power, 0, 1e-13);
-        assert_true(fabs(got.drag) > 1e-3 && fabs(got.added_mass) > 1e-3);
+        ABOVE(fabs(got.drag), 1e-3);
+        ABOVE(fabs(got.added_mass), 1e-3);
         assert_true((fabs(got.wake) > 1e-3) == (i == 1));
         school_clear(&setup);
     }
@@ -189,7 +190,8 @@ static void friction_is_the_tangential_part_of_the_drag(void **state) {
     NEAR(fluid_force_power(fish, &flow, y).friction, power, 0, 1e-12);
     NEAR(sum.friction_moment, moment, 0, 1e-12);
     NEAR(sum.resistive_moment, resistive_moment, 0, 1e-12);
-    assert_true(fabs(moment) > 1e-3 && fabs(resistive_moment - moment) > 1e-3);
+    ABOVE(fabs(moment), 1e-3);
+    ABOVE(fabs(resistive_moment - moment), 1e-3);
     school_clear(&setup);
 }
 
@@ -234,7 +236,7 @@ static void the_reactive_force_does_not_feel_the_own_wake(void **state) {
     // tolerance
     NEAR_ARRAY(2, nose[0], nose[1], 1e-7, 0);
     NEAR_ARRAY(2, nose[2], nose[1], 1e-7, 0);
-    assert_true(hypot(nose[4][0] - nose[3][0], nose[4][1] - nose[3][1]) > 1e-4);
+    ABOVE(hypot(nose[4][0] - nose[3][0], nose[4][1] - nose[3][1]), 1e-4);
 }
 
 int main(void) {

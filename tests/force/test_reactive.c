@@ -215,7 +215,7 @@ static void mean_thrust_of_a_plate_of_small_amplitude_is_lighthill_s(void **stat
         lighthill += mass_per_length / 2 * (rate * rate - speed * speed * slope * slope) / N;
     }
 
-    assert_true(lighthill > 1e-3);
+    ABOVE(lighthill, 1e-3);
 
     // relative error of the order of the amplitude squared
     NEAR(thrust, lighthill, 0, 2e-5);
@@ -251,17 +251,17 @@ static void energy_of_body_and_fluid_is_the_work_of_the_muscle(void **state) {
         const struct diagnostics_fish *const fish = measured(simulation);
         print_message("rtol %.0e: %.1e J of %.2f J, %.2f J of them in the fluid\n", rtol[i], worst[i],
                       whole_energy(fish), fish->added_mass_energy);
-        assert_true(fish->added_mass_energy > 0.01);
+        ABOVE(fish->added_mass_energy, 0.01);
 
         // a method of order 2 with steps proportional to rtol^(1/3)
-        assert_true(worst[i] < pow(rtol[i], 2.0 / 3.0) * whole_energy(fish));
+        BELOW(worst[i], pow(rtol[i], 2.0 / 3.0) * whole_energy(fish));
 
         // the energy balance of the body alone finds the same error
-        assert_true(fabs(fish->energy_balance) < 2 * worst[i]);
+        BELOW(fabs(fish->energy_balance), 2 * worst[i]);
         simulate_free(simulation);
     }
 
-    assert_true(worst[0] / worst[1] > 10);
+    ABOVE(worst[0] / worst[1], 10);
 }
 
 static void no_fish_gains_energy_from_still_fluid(void **state) {
@@ -284,12 +284,12 @@ static void no_fish_gains_energy_from_still_fluid(void **state) {
             const double in_body = whole_energy(fish) - fish->added_mass_energy;
             gained = fmax(gained, in_body - fish->actuation_work);
             fastest = fmax(fastest, hypot(fish->com_velocity[0], fish->com_velocity[1]));
-            assert_true(fish->wake_power <= 0);
+            AT_MOST(fish->wake_power, 0);
         }
 
         print_message("number %.1f: %.1e J gained of %.1f J, at most %.2f m/s\n", number, gained,
                       measured(simulation)->actuation_work, fastest);
-        assert_true(gained <= 1e-4 * measured(simulation)->actuation_work);
+        AT_MOST(gained, 1e-4 * measured(simulation)->actuation_work);
         simulate_free(simulation);
     }
 }
@@ -327,7 +327,7 @@ static void reversing_the_wave_reverses_the_path(void **state) {
     school_ok(back->integrator->restart(back->solver));
     school_run(back, 1);
     print_message("distance %.3f m\n", gone);
-    assert_true(gone > 0.01);
+    ABOVE(gone, 0.01);
 
     // error of the method: (omega step)^4 of the fastest motion
     NEAR_ARRAY(14, y + fish->at.x, start, 1e-5 * gone, 0);

@@ -139,7 +139,7 @@ static void compare_with_differences(const char *keys, const char *fish, int n_m
     struct simulation *const simulation = school_simulation(text);
     const struct fish *const of = simulation->school->fish;
     double before[MOST], rate[MOST], most = 0, error = 0;
-    assert_true(of->n_control <= MOST);
+    AT_MOST(of->n_control, MOST);
 
     school_run(simulation, 0.0975);
     for (int c = 0; c < of->n_control; c++) before[c] = potential(simulation, 0, c, n_mirrors, mirrors);
@@ -227,7 +227,7 @@ static void mirrored_fish_exchange_left_and_right(void **state) {
         for (int side = 0; side < 2; side++) {
             const double one = two[0]->residual->pressure[0]->sensor[side][i];
             NEAR(two[1]->residual->pressure[0]->sensor[1 - side][i], one, 1e-6, 1e-6);
-            assert_true(fabs(one) > 0.1);
+            ABOVE(fabs(one), 0.1);
         }
     }
     for (int i = 0; i < 2; i++) simulate_free(two[i]);

@@ -37,16 +37,15 @@ static void demand_file(enum status status) {
 }
 
 static void read_rows(void) {
-    struct result_reader reader;
-    const enum status status = result_reader_open(&reader, path);
+    struct arena *const arena = arena_create(NULL, "a test");
+    struct result_reader *reader;
+    const enum status status = result_reader_open(arena, &reader, path);
     demand_file(status);
-    if (status != STATUS_OK) return;
-    for (int i = 0; i < result_table_n; i++) {
-        double *values = NULL;
-        if (result_table[i].type == RESULT_TEXT) continue;
-        if (result_reader_new(&reader, result_table[i].name, 0, &values) == STATUS_OK) free(values);
+    for (int i = 0; status == STATUS_OK && i < result_table_n; i++) {
+        double *values;
+        if (result_table[i].type != RESULT_TEXT) result_reader_new(arena, reader, result_table[i].name, 0, &values);
     }
-    result_reader_close(&reader);
+    arena_free(arena);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n) {

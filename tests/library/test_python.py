@@ -24,6 +24,9 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, os.environ.get("SHOAL_MODULE", str(ROOT / "scripts")))
 import shoal  # noqa: E402
 
+sys.path.append(str(ROOT / "scripts"))
+import documents  # noqa: E402
+
 SMALL = {"force": "reactive", "nodes": 7, "sheet_points": 21}
 PAIR = {
     "time": {"end": 0.2, "shedding_interval": 0.02, "output_interval": 0.02},
@@ -125,6 +128,18 @@ class Runs(unittest.TestCase):
             except shoal.CaseError as error:
                 self.assertIn("has a zero byte in it", str(error))
         self.assertFalse(os.path.exists("cut.nc"))
+        for wrong in (lambda: shoal.Run("a\ud800.yaml"), lambda: run.write("a\ud800.nc"),
+                      lambda: shoal.check("a\ud800.yaml"), lambda: shoal.steady(PAIR, path="a\ud800.nc"),
+                      lambda: shoal.study(PAIR, path="a\ud800"), lambda: shoal.view("a\ud800.nc"),
+                      lambda: shoal.Run(PAIR, folder="a\ud800")):
+            with self.assertRaisesRegex(shoal.CaseError, "has a surrogate in it, which is no character"):
+                wrong()
+        # a name that is not UTF-8: the program takes it, the NetCDF library of Python does not
+        with self.assertRaisesRegex(shoal.FileError, "cannot be read"):
+            shoal.check("a\udcff.yaml")
+        run.write("a\udcff.nc")
+        with self.assertRaisesRegex(shoal.FileError, "the name is not UTF-8: rename the file or its folder"):
+            shoal.open("a\udcff.nc")
         run.step()
         for time in -1, 0:
             with self.assertRaisesRegex(shoal.CaseError, "before the last event"):
@@ -423,6 +438,38 @@ class Words(unittest.TestCase):
         alone.advance(4)
         self.assertEqual(run["x"].tobytes(), alone["x"].tobytes())
 
+    def test_ctrl_c_takes_effect_within_one_event(self):
+        # without and with progress; the run continues with the bits of an uninterrupted run
+        case = {**PAIR, "time": {**PAIR["time"], "end": 1000}}
+        for progress in (False, lambda time, end: None):
+            run = shoal.Run(case)
+            sent = []
+
+            def interrupt():
+                sent.append(shoal._library.library.shoal_time(run._handle.pointer))
+                os.kill(os.getpid(), signal.SIGINT)
+
+            timer = threading.Timer(0.3, interrupt)
+            timer.start()
+            with self.assertRaises(KeyboardInterrupt):
+                run.advance(run.end, progress)
+            timer.join()
+            self.assertLess(run.time, run.end)
+            # the event in progress, and one more for the time between the two lines above
+            self.assertLessEqual(run.time, sent[0] + 2.5 * run.interval)
+            run.step()
+            alone = shoal.Run(case)
+            alone.advance(run.time)
+            self.assertEqual(run["x"].tobytes(), alone["x"].tobytes())
+
+    def test_a_time_outside_of_the_case_is_refused_before_the_first_event(self):
+        run = shoal.Run(PAIR)
+        for time in (run.end + 2 * run.interval, -1):
+            for progress in (False, lambda time, end: None):
+                with self.assertRaises(shoal.CaseError):
+                    run.advance(time, progress)
+                self.assertEqual(run.time, 0)
+
     def test_a_bar_is_one_line_as_wide_as_the_terminal(self):
         code = ("import sys; sys.path.insert(0, sys.argv[1]); import shoal\n"
                 f"run = shoal.Run({PAIR!r}); run.advance(run.end, progress=True)\n")
@@ -477,7 +524,7 @@ class Programs(unittest.TestCase):
     def test_a_result_is_a_page(self):
         page = shoal.view(shoal.run(PAIR, path="paged.nc"))
         self.assertEqual(page.path, "paged.html")
-        self.assertIn("iframe", page._repr_html_())
+        self.assertRegex(page._repr_html_(), 'style="width: 100%; height: \\d+px; border: 0"')  # properties of CSS
         with self.assertRaisesRegex(shoal.FileError, "paged.html"):
             shoal.view("paged.nc", overwrite=False)
 
@@ -554,7 +601,7 @@ class Results(unittest.TestCase):
                 self.assertRegex(end, "^shared.nc$|another run writes this result|exists")
             with shoal.open("shared.nc") as data:
                 self.assertEqual((data.attrs["run_status"], data["time"].size), ("complete", 101))
-            self.assertFalse(os.path.exists("shared.nc.lock"))
+            self.assertFalse(os.path.exists("shared.nc.part"))
 
     def test_the_end_of_a_fork_leaves_the_result_alone(self):
         run = shoal.Run(PAIR)
@@ -564,8 +611,10 @@ class Results(unittest.TestCase):
         if child == 0:
             del run
             gc.collect()
-            os._exit(0 if os.path.exists("forked.nc.lock") else 1)
+            os._exit(0)
         self.assertEqual(os.waitpid(child, 0)[1], 0)
+        with shoal.Run(PAIR) as other, self.assertRaisesRegex(shoal.FileError, "another run writes this result"):
+            other.write("forked.nc", overwrite=True)
         run.advance(run.end)
         run.write_end()
         with shoal.open("forked.nc") as data:
@@ -866,13 +915,12 @@ class Examples(unittest.TestCase):
 
 
 class Document(unittest.TestCase):
-    def test_every_snippet_runs(self):
-        text = (ROOT / "doc/python.md").read_text()
-        snippets = re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)
+    def test_every_snippet_runs_and_prints_its_comments(self):
+        path = ROOT / "doc/python.md"
+        snippets = [block.text for block in documents.blocks_of(path.read_text()) if block.kind == "python"]
         self.assertGreater(len(snippets), 10)
-        names = {}
-        for number, snippet in enumerate(snippets, 1):
-            exec(compile(snippet, f"doc/python.md, snippet {number}", "exec"), names)
+        self.assertGreater(sum(len(documents.PRINT.findall(snippet)) for snippet in snippets), 5)
+        self.assertEqual(list(documents.compare(path, os.environ["SHOAL_PROGRAM"])), [])
 
 
 if __name__ == "__main__":

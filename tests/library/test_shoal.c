@@ -11,8 +11,8 @@
 #include "base/version.h"
 #include "failing_malloc.h"
 #include "result/checkpoint.h"
+#include "result/durable.h"
 #include "result/netcdf.h"
-#include "result/result_lock.h"
 #include "result/result_table.h"
 #include "school.h"
 #include "shoal.h"
@@ -97,7 +97,7 @@ static void bodies_and_wakes_are_those_of_the_simulation(void **state) {
     struct case_values values;
     struct simulation *simulation;
     school_ok(case_read(&values, *state, 0, NULL));
-    school_ok(simulate_create(&simulation, &values));
+    school_ok(simulate_create(NULL, &simulation, &values));
     struct shoal *const run = opened(*state, 0, NULL);
     for (int i = 0; i < 5; i++) {
         school_ok(simulate_step(simulation));
@@ -116,7 +116,10 @@ static void bodies_and_wakes_are_those_of_the_simulation(void **state) {
         NEAR_ARRAY(5, y, wake->y, 0, 0);
         NEAR_ARRAY(5, circulation, wake->circulation, 0, 0);
         // all values differ: a wrong order or a wrong fish changes the result
-        for (int i = 0; i < 4; i++) assert_true(wake->x[i] > wake->x[i + 1] && fabs(circulation[i]) > 0);
+        for (int i = 0; i < 4; i++) {
+            ABOVE(wake->x[i], wake->x[i + 1]);
+            ABOVE(fabs(circulation[i]), 0);
+        }
     }
     shoal_close(run);
     simulate_free(simulation);
@@ -139,7 +142,7 @@ static void two_runs_do_not_know_each_other(void **state) {
 // the message of a case that cannot be opened
 static const char *refusal(const char *path, const char *assignment) {
     struct shoal *run = (struct shoal *)&run;  // not NULL
-    assert_true(shoal_open(&run, path, assignment ? 1 : 0, &assignment) < 0);
+    BELOW(shoal_open(&run, path, assignment ? 1 : 0, &assignment), 0);
     assert_null(run);
     return shoal_message();
 }
@@ -156,12 +159,12 @@ static void what_cannot_be_opened_is_refused_with_the_words_of_the_program(void 
 static void a_run_that_fails_can_be_read_and_closed(void **state) {
     const char *const assignments[] = {"solver.max_steps=1"};
     struct shoal *const run = opened(*state, 1, assignments);
-    assert_true(shoal_step(run) < 0);
+    BELOW(shoal_step(run), 0);
     assert_non_null(strstr(shoal_message(), "solver.max_steps"));
     double x[7], y[7];
     shoal_nodes(run, 1, x, y);
     assert_true(isfinite(x[6]) && isfinite(y[6]));
-    assert_true(shoal_time(run) < shoal_end(run));
+    BELOW(shoal_time(run), shoal_end(run));
     shoal_close(run);
 }
 
@@ -270,10 +273,10 @@ static void opening_without_memory_fails_and_leaves_nothing(void **state) {
         assert_true(code == 0 ? run != NULL : code < 0 && !run && shoal_message()[0] != '\0');
         shoal_close(run);
         assert_int_equal(n_live, n_before);
-        assert_true(n < 10000);
+        BELOW(n, 10000);
     }
     print_message("%d failures\n", n_failed);
-    assert_true(n_failed > 100);
+    ABOVE(n_failed, 100);
 }
 
 // ---- checked arguments
@@ -535,7 +538,7 @@ static void names_and_counts_are_read_too(void **state) {
     assert_int_equal(shoal_step(run), SHOAL_OK);
     assert_int_equal(shoal_read(run, "steps", &array), SHOAL_OK);
     assert_int_equal(array.type, SHOAL_LONG);
-    assert_true(*(const long *)array.values > 0);
+    ABOVE(*(const long *)array.values, 0);
     shoal_close(run);
 }
 
@@ -565,7 +568,7 @@ static void what_has_been_read_holds_until_the_next_step(void **state) {
     assert_int_equal(shoal_step(run), SHOAL_OK);
     assert_ptr_equal(read_doubles(run, "x", &array), x);
     assert_ptr_equal(read_doubles(run, "v", &array), v);
-    assert_true(fabs(x[0] - before) > 0);
+    ABOVE(fabs(x[0] - before), 0);
     shoal_close(run);
 }
 
@@ -609,7 +612,7 @@ static void the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own(v
         size += fabs(along) * radius * 2 * pi / N;
     }
     // all circulation is bound, free or nascent: together none; the smoothing leaves (delta/radius)^2 of each
-    assert_true(size > 1e-4);
+    ABOVE(size, 1e-4);
     NEAR(circulation, 0, 3e-3 * size, 0);
     shoal_close(run);
 }
@@ -621,7 +624,7 @@ static void vorticity_is_the_curl_of_the_velocity(void **state) {
     double velocity[10], vorticity[5];
     assert_int_equal(shoal_flow(run, 5, points, velocity, vorticity), SHOAL_OK);
     const double curl = (velocity[3] - velocity[5]) / (2 * h) - (velocity[6] - velocity[8]) / (2 * h);
-    assert_true(fabs(vorticity[0]) > 1e-3);
+    ABOVE(fabs(vorticity[0]), 1e-3);
     NEAR(vorticity[0], curl, 0, 1e-4);
     shoal_close(run);
 }
@@ -657,7 +660,7 @@ static void a_result_file_has_the_rows_that_are_due(void **state) {
     struct shoal *const run = opened(*state, 1, assignments);
     char path[] = "/tmp/test_shoal_result_XXXXXX";
     const int descriptor = mkstemp(path);
-    assert_true(descriptor >= 0);
+    AT_LEAST(descriptor, 0);
     assert_int_equal(close(descriptor), 0);
     assert_int_equal(shoal_write_end(run), SHOAL_OK);
     assert_int_equal(shoal_write(run, path, 0), SHOAL_FILE);  // it exists
@@ -732,8 +735,8 @@ static void two_runs_of_one_process_do_not_write_the_same_result(void **state) {
     // the lock holds for other processes too
     const pid_t child = fork();
     if (child == 0) {
-        struct result_lock lock;
-        _exit(result_lock_take(&lock, result_path) == STATUS_FILE ? 0 : 1);
+        struct durable_claim claim;
+        _exit(durable_claim_take(&claim, result_path) == STATUS_FILE ? 0 : 1);
     }
     int outcome;
     assert_int_equal(waitpid(child, &outcome, 0), child);
@@ -776,8 +779,8 @@ static void a_fork_leaves_the_result_and_its_lock_alone(void **state) {
         assert_int_equal(outcome, 0);
         assert_int_equal(stat(result_path, &after), 0);
         assert_memory_equal(&before.st_mtim, &after.st_mtim, sizeof before.st_mtim);
-        struct result_lock lock;
-        assert_int_equal(result_lock_take(&lock, result_path), STATUS_FILE);
+        struct durable_claim claim;
+        assert_int_equal(durable_claim_take(&claim, result_path), STATUS_FILE);
     }
     assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
     shoal_close(run);
@@ -918,7 +921,7 @@ static void copying_without_memory_fails_and_leaves_the_run(void **state) {
         assert_int_equal(n_live, n_before);
         n += n / 4;
     }
-    assert_true(n_failed > 10);
+    ABOVE(n_failed, 10);
     assert_int_equal(shoal_step(run), SHOAL_OK);
     shoal_close(run);
 }
@@ -978,7 +981,7 @@ static void a_body_is_where_it_was_put_with_its_velocity(void **state) {
     NEAR(one_of(run, "energy_balance", 0), audit[2], 1e-9, 0);
     assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
     NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
-    assert_true(fabs(one_of(run, "energy_balance", 0) - audit[2]) < 1e-3 * fabs(one_of(run, "kinetic_energy", 0)));
+    BELOW(fabs(one_of(run, "energy_balance", 0) - audit[2]), 1e-3 * fabs(one_of(run, "kinetic_energy", 0)));
     shoal_close(run);
 }
 
@@ -1078,16 +1081,20 @@ static void a_vortex_from_outside_keeps_momentum_and_circulation(void **state) {
         assert_int_equal(shoal_flow(run, 2, points, flow, NULL), SHOAL_OK);
         // the velocity on both sides of the vortex, except for smoothing and the response of the bodies
         NEAR(flow[1] - flow[3] - far[1] + far[3], circulation / (M_PI * r), 0, 0.2);
-        NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
-        for (size_t k = 0; k < 2 && i == 0; k++) NEAR(one_of(run, "momentum_balance", k), before[k], 1e-7, 0);
-        NEAR(one_of(run, "energy_balance", 0), before[2], 1e-8, 0);
+        // Newton's iteration stops at 0.003 rtol of L^2 f: 3e-8
+        NEAR(one_of(run, "total_circulation", 0), 0, 3e-8, 0);
         // rho w (y, -x) G, of the depth 0.2 of the default
         const double impulse = lost[0] - one_of(run, "lost_impulse", 0);
+        // the circulation of the sheets is solved for again: its error is small beside the impulse of 4 N s
+        for (size_t k = 0; k < 2 && i == 0; k++)
+            NEAR(one_of(run, "momentum_balance", k), before[k], 1e-7 * fabs(impulse), 0);
+        NEAR(one_of(run, "energy_balance", 0), before[2], 1e-8, 0);
         NEAR(impulse / (lost[1] - one_of(run, "lost_impulse", 1)), -y / x, 0, 1e-9);
         // later errors of the balance are the same as without the vortex
         assert_int_equal(shoal_advance(run, 0.5), SHOAL_OK);
         assert_int_equal(shoal_advance(copy, 0.5), SHOAL_OK);
-        NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
+        // Newton's iteration stops at 0.003 rtol of L^2 f: 3e-8
+        NEAR(one_of(run, "total_circulation", 0), 0, 3e-8, 0);
         for (size_t k = 0; k < 2 && i == 0; k++) {
             NEAR(one_of(run, "momentum_balance", k), one_of(copy, "momentum_balance", k), 5e-3 * fabs(impulse), 0);
         }
@@ -1116,11 +1123,35 @@ static void a_changed_run_is_copied_and_saved_like_any_other(void **state) {
     same_in_all(run, copy);
     same_in_all(run, loaded);
     // the file has room until the end
-    assert_true(n_rows_of(result_path) > 2);
+    ABOVE(n_rows_of(result_path), 2);
     for (int i = 0; i < 3; i++) shoal_close(all[i]);
     assert_int_equal(unlink(path), 0);
     assert_int_equal(unlink(result_path), 0);
     assert_int_equal(rmdir(result_folder), 0);
+}
+
+static void the_longest_wake_has_all_its_slots_and_the_other_ends_in_nan(void **state) {
+    for (int f = 0; f < 2; f++) {
+        struct shoal *const run = opened_to_change(state, 0.1);
+        assert_int_equal(shoal_add_vortex(run, f, -1, 0.5, 0.01), SHOAL_OK);
+        const int n = shoal_n_vortices(run, f), of_other = shoal_n_vortices(run, 1 - f);
+        BELOW(of_other, n);
+        struct shoal_array array;
+        const double *const read = read_doubles(run, "wake_circulation", &array);
+        assert_int_equal(array.shape[0], 2);
+        assert_int_equal(array.shape[1], n);
+        for (int g = 0; g < 2; g++) {
+            double x[64], y[64], circulation[64];
+            assert_int_equal(shoal_vortices(run, g, x, y, circulation), SHOAL_OK);
+            for (int i = 0; i < n; i++) {
+                if (g == f || i < of_other)
+                    NEAR(read[g * n + i], circulation[i], 0, 0);
+                else
+                    assert_true(isnan(read[g * n + i]));
+            }
+        }
+        shoal_close(run);
+    }
 }
 
 static void a_vortex_without_room_is_refused(void **state) {
@@ -1157,7 +1188,7 @@ static void changing_without_memory_leaves_the_run(void **state) {
         if (code != 0) assert_int_equal(shoal_n_vortices(run, 0), n_vortices);
         n += n / 4;
     }
-    assert_true(n_failed > 10);
+    ABOVE(n_failed, 10);
     shoal_close(run);
 }
 
@@ -1168,7 +1199,7 @@ static char saved_path[] = "/tmp/test_shoal_saved.XXXXXX";
 static void make_saved_path(void) {
     strcpy(saved_path + strlen(saved_path) - 6, "XXXXXX");
     const int descriptor = mkstemp(saved_path);
-    assert_true(descriptor >= 0);
+    AT_LEAST(descriptor, 0);
     close(descriptor);
     assert_int_equal(unlink(saved_path), 0);
 }
@@ -1224,7 +1255,7 @@ static void loading_without_memory_fails_and_leaves_nothing(void **state) {
         assert_int_equal(n_live, n_before);
         n += n / 4;
     }
-    assert_true(n_failed > 10);
+    ABOVE(n_failed, 10);
     assert_int_equal(unlink(saved_path), 0);
 }
 
@@ -1310,6 +1341,7 @@ int main(void) {
         cmocka_unit_test(a_state_that_no_body_can_have_is_refused),
         cmocka_unit_test(a_vortex_from_outside_keeps_momentum_and_circulation),
         cmocka_unit_test(a_changed_run_is_copied_and_saved_like_any_other),
+        cmocka_unit_test(the_longest_wake_has_all_its_slots_and_the_other_ends_in_nan),
         cmocka_unit_test(a_vortex_without_room_is_refused),
         cmocka_unit_test(changing_without_memory_leaves_the_run),
         cmocka_unit_test(a_saved_run_goes_on_with_the_bits_of_the_run),

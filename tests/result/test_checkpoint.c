@@ -38,6 +38,7 @@ static int set_up(void **state) {
     for (int i = 0; i < 30; i++) school_ok(wake_release(&setup.state->wake[1], i, i + 0.5, 1, 2));
     setup.state->t = 0.6;
     setup.state->event = 30;
+    school_ok(state_reserve(setup.state, setup.school));
     for (int f = 0; f < 2; f++) state_remember(&setup.state->history[f], &(struct sample){.speed = NAN, .heading = f});
     for (int i = 0; i < setup.school->n_unknowns; i++) setup.state->y[i] = 1.0 / (i + 1);
     school_ok(checkpoint_write(path, previous, &written, setup.state, setup.school));
@@ -75,7 +76,7 @@ static void all_that_is_written_is_read(void **state) {
     school_ok(checkpoint_set_state(&read, fresh, setup.school));
     for (int i = 0; i < state_table_n; i++) {
         const struct state_row *const row = &state_table[i];
-        assert_true(strlen(row->name) < SECTIONS_NAME);
+        BELOW(strlen(row->name), SECTIONS_NAME);
         for (int f = 0; f < state_table_n_owners(row, setup.school) && row->type != STATE_UNKEPT; f++) {
             const size_t n = state_table_length(row, setup.state, setup.school, f);
             assert_int_equal(state_table_length(row, fresh, setup.school, f), n);
@@ -206,7 +207,7 @@ static void values_that_are_not_finite_are_refused(void **state) {
         }
         free(bytes);
     }
-    assert_true(n_refused > 100);
+    ABOVE(n_refused, 100);
     crafted("wall_time", &wrong[0], sizeof wrong[0], "section 'wall_time' is invalid");
     crafted("step_size", &wrong[1], sizeof wrong[1], "section 'step_size' is invalid");
     crafted("t", &(double){0.62}, sizeof(double), "the state does not fit this case");

@@ -6,10 +6,24 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "near.h"
 #include "result/durable.h"
+
+// fsync of a folder fails
+static int folder_fails;
+int __real_fsync(int descriptor);
+int __wrap_fsync(int descriptor);
+int __wrap_fsync(int descriptor) {
+    struct stat facts;
+    if (folder_fails && fstat(descriptor, &facts) == 0 && S_ISDIR(facts.st_mode)) {
+        errno = EIO;
+        return -1;
+    }
+    return __real_fsync(descriptor);
+}
 
 static char folder[] = "/tmp/test_durable_XXXXXX", path[64], previous[64];
 
@@ -49,6 +63,10 @@ static void holds(const char *name, const char *want) {
     free(bytes);
 }
 
+static void ok(enum status status) {
+    if (status != STATUS_OK) fail_msg("%s", status_message());
+}
+
 static void the_last_two_are_kept(void **state) {
     (void)state;
     const char *const texts[] = {"first", "second one", "third"};
@@ -71,9 +89,14 @@ static void a_part_is_new_locked_and_becomes_the_target_as_a_whole(void **state)
     assert_int_equal(durable_begin(&part, path, 0666), 0);
     assert_int_equal(durable_write(part.descriptor, "new", 3), 0);
     assert_int_equal(n_files(), 2);
-    const int again = open(part.name, O_RDWR);
-    assert_int_equal(durable_lock(again, 0, 0), EAGAIN);
-    close(again);
+    // one name, and one process that makes the file
+    struct durable_part again;
+    char name[128];
+    snprintf(name, sizeof name, "%s.part", path);
+    assert_string_equal(part.name, name);
+    assert_int_equal(durable_begin(&again, path, 0666), EAGAIN);
+    durable_end(&again);
+    holds(name, "new");
     holds(path, "old");
     assert_int_equal(durable_publish(&part, false), EEXIST);
     holds(path, "old");
@@ -100,57 +123,170 @@ static void a_part_that_is_given_up_leaves_what_was_there(void **state) {
     durable_end(&part);
 }
 
-static void a_link_under_the_name_of_a_part_is_not_followed(void **state) {
+static void a_part_is_no_file_of_another_program_and_no_link(void **state) {
     (void)state;
-    struct durable_part part;
     char name[128], target[64];
-    unsigned long first;
     snprintf(target, sizeof target, "%s/target", folder);
-    put(target, "mine");
-    assert_int_equal(durable_begin(&part, path, 0666), 0);
-    assert_int_equal(sscanf(strrchr(part.name, '-'), "-%lu", &first), 1);
-    durable_end(&part);
-    for (unsigned long i = 1; i <= 3; i++) {
-        snprintf(name, sizeof name, "%s.%ld-%lu.part", path, (long)getpid(), first + i);
-        assert_int_equal(symlink(target, name), 0);
+    snprintf(name, sizeof name, "%s.part", path);
+    put(target, "CDF mine");
+    for (int i = 0; i < 5; i++) {
+        struct durable_part part;
+        struct durable_claim claim;
+        if (i == 0) assert_int_equal(symlink(target, name), 0);
+        if (i == 1) assert_int_equal(link(target, name), 0);
+        if (i == 2) put(name, "mine");
+        if (i == 3) assert_int_equal(mkfifo(name, 0666), 0);
+        if (i == 4) assert_int_equal(mkdir(name, 0777), 0);
+        assert_int_equal(durable_begin(&part, path, 0666), ENOTUNIQ);
+        durable_end(&part);
+        assert_int_equal(durable_claim_take(&claim, path), STATUS_FILE);
+        assert_non_null(strstr(status_message(), "a.part exists and is no file of shoal"));
+        durable_discard(path);
+        holds(target, "CDF mine");
+        if (i == 2) holds(name, "mine");
+        assert_int_equal(n_files(), 2);
+        assert_int_equal(remove(name), 0);
     }
-    assert_int_equal(durable_replace(path, previous, "new", 3), STATUS_OK);
-    holds(path, "new");
-    holds(target, "mine");
-    // nothing is swept away but files of our own
-    durable_sweep(path);
-    assert_int_equal(n_files(), 5);
-    for (unsigned long i = 1; i <= 3; i++) {
-        snprintf(name, sizeof name, "%s.%ld-%lu.part", path, (long)getpid(), first + i);
-        unlink(name);
-    }
-    unlink(path);
     unlink(target);
 }
 
-static void only_parts_that_nobody_makes_any_more_are_swept_away(void **state) {
+static void the_part_of_a_process_that_died_is_used_again(void **state) {
     (void)state;
-    // a part with the name of this process, locked; one of a process that died; files that are none of ours
+    char name[128];
+    snprintf(name, sizeof name, "%s.part", path);
+    static const char *const left[] = {"", "CDF\1 of a run that died", "SHOAL\r\n\x1a...", "<!DOCTYPE html>..."};
+    for (int i = 0; i < 4; i++) {
+        put(name, left[i]);
+        assert_int_equal(durable_replace(path, NULL, "new", 3), STATUS_OK);
+        holds(path, "new");
+        assert_int_equal(n_files(), 1);
+        unlink(path);
+        put(name, left[i]);
+        durable_discard(path);
+        assert_int_equal(n_files(), 0);
+    }
+}
+
+// ---- claims
+
+static void a_claim_excludes_runs_of_this_and_of_other_processes(void **state) {
+    (void)state;
+    struct durable_claim one, other;
+    for (int exists = 0; exists < 2; exists++) {
+        if (exists) put(path, "CDF");
+        ok(durable_claim_take(&one, path));
+        assert_int_equal(durable_claim_take(&other, path), STATUS_FILE);
+        assert_non_null(strstr(status_message(), "another run writes this result"));
+        assert_null(other.part);
+        const pid_t child = fork();
+        if (child == 0) _exit(durable_claim_take(&other, path) == STATUS_FILE ? 0 : 1);
+        int outcome;
+        assert_int_equal(waitpid(child, &outcome, 0), child);
+        assert_int_equal(outcome, 0);
+        assert_int_equal(n_files(), 1 + exists);
+        durable_claim_release(&one);
+        durable_claim_release(&one);
+        assert_int_equal(n_files(), exists);
+        ok(durable_claim_take(&other, path));
+        durable_claim_release(&other);
+    }
+    unlink(path);
+}
+
+static void a_claim_goes_with_the_file_to_its_name_and_to_all_others(void **state) {
+    (void)state;
+    struct durable_claim one, other;
     struct durable_part part;
-    const char *const foreign[] = {"a.1-2.part", "a.part", "a.1-2.parts", "a.x-2.part", "b.1-2.part"};
-    const char *const texts[] = {"mine", "", "", "", ""};
-    char name[5][64], stale[3][64];
+    char second[64];
+    snprintf(second, sizeof second, "%s/second", folder);
+
+    // the claim of a run covers the part that the run makes
+    ok(durable_claim_take(&one, path));
     assert_int_equal(durable_begin(&part, path, 0666), 0);
-    for (int i = 0; i < 5; i++) {
-        snprintf(name[i], sizeof name[i], "%s/%s", folder, foreign[i]);
-        put(name[i], texts[i]);
-    }
-    for (int i = 0; i < 3; i++) {
-        snprintf(stale[i], sizeof stale[i], "%s/a%s.123-%d.part", folder, i == 2 ? ".previous" : "", i);
-        put(stale[i], i == 0 ? "CDF\1" : i == 1 ? "" : "SHOAL\r\n\x1a...");
-    }
-    assert_int_equal(n_files(), 9);
-    durable_sweep(path);
-    assert_int_equal(n_files(), 6);
-    for (int i = 0; i < 3; i++) assert_int_not_equal(access(stale[i], F_OK), 0);
-    assert_int_equal(access(part.name, F_OK), 0);
+    assert_int_equal(durable_write(part.descriptor, "CDF", 3), 0);
+    assert_int_equal(durable_publish(&part, false), 0);
     durable_end(&part);
-    for (int i = 0; i < 5; i++) assert_int_equal(unlink(name[i]), 0);
+    assert_int_equal(n_files(), 1);
+    assert_int_equal(durable_claim_take(&other, path), STATUS_FILE);
+    assert_int_equal(n_files(), 1);
+    assert_int_equal(link(path, second), 0);
+    assert_int_equal(durable_claim_take(&other, second), STATUS_FILE);
+    assert_int_equal(n_files(), 2);
+    durable_claim_release(&one);
+    holds(path, "CDF");
+    ok(durable_claim_take(&other, second));
+    assert_int_equal(durable_claim_take(&one, path), STATUS_FILE);
+    durable_claim_release(&other);
+    unlink(second);
+    unlink(path);
+}
+
+static void a_fork_does_not_release_a_claim(void **state) {
+    (void)state;
+    struct durable_claim one, other;
+    ok(durable_claim_take(&one, path));
+    const pid_t child = fork();
+    if (child == 0) {
+        durable_claim_release(&one);
+        _exit(one.part == NULL ? 0 : 1);
+    }
+    int outcome;
+    assert_int_equal(waitpid(child, &outcome, 0), child);
+    assert_int_equal(outcome, 0);
+    assert_int_equal(n_files(), 1);
+    assert_int_equal(durable_claim_take(&other, path), STATUS_FILE);
+    durable_claim_release(&one);
+    assert_int_equal(n_files(), 0);
+}
+
+static void of_runs_that_race_one_has_the_claim_and_no_part_stays(void **state) {
+    (void)state;
+    // each process takes the claim, publishes its file, and removes it again, as fast as it can
+    enum { RIVALS = 4, ROUNDS = 300 };
+    pid_t child[RIVALS];
+    for (int r = 0; r < RIVALS; r++) {
+        child[r] = fork();
+        if (child[r] > 0) continue;
+        int n_taken = 0, is_bad = 0;
+        for (int i = 0; i < ROUNDS || n_taken == 0; i++) {
+            struct durable_claim claim;
+            struct durable_part part;
+            if (durable_claim_take(&claim, path) != STATUS_OK) continue;
+            n_taken++;
+            // nobody else makes, publishes or removes the file meanwhile
+            is_bad |= durable_begin(&part, path, 0666) != 0;
+            is_bad |= durable_publish(&part, n_taken % 2 == 0) != 0;
+            is_bad |= !durable_has_name(part.descriptor, path);
+            is_bad |= unlink(path) != 0;
+            durable_end(&part);
+            durable_claim_release(&claim);
+        }
+        _exit(is_bad);
+    }
+    for (int r = 0; r < RIVALS; r++) {
+        int outcome;
+        assert_int_equal(waitpid(child[r], &outcome, 0), child[r]);
+        assert_int_equal(outcome, 0);
+    }
+    assert_int_equal(n_files(), 0);
+}
+
+static enum status count_work(void *data) {
+    struct durable_claim other;
+    ++*(int *)data;
+    return durable_claim_take(&other, path) == STATUS_FILE ? STATUS_MISSED : STATUS_OK;
+}
+
+static void work_is_done_under_the_claim_and_only_then(void **state) {
+    (void)state;
+    int n = 0;
+    assert_int_equal(durable_claim_hold(path, count_work, &n), STATUS_MISSED);
+    assert_int_equal(durable_claim_hold("/no/folder/a", count_work, &n), STATUS_FILE);
+    put(path, "mine");
+    assert_int_equal(durable_claim_hold(path, count_work, &n), STATUS_FILE);
+    assert_int_equal(n, 1);
+    assert_int_equal(n_files(), 1);
+    unlink(path);
 }
 
 static void a_lock_belongs_to_an_open_file_and_not_to_the_process(void **state) {
@@ -185,6 +321,20 @@ static void a_failure_leaves_what_was_there(void **state) {
     assert_int_equal(durable_sync_folder("/tmp/a"), 0);
 }
 
+static void a_name_that_is_not_on_the_disk_is_an_error(void **state) {
+    (void)state;
+    struct durable_part part;
+    assert_int_equal(durable_begin(&part, path, 0666), 0);
+    folder_fails = 1;
+    assert_int_equal(durable_sync_folder(path), EIO);
+    assert_int_equal(durable_publish(&part, false), EIO);
+    durable_end(&part);
+    assert_int_equal(durable_replace(path, previous, "x", 1), STATUS_FILE);
+    folder_fails = 0;
+    unlink(path);
+    unlink(previous);
+}
+
 static void only_ordinary_files_are_read_and_a_pipe_is_not_waited_for(void **state) {
     (void)state;
     unsigned char *bytes;
@@ -203,10 +353,16 @@ int main(void) {
         cmocka_unit_test(the_last_two_are_kept),
         cmocka_unit_test(a_part_is_new_locked_and_becomes_the_target_as_a_whole),
         cmocka_unit_test(a_part_that_is_given_up_leaves_what_was_there),
-        cmocka_unit_test(a_link_under_the_name_of_a_part_is_not_followed),
-        cmocka_unit_test(only_parts_that_nobody_makes_any_more_are_swept_away),
+        cmocka_unit_test(a_part_is_no_file_of_another_program_and_no_link),
+        cmocka_unit_test(the_part_of_a_process_that_died_is_used_again),
+        cmocka_unit_test(a_claim_excludes_runs_of_this_and_of_other_processes),
+        cmocka_unit_test(a_claim_goes_with_the_file_to_its_name_and_to_all_others),
+        cmocka_unit_test(a_fork_does_not_release_a_claim),
+        cmocka_unit_test(of_runs_that_race_one_has_the_claim_and_no_part_stays),
+        cmocka_unit_test(work_is_done_under_the_claim_and_only_then),
         cmocka_unit_test(a_lock_belongs_to_an_open_file_and_not_to_the_process),
         cmocka_unit_test(a_failure_leaves_what_was_there),
+        cmocka_unit_test(a_name_that_is_not_on_the_disk_is_an_error),
         cmocka_unit_test(only_ordinary_files_are_read_and_a_pipe_is_not_waited_for),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

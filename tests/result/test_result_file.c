@@ -30,6 +30,21 @@ static void format_is_cdf5(void **state) {
     nc_close(file);
 }
 
+// the fish, and the place on the body of each slot along a body
+static void coordinates_are_complete(const struct result_variable *variable, const char *coordinates) {
+    static const char *const places[][2] = {
+        {"node", "node_arc"}, {"sheet", "sheet_arc"}, {"control", "control_arc"}, {"sensor", "sensor_place"}};
+    char want[100] = "fish_name";
+    for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) {
+        for (int i = 0; i < 4; i++) {
+            if (strcmp(result_table_dimension(*d), places[i][0]) != 0 || strcmp(variable->name, places[i][1]) == 0)
+                continue;
+            strcat(strcat(want, " "), places[i][1]);
+        }
+    }
+    assert_string_equal(coordinates, want);
+}
+
 static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name(void **state) {
     struct fixture *f = *state;
     f->values.output.forces = OUTPUT_FORCES_SIDES;
@@ -56,6 +71,8 @@ static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_na
         assert_int_equal(variable->dimension[n], NONE);
         assert_string_equal(text_of(file, number, "long_name"), variable->long_name);
         if (variable->type != RESULT_TEXT) assert_string_equal(text_of(file, number, "units"), variable->unit);
+        if (result_table_has(variable, FISH) && variable->type != RESULT_TEXT)
+            coordinates_are_complete(variable, text_of(file, number, "coordinates"));
     }
     nc_close(file);
 }

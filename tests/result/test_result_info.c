@@ -349,7 +349,7 @@ static void info_refuses_variables_that_do_not_fit(void **state) {
         }
     }
     // 24 variables are printed
-    assert_true(n_refused >= 24 * N_CRAFTS);
+    AT_LEAST(n_refused, 24 * N_CRAFTS);
     free(bytes);
 }
 
@@ -362,7 +362,7 @@ static void the_list_has_one_line_per_variable(void **state) {
         static char text[65536];
         memset(text, 0, sizeof text);
         FILE *stream = fmemopen(text, sizeof text - 1, "w");
-        assert_true(result_kind_variables(2, kinds, as_json, NULL, stream) > 0);
+        ABOVE(result_kind_variables(2, kinds, as_json, NULL, stream), 0);
         fclose(stream);
         int n_lines = 0;
         for (const char *c = text; *c; c++) n_lines += *c == '\n';

@@ -20,6 +20,29 @@
     } while (0)
 #endif
 
+// A clock of the thread by which an evaluation of the residual takes 1 ms, and 1 us more for each vortex.
+static int counts_evaluations;
+static long counted, n_evaluations;
+enum status __real_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
+                                     double *value);
+enum status __wrap_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
+                                     double *value);
+enum status __wrap_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
+                                     double *value) {
+    counted += 1000;
+    n_evaluations++;
+    for (int f = 0; f < residual->school->n_fish; f++) counted += residual->state->wake[f].n_vortex;
+    return __real_residual_evaluate(residual, t, y, yp, value);
+}
+
+int __real_clock_gettime(clockid_t clock, struct timespec *now);
+int __wrap_clock_gettime(clockid_t clock, struct timespec *now);
+int __wrap_clock_gettime(clockid_t clock, struct timespec *now) {
+    if (!counts_evaluations || clock != CLOCK_THREAD_CPUTIME_ID) return __real_clock_gettime(clock, now);
+    *now = (struct timespec){counted / 1000000, counted % 1000000 * 1000};
+    return 0;
+}
+
 #define FISH "fish: [{nodes: 5, sheet_points: 9}, {nodes: 5, sheet_points: 9, start: {position: [0, 3]}}]\n"
 
 static double processor_time(void) {
@@ -74,7 +97,31 @@ static void a_wake_that_grows_costs_more_than_its_first_events(void **state) {
         seconds[i] = estimate_of(text, 0.05).seconds;
     }
     print_message("%.3g s with wakes of 50 vortices, %.3g s with 5000\n", seconds[0], seconds[1]);
-    assert_true(seconds[1] > 5 * seconds[0]);
+    ABOVE(seconds[1], 5 * seconds[0]);
+}
+
+static void every_event_is_as_costly_as_those_measured_after_the_first(void **state) {
+    (void)state;
+    static const char text[] = "time: {end: 8, shedding_interval: 0.02}\nwake: {lifetime: 6}\n" FISH;
+    counts_evaluations = 1;
+    // time for a few events and for wakes that are made up
+    const struct estimate estimate = estimate_of(text, 0.14);
+    counts_evaluations = 0;
+    AT_LEAST(estimate.n_events, 3);
+    AT_MOST(estimate.n_events, 12);  // in which the first, with more evaluations, would count
+
+    struct simulation *const simulation = school_simulation(text);
+    n_evaluations = 0;
+    school_ok(simulate_step(simulation));
+    const double first = (double)n_evaluations;
+    n_evaluations = 0;
+    for (long i = 1; i < estimate.n_events; i++) school_ok(simulate_step(simulation));
+    const double each = (double)n_evaluations / (double)(estimate.n_events - 1);
+    ABOVE(first, 1.3 * each);
+    double want = 0;
+    for (int i = 0; i < 400; i++) want += each * 1e-6 * (1000 + 2 * fmin(i, 300));
+    simulate_free(simulation);
+    NEAR(estimate.seconds, want, 0, 0.03);
 }
 
 static void a_long_wake_is_extrapolated_from_a_short_one(void **state) {
@@ -95,7 +142,7 @@ static void a_long_wake_is_extrapolated_from_a_short_one(void **state) {
             print_message("%.3g s and %.3g MB after %.2g s, %.3g s and %.3g MB\n", quick.seconds, 1e-6 * quick.bytes,
                           spent, slow.seconds, 1e-6 * slow.bytes);
             // far from the seconds of whole events: the time itself depends on the machine
-            assert_true(spent < 0.1 * slow.seconds);
+            BELOW(spent, 0.1 * slow.seconds);
             NEAR(log(quick.bytes / slow.bytes), 0, log(1.5), 0);
             agree = fabs(log(quick.seconds / slow.seconds)) < log(2);
         }
@@ -117,7 +164,8 @@ static void a_first_event_that_is_stopped_is_estimated_from_its_part(void **stat
     assert_int_equal(part.n_events, 0);
     const struct estimate whole = estimate_of(text, 0.1);
     print_message("%.3g s, %.3g s\n", part.seconds, whole.seconds);
-    assert_true(part.seconds > 0 && part.seconds < 20 * whole.seconds);
+    ABOVE(part.seconds, 0);
+    BELOW(part.seconds, 20 * whole.seconds);
 }
 
 static void every_kind_of_wake_can_be_made_up(void **state) {
@@ -130,15 +178,17 @@ static void every_kind_of_wake_can_be_made_up(void **state) {
             kinds[i]);
         struct estimate estimate;
         school_ok(estimate_run(simulation, 1, &estimate));
-        assert_true(estimate.seconds > 0 && isfinite(estimate.seconds));
+        ABOVE(estimate.seconds, 0);
+        assert_true(isfinite(estimate.seconds));
         // the wakes of the end, less what is older than a lifetime
-        assert_true(simulation->state->wake[1].n_vortex >= wake_most(simulation->school, 500) - 1);
+        AT_LEAST(simulation->state->wake[1].n_vortex, wake_most(simulation->school, 500) - 1);
         // a program without a run has some megabytes
-        assert_true(estimate.bytes > 4e6 && estimate.bytes < 1e10);
+        ABOVE(estimate.bytes, 4e6);
+        BELOW(estimate.bytes, 1e10);
         // after the longest wakes no memory is missing but that of the file; the kernel counts pages only roughly, and
         // 1000 vortices too many would be 0.6 MB
         const double most = peak_memory() + 7e6 + 0.3e6;
-        assert_true(estimate.bytes <= most);
+        AT_MOST(estimate.bytes, most);
         simulate_free(simulation);
     }
 }
@@ -157,6 +207,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_run_that_is_done_whole_takes_what_it_took),
         cmocka_unit_test(a_wake_that_grows_costs_more_than_its_first_events),
+        cmocka_unit_test(every_event_is_as_costly_as_those_measured_after_the_first),
         cmocka_unit_test(a_long_wake_is_extrapolated_from_a_short_one),
         cmocka_unit_test(a_first_event_that_is_stopped_is_estimated_from_its_part),
         cmocka_unit_test(every_kind_of_wake_can_be_made_up),

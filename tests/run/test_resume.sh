@@ -182,10 +182,20 @@ refused a_file_of_another_program 4 'run.ckpt exists and is no checkpoint of sho
 # ---- one run at a time, signals that are ignored, and a signal within a long event
 
 rm -f ./*.nc ./*.ckpt*
-start run small.yaml --set time.end=100 -o run.nc
-refused locked 4 "run.nc: another run writes this result (process $pid on $(hostname))" run small.yaml -o run.nc --force
+start run small.yaml --set time.end=100 --set time.checkpoint_interval=0.2 -o run.nc
+wait_for test -s run.ckpt
+refused locked 4 "run.nc: another run writes this result: wait until" run small.yaml -o run.nc --force
+mkdir beside
+ln run.nc beside/run.nc
+cp run.ckpt beside/run.ckpt
+refused a_hard_link_has_the_same_lock 4 "beside/run.nc: another run writes this result" resume beside/run.ckpt --end 200
+refused for_a_new_run_too 4 "beside/run.nc: another run writes this result" run small.yaml -o beside/run.nc --force
+ln -sf ../run.nc beside/run.nc
+refused a_link_is_not_resumed 4 "beside/run.nc is a link" resume beside/run.ckpt --end 200
+check nothing_is_left_beside test "$(ls beside)" = "$(printf 'run.ckpt\nrun.nc')"
+rm -r beside
 end TERM
-check the_lock_is_removed test ! -e run.nc.lock
+check a_run_leaves_no_part test ! -e run.nc.part
 rm -f ./*.nc ./*.ckpt*
 (trap '' HUP && exec "$program" run small.yaml -q --set time.end=100 -o run.nc >out 2>err </dev/null) &
 pid=$!
@@ -198,6 +208,19 @@ check the_others_do_not test "$code" = 75
 rm -f ./*.nc ./*.ckpt*
 run run small.yaml -q --max-wall 0:00:01 --set time.end=1000 -o run.nc
 check max_wall eval 'test "$code" = 75 && has err "stopped after --max-wall at t = "'
+
+# the command in a message is one for a shell
+mkdir "it's a folder"
+run run small.yaml -q --max-wall 0:00:01 --set time.end=1000 -o "it's a folder/run.nc"
+sed -n "s/.*continue with '\(.*\)'\$/\1/p" err >command.sh
+echo "$(<command.sh) -q --max-wall 0:00:01" >again.sh
+shoal() { run "$@"; }
+code=0
+# shellcheck source=/dev/null
+. ./again.sh
+check and_is_one_for_a_shell test "$code" = 75
+run run small.yaml -q --set time.end=1000 -o "it's a folder/run.nc"
+check the_other_message_too has err "with 'shoal resume 'it'\\''s a folder/run.ckpt'', or"
 
 for method in "ida --set solver.rtol=1e-12 --set solver.max_steps=1000000000" "rk4 --set solver.step=1e-8"; do
     rm -f ./*.nc ./*.ckpt*

@@ -44,7 +44,7 @@ static void same(const struct outcome *got, const struct outcome *want) {
     NEAR_ARRAY(2, got->vortex, want->vortex, 1e-6, 0);
     NEAR(got->shed, want->shed, 1e-5, 0);
     // the compared values are not zero
-    assert_true(fabs(want->shed) > 1e-4);
+    ABOVE(fabs(want->shed), 1e-4);
 }
 
 #define LEFT "{name: a, body: {modulus: 1.0e+5}}"
@@ -166,8 +166,10 @@ static void places_are_second_order_in_the_shedding_interval(void **state) {
     const double tail = log2(fabs((at[1].tail[0] - at[0].tail[0]) / (at[2].tail[0] - at[1].tail[0])));
     const double shed = log2(fabs((at[1].shed - at[0].shed) / (at[2].shed - at[1].shed)));
     print_message("observed order: tail %.2f, shed %.2f\n", tail, shed);
-    assert_true(tail > 1.6 && tail < 2.8);
-    assert_true(shed > 1.6 && shed < 2.8);
+    ABOVE(tail, 1.6);
+    BELOW(tail, 2.8);
+    ABOVE(shed, 1.6);
+    BELOW(shed, 2.8);
 }
 
 static void positive_bias_turns_right(void **state) {
@@ -183,8 +185,8 @@ static void positive_bias_turns_right(void **state) {
         simulate_free(simulation);
     }
     // after three beats; within a beat the heading oscillates by some degrees
-    assert_true(heading[0] < 170);
-    assert_true(heading[1] > 190);
+    BELOW(heading[0], 170);
+    ABOVE(heading[1], 190);
 }
 
 static int n_told;
@@ -349,11 +351,11 @@ static void wall_time_of_a_resumed_run_continues(void **state) {
         .path = *state, .overwrite = 1, .command = "test", .progress = take_a_tenth_of_a_second, .stop = &stop};
     stop = 0;
     run_into(TIME "fish: [{}]\n", &options, STATUS_STOPPED);
-    assert_true(wall_time > 0.1);
+    ABOVE(wall_time, 0.1);
     stop = 0;
     options.progress = note_the_first;
     school_ok(simulate_resume(path, &(struct simulate_changes){0}, &options));
-    assert_true(first_resumed > 0.1);
+    ABOVE(first_resumed, 0.1);
     free(path);
 }
 
@@ -414,6 +416,41 @@ static void a_failing_run_says_when_and_keeps_its_file(void **state) {
     assert_int_equal(access(path, R_OK), 0);
 }
 
+static void a_run_that_diverges_ends_with_its_last_finite_row(void **state) {
+    const char *const path = *state;
+    const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
+
+    // one event a beat: the wake grows by some orders of magnitude at each event, up to the largest double
+    run_into(SCHOOL_DEFAULTS
+             "time: {end: 0.9, shedding_interval: 0.02, output_interval: 0.02}\n"
+             "fish: [{wave: {amplitude: 0}, motion: {prescribed: all, heave: 0.7, frequency: 50}}]\n",
+             &options, STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "has diverged at t = 0."));
+    char *const status = read_attribute(path, "run_status"), *const warnings = read_attribute(path, "warnings");
+    assert_non_null(strstr(status, "failed: the run has diverged"));
+    assert_non_null(strstr(warnings, "fish1 has diverged: at t = "));
+    free(status);
+    free(warnings);
+
+    int file, time, energy, momentum;
+    size_t n_rows;
+    assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
+    assert_int_equal(nc_inq_dimid(file, "time", &time), NC_NOERR);
+    assert_int_equal(nc_inq_dimlen(file, time, &n_rows), NC_NOERR);
+    assert_int_equal(nc_inq_varid(file, "energy_balance", &energy), NC_NOERR);
+    assert_int_equal(nc_inq_varid(file, "momentum_balance", &momentum), NC_NOERR);
+    assert_in_range(n_rows, 5, 44);
+    for (size_t row = 0; row < n_rows; row++) {
+        double value[3];
+        assert_int_equal(nc_get_var1_double(file, energy, (size_t[]){row, 0}, &value[0]), NC_NOERR);
+        assert_int_equal(nc_get_vara_double(file, momentum, (size_t[]){row, 0}, (size_t[]){1, 2}, value + 1), NC_NOERR);
+        for (int i = 0; i < 3; i++) {
+            if (!isfinite(value[i])) fail_msg("balance %d of row %zu is %g", i, row, value[i]);
+        }
+    }
+    nc_close(file);
+}
+
 static int make_path(void **state) {
     static char path[] = "/tmp/test_simulate_XXXXXX";
     const int file = mkstemp(path);
@@ -469,7 +506,8 @@ static void a_limp_fish_swims_on(void **state) {
         school_run(simulation, 26);
         simulate_measure(simulation);
         const double speed = simulation->diagnostics->fish[0].speed;
-        assert_true(speed > 0.01 && speed < 1);
+        ABOVE(speed, 0.01);
+        BELOW(speed, 1);
         simulate_free(simulation);
     }
 }
@@ -496,7 +534,7 @@ static int order_of(const char *solver, const char *fish) {
     struct case_values values;
     school_ok(case_parse(&values, text, strlen(text), "test", NULL, 0, NULL));
     struct simulation *simulation;
-    school_ok(simulate_create(&simulation, &values));
+    school_ok(simulate_create(NULL, &simulation, &values));
     case_free(&values);
     const int order = simulation->options.order;
     simulate_free(simulation);
@@ -554,6 +592,7 @@ int main(void) {
         cmocka_unit_test(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one),
         cmocka_unit_test(a_signal_during_the_start_leaves_nothing),
         cmocka_unit_test(a_failing_run_says_when_and_keeps_its_file),
+        cmocka_unit_test(a_run_that_diverges_ends_with_its_last_finite_row),
         cmocka_unit_test(a_result_that_cannot_be_written_is_told_before_the_start),
     };
     return cmocka_run_group_tests(tests, make_path, remove_path);

@@ -25,7 +25,7 @@ static void meeting_text(size_t size, char *text, const char *settings, const ch
                                  f % 3 == 0 ? force : "reactive", law[f % 4 % 3], 40 * f, right ? 0.1 : -0.1,
                                  0.4 * (f / 2) + 0.01 * right, right ? 180 : 0);
     }
-    assert_true(used < size);
+    BELOW(used, size);
 }
 
 // a run of some events
@@ -33,7 +33,7 @@ static struct simulation *run_of(const char *settings, const char *force, int th
     char text[8192];
     meeting_text(sizeof text, text, settings, force, threads);
     struct simulation *const simulation = school_simulation(text);
-    assert_true(simulation->school->n_unknowns >= PARALLEL_UNKNOWNS);
+    AT_LEAST(simulation->school->n_unknowns, PARALLEL_UNKNOWNS);
     for (int i = 0; i < n_events; i++) school_ok(simulate_step(simulation));
     return simulation;
 }
@@ -43,7 +43,7 @@ static void compare_threads(const char *settings, const char *force, int n_event
     const int *partner;
     int n_contacts = 0;
     for (int f = 0; f < one->school->n_fish; f++) n_contacts += contact_partners(one->residual->contact, f, &partner);
-    assert_true(n_contacts > 0);
+    ABOVE(n_contacts, 0);
     for (int threads = 2; threads <= 3; threads++) {
         struct simulation *const many = run_of(settings, force, threads, n_events);
         school_same_bits(many, one, settings);

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "body/rod.h"
 #include "school.h"
 #include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
@@ -42,9 +43,9 @@ static void energy_audit_closes_within_ten_times_the_tolerance(void **state) {
         snprintf(text, sizeof text, TIME "solver: {rtol: 1.0e-5}\nfish: [{body: {modulus: %.1e}}]\n", moduli[i]);
         const struct audit_result balance = audit_of(text, 2);
         print_message("E %.0e, rtol 1e-5: balance %.2e J of %.1f J\n", moduli[i], balance.worst, balance.put_in);
-        assert_true(balance.worst <= 10 * 1e-5 * balance.put_in);
+        AT_MOST(balance.worst, 10 * 1e-5 * balance.put_in);
         // the muscle did work: the terms of the energy balance are not zero
-        assert_true(balance.put_in > 30);
+        ABOVE(balance.put_in, 30);
     }
 }
 
@@ -58,7 +59,7 @@ static void energy_audit_falls_with_the_tolerance(void **state) {
         worst[i] = audit_of(text, 2).worst;
     }
     print_message("balance %.2e J at 1e-5, %.2e J at 1e-7\n", worst[0], worst[1]);
-    assert_true(worst[0] / worst[1] > 10);
+    ABOVE(worst[0] / worst[1], 10);
 }
 
 static void powers_are_integrated_with_third_order(void **state) {
@@ -66,7 +67,37 @@ static void powers_are_integrated_with_third_order(void **state) {
     // with BDF of order 5 the error of the quadrature dominates: 1e-6 J measured, 3e-5 J with the trapezoidal rule
     const struct audit_result balance = audit_of(TIME "solver: {rtol: 1.0e-7, order: 5}\nfish: [{}]\n", 2);
     print_message("balance %.2e J at 1e-7 and order 5\n", balance.worst);
-    assert_true(balance.worst < 4e-6);
+    BELOW(balance.worst, 4e-6);
+}
+
+/* The integrated strains of a soft body with strain damping, whose places know the strains as well: largest difference
+ * at events. Steps of the fourth order leave the error of the parabola through three stresses, of the third order. */
+static void strains_are_integrated_with_third_order(void **state) {
+    (void)state;
+    double worst[2] = {0, 0};
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation =
+            school_simulation_of(TIME
+                                 "solver: {method: rk4, step: %g}\n"
+                                 "fish: [{nodes: 7, sheet_points: 13,\n"
+                                 "  body: {modulus: 1.0e+4, damping: strain, relaxation_time: 0.05}}]\n",
+                                 2e-3 / (1 << i));
+        const struct fish *const fish = &simulation->school->fish[0];
+        const struct energy_balance *const balance = &simulation->state->balance[0];
+        double strain[64], rate[64], stress[64];
+        AT_MOST(rod_n_strains(fish), 64);
+        while (simulation->state->t < 0.5 - 1e-6) {
+            school_ok(simulate_step(simulation));
+            const struct state *const now = simulation->state;
+            const struct actuation muscle = residual_muscle(simulation->residual, 0, now->t, now->y);
+            rod_strains(fish, &muscle, now->y, &(struct rod_strains){strain, rate, stress});
+            for (int k = 0; k < fish->n_joints; k++) worst[i] = fmax(worst[i], fabs(balance->strain[k] - strain[k]));
+        }
+        simulate_free(simulation);
+    }
+    const double order = log2(worst[0] / worst[1]);
+    print_message("differences of strains %.2e and %.2e, order %.2f\n", worst[0], worst[1], order);
+    NEAR(order, 3, 0.3, 0);
 }
 
 static void energy_audit_closes_with_every_kind_of_power(void **state) {
@@ -91,7 +122,7 @@ static void energy_audit_closes_with_every_kind_of_power(void **state) {
         const struct audit_result balance = audit_of(texts[i], 2);
         print_message("balance %.2e J of %.1f J: %s", balance.worst, balance.put_in, texts[i] + sizeof TIME - 1);
         // order 1 at restarts, a load and a motion that begin at once: thirty tolerances
-        assert_true(balance.worst <= 30 * 1e-5 * balance.put_in);
+        AT_MOST(balance.worst, 30 * 1e-5 * balance.put_in);
     }
 }
 
@@ -103,12 +134,12 @@ static void a_bias_that_moves_across_impulses_keeps_the_balance(void **state) {
                                                  "fish: [{control: {law: averaged_heading, desired_heading: 150}}]\n",
                                                  2);
     print_message("balance %.2e J of %.1f J\n", balance.worst, balance.put_in);
-    assert_true(balance.worst <= 30 * 1e-6 * balance.put_in);
+    AT_MOST(balance.worst, 30 * 1e-6 * balance.put_in);
     // a sudden start of the muscle excites vibrations, resolved only by a small tolerance; the defect was 300 J
     const struct audit_result published =
         audit_of(TIME "preset: published\nfish: [{control: {law: averaged_heading, desired_heading: 150}}]\n", 0.5);
     print_message("balance %.2e J of %.1f J\n", published.worst, published.put_in);
-    assert_true(published.worst <= 0.01 * published.put_in);
+    AT_MOST(published.worst, 0.01 * published.put_in);
 }
 
 static void after_a_jump_the_balance_goes_on_from_the_powers_of_then(void **state) {
@@ -146,11 +177,12 @@ static void total_circulation_vanishes_at_every_event(void **state) {
         while (simulation->state->t < 0.8) {
             school_ok(simulate_step(simulation));
             simulate_measure(simulation);
-            NEAR(simulation->diagnostics->total_circulation, 0, 1e-10, 0);
+            // Newton's iteration stops at 0.003 rtol of L^2 f: 3e-8
+            NEAR(simulation->diagnostics->total_circulation, 0, 3e-8, 0);
         }
         // circulation has been shed and removed
-        assert_true(fabs(simulation->state->y[simulation->school->fish[0].at.circulation]) > 1e-4);
-        assert_true(fabs(simulation->state->wake[0].removed) > 1e-6);
+        ABOVE(fabs(simulation->state->y[simulation->school->fish[0].at.circulation]), 1e-4);
+        ABOVE(fabs(simulation->state->wake[0].removed), 1e-6);
         simulate_free(simulation);
     }
 }
@@ -183,7 +215,7 @@ static void change_of_momentum(const char *rtol, double change[3]) {
     NEAR(first[0], -0.5, 1e-12, 0);
     // it did move
     simulate_measure(simulation);
-    assert_true(simulation->diagnostics->fish[0].bending_energy > 1e-3);
+    ABOVE(simulation->diagnostics->fish[0].bending_energy, 1e-3);
     simulate_free(simulation);
 }
 
@@ -214,7 +246,7 @@ static void a_body_that_does_not_travel_has_no_numbers_per_speed(void **state) {
     school_run(simulation, 1);
     simulate_measure(simulation);
     const struct diagnostics_fish *const fish = simulation->diagnostics->fish;
-    assert_true(fish->speed < 1e-9);
+    BELOW(fish->speed, 1e-9);
     assert_true(isnan(fish->strouhal));
     assert_true(isnan(fish->cost_of_transport));
     assert_true(isfinite(fish->mean_actuation_power));
@@ -222,8 +254,8 @@ static void a_body_that_does_not_travel_has_no_numbers_per_speed(void **state) {
 }
 
 static double reversals(int n, const double *bias, double limit) {
-    struct sample samples[8];
-    struct history history = {.capacity = 8, .last = -1, .sample = samples};
+    struct sample samples[9];
+    struct history history = {.capacity = 8, .n_slots = 9, .last = -1, .sample = samples};
     const struct fish fish = {.control = {.law = CONTROL_COURSE, .limit = limit}};
     for (int i = 0; i < n; i++) {
         const struct sample sample = {.bias = bias[i], .com = {i, 0}};
@@ -251,8 +283,8 @@ static void a_bias_reverses_where_it_moves_back_by_a_hundredth_of_the_limit(void
 
 static void mean_heading_is_the_trapezoidal_mean(void **state) {
     (void)state;
-    struct sample samples[5];
-    struct history history = {.capacity = 5, .last = -1, .sample = samples};
+    struct sample samples[6];
+    struct history history = {.capacity = 5, .n_slots = 6, .last = -1, .sample = samples};
     const double headings[] = {9, 9, 1, 2, 4, 8, 5};
     for (int i = 0; i < 7; i++) {
         const struct sample sample = {.heading = headings[i]};
@@ -260,6 +292,32 @@ static void mean_heading_is_the_trapezoidal_mean(void **state) {
         if (i == 0) NEAR(diagnostics_mean_heading(&history), 9, 0, 0);
     }
     NEAR(diagnostics_mean_heading(&history), (0.5 + 2 + 4 + 8 + 2.5) / 4, 1e-15, 0);
+}
+
+/* Means of a force over five samples of a free fish that swims at the speed 1 towards -x: by the trapezoidal rule a
+ * constant force is its own mean, and so is the middle of a force that grows at a constant rate. */
+static void mean_forces_are_exact_for_forces_that_grow_evenly(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{}]\n");
+    for (int i = 0; i < 2; i++) {
+        struct sample samples[6];
+        struct history history = {.capacity = 5, .n_slots = 6, .last = -1, .sample = samples};
+        for (int k = 0; k < 5; k++) {
+            const struct sample sample = {.com = {-0.1 * k, 0},
+                                          .force = {-3 - i * k, 7},
+                                          .friction = {2 + i * k, 5},
+                                          .work = {[WORK_FLUID] = -0.1 * k}};
+            state_remember(&history, &sample);
+        }
+        struct diagnostics_fish of = {0};
+        diagnostics_period(setup.school->fish, &history, 0.1, &of);
+        NEAR(of.speed, 1, 1e-14, 0);
+        NEAR(of.mean_thrust, -(-3 - 2 * i), 1e-13, 0);
+        // friction times the distance 0.4 over the work 0.4 on the water
+        NEAR(of.efficiency, 2 + 2 * i, 1e-13, 0);
+    }
+    school_clear(&setup);
 }
 
 static void course_is_the_direction_of_the_way_in_the_last_period(void **state) {
@@ -323,7 +381,7 @@ static void means_are_those_of_the_way_through_the_water(void **state) {
     }
     NEAR(of[0].ground_speed, of[0].speed, 0, 1e-15);
     // swims to the left: the stream reduces the speed by 0.6
-    assert_true(fabs(of[1].ground_speed - of[0].speed + 0.6) < 0.01);
+    BELOW(fabs(of[1].ground_speed - of[0].speed + 0.6), 0.01);
     const double still[] = {of[0].speed, of[0].strouhal, of[0].cost_of_transport, of[0].cost_of_transport_fluid,
                             of[0].cost_of_transport_body};
     const double moving[] = {of[1].speed, of[1].strouhal, of[1].cost_of_transport, of[1].cost_of_transport_fluid,
@@ -398,8 +456,9 @@ static void cost_of_transport_is_what_fluid_and_damping_take(void **state) {
         // the rest of the supplied work is in the body
         const double kept = of->cost_of_transport - of->cost_of_transport_fluid - of->cost_of_transport_body;
         NEAR(kept * scale, energy[1] - energy[0] - (audit[1] - audit[0]), 1e-9, 1e-9);
-        assert_true(of->cost_of_transport > 0 && of->cost_of_transport_fluid > 0);
-        if (i != 1) assert_true(of->cost_of_transport_body > 1e-6);
+        ABOVE(of->cost_of_transport, 0);
+        ABOVE(of->cost_of_transport_fluid, 0);
+        if (i != 1) ABOVE(of->cost_of_transport_body, 1e-6);
         simulate_free(simulation);
     }
 }
@@ -420,15 +479,15 @@ static void cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream(void **st
         simulate_free(simulation);
     }
     NEAR(cost[1], cost[0], 0, 1e-6);
-    assert_true(cost[0] > 0);
+    ABOVE(cost[0], 0);
 }
 
 static void thrust_and_power_of_a_held_plate_are_means_over_the_last_period(void **state) {
     (void)state;
-    enum { N = 50 };
+    enum { N = 100 };
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 2, shedding_interval: 0.02}\n"
+                          "time: {end: 2, shedding_interval: 0.01}\n"
                           "fluid: {density: 2, viscosity: 1.0e-5}\n"
                           "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0}, start: {speed: "
                           "1}, body: {profile: uniform},\n"
@@ -436,7 +495,7 @@ static void thrust_and_power_of_a_held_plate_are_means_over_the_last_period(void
     const struct diagnostics_fish *of = simulation->diagnostics->fish;
     double thrust = 0, power = 0, edge = 0;
     for (int i = 0; i <= N; i++) {
-        school_run(simulation, 0.5 + i * 0.02);
+        school_run(simulation, 0.5 + i * 0.01);
         simulate_measure(simulation);
         const double part = (i == 0 || i == N ? 0.5 : 1) / N, *const v = simulation->state->y;
         double force[2];
@@ -447,11 +506,12 @@ static void thrust_and_power_of_a_held_plate_are_means_over_the_last_period(void
         edge = fmax(edge, fabs(of->pressure.leading_edge_a0));
     }
     NEAR(of->mean_thrust, thrust, 0, 1e-9);
-    // works are integrated over steps, the power here over events
-    NEAR(of->mean_power, power, 0, 5e-3);
+    // works are integrated over steps, the power here over events: 1.1e-3, of second order in the interval
+    NEAR(of->mean_power, power, 0, 2e-3);
     NEAR(of->efficiency, of->mean_thrust * 1 / of->mean_power, 0, 1e-6);
     NEAR(of->leading_edge_most, edge, 0, 1e-4);
-    assert_true(thrust > 0 && power > thrust);
+    ABOVE(thrust, 0);
+    ABOVE(power, thrust);
     simulate_free(simulation);
 }
 
@@ -485,7 +545,8 @@ static void power_of_a_held_plate_is_the_work_of_muscle_and_drive(void **state) 
         NEAR(fish->efficiency, fish->mean_thrust * fish->speed / power[i], 0, 1e-12);
         // a beat that repeats: the power goes into fluid, thrust and damping, by 4 % of it from beat to beat
         NEAR(power[i], -of[WORK_FLUID] - of[WORK_DAMPING] + fish->mean_thrust * fish->speed, 0, 0.04);
-        assert_true(-of[WORK_DAMPING] > 0.02 * power[i] && of[WORK_ACTUATION] > 0.02 * power[i]);
+        ABOVE(-of[WORK_DAMPING], 0.02 * power[i]);
+        ABOVE(of[WORK_ACTUATION], 0.02 * power[i]);
         simulate_free(simulation);
     }
     NEAR(power[1], power[0], 0, 1e-4);
@@ -522,7 +583,7 @@ static void forces_by_name_make_up_momentum_and_angular_momentum(void **state) {
                                      of->resistive_moment + of->reactive_moment + of->constraint_moment};
             // tolerance: residual of the equation of motion after the Newton iteration
             NEAR_ARRAY(3, forces, rate, 2e-3, 1e-4);
-            assert_true(fabs(rate[2]) > 0.01);
+            ABOVE(fabs(rate[2]), 0.01);
             // prescribed motion travels along its first heading, not along the pitching one
             const double heading = i == 0 ? of->heading * acos(-1) / 180 : fish->start_heading;
             NEAR(of->thrust,
@@ -532,6 +593,91 @@ static void forces_by_name_make_up_momentum_and_angular_momentum(void **state) {
             assert_int_equal(fabs(of->constraint_force[0]) > 0, i == 1);
         }
         simulate_free(simulation);
+    }
+}
+
+/* At an event: the force of the pressure, its power, the pressure at the middle control point, suction and friction,
+ * and the momentum of the body. */
+enum { FORCE, POWER = 2, JUMP, REST, MOMENTUM = 6, N_OF_EVENT = 8 };
+
+static void record_events(const char *text, int n_events, double *value) {
+    struct simulation *const simulation = school_simulation(text);
+    const struct fish *const fish = simulation->school->fish;
+    const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+    for (int n = 0; n < n_events; n++, value += N_OF_EVENT) {
+        school_ok(simulate_step(simulation));
+        simulate_measure(simulation);
+        for (int i = 0; i < 2; i++) {
+            value[FORCE + i] = of->pressure.pressure[i];
+            value[REST + i] = of->pressure.suction[i] + of->resistive_force[i];
+            value[MOMENTUM + i] = fish->total_mass * of->com_velocity[i];
+        }
+        value[POWER] = of->pressure.pressure_power;
+        value[JUMP] = pressure_jump(simulation->residual->pressure[0], fish->n_control / 2, simulation->state->y,
+                                    simulation->state->yp);
+    }
+    simulate_free(simulation);
+}
+
+// largest difference of a value over the events from the tenth on, and the largest value
+static double largest_difference(int i, int n_events, const double *value, const double *want, double *largest) {
+    double difference = 0;
+    *largest = 0;
+    for (int n = 10; n < n_events; n++) {
+        difference = fmax(difference, fabs(value[n * N_OF_EVENT + i] - want[n * N_OF_EVENT + i]));
+        *largest = fmax(*largest, fabs(want[n * N_OF_EVENT + i]));
+    }
+    return difference;
+}
+
+// errors relative to the largest value; with the slope at the end of an interval 1.5 %
+static void pressure_at_events_has_the_accuracy_of_the_motion(void **state) {
+    (void)state;
+    enum { N = 100 };
+    static const char *const fish[] = {SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n",
+                                       SCHOOL_DEFAULTS
+                                       "time: {end: 1, shedding_interval: 0.01}\n"
+                                       "fish: [{nodes: 9, body: {modulus: 1.0e+5}}]\n"};
+    // the trapezoidal rule does not damp the vibrations of the body; SUNDIALS 7 chooses other steps of dormand_prince
+    static const struct {
+        int fish;
+        const char *solver;
+        double tolerance;
+    } runs[] = {{0, "", 1e-3},
+                {1, "{method: dormand_prince, rtol: 1.0e-6}", 5e-4},
+                {1, "{method: trapezoid, step: 0.00125}", 3e-3}};
+    static double value[N * N_OF_EVENT], want[N * N_OF_EVENT];
+
+    for (size_t r = 0; r < sizeof runs / sizeof *runs; r++) {
+        char text[512];
+        if (r < 2) {
+            snprintf(text, sizeof text, "%ssolver: {rtol: 1.0e-9, order: 5}\n", fish[runs[r].fish]);
+            record_events(text, N, want);
+        }
+
+        snprintf(text, sizeof text, *runs[r].solver ? "%ssolver: %s\n" : "%s", fish[runs[r].fish], runs[r].solver);
+        record_events(text, N, value);
+        for (int i = FORCE; i < MOMENTUM; i++) {
+            double largest;
+            const double difference = largest_difference(i, N, value, want, &largest);
+            NEAR(difference / largest, 0, runs[r].tolerance, 0);
+        }
+    }
+}
+
+// 0.2 % of the largest force, 7.9 N; central differences over five events, which use no rate
+static void force_at_events_is_the_rate_of_the_momentum(void **state) {
+    (void)state;
+    enum { N = 100 };
+    static double value[N * N_OF_EVENT];
+    record_events(SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n", N, value);
+    for (int n = 10; n < N - 2; n++) {
+        const double *const m = value + n * N_OF_EVENT + MOMENTUM;
+        for (int i = 0; i < 2; i++) {
+            const double rate =
+                (m[i - 2 * N_OF_EVENT] - 8 * m[i - N_OF_EVENT] + 8 * m[i + N_OF_EVENT] - m[i + 2 * N_OF_EVENT]) / 0.12;
+            NEAR(value[n * N_OF_EVENT + FORCE + i] + value[n * N_OF_EVENT + REST + i], rate, 0.015, 0);
+        }
     }
 }
 
@@ -551,13 +697,12 @@ static void vortices_inside_an_outline_are_counted(void **state) {
     diagnostics_start(setup.residual, setup.state);
     diagnostics_remember(setup.residual, setup.state);
     struct diagnostics *diagnostics;
-    school_ok(diagnostics_create(&diagnostics, setup.school));
+    diagnostics = diagnostics_create(test_arena(), setup.school);
     school_ok(residual_evaluate(setup.residual, 0, setup.state->y, setup.state->yp, setup.value));
     diagnostics_event(setup.residual, setup.state, diagnostics);
     NEAR(diagnostics->fish[0].swept_vortices, 3, 0, 0);
     // the newest own marker lies at the tail
     NEAR(diagnostics->fish[1].swept_vortices, 0, 0, 0);
-    diagnostics_free(diagnostics);
     school_clear(&setup);
 }
 
@@ -577,7 +722,7 @@ static void a_body_that_sweeps_over_a_wake_loses_no_circulation(void **state) {
         most = fmax(most, simulation->diagnostics->fish[1].swept_vortices);
         NEAR(simulation->diagnostics->total_circulation, 0, 1e-11, 0);
     }
-    assert_true(most >= 1);
+    AT_LEAST(most, 1);
     simulate_free(simulation);
 }
 
@@ -651,7 +796,8 @@ static void powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass(v
         const struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
         double force[2];
         diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, force);
-        assert_true(fabs(force[0]) > 0.1 && fabs(force[1]) > 0.1);
+        ABOVE(fabs(force[0]), 0.1);
+        ABOVE(fabs(force[1]), 0.1);
         const double all = power.drag + power.added_mass + power.wake + power.pressure + power.suction;
         NEAR(power.on_water, all - force[0] * stream[0] - force[1] * stream[1], 1e-9, 1e-9);
         simulate_free(simulation);
@@ -689,6 +835,7 @@ int main(void) {
         cmocka_unit_test(energy_audit_closes_within_ten_times_the_tolerance),
         cmocka_unit_test(energy_audit_falls_with_the_tolerance),
         cmocka_unit_test(powers_are_integrated_with_third_order),
+        cmocka_unit_test(strains_are_integrated_with_third_order),
         cmocka_unit_test(energy_audit_closes_with_every_kind_of_power),
         cmocka_unit_test(a_bias_that_moves_across_impulses_keeps_the_balance),
         cmocka_unit_test(after_a_jump_the_balance_goes_on_from_the_powers_of_then),
@@ -697,6 +844,7 @@ int main(void) {
         cmocka_unit_test(a_body_that_does_not_travel_has_no_numbers_per_speed),
         cmocka_unit_test(a_bias_reverses_where_it_moves_back_by_a_hundredth_of_the_limit),
         cmocka_unit_test(mean_heading_is_the_trapezoidal_mean),
+        cmocka_unit_test(mean_forces_are_exact_for_forces_that_grow_evenly),
         cmocka_unit_test(course_is_the_direction_of_the_way_in_the_last_period),
         cmocka_unit_test(speed_and_strouhal_number_are_those_of_a_driven_plate),
         cmocka_unit_test(means_are_those_of_the_way_through_the_water),
@@ -707,6 +855,8 @@ int main(void) {
         cmocka_unit_test(thrust_and_power_of_a_held_plate_are_means_over_the_last_period),
         cmocka_unit_test(power_of_a_held_plate_is_the_work_of_muscle_and_drive),
         cmocka_unit_test(forces_by_name_make_up_momentum_and_angular_momentum),
+        cmocka_unit_test(pressure_at_events_has_the_accuracy_of_the_motion),
+        cmocka_unit_test(force_at_events_is_the_rate_of_the_momentum),
         cmocka_unit_test(vortices_inside_an_outline_are_counted),
         cmocka_unit_test(a_body_that_sweeps_over_a_wake_loses_no_circulation),
         cmocka_unit_test(heading_is_unwrapped),

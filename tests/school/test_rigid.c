@@ -79,7 +79,7 @@ static void a_vortex_lies_where_the_faster_tail_would_have_left_it(void **state)
     const struct rigid old = rigid_of(&setup.school->fish[1], setup.state->y);
     const double x = wake->x[0], y = wake->y[0], age = setup.state->t - wake->birth[0];
     const unsigned long version = wake->version;
-    assert_true(age > 0);
+    ABOVE(age, 0);
     rigid_change(setup.school, setup.state, 1, &(struct rigid){.velocity = {0.5, 0}});
     NEAR(wake->x[0], x - age * 0.5 * cos(old.heading), 1e-14, 0);
     NEAR(wake->y[0], y - age * 0.5 * sin(old.heading), 1e-14, 0);
@@ -132,7 +132,7 @@ static void every_vector_of_the_past_turns_with_the_fish(void **state) {
         }
         for (size_t i = 0; i < 5; i++) {
             const double *const v = vectors[i][0];
-            if (age + 1 < n) assert_true(hypot(v[0], v[1]) > 0);
+            if (age + 1 < n) ABOVE(hypot(v[0], v[1]), 0);
             NEAR(vectors[i][1][0], c * v[0] - s * v[1], 1e-13, 1e-13);
             NEAR(vectors[i][1][1], s * v[0] + c * v[1], 1e-13, 1e-13);
         }
@@ -220,8 +220,10 @@ static void all_vectors_of_fish_and_wake_turn_together(void **state) {
     set_up(&setup);
     struct history *const history = &setup.state->history[1];
     struct wake *const wake = &setup.state->wake[1];
+    school_ok(state_reserve(setup.state, setup.school));
     state_remember(history,
                    &(struct sample){.velocity = {1, 2}, .friction = {3, 4}, .force = {5, 6}, .drifted = {7, 8}});
+    school_ok(state_reserve(setup.state, setup.school));
     state_remember(history, &(struct sample){.heading = 1});
     wake_set_tail(wake, (const double[]){9, 10}, (const double[]){0.6, 0.8});
     wake->slip[0] = 11;

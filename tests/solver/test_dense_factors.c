@@ -1,10 +1,9 @@
-/* test_dense_factors.c: solutions of full systems, pivots, singular matrices, lack of memory. */
+/* test_dense_factors.c: solutions of full systems, pivots, singular matrices. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "failing_malloc.h"
-#include "near.h"
+#include "school.h"
 #include "solver/dense_factors.h"
 
 static unsigned seed = 1;
@@ -16,8 +15,7 @@ static double number(void) {
 // largest error of the solution of a system with random entries; tiny_diagonal: elimination without row
 // swaps would lose all digits
 static double error_of_order(int n, int tiny_diagonal) {
-    struct dense_factors factors;
-    assert_int_equal(dense_factors_create(&factors, n), STATUS_OK);
+    struct dense_factors factors = dense_factors_create(test_arena(), n);
     double *const x = calloc(2 * (size_t)n, sizeof *x), *const want = x + n;
     assert_non_null(x);
 
@@ -34,7 +32,6 @@ static double error_of_order(int n, int tiny_diagonal) {
     double error = 0;
     for (int k = 0; k < n; k++) error = fmax(error, fabs(x[k] - want[k]));
     free(x);
-    dense_factors_free(&factors);
     return error;
 }
 
@@ -42,16 +39,15 @@ static void systems_of_any_order_are_solved(void **state) {
     (void)state;
     // below, at and above the width of a panel, and with every remainder of a tile; the factor 1e-11 is the rounding
     // times the condition of random matrices
-    for (int n = 1; n <= 72; n++) assert_true(error_of_order(n, 0) < 1e-11);
-    assert_true(error_of_order(200, 0) < 1e-11);
-    for (int n = 2; n <= 72; n += 7) assert_true(error_of_order(n, 1) < 1e-11);
+    for (int n = 1; n <= 72; n++) BELOW(error_of_order(n, 0), 1e-11);
+    BELOW(error_of_order(200, 0), 1e-11);
+    for (int n = 2; n <= 72; n += 7) BELOW(error_of_order(n, 1), 1e-11);
 }
 
 static void the_factors_are_those_of_elimination_by_hand(void **state) {
     (void)state;
     // rows 1 2, 3 4: pivot 3, L = 1/3, U = 3 4, 0 2/3
-    struct dense_factors factors;
-    assert_int_equal(dense_factors_create(&factors, 2), STATUS_OK);
+    struct dense_factors factors = dense_factors_create(test_arena(), 2);
     memcpy(dense_factors_column(&factors, 0), (double[]){1, 3}, 2 * sizeof(double));
     memcpy(dense_factors_column(&factors, 1), (double[]){2, 4}, 2 * sizeof(double));
     assert_true(dense_factors_set_up(&factors));
@@ -60,30 +56,15 @@ static void the_factors_are_those_of_elimination_by_hand(void **state) {
     NEAR(dense_factors_column(&factors, 0)[1], 1.0 / 3, 0, 1e-15);
     NEAR(dense_factors_column(&factors, 1)[0], 4, 0, 0);
     NEAR(dense_factors_column(&factors, 1)[1], 2.0 / 3, 0, 1e-15);
-    dense_factors_free(&factors);
 }
 
 static void a_singular_matrix_is_reported(void **state) {
     (void)state;
     const double value[] = {0, NAN, INFINITY};
     for (int v = 0; v < 3; v++) {
-        struct dense_factors factors;
-        assert_int_equal(dense_factors_create(&factors, 40), STATUS_OK);
+        struct dense_factors factors = dense_factors_create(test_arena(), 40);
         for (int k = 0; k < 40; k++) dense_factors_column(&factors, k)[k] = k == 33 ? value[v] : 1;
         assert_false(dense_factors_set_up(&factors));
-        dense_factors_free(&factors);
-    }
-}
-
-static void lack_of_memory_is_reported(void **state) {
-    (void)state;
-    struct dense_factors factors;
-    for (int n = 0; n < 2; n++) {
-        const int before = n_live;
-        n_until_failure = n;
-        assert_int_equal(dense_factors_create(&factors, 3), STATUS_MEMORY);
-        n_until_failure = -1;
-        assert_int_equal(n_live, before);
     }
 }
 
@@ -92,7 +73,6 @@ int main(void) {
         cmocka_unit_test(systems_of_any_order_are_solved),
         cmocka_unit_test(the_factors_are_those_of_elimination_by_hand),
         cmocka_unit_test(a_singular_matrix_is_reported),
-        cmocka_unit_test(lack_of_memory_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

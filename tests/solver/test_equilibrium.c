@@ -25,12 +25,12 @@ struct rig {
 
 static struct rig rig_of(const char *text) {
     struct rig rig = {.simulation = school_simulation(text)};
-    school_ok(equilibrium_create(&rig.equilibrium, rig.simulation->residual, rig.simulation->state));
+    rig.equilibrium = equilibrium_create(rig.simulation->arena, rig.simulation->residual, rig.simulation->state);
     return rig;
 }
 
 static void clear(struct rig *rig) {
-    equilibrium_free(rig->equilibrium);
+    if (rig->equilibrium) equilibrium_end(rig->equilibrium);
     simulate_free(rig->simulation);
 }
 
@@ -46,8 +46,8 @@ static void the_equations_of_a_run_hold_at_rest(void **state) {
     const struct school *const school = rig.simulation->school;
     const struct residual *const residual = rig.simulation->residual;
     school_ok(equilibrium_solve(rig.equilibrium));
-    assert_true(equilibrium_residual(rig.equilibrium) <= 1e-10);
-    equilibrium_free(rig.equilibrium);
+    AT_MOST(equilibrium_residual(rig.equilibrium), 1e-10);
+    equilibrium_end(rig.equilibrium);
     rig.equilibrium = NULL;
     assert_int_equal(residual->shed_now, SHED_BY_LAW);
     // every equation of the school, not only those that have been solved, and with Kelvin's theorem
@@ -60,7 +60,7 @@ static void the_equations_of_a_run_hold_at_rest(void **state) {
     free(value);
     for (int f = 0; f < 2; f++) {
         const double shed = rig.simulation->state->y[school->fish[f].at.circulation];
-        assert_true(fabs(shed) > 0.1);
+        ABOVE(fabs(shed), 0.1);
         assert_int_equal(rig.simulation->state->wake[f].n_vortex, 0);
         NEAR(rig.simulation->state->wake[f].removed, shed, 0, 0);
     }
@@ -89,7 +89,7 @@ static void bodies_that_go_on_together_are_at_rest_in_their_frame(void **state) 
         const int along = (i >= at->vx && i < at->vy) || (i >= at->px && i < at->py);
         NEAR(b[i], a[i] + (along ? 0.5 : 0), 1e-9, 1e-9);
     }
-    assert_true(fabs(a[at->y + 6] - a[at->y]) > 0.05);
+    ABOVE(fabs(a[at->y + 6] - a[at->y]), 0.05);
     clear(&held);
     clear(&goes);
 }
@@ -132,7 +132,8 @@ static int differences(const struct rig *rig, double matrix[MOST][MOST]) {
         row[n++] = at->ax + i;
     }
     for (int i = at->gamma; i < at->phi0; i++, n++) unknown[n] = row[n] = i;
-    assert_true(n <= MOST && at->end <= 256);
+    AT_MOST(n, MOST);
+    AT_MOST(at->end, 256);
     for (int j = 0; j < n; j++) {
         const double before = y[unknown[j]], step = 1e-6;
         for (int side = 0; side < 2; side++) {

@@ -50,15 +50,15 @@ static void continuous_events_cost_no_restart(void **state) {
         assert_int_equal(counts_of(simulation).order, 2);
     }
     const struct integrator_counts continuous = counts_of(simulation);
-    assert_true((double)continuous.steps / 100 <= 5);
+    AT_MOST((double)continuous.steps / 100, 5);
     simulate_free(simulation);
     simulation =
         school_simulation("time: {end: 1, shedding_interval: 0.01}\nwake: {shedding: impulsive}\nfish: [{}]\n");
     school_run(simulation, 1);
     const struct integrator_counts impulsive = counts_of(simulation);
-    assert_true(impulsive.steps > continuous.steps);
+    ABOVE(impulsive.steps, continuous.steps);
     // every event evaluates the Jacobian again
-    assert_true(impulsive.jacobian_evaluations >= 100);
+    AT_LEAST(impulsive.jacobian_evaluations, 100);
     simulate_free(simulation);
 }
 
@@ -78,7 +78,7 @@ static void steps_divide_the_interval_and_keep_the_jacobian(void **state) {
     }
     // except where IDA itself changed the step
     assert_in_range(n_equal, 40, 50);
-    assert_true(before.jacobian_evaluations < 50);
+    BELOW(before.jacobian_evaluations, 50);
     simulate_free(simulation);
 }
 
@@ -109,12 +109,12 @@ static void counts_go_on_across_restarts(void **state) {
     for (int n = 0; n < 20; n++) {
         school_ok(simulate_step(simulation));
         const struct integrator_counts now = counts_of(simulation);
-        assert_true(now.steps > before.steps);
-        assert_true(now.residual_evaluations > before.residual_evaluations);
-        assert_true(now.newton_iterations > before.newton_iterations);
-        assert_true(now.jacobian_evaluations > before.jacobian_evaluations);
+        ABOVE(now.steps, before.steps);
+        ABOVE(now.residual_evaluations, before.residual_evaluations);
+        ABOVE(now.newton_iterations, before.newton_iterations);
+        ABOVE(now.jacobian_evaluations, before.jacobian_evaluations);
         // no more of them than iterations
-        assert_true(now.jacobian_evaluations <= now.newton_iterations);
+        AT_MOST(now.jacobian_evaluations, now.newton_iterations);
         before = now;
     }
     simulate_free(simulation);
@@ -135,7 +135,7 @@ static void a_restart_without_a_jump_does_not_change_the_path(void **state) {
     }
     // the error of a few hundred steps at 1e-8
     NEAR(tail[1], tail[0], 1e-6, 0);
-    assert_true(fabs(tail[0]) > 1e-3);
+    ABOVE(fabs(tail[0]), 1e-3);
 }
 
 static void too_many_steps_end_with_time_and_remedy(void **state) {

@@ -1,7 +1,7 @@
 /* test_newton.c: Newton's method on a few equations that count what they cost. */
 #include <string.h>
 
-#include "near.h"
+#include "school.h"
 #include "solver/newton.h"
 
 // u0^2 + u1 = 3, u0 - u1 = -1: solved by 1, 2
@@ -52,7 +52,7 @@ static void two_equations_are_solved_with_a_value_and_a_jacobian_for_each_step(v
     struct pair pair = {.n_values = 0};
     const struct newton problem = problem_of(&pair);
     double u[2] = {2, 0};
-    assert_int_equal(newton_solve(&problem, u), STATUS_OK);
+    assert_int_equal(newton_solve(test_arena(), &problem, u), STATUS_OK);
     NEAR(u[0], 1, 1e-9, 0);
     NEAR(u[1], 2, 1e-9, 0);
     // from u0 = 2 the error is 1/5, 1/85, 4e-5, 6e-10: quadratic
@@ -67,7 +67,7 @@ static void no_step_is_longer_than_the_longest(void **state) {
     problem.max_step = 1.5;
     problem.max_iterations = 1;
     double u[2] = {20, 0};
-    assert_int_equal(newton_solve(&problem, u), STATUS_SOLVER);
+    assert_int_equal(newton_solve(test_arena(), &problem, u), STATUS_SOLVER);
     NEAR(hypot(u[0] - 20, u[1]), 1.5, 1e-12, 0);
     assert_non_null(strstr(status_message(), "did not converge"));
 }
@@ -77,7 +77,7 @@ static void a_value_that_fails_ends_it_with_its_own_reason(void **state) {
     struct pair pair = {.fails_at = 3};
     const struct newton problem = problem_of(&pair);
     double u[2] = {2, 0};
-    assert_int_equal(newton_solve(&problem, u), STATUS_CONTACT);
+    assert_int_equal(newton_solve(test_arena(), &problem, u), STATUS_CONTACT);
     assert_string_equal(status_message(), "they met");
     assert_int_equal(pair.n_values, 3);
 }
@@ -88,7 +88,7 @@ static void a_singular_jacobian_is_named(void **state) {
     struct newton problem = problem_of(&pair);
     problem.jacobian = singular;
     double u[2] = {2, 0};
-    assert_int_equal(newton_solve(&problem, u), STATUS_SOLVER);
+    assert_int_equal(newton_solve(test_arena(), &problem, u), STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "singular"));
 }
 
@@ -113,7 +113,8 @@ static void eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told(void
     image_of(want_way, change);
     for (int i = 0; i < N; i++) change[i] = want_way[i] - change[i];
     for (int k = 0; k < COLUMNS; k++) image_of(before + N * k, after + N * k);
-    assert_int_equal(newton_multipliers(N, COLUMNS, before, after, change, real, imaginary, way), STATUS_OK);
+    assert_int_equal(newton_multipliers(test_arena(), N, COLUMNS, before, after, change, real, imaginary, way),
+                     STATUS_OK);
     NEAR_ARRAY(N, way, want_way, 1e-13, 0);
     const double want_real[N] = {0.9, 0.8 * cos(M_PI / 6), 0.8 * cos(M_PI / 6)}, want_imaginary[N] = {0, 0.4, -0.4};
     NEAR_ARRAY(N, real, want_real, 1e-14, 0);
@@ -126,7 +127,8 @@ static void errors_of_single_images_are_averaged(void **state) {
     const double before[3] = {1, 2, -2}, after[3] = {0.59, 1, -1};
     const double change = 0.98;
     double real, imaginary, way;
-    assert_int_equal(newton_multipliers(1, 3, before, after, &change, &real, &imaginary, &way), STATUS_OK);
+    assert_int_equal(newton_multipliers(test_arena(), 1, 3, before, after, &change, &real, &imaginary, &way),
+                     STATUS_OK);
     NEAR(real, 0.51, 1e-14, 0);
     NEAR(imaginary, 0, 0, 0);
     NEAR(way, 2, 1e-13, 0);
@@ -137,7 +139,8 @@ static void columns_that_do_not_span_the_space_tell_nothing(void **state) {
     const double before[4] = {0, 0, 0, 0}, after[4] = {1, 1, 2, 2};
     const double change[2] = {0, 0};
     double real[2], imaginary[2], way[2];
-    assert_int_equal(newton_multipliers(2, 2, before, after, change, real, imaginary, way), STATUS_SOLVER);
+    assert_int_equal(newton_multipliers(test_arena(), 2, 2, before, after, change, real, imaginary, way),
+                     STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "multipliers"));
 }
 
@@ -147,9 +150,10 @@ static void a_direction_that_has_died_has_a_multiplier_of_zero(void **state) {
     const double before[8] = {1, 1e-3, 0.8, 2e-3, 0.64, -1e-3, 0.512, 3e-3};
     const double after[8] = {0.8, 2e-3, 0.64, -1e-3, 0.512, 3e-3, 0.4096, -5e-3}, change[2] = {0.2, 0};
     double real[2], imaginary[2], way[2];
-    assert_int_equal(newton_multipliers(2, 4, before, after, change, real, imaginary, way), STATUS_OK);
+    assert_int_equal(newton_multipliers(test_arena(), 2, 4, before, after, change, real, imaginary, way), STATUS_OK);
     NEAR(real[0], 0.8, 1e-5, 0);
-    assert_true(real[1] == 0 && imaginary[1] == 0);
+    NEAR(real[1], 0, 0, 0);
+    NEAR(imaginary[1], 0, 0, 0);
     NEAR(way[0], 1, 1e-4, 0);
 }
 
@@ -157,8 +161,9 @@ static void a_map_that_keeps_what_it_gets_has_no_fixed_point(void **state) {
     (void)state;
     const double before[4] = {1, 0, 0, 1}, change[2] = {1, 1};
     double real[2], imaginary[2], way[2];
-    assert_int_equal(newton_multipliers(2, 2, before, before, change, real, imaginary, way), STATUS_OK);
-    assert_true(way[0] == 0 && way[1] == 0);
+    assert_int_equal(newton_multipliers(test_arena(), 2, 2, before, before, change, real, imaginary, way), STATUS_OK);
+    NEAR(way[0], 0, 0, 0);
+    NEAR(way[1], 0, 0, 0);
 }
 
 int main(void) {

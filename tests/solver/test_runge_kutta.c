@@ -150,14 +150,14 @@ static void a_failure_without_a_reason_is_not_explained_by_an_old_message(void *
     }
 }
 
-static void rate_of_an_algebraic_circulation_is_of_second_order(void **state) {
+static void the_rate_of_the_shed_circulation_is_a_difference_of_events(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.005}\n"
         "solver: {method: rk4, step: 0.005}\n"
         "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4}, wave: {ramp: 0},\n"
         "        control: {law: heading, desired_heading: 150}}]\n");
-    school_shed_step_by_step(simulation);
+    school_shed_event_by_event(simulation);
     simulate_free(simulation);
 }
 
@@ -170,7 +170,7 @@ int main(void) {
         cmocka_unit_test(a_torn_body_is_no_result),
         cmocka_unit_test(an_unstable_step_ends_with_a_message_that_tells_the_time),
         cmocka_unit_test(a_failure_without_a_reason_is_not_explained_by_an_old_message),
-        cmocka_unit_test(rate_of_an_algebraic_circulation_is_of_second_order),
+        cmocka_unit_test(the_rate_of_the_shed_circulation_is_a_difference_of_events),
         cmocka_unit_test(impulses_restart_the_explicit_method_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -64,7 +64,7 @@ static double wither(const char *text) {
     all_of(&setup, before);
     int n_events = 0;
     for (; wake_n_sources(wake) > 0; n_events++) {
-        assert_true(n_events < 100);
+        BELOW(n_events, 100);
         impulse_fade(setup.school, setup.state, 0);
         wake_advance(wake, interval);
         setup.state->t += interval;
@@ -73,7 +73,7 @@ static double wither(const char *text) {
         all_of(&setup, now);
         if (setup.school->removed == REMOVED_RETAINED) NEAR_ARRAY(3, now, before, 1e-14, 1e-13);
     }
-    assert_true(n_events > 10);
+    ABOVE(n_events, 10);
     const double lost = setup.state->momentum[0].lost[0];
     school_clear(&setup);
     return lost;
@@ -87,7 +87,7 @@ static void what_fades_or_is_removed_is_booked_where_it_is(void **state) {
     for (size_t w = 0; w < sizeof wakes / sizeof *wakes; w++) {
         char text[256];
         snprintf(text, sizeof text, TIME "wake: {lifetime: 0.3, %s}\nfish: [{}]\n", wakes[w]);
-        assert_true(fabs(wither(text)) > 1e-3);
+        ABOVE(fabs(wither(text)), 1e-3);
     }
 }
 
@@ -110,7 +110,7 @@ static void what_is_dropped_goes_to_the_tail(void **state) {
     const double lost = before.circulation - after.circulation;
     const double tail[2] = {setup.state->y[fish->at.x + fish->n_nodes - 1],
                             setup.state->y[fish->at.y + fish->n_nodes - 1]};
-    assert_true(fabs(lost) > 1e-3);
+    ABOVE(fabs(lost), 1e-3);
     const double *const booked = setup.state->momentum[0].lost;
     NEAR(booked[0], before.x - after.x - lost * tail[0], 1e-15, 1e-13);
     NEAR(booked[1], before.y - after.y - lost * tail[1], 1e-15, 1e-13);
@@ -137,9 +137,9 @@ static void what_merging_changes_is_booked(void **state) {
         school_ok(wake_merge(setup.school, setup.state));
     }
     all_of(&setup, after);
-    assert_true(wake->n_vortex < N - 20);
+    BELOW(wake->n_vortex, N - 20);
     NEAR_ARRAY(3, after, before, 1e-12, 1e-12);
-    assert_true(fabs(setup.state->momentum[0].lost[2]) > 1e-6);
+    ABOVE(fabs(setup.state->momentum[0].lost[2]), 1e-6);
     school_clear(&setup);
 }
 

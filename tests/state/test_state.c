@@ -1,4 +1,4 @@
-/* test_state.c: the state before the start, and histories of samples. */
+/* test_state.c: the state before the start, histories of samples, rates at events. */
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,6 +36,7 @@ static void a_fish_without_a_beat_remembers_one_sample(void **state) {
     assert_int_equal(setup.state->history[0].capacity, 1);
     for (int i = 1; i <= 3; i++) {
         const struct sample sample = {.heading = i};
+        school_ok(state_reserve(setup.state, setup.school));
         state_remember(&setup.state->history[0], &sample);
         NEAR(state_recall(&setup.state->history[0], 0)->heading, i, 0, 0);
         assert_int_equal(setup.state->history[0].n, 1);
@@ -43,15 +44,124 @@ static void a_fish_without_a_beat_remembers_one_sample(void **state) {
     school_clear(&setup);
 }
 
+static void samples_take_memory_for_the_events_of_the_run(void **state) {
+    (void)state;
+    // a beat of 1e6 s has 1e8 events of 0.01 s, of which a run has twenty
+    struct setup setup;
+    school_build(&setup,
+                 "time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.01}\n"
+                 "fish: [{wave: {frequency: 1e-6}}]\n");
+    struct history *const history = &setup.state->history[0];
+    assert_int_equal(history->n_slots, 0);
+    assert_in_range(history->capacity, 10000000, 10000001);
+    for (int n = 1; n <= 20; n++) {
+        school_ok(state_reserve(setup.state, setup.school));
+        state_remember(history, &(struct sample){.heading = n});
+        assert_in_range(history->n_slots, n, 2 * n);
+    }
+    for (int age = 0; age < 20; age++) NEAR(state_recall(history, age)->heading, 20 - age, 0, 0);
+
+    // a school of one period: never more than the samples of the period and one
+    struct setup period;
+    school_build(&period, "time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\nfish: [{}]\n");
+    for (int n = 1; n <= 200; n++) {
+        school_ok(state_reserve(period.state, period.school));
+        state_remember(&period.state->history[0], &(struct sample){.heading = n});
+        assert_in_range(period.state->history[0].n_slots, period.state->history[0].n, 52);
+    }
+    assert_int_equal(period.state->history[0].n, 51);
+    for (int age = 0; age < 51; age++) NEAR(state_recall(&period.state->history[0], age)->heading, 200 - age, 0, 0);
+    school_clear(&period);
+    school_clear(&setup);
+}
+
+static void a_kept_state_returns_without_a_copy_of_the_samples(void **state) {
+    (void)state;
+    struct setup setup;
+    struct state *before;
+    school_build(&setup, "time: {end: 2, shedding_interval: 0.2, output_interval: 0.2}\nfish: [{}]\n");
+    school_ok(state_create(&before, setup.school));
+    struct history *const history = &setup.state->history[0];
+    for (int n = 1; n <= 40; n++) {
+        // an event that is taken back, also where the ring is full, then the event
+        school_ok(state_table_keep(before, setup.state, setup.school));
+        assert_null(before->history[0].sample);
+        for (int again = 0; again < 2; again++) {
+            setup.state->y[0] = n;
+            school_ok(state_reserve(setup.state, setup.school));
+            state_remember(history, &(struct sample){.heading = again == 0 ? -1 : n});
+            if (again > 0) break;
+            school_ok(state_table_keep(setup.state, before, setup.school));
+            NEAR(setup.state->y[0], before->y[0], 0, 0);
+            assert_int_equal(history->n, n - 1 < 6 ? n - 1 : 6);
+            for (int age = 0; age < history->n; age++) NEAR(state_recall(history, age)->heading, n - 1 - age, 0, 0);
+        }
+    }
+    state_free(before, setup.school);
+    school_clear(&setup);
+}
+
 static void history_recalls_the_newest_ones_in_order(void **state) {
     (void)state;
-    struct sample samples[4];
-    struct history history = {.capacity = 4, .last = -1, .sample = samples};
+    struct sample samples[5];
+    struct history history = {.capacity = 4, .n_slots = 5, .last = -1, .sample = samples};
     for (int i = 0; i < 11; i++) {
         const struct sample sample = {.heading = i};
         state_remember(&history, &sample);
         assert_int_equal(history.n, i < 4 ? i + 1 : 4);
         for (int age = 0; age < history.n; age++) NEAR(state_recall(&history, age)->heading, i - age, 0, 0);
+    }
+}
+
+// ---- rates at events
+
+static double quartic(int i, double t) {
+    return i + 3 * t - (i % 5) * t * t + (i % 7) * t * t * t + (i % 3) * t * t * t * t;
+}
+
+static double slope_of_quartic(int i, double t) {
+    return 3 - 2 * (i % 5) * t + 3 * (i % 7) * t * t + 4 * (i % 3) * t * t * t;
+}
+
+static void set_unknowns(struct setup *setup, double t) {
+    for (int i = 0; i < setup->school->n_unknowns; i++) {
+        setup->state->y[i] = quartic(i, t);
+        setup->state->yp[i] = -7;
+    }
+}
+
+static void rates_of_quartics_are_exact_after_five_events_without_a_jump(void **state) {
+    (void)state;
+    static const char two_fish[] = TIME
+        "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{nodes: 5, sheet_points: 9, force: pressure, "
+        "pressure: "
+        "{span: infinite}}, {nodes: 5, force: reactive, start: {position: [0, 2]}}]\n";
+    for (int shed_is_algebraic = 0; shed_is_algebraic < 2; shed_is_algebraic++) {
+        struct setup setup;
+        school_build(&setup, two_fish);
+        const struct fish *const fish = setup.school->fish;
+        for (int n = 0; n < 16; n++) {
+            const double t = 0.02 * n;
+            set_unknowns(&setup, t);
+            if (n == 0 || n == 8) {
+                state_begin_rates(setup.state, setup.school);
+                continue;
+            }
+            state_find_rates(setup.state, setup.school, shed_is_algebraic);
+
+            for (int i = 0; i < setup.school->n_unknowns; i++) {
+                const int is_shed = i == fish[0].at.circulation || i == fish[1].at.circulation;
+                const int has_rate = (i >= fish->at.vx && i < fish->at.px) ||
+                                     (i >= fish->at.gamma && i < fish->at.circulation) ||
+                                     (is_shed && shed_is_algebraic);
+                const double line = (quartic(i, t) - quartic(i, t - 0.02)) / 0.02;
+                if (!has_rate) NEAR(setup.state->yp[i], -7, 0, 0);
+                // rounding of values of 60 over an interval of 0.02
+                if (has_rate && n % 8 == 1) NEAR(setup.state->yp[i], line, 1e-11, 0);
+                if (has_rate && n % 8 >= 4) NEAR(setup.state->yp[i], slope_of_quartic(i, t), 1e-10, 0);
+            }
+        }
+        school_clear(&setup);
     }
 }
 
@@ -80,7 +190,7 @@ static void read_definition(const char *path, const char *name, char *body, size
     if (!from) fail_msg("%s does not define struct %s", path, name);
     const char *const to = strstr(from, "\n};");
     assert_non_null(to);
-    assert_true((size_t)(to - from) < size);
+    BELOW((size_t)(to - from), size);
     snprintf(body, size, "%.*s", (int)(to - from - (long)strlen(start)), from + strlen(start));
 }
 
@@ -153,7 +263,7 @@ static void the_rows_cover_every_byte(void **state) {
     (void)state;
     for (int i = 0; i < N_OWNERS; i++) {
         unsigned char is_covered[sizeof(struct state) + sizeof(struct wake) + sizeof(struct control_memory)] = {0};
-        assert_true(owners[i].bytes <= sizeof is_covered);
+        AT_MOST(owners[i].bytes, sizeof is_covered);
         for (int k = 0; k < state_table_n; k++) {
             const struct state_row *const row = &state_table[k];
             if (row->owner == owners[i].owner) memset(is_covered + row->offset, 1, row->bytes);
@@ -161,7 +271,7 @@ static void the_rows_cover_every_byte(void **state) {
         // the remaining bytes are padding, and pointers to the owners
         size_t left = 0;
         for (size_t b = 0; b < owners[i].bytes; b++) left += !is_covered[b];
-        assert_true(left <= (owners[i].owner == STATE_ITSELF ? (N_OWNERS - 1) * sizeof(void *) : 7));
+        AT_MOST(left, (owners[i].owner == STATE_ITSELF ? (N_OWNERS - 1) * sizeof(void *) : 7));
     }
 }
 
@@ -176,7 +286,7 @@ static void a_sample_is_nothing_but_doubles(void **state) {
         assert_int_equal(strncmp(line, "double ", 7), 0);
         n++;
     }
-    assert_true(n > 5);
+    ABOVE(n, 5);
 }
 
 // ---- copies
@@ -233,19 +343,26 @@ static void indices_that_no_run_has_are_refused(void **state) {
     struct setup setup;
     school_build(&setup, SCHOOL);
     struct state *const s = setup.state;
+    school_ok(state_reserve(s, setup.school));
     for (int f = 0; f < 2; f++) state_remember(&s->history[f], &(struct sample){.heading = 1});
     school_ok(state_table_check(s, setup.school));
     int *const fields[] = {&s->history[1].n,        &s->history[1].n,        &s->history[0].last,
                            &s->history[0].last,     &s->balance[1].n,        &s->balance[1].n,
                            &s->control[1].waypoint, &s->control[0].waypoint, &s->wake[1].has_markers,
                            &s->closest->fish[0],    &s->closest->fish[1]};
-    const int wrong[] = {0, s->history[1].capacity + 1, -1, s->history[0].capacity, -1, 3, -1, 1, 1, -1, 2};
-    for (int i = 0; i < 11; i++) {
+    const int wrong[] = {0, s->history[1].capacity + 1, -1, s->history[0].n_slots, -1, 3, -1, 1, 1, -1, 2};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         const int right = *fields[i];
         *fields[i] = wrong[i];
         assert_int_equal(state_table_check(s, setup.school), STATUS_FILE);
         *fields[i] = right;
     }
+    for (int i = 0; i < 2; i++) {
+        s->n_past = i == 0 ? -1 : STATE_PAST + 1;
+        assert_int_equal(state_table_check(s, setup.school), STATUS_FILE);
+    }
+    s->n_past = STATE_PAST;
+    school_ok(state_table_check(s, setup.school));
     s->event = -1;
     assert_int_equal(state_table_check(s, setup.school), STATUS_FILE);
     school_clear(&setup);
@@ -255,7 +372,10 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(state_before_the_start_is_placed_and_empty),
         cmocka_unit_test(a_fish_without_a_beat_remembers_one_sample),
+        cmocka_unit_test(samples_take_memory_for_the_events_of_the_run),
+        cmocka_unit_test(a_kept_state_returns_without_a_copy_of_the_samples),
         cmocka_unit_test(history_recalls_the_newest_ones_in_order),
+        cmocka_unit_test(rates_of_quartics_are_exact_after_five_events_without_a_jump),
         cmocka_unit_test(every_field_has_a_row),
         cmocka_unit_test(the_rows_cover_every_byte),
         cmocka_unit_test(a_sample_is_nothing_but_doubles),

@@ -34,13 +34,31 @@ static void speed_and_multiplier_are_those_of_a_long_run(void **state) {
     struct brute brute[50];
     steady_setup_find(&setup, text);
     run_long(text, 50, brute);
-    assert_true(setup.problem.map.n_beats <= 20);
+    AT_MOST(setup.problem.map.n_beats, 20);
     // the required number of beats
     NEAR(setup.problem.map.last[0].speed, brute[49].speed, 0, 1e-4);
     // the error of the run decays in ten beats by the tenth power of the largest multiplier, to 1 %
     NEAR(setup.real[0], pow((brute[24].speed - brute[49].speed) / (brute[14].speed - brute[49].speed), 0.1), 0.01, 0);
     NEAR(setup.imaginary[0], 0, 0, 0);
     steady_setup_close(&setup);
+}
+
+/* The steps between two events are limited so that a beat fails after a large increment of the speed, but no beat of a
+ * run. */
+static void a_beat_that_fails_after_an_increment_is_repeated_after_a_smaller_one(void **state) {
+    (void)state;
+#define LIMITED(max_steps)                                                                    \
+    SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.05}\nsolver: {max_steps: " max_steps \
+                    "}\nfish: [{force: reactive, nodes: 9}]\n"
+    struct steady_setup limited, free;
+    steady_setup_open(&limited, LIMITED("19"));
+    school_ok(steady_search_run(&limited.problem));
+    steady_setup_open(&free, LIMITED("10000"));
+    school_ok(steady_search_run(&free.problem));
+    // the tolerance, 1e-5 lengths per beat, over the decay of the error in a beat, at least a tenth
+    NEAR(limited.problem.map.last[0].speed, free.problem.map.last[0].speed, 1e-4, 0);
+    steady_setup_close(&limited);
+    steady_setup_close(&free);
 }
 
 // a plate with a part of the leading-edge suction of attached flow; a slower plate loses more suction
@@ -65,8 +83,7 @@ static void a_plate_with_limited_suction_has_the_speed_of_a_long_run(void **stat
     simulate_measure(simulation);
     // a tenth of the suction
     const struct pressure_forces *const forces = &simulation->diagnostics->fish[0].pressure;
-    assert_true(hypot(forces->separation[0], forces->separation[1]) >
-                0.05 * hypot(forces->suction[0], forces->suction[1]));
+    ABOVE(hypot(forces->separation[0], forces->separation[1]), 0.05 * hypot(forces->suction[0], forces->suction[1]));
     steady_setup_close(&setup);
 }
 
@@ -78,13 +95,13 @@ static void circle(const char *text, double least_turn, int most_beats) {
     school_ok(steady_search_run(&setup.problem));
     run_long(text, 80, brute);
     const struct steady_beat *const last = setup.problem.map.last;
-    assert_true(last[0].turn < -least_turn);
+    BELOW(last[0].turn, -least_turn);
     NEAR(last[0].speed, brute[79].speed, 0, 1e-4);
     // the radius is speed over turn
     NEAR(last[0].turn, brute[79].turn, 0, 6e-4);
     assert_in_range(setup.problem.map.n_beats, 1, most_beats);
     steady_setup_multipliers(&setup);
-    assert_true(setup.real[0] < 1);
+    BELOW(setup.real[0], 1);
     steady_setup_close(&setup);
 }
 
@@ -121,7 +138,8 @@ static void a_fish_that_coasts_has_the_same_speed_from_two_starts(void **state) 
         school_ok(steady_search_run(&setup.problem));
         speed[i] = setup.problem.map.last[0].speed;
         steady_setup_multipliers(&setup);
-        assert_true(setup.real[0] > 0.97 && setup.real[0] < 1);
+        ABOVE(setup.real[0], 0.97);
+        BELOW(setup.real[0], 1);
         steady_setup_close(&setup);
     }
     NEAR(speed[0], speed[1], 0, 3e-3);
@@ -242,6 +260,29 @@ static void a_held_fish_is_steady_when_its_forces_repeat(void **state) {
     steady_setup_close(&setup);
 }
 
+static void a_beat_without_a_finite_value_is_not_steady(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE
+                      "fluid: {velocity: [1, 0]}\n"
+                      "fish: [{" FISH
+                      ", wave: {amplitude: 0}, body: {modulus: 1e9},"
+                      " motion: {prescribed: all, heave: 0.001, frequency: 1, speed: 0}}]\n");
+    steady_setup_beats(&setup, 3);
+    struct steady_beat *const now = &setup.problem.map.last[0];
+    double *const values[] = {&now->speed, &now->turn, &now->thrust, &now->driving, &now->rms_power};
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+        const double kept = *values[i];
+        *values[i] = NAN;
+        if (!isnan(steady_map_residual(&setup.problem.map))) {
+            fail_msg("value %zu: residual %g, want NaN", i, steady_map_residual(&setup.problem.map));
+        }
+        *values[i] = kept;
+    }
+    assert_true(isfinite(steady_map_residual(&setup.problem.map)));
+    steady_setup_close(&setup);
+}
+
 static void two_beats_in_a_row_are_steady(void **state) {
     (void)state;
     // a tolerance that every beat meets
@@ -285,7 +326,7 @@ static void mean_powers_are_the_works_of_a_beat(void **state) {
         const double drive = work[WORK_DRIVING_ON_WATER] - before[WORK_DRIVING_ON_WATER];
         NEAR(beat->actuation + drive,
              now->cost_of_transport * setup.simulation->school->fish[0].total_mass * now->speed, 1e-12, 1e-6);
-        assert_true(fabs(i == 0 ? beat->actuation : beat->driving) > 1e-3);
+        ABOVE(fabs(i == 0 ? beat->actuation : beat->driving), 1e-3);
         steady_setup_close(&setup);
     }
 }
@@ -328,8 +369,9 @@ static void mean_forces_are_trapezoids_over_the_events_of_a_beat(void **state) {
     NEAR(beat->thrust, mean, 1e-12 * beat->rms_thrust, 0);
     NEAR(beat->rms_thrust, sqrt(square), 0, 1e-12);
     NEAR(beat->rms_power, sqrt(square_of_power), 0, 1e-12);
-    assert_true(beat->rms_power > 1e-3);
-    assert_true(fabs(thrusts.value[0]) > 1e-6 && fabs(thrusts.value[20]) > 1e-6);
+    ABOVE(beat->rms_power, 1e-3);
+    ABOVE(fabs(thrusts.value[0]), 1e-6);
+    ABOVE(fabs(thrusts.value[20]), 1e-6);
     steady_setup_close(&setup);
 }
 
@@ -392,8 +434,7 @@ static void headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is
     NEAR(heading[0], remainder(from[0] - 15 * turn / 360, turn), 1e-12, 0);
     NEAR(heading[1], remainder(from[1] - from[0], turn), 1e-12, 0);
     NEAR(heading[2], remainder(from[2] - from[0], turn), 1e-12, 0);
-    assert_true(fabs(heading[0]) > 0.05);
-    steady_map_free(&map);
+    ABOVE(fabs(heading[0]), 0.05);
     simulate_free(simulation);
 }
 
@@ -417,7 +458,6 @@ static void a_formation_turns_with_its_first_fish(void **state) {
     school_ok(steady_map_add(&map, 2, seen + 1, (const double[]){0.3, -0.2}));
     steady_map_read(&map, 3, seen, after);
     NEAR_ARRAY(3, after, ((double[]){before[0], before[1] + 0.3, before[2] - 0.2}), 1e-10, 0);
-    steady_map_free(&map);
     simulate_free(simulation);
 }
 
@@ -435,7 +475,6 @@ static void a_fish_is_not_placed_on_another(void **state) {
     const double add[] = {value[2] - value[0] + 0.1, value[3] - value[1]};
     assert_int_equal(steady_map_add(&map, 2, place, add), STATUS_SOLVER);
     if (!strstr(status_message(), "makes b and c overlap")) fail_msg("%s", status_message());
-    steady_map_free(&map);
     simulate_free(simulation);
 }
 
@@ -514,23 +553,23 @@ static void the_balance_of_momentum_begins_with_the_rows_and_is_kept(void **stat
     diagnostics_restart(simulation->residual, simulation->state);
     const double closed = beat_balance(map, first);
     print_message("%.2g of the largest term with what the search adds, %.2g in a beat of the rows\n", open, closed);
-    assert_true(open > 0.1);
-    assert_true(closed < 0.01);
+    ABOVE(open, 0.1);
+    BELOW(closed, 0.01);
 
-    school_ok(steady_map_save(map, &kept));
-    school_ok(steady_map_return(map, kept));
+    school_ok(steady_map_save(simulation->arena, simulation, &kept));
+    school_ok(steady_map_return(simulation, kept));
     beat_balance(map, first);
-    school_ok(steady_map_return(map, kept));
+    school_ok(steady_map_return(simulation, kept));
     beat_balance(map, again);
     // to the tolerance of the solver
     NEAR_ARRAY(3, again, first, 1e-6, 0);
-    state_free(kept, simulation->school);
     steady_setup_close(&setup);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(speed_and_multiplier_are_those_of_a_long_run),
+        cmocka_unit_test(a_beat_that_fails_after_an_increment_is_repeated_after_a_smaller_one),
         cmocka_unit_test(a_plate_with_limited_suction_has_the_speed_of_a_long_run),
         cmocka_unit_test(a_fish_that_is_steered_to_one_side_goes_in_a_circle),
         cmocka_unit_test(a_fish_that_coasts_has_the_same_speed_from_two_starts),
@@ -540,6 +579,7 @@ int main(void) {
         cmocka_unit_test(the_step_of_the_multipliers_leads_to_the_fixed_point),
         cmocka_unit_test(scales_are_lengths_and_beats),
         cmocka_unit_test(a_held_fish_is_steady_when_its_forces_repeat),
+        cmocka_unit_test(a_beat_without_a_finite_value_is_not_steady),
         cmocka_unit_test(two_beats_in_a_row_are_steady),
         cmocka_unit_test(mean_powers_are_the_works_of_a_beat),
         cmocka_unit_test(mean_forces_are_trapezoids_over_the_events_of_a_beat),

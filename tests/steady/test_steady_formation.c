@@ -30,12 +30,12 @@ static void a_follower_finds_the_place_where_it_is_as_fast_as_its_leader(void **
     // about one wavelength, as in experiments: doc/verification.md
     NEAR(spacing(&setup), 1, 0.1, 0);
     NEAR(last[1].place[1], 0, 1e-12, 0);
-    assert_true(hypot(setup.real[0], setup.imaginary[0]) < 1);
+    BELOW(hypot(setup.real[0], setup.imaginary[0]), 1);
     // a run from this start needs more than 100 beats; five beats for each unknown and Jacobian took 60
-    assert_true(setup.problem.map.n_beats <= 40);
+    AT_MOST(setup.problem.map.n_beats, 40);
     // the formation is stable: beats without a search keep the places
     steady_setup_beats(&setup, 5);
-    assert_true(steady_map_residual(&setup.problem.map) < 3e-3);
+    BELOW(steady_map_residual(&setup.problem.map), 3e-3);
     steady_setup_close(&setup);
 }
 
@@ -45,21 +45,20 @@ static void between_two_stable_places_is_one_that_the_follower_leaves(void **sta
     steady_setup_find(&setup, PLATES "fish: [{}, {start: {position: [7.4, 0]}}]\n");
     // half a wavelength beyond the first stable place
     NEAR(spacing(&setup), 1.57, 0.1, 0);
-    assert_true(setup.real[0] > 1.5);
+    ABOVE(setup.real[0], 1.5);
     NEAR(setup.imaginary[0], 0, 0, 0);
     // after a displacement to either side the follower moves to the next stable place, by at least one length
     struct state *kept = NULL;
-    school_ok(steady_map_save(&setup.problem.map, &kept));
+    school_ok(steady_map_save(setup.simulation->arena, setup.simulation, &kept));
     const double place = setup.problem.map.last[1].place[0];
     for (int side = -1; side <= 1; side += 2) {
         const struct steady_unknown ahead = {1, STEADY_AHEAD};
         const double add = side * 0.1;
-        school_ok(steady_map_return(&setup.problem.map, kept));
+        school_ok(steady_map_return(setup.simulation, kept));
         school_ok(steady_map_add(&setup.problem.map, 1, &ahead, &add));
         steady_setup_beats(&setup, 5);
-        assert_true(side * (setup.problem.map.last[1].place[0] - place) > 1);
+        ABOVE(side * (setup.problem.map.last[1].place[0] - place), 1);
     }
-    state_free(kept, setup.simulation->school);
     steady_setup_close(&setup);
 }
 
@@ -76,7 +75,7 @@ static void fish_that_swim_freely_keep_the_place_that_is_found(void **state) {
     school_ok(steady_search_run(&setup.problem));
     const struct steady_beat found = setup.problem.map.last[1];
     NEAR(found.place[0], -1.4, 0.1, 0);
-    assert_true(setup.problem.map.n_beats <= 60);
+    AT_MOST(setup.problem.map.n_beats, 60);
     // the released follower keeps the place for some beats; an initial error of 0.1 lengths would drift by 0.05
     steady_setup_beats(&setup, 4);
     for (int i = 0; i < 2; i++) NEAR(setup.problem.map.last[1].place[i], found.place[i], 0.02, 0);
@@ -90,8 +89,8 @@ static void a_diamond_of_plates_is_found_and_stable(void **state) {
                       "fish: [{}, {start: {position: [5.3, 0.5]}}, {start: {position: [5.3, -0.5]}},\n"
                       "  {start: {position: [10.6, 0]}}]\n");
     assert_int_equal(setup.problem.n_unknowns, 7);
-    assert_true(setup.problem.map.n_beats <= 60);
-    assert_true(hypot(setup.real[0], setup.imaginary[0]) < 1);
+    AT_MOST(setup.problem.map.n_beats, 60);
+    BELOW(hypot(setup.real[0], setup.imaginary[0]), 1);
     const struct steady_beat *const last = setup.problem.map.last;
     double place[4];
     for (int f = 0; f < 4; f++) place[f] = last[f].place[0];
@@ -115,7 +114,7 @@ static void a_follower_of_a_held_leader_takes_its_speed(void **state) {
     // place and speed of the follower change by at most the tolerance per beat
     NEAR(setup.problem.map.last[1].speed, 4, 2 * 3e-3, 0);
     NEAR(spacing(&setup), 1, 0.15, 0);
-    assert_true(hypot(setup.real[0], setup.imaginary[0]) < 1);
+    BELOW(hypot(setup.real[0], setup.imaginary[0]), 1);
     steady_setup_close(&setup);
     // the follower falls back behind a faster leader with a small amplitude
     steady_setup_fails(PLATES

@@ -61,14 +61,13 @@ static void followers_keep_their_places_in_the_frame_of_the_first_fish(void **st
     fish[0].motion.prescribed = fish[1].motion.prescribed = PRESCRIBED_NONE;
     const struct school_parameters school = {.n_fish = N_FISH, .fish = fish};
     struct fish_parameters *found;
-    school_ok(steady_start_read(path, &school, &found));
+    school_ok(steady_start_read(test_arena(), path, &school, &found));
     NEAR_ARRAY(2, found[0].start_position, ((double[]){1, 2}), 0, 0);
     NEAR_ARRAY(2, found[1].start_position, ((double[]){3, 3}), 1e-14, 0);
     NEAR(found[0].start_speed, 1.5, 0, 0);
     NEAR(found[1].start_speed, 1.6, 0, 0);
     NEAR(found[0].motion.speed, 1.5, 0, 0);
     NEAR(found[1].motion.speed, 1.6, 0, 0);
-    free(found);
 }
 
 // an arc of a body that is twice as long and points elsewhere, as an arc behind the prescribed first edge
@@ -88,7 +87,7 @@ static void shapes_are_turned_and_scaled_to_the_first_edge(void **state) {
     put_state(1, 0, (double[]){1}, nodes);
 
     double *const y = setup.state->y;
-    school_ok(steady_start_shapes(path, setup.school, y));
+    school_ok(steady_start_shapes(test_arena(), path, setup.school, y));
     fish_prescribed_direction(fish, 0, direction, &rate);
     for (int k = 0; k < fish->n_edges; k++) {
         const double angle = atan2(direction[1], direction[0]) + k * turn;
@@ -104,13 +103,13 @@ static void a_file_of_other_bodies_is_refused(void **state) {
     put_state(1, 0, (double[]){1}, nodes);
     struct fish_parameters fish[N_FISH] = {{.start_heading = 0}}, *found;
     const struct school_parameters school = {.n_fish = N_FISH, .fish = fish};
-    assert_int_equal(steady_start_read(path, &school, &found), STATUS_FILE);
+    assert_int_equal(steady_start_read(test_arena(), path, &school, &found), STATUS_FILE);
     assert_null(found);
     assert_non_null(strstr(status_message(), "does not contain a steady state of 2 fish"));
 
     struct setup setup;
     school_build(&setup, TIME "fish: [{nodes: 7, sheet_points: 13, motion: {prescribed: head}}]\n");
-    assert_int_equal(steady_start_shapes(path, setup.school, setup.state->y), STATUS_FILE);
+    assert_int_equal(steady_start_shapes(test_arena(), path, setup.school, setup.state->y), STATUS_FILE);
     assert_non_null(strstr(status_message(), "does not have 7 nodes"));
     school_clear(&setup);
 
@@ -123,7 +122,7 @@ static void a_file_of_other_bodies_is_refused(void **state) {
         }
         put_state(1, 0, (double[]){1}, longer);
         school_build(&setup, TIME "fish: [{nodes: 4, sheet_points: 7, motion: {prescribed: head}}]\n");
-        const enum status status = steady_start_shapes(path, setup.school, setup.state->y);
+        const enum status status = steady_start_shapes(test_arena(), path, setup.school, setup.state->y);
         assert_int_equal(status, is_padded ? STATUS_OK : STATUS_FILE);
         if (!is_padded) assert_non_null(strstr(status_message(), "does not have 4 nodes"));
         school_clear(&setup);

@@ -57,6 +57,9 @@ check the_trapezoid_is_more_exact below "$(value trapezoid 0.005 5)" "$(value im
 run compare case.yaml --set 'fish[0].body.modulus=1e9' --methods rk4,ida2 --steps 0.01 --rtol 1e-4 --repeats 2
 check a_step_too_large_is_unstable grep -q '^rk4, step 0.01 failed: unstable at t = ' out
 check its_row_says_so test "$(value rk4 0.01 14)" = failed
+run compare case.yaml --set 'fish[0].body.modulus=1e8' --set solver.max_steps=150 --methods euler,ida2 --rtol 1e-2 \
+    --repeats 1 -o failed.nc
+check a_limit_of_steps_is_no_instability grep -q '^euler, rtol 1e-2 failed: limited by solver.max_steps at t = ' out
 check that_is_no_failure_of_the_comparison test "$code" = 0
 run compare case.yaml --set time.end=40 --set 'fish[0].body.modulus=1e8' --methods euler --rtol 1e-3 --repeats 1 \
     --reference-rtol 1e-5 --limit 0.9 -q
@@ -66,13 +69,14 @@ check then_nothing_else_runs test ! -s out
 
 refused unknown_method 2 "--methods: 'adams' is unknown" compare case.yaml --methods ida2,adams
 refused tolerance_out_of_range 2 'solver.rtol' compare case.yaml --rtol 1e-3,-1
-refused implicit_methods_without_steps 2 'needs a fixed step: set solver.step' \
+refused implicit_methods_without_steps 2 '--methods: trapezoid takes fixed steps only: give them with --steps' \
     compare case.yaml --methods trapezoid
 refused tolerance_of_words 2 "--rtol: 'small' is not a number" compare case.yaml --rtol 1e-3,small
 refused step_that_is_no_part 2 'solver.step' compare case.yaml --methods rk4 --steps 0.013
 refused empty_list 2 'nothing to compare' compare case.yaml --methods ''
 refused repeats_of_words 2 '--repeats two: expects an integer' compare case.yaml --repeats two
-refused no_repeats 2 '--repeats: expects 1 to 99' compare case.yaml --repeats 0
+refused no_repeats 2 '--repeats 0: expects an integer above 0' compare case.yaml --repeats 0
+refused too_many_repeats 2 '--repeats: expects 1 to 99' compare case.yaml --repeats 100
 refused limit_of_nothing 2 '--limit 0: expects a number above 0' compare case.yaml --limit 0
 refused a_sweep 2 'this case has a sweep of 1 axis' compare case.yaml --set 'sweep=[{key: solver.rtol, values: [1e-3]}]'
 

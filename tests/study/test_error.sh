@@ -22,12 +22,13 @@ check a_plan_ends_with_0 test "$code" = 0
 check it_lists_keys_and_levels grep -qE '^fish.nodes +9 11 \[17\] 24 +' out
 check it_counts_members_and_states_their_time grep -qE '^[0-9]+ members, \[the case\] among them; about .* with [0-9]+ at once' out
 check nothing_is_run test ! -e foil-error
+check and_no_folder_is_named grep -qE '^key +levels' <(head -n 1 out)
 run error foil.yaml --of steady_lift --of steady_deflection
 check errors_end_with_0 test "$code" = 0
 check the_plan_comes_first grep -qE '^key +levels +members' out
 check a_value_has_its_error grep -qE '^steady_lift of foil: [0-9.]+ \+- [0-9.]+ N \([0-9.]+ %\)$' out
 check each_key_has_its_share grep -qE '^fish.nodes +9 11 \[17\] 24 +(flagged|[0-9.]+\*?) +[0-9.]+ +[0-9.]+ +[0-9]+ .* 4 levels' out
-check the_next_key_is_named grep -qE '<- spend here: [a-z_]+ [0-9]+, CPU x [0-9.]+' out
+check the_next_key_is_named grep -qE '<- spend here: [a-z_]+ [0-9]+, (CPU x [0-9.]+, )?(to find an order of )?(lift|deflection)' out
 check the_sum_is_the_last_row grep -qE '^sum +[0-9.]+ +[0-9.]+' out
 check an_equilibrium_needs_no_interval eval '! grep -q shedding_interval out'
 check there_is_a_table_for_other_programs grep -q '^"foil",steady_lift,N,[0-9.]*,sum,' foil-error/error.csv
@@ -44,6 +45,16 @@ run error foil.yaml --of steady_lift --of steady_deflection -q
 check quiet_prints_nothing test "$code" = 0 -a ! -s out -a ! -s err
 refused another_question_is_another_study 4 'is a result of another study' error foil.yaml --of steady_lift
 
+# ---- a folder with fewer members, and with another study
+
+cp -r foil-error fewer
+rm fewer/member-0001.nc
+refused an_incomplete_folder_names_the_command 1 'members in fewer are not complete; repeat `shoal error` with the same options' \
+    gather fewer
+run study foil.yaml -q --force -o fewer --set 'sweep=[{key: "fish[*].body.modulus", values: [8e4, 9e4]}]' --set time.end=0.1
+check another_study_replaces_the_whole_folder test "$code" = 0 -a "$(cd fewer && echo *)" = \
+    'member-0000.nc member-0001.nc study.nc'
+
 # ---- within a bound
 
 run error foil.yaml --of steady_lift --within 3e-4 -o within
@@ -59,6 +70,16 @@ cp -r within warned
 /usr/bin/python3 -c 'import netCDF4; netCDF4.Dataset("warned/member-0000.nc", "a").warnings = "too few nodes"'
 run gather warned --strict
 check warnings_of_the_case_are_not_those_of_the_stated_value test "$code" = 0 -a -z "$(grep 'too few nodes' out)"
+# member that states the value with one warning, as --strict counts it
+stated=$(/usr/bin/python3 - <<'end'
+import glob, netCDF4
+value = float(netCDF4.Dataset("warned/study.nc")["stated_steady_lift"][0])
+print(min(glob.glob("warned/member-*.nc"), key=lambda path: abs(float(netCDF4.Dataset(path)["steady_lift"][0]) - value)))
+end
+)
+/usr/bin/python3 -c 'import netCDF4, sys; netCDF4.Dataset(sys.argv[1], "a").warnings = "too few nodes"' "$stated"
+refused one_warning_of_the_stated_value_is_enough_for_strict 3 '1 warning about the stated value, with --strict' \
+    gather warned --strict
 run info within/study.nc
 check info_takes_them_too cmp <(sed -n '/^steady_lift/,$p' out) table
 run error foil.yaml --of steady_lift --within 3e-4 -o within
@@ -69,9 +90,9 @@ check steps_without_members_are_not_taken eval '! cmp -s out table && test "$(gr
 refused what_is_too_dear_gives_exit_code_3 3 'the errors are not within 0.001 % of the values; ' \
     error foil.yaml -q -o dear --set 'error={of: steady_lift, within: 1e-5, most: 1.5}'
 check the_budget_is_printed_all_the_same grep -q '^sum ' err
-check a_case_can_ask_itself eval 'grep -q "levels: 3 levels (wider bounds)" out || test -s dear/study.nc'
+check a_case_can_ask_itself eval 'grep -q "levels: 3 levels" out || test -s dear/study.nc'
 run study foil.yaml -o asked --set 'error={of: steady_lift, confirm: false, keys: {nodes: [9, 11]}}'
-check study_states_errors_too grep -qE '^fish.nodes +9 11 \[17\] .* 3 levels \(wider bounds\)' out
+check study_states_errors_too grep -qE '^fish.nodes +9 11 \[17\] .* 3 levels' out
 check only_the_keys_that_are_named eval '! grep -q sheet_points out'
 run show foil.yaml --set 'error={of: steady_lift, confirm: false, keys: {nodes: [9, 11]}}'
 check show_prints_it grep -qx 'error: {of: \[steady_lift\], confirm: false, keys: {nodes: \[9, 11\]}}' out
@@ -95,7 +116,7 @@ check only_the_case_has_multipliers test "$(ncdump -v steady_error swimmer-study
     sed 's/.*=//' | tr , '\n' | grep -c '^[0-9]')" = 1
 run error swimmer.yaml --of speed --no-confirm
 check a_run_has_its_error grep -qE '^speed of fish: [0-9.]+ \+- [0-9.]+ m s-1' out
-check levels_are_fewer_without_confirm grep -qE '^fish.nodes +5 6 \[9\] .* 3 levels \(wider bounds\)' out
+check levels_are_fewer_without_confirm grep -qE '^fish.nodes +5 6 \[9\] .* 3 levels' out
 mkdir parts
 run study swimmer.yaml --members 0-1 -o parts
 check a_part_of_the_members test -e parts/member-0001.nc -a ! -e parts/member-0002.nc -a ! -e parts/study.nc
@@ -111,6 +132,10 @@ check then_the_error_is_unknown eval 'test "$code" != 0 && grep -qE "^sum +unkno
 # ---- wrong input
 
 refused no_quantity 2 'has no `error`: give --of QUANTITY' error foil.yaml
+refused half_a_node 2 "error.keys: levels of 'fish.nodes' are integers" \
+    study foil.yaml --set 'error={of: steady_lift, keys: {nodes: [4.5, 5, 6, 9]}}'
+refused too_many_levels 2 "error.keys: more than 9 levels of 'fish.nodes'" \
+    study foil.yaml --set 'error={of: steady_lift, keys: {nodes: [5, 6, 7, 8, 9, 10, 11, 12, 13, 14]}}'
 refused an_unknown_quantity 2 "error.of: 'lift' is no number of a result" error foil.yaml --of lift
 refused two_kinds 2 'speed is of a run and steady_lift of a steady state' error foil.yaml --of steady_lift --of speed
 refused a_bound_of_words 2 '--within few: expects a number above 0' error foil.yaml --of steady_lift --within few

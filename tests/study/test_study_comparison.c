@@ -60,7 +60,9 @@ static const char *print(const struct case_values *study, const struct member_fi
     static char text[4096];
     memset(text, 0, sizeof text);
     FILE *const stream = fmemopen(text, sizeof text - 1, "w");
-    assert_int_equal(study_comparison_print(study, members, stream), STATUS_OK);
+    struct arena *const arena = arena_create(NULL, "a test");
+    assert_int_equal(study_comparison_print(arena, study, members, stream), STATUS_OK);
+    arena_free(arena);
     fclose(stream);
     return text;
 }
@@ -209,8 +211,14 @@ static void only_a_sweep_of_these_keys_is_a_comparison(void **state) {
     case_free(&study);
 }
 
+static enum status print_in_bounds(struct arena *arena, const struct case_values *study,
+                                   const struct member_file *members, FILE *stream) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    return study_comparison_print(arena, study, members, stream);
+}
+
 /* Compare, and read the file that this leaves. */
-static enum status compare(const struct case_values *values, const char *path, FILE *nowhere) {
+static enum status compare(struct arena *arena, const struct case_values *values, const char *path, FILE *nowhere) {
     const struct study_compare_options options = {
         .methods = "ida2,rk4", .rtols = "1e-3", .repeats = 1, .reference_rtol = 1e-6, .path = path};
     const struct study_options run = {.command = "test"};
@@ -220,8 +228,11 @@ static enum status compare(const struct case_values *values, const char *path, F
     TRY(study_file_read(path, &study, &members, &(int){0}));
     const int n = sweep_n_members(&study);
     const double error = *at(&members[n - 1], "tail_error", 0, 0);
-    const enum status printed = study_comparison_print(&study, members, nowhere);
-    if (printed == STATUS_OK && strcmp(members[n - 1].status, "complete") == 0) assert_true(error > 0 && error < 1e-3);
+    const enum status printed = print_in_bounds(arena, &study, members, nowhere);
+    if (printed == STATUS_OK && strcmp(members[n - 1].status, "complete") == 0) {
+        ABOVE(error, 0);
+        BELOW(error, 1e-3);
+    }
     study_folder_free_members(members, n);
     case_free(&study);
     return printed;
@@ -237,10 +248,12 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
     // where the comparison itself has memory enough, its processes, which begin with what is left, may not
     for (int n = 0;; n += 1 + n / 30) {
         const int n_before = n_live;
+        struct arena *const arena = arena_create(NULL, "a test");
         n_until_failure = n;
-        const enum status status = compare(&values, path, nowhere);
+        const enum status status = compare(arena, &values, path, nowhere);
         const int ran_out = n_until_failure == -1;
         n_until_failure = -1;
+        arena_free(arena);
         assert_int_equal(n_live, n_before);
         if (status == STATUS_OK && !ran_out) break;
         n_failed++;
@@ -250,7 +263,7 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
         }
         assert_in_range(n, 0, 100000);
     }
-    assert_true(n_failed > 50);
+    ABOVE(n_failed, 50);
     fclose(nowhere);
     unlink(path);
     case_free(&values);

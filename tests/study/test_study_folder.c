@@ -14,12 +14,14 @@ static const char case_text[] =
 
 /* A folder in which all three members have run. */
 struct fixture {
+    struct arena *arena;
     struct case_values study;
     char folder[64], member[3][96];
 };
 
 static int set_up(void **state) {
     struct fixture *const f = calloc(1, sizeof *f);
+    f->arena = arena_create(NULL, "a test");
     strcpy(f->folder, "/tmp/shoal-plan-XXXXXX");
     assert_non_null(mkdtemp(f->folder));
     for (int m = 0; m < 3; m++) snprintf(f->member[m], sizeof f->member[m], "%s/member-%04d.nc", f->folder, m);
@@ -38,6 +40,7 @@ static int tear_down(void **state) {
     snprintf(command, sizeof command, "rm -r %s", f->folder);
     assert_int_equal(system(command), 0);
     case_free(&f->study);
+    arena_free(f->arena);
     free(f);
     return 0;
 }
@@ -54,28 +57,25 @@ static void set_attribute(const char *path, const char *name, const char *text) 
 /* Member 1 alone is to be run. */
 static void assert_one_to_run(const struct fixture *f) {
     struct study_plan plan;
-    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 0), STATUS_OK);
+    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 0), STATUS_OK);
     assert_int_equal(plan.n_members, 3);
     assert_int_equal(plan.n_done, 2);
     assert_int_equal(plan.n, 1);
     assert_int_equal(plan.member[0], 1);
-    study_plan_free(&plan);
 }
 
 static void assert_refused(const struct fixture *f, const struct case_values *study, const char *words) {
     struct study_plan plan;
-    assert_int_equal(study_plan_create(&plan, study, f->folder, 0, -1, 0), STATUS_FILE);
-    study_plan_free(&plan);
+    assert_int_equal(study_plan_create(f->arena, &plan, study, f->folder, 0, -1, 0), STATUS_FILE);
     if (!strstr(status_message(), words)) fail_msg("'%s' is not in '%s'", words, status_message());
 }
 
 static void finished_members_are_not_run_again(void **state) {
     const struct fixture *const f = *state;
     struct study_plan plan;
-    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 0), STATUS_OK);
+    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 0), STATUS_OK);
     assert_int_equal(plan.n, 0);
     assert_int_equal(plan.n_done, 3);
-    study_plan_free(&plan);
 }
 
 static void missing_and_cut_members_run_again(void **state) {
@@ -104,10 +104,9 @@ static void members_of_another_study_are_refused_unless_forced(void **state) {
     set_attribute(f->member[1], "study_case", "format: 1\n");
     assert_refused(f, &f->study, f->member[1]);
     struct study_plan plan;
-    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 1), STATUS_OK);
+    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 1), STATUS_OK);
     assert_int_equal(plan.n, 1);
     assert_int_equal(plan.member[0], 1);
-    study_plan_free(&plan);
 }
 
 static void a_member_in_the_place_of_another_is_refused(void **state) {
@@ -127,16 +126,14 @@ static void members_beyond_the_last_are_refused_or_removed(void **state) {
     write_bytes(path, 4, "else");
     assert_refused(f, &f->study, path);
     // a file that shoal did not write stays
-    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 1), STATUS_FILE);
-    study_plan_free(&plan);
+    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 1), STATUS_FILE);
     assert_int_equal(access(path, F_OK), 0);
     size_t n;
     char *const bytes = read_bytes(f->member[0], &n);
     write_bytes(path, n, bytes);
     free(bytes);
     assert_refused(f, &f->study, path);
-    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 1), STATUS_OK);
-    study_plan_free(&plan);
+    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 1), STATUS_OK);
     assert_int_not_equal(access(path, F_OK), 0);
     assert_int_equal(access(f->member[2], F_OK), 0);
 }
@@ -146,15 +143,14 @@ static void a_part_is_about_its_members_only(void **state) {
     assert_int_equal(unlink(f->member[0]), 0);
     assert_int_equal(unlink(f->member[2]), 0);
     struct study_plan plan;
-    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 1, 2, 0), STATUS_OK);
+    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 1, 2, 0), STATUS_OK);
     assert_int_equal(plan.n_members, 2);
     assert_int_equal(plan.n, 1);
     assert_int_equal(plan.member[0], 2);
-    study_plan_free(&plan);
     const int wrong[][2] = {{-1, 1}, {2, 1}, {0, 3}};
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(study_plan_create(&plan, &f->study, f->folder, wrong[i][0], wrong[i][1], 0), STATUS_CASE);
-        study_plan_free(&plan);
+        assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, wrong[i][0], wrong[i][1], 0),
+                         STATUS_CASE);
         assert_non_null(strstr(status_message(), "the study has members 0 to 2"));
     }
 }

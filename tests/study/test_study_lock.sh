@@ -27,7 +27,7 @@ end() {
 }
 
 start all -j 1
-refused a_second_study_is_refused_at_once 4 "all: another study runs some of the same members (process $pid on" \
+refused a_second_study_is_refused_at_once 4 "all: another study runs some of the same members" \
     study study.yaml -q -o all --set time.end=0.1
 for members in 0 1-2; do
     refused "and so is one of its members $members" 4 'another study runs some of the same members' study study.yaml -q -o all --members $members

@@ -167,12 +167,12 @@ static void refined(void) {
 static void balances(void) {
     const struct run one = {fish(MOVES, 1, 0, 0), 6, 0.01, 1e-6, 33, 1, NULL};
     const struct found of_one = find(&one);
-    verify_zero("friction and decaying, one fish: balance over its largest term", conservation, of_one.part, 1e-3);
-    verify_zero("friction and decaying, one fish: angular, N m s", conservation, of_one.angular, 0.06);
+    verify_zero("friction and decay, one fish: balance over its largest term", conservation, of_one.part, 1e-3);
+    verify_zero("friction and decay, one fish: angular, N m s", conservation, of_one.angular, 0.06);
     const struct run pair = {fish(FOLLOWS, 1, 1, 1.3), 5, 0.01, 1e-6, 33, 1, NULL};
-    verify_zero("friction and decaying, tandem: balance over its largest term", conservation, find(&pair).part, 1e-3);
+    verify_zero("friction and decay, tandem: balance over its largest term", conservation, find(&pair).part, 1e-3);
     const struct run plate = {PLATE("90"), 5, 0.01, 1e-6, 33, 1, NULL};
-    verify_zero("friction and decaying, plate held in heave: balance over its largest term", conservation,
+    verify_zero("friction and decay, plate held in heave: balance over its largest term", conservation,
                 find(&plate).part, 1e-3);
     const struct run sudden = {PLATE("0"), 5, 0.01, 1e-6, 33, 1, NULL};
     const struct found jump = find(&sudden);

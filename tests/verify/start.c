@@ -123,17 +123,15 @@ static double *algebraic_matrix(struct simulation *simulation, int *n) {
     const int n_unknowns = simulation->school->n_unknowns;
     double *const kind = allocate(n_unknowns, sizeof *kind);
     struct algebraic algebraic = {.place = allocate(n_unknowns, sizeof(int))};
-    struct jacobian *jacobian;
+    struct jacobian *const jacobian = jacobian_create(simulation->arena, simulation->school);
     residual_kinds(simulation->residual, kind);
     for (int i = 0; i < n_unknowns; i++) algebraic.place[i] = kind[i] > 0 ? -1 : algebraic.n++;
-    if (jacobian_create(&jacobian, simulation->school) != STATUS_OK) abort();
     residual_mask(simulation->residual, jacobian);
     if (residual_jacobian(simulation->residual, simulation->state->t, 0, simulation->state->y, jacobian) != STATUS_OK) {
         abort();
     }
     algebraic.matrix = allocate(algebraic.n * algebraic.n, sizeof(double));
     for (int f = 0; f < simulation->school->n_fish; f++) copy_rows(jacobian, f, &algebraic);
-    jacobian_free(jacobian);
     free(kind);
     free(algebraic.place);
     *n = algebraic.n;
@@ -156,7 +154,6 @@ static struct value largest_value(struct simulation *simulation) {
     const int n = simulation->school->n_unknowns;
     double *const value = allocate(n, sizeof *value);
     struct value most = {0};
-    flow_sum_exactly(simulation->residual->flow);
     if (residual_evaluate(simulation->residual, simulation->state->t, simulation->state->y, simulation->state->yp,
                           value) != STATUS_OK) {
         abort();
@@ -330,7 +327,6 @@ struct correction {
 
 static int value_callback(sunrealtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
     const struct correction *const correction = data;
-    flow_sum_exactly(correction->simulation->residual->flow);
     return residual_evaluate(correction->simulation->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
                              N_VGetArrayPointer(value));
 }
@@ -339,7 +335,6 @@ static int jacobian_callback(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector
                              void *data, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
     (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
     struct correction *const correction = data;
-    flow_sum_exactly(correction->simulation->residual->flow);
     return residual_jacobian(correction->simulation->residual, t, cj, N_VGetArrayPointer(y), correction->jacobian);
 }
 
@@ -351,15 +346,11 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     double *const values[4] = {y, yp, kind, tolerance};
     struct sundials_context context;
     N_Vector vector[4];
-    if (sundials_context_create(&context, n, 1, &correction.failure) != STATUS_OK) abort();
-    for (int i = 0; i < 4; i++) {
-        if (sundials_context_vector(&context, &vector[i], values[i]) != STATUS_OK) abort();
-    }
-    if (jacobian_create(&correction.jacobian, simulation->school) != STATUS_OK ||
-        linear_sundials_create(&correction.linear, context.context, correction.jacobian, tolerance, linear_tolerance,
-                               &correction.failure) != STATUS_OK) {
-        abort();
-    }
+    struct arena *const arena = arena_create(simulation->arena, "IDACalcIC");
+    sundials_context_create(&context, arena, n, 1, &correction.failure);
+    for (int i = 0; i < 4; i++) vector[i] = sundials_context_vector(&context, values[i]);
+    correction.jacobian = jacobian_create(arena, simulation->school);
+    correction.linear = linear_sundials_create(&context, correction.jacobian, tolerance, linear_tolerance);
     residual_mask(simulation->residual, correction.jacobian);
     void *ida = IDACreate(context.context);
     int code = IDAInit(ida, value_callback, simulation->state->t, vector[0], vector[1]);
@@ -372,10 +363,7 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     if (code == 0) code = IDACalcIC(ida, IDA_YA_YDP_INIT, simulation->state->t + simulation->school->interval);
     if (code == 0) code = IDAGetConsistentIC(ida, vector[0], vector[1]);
     IDAFree(&ida);
-    linear_sundials_free(&correction.linear);
-    for (int i = 0; i < 4; i++) N_VDestroy(vector[i]);
-    jacobian_free(correction.jacobian);
-    sundials_context_free(&context);
+    arena_free(arena);
     return code;
 }
 

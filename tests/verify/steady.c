@@ -46,7 +46,6 @@ static struct found search_for(const char *text) {
     found.cost = problem.map.last[0].actuation + problem.map.last[0].driving;
     verify_ok(steady_multipliers_find(&problem, real, imaginary, way, &n_beats));
     found.multiplier = hypot(real[0], imaginary[0]);
-    steady_problem_free(&problem);
     simulate_free(simulation);
     case_free(&values);
     return found;
@@ -62,7 +61,6 @@ static double run_long(const char *text, double speed[BRUTE_BEATS + 1]) {
         speed[i] = map.last[0].speed;
     }
     const double power = map.last[0].actuation + map.last[0].driving;
-    steady_map_free(&map);
     simulate_free(simulation);
     return power;
 }
@@ -158,7 +156,6 @@ static void find_steered(struct steered *steered, const char *text) {
 }
 
 static void close_steered(struct steered *steered) {
-    steady_problem_free(&steered->problem);
     simulate_free(steered->simulation);
     case_free(&steered->values);
 }

@@ -74,7 +74,7 @@ static double growth(struct steady_problem *problem, const struct state *kept) {
     double apart[2] = {0};
     for (int side = -1; side <= 1; side += 2) {
         const double add = side * 0.01;
-        verify_ok(steady_map_return(&problem->map, kept));
+        verify_ok(steady_map_return(problem->map.simulation, kept));
         verify_ok(steady_map_add(&problem->map, 1, &ahead, &add));
         for (int beat = 1; beat <= 3; beat++) {
             verify_ok(steady_map_beat(&problem->map, NULL, NULL));
@@ -103,12 +103,10 @@ static struct found find(const struct pair *pair, int n_fish, int is_stability_w
         verify_ok(steady_multipliers_find(&problem, real, imaginary, way, &n_beats));
         found.largest = hypot(real[0], imaginary[0]);
         struct state *kept = NULL;
-        verify_ok(steady_map_save(&problem.map, &kept));
+        verify_ok(steady_map_save(simulation->arena, simulation, &kept));
         found.wander = wander(&problem);
         found.growth = growth(&problem, kept);
-        state_free(kept, simulation->school);
     }
-    steady_problem_free(&problem);
     simulate_free(simulation);
     case_free(&values);
     return found;

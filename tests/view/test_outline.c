@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "near.h"
+#include "school.h"
 #include "view/outline.h"
 
 enum { MAX_NODES = 33 };
@@ -33,8 +34,7 @@ static void fill_ellipse(int n_nodes, bool is_mean, double *nodes, double *thick
 static void is_an_ellipse(int n, bool is_mean, double tolerance) {
     double nodes[2 * MAX_NODES], thickness[MAX_NODES], polygon[2 * OUTLINE_SIDES];
     fill_ellipse(n, is_mean, nodes, thickness);
-    struct outline outline;
-    assert_int_equal(outline_create(&outline, n, thickness, is_mean), STATUS_OK);
+    const struct outline outline = outline_create(test_arena(), n, thickness, is_mean);
     outline_polygon(&outline, nodes, polygon);
     for (int i = 0; i < OUTLINE_SIDES; i++) {
         const double q = polygon[2 * i], side = i < OUTLINE_POINTS ? 1 : -1;
@@ -43,7 +43,6 @@ static void is_an_ellipse(int n, bool is_mean, double tolerance) {
     // on the left side, seen from tail to nose, and ends in the nodes
     NEAR(polygon[0], 0, 1e-15, 0);
     NEAR(polygon[2 * OUTLINE_POINTS - 2], 1, 1e-15, 0);
-    outline_free(&outline);
 }
 
 static void an_ellipse_stays_one(void **state) {
@@ -65,8 +64,7 @@ static void an_egg_stays_one(void **state) {
         half[k] = 0.1 * sin(angle) * (1 + 0.4 * cos(angle));
         if (k > 0) thickness[k - 1] = half[k - 1] + half[k];
     }
-    struct outline outline;
-    assert_int_equal(outline_create(&outline, MAX_NODES, thickness, false), STATUS_OK);
+    const struct outline outline = outline_create(test_arena(), MAX_NODES, thickness, false);
     outline_polygon(&outline, nodes, polygon);
     double worst = 0;
     for (int i = 0; i < OUTLINE_POINTS; i++) {
@@ -74,8 +72,7 @@ static void an_egg_stays_one(void **state) {
         worst = fmax(worst, fabs(polygon[2 * i + 1] - 0.1 * sin(angle) * (1 + 0.4 * cos(angle))));
     }
     print_message("egg: error %.1e\n", worst);
-    assert_true(worst < 5e-4);
-    outline_free(&outline);
+    BELOW(worst, 5e-4);
 }
 
 // a parabola over the angle, which is the ratio of half thickness to sine at the middle of every edge, stays one
@@ -93,8 +90,7 @@ static void a_ratio_that_is_a_parabola_stays_one(void **state) {
         knot[k] = acos((cos(from) + cos(to)) / 2);
         thickness[k] = 0.1 * (1 + 0.3 * knot[k] - 0.2 * knot[k] * knot[k]) * (sin(from) + sin(to));
     }
-    struct outline outline;
-    assert_int_equal(outline_create(&outline, N, thickness, false), STATUS_OK);
+    const struct outline outline = outline_create(test_arena(), N, thickness, false);
     outline_polygon(&outline, nodes, polygon);
     int n = 0;
     for (int i = 0; i < OUTLINE_POINTS; i++) {
@@ -104,8 +100,7 @@ static void a_ratio_that_is_a_parabola_stays_one(void **state) {
         n++;
     }
     print_message("%d of %d points\n", n, OUTLINE_POINTS);
-    assert_true(n >= 8);
-    outline_free(&outline);
+    AT_LEAST(n, 8);
 }
 
 // thicknesses in reverse order give the half thickness in reverse order
@@ -113,12 +108,9 @@ static void nose_and_tail_are_interpolated_alike(void **state) {
     (void)state;
     static const double thickness[] = {0.02, 0.09, 0.16, 0.11, 0.05}, reversed[] = {0.05, 0.11, 0.16, 0.09, 0.02};
     for (int is_mean = 0; is_mean < 2; is_mean++) {
-        struct outline one, other;
-        assert_int_equal(outline_create(&one, 6, thickness, is_mean), STATUS_OK);
-        assert_int_equal(outline_create(&other, 6, reversed, is_mean), STATUS_OK);
+        const struct outline one = outline_create(test_arena(), 6, thickness, is_mean);
+        const struct outline other = outline_create(test_arena(), 6, reversed, is_mean);
         for (int i = 0; i < OUTLINE_POINTS; i++) NEAR(other.half[i], one.half[OUTLINE_POINTS - 1 - i], 1e-14, 0);
-        outline_free(&one);
-        outline_free(&other);
     }
 }
 
@@ -132,8 +124,7 @@ static void the_middle_line_is_the_smooth_curve(void **state) {
         nodes[2 * k + 1] = sin((double)k / (N - 1));
         thickness[k] = 0.1;
     }
-    struct outline outline;
-    assert_int_equal(outline_create(&outline, N, thickness, false), STATUS_OK);
+    const struct outline outline = outline_create(test_arena(), N, thickness, false);
     outline_polygon(&outline, nodes, polygon);
     for (int i = 1; i < OUTLINE_POINTS - 1; i++) {
         const int other = OUTLINE_SIDES - i;
@@ -143,8 +134,6 @@ static void the_middle_line_is_the_smooth_curve(void **state) {
         NEAR((left + right) / 2, 1, 1e-5, 0);
         NEAR(right - left, 2 * outline.half[i], 1e-9, 0);
     }
-    outline_free(&outline);
-    assert_null(outline.weight);
 }
 
 static void a_body_in_one_point_has_an_outline(void **state) {
@@ -152,11 +141,9 @@ static void a_body_in_one_point_has_an_outline(void **state) {
     double nodes[2 * MAX_NODES], thickness[MAX_NODES], polygon[2 * OUTLINE_SIDES];
     fill_ellipse(5, true, nodes, thickness);
     memset(nodes, 0, sizeof nodes);
-    struct outline outline;
-    assert_int_equal(outline_create(&outline, 5, thickness, true), STATUS_OK);
+    const struct outline outline = outline_create(test_arena(), 5, thickness, true);
     outline_polygon(&outline, nodes, polygon);
     for (int i = 0; i < 2 * OUTLINE_SIDES; i++) NEAR(polygon[i], 0, 0, 0);
-    outline_free(&outline);
 }
 
 int main(void) {

@@ -1,0 +1,73 @@
+/* arena.h: memory by owner. Tested by tests/base/test_arena.c.
+ *
+ * An arena holds all memory of one owner: a case, a school, a simulation, a file. arena_free releases the arena with
+ * all pieces, all children and all objects of libraries (arena_defer), the newest first. A part of an owner takes the
+ * arena of the owner and has no function that frees it.
+ *
+ * A request for memory never fails for the caller. A lack of memory sets the message and ends the innermost boundary of
+ * the thread: the function with MEMORY_BOUNDARY returns. Boundaries are main, the functions of include/shoal.h, and the
+ * functions that complete a file after a lack of memory. Boundaries nest; each thread has its own.
+ *
+ *     enum status command(struct arena *arena) {          on a lack of memory anywhere below,
+ *         MEMORY_BOUNDARY(STATUS_MEMORY);                 command returns STATUS_MEMORY,
+ *         ...                                             and the caller frees the arena
+ *     }
+ *
+ * No memory is requested in a parallel region, out of which no jump is possible; arena_new asserts it. A jump out of a
+ * callback of SUNDIALS leaves objects of SUNDIALS that can only be freed, which is what the owner does. */
+#ifndef ARENA_H
+#define ARENA_H
+
+#include <setjmp.h>
+#include <stddef.h>
+
+struct arena;
+
+/* Create an arena; it is released with the parent, or earlier by arena_free. parent NULL: released only by arena_free.
+ * name: the owner in the message "out of memory: NAME, N bytes"; must outlive the arena. */
+struct arena *arena_create(struct arena *parent, const char *name);
+void arena_free(struct arena *arena); /* accepts NULL */
+
+/* Let the pointer, of any type, point to n zeroed elements, never NULL. */
+#define NEW(arena, pointer, n) ((pointer) = arena_new(arena, (size_t)(n), sizeof *(pointer)))
+
+/* Resize a piece of this arena, or NULL, to n elements; new elements are zero. The piece may move. */
+#define GROW(arena, pointer, n) ((pointer) = arena_grow(arena, pointer, (size_t)(n), sizeof *(pointer)))
+
+void *arena_new(struct arena *arena, size_t n, size_t size);
+void *arena_grow(struct arena *arena, void *piece, size_t n, size_t size);
+
+/* A text by a printf format. */
+char *arena_text(struct arena *arena, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Call release(object) when the arena is freed, or at once if memory is lacking. For objects of libraries, files and
+ * locks. */
+void arena_defer(struct arena *arena, void (*release)(void *object), void *object);
+
+/* The object of a library, which is NULL if the library had no memory: NULL is a lack of memory of the arena. */
+void *arena_take(struct arena *arena, void *object);
+
+/* Move an arena to another parent, or to none. */
+void arena_move(struct arena *arena, struct arena *parent);
+
+/* End the innermost boundary for a lack of memory of the owner; n_bytes 0: of an unknown size. */
+_Noreturn void arena_lack(const struct arena *arena, double n_bytes);
+
+/* ---- boundaries */
+
+struct boundary {
+    jmp_buf jump;
+    struct boundary *outer;
+};
+
+/* Make the rest of this function a boundary: on a lack of memory below, the function returns the value failure. Local
+ * variables that failure reads must not change after this statement. */
+#define MEMORY_BOUNDARY(failure)                                                    \
+    __attribute__((cleanup(arena_boundary_leave))) struct boundary memory_boundary; \
+    arena_boundary_enter(&memory_boundary);                                         \
+    if (setjmp(memory_boundary.jump) != 0) return failure
+
+void arena_boundary_enter(struct boundary *boundary);
+void arena_boundary_leave(struct boundary *boundary);
+
+#endif

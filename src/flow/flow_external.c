@@ -1,0 +1,63 @@
+/* flow_external.c: the stream with shear, and gusts. */
+#include "flow/flow_external.h"
+
+#include <math.h>
+
+#include "base/mathematics.h"
+
+// distance ahead of the point of the gust that was at gust_position at the start, along the direction of travel, m
+static double gust_ahead(const struct school *school, double t, double x, double y) {
+    const double along = school->gust_along[0] * x + school->gust_along[1] * y;
+    return along - school->gust_position - school->gust_speed * t;
+}
+
+// velocity of a travelling gust over the amplitude
+static double gust_shape(const struct school *school, double ahead) {
+    switch (school->gust_profile) {
+        case GUST_SINE: return sin(school->gust_number * ahead);
+        case GUST_STEP: return ramp_step(0.5 - ahead / school->gust_gradient_distance);
+        default: return 0;
+    }
+}
+
+// derivative of gust_shape, m-1
+static double gust_slope(const struct school *school, double ahead) {
+    const double distance = school->gust_gradient_distance;
+    switch (school->gust_profile) {
+        case GUST_SINE: return school->gust_number * cos(school->gust_number * ahead);
+        case GUST_STEP: return -ramp_step_rate(0.5 - ahead / distance) / distance;
+        default: return 0;
+    }
+}
+
+void flow_external_gust(const struct school *school, double t, double x, double y, double *u, double *v) {
+    *u = *v = 0;
+    if (school->gust_profile == GUST_UNIFORM) return;
+    const double shape = gust_shape(school, gust_ahead(school, t, x, y));
+    *u = shape * school->gust[0];
+    *v = shape * school->gust[1];
+}
+
+void flow_external(const struct school *school, double t, double x, double y, double *u, double *v) {
+    const double gust = sin(school->gust_omega * t);
+    double travelling[2];
+    flow_external_gust(school, t, x, y, &travelling[0], &travelling[1]);
+    *u = school->velocity[0] + school->shear * y + gust * school->gust[0] + travelling[0];
+    *v = school->velocity[1] + gust * school->gust[1] + travelling[1];
+}
+
+void flow_external_gradient(const struct school *school, double t, double x, double y, double gradient[3]) {
+    gradient[0] = gradient[2] = 0;
+    gradient[1] = school->shear;
+    if (school->gust_profile == GUST_UNIFORM) return;
+    const double slope = gust_slope(school, gust_ahead(school, t, x, y));
+    gradient[0] += slope * school->gust_along[0] * school->gust[0];
+    gradient[1] += slope * school->gust_along[1] * school->gust[0];
+    gradient[2] += slope * school->gust_along[0] * school->gust[1];
+}
+
+void flow_external_acceleration(const struct school *school, double t, double acceleration[2]) {
+    const double angle = school->gust_omega * t, rate = school->gust_omega * cos(angle);
+    acceleration[0] = school->shear * (school->velocity[1] + sin(angle) * school->gust[1]) + rate * school->gust[0];
+    acceleration[1] = rate * school->gust[1];
+}

@@ -1,0 +1,30 @@
+/* images.h: the images of sources in impermeable straight walls along x. doc/model.md, section 17. Tested by
+ * tests/flow/test_images.c.
+ *
+ * A source of strength q, d at (x, y) has in the wall y = h an image of -q, (-dx, dy) at (x, 2h - y). In a channel, h
+ * < y < h + H, each image is mirrored again: images of the source itself at y + 2kH, and of the mirrored source at 2h
+ * - y + 2kH, for every integer k. */
+#ifndef IMAGES_H
+#define IMAGES_H
+
+#include "fish/fish.h"
+#include "wake/sources.h"
+
+/* An image of every source: at (x, sign y + shift), with the fraction `weight` of the strength. sign = -1: mirrored in
+ * a wall, with reversed circulation and reversed legs along the wall. */
+struct image {
+    double sign, shift, weight;
+};
+
+/* The images of sources of at most this depth [m] (infinite span: 0), in a new list that the caller frees; NULL without
+ * walls. In a channel a Gauss rule replaces the infinite sums: the images k = 1, and all further images as weighted
+ * images at nodes between the places of the images. There are 36 images for depths up to 8 H, 32 more for each factor
+ * of 4, and at most 272; the error is at most 1e-8 of the velocity of a vortex at the distance H if source and target
+ * are less than 6 H apart. Fails with STATUS_MEMORY. */
+enum status images_find(const struct walls *walls, double depth, struct image **image, int *n_images);
+
+/* Write all images of the sources, image after image, to *images, which is overwritten. Fails with STATUS_MEMORY. */
+enum status images_write(const struct sources *sources, int n_images, const struct image *image,
+                         struct sources *images);
+
+#endif

@@ -1,0 +1,394 @@
+/* kernel.c: one root in single precision per pair, one division for two pairs; in mutual sums both serve both
+ * directions. */
+#include "flow/kernel.h"
+
+#include <math.h>
+#include <string.h>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+#include "base/wide.h"
+
+static const double inverse_two_pi = 0.159154943091895335769;
+
+/* Avoids 0/0 in the spanwise part of a source at a target, and changes no bit at relevant distances. */
+static const double no_square = 1e-150;
+
+enum { HALF = KERNEL_BLOCK / 2 };
+
+struct targets kernel_targets_part(const struct targets *all, struct range which) {
+    struct targets part = *all;
+    const double **const given[] = {&part.x, &part.y, &part.half, &part.leg, &part.square};
+    double **const sums[] = {&part.u,   &part.v,   &part.leg_u, &part.leg_v, &part.div,  &part.u_x,
+                             &part.u_y, &part.v_x, &part.div_x, &part.div_y, &part.edge, &part.edge_gradient};
+    part.n = which.n;
+
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
+        if (*given[i]) *given[i] += which.first;
+    }
+
+    for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) {
+        if (*sums[i]) *sums[i] += which.first;
+    }
+
+    return part;
+}
+
+// ---- velocity and divergence
+
+#if defined(__x86_64__)
+
+#define VARIANT(name) name##_avx512
+#define TARGET __attribute__((target("avx512f")))
+#define lanes __m512d
+#define FUSED(a, b, c) _mm512_fmadd_pd(a, b, c)
+#define ONE_OVER_ROOT(a) _mm512_cvtps_pd(_mm256_div_ps(_mm256_set1_ps(1), _mm256_sqrt_ps(_mm512_cvtpd_ps(a))))
+#include "flow/kernel_loops.h"
+
+#define VARIANT(name) name##_avx2
+#define TARGET __attribute__((target("avx2,fma")))
+#define lanes __m256d
+#define FUSED(a, b, c) _mm256_fmadd_pd(a, b, c)
+#define ONE_OVER_ROOT(a) _mm256_cvtps_pd(_mm_div_ps(_mm_set1_ps(1), _mm_sqrt_ps(_mm256_cvtpd_ps(a))))
+#include "flow/kernel_loops.h"
+
+#elif defined(__aarch64__)
+
+#define VARIANT(name) name##_neon
+#define TARGET
+#define lanes float64x2_t
+#define FUSED(a, b, c) vfmaq_f64(c, a, b)
+#define ONE_OVER_ROOT(a) vcvt_f64_f32(vdiv_f32(vdup_n_f32(1), vsqrt_f32(vcvt_f32_f64(a))))
+#include "flow/kernel_loops.h"
+
+#endif
+
+// any processor: vectors of two doubles, products without fusion
+typedef double two __attribute__((vector_size(2 * sizeof(double))));
+#define VARIANT(name) name##_baseline
+#define TARGET
+#define lanes two
+#define FUSED(a, b, c) ((a) * (b) + (c))
+#define ONE_OVER_ROOT(a) ((two){1 / sqrtf((float)(a)[0]), 1 / sqrtf((float)(a)[1])})
+#include "flow/kernel_loops.h"
+
+static const struct kernel_loops *loops_finite(int i) {
+    const struct kernel_loops *found[3];
+    int n = 0;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f")) found[n++] = &loops_avx512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found[n++] = &loops_avx2;
+#elif defined(__aarch64__)
+    found[n++] = &loops_neon;
+#endif
+    found[n++] = &loops_baseline;
+    return i < n ? found[i] : NULL;
+}
+
+static const struct kernel_loops *loops_infinite(int i) {
+    const struct kernel_loops *found[3];
+    int n = 0;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f")) found[n++] = &loops_infinite_avx512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found[n++] = &loops_infinite_avx2;
+#elif defined(__aarch64__)
+    found[n++] = &loops_infinite_neon;
+#endif
+    found[n++] = &loops_infinite_baseline;
+    return i < n ? found[i] : NULL;
+}
+
+// ---- with gradients
+
+static WIDE(void, block_gradient, (struct kernel_block * at, const struct block_sources *from), (at, from)) {
+    const double scale = from->span * inverse_two_pi;
+    for (int n = 0; n < from->n; n++) {
+        const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, dx = from->dx[n] * scale;
+        const double dy = from->dy[n] * scale, half = from->factor * from->half[n] + from->leg[n];
+        const double square = from->square[n] + from->add;
+
+        for (int i = 0; i < KERNEL_BLOCK; i++) {
+            const double rx = at->x[i] - x, ry = at->y[i] - y, r2 = rx * rx + ry * ry;
+            const double r = r2 + (at->square[i] + square), t = r2 + (at->half[i] + half), root = sqrt(t);
+            const double inverse = 1 / (r * t * root), f = q * (inverse * t), g = inverse * r;
+            at->u[i] -= f * ry;
+            at->v[i] += f * rx;
+            at->leg_u[i] -= g * dy;
+            at->leg_v[i] += g * dx;
+            // 1/T^(5/2), and the slopes of f and g over r
+            const double fifth = g * g * root, by_f = -f * (2 * inverse * t * root + g * root), by_g = -3 * fifth;
+            const double across = ry * dx - rx * dy, h = by_g, k = 15 * fifth * g * root;
+            at->div[i] += h / 3 * across;
+            at->u_x[i] -= (ry * by_f + dy * by_g) * rx;
+            at->u_y[i] -= (ry * by_f + dy * by_g) * ry + f;
+            at->v_x[i] += (rx * by_f + dx * by_g) * rx + f;
+            at->div_x[i] += k * across * rx - h * dy;
+            at->div_y[i] += k * across * ry + h * dx;
+        }
+    }
+}
+
+static WIDE(void, block_edge, (struct kernel_block * at, const struct block_sources *from), (at, from)) {
+    const double scale = from->span * inverse_two_pi;
+    for (int n = 0; n < from->n; n++) {
+        const double x = from->x[n], y = from->y[n], dx = from->dx[n] * scale, dy = from->dy[n] * scale;
+        const double half = from->factor * from->half[n] + from->leg[n];
+        for (int i = 0; i < KERNEL_BLOCK; i++) {
+            const double rx = at->x[i] - x, ry = at->y[i] - y, t = rx * rx + ry * ry + (at->half[i] + half);
+            const double factor = -1.5 / (t * t * sqrt(t)), slope = -5 * factor / t;
+            at->edge[0][i] += factor * dx;
+            at->edge[1][i] += factor * dy;
+            at->edge_gradient[0][i] += slope * rx * dx;
+            at->edge_gradient[1][i] += slope * ry * dx;
+            at->edge_gradient[2][i] += slope * rx * dy;
+            at->edge_gradient[3][i] += slope * ry * dy;
+        }
+    }
+}
+
+static WIDE(void, block_gradient_infinite, (struct kernel_block * at, const struct block_sources *from), (at, from)) {
+    const double scale = from->span * inverse_two_pi;
+    for (int n = 0; n < from->n; n++) {
+        const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, square = from->square[n] + from->add;
+        for (int i = 0; i < KERNEL_BLOCK; i++) {
+            const double rx = at->x[i] - x, ry = at->y[i] - y;
+            const double inverse = 1 / (rx * rx + (ry * ry + (at->square[i] + square)));
+            const double f = q * inverse, h = 2 * f * inverse;
+            at->u[i] -= f * ry;
+            at->v[i] += f * rx;
+            at->u_x[i] += h * rx * ry;
+            at->u_y[i] += h * ry * ry - f;
+            at->v_x[i] += f - h * rx * rx;
+        }
+    }
+}
+
+static void fill_block(struct kernel_block *block, const struct kernel_pair *pair, const struct targets *at, int first,
+                       int n) {
+    // without gradients the loops set the sums
+    if (at->u_x) memset(block, 0, sizeof *block);
+    if (at->edge) memset(block->edge, 0, sizeof block->edge + sizeof block->edge_gradient);
+    block->has_squares = at->square != NULL;
+    for (int i = 0; i < KERNEL_BLOCK; i++) {
+        // the padding has another position than the last target, so that no two targets of a division are at one source
+        const int p = first + (i < n ? i : n - 1);
+        block->x[i] = at->x[p] + (i < n ? 0 : 1);
+        block->y[i] = at->y[p];
+        block->half[i] = (at->half ? pair->factor * at->half[p] : 0) + (at->leg ? at->leg[p] : 0);
+        block->square[i] = (at->square ? at->square[p] : 0) + no_square;
+    }
+}
+
+static void add_block(const struct kernel_block *block, const struct kernel_pair *pair, const struct targets *at,
+                      int first, int n) {
+    const struct {
+        double *to;
+        const double *from;
+        double factor;
+    } sums[] = {{at->u, block->u, 1},     {at->v, block->v, 1},         {at->u_x, block->u_x, 1},
+                {at->u_y, block->u_y, 1}, {at->v_x, block->v_x, 1},     {at->u, block->leg_u, 1},
+                {at->v, block->leg_v, 1}, {at->leg_u, block->leg_u, 1}, {at->leg_v, block->leg_v, 1},
+                {at->div, block->div, 3}, {at->div_x, block->div_x, 1}, {at->div_y, block->div_y, 1}};
+    const int n_sums = pair->kernel->has_legs ? (int)(sizeof sums / sizeof *sums) : 5;
+    for (int k = 0; k < n_sums; k++) {
+        if ((k >= 2 && k < 5 && !at->u_x) || !sums[k].to || (k >= 10 && !at->u_x)) continue;
+        for (int i = 0; i < n; i++) sums[k].to[first + i] += sums[k].factor * sums[k].from[i];
+    }
+
+    for (int k = 0; k < 2 && at->edge; k++) {
+        for (int i = 0; i < n; i++) at->edge[k * at->edge_stride + first + i] += block->edge[k][i];
+    }
+
+    for (int k = 0; k < 4 && at->edge_gradient; k++) {
+        for (int i = 0; i < n; i++) at->edge_gradient[k * at->edge_stride + first + i] += block->edge_gradient[k][i];
+    }
+}
+
+static struct block_sources block_sources_of(const struct kernel_pair *pair, const struct sources *sources,
+                                             struct range which) {
+    return (struct block_sources){.n = which.n,
+                                  .x = sources->x + which.first,
+                                  .y = sources->y + which.first,
+                                  .q = sources->q + which.first,
+                                  .dx = sources->dx + which.first,
+                                  .dy = sources->dy + which.first,
+                                  .half = sources->half + which.first,
+                                  .leg = sources->leg + which.first,
+                                  .square = sources->square + which.first,
+                                  .span = pair->span,
+                                  .factor = pair->factor,
+                                  .add = pair->square};
+}
+
+void kernel_induce(const struct kernel_pair *pair, const struct sources *sources, struct range which,
+                   const struct targets *at) {
+    if (which.n <= 0) return;
+    const struct block_sources from = block_sources_of(pair, sources, which);
+    for (int first = 0; first < at->n; first += KERNEL_BLOCK) {
+        const int n = at->n - first < KERNEL_BLOCK ? at->n - first : KERNEL_BLOCK;
+        struct kernel_block block;
+        fill_block(&block, pair, at, first, n);
+
+        if (at->u_x) {
+            pair->kernel->gradient(&block, &from);
+        } else {
+            pair->kernel->loops(0)->velocity(&block, &from);
+        }
+
+        if (at->edge && pair->kernel->edge) pair->kernel->edge(&block, &from);
+        add_block(&block, pair, at, first, n);
+    }
+}
+
+// sums of a tile of sources: five of HALF numbers for each fit in the first cache
+enum { TILE = 2 * KERNEL_BLOCK };
+
+static double sum_of_lanes(const double *value) {
+    return ((value[0] + value[4]) + (value[2] + value[6])) + ((value[1] + value[5]) + (value[3] + value[7]));
+}
+
+void kernel_induce_mutual(const struct kernel_pair *pair, const struct sources *sources, const struct targets *at) {
+    if (!pair->kernel->loops(0)->mutual) {
+        kernel_induce(pair, sources, (struct range){0, sources->n}, at);
+        return;
+    }
+
+    for (int first = 0; first < sources->n; first += TILE) {
+        const struct range tile = {first, sources->n - first < TILE ? sources->n - first : TILE};
+        const struct block_sources from = block_sources_of(pair, sources, tile);
+        struct block_lanes sums[TILE];
+        memset(sums, 0, sizeof sums);
+
+        // the tile and all sources before
+        for (int before = 0; before < first; before += KERNEL_BLOCK) {
+            struct kernel_block block;
+            struct block_mates mates;
+            fill_block(&block, pair, at, before, KERNEL_BLOCK);
+            memcpy(mates.q, sources->q + before, sizeof mates.q);
+            memcpy(mates.dx, sources->dx + before, sizeof mates.dx);
+            memcpy(mates.dy, sources->dy + before, sizeof mates.dy);
+            pair->kernel->loops(0)->mutual(&block, &mates, &from, sums);
+            add_block(&block, pair, at, before, KERNEL_BLOCK);
+        }
+        for (int i = 0; i < tile.n; i++) {
+            at->u[first + i] += sum_of_lanes(sums[i].u);
+            at->v[first + i] -= sum_of_lanes(sums[i].v);
+            if (!pair->kernel->has_legs) continue;
+            const double leg_u = -sum_of_lanes(sums[i].leg_u), leg_v = sum_of_lanes(sums[i].leg_v);
+            at->u[first + i] += leg_u;
+            at->v[first + i] += leg_v;
+            if (at->leg_u) at->leg_u[first + i] += leg_u;
+            if (at->leg_v) at->leg_v[first + i] += leg_v;
+            if (at->div) at->div[first + i] -= 3 * sum_of_lanes(sums[i].div);
+        }
+
+        // the sources of the tile
+        const struct targets own = kernel_targets_part(at, tile);
+        kernel_induce(pair, sources, tile, &own);
+    }
+}
+
+static void unit_finite(const struct kernel_pair *pair, const struct source *source, int n, const double *x,
+                        const double *y, const double *half, struct unit_values *values) {
+    const double scale = pair->span * inverse_two_pi, add = source->square + pair->square + no_square;
+    for (int i = 0; i < n; i++) {
+        const double rx = x[i] - source->x, ry = y[i] - source->y, r2 = rx * rx + ry * ry;
+        const double r = r2 + add, t = r2 + pair->factor * (source->half + half[i]) + source->leg, root = sqrt(t);
+        const double f = scale / (r * root), g = scale / (t * root), h = -3 * g / t, k = -5 * h / t;
+        const double by_f = -f * (2 / r + 1 / t) * source->q, across = ry * source->dx - rx * source->dy;
+        values->unit_u[i] = -f * ry;
+        values->unit_v[i] = f * rx;
+        values->leg[i] = g;
+        values->div_by_dx[i] = h * ry;
+        values->div_by_dy[i] = -h * rx;
+        values->edge[i] = h / 2;
+        values->u_x[i] = -(ry * by_f + source->dy * h) * rx;
+        values->u_y[i] = -(ry * by_f + source->dy * h) * ry - f * source->q;
+        values->v_x[i] = (rx * by_f + source->dx * h) * rx + f * source->q;
+        values->v_y[i] = (rx * by_f + source->dx * h) * ry;
+        values->div_x[i] = k * across * rx - h * source->dy;
+        values->div_y[i] = k * across * ry + h * source->dx;
+        values->edge_x[i] = k / 2 * rx;
+        values->edge_y[i] = k / 2 * ry;
+    }
+}
+
+static void unit_infinite(const struct kernel_pair *pair, const struct source *source, int n, const double *x,
+                          const double *y, const double *half, struct unit_values *values) {
+    const double scale = pair->span * inverse_two_pi, add = source->square + pair->square + no_square;
+    (void)half;
+    for (int i = 0; i < n; i++) {
+        const double rx = x[i] - source->x, ry = y[i] - source->y, inverse = 1 / (rx * rx + (ry * ry + add));
+        const double f = scale * inverse, g = f * source->q, h = 2 * g * inverse;
+        values->unit_u[i] = -f * ry;
+        values->unit_v[i] = f * rx;
+        values->u_x[i] = h * rx * ry;
+        values->u_y[i] = h * ry * ry - g;
+        values->v_x[i] = g - h * rx * rx;
+        values->v_y[i] = -values->u_x[i];
+    }
+}
+
+void kernel_unit(const struct kernel_pair *pair, const struct source *source, int n, const double *x, const double *y,
+                 const double *half, struct unit_values *values) {
+    pair->kernel->unit(pair, source, n, x, y, half, values);
+}
+
+static struct kernel_pair pair_infinite(double depth, double square) {
+    (void)depth;
+    return (struct kernel_pair){.kernel = &kernel_infinite, .span = 1, .square = square};
+}
+
+static struct kernel_pair pair_own(double depth, double square) {
+    return (struct kernel_pair){.kernel = &kernel_finite, .span = depth / 4, .factor = 1, .square = square};
+}
+
+static struct kernel_pair pair_other(double depth, double square) {
+    return (struct kernel_pair){.kernel = &kernel_finite, .span = depth / 2, .factor = 4, .square = square};
+}
+
+static double bound_infinite(const struct kernel_pair *pair, double r2, double low, double q, double d, double length) {
+    (void)low, (void)d, (void)length;
+    return fabs(pair->span) * inverse_two_pi * q / sqrt(r2 + pair->square);
+}
+
+static double bound_finite(const struct kernel_pair *pair, double r2, double low, double q, double d, double length) {
+    const double t = r2 + low, root = sqrt(t);
+    return fabs(pair->span) * inverse_two_pi / root * (q / sqrt(r2 + pair->square) + d / t * (1 + 3 * length / root));
+}
+
+const struct kernel kernel_infinite = {.cost = 1,
+                                       .tree_sources = 5000,
+                                       .tree_interactions = 3e7,
+                                       .bound = bound_infinite,
+                                       .own = pair_infinite,
+                                       .other = pair_infinite,
+                                       .loops = loops_infinite,
+                                       .gradient = block_gradient_infinite,
+                                       .unit = unit_infinite};
+
+const struct kernel kernel_finite = {.has_legs = 1,
+                                     .cost = 6,
+                                     .tree_sources = 3000,
+                                     .tree_interactions = 5e6,
+                                     .bound = bound_finite,
+                                     .own = pair_own,
+                                     .other = pair_other,
+                                     .loops = loops_finite,
+                                     .gradient = block_gradient,
+                                     .edge = block_edge,
+                                     .unit = unit_finite};
+
+void kernel_values_add(const struct kernel_pair *pair, const struct unit_values *one, double factor, int n,
+                       struct unit_values *sum) {
+    // the arrays of the struct, one after the other
+    const int n_arrays = pair->kernel->has_legs ? (int)(sizeof *sum / sizeof sum->unit_u) : 6;
+    for (int k = 0; k < n_arrays; k++) {
+        const double *const from = (const double *)one + (long)k * KERNEL_CHUNK;
+        double *const to = (double *)sum + (long)k * KERNEL_CHUNK;
+        for (int i = 0; i < n; i++) to[i] += factor * from[i];
+    }
+}

@@ -1,0 +1,153 @@
+/* tree_boxes.c: boxes are halved across the longer side, at the median. */
+#include "flow/tree_boxes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+
+struct tree_point {
+    double at[2], weight;
+    int index;
+};
+
+static enum status boxes_reserve(struct tree_boxes *boxes, int n, int n_boxes) {
+    if (n > boxes->capacity) {
+        const size_t capacity = (size_t)n + (size_t)n / 2;
+        boxes->capacity = 0;
+        TRY(MEMORY_RESIZE(boxes->index, capacity, "the tree of vortices"));
+        TRY(MEMORY_RESIZE(boxes->x, capacity, "the tree of vortices"));
+        TRY(MEMORY_RESIZE(boxes->y, capacity, "the tree of vortices"));
+        TRY(MEMORY_RESIZE(boxes->weight, capacity, "the tree of vortices"));
+        TRY(MEMORY_RESIZE(boxes->work, capacity, "the tree of vortices"));
+        boxes->capacity = (int)capacity;
+    }
+
+    if (n_boxes > boxes->box_capacity) {
+        boxes->box_capacity = 0;
+        TRY(MEMORY_RESIZE(boxes->box, n_boxes, "the tree of vortices"));
+        boxes->box_capacity = n_boxes;
+    }
+
+    return STATUS_OK;
+}
+
+// Reorder the points around the middle (quickselect): along one axis, points before the middle are not greater, points
+// after the middle not less.
+static void points_halve(struct tree_point *point, int n, int middle, int axis) {
+    int low = 0, high = n - 1;
+    while (low < high) {
+        const double pivot = point[low + (high - low) / 2].at[axis];
+        int i = low, j = high;
+        while (i <= j) {
+            while (point[i].at[axis] < pivot) i++;
+            while (point[j].at[axis] > pivot) j--;
+            if (i > j) break;
+            const struct tree_point other = point[i];
+            point[i++] = point[j];
+            point[j--] = other;
+        }
+
+        if (middle <= j) {
+            high = j;
+        } else if (middle >= i) {
+            low = i;
+        } else {
+            return;
+        }
+    }
+}
+
+// the circle around the smallest rectangle of the points; returns the axis along which the rectangle is longer
+static int box_enclose(struct tree_box *box, const struct tree_point *point) {
+    double low[2] = {point->at[0], point->at[1]}, high[2] = {point->at[0], point->at[1]};
+    for (int i = 1; i < box->n; i++) {
+        for (int axis = 0; axis < 2; axis++) {
+            const double at = point[i].at[axis];
+            low[axis] = at < low[axis] ? at : low[axis];
+            high[axis] = at > high[axis] ? at : high[axis];
+        }
+    }
+
+    box->x = low[0] + (high[0] - low[0]) / 2;
+    box->y = low[1] + (high[1] - low[1]) / 2;
+    double square = 0;
+
+    for (int i = 0; i < box->n; i++) {
+        const double rx = point[i].at[0] - box->x, ry = point[i].at[1] - box->y;
+        const double distance = rx * rx + ry * ry;
+        square = distance > square ? distance : square;
+    }
+
+    // expansions divide by the radius even if all points coincide
+    box->radius = fmax(sqrt(square), 1e-100);
+    return high[1] - low[1] > high[0] - low[0];
+}
+
+// Find the circle around box i, and halve the box unless is_leaf. Only the points and the halves of box i change.
+static void box_divide(struct tree_boxes *boxes, int i, int is_leaf) {
+    struct tree_box *const box = &boxes->box[i];
+    struct tree_point *const point = boxes->work + box->first;
+    const int axis = box_enclose(box, point), middle = box->n / 2;
+    if (is_leaf) return;
+    points_halve(point, box->n, middle, axis);
+    boxes->box[2 * i + 1] = (struct tree_box){.first = box->first, .n = middle};
+    boxes->box[2 * i + 2] = (struct tree_box){.first = box->first + middle, .n = box->n - middle};
+}
+
+// number of halvings of n points
+static int depth_for(int n, int leaf) {
+    int depth = 0;
+    while ((n + (1 << depth) - 1) >> depth > leaf) depth++;
+    return depth;
+}
+
+enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight,
+                            int leaf, int threads) {
+    boxes->n = boxes->n_boxes = boxes->depth = 0;
+    if (n == 0) return STATUS_OK;
+    const int depth = depth_for(n, leaf);
+    const int n_boxes = tree_boxes_level(depth + 1);
+    TRY(boxes_reserve(boxes, n, n_boxes));
+    struct tree_point *const point = boxes->work;
+    const int sharing = parallel_threads(threads, n, n, PARALLEL_SORTED);
+
+#pragma omp parallel for num_threads(sharing) schedule(static)
+    for (int i = 0; i < n; i++) {
+        point[i] = (struct tree_point){.at = {x[i], y[i]}, .weight = weight ? weight[i] : 0, .index = i};
+    }
+
+    boxes->box[0] = (struct tree_box){.first = 0, .n = n};
+    for (int level = 0; level <= depth; level++) {
+        const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
+
+#pragma omp parallel for num_threads(parallel_threads(threads, end - first, n, PARALLEL_SORTED)) schedule(static)
+        for (int i = first; i < end; i++) box_divide(boxes, i, level == depth);
+    }
+
+#pragma omp parallel for num_threads(sharing) schedule(static)
+    for (int i = 0; i < n; i++) {
+        boxes->x[i] = point[i].at[0];
+        boxes->y[i] = point[i].at[1];
+        boxes->weight[i] = point[i].weight;
+        boxes->index[i] = point[i].index;
+    }
+
+    boxes->n = n;
+    boxes->depth = depth;
+    boxes->n_boxes = n_boxes;
+
+    return STATUS_OK;
+}
+
+void tree_boxes_clear(struct tree_boxes *boxes) {
+    free(boxes->box);
+    free(boxes->index);
+    free(boxes->x);
+    free(boxes->y);
+    free(boxes->weight);
+    free(boxes->work);
+    *boxes = (struct tree_boxes){0};
+}

@@ -1,0 +1,105 @@
+/* sheet.h: the wake of a fish as sources: a free sheet between markers (shedding: sheet), or a queue of point vortices.
+ * doc/model.md, sections 7, 8 and 18. Tested by tests/wake/test_sheet.c.
+ *
+ * The queue of a free sheet holds markers: points of the sheet, each with the label Gamma_i, the circulation shed by
+ * the fish until the birth of the marker at the tail. Stretch i lies between the markers i and i + 1 and has the
+ * circulation Gamma_i+1 - Gamma_i of the decayed labels; the nascent stretch lies between the newest marker n and the
+ * tail, with Gamma(t) - Gamma_n.
+ *
+ *     marker 0 ---- 1 ---- ... ---- n-1 ---- n - - - - tail )=== body
+ *      oldest                          stretch 1  nascent
+ *
+ * The sheet has three views:
+ *
+ *   graded     for the own control points: points of the newest stretches, graded towards the tail, and the middles of
+ *              older stretches, with a smoothing that tapers to 0 at the tail
+ *   middles    for all other points of bodies: the middle of every stretch; or the queue and the nascent vortex
+ *   markers    for markers: the markers, each with half of both adjacent stretches */
+#ifndef SHEET_H
+#define SHEET_H
+
+#include "base/status.h"
+#include "fish/fish.h"
+#include "wake/sources.h"
+#include "wake/wake.h"
+
+/* Points of the nascent stretch for the own control points: fraction xi of the way from the tail to the newest marker,
+ * and fraction of the circulation. Gauss-Legendre in eta with xi = eta^2: exact for xi^(-1/2) times a polynomial. */
+enum { SHEET_PANEL = 4 };
+
+/* Number of newest stretches with SHEET_PANEL points; age in stretches up to which a stretch has two points, each with
+ * half of the circulation. Older stretches have one point, the middle. */
+enum { SHEET_GRADED = 1, SHEET_PAIRED = 4 };
+
+/* The older end of the nascent stretch for the own control points: the newest marker, or, if the tail has overtaken the
+ * marker, a point beside the tail. This point moves with the tail along the tangent, and by by_turn per displacement
+ * X'.n of the tangent vector along the normal. */
+struct nascent_end {
+    int is_overtaken;
+    double x[2]; /* m */
+    double tangent[2], normal[2], by_turn[2];
+};
+
+/* Points of all stretches, oldest stretch first, then the points of the nascent stretch. */
+struct sheet_points {
+    int n_released, n_nascent, capacity;
+    /* fixed for an interval; source i lies at the fraction xi of the way from the newer to the older end of its stretch
+     * (n_released) */
+    int *stretch;
+    double *xi, *part;
+    double *smoothing[2], *leg[2]; /* delta(d) and s at the start and at the end of the interval, m, m2 */
+    struct sources sources;        /* at one time */
+    struct nascent_end end;        /* of the nascent stretch */
+    double way[2];                 /* from the tail to this end, m */
+};
+
+/* Two views of the wake of a fish. The oldest n_single stretches have the middle in both views; the points differ in
+ * the smoothing. Point vortices are in middles only. */
+struct sheet {
+    struct sheet_points graded, middles;
+    int n_single, capacity;
+    /* workspace: markers at both ends of the interval or at one time, labels, lengths of stretches */
+    double *x[2], *y[2], *label, *length[2];
+};
+void sheet_free(struct sheet *sheet);
+
+/* Select the points of the interval that starts at the event. Fails with STATUS_MEMORY. */
+enum status sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school,
+                        const struct wake *wake);
+
+/* Set the released points to the time tau after the event at time t. */
+void sheet_place(struct sheet *sheet, const struct school *school, const struct wake *wake, double t, double tau);
+
+/* Set the nascent points to the time tau with the tail position at this time; shed: total circulation shed by the fish,
+ * m2 s-1. The stretch ends at the newest marker (tangent NULL), or for the own control points, with the direction of
+ * the body at the tail, beside the tail if the tail has overtaken the marker. Returns the circulation of the nascent
+ * stretch or vortex. */
+double sheet_place_nascent(struct sheet_points *points, const struct school *school, const struct wake *wake, double t,
+                           double tau, const double tail[2], const struct direction *tangent, double shed);
+
+/* Nascent point i: fraction of the way from the tail to the newest marker (point vortex: 0), fraction of the
+ * circulation. */
+double sheet_xi(const struct sheet_points *points, int i);
+double sheet_part(const struct sheet_points *points, int i);
+
+/* The wake of an equilibrium (doc/steady.md): two legs of circulation `shed` from the tail to infinity along the unit
+ * vector `along`, as nascent points in place of all points; targets beside the legs are valid up to the distance reach
+ * from the tail, m. Infinite span: no point. Fails with STATUS_MEMORY, or with STATUS_CASE for a reach above 1e5
+ * depths. sheet_steady_length: length of the legs of point i, m. */
+enum status sheet_place_steady(struct sheet_points *points, const struct fish *fish, const double tail[2],
+                               const double along[2], double shed, double reach);
+double sheet_steady_length(const struct sheet_points *points, int i);
+
+/* Append the markers as sources at markers, at the event at time t; nascent: circulation of the nascent stretch, which
+ * has length 0. Fails with STATUS_MEMORY. */
+enum status sheet_markers(struct sources *sources, const struct fish *fish, const struct school *school,
+                          const struct wake *wake, double t, double nascent);
+
+/* The newest marker tau after the event; the tail if there are no markers. */
+void sheet_newest(const struct wake *wake, double interval, double tau, const double tail[2], double point[2]);
+
+/* Smoothing of the velocity between a vortex of the wake and the own body, m; from_tail: position of the vortex
+ * relative to the tail, m; tangent: direction of the body at the tail. */
+double sheet_taper(const struct fish *fish, const double from_tail[2], const double tangent[2]);
+
+#endif

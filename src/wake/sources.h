@@ -1,0 +1,27 @@
+/* sources.h: a list of sources of the flow. doc/model.md, section 18. Tested by tests/wake/test_sheet.c.
+ *
+ * A source has a spanwise vortex of circulation q, and a leg d = C dx along the sheet; flow/kernel.h states the
+ * velocity. Without legs a source is a point vortex. */
+#ifndef SOURCES_H
+#define SOURCES_H
+
+#include "base/status.h"
+
+/* All arrays (n), owned. */
+struct sources {
+    int n, capacity;
+    double *x, *y;   /* m */
+    double *q;       /* m2 s-1 */
+    double *dx, *dy; /* C dx, m3 s-1 */
+    double *half;    /* b^2/2 with b a quarter of the depth, m2 */
+    double *leg;     /* s, m2 */
+    double *square;  /* contribution of the source to e^2, m2 */
+};
+
+/* Append n sources, all values 0. On STATUS_MEMORY nothing is changed. */
+enum status sources_append(struct sources *sources, int n);
+
+/* Release the arrays. Accepts a zeroed list. */
+void sources_free(struct sources *sources);
+
+#endif

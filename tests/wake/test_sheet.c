@@ -1,0 +1,226 @@
+/* test_sheet.c: markers, stretches, and the views of a wake. doc/model.md, sections 7, 8 and 18. */
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mathematics.h"
+#include "school.h"
+#include "wake/sheet.h"
+
+#define SHEET "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+static void the_panel_integrates_the_inverse_square_root(void **state) {
+    (void)state;
+    const struct sheet_points panel = {.n_nascent = SHEET_PANEL};
+
+    // integral of xi^(-1/2) xi^k over [0, 1]: 1/(k + 1/2); four points are exact up to k = 3
+    for (int k = 0; k < 4; k++) {
+        double sum = 0;
+        for (int i = 0; i < SHEET_PANEL; i++) sum += sheet_part(&panel, i) * pow(sheet_xi(&panel, i), k - 0.5);
+        NEAR(sum, 1 / (k + 0.5), 1e-15, 1e-14);
+    }
+}
+
+static void a_marker_is_born_at_the_tail_at_every_event(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME SHEET "fish: [{start: {speed: 1}}]\n");
+    const struct fish *fish = simulation->school->fish;
+    const struct wake *wake = &simulation->state->wake[0];
+    const double *const y = simulation->state->y;
+
+    // marker 0, without shed circulation
+    assert_int_equal(wake->n_vortex, 1);
+    NEAR(wake->circulation[0], 0, 0, 0);
+    for (int n = 1; n <= 20; n++) {
+        school_ok(simulate_step(simulation));
+        assert_int_equal(wake->n_vortex, n + 1);
+        NEAR(wake->circulation[n], y[fish->at.circulation], 0, 0);
+        NEAR(wake->x[n], y[fish->at.x + fish->n_nodes - 1], 0, 0);
+        NEAR(wake->y[n], y[fish->at.y + fish->n_nodes - 1], 0, 0);
+        NEAR(wake->birth[n], 0.02 * n, 1e-15, 0);
+
+        // the marker does not move forwards along the body
+        const struct direction tail = fish_direction(fish, &fish->tail_tangent, y);
+        const double relative[2] = {wake->u[n] - y[fish->at.vx + fish->n_nodes - 1],
+                                    wake->v[n] - y[fish->at.vy + fish->n_nodes - 1]};
+        ABOVE(relative[0] * tail.t[0] + relative[1] * tail.t[1], -1e-12);
+    }
+
+    simulate_free(simulation);
+}
+
+static void a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME SHEET "fish: [{start: {speed: -1}}]\n");
+    const struct fish *fish = simulation->school->fish;
+    const struct wake *wake = &simulation->state->wake[0];
+    const double *const y = simulation->state->y;
+    for (int n = 1; n <= 3; n++) {
+        school_ok(simulate_step(simulation));
+        const struct direction tail = fish_direction(fish, &fish->tail_tangent, y);
+        const double relative[2] = {wake->u[n] - y[fish->at.vx + fish->n_nodes - 1],
+                                    wake->v[n] - y[fish->at.vy + fish->n_nodes - 1]};
+        BELOW(wake->slip[0] * tail.t[0] + wake->slip[1] * tail.t[1], -0.5);
+        NEAR(relative[0] * tail.t[0] + relative[1] * tail.t[1], 0, 1e-12, 0);
+        // across the body the marker moves with the fluid
+        NEAR(relative[1] * tail.t[0] - relative[0] * tail.t[1], wake->slip[1] * tail.t[0] - wake->slip[0] * tail.t[1],
+             1e-12, 0);
+    }
+    simulate_free(simulation);
+}
+
+#define SPAN(word) "sheet: {curve: smooth}\nfish: [{force: pressure, sheet_points: 33, pressure: {span: " word "}}]\n"
+
+// every view has the circulation Gamma(t) less the label of the oldest marker; a middle has the whole stretch
+static void every_view_has_the_same_circulation(void **state) {
+    (void)state;
+    static const char *const fish[] = {SPAN("infinite"), SPAN("finite")};
+    for (int k = 0; k < 2; k++) {
+        char text[512];
+        snprintf(text, sizeof text, TIME SHEET "%s", fish[k]);
+        struct setup setup;
+        school_build(&setup, text);
+        school_stir(&setup);
+        setup.t = setup.state->t;
+        school_flow(&setup, setup.state->y);
+        const struct wake *const wake = &setup.state->wake[0];
+        const struct flow_fish *const of = &setup.residual->flow->fish[0];
+        const struct sheet *const sheet = &of->wake;
+        const struct sources *const middles = &sheet->middles.sources;
+        struct sources markers = {0};
+        double label[16], sum[3] = {0, 0, 0};
+        AT_MOST(wake->n_vortex, 16);
+        wake_strengths(wake, setup.school, setup.t, 0, 0, label);
+        school_ok(sheet_markers(&markers, setup.school->fish, setup.school, wake, setup.t, of->nascent));
+        for (int i = 0; i < sheet->middles.n_released; i++) {
+            NEAR(middles->x[i], (wake->x[i] + wake->x[i + 1]) / 2, 1e-15, 0);
+            NEAR(middles->q[i], label[i + 1] - label[i], 1e-15, 0);
+        }
+        for (int i = 0; i < sheet->graded.sources.n; i++) sum[0] += sheet->graded.sources.q[i];
+        for (int i = 0; i < middles->n; i++) sum[1] += middles->q[i];
+        for (int i = 0; i < markers.n; i++) sum[2] += markers.q[i];
+        const double all = setup.state->y[setup.school->fish->at.circulation] - label[0];
+        ABOVE(fabs(all), 0.01);
+        for (int i = 0; i < 3; i++) NEAR(sum[i], all, 1e-13, 0);
+        sources_free(&markers);
+        school_clear(&setup);
+    }
+}
+
+// with finite span labels decay; else the circulation of every stretch decays with the age of the newer marker
+static void stretches_decay_by_labels_only_if_rings_must_stay_closed(void **state) {
+    (void)state;
+    static const char *const fish[] = {SPAN("infinite"), SPAN("finite")};
+    for (int k = 0; k < 2; k++) {
+        char text[512];
+        snprintf(text, sizeof text, TIME "wake: {shedding: sheet, lifetime: 0.2, decay: 0.15}\n%s", fish[k]);
+        struct setup setup;
+        school_build(&setup, text);
+        struct wake *const wake = &setup.state->wake[0];
+        for (int i = 0; i < 8; i++) {
+            school_ok(wake_release(wake, i, sin(i), 0.1 * cos(i), setup.state->t - 0.02 * (8 - i)));
+        }
+        double label[8], part[8];
+        wake_strengths(wake, setup.school, setup.state->t, 0, 0.3, label);
+        for (int i = 0; i < 8; i++) part[i] = wake_strength_within(setup.school, 0.02 * (8 - i), 0.3);
+        BELOW(part[0], 0.2);
+        ABOVE(part[7], 0.9);
+        for (int i = 0; i < 7; i++) {
+            const double by_labels = part[i + 1] * wake->circulation[i + 1] - part[i] * wake->circulation[i];
+            const double by_stretch = part[i + 1] * (wake->circulation[i + 1] - wake->circulation[i]);
+            NEAR(label[i + 1] - label[i], k == 0 ? by_stretch : by_labels, 1e-15, 1e-13);
+            ABOVE(fabs(by_labels - by_stretch), 1e-4);
+        }
+        school_clear(&setup);
+    }
+}
+
+static void the_smoothing_tapers_to_nothing_at_the_tail(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME SHEET "fish: [{start: {speed: 1}}]\n");
+    school_run(simulation, 0.8);
+    const struct sheet_points *const sheet = &simulation->residual->flow->fish[0].wake.graded;
+    const struct sources *const sources = &sheet->sources;
+    const struct fish *fish = simulation->school->fish;
+    const double *const y = simulation->state->y;
+    const int last = fish->n_nodes - 1;
+    for (int i = 0; i < sheet->n_released; i++) {
+        const double dx = sources->x[i] - y[fish->at.x + last], dy = sources->y[i] - y[fish->at.y + last];
+
+        // a wake behind the body; tolerance: rounding of a difference near the tail
+        NEAR(sqrt(sources->square[i]), 0.1 * (1 - exp(-pow(hypot(dx, dy) / 0.4, 4))), 1e-12, 1e-9);
+    }
+
+    ABOVE(sheet->n_released, 20);
+    simulate_free(simulation);
+}
+
+// beside the body the taper length falls from the length behind the tail, at right angles, to that beside the body, at
+// an angle of 30 degrees with the normal and beyond
+static void the_taper_is_shorter_beside_the_body(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME SHEET "fish: [{}]\n");
+    const struct fish *const fish = setup.school->fish;
+    const double tangent[] = {0.6, 0.8}, pi = acos(-1);
+    for (int degrees = -180; degrees <= 180; degrees += 5) {
+        const double angle = degrees * pi / 180, r = 0.15;
+        // cosine of the angle between place and tangent
+        const double along = cos(angle),
+                     from[] = {r * (along * 0.6 - sin(angle) * 0.8), r * (along * 0.8 + sin(angle) * 0.6)};
+        const double q = along >= 0 ? 1 : fmax(0, 1 + 2 * along), length = 0.1 + 0.3 * ramp_step(q);
+        NEAR(sheet_taper(fish, from, tangent), 0.1 * (1 - exp(-pow(r / length, 4))), 1e-14, 1e-11);
+    }
+    school_clear(&setup);
+}
+
+// beyond 2.36 times the longer taper the taper is negligible in any direction; slightly closer the taper is finite
+static void far_from_the_tail_the_smoothing_is_full(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME SHEET "fish: [{length: 2}]\n");
+    const struct fish *const fish = setup.school->fish;
+    const double along[2] = {1, 0};
+    for (double angle = 0; angle < 6.3; angle += 0.3) {
+        const double direction[2] = {cos(angle), sin(angle)};
+        for (int i = 0; i < 2; i++) {
+            const double distance = 2 * 0.4 * (i == 0 ? 2.355 : 2.365);
+            const double at[2] = {distance * direction[0], distance * direction[1]};
+            NEAR(sheet_taper(fish, at, along), 0.2, 0, i == 0 ? 1e-12 : 1e-13);
+        }
+    }
+
+    // one spacing of the bound sheet beside the body: with the defaults 0.023 L at 0.05 L
+    NEAR(sheet_taper(fish, (const double[]){-0.1, 0.02}, along), 0.2 * (1 - exp(-pow(0.10198 / 0.2, 4))), 1e-6, 0);
+    NEAR(sheet_taper(fish, (const double[]){0, 0}, along), 0, 0, 0);
+    school_clear(&setup);
+}
+
+static void total_circulation_vanishes(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        TIME "wake: {shedding: sheet, lifetime: 0.3}\nfish: [{start: {speed: 1}}, {start: {position: [0.2, 0.6]}}]\n");
+    for (int n = 0; n < 30; n++) {
+        school_ok(simulate_step(simulation));
+        simulate_measure(simulation);
+        NEAR(simulation->diagnostics->total_circulation, 0, 1e-12, 0);
+    }
+
+    assert_int_equal(simulation->state->wake[0].n_vortex, 16);
+    simulate_free(simulation);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_panel_integrates_the_inverse_square_root),
+        cmocka_unit_test(a_marker_is_born_at_the_tail_at_every_event),
+        cmocka_unit_test(a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail),
+        cmocka_unit_test(every_view_has_the_same_circulation),
+        cmocka_unit_test(stretches_decay_by_labels_only_if_rings_must_stay_closed),
+        cmocka_unit_test(the_smoothing_tapers_to_nothing_at_the_tail),
+        cmocka_unit_test(the_taper_is_shorter_beside_the_body),
+        cmocka_unit_test(far_from_the_tail_the_smoothing_is_full),
+        cmocka_unit_test(total_circulation_vanishes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
