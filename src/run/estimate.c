@@ -171,7 +171,7 @@ static double run_seconds(const struct simulation *simulation, const struct cost
 
 // memory with the longest wakes: the last doubling of the wakes measures the memory per vortex
 static double run_bytes(const struct simulation *simulation, const struct costs *costs) {
-    const int last = costs->n - 1, n_fish = simulation->school->n_fish, enough = 4000;
+    const int last = costs->n - 1, n_fish = simulation->school->n_fish, enough = 20000;
     const double missing = wake_most(simulation->school, simulation->n_events) - costs->vortices[last];
     const double more = last > 0 ? (costs->vortices[last] - costs->vortices[last - 1]) * n_fish : 0;
     const double each = more > enough ? (costs->bytes[last] - costs->bytes[last - 1]) / more : usual_bytes;
