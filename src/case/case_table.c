@@ -631,7 +631,7 @@ const struct key case_table[] = {
     {"fish.control.limit", REAL, IN_FISH(control.limit), "0.5", ABOVE(0), "",
      .meaning = "maximum of the steering bias"},
     {"fish.control.feedforward", REAL, IN_FISH(control.feedforward), "0", ANY, "",
-     .meaning = "weight of the feedforward: the filtered moment of the flow", .published = "1"},
+     .meaning = "weight of the feedforward: the filtered moment of the flow; 0 with force: pressure", .published = "1"},
     {"fish.control.filter", REAL, IN_FISH(control.filter), NULL, FROM(0), "s",
      .meaning = "time constant of the filter of feedforward; 0: the moment at the last event",
      .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_control_filter,

@@ -359,7 +359,8 @@ const struct result_variable result_table[] = {
     {"total_circulation",     {TIME},                 RESULT_REAL,    "m2 s-1", IN_DIAGNOSTICS(total_circulation),
      .long_name = "sum of all circulation: zero but for rounding"},
     {"momentum_balance",        {TIME, XY},             RESULT_REAL,    "N s",    IN_DIAGNOSTICS(momentum_balance),
-     .long_name = "change of momentum and fluid_impulse of the school, less external_impulse"},
+     .long_name = "change of momentum and fluid_impulse of the school, less external_impulse; NaN with "
+                  "force: reactive, or with different or varying depths of infinite span"},
     {"angular_momentum_balance",{TIME},                 RESULT_REAL,    "N m s",  IN_DIAGNOSTICS(momentum_balance[2]),
      .long_name = "angular momentum balance about the origin, like momentum_balance"},
     {"least_distance",        {TIME},                 RESULT_REAL,    "m",      IN_DIAGNOSTICS(least_distance),
