@@ -638,13 +638,14 @@ static void pressure_at_events_has_the_accuracy_of_the_motion(void **state) {
                                        SCHOOL_DEFAULTS
                                        "time: {end: 1, shedding_interval: 0.01}\n"
                                        "fish: [{nodes: 9, body: {modulus: 1.0e+5}}]\n"};
-    // the trapezoidal rule does not damp the vibrations of the body; SUNDIALS 7 chooses other steps of dormand_prince
+    // the trapezoidal rule does not damp the vibrations of the body; dormand_prince: 1.2e-5 with the steps of SUNDIALS
+    // 6.4, 8.7e-4 with those of SUNDIALS 7.1
     static const struct {
         int fish;
         const char *solver;
         double tolerance;
     } runs[] = {{0, "", 1e-3},
-                {1, "{method: dormand_prince, rtol: 1.0e-6}", 5e-4},
+                {1, "{method: dormand_prince, rtol: 1.0e-6}", 2e-3},
                 {1, "{method: trapezoid, step: 0.00125}", 3e-3}};
     static double value[N * N_OF_EVENT], want[N * N_OF_EVENT];
 
