@@ -639,7 +639,7 @@ static void pressure_at_events_has_the_accuracy_of_the_motion(void **state) {
                                        "time: {end: 1, shedding_interval: 0.01}\n"
                                        "fish: [{nodes: 9, body: {modulus: 1.0e+5}}]\n"};
     // the trapezoidal rule does not damp the vibrations of the body; dormand_prince: 1.2e-5 with the steps of SUNDIALS
-    // 6.4, 8.7e-4 with those of SUNDIALS 7.1
+    // 6, 8.7e-4 with those of SUNDIALS 7
     static const struct {
         int fish;
         const char *solver;
