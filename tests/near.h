@@ -1,4 +1,8 @@
-/* near.h: cmocka, and comparisons in double that print all values when they fail.
+/* near.h: cmocka, tests without a list, and comparisons in double that print all values when they fail.
+ *
+ *     TEST(a_fact) { ... }                       a test; the main of near.c runs the tests of a program in their order
+ *     TEST_WITH(a_fact, set_up, tear_down)       with cmocka's functions around it; *state is what set_up leaves there
+ *     TEST_GROUP(set_up, tear_down)              cmocka's functions around all tests of a program
  *
  *     NEAR(got, want, atol, rtol)                passes when |got - want| <= atol + rtol |want|
  *     NEAR_ARRAY(n, got, want, atol, rtol)       the same for each of n values; names the worst index
@@ -25,6 +29,22 @@
 
 #include "base/status.h"
 
+#define TEST(name) TEST_WITH(name, NULL, NULL)
+#define TEST_WITH(name, set_up, tear_down)                                             \
+    static void name(void **state);                                                    \
+    __attribute__((constructor)) static void near_add_##name(void) {                   \
+        near_add(__LINE__, (struct CMUnitTest){#name, name, set_up, tear_down, NULL}); \
+    }                                                                                  \
+    static void name(__attribute__((unused)) void **state)
+#define TEST_GROUP(set_up, tear_down)                               \
+    __attribute__((constructor)) static void near_add_group(void) { \
+        near_group(set_up, tear_down);                              \
+    }
+
+void near_add(int line, struct CMUnitTest test);
+void near_group(CMFixtureFunction set_up, CMFixtureFunction tear_down);
+int near_run(void); /* all tests of the program; the exit code. For a main with arguments. */
+
 #define NEAR(got, want, atol, rtol) near_check(#got, (got), (want), (atol), (rtol), __FILE__, __LINE__)
 #define NEAR_ARRAY(n, got, want, atol, rtol) near_array(#got, (n), (got), (want), (atol), (rtol), __FILE__, __LINE__)
 
@@ -38,55 +58,17 @@
         if (!(near_got relation near_bound)) near_fail(#got, near_got, #relation, near_bound, __FILE__, __LINE__); \
     } while (0)
 
-static inline void near_fail(const char *name, double got, const char *relation, double bound, const char *file,
-                             int line) {
-    print_error("%s: got %.17g, which is not %s %.17g\n", name, got, relation, bound);
-    _fail(file, line);
-}
-
 #undef assert_int_equal
 #define assert_int_equal(got, want) near_int(#got, #want, (long long)(got), (long long)(want), __FILE__, __LINE__)
 
-static inline void near_int(const char *name, const char *wanted, long long got, long long want, const char *file,
-                            int line) {
-    if (got == want) return;
-    const int is_status = strncmp(wanted, "STATUS_", 7) == 0 || strncmp(wanted, "SHOAL_", 6) == 0;
-    print_error("%s: got %lld, want %s, which is %lld%s%s\n", name, got, wanted, want, is_status ? ": " : "",
-                is_status ? status_message() : "");
-    _fail(file, line);
-}
-
 /* By how much got misses its tolerance; 0 or less when near, infinite for NaN. */
-static inline double near_excess(double got, double want, double atol, double rtol) {
-    if (got == want) return 0;  // infinities too
-    const double excess = fabs(got - want) - (atol + rtol * fabs(want));
-    return isnan(excess) ? INFINITY : excess;
-}
+double near_excess(double got, double want, double atol, double rtol);
 
-static inline void near_check(const char *name, double got, double want, double atol, double rtol, const char *file,
-                              int line) {
-    if (near_excess(got, want, atol, rtol) <= 0) return;
-    print_error("%s: got %.17g, want %.17g, atol %g, rtol %g, difference %g\n", name, got, want, atol, rtol,
-                got - want);
-    _fail(file, line);
-}
-
-static inline void near_array(const char *name, int n, const double *got, const double *want, double atol, double rtol,
-                              const char *file, int line) {
-    int worst = 0, n_wrong = 0;
-    double worst_excess = 0;
-    for (int i = 0; i < n; i++) {
-        const double excess = near_excess(got[i], want[i], atol, rtol);
-        if (!(excess > 0)) continue;
-        n_wrong++;
-        if (excess > worst_excess) {
-            worst_excess = excess;
-            worst = i;
-        }
-    }
-    if (n_wrong == 0) return;
-    print_error("%s: %d of %d values differ; the worst is index %d\n", name, n_wrong, n, worst);
-    near_check(name, got[worst], want[worst], atol, rtol, file, line);
-}
+// behind the macros
+void near_fail(const char *name, double got, const char *relation, double bound, const char *file, int line);
+void near_int(const char *name, const char *wanted, long long got, long long want, const char *file, int line);
+void near_check(const char *name, double got, double want, double atol, double rtol, const char *file, int line);
+void near_array(const char *name, int n, const double *got, const double *want, double atol, double rtol,
+                const char *file, int line);
 
 #endif

@@ -7,8 +7,7 @@
 #include "failing_malloc.h"
 #include "near.h"
 
-static void new_memory_is_zero_and_never_null(void **state) {
-    (void)state;
+TEST(new_memory_is_zero_and_never_null) {
     struct arena *const arena = arena_create(NULL, "a test");
     double *values, *none;
     NEW(arena, values, 3);
@@ -20,8 +19,7 @@ static void new_memory_is_zero_and_never_null(void **state) {
     assert_int_equal(n_live, 0);
 }
 
-static void memory_grows_with_its_values_and_zeros(void **state) {
-    (void)state;
+TEST(memory_grows_with_its_values_and_zeros) {
     struct arena *const arena = arena_create(NULL, "a test");
     double *values = NULL, *other;
     GROW(arena, values, 2);
@@ -38,8 +36,7 @@ static void memory_grows_with_its_values_and_zeros(void **state) {
     assert_int_equal(n_live, 0);
 }
 
-static void a_text_has_any_length(void **state) {
-    (void)state;
+TEST(a_text_has_any_length) {
     struct arena *const arena = arena_create(NULL, "a test");
     assert_string_equal(arena_text(arena, "%s %d", "fish", 3), "fish 3");
     assert_int_equal(strlen(arena_text(arena, "%5000d", 1)), 5000);
@@ -52,8 +49,7 @@ static void note(void *letter) {
     order[strlen(order)] = *(const char *)letter;
 }
 
-static void releases_run_newest_first_and_children_before_older_pieces(void **state) {
-    (void)state;
+TEST(releases_run_newest_first_and_children_before_older_pieces) {
     memset(order, 0, sizeof order);
     struct arena *const parent = arena_create(NULL, "a parent");
     arena_defer(parent, note, "a");
@@ -70,8 +66,7 @@ static void releases_run_newest_first_and_children_before_older_pieces(void **st
     assert_int_equal(n_live, 0);
 }
 
-static void a_moved_arena_belongs_to_its_new_parent(void **state) {
-    (void)state;
+TEST(a_moved_arena_belongs_to_its_new_parent) {
     memset(order, 0, sizeof order);
     struct arena *const first = arena_create(NULL, "first"), *const second = arena_create(NULL, "second");
     struct arena *const child = arena_create(first, "a child");
@@ -100,8 +95,7 @@ static int grow(struct arena *arena, double **values, size_t n) {
     return 0;
 }
 
-static void a_lack_of_memory_ends_the_boundary_with_a_message(void **state) {
-    (void)state;
+TEST(a_lack_of_memory_ends_the_boundary_with_a_message) {
     struct arena *const arena = arena_create(NULL, "the points");
     assert_int_equal(request(arena, 5), 0);
     n_until_failure = 0;
@@ -132,8 +126,7 @@ static int request_twice(struct arena *arena, int *inner) {
     return 0;
 }
 
-static void boundaries_nest(void **state) {
-    (void)state;
+TEST(boundaries_nest) {
     struct arena *const arena = arena_create(NULL, "a test");
     int inner = 0;
     assert_int_equal(request_twice(arena, &inner), -1);
@@ -155,8 +148,7 @@ static int take_nothing(struct arena *arena) {
     return 0;
 }
 
-static void an_arena_or_an_object_of_a_library_may_be_lacking(void **state) {
-    (void)state;
+TEST(an_arena_or_an_object_of_a_library_may_be_lacking) {
     n_until_failure = 0;
     assert_int_equal(create(), -1);
     n_until_failure = -1;
@@ -165,18 +157,4 @@ static void an_arena_or_an_object_of_a_library_may_be_lacking(void **state) {
     assert_string_equal(status_message(), "out of memory: a solver");
     arena_free(arena);
     assert_int_equal(n_live, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(new_memory_is_zero_and_never_null),
-        cmocka_unit_test(memory_grows_with_its_values_and_zeros),
-        cmocka_unit_test(a_text_has_any_length),
-        cmocka_unit_test(releases_run_newest_first_and_children_before_older_pieces),
-        cmocka_unit_test(a_moved_arena_belongs_to_its_new_parent),
-        cmocka_unit_test(a_lack_of_memory_ends_the_boundary_with_a_message),
-        cmocka_unit_test(boundaries_nest),
-        cmocka_unit_test(an_arena_or_an_object_of_a_library_may_be_lacking),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

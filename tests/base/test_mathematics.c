@@ -4,8 +4,7 @@
 #include "base/mathematics.h"
 #include "near.h"
 
-static void the_larger_and_the_smaller_number_keep_nan(void **state) {
-    (void)state;
+TEST(the_larger_and_the_smaller_number_keep_nan) {
     const double value[] = {-INFINITY, -2, 0, 3, INFINITY};
     for (int i = 0; i < 5; i++) {
         for (int k = 0; k < 5; k++) {
@@ -17,8 +16,7 @@ static void the_larger_and_the_smaller_number_keep_nan(void **state) {
     }
 }
 
-static void wrap_removes_full_turns(void **state) {
-    (void)state;
+TEST(wrap_removes_full_turns) {
     const double pi = acos(-1);
     for (int turns = -3; turns <= 3; turns++) {
         for (double angle = -3; angle <= 3; angle += 0.5) {
@@ -29,16 +27,14 @@ static void wrap_removes_full_turns(void **state) {
     NEAR(fabs(angle_wrap(pi)), pi, 0, 1e-15);
 }
 
-static void degrees_and_radians_are_inverse(void **state) {
-    (void)state;
+TEST(degrees_and_radians_are_inverse) {
     NEAR(angle_radians(180), acos(-1), 0, 1e-15);
     NEAR(angle_degrees(angle_radians(37.5)), 37.5, 0, 1e-15);
 }
 
 // ---- the ramp of doc/model.md, section 4
 
-static void step_goes_from_zero_to_one_symmetrically(void **state) {
-    (void)state;
+TEST(step_goes_from_zero_to_one_symmetrically) {
     NEAR(ramp_step(-1), 0, 0, 0);
     NEAR(ramp_step(0), 0, 0, 0);
     NEAR(ramp_step(1), 1, 0, 0);
@@ -49,8 +45,7 @@ static void step_goes_from_zero_to_one_symmetrically(void **state) {
     NEAR(ramp_step(0.25), 18.0625 / 256, 1e-16, 0);
 }
 
-static void rate_is_the_derivative(void **state) {
-    (void)state;
+TEST(rate_is_the_derivative) {
     const double h = 1e-4;
     for (double q = -0.15; q < 1.2; q += 0.1) {
         // truncation h^2/6 |S'''| with |S'''| <= 53; rounding 1e-16/h is less
@@ -59,16 +54,14 @@ static void rate_is_the_derivative(void **state) {
     }
 }
 
-static void three_derivatives_vanish_at_both_ends(void **state) {
-    (void)state;
+TEST(three_derivatives_vanish_at_both_ends) {
     // S = 35 q^4 + ... at the start, 1 - 35 (1-q)^4 + ... at the end
     const double q = 1e-3;
     NEAR(ramp_step(q), 35 * q * q * q * q, 0, 3e-3);
     NEAR(1 - ramp_step(1 - q), 35 * q * q * q * q, 1e-15, 3e-3);
 }
 
-static void ramp_of_no_duration_is_one_at_all_times(void **state) {
-    (void)state;
+TEST(ramp_of_no_duration_is_one_at_all_times) {
     NEAR(ramp_value(0, 0), 1, 0, 0);
     NEAR(ramp_rate(0, 0), 0, 0, 0);
     NEAR(ramp_value(1, 2), 0.5, 1e-15, 0);
@@ -76,8 +69,7 @@ static void ramp_of_no_duration_is_one_at_all_times(void **state) {
 
 // ---- Gauss-Legendre quadrature
 
-static void polynomials_of_degree_2n_less_1_are_integrated_exactly(void **state) {
-    (void)state;
+TEST(polynomials_of_degree_2n_less_1_are_integrated_exactly) {
     for (int n = 1; n <= 24; n++) {
         double node[24], weight[24];
         quadrature_legendre(n, node, weight);
@@ -90,8 +82,7 @@ static void polynomials_of_degree_2n_less_1_are_integrated_exactly(void **state)
 }
 
 // the terms of a sum with any weights; without freedom the nodes are the terms
-static void the_gauss_rule_of_a_sum_is_exact_to_degree_2n_less_1(void **state) {
-    (void)state;
+TEST(the_gauss_rule_of_a_sum_is_exact_to_degree_2n_less_1) {
     enum { N = 40 };
     double x[N], weight[N], scratch[2 * N], node[8], of_node[8];
     for (int i = 0; i < N; i++) {
@@ -117,8 +108,7 @@ static void the_gauss_rule_of_a_sum_is_exact_to_degree_2n_less_1(void **state) {
     }
 }
 
-static void nodes_ascend_and_are_symmetric(void **state) {
-    (void)state;
+TEST(nodes_ascend_and_are_symmetric) {
     double node[16], weight[16];
     quadrature_legendre(16, node, weight);
     for (int i = 0; i < 16; i++) {
@@ -128,8 +118,7 @@ static void nodes_ascend_and_are_symmetric(void **state) {
     }
 }
 
-static void four_nodes_are_those_of_the_tables(void **state) {
-    (void)state;
+TEST(four_nodes_are_those_of_the_tables) {
     // Abramowitz and Stegun, table 25.4
     const double x[] = {0.339981043584856, 0.861136311594053}, w[] = {0.652145154862546, 0.347854845137454};
     double node[4], weight[4];
@@ -140,8 +129,7 @@ static void four_nodes_are_those_of_the_tables(void **state) {
     }
 }
 
-static void the_newest_interval_of_a_parabola_is_exact(void **state) {
-    (void)state;
+TEST(the_newest_interval_of_a_parabola_is_exact) {
     const double t[3] = {0.9, 0.4, 0.1};
     double line[3], parabola[3];
     for (int i = 0; i < 3; i++) {
@@ -155,8 +143,7 @@ static void the_newest_interval_of_a_parabola_is_exact(void **state) {
 
 // ---- boxes around points, and the gap between two
 
-static void a_box_has_all_points_and_is_not_larger(void **state) {
-    (void)state;
+TEST(a_box_has_all_points_and_is_not_larger) {
     const double x[] = {1, -2, 0.5}, y[] = {3, 4, -1};
     const struct box box = box_around(3, x, y), wide = box_widen(box, 0.25);
     NEAR_ARRAY(2, box.low, ((const double[]){-2, -1}), 0, 0);
@@ -165,8 +152,7 @@ static void a_box_has_all_points_and_is_not_larger(void **state) {
     NEAR_ARRAY(2, wide.high, ((const double[]){1.25, 4.25}), 0, 0);
 }
 
-static void the_union_with_the_box_of_no_points_is_the_other(void **state) {
-    (void)state;
+TEST(the_union_with_the_box_of_no_points_is_the_other) {
     const double x[] = {1, 2}, y[] = {3, 5};
     const struct box none = box_around(0, x, y), one = box_around(2, x, y), both = box_union(none, one);
     NEAR_ARRAY(2, both.low, one.low, 0, 0);
@@ -178,8 +164,7 @@ static void the_union_with_the_box_of_no_points_is_the_other(void **state) {
     NEAR(box_gap(&none, &none), INFINITY, 0, 0);
 }
 
-static void the_gap_is_that_of_the_axis_along_which_they_are_apart(void **state) {
-    (void)state;
+TEST(the_gap_is_that_of_the_axis_along_which_they_are_apart) {
     const struct box a = {{0, 0}, {1, 1}};
     const struct {
         struct box other;
@@ -192,25 +177,4 @@ static void the_gap_is_that_of_the_axis_along_which_they_are_apart(void **state)
         NEAR(box_gap(&a, &cases[i].other), cases[i].gap, 0, 0);
         NEAR(box_gap(&cases[i].other, &a), cases[i].gap, 0, 0);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_larger_and_the_smaller_number_keep_nan),
-        cmocka_unit_test(wrap_removes_full_turns),
-        cmocka_unit_test(degrees_and_radians_are_inverse),
-        cmocka_unit_test(step_goes_from_zero_to_one_symmetrically),
-        cmocka_unit_test(rate_is_the_derivative),
-        cmocka_unit_test(three_derivatives_vanish_at_both_ends),
-        cmocka_unit_test(ramp_of_no_duration_is_one_at_all_times),
-        cmocka_unit_test(polynomials_of_degree_2n_less_1_are_integrated_exactly),
-        cmocka_unit_test(the_gauss_rule_of_a_sum_is_exact_to_degree_2n_less_1),
-        cmocka_unit_test(nodes_ascend_and_are_symmetric),
-        cmocka_unit_test(four_nodes_are_those_of_the_tables),
-        cmocka_unit_test(the_newest_interval_of_a_parabola_is_exact),
-        cmocka_unit_test(a_box_has_all_points_and_is_not_larger),
-        cmocka_unit_test(the_union_with_the_box_of_no_points_is_the_other),
-        cmocka_unit_test(the_gap_is_that_of_the_axis_along_which_they_are_apart),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,7 @@
 #include "failing_malloc.h"
 #include "near.h"
 
-static void new_memory_is_zero_and_never_null(void **state) {
-    (void)state;
+TEST(new_memory_is_zero_and_never_null) {
     double *values, *none;
     assert_int_equal(MEMORY_NEW(values, 3, "three"), STATUS_OK);
     NEAR_ARRAY(3, values, ((const double[]){0, 0, 0}), 0, 0);
@@ -16,8 +15,7 @@ static void new_memory_is_zero_and_never_null(void **state) {
     free(none);
 }
 
-static void resized_memory_keeps_its_values_also_when_the_resizing_fails(void **state) {
-    (void)state;
+TEST(resized_memory_keeps_its_values_also_when_the_resizing_fails) {
     double *values = NULL;
     assert_int_equal(MEMORY_RESIZE(values, 2, "values"), STATUS_OK);
     values[0] = 3;
@@ -38,8 +36,7 @@ static void resized_memory_keeps_its_values_also_when_the_resizing_fails(void **
     free(values);
 }
 
-static void without_memory_the_message_says_what_for(void **state) {
-    (void)state;
+TEST(without_memory_the_message_says_what_for) {
     double *a = NULL, *b = NULL, *c = NULL;
     double **const all[] = {&a, &b, &c};
     n_until_failure = 1;
@@ -53,8 +50,7 @@ static void without_memory_the_message_says_what_for(void **state) {
     free(a);
 }
 
-static void a_string_is_copied(void **state) {
-    (void)state;
+TEST(a_string_is_copied) {
     char *copy;
     assert_int_equal(memory_copy_string(&copy, "path", "a path"), STATUS_OK);
     assert_string_equal(copy, "path");
@@ -64,14 +60,4 @@ static void a_string_is_copied(void **state) {
     n_until_failure = -1;
     assert_null(copy);
     assert_string_equal(status_message(), "out of memory: a path, 5 bytes");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(new_memory_is_zero_and_never_null),
-        cmocka_unit_test(resized_memory_keeps_its_values_also_when_the_resizing_fails),
-        cmocka_unit_test(without_memory_the_message_says_what_for),
-        cmocka_unit_test(a_string_is_copied),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,8 +52,7 @@ static void check_tableau(const struct butcher_tableau *t, int order) {
     check_quadrature(t, t->embedded, t->embedded_order);
 }
 
-static void tableaux_have_the_orders_of_their_methods(void **state) {
-    (void)state;
+TEST(tableaux_have_the_orders_of_their_methods) {
     for (int i = 0; i < methods_n; i++) {
         const struct method_properties *const method = &methods_table[i];
         if (method->fixed) check_tableau(method->fixed, method->order);
@@ -62,8 +61,7 @@ static void tableaux_have_the_orders_of_their_methods(void **state) {
     }
 }
 
-static void runge_kutta_methods_have_a_tableau_for_each_kind_of_steps(void **state) {
-    (void)state;
+TEST(runge_kutta_methods_have_a_tableau_for_each_kind_of_steps) {
     for (int i = 0; i < methods_n; i++) {
         const struct method_properties *const method = &methods_table[i];
         assert_true(method->has_fixed_steps || method->has_adaptive_steps);
@@ -73,8 +71,7 @@ static void runge_kutta_methods_have_a_tableau_for_each_kind_of_steps(void **sta
     }
 }
 
-static void rows_are_in_the_order_of_their_names(void **state) {
-    (void)state;
+TEST(rows_are_in_the_order_of_their_names) {
     assert_string_equal(methods_table[METHOD_IDA].word, "ida");
     assert_string_equal(methods_table[METHOD_EULER].word, "euler");
     assert_string_equal(methods_table[METHOD_HEUN].word, "heun");
@@ -83,13 +80,4 @@ static void rows_are_in_the_order_of_their_names(void **state) {
     assert_string_equal(methods_table[METHOD_IMPLICIT_EULER].word, "implicit_euler");
     assert_string_equal(methods_table[METHOD_TRAPEZOID].word, "trapezoid");
     assert_string_equal(methods_table[METHOD_VERLET].word, "verlet");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tableaux_have_the_orders_of_their_methods),
-        cmocka_unit_test(runge_kutta_methods_have_a_tableau_for_each_kind_of_steps),
-        cmocka_unit_test(rows_are_in_the_order_of_their_names),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

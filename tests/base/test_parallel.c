@@ -7,8 +7,7 @@
 #include "base/parallel.h"
 #include "near.h"
 
-static void chunks_cover_every_element_once(void **state) {
-    (void)state;
+TEST(chunks_cover_every_element_once) {
     for (int n = 0; n <= 100; n++) {
         int next = 0;
         for (int i = 0; i < parallel_n_chunks(n); i++) {
@@ -23,8 +22,7 @@ static void chunks_cover_every_element_once(void **state) {
     }
 }
 
-static void short_loops_are_not_worth_threads(void **state) {
-    (void)state;
+TEST(short_loops_are_not_worth_threads) {
     assert_int_equal(parallel_threads(4, 10, 100, 100), 4);
     assert_int_equal(parallel_threads(4, 10, 99, 100), 1);
     assert_int_equal(parallel_threads(1, 10, 100, 100), 1);
@@ -37,8 +35,7 @@ static void mark(void *data, int i) {
     mark[i] += i + 1;
 }
 
-static void a_loop_calls_its_body_once_for_each_number(void **state) {
-    (void)state;
+TEST(a_loop_calls_its_body_once_for_each_number) {
     for (int threads = 1; threads <= 3; threads++) {
         int marks[8] = {0};
         parallel_for(threads, 7, mark, marks);
@@ -76,8 +73,7 @@ static struct run steps(struct parallel_choice *choice, struct machine machine, 
 
 static const struct machine idle = {.all = 0.001, .one = 0.0019}, shared = {.all = 0.0015, .one = 0.001};
 
-static void an_idle_machine_keeps_all_threads(void **state) {
-    (void)state;
+TEST(an_idle_machine_keeps_all_threads) {
     struct parallel_choice choice = {0};
     const struct run run = steps(&choice, idle, 20);
     assert_false(choice.is_one);
@@ -86,8 +82,7 @@ static void an_idle_machine_keeps_all_threads(void **state) {
     ABOVE(run.share_of_one, 0);
 }
 
-static void a_shared_core_leaves_one_thread_soon(void **state) {
-    (void)state;
+TEST(a_shared_core_leaves_one_thread_soon) {
     for (int i = 0; i < 2; i++) {
         struct parallel_choice choice = {0};
         // from the start, and after some time
@@ -101,8 +96,7 @@ static void a_shared_core_leaves_one_thread_soon(void **state) {
     }
 }
 
-static void long_steps_cost_few_trials(void **state) {
-    (void)state;
+TEST(long_steps_cost_few_trials) {
     struct parallel_choice choice = {0};
     const struct run run = steps(&choice, (struct machine){.all = 0.4, .one = 0.76}, 400);
     assert_false(choice.is_one);
@@ -111,15 +105,13 @@ static void long_steps_cost_few_trials(void **state) {
     BELOW(run.time, 1.04 * 400);
 }
 
-static void equal_times_change_nothing(void **state) {
-    (void)state;
+TEST(equal_times_change_nothing) {
     struct parallel_choice choice = {0};
     steps(&choice, (struct machine){.all = 0.001, .one = 0.00098}, 20);
     assert_false(choice.is_one);
 }
 
-static void a_trial_that_waits_for_its_processor_is_repeated_on_another_one(void **state) {
-    (void)state;
+TEST(a_trial_that_waits_for_its_processor_is_repeated_on_another_one) {
     struct parallel_choice choice = {.pause = 1};
     assert_true(parallel_choice_note(&choice, 1, 1) || parallel_choice_note(&choice, 1, 1) ||
                 parallel_choice_note(&choice, 1, 1));
@@ -143,8 +135,7 @@ static int team(void) {
     return n;
 }
 
-static void parallel_loops_take_the_threads_of_the_choice(void **state) {
-    (void)state;
+TEST(parallel_loops_take_the_threads_of_the_choice) {
     struct parallel_choice choice = {.is_one = true};
     const int all = team();
     for (int i = 0; i < 2; i++) {
@@ -166,8 +157,7 @@ static double processor_time(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void a_step_is_timed_by_the_wall_clock_and_the_processor(void **state) {
-    (void)state;
+TEST(a_step_is_timed_by_the_wall_clock_and_the_processor) {
     struct parallel_choice choice = {0};
     parallel_choice_begin(&choice, 2);
     nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
@@ -199,8 +189,7 @@ static void step(struct parallel_choice *choice, double mean_time) {
     parallel_choice_end(choice, 2);
 }
 
-static void one_thread_may_use_all_processors(void **state) {
-    (void)state;
+TEST(one_thread_may_use_all_processors) {
     const int all = n_processors();
     if (all < 2) skip();
     parallel_choice_spread(2);
@@ -224,21 +213,4 @@ static void one_thread_may_use_all_processors(void **state) {
     step(&choice, 0.4);
     assert_false(choice.is_one);
     assert_int_equal(n_processors(), part);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_loop_calls_its_body_once_for_each_number),
-        cmocka_unit_test(chunks_cover_every_element_once),
-        cmocka_unit_test(short_loops_are_not_worth_threads),
-        cmocka_unit_test(an_idle_machine_keeps_all_threads),
-        cmocka_unit_test(a_shared_core_leaves_one_thread_soon),
-        cmocka_unit_test(long_steps_cost_few_trials),
-        cmocka_unit_test(equal_times_change_nothing),
-        cmocka_unit_test(a_trial_that_waits_for_its_processor_is_repeated_on_another_one),
-        cmocka_unit_test(parallel_loops_take_the_threads_of_the_choice),
-        cmocka_unit_test(a_step_is_timed_by_the_wall_clock_and_the_processor),
-        cmocka_unit_test(one_thread_may_use_all_processors),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

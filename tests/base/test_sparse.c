@@ -18,8 +18,7 @@ static void fill(struct sparse *matrix, double factor) {
     sparse_end(matrix);
 }
 
-static void first_pass_and_replays_give_the_same_columns(void **state) {
-    (void)state;
+TEST(first_pass_and_replays_give_the_same_columns) {
     struct sparse *matrix;
     matrix = sparse_create(test_arena(), 0, 3);
     const unsigned version = matrix->version;
@@ -36,8 +35,7 @@ static void first_pass_and_replays_give_the_same_columns(void **state) {
     }
 }
 
-static void forget_records_another_pattern(void **state) {
-    (void)state;
+TEST(forget_records_another_pattern) {
     struct sparse *matrix;
     matrix = sparse_create(test_arena(), 0, 3);
     fill(matrix, 1);
@@ -52,8 +50,7 @@ static void forget_records_another_pattern(void **state) {
     assert_int_not_equal(matrix->version, version);
 }
 
-static void masked_rows_are_those_of_the_identity(void **state) {
-    (void)state;
+TEST(masked_rows_are_those_of_the_identity) {
     struct sparse *matrix;
     matrix = sparse_create(test_arena(), 0, 3);
     // masked, masked again, not masked: each change is another pattern
@@ -82,8 +79,7 @@ static void masked_rows_are_those_of_the_identity(void **state) {
     }
 }
 
-static void rows_and_columns_may_begin_with_any_number(void **state) {
-    (void)state;
+TEST(rows_and_columns_may_begin_with_any_number) {
     struct sparse *matrix;
     matrix = sparse_create(test_arena(), 70, 2);
     sparse_mask(matrix, 71, 1);
@@ -100,8 +96,7 @@ static void rows_and_columns_may_begin_with_any_number(void **state) {
     }
 }
 
-static void many_random_additions_equal_a_dense_sum(void **state) {
-    (void)state;
+TEST(many_random_additions_equal_a_dense_sum) {
     enum { N = 40, N_ADDITIONS = 5000 };
     struct sparse *matrix;
     matrix = sparse_create(test_arena(), 0, N);
@@ -129,24 +124,11 @@ static void many_random_additions_equal_a_dense_sum(void **state) {
     }
 }
 
-static void an_empty_pass_is_an_empty_matrix(void **state) {
-    (void)state;
+TEST(an_empty_pass_is_an_empty_matrix) {
     struct sparse *matrix;
     matrix = sparse_create(test_arena(), 0, 2);
     sparse_begin(matrix);
     sparse_end(matrix);
     assert_int_equal(matrix->n_nonzeros, 0);
     assert_int_equal(matrix->column_start[2], 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(first_pass_and_replays_give_the_same_columns),
-        cmocka_unit_test(forget_records_another_pattern),
-        cmocka_unit_test(masked_rows_are_those_of_the_identity),
-        cmocka_unit_test(rows_and_columns_may_begin_with_any_number),
-        cmocka_unit_test(many_random_additions_equal_a_dense_sum),
-        cmocka_unit_test(an_empty_pass_is_an_empty_matrix),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,35 +6,30 @@
 #include "base/status.h"
 #include "near.h"
 
-static void message_is_empty_at_first(void **state) {
-    (void)state;
+TEST(message_is_empty_at_first) {
     assert_string_equal(status_message(), "");
 }
 
-static void fail_keeps_the_message_and_returns_the_status(void **state) {
-    (void)state;
+TEST(fail_keeps_the_message_and_returns_the_status) {
     assert_int_equal(status_fail(STATUS_FILE, "%s: cannot be read at %g s", "run.nc", 0.5), STATUS_FILE);
     assert_string_equal(status_message(), "run.nc: cannot be read at 0.5 s");
     assert_int_equal(status_fail(STATUS_RETRY, "t = %d", 1), STATUS_RETRY);
     assert_string_equal(status_message(), "t = 1");
 }
 
-static void a_message_can_be_put_into_the_next_one(void **state) {
-    (void)state;
+TEST(a_message_can_be_put_into_the_next_one) {
     status_fail(STATUS_CASE, "no such key");
     status_fail(STATUS_CASE, "a.yaml: %s", status_message());
     assert_string_equal(status_message(), "a.yaml: no such key");
 }
 
-static void clear_leaves_no_message(void **state) {
-    (void)state;
+TEST(clear_leaves_no_message) {
     status_fail(STATUS_CASE, "old");
     status_clear();
     assert_string_equal(status_message(), "");
 }
 
-static void a_long_message_is_cut(void **state) {
-    (void)state;
+TEST(a_long_message_is_cut) {
     static char text[100000];
     memset(text, 'x', sizeof text - 1);
     assert_int_equal(status_fail(STATUS_CASE, "%s", text), STATUS_CASE);
@@ -48,8 +43,7 @@ static void *fail_elsewhere(void *first_message) {
     return NULL;
 }
 
-static void each_thread_has_its_own_message(void **state) {
-    (void)state;
+TEST(each_thread_has_its_own_message) {
     status_fail(STATUS_CASE, "of this thread");
     char first_message[8] = "unset";
     pthread_t thread;
@@ -71,8 +65,7 @@ static enum status three_tries(int *n_calls, enum status second) {
     return STATUS_OK;
 }
 
-static void try_leaves_at_the_first_failure_and_evaluates_once(void **state) {
-    (void)state;
+TEST(try_leaves_at_the_first_failure_and_evaluates_once) {
     int n_calls = 0;
     assert_int_equal(three_tries(&n_calls, STATUS_OK), STATUS_OK);
     assert_int_equal(n_calls, 3);
@@ -84,8 +77,7 @@ static void try_leaves_at_the_first_failure_and_evaluates_once(void **state) {
     assert_int_equal(n_calls, 2);
 }
 
-static void signs_are_those_of_solver_callbacks(void **state) {
-    (void)state;
+TEST(signs_are_those_of_solver_callbacks) {
     assert_int_equal(STATUS_OK, 0);
     ABOVE(STATUS_RETRY, 0);
     const enum status final[] = {STATUS_CASE,    STATUS_FILE,   STATUS_MEMORY, STATUS_SOLVER,
@@ -93,8 +85,7 @@ static void signs_are_those_of_solver_callbacks(void **state) {
     for (size_t i = 0; i < sizeof final / sizeof *final; i++) BELOW(final[i], 0);
 }
 
-static void exit_codes_are_the_documented_ones(void **state) {
-    (void)state;
+TEST(exit_codes_are_the_documented_ones) {
     assert_int_equal(status_exit_code(STATUS_OK), 0);
     assert_int_equal(status_exit_code(STATUS_RETRY), 1);
     assert_int_equal(status_exit_code(STATUS_SOLVER), 1);
@@ -104,19 +95,4 @@ static void exit_codes_are_the_documented_ones(void **state) {
     assert_int_equal(status_exit_code(STATUS_FILE), 4);
     assert_int_equal(status_exit_code(STATUS_MEMORY), 4);
     assert_int_equal(status_exit_code(STATUS_STOPPED), 75);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(message_is_empty_at_first),
-        cmocka_unit_test(fail_keeps_the_message_and_returns_the_status),
-        cmocka_unit_test(a_message_can_be_put_into_the_next_one),
-        cmocka_unit_test(clear_leaves_no_message),
-        cmocka_unit_test(a_long_message_is_cut),
-        cmocka_unit_test(each_thread_has_its_own_message),
-        cmocka_unit_test(try_leaves_at_the_first_failure_and_evaluates_once),
-        cmocka_unit_test(signs_are_those_of_solver_callbacks),
-        cmocka_unit_test(exit_codes_are_the_documented_ones),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,8 +7,7 @@
 #include "failing_malloc.h"
 #include "near.h"
 
-static void numbers_are_decimal_and_whole_strings(void **state) {
-    (void)state;
+TEST(numbers_are_decimal_and_whole_strings) {
     static const char *const good[] = {"0", "-1", "+2.5", "1.", ".5", "1e5", "1.0e+5", "2.0E5", "1e-320", "007"};
     static const double values[] = {0, -1, 2.5, 1, 0.5, 1e5, 1e5, 2e5, 1e-320, 7};
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
@@ -27,8 +26,7 @@ static void numbers_are_decimal_and_whole_strings(void **state) {
     assert_true(isinf(large));
 }
 
-static void control_characters_are_printed_as_numbers(void **state) {
-    (void)state;
+TEST(control_characters_are_printed_as_numbers) {
     char text[256] = "";
     FILE *const stream = fmemopen(text, sizeof text - 1, "w");
     text_print_clean(stream,
@@ -38,8 +36,7 @@ static void control_characters_are_printed_as_numbers(void **state) {
     assert_string_equal(text, "a\\x1b[31m\\x07\\x08\\x0d\\x7f\n\tb\\xc2\\x9b1m \xc3\xa9 \xe2\x82\xac \xc2\xa0 \xff");
 }
 
-static void a_written_number_reads_back_bit_for_bit(void **state) {
-    (void)state;
+TEST(a_written_number_reads_back_bit_for_bit) {
     static const double numbers[] = {
         0,      -0.0, 1, 0.1, 1.0 / 3, 1e23, 5e-324, 1.7976931348623157e308, 0.30000000000000004, 123456789012345678.0,
         -2.5e-7};
@@ -53,8 +50,7 @@ static void a_written_number_reads_back_bit_for_bit(void **state) {
     }
 }
 
-static void a_number_is_written_with_no_more_digits_than_needed(void **state) {
-    (void)state;
+TEST(a_number_is_written_with_no_more_digits_than_needed) {
     struct text text = {0};
     text_add_number(&text, 0.1);
     text_add(&text, " ");
@@ -63,8 +59,7 @@ static void a_number_is_written_with_no_more_digits_than_needed(void **state) {
     text_free(&text);
 }
 
-static void letters_that_change_places_are_one_slip(void **state) {
-    (void)state;
+TEST(letters_that_change_places_are_one_slip) {
     static const struct {
         const char *a, *b;
         int distance;
@@ -77,8 +72,7 @@ static void letters_that_change_places_are_one_slip(void **state) {
     }
 }
 
-static void a_decimal_loses_the_rounding_of_an_operation(void **state) {
-    (void)state;
+TEST(a_decimal_loses_the_rounding_of_an_operation) {
     NEAR(text_round(3 * 0.1), 0.3, 0, 0);
     NEAR(text_round(1e-5 / 100), 1e-7, 0, 0);
     NEAR(text_round(-7 * 0.1), -0.7, 0, 0);
@@ -89,8 +83,7 @@ static void a_decimal_loses_the_rounding_of_an_operation(void **state) {
     assert_true(isinf(text_round(INFINITY)));
 }
 
-static void a_word_is_quoted_where_a_shell_would_change_it(void **state) {
-    (void)state;
+TEST(a_word_is_quoted_where_a_shell_would_change_it) {
     static const char *const words[][2] = {{"run", "run"},
                                            {"time.end=0.5", "time.end=0.5"},
                                            {"/a/b-1_2,3:%@+.nc", "/a/b-1_2,3:%@+.nc"},
@@ -112,8 +105,7 @@ static void a_word_is_quoted_where_a_shell_would_change_it(void **state) {
     }
 }
 
-static void a_text_that_lacks_memory_says_so_and_stays_as_it_was(void **state) {
-    (void)state;
+TEST(a_text_that_lacks_memory_says_so_and_stays_as_it_was) {
     struct text text = {0};
     text_add(&text, "%s", "one");
     char more[200];
@@ -130,8 +122,7 @@ static void a_text_that_lacks_memory_says_so_and_stays_as_it_was(void **state) {
     text_free(&text);
 }
 
-static void the_locale_does_not_matter(void **state) {
-    (void)state;
+TEST(the_locale_does_not_matter) {
     static const char *const with_comma[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "nl_NL.UTF-8"};
     const char *found = NULL;
     for (size_t i = 0; !found && i < sizeof with_comma / sizeof *with_comma; i++) {
@@ -149,8 +140,7 @@ static void the_locale_does_not_matter(void **state) {
     text_free(&text);
 }
 
-static void the_string_of_a_text_is_taken_or_lack_of_memory_reported(void **state) {
-    (void)state;
+TEST(the_string_of_a_text_is_taken_or_lack_of_memory_reported) {
     char *string;
     struct text text = {0};
     assert_int_equal(text_take(&text, &string, "a path"), STATUS_OK);
@@ -169,8 +159,7 @@ static void the_string_of_a_text_is_taken_or_lack_of_memory_reported(void **stat
     assert_string_equal(status_message(), "out of memory: a path");
 }
 
-static void a_duration_has_at_least_one_and_a_half_units(void **state) {
-    (void)state;
+TEST(a_duration_has_at_least_one_and_a_half_units) {
     static const struct {
         double seconds;
         const char *want;
@@ -183,8 +172,7 @@ static void a_duration_has_at_least_one_and_a_half_units(void **state) {
     }
 }
 
-static void columns_are_aligned_without_blanks_at_the_end(void **state) {
-    (void)state;
+TEST(columns_are_aligned_without_blanks_at_the_end) {
     struct text_table table;
     assert_int_equal(text_table_create(&table, 2, 3), STATUS_OK);
     table.n_left = 1;
@@ -205,8 +193,7 @@ static void columns_are_aligned_without_blanks_at_the_end(void **state) {
     n_until_failure = -1;
 }
 
-static void a_string_of_json_has_no_bare_quote_or_control_character(void **state) {
-    (void)state;
+TEST(a_string_of_json_has_no_bare_quote_or_control_character) {
     char written[64] = "";
     FILE *const stream = fmemopen(written, sizeof written, "w");
     assert_non_null(stream);
@@ -229,8 +216,7 @@ static void is_written_as(const char *bytes, const char *want) {
     free(text);
 }
 
-static void the_examples_of_the_standard(void **state) {
-    (void)state;
+TEST(the_examples_of_the_standard) {
     is_written_as("", "");
     is_written_as("f", "Zg==");
     is_written_as("fo", "Zm8=");
@@ -241,8 +227,7 @@ static void the_examples_of_the_standard(void **state) {
     is_written_as("\xff\xfe\xfd", "//79");
 }
 
-static void a_text_doubles_its_memory(void **state) {
-    (void)state;
+TEST(a_text_doubles_its_memory) {
     struct text text = {0};
     const int most = 20;
     n_until_failure = most;
@@ -254,25 +239,4 @@ static void a_text_doubles_its_memory(void **state) {
     assert_int_equal(text.length, 20000);
     assert_int_equal(strlen(text.text), 20000);
     free(text.text);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_are_decimal_and_whole_strings),
-        cmocka_unit_test(control_characters_are_printed_as_numbers),
-        cmocka_unit_test(a_written_number_reads_back_bit_for_bit),
-        cmocka_unit_test(a_number_is_written_with_no_more_digits_than_needed),
-        cmocka_unit_test(letters_that_change_places_are_one_slip),
-        cmocka_unit_test(a_decimal_loses_the_rounding_of_an_operation),
-        cmocka_unit_test(a_word_is_quoted_where_a_shell_would_change_it),
-        cmocka_unit_test(a_text_that_lacks_memory_says_so_and_stays_as_it_was),
-        cmocka_unit_test(the_locale_does_not_matter),
-        cmocka_unit_test(the_string_of_a_text_is_taken_or_lack_of_memory_reported),
-        cmocka_unit_test(a_duration_has_at_least_one_and_a_half_units),
-        cmocka_unit_test(columns_are_aligned_without_blanks_at_the_end),
-        cmocka_unit_test(a_string_of_json_has_no_bare_quote_or_control_character),
-        cmocka_unit_test(the_examples_of_the_standard),
-        cmocka_unit_test(a_text_doubles_its_memory),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

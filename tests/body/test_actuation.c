@@ -24,8 +24,7 @@ static void ask(const struct setup *setup, double t, double phi0, double phi0_ra
                    &(struct actuation){asked->curvature, asked->rate, asked->by_phi0, asked->rate_by_phi0});
 }
 
-static void curvature_is_the_formula_of_the_model(void **state) {
-    (void)state;
+TEST(curvature_is_the_formula_of_the_model) {
     struct setup setup;
     school_build(&setup, TIME WAVE);
     struct asked asked;
@@ -63,16 +62,14 @@ static void derivatives_agree(const char *text) {
     school_clear(&setup);
 }
 
-static void derivatives_agree_with_differences(void **state) {
-    (void)state;
+TEST(derivatives_agree_with_differences) {
     derivatives_agree(TIME WAVE);
     derivatives_agree(TIME
                       "fish: [{wave: {frequency: 1.2, phase: 35, constant: 0.3,\n"
                       "  table: [[0, 1, -1, 0.4], [2, -3, 1, 1], [1, 0, -2, 5]]}}]\n");
 }
 
-static void a_wavelength_is_another_word_for_the_number(void **state) {
-    (void)state;
+TEST(a_wavelength_is_another_word_for_the_number) {
     struct setup setup[2];
     school_build(&setup[0], TIME "fish: [{wave: {wavelength: 0.8}}]\n");
     school_build(&setup[1], TIME "fish: [{wave: {number: -7.853981633974483}}]\n");
@@ -80,8 +77,7 @@ static void a_wavelength_is_another_word_for_the_number(void **state) {
     for (int i = 0; i < 2; i++) school_clear(&setup[i]);
 }
 
-static void a_table_of_a_wave_is_that_wave(void **state) {
-    (void)state;
+TEST(a_table_of_a_wave_is_that_wave) {
     struct setup setup[2];
     // 0.5 (0.2 + 0.8 q) sin(2 pi t + phase), equal at all positions: linear in q like the table; six lengths of l_ref
     school_build(&setup[0],
@@ -101,8 +97,7 @@ static void a_table_of_a_wave_is_that_wave(void **state) {
 }
 
 // the turn of a joint at all phases of a beat, under the bias that bends it most, comes near to the largest one
-static void no_joint_turns_by_more_than_the_largest_turn(void **state) {
-    (void)state;
+TEST(no_joint_turns_by_more_than_the_largest_turn) {
     static const char *const waves[] = {"amplitude: 0.3, ramp: 0",
                                         "amplitude: 0.3, ramp: 0, table: [[0, 0.6, 0, -0.6], [0, 3, 0, -3]]"};
     for (int i = 0; i < 2; i++) {
@@ -127,8 +122,7 @@ static void no_joint_turns_by_more_than_the_largest_turn(void **state) {
     }
 }
 
-static void a_table_is_met_at_its_places_and_phases(void **state) {
-    (void)state;
+TEST(a_table_is_met_at_its_places_and_phases) {
     // odd and even numbers of phases; rows at quarters of the length, the positions of joints 1, 2, 3 of five nodes
     const char *const texts[] = {
         TIME "fish: [{nodes: 5, wave: {ramp: 0, table: [[9, 9, 9], [1, 2, -3], [2, 0, 4], [0, 1, 0], [9, 9, 9]]}}]\n",
@@ -150,8 +144,7 @@ static void a_table_is_met_at_its_places_and_phases(void **state) {
     }
 }
 
-static void wave_travels_from_head_to_tail(void **state) {
-    (void)state;
+TEST(wave_travels_from_head_to_tail) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{nodes: 31, wave: {ramp: 0}}]\n");
     // a crest stands where number s + omega t is constant: after 0.1 s it is 0.1 omega/6 lengths further back
@@ -166,8 +159,7 @@ static void wave_travels_from_head_to_tail(void **state) {
     school_clear(&setup);
 }
 
-static void ramp_starts_from_a_straight_body_and_no_ramp_does_not(void **state) {
-    (void)state;
+TEST(ramp_starts_from_a_straight_body_and_no_ramp_does_not) {
     const char *const texts[] = {TIME "fish: [{}]\n", TIME "fish: [{wave: {ramp: 0}}]\n"};
     for (int i = 0; i < 2; i++) {
         struct setup setup;
@@ -182,8 +174,7 @@ static void ramp_starts_from_a_straight_body_and_no_ramp_does_not(void **state) 
     }
 }
 
-static void turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes(void **state) {
-    (void)state;
+TEST(turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes) {
     double total[2];
     const char *const texts[] = {TIME "fish: [{nodes: 121}]\n", TIME "fish: [{nodes: 241}]\n"};
     for (int i = 0; i < 2; i++) {
@@ -198,19 +189,4 @@ static void turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes(void *
     // the sum is a Riemann sum without its end, of the size 1/N
     NEAR(total[1], total[0], 2e-2, 0);
     ABOVE(fabs(total[0]), 1);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(curvature_is_the_formula_of_the_model),
-        cmocka_unit_test(derivatives_agree_with_differences),
-        cmocka_unit_test(a_wavelength_is_another_word_for_the_number),
-        cmocka_unit_test(a_table_of_a_wave_is_that_wave),
-        cmocka_unit_test(no_joint_turns_by_more_than_the_largest_turn),
-        cmocka_unit_test(a_table_is_met_at_its_places_and_phases),
-        cmocka_unit_test(wave_travels_from_head_to_tail),
-        cmocka_unit_test(ramp_starts_from_a_straight_body_and_no_ramp_does_not),
-        cmocka_unit_test(turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -33,15 +33,13 @@ static double analytic(double beta_length) {
     return beta_length * beta_length / 4 * wave / (2 * M_PI);
 }
 
-static void slowest_mode_of_a_uniform_body_is_that_of_the_beam(void **state) {
-    (void)state;
+TEST(slowest_mode_of_a_uniform_body_is_that_of_the_beam) {
     // cosh b cos b = 1 and -1 (Timoshenko, Vibration problems in engineering); 81 nodes: errors of 1/N
     NEAR(slowest_mode(UNIFORM), analytic(4.730040745), 0, 0.01);
     NEAR(slowest_mode(UNIFORM ", motion: {prescribed: head}"), analytic(1.875104069), 0, 0.03);
 }
 
-static void the_accelerated_fluid_makes_modes_slower(void **state) {
-    (void)state;
+TEST(the_accelerated_fluid_makes_modes_slower) {
     // with added mass pi/4 rho w^2 per length on pi/4 rho_b h w: a factor sqrt(1 + 1000/800*0.4/0.2)
     const double dry = slowest_mode(UNIFORM);
     const double wet = slowest_mode(
@@ -50,8 +48,7 @@ static void the_accelerated_fluid_makes_modes_slower(void **state) {
     NEAR(dry / wet, sqrt(1 + 1000.0 / 800 * 2), 0, 0.02);
 }
 
-static void the_pressure_of_a_sheet_makes_the_mode_of_a_light_plate(void **state) {
-    (void)state;
+TEST(the_pressure_of_a_sheet_makes_the_mode_of_a_light_plate) {
     // Ritz's method with 14 polynomials, EI int w''^2 ds against the kinetic energy of the fluid around a plate of the
     // length 2, rho d (L^2/4) (pi/2) sum a_n^2/n with w sin(theta) = sum a_n sin(n theta): 8.9060824 sqrt(EI/(rho d))
     const double h = 0.2, d = 0.4, stiffness = 2e6 * M_PI * d * h * h * h / 64;
@@ -62,18 +59,7 @@ static void the_pressure_of_a_sheet_makes_the_mode_of_a_light_plate(void **state
     NEAR(found, 8.9060824 * sqrt(stiffness / (1000 * d)) / (2 * M_PI), 0, 0.003);
 }
 
-static void frequency_grows_with_the_root_of_the_modulus(void **state) {
-    (void)state;
+TEST(frequency_grows_with_the_root_of_the_modulus) {
     const double soft = slowest_mode("body: {modulus: 1e5}"), stiff = slowest_mode("body: {modulus: 9e5}");
     NEAR(stiff / soft, 3, 0, 1e-12);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slowest_mode_of_a_uniform_body_is_that_of_the_beam),
-        cmocka_unit_test(the_accelerated_fluid_makes_modes_slower),
-        cmocka_unit_test(the_pressure_of_a_sheet_makes_the_mode_of_a_light_plate),
-        cmocka_unit_test(frequency_grows_with_the_root_of_the_modulus),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

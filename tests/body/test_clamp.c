@@ -27,8 +27,7 @@ static void jacobian_of_clamp(struct setup *setup, double cj, const double *y, s
     clamp_jacobian(setup->school->fish, setup->t, y, jacobian);
 }
 
-static void jacobian_agrees_with_differences(void **state) {
-    (void)state;
+TEST(jacobian_agrees_with_differences) {
     const char *const texts[] = {TIME "fish: [{body: {section: mean}, " HEAD "}]\n",
                                  TIME "fish: [{body: {section: mean, relaxation_time: 0.1, bending_damping: 2}, " HEAD
                                       "}]\n"};
@@ -41,8 +40,7 @@ static void jacobian_agrees_with_differences(void **state) {
     }
 }
 
-static void force_is_minus_the_gradient_of_the_energy(void **state) {
-    (void)state;
+TEST(force_is_minus_the_gradient_of_the_energy) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{body: {section: mean, bending_damping: 0, relaxation_time: 0}, " HEAD "}]\n");
     school_stir(&setup);
@@ -64,8 +62,7 @@ static void force_is_minus_the_gradient_of_the_energy(void **state) {
     school_clear(&setup);
 }
 
-static void powers_are_what_the_energy_and_the_nodes_do_not_take_up(void **state) {
-    (void)state;
+TEST(powers_are_what_the_energy_and_the_nodes_do_not_take_up) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{body: {section: mean, relaxation_time: 0.01}, " HEAD "}]\n");
     school_stir(&setup);
@@ -87,8 +84,7 @@ static void powers_are_what_the_energy_and_the_nodes_do_not_take_up(void **state
     school_clear(&setup);
 }
 
-static void energy_audit_of_a_clamped_fish_closes(void **state) {
-    (void)state;
+TEST(energy_audit_of_a_clamped_fish_closes) {
     const char *const texts[] = {
         TIME "fish: [{body: {section: mean, modulus: 1.0e+5}, wave: {amplitude: 0}, " HEAD "}]\n",
         TIME "fish: [{force: reactive, body: {section: mean, modulus: 1.0e+5, relaxation_time: 0.01}, " HEAD "}]\n"};
@@ -109,8 +105,7 @@ static void energy_audit_of_a_clamped_fish_closes(void **state) {
     }
 }
 
-static void head_has_one_prescribed_node_and_published_sections_two(void **state) {
-    (void)state;
+TEST(head_has_one_prescribed_node_and_published_sections_two) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{body: {section: mean}, " HEAD
                               "}, {start: {position: [0, 2]}, body: {section: "
@@ -125,8 +120,7 @@ static void head_has_one_prescribed_node_and_published_sections_two(void **state
     school_clear(&setup);
 }
 
-static void clamp_is_the_joint_of_half_a_cell(void **state) {
-    (void)state;
+TEST(clamp_is_the_joint_of_half_a_cell) {
     struct setup setup;
     school_build(
         &setup, TIME
@@ -139,8 +133,7 @@ static void clamp_is_the_joint_of_half_a_cell(void **state) {
     school_clear(&setup);
 }
 
-static void given_direction_is_that_of_the_prescribed_nodes(void **state) {
-    (void)state;
+TEST(given_direction_is_that_of_the_prescribed_nodes) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{start: {heading: 25}, " HEAD "}]\n");
     const struct fish *fish = setup.school->fish;
@@ -206,8 +199,7 @@ static double lowest_mode(int nodes) {
     return pow(square, 0.25);
 }
 
-static void frequency_of_a_clamped_beam_is_of_second_order_in_its_whole_length(void **state) {
-    (void)state;
+TEST(frequency_of_a_clamped_beam_is_of_second_order_in_its_whole_length) {
     const double exact = 1.8751040687;
     double error[3];
     for (int level = 0; level < 3; level++) error[level] = lowest_mode(10 * (1 << level) + 1) / exact - 1;
@@ -217,8 +209,7 @@ static void frequency_of_a_clamped_beam_is_of_second_order_in_its_whole_length(v
     NEAR(error[2], 0, 0.5 / 1600, 0);
 }
 
-static void moment_of_a_tilt_is_that_of_half_a_cell(void **state) {
-    (void)state;
+TEST(moment_of_a_tilt_is_that_of_half_a_cell) {
     struct setup setup;
     school_build(
         &setup, TIME
@@ -235,19 +226,4 @@ static void moment_of_a_tilt_is_that_of_half_a_cell(void **state) {
     y[fish->at.y + 1] = sin(angle) / 6;
     NEAR(clamp_energy(fish, 0, y), stiffness / 2 * pow(2 * tan(angle / 2), 2), 0, 1e-12);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(jacobian_agrees_with_differences),
-        cmocka_unit_test(force_is_minus_the_gradient_of_the_energy),
-        cmocka_unit_test(powers_are_what_the_energy_and_the_nodes_do_not_take_up),
-        cmocka_unit_test(energy_audit_of_a_clamped_fish_closes),
-        cmocka_unit_test(head_has_one_prescribed_node_and_published_sections_two),
-        cmocka_unit_test(clamp_is_the_joint_of_half_a_cell),
-        cmocka_unit_test(given_direction_is_that_of_the_prescribed_nodes),
-        cmocka_unit_test(frequency_of_a_clamped_beam_is_of_second_order_in_its_whole_length),
-        cmocka_unit_test(moment_of_a_tilt_is_that_of_half_a_cell),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,8 +4,7 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
-static void frame_is_orthonormal_and_points_from_node_to_node(void **state) {
-    (void)state;
+TEST(frame_is_orthonormal_and_points_from_node_to_node) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{nodes: 5}]\n");
     school_stir(&setup);
@@ -29,8 +28,7 @@ static void frame_is_orthonormal_and_points_from_node_to_node(void **state) {
     school_clear(&setup);
 }
 
-static void rate_of_turn_is_that_of_a_rigid_rotation(void **state) {
-    (void)state;
+TEST(rate_of_turn_is_that_of_a_rigid_rotation) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{nodes: 5}]\n");
     school_stir(&setup);
@@ -45,12 +43,4 @@ static void rate_of_turn_is_that_of_a_rigid_rotation(void **state) {
         NEAR(edge_turn_rate(&edge), 2, 0, 1e-14);
     }
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frame_is_orthonormal_and_points_from_node_to_node),
-        cmocka_unit_test(rate_of_turn_is_that_of_a_rigid_rotation),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -70,8 +70,7 @@ static void jacobian_of_rod(struct setup *setup, double cj, const double *y, str
     rod_jacobian(setup->school->fish, &muscle, y, jacobian);
 }
 
-static void derivatives_agree_with_differences(void **state) {
-    (void)state;
+TEST(derivatives_agree_with_differences) {
     const char *const texts[] = {TIME "fish: [{" BODY "}]\n", TIME "fish: [{body: {second_moment: published}}]\n",
                                  TIME "fish: [{body: {modulus: 1.0e+9}}]\n",
                                  TIME "fish: [{body: {relaxation_time: 0.1, profile: uniform}}]\n",
@@ -89,8 +88,7 @@ static double elastic_energy(const struct fish *fish, const double *y) {
     return bending_energy(fish, &muscle, y) + stretching_energy(fish, y);
 }
 
-static void elastic_force_is_minus_the_gradient_of_the_energy(void **state) {
-    (void)state;
+TEST(elastic_force_is_minus_the_gradient_of_the_energy) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{" BODY "}]\n");
     school_stir(&setup);
@@ -113,8 +111,7 @@ static void elastic_force_is_minus_the_gradient_of_the_energy(void **state) {
     school_clear(&setup);
 }
 
-static void internal_forces_have_no_sum_and_no_moment(void **state) {
-    (void)state;
+TEST(internal_forces_have_no_sum_and_no_moment) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{" BODY "}]\n");
     school_stir(&setup);
@@ -136,8 +133,7 @@ static void internal_forces_have_no_sum_and_no_moment(void **state) {
     school_clear(&setup);
 }
 
-static void damping_power_is_that_of_the_damping_forces_and_never_positive(void **state) {
-    (void)state;
+TEST(damping_power_is_that_of_the_damping_forces_and_never_positive) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{" BODY "}]\n");
     school_stir(&setup);
@@ -167,8 +163,7 @@ static void damping_power_is_that_of_the_damping_forces_and_never_positive(void 
     school_clear(&setup);
 }
 
-static void rigid_motion_is_not_damped(void **state) {
-    (void)state;
+TEST(rigid_motion_is_not_damped) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{" BODY "}]\n");
     school_stir(&setup);
@@ -195,8 +190,7 @@ static void bend(struct setup *setup, double angle, double stretch) {
     for (int i = fish->at.vx; i < fish->at.ax; i++) y[i] = 0;
 }
 
-static void energies_of_a_regular_polygon_are_exact(void **state) {
-    (void)state;
+TEST(energies_of_a_regular_polygon_are_exact) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{body: {profile: uniform, thickness: 0.1, modulus: 2.0e+5}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -212,8 +206,7 @@ static void energies_of_a_regular_polygon_are_exact(void **state) {
     school_clear(&setup);
 }
 
-static void energy_of_a_circular_arc_converges_to_that_of_the_continuum(void **state) {
-    (void)state;
+TEST(energy_of_a_circular_arc_converges_to_that_of_the_continuum) {
     const char *const texts[] = {TIME "fish: [{nodes: 21, body: {profile: uniform, thickness: 0.1}}]\n",
                                  TIME "fish: [{nodes: 41, body: {profile: uniform, thickness: 0.1}}]\n"};
     double error[2];
@@ -233,8 +226,7 @@ static void energy_of_a_circular_arc_converges_to_that_of_the_continuum(void **s
     NEAR(error[1], 0.05 * 0.05 / 6, 0, 0.01);
 }
 
-static void polygon_of_the_natural_curvature_is_at_rest(void **state) {
-    (void)state;
+TEST(polygon_of_the_natural_curvature_is_at_rest) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
@@ -249,8 +241,7 @@ static void polygon_of_the_natural_curvature_is_at_rest(void **state) {
     school_clear(&setup);
 }
 
-static void turning_angles_keep_their_sign_in_every_direction(void **state) {
-    (void)state;
+TEST(turning_angles_keep_their_sign_in_every_direction) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{}]\n");
     double curvature[5];
@@ -263,8 +254,7 @@ static void turning_angles_keep_their_sign_in_every_direction(void **state) {
     school_clear(&setup);
 }
 
-static void muscle_power_is_the_change_of_energy_at_a_fixed_shape(void **state) {
-    (void)state;
+TEST(muscle_power_is_the_change_of_energy_at_a_fixed_shape) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{" BODY "}]\n");
     school_stir(&setup);
@@ -304,8 +294,7 @@ static double rate_of_energy(struct setup *setup) {
     return rate;
 }
 
-static void what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes(void **state) {
-    (void)state;
+TEST(what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes) {
     const char *const bodies[] = {BODY, STRAIN};
     for (int i = 0; i < 2; i++) {
         char text[256];
@@ -326,8 +315,7 @@ static void what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes(void **s
     }
 }
 
-static void a_body_that_does_what_its_muscle_asks_is_not_damped(void **state) {
-    (void)state;
+TEST(a_body_that_does_what_its_muscle_asks_is_not_damped) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{" STRAIN "}]\n");
     school_stir(&setup);
@@ -350,8 +338,7 @@ static void a_body_that_does_what_its_muscle_asks_is_not_damped(void **state) {
     school_clear(&setup);
 }
 
-static void a_body_is_torn_at_ten_times_the_length_of_an_edge(void **state) {
-    (void)state;
+TEST(a_body_is_torn_at_ten_times_the_length_of_an_edge) {
     struct setup setup;
     school_build(&setup, "time: {end: 1}\nfish: [{nodes: 7}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -364,8 +351,7 @@ static void a_body_is_torn_at_ten_times_the_length_of_an_edge(void **state) {
     school_clear(&setup);
 }
 
-static void the_shortest_edge_is_the_one_compressed_most(void **state) {
-    (void)state;
+TEST(the_shortest_edge_is_the_one_compressed_most) {
     struct setup setup;
     school_build(&setup, "time: {end: 1}\nfish: [{nodes: 7, wave: {amplitude: 0}}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -378,8 +364,7 @@ static void the_shortest_edge_is_the_one_compressed_most(void **state) {
     school_clear(&setup);
 }
 
-static void the_sharpest_joint_is_the_one_that_turns_most(void **state) {
-    (void)state;
+TEST(the_sharpest_joint_is_the_one_that_turns_most) {
     struct setup setup;
     school_build(&setup, "time: {end: 1}\nfish: [{nodes: 7, wave: {amplitude: 0}}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -393,25 +378,4 @@ static void the_sharpest_joint_is_the_one_that_turns_most(void **state) {
     assert_int_equal(rod_sharpest_joint(fish, setup.state->y, &turn), 3);
     NEAR(turn, 1.1, 1e-13, 0);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(derivatives_agree_with_differences),
-        cmocka_unit_test(elastic_force_is_minus_the_gradient_of_the_energy),
-        cmocka_unit_test(internal_forces_have_no_sum_and_no_moment),
-        cmocka_unit_test(damping_power_is_that_of_the_damping_forces_and_never_positive),
-        cmocka_unit_test(rigid_motion_is_not_damped),
-        cmocka_unit_test(energies_of_a_regular_polygon_are_exact),
-        cmocka_unit_test(energy_of_a_circular_arc_converges_to_that_of_the_continuum),
-        cmocka_unit_test(polygon_of_the_natural_curvature_is_at_rest),
-        cmocka_unit_test(turning_angles_keep_their_sign_in_every_direction),
-        cmocka_unit_test(the_sharpest_joint_is_the_one_that_turns_most),
-        cmocka_unit_test(the_shortest_edge_is_the_one_compressed_most),
-        cmocka_unit_test(a_body_is_torn_at_ten_times_the_length_of_an_edge),
-        cmocka_unit_test(muscle_power_is_the_change_of_energy_at_a_fixed_shape),
-        cmocka_unit_test(what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes),
-        cmocka_unit_test(a_body_that_does_what_its_muscle_asks_is_not_damped),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

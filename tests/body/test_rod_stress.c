@@ -27,8 +27,7 @@ static void residue_of(const struct fish *fish, const double *y, double *residue
     rod_residual(fish, &no_muscle, y, residue);
 }
 
-static void the_balance_finds_the_stresses_that_the_accelerations_say(void **state) {
-    (void)state;
+TEST(the_balance_finds_the_stresses_that_the_accelerations_say) {
     struct setup setup;
     school_build(&setup, TIME
                  "fluid: {density: 0}\nfish: [{nodes: 9, wave: {amplitude: 0},\n"
@@ -70,8 +69,7 @@ static void the_balance_finds_the_stresses_that_the_accelerations_say(void **sta
 }
 
 // a body that is bent by up to 0.3 rad at a joint, on which nothing but its rod acts
-static void the_balance_of_a_bent_body_has_the_stresses_of_its_law(void **state) {
-    (void)state;
+TEST(the_balance_of_a_bent_body_has_the_stresses_of_its_law) {
     struct setup setup;
     school_build(&setup, TIME
                  "fluid: {density: 0}\nfish: [{nodes: 9, wave: {amplitude: 0},\n"
@@ -94,8 +92,7 @@ static void the_balance_of_a_bent_body_has_the_stresses_of_its_law(void **state)
     school_clear(&setup);
 }
 
-static void stresses_ahead_of_prescribed_nodes_stay(void **state) {
-    (void)state;
+TEST(stresses_ahead_of_prescribed_nodes_stay) {
     const struct {
         const char *motion;
         int first_joint, first_edge;
@@ -142,8 +139,7 @@ static double crept(double stiffness, double tau, const double s[3], double t, d
     return exp(-h / tau) * strain + h / tau * sum / stiffness;
 }
 
-static void strains_creep_as_the_law_of_the_material_says(void **state) {
-    (void)state;
+TEST(strains_creep_as_the_law_of_the_material_says) {
     // relaxation times far below a step, and far above it
     const double relaxation[] = {0, 1e-9, 1e-4, 0.003, 0.02, 0.5, 100, 1e6};
     const double s[3] = {0.3, -2, 7}, h = 0.004, g = 0.007, start = 0.01;
@@ -185,8 +181,7 @@ static void strains_creep_as_the_law_of_the_material_says(void **state) {
     }
 }
 
-static void without_an_older_stress_the_step_is_linear(void **state) {
-    (void)state;
+TEST(without_an_older_stress_the_step_is_linear) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{nodes: 5, body: {damping: strain, relaxation_time: 0.02}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -218,8 +213,7 @@ static struct simulation *fish_from_rest(const char *modulus, const char *rtol) 
     return simulation;
 }
 
-static void a_soft_body_has_the_stresses_of_its_places(void **state) {
-    (void)state;
+TEST(a_soft_body_has_the_stresses_of_its_places) {
     struct simulation *const simulation = fish_from_rest("1e6", "1e-7");
     const struct fish *fish = simulation->school->fish;
     const struct energy_balance *const balance = &simulation->state->balance[0];
@@ -233,8 +227,7 @@ static void a_soft_body_has_the_stresses_of_its_places(void **state) {
     simulate_free(simulation);
 }
 
-static void powers_and_energies_of_a_stiff_body_have_a_limit(void **state) {
-    (void)state;
+TEST(powers_and_energies_of_a_stiff_body_have_a_limit) {
     // a hundred times stiffer, and at twenty times the default tolerance
     struct simulation *const fine = fish_from_rest("1e10", "1e-7"), *const stiff = fish_from_rest("1e12", "2e-4");
     const struct diagnostics_fish *const want = &fine->diagnostics->fish[0], *const got = &stiff->diagnostics->fish[0];
@@ -248,17 +241,4 @@ static void powers_and_energies_of_a_stiff_body_have_a_limit(void **state) {
     BELOW(fabs(got->energy_balance), 1e-3 * got->actuation_work);
     simulate_free(fine);
     simulate_free(stiff);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_balance_finds_the_stresses_that_the_accelerations_say),
-        cmocka_unit_test(the_balance_of_a_bent_body_has_the_stresses_of_its_law),
-        cmocka_unit_test(stresses_ahead_of_prescribed_nodes_stay),
-        cmocka_unit_test(strains_creep_as_the_law_of_the_material_says),
-        cmocka_unit_test(without_an_older_stress_the_step_is_linear),
-        cmocka_unit_test(a_soft_body_has_the_stresses_of_its_places),
-        cmocka_unit_test(powers_and_energies_of_a_stiff_body_have_a_limit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,8 +45,7 @@ static void write_file(const char *path, const char *text) {
 
 // ---- defaults
 
-static void the_defaults_are_those_of_the_reference(void **state) {
-    (void)state;
+TEST(the_defaults_are_those_of_the_reference) {
     struct case_values s = parse(minimal);
     NEAR(s.time.end, 3, 0, 0);
     NEAR(s.school.shedding_interval, 0.01, 0, 0);
@@ -100,8 +99,7 @@ static void the_defaults_are_those_of_the_reference(void **state) {
 }
 
 // of the fish that beats most slowly; of a prescribed one the beat is that of its motion
-static void lifetime_and_fade_may_be_in_beats(void **state) {
-    (void)state;
+TEST(lifetime_and_fade_may_be_in_beats) {
     static const struct {
         const char *wake, *fish;
         double lifetime, decay;
@@ -125,8 +123,7 @@ static void lifetime_and_fade_may_be_in_beats(void **state) {
     }
 }
 
-static void derived_defaults_follow_what_they_derive_from(void **state) {
-    (void)state;
+TEST(derived_defaults_follow_what_they_derive_from) {
     struct case_values s = parse(
         "format: 1\ntime: {end: 1, shedding_interval: 0.02}\nwake: {lifetime: 3}\n"
         "fish: [{start: {heading: 30, speed: 2}, wave: {frequency: 4}}, {wave: {frequency: 0}},\n"
@@ -150,8 +147,7 @@ static void derived_defaults_follow_what_they_derive_from(void **state) {
     case_free(&s);
 }
 
-static void every_default_of_the_table_is_a_value_of_its_key(void **state) {
-    (void)state;
+TEST(every_default_of_the_table_is_a_value_of_its_key) {
     struct case_values s = parse(minimal), published = parse_with(minimal, "preset=published", NULL, NULL);
     case_free(&s);
     case_free(&published);
@@ -165,8 +161,7 @@ static void every_default_of_the_table_is_a_value_of_its_key(void **state) {
     }
 }
 
-static void defaults_reach_every_fish_below_its_own_keys(void **state) {
-    (void)state;
+TEST(defaults_reach_every_fish_below_its_own_keys) {
     struct case_values s = parse(
         "format: 1\ntime: {end: 1}\ndefaults: {fish: {nodes: 9, body: {modulus: 1e4, density: 900}}}\n"
         "fish: [{body: {modulus: 1e5}}, {nodes: 5}]\n");
@@ -178,8 +173,7 @@ static void defaults_reach_every_fish_below_its_own_keys(void **state) {
     case_free(&s);
 }
 
-static void a_wrong_default_is_reported_once_even_if_unused(void **state) {
-    (void)state;
+TEST(a_wrong_default_is_reported_once_even_if_unused) {
     is_refused("format: 1\ntime: {end: 1}\ndefaults: {fish: {nodes: 2}}\nfish: [{}, {nodes: 7}, {}]\n",
                "cases/x.yaml:3:26: error: defaults.fish.nodes: must be from 4 to 10000, got 2\n"
                "defaults: {fish: {nodes: 2}}\n                         ^");
@@ -189,8 +183,7 @@ static void a_wrong_default_is_reported_once_even_if_unused(void **state) {
 
 // ---- preset
 
-static void preset_published_sets_the_options_of_the_article(void **state) {
-    (void)state;
+TEST(preset_published_sets_the_options_of_the_article) {
     struct case_values s = parse("format: 1\npreset: published\ntime: {end: 1}\nfish: [{}]\n");
     assert_int_equal(s.preset, PRESET_PUBLISHED);
     assert_int_equal(s.school.fish->body.second_moment, SECOND_MOMENT_PUBLISHED);
@@ -209,8 +202,7 @@ static void preset_published_sets_the_options_of_the_article(void **state) {
     case_free(&s);
 }
 
-static void keys_in_the_case_override_the_preset(void **state) {
-    (void)state;
+TEST(keys_in_the_case_override_the_preset) {
     struct case_values s = parse(
         "format: 1\npreset: published\ntime: {end: 1}\nsheet: {kutta: edge}\n"
         "defaults: {fish: {wave: {ramp: 2}}}\nfish: [{body: {second_moment: ellipse}}]\n");
@@ -223,8 +215,7 @@ static void keys_in_the_case_override_the_preset(void **state) {
 
 // ---- values
 
-static void every_type_of_value_is_read(void **state) {
-    (void)state;
+TEST(every_type_of_value_is_read) {
     struct case_values s = parse(
         "format: 1\nname: no\ntime: {end: 2.0E0}\nfluid: {velocity: [-1, .5], gust: {amplitude: 1, frequency: 2}}\n"
         "fish:\n"
@@ -248,8 +239,7 @@ static void every_type_of_value_is_read(void **state) {
     case_free(&s);
 }
 
-static void multiples_are_recognised_despite_rounding(void **state) {
-    (void)state;
+TEST(multiples_are_recognised_despite_rounding) {
     // 0.3/0.1, 25/0.005 and 4.35/0.01 are no integers in double precision
     static const char *const times[] = {"{end: 0.3, shedding_interval: 0.1}", "{end: 25, shedding_interval: 0.005}",
                                         "{end: 4.35}", "{end: 1, output_interval: 0.07}"};
@@ -261,16 +251,14 @@ static void multiples_are_recognised_despite_rounding(void **state) {
     }
 }
 
-static void errors_of_all_stages_are_listed_together(void **state) {
-    (void)state;
+TEST(errors_of_all_stages_are_listed_together) {
     is_refused("format: 1\ntime: {end: 1.005, shedding_interval: 0.01}\nfish: [{length: x}, {nodes: 1}]\n",
                "time.end: 1.005 s is not an integer");
     assert_non_null(strstr(status_message(), "fish[0].length: expects a number in m, got 'x'"));
     assert_non_null(strstr(status_message(), "fish[1].nodes: must be from 4"));
 }
 
-static void turns_of_a_fine_body_are_those_of_its_reference(void **state) {
-    (void)state;
+TEST(turns_of_a_fine_body_are_those_of_its_reference) {
     const char *const format =
         "format: 1\ntime: {end: 1}\nfish: [{nodes: 13, reference_nodes: 7, wave: {linear: 1, quadratic: 0, "
         "amplitude: %g}}]\n";
@@ -285,8 +273,7 @@ static void turns_of_a_fine_body_are_those_of_its_reference(void **state) {
     case_free(&values);
 }
 
-static void a_suggestion_differs_by_a_third_of_the_word_at_most(void **state) {
-    (void)state;
+TEST(a_suggestion_differs_by_a_third_of_the_word_at_most) {
     static const struct {
         const char *text, *suggested;
     } cases[] = {
@@ -305,8 +292,7 @@ static void a_suggestion_differs_by_a_third_of_the_word_at_most(void **state) {
     }
 }
 
-static void a_misspelt_key_brings_no_second_error(void **state) {
-    (void)state;
+TEST(a_misspelt_key_brings_no_second_error) {
     is_refused("format: 1\ntime: {end: 1.005, shedding_intervall: 0.005}\nfish: [{}]\n",
                "did you mean 'shedding_interval'?");
     assert_null(strstr(status_message(), "multiple"));
@@ -314,8 +300,7 @@ static void a_misspelt_key_brings_no_second_error(void **state) {
 
 // ---- includes
 
-static void an_include_is_weaker_than_the_file_that_includes_it(void **state) {
-    (void)state;
+TEST_WITH(an_include_is_weaker_than_the_file_that_includes_it, make_folder, remove_folder) {
     write_file("water.yaml", "fluid: {density: 1025, velocity: [1, 2]}\nwake: {lifetime: 4}\nfish: [{nodes: 9}, {}]\n");
     write_file("case.yaml",
                "include: [water.yaml]\nformat: 1\ntime: {end: 1}\nfluid: {velocity: [3, 4]}\nfish: [{}]\n");
@@ -331,8 +316,7 @@ static void an_include_is_weaker_than_the_file_that_includes_it(void **state) {
     case_free(&s);
 }
 
-static void includes_are_relative_to_their_file_and_the_last_is_strongest(void **state) {
-    (void)state;
+TEST_WITH(includes_are_relative_to_their_file_and_the_last_is_strongest, make_folder, remove_folder) {
     assert_int_equal(system("mkdir below"), 0);
     write_file("below/more.yaml", "include: ../water.yaml\nname: more\nwake: {lifetime: 3}\n");
     write_file("water.yaml", "name: water\nwake: {lifetime: 4, smoothing: 0.4}\n");
@@ -363,8 +347,7 @@ static void includes_are_relative_to_their_file_and_the_last_is_strongest(void *
     case_free(&s);
 }
 
-static void an_error_in_an_include_names_the_include(void **state) {
-    (void)state;
+TEST_WITH(an_error_in_an_include_names_the_include, make_folder, remove_folder) {
     write_file("water.yaml", "fluid:\n  densty: 1025\n");
     write_file("case.yaml", "include: [water.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n");
     struct case_values s;
@@ -374,8 +357,7 @@ static void an_error_in_an_include_names_the_include(void **state) {
         "water.yaml:2:3: error: fluid.densty: unknown key; did you mean 'density'?\n  densty: 1025\n  ^");
 }
 
-static void a_case_that_cannot_be_read_is_a_file_error(void **state) {
-    (void)state;
+TEST_WITH(a_case_that_cannot_be_read_is_a_file_error, make_folder, remove_folder) {
     struct case_values s;
     assert_int_equal(case_read(&s, "no_such_file.yaml", 0, NULL), STATUS_FILE);
     assert_int_equal(case_read(&s, ".", 0, NULL), STATUS_FILE);
@@ -384,16 +366,14 @@ static void a_case_that_cannot_be_read_is_a_file_error(void **state) {
 
 // ---- assignments
 
-static void assignments_are_strongest_and_the_last_counts(void **state) {
-    (void)state;
+TEST(assignments_are_strongest_and_the_last_counts) {
     struct case_values s = parse_with(minimal, "time.end=5", "fish[0].start.position=[1, 2]", "time.end=6");
     NEAR(s.time.end, 6, 0, 0);
     NEAR_ARRAY(2, s.school.fish->start_position, ((const double[]){1, 2}), 0, 0);
     case_free(&s);
 }
 
-static void a_star_assigns_to_every_fish(void **state) {
-    (void)state;
+TEST(a_star_assigns_to_every_fish) {
     static const char text[] =
         "format: 1\ntime: {end: 1}\ndefaults: {fish: {nodes: 8}}\nfish: [{nodes: 5}, {}, {wave: {phase: 3}}]\n";
     struct case_values s =
@@ -407,8 +387,7 @@ static void a_star_assigns_to_every_fish(void **state) {
     case_free(&s);
 }
 
-static void assignments_reach_defaults_preset_and_sections(void **state) {
-    (void)state;
+TEST(assignments_reach_defaults_preset_and_sections) {
     struct case_values s = parse_with(minimal, "defaults.fish.nodes=9", "preset=published", "sheet={kutta: edge}");
     assert_int_equal(s.school.fish->nodes, 9);
     assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
@@ -424,8 +403,7 @@ static void assignments_reach_defaults_preset_and_sections(void **state) {
 
 // ---- showing
 
-static void a_case_shown_reads_back_bit_for_bit(void **state) {
-    (void)state;
+TEST(a_case_shown_reads_back_bit_for_bit) {
     static const char *const cases[] = {
         minimal,
         swept,
@@ -462,8 +440,7 @@ static void a_case_shown_reads_back_bit_for_bit(void **state) {
     }
 }
 
-static void a_shown_case_has_neither_preset_nor_defaults(void **state) {
-    (void)state;
+TEST(a_shown_case_has_neither_preset_nor_defaults) {
     struct case_values s = parse_with(minimal, "preset=published", "defaults.fish.nodes=9", NULL);
     char *shown;
     assert_int_equal(case_show(&s, &shown), STATUS_OK);
@@ -475,8 +452,7 @@ static void a_shown_case_has_neither_preset_nor_defaults(void **state) {
     case_free(&s);
 }
 
-static void the_table_of_keys_is_valid_text_and_json(void **state) {
-    (void)state;
+TEST(the_table_of_keys_is_valid_text_and_json) {
     static char text[100000];
     for (int as_json = 0; as_json <= 1; as_json++) {
         memset(text, 0, sizeof text);
@@ -495,8 +471,7 @@ static void the_table_of_keys_is_valid_text_and_json(void **state) {
 
 // ---- memory
 
-static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
-    (void)state;
+TEST_WITH(every_failing_allocation_is_reported_and_leaves_nothing, make_folder, remove_folder) {
     write_file("water.yaml", "fluid: {density: 1025}\n");
     write_file("case.yaml",
                "include: [water.yaml]\nformat: 1\ntime: {end: 1}\ndefaults: {fish: {name: a, force: pressure}}\n"
@@ -531,8 +506,7 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
     assert_in_range(n_failures, 300, 5000);
 }
 
-static void without_memory_errors_are_still_memory_errors(void **state) {
-    (void)state;
+TEST(without_memory_errors_are_still_memory_errors) {
     static const char text[] = "format: 2\ntiem: {end: 3}\nwake: {kutta: no, decay: x}\nfish: [{nodes: 1}]\n";
     const int n_before = n_live;
     for (int i = 0;; i++) {
@@ -548,47 +522,10 @@ static void without_memory_errors_are_still_memory_errors(void **state) {
     }
 }
 
-static void freeing_twice_is_harmless(void **state) {
-    (void)state;
+TEST(freeing_twice_is_harmless) {
     struct case_values s = parse(swept);
     case_free(&s);
     case_free(&s);
     struct case_values zero = {0};
     case_free(&zero);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_defaults_are_those_of_the_reference),
-        cmocka_unit_test(lifetime_and_fade_may_be_in_beats),
-        cmocka_unit_test(derived_defaults_follow_what_they_derive_from),
-        cmocka_unit_test(every_default_of_the_table_is_a_value_of_its_key),
-        cmocka_unit_test(defaults_reach_every_fish_below_its_own_keys),
-        cmocka_unit_test(a_wrong_default_is_reported_once_even_if_unused),
-        cmocka_unit_test(preset_published_sets_the_options_of_the_article),
-        cmocka_unit_test(keys_in_the_case_override_the_preset),
-        cmocka_unit_test(every_type_of_value_is_read),
-        cmocka_unit_test(multiples_are_recognised_despite_rounding),
-        cmocka_unit_test(errors_of_all_stages_are_listed_together),
-        cmocka_unit_test(turns_of_a_fine_body_are_those_of_its_reference),
-        cmocka_unit_test(a_suggestion_differs_by_a_third_of_the_word_at_most),
-        cmocka_unit_test(a_misspelt_key_brings_no_second_error),
-        cmocka_unit_test_setup_teardown(an_include_is_weaker_than_the_file_that_includes_it, make_folder,
-                                        remove_folder),
-        cmocka_unit_test_setup_teardown(includes_are_relative_to_their_file_and_the_last_is_strongest, make_folder,
-                                        remove_folder),
-        cmocka_unit_test_setup_teardown(an_error_in_an_include_names_the_include, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(a_case_that_cannot_be_read_is_a_file_error, make_folder, remove_folder),
-        cmocka_unit_test(assignments_are_strongest_and_the_last_counts),
-        cmocka_unit_test(a_star_assigns_to_every_fish),
-        cmocka_unit_test(assignments_reach_defaults_preset_and_sections),
-        cmocka_unit_test(a_case_shown_reads_back_bit_for_bit),
-        cmocka_unit_test(a_shown_case_has_neither_preset_nor_defaults),
-        cmocka_unit_test(the_table_of_keys_is_valid_text_and_json),
-        cmocka_unit_test_setup_teardown(every_failing_allocation_is_reported_and_leaves_nothing, make_folder,
-                                        remove_folder),
-        cmocka_unit_test(without_memory_errors_are_still_memory_errors),
-        cmocka_unit_test(freeing_twice_is_harmless),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static void notes_are(const char *assignment, const char *want) {
     case_free(&values);
 }
 
-static void a_usual_case_has_no_notes(void **state) {
-    (void)state;
+TEST(a_usual_case_has_no_notes) {
     notes_are("fish[0].wave.phase=90", "");
     notes_are("fish[0].start.heading=3", "");
     notes_are("fish[0].start.heading=0", "");
@@ -26,8 +25,7 @@ static void a_usual_case_has_no_notes(void **state) {
     notes_are("fish[0]={wave: {number: 6, frequency: 0}, body: {relaxation_time: 0}}", "");
 }
 
-static void a_key_that_switches_other_defaults_is_noted_with_them(void **state) {
-    (void)state;
+TEST(a_key_that_switches_other_defaults_is_noted_with_them) {
     // the keys of the row, and the keys that follow from these
     notes_are("wake.shedding=continuous",
               "--set wake.shedding=continuous: note: wake.shedding: changes the defaults of other keys: wake.taper 0, "
@@ -54,8 +52,7 @@ static void a_key_that_switches_other_defaults_is_noted_with_them(void **state) 
     notes_are("preset=published", "");
 }
 
-static void a_key_that_fish_share_is_noted_once_with_the_defaults_that_follow(void **state) {
-    (void)state;
+TEST(a_key_that_fish_share_is_noted_once_with_the_defaults_that_follow) {
     static const char text[] =
         "format: 1\ntime: {end: 3}\ndefaults: {fish: {force: reactive}}\nfish: [{}, {drag: {normal: 1}}, {}]\n";
     struct case_values values = parse(text);
@@ -67,8 +64,7 @@ static void a_key_that_fish_share_is_noted_once_with_the_defaults_that_follow(vo
 }
 
 /* The rows of the table decide: a default with a condition on another key is in the note, whatever the key. */
-static void every_default_that_follows_another_key_names_keys_of_the_table(void **state) {
-    (void)state;
+TEST(every_default_that_follows_another_key_names_keys_of_the_table) {
     int n = 0;
     for (int k = 0; k < case_table_n; k++) {
         for (int i = 0; case_table[k].follows && case_table[k].follows[i]; i++, n++) {
@@ -80,15 +76,13 @@ static void every_default_that_follows_another_key_names_keys_of_the_table(void 
 }
 
 /* Derived defaults are rounded to the decimal. */
-static void the_derived_filter_of_a_period_is_no_given_key(void **state) {
-    (void)state;
+TEST(the_derived_filter_of_a_period_is_no_given_key) {
     struct case_values values = parse_with(minimal, "fish[0].wave.frequency=1.0001", NULL, NULL);
     NEAR(values.school.fish[0].control.filter, 1 / 1.0001, 0, 1e-14);
     case_free(&values);
 }
 
-static void an_angle_in_radians_is_noted(void **state) {
-    (void)state;
+TEST(an_angle_in_radians_is_noted) {
     notes_are("fish[0].start.heading=3.14159",
               "--set fish[0].start.heading=3.14159: note: fish[0].start.heading: 3.14159 is in degrees; if radians are "
               "meant, write 180");
@@ -101,23 +95,20 @@ static void an_angle_in_radians_is_noted(void **state) {
     notes_are("fish[0].control={law: course, desired_heading: [[0, 180], [1, 2.3562]]}", "write 135");
 }
 
-static void a_body_like_no_other_is_noted(void **state) {
-    (void)state;
+TEST(a_body_like_no_other_is_noted) {
     notes_are("fish[0].length=50", "fish[0].length: 50 m is longer than any swimmer; the unit is metres");
     notes_are("fish[0].length=1e-4", "fish[0].length: 0.0001 m is shorter than any swimmer");
     notes_are("fish[0].body.modulus=1", "fish[0].body.modulus: 1 Pa is softer than jelly");
     notes_are("fish[0].body.modulus=1e13", "1e+13 Pa is stiffer than diamond");
 }
 
-static void a_fluid_without_friction_is_noted(void **state) {
-    (void)state;
+TEST(a_fluid_without_friction_is_noted) {
     notes_are("fluid.viscosity=0",
               "--set fluid.viscosity=0: note: fluid.viscosity: 0 removes the friction of the skin");
     notes_are("fluid.viscosity=1e-9", "");
 }
 
-static void few_nodes_under_pressure_are_noted(void **state) {
-    (void)state;
+TEST(few_nodes_under_pressure_are_noted) {
     notes_are("fish[0]={nodes: 9, force: pressure}", "fish[0].nodes: 9: with force pressure, fewer than 17 nodes");
     notes_are("fish[0]={nodes: 17, force: pressure}", "");
     notes_are("fish[0]={nodes: 9, force: reactive, pressure: {span: infinite}, drag: {skin: quadratic, normal: 1}}",
@@ -126,13 +117,11 @@ static void few_nodes_under_pressure_are_noted(void **state) {
     notes_are("fish[0]={nodes: 9, force: pressure, motion: {prescribed: all}}", "");
 }
 
-static void a_wave_that_travels_forwards_is_noted(void **state) {
-    (void)state;
+TEST(a_wave_that_travels_forwards_is_noted) {
     notes_are("fish[0].wave.number=6", "fish[0].wave.number: 6: the wave travels from tail to head");
 }
 
-static void a_value_that_fish_share_is_noted_once(void **state) {
-    (void)state;
+TEST(a_value_that_fish_share_is_noted_once) {
     static const char text[] =
         "format: 1\ntime: {end: 3}\ndefaults: {fish: {length: 50, body: {modulus: 1}}}\nfish: [{}, {}, {}]\n";
     struct case_values values = parse(text);
@@ -160,8 +149,7 @@ static void interval_is(const char *text, double interval) {
     case_free(&values);
 }
 
-static void the_fastest_beat_has_a_hundred_events(void **state) {
-    (void)state;
+TEST(the_fastest_beat_has_a_hundred_events) {
     interval_is("time: {end: 1}\nfish: [{}]\n", 0.01);
     interval_is("time: {end: 1}\nfish: [{wave: {frequency: 4}}]\n", 0.0025);
     interval_is("time: {end: 1}\nfish: [{wave: {frequency: 2}}, {wave: {frequency: 5}, start: {position: [0, 2]}}]\n",
@@ -175,8 +163,7 @@ static void the_fastest_beat_has_a_hundred_events(void **state) {
     interval_is("preset: published\ntime: {end: 1}\nfish: [{wave: {frequency: 4}}]\n", 0.01);
 }
 
-static void times_that_do_not_fit_the_default_are_rounded_and_noted(void **state) {
-    (void)state;
+TEST(times_that_do_not_fit_the_default_are_rounded_and_noted) {
     // a period of 0.7 s: 2 s are 285.7 events
     struct case_values values = read_case(
         "time: {end: 2, output_interval: 0.1, checkpoint_interval: 0.352}\noutput: {wake_interval: 0.5}\n"
@@ -194,8 +181,7 @@ static void times_that_do_not_fit_the_default_are_rounded_and_noted(void **state
     case_free(&values);
 }
 
-static void times_that_fit_stay_to_the_bit(void **state) {
-    (void)state;
+TEST(times_that_fit_stay_to_the_bit) {
     struct case_values values = read_case(
         "time: {end: 2, output_interval: 0.1}\nfish: [{wave: {frequency: 1.1, phase: 20}}, {name: b, start: {position: "
         "[0, 2]}, wave: {frequency: 4}}]\n");
@@ -224,8 +210,7 @@ static void is_refused(const char *text, const char *message) {
 }
 
 // a number at a bound of its key is out of range where the bound is open, and one just beyond always
-static void every_bound_of_every_key_is_kept(void **state) {
-    (void)state;
+TEST(every_bound_of_every_key_is_kept) {
     int n = 0;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
@@ -256,8 +241,7 @@ static void every_bound_of_every_key_is_kept(void **state) {
 }
 
 // a case just inside of each limit, and one just outside
-static void longer_strings_than_a_key_allows_are_refused(void **state) {
-    (void)state;
+TEST(longer_strings_than_a_key_allows_are_refused) {
     int n = 0;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
@@ -282,8 +266,7 @@ static void longer_strings_than_a_key_allows_are_refused(void **state) {
     AT_LEAST(n, 4);
 }
 
-static void limits_are_where_the_messages_say(void **state) {
-    (void)state;
+TEST(limits_are_where_the_messages_say) {
 #define SHORT "time: {end: 1, shedding_interval: 0.01}\n"
 #define FINITE(points) SHORT "fish: [{nodes: 5, sheet_points: " points ", force: pressure, pressure: {span: finite}}]\n"
     static const struct {
@@ -348,34 +331,9 @@ static void limits_are_where_the_messages_say(void **state) {
     }
 }
 
-static void times_that_do_not_fit_a_given_interval_are_errors(void **state) {
-    (void)state;
+TEST(times_that_do_not_fit_a_given_interval_are_errors) {
     static const char text[] = "format: 1\ntime: {end: 2, shedding_interval: 0.007}\nfish: [{}]\n";
     struct case_values values;
     assert_int_equal(case_parse(&values, text, sizeof text - 1, "test", ".", 0, NULL), STATUS_CASE);
     assert_non_null(strstr(status_message(), "time.end: 2 s is not an integer multiple of time.shedding_interval"));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_usual_case_has_no_notes),
-        cmocka_unit_test(a_key_that_switches_other_defaults_is_noted_with_them),
-        cmocka_unit_test(a_key_that_fish_share_is_noted_once_with_the_defaults_that_follow),
-        cmocka_unit_test(every_default_that_follows_another_key_names_keys_of_the_table),
-        cmocka_unit_test(the_derived_filter_of_a_period_is_no_given_key),
-        cmocka_unit_test(an_angle_in_radians_is_noted),
-        cmocka_unit_test(a_body_like_no_other_is_noted),
-        cmocka_unit_test(a_fluid_without_friction_is_noted),
-        cmocka_unit_test(few_nodes_under_pressure_are_noted),
-        cmocka_unit_test(a_wave_that_travels_forwards_is_noted),
-        cmocka_unit_test(a_value_that_fish_share_is_noted_once),
-        cmocka_unit_test(the_fastest_beat_has_a_hundred_events),
-        cmocka_unit_test(times_that_do_not_fit_the_default_are_rounded_and_noted),
-        cmocka_unit_test(times_that_fit_stay_to_the_bit),
-        cmocka_unit_test(every_bound_of_every_key_is_kept),
-        cmocka_unit_test(longer_strings_than_a_key_allows_are_refused),
-        cmocka_unit_test(limits_are_where_the_messages_say),
-        cmocka_unit_test(times_that_do_not_fit_a_given_interval_are_errors),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,8 +7,7 @@
 #include "case/sweep.h"
 #include "case_fixture.h"
 
-static void a_sweep_keeps_its_values_as_assignments_take_them(void **state) {
-    (void)state;
+TEST(a_sweep_keeps_its_values_as_assignments_take_them) {
     struct case_values s = parse(swept);
     assert_int_equal(s.n_axes, 3);
     assert_string_equal(s.sweep[0].key[0].path, "fish[*].body.modulus");
@@ -23,8 +22,7 @@ static void a_sweep_keeps_its_values_as_assignments_take_them(void **state) {
     case_free(&s);
 }
 
-static void members_are_numbered_with_the_last_axis_fastest(void **state) {
-    (void)state;
+TEST(members_are_numbered_with_the_last_axis_fastest) {
     struct case_values study = parse(zipped);
     assert_int_equal(sweep_n_members(&study), 6);
     for (int m = 0; m < 6; m++) {
@@ -48,8 +46,7 @@ static void members_are_numbered_with_the_last_axis_fastest(void **state) {
     case_free(&study);
 }
 
-static void the_merged_text_is_the_complete_study(void **state) {
-    (void)state;
+TEST(the_merged_text_is_the_complete_study) {
     struct case_values study = parse_with(zipped, "fish[0].length=2", "wake.decay=0.1", NULL);
     struct case_values again;
     assert_int_equal(case_parse(&again, study.merged, strlen(study.merged), "other.yaml", NULL, 0, NULL), STATUS_OK);
@@ -59,8 +56,7 @@ static void the_merged_text_is_the_complete_study(void **state) {
     case_free(&again);
 }
 
-static void a_reference_is_given_for_all_fish_or_for_each(void **state) {
-    (void)state;
+TEST(a_reference_is_given_for_all_fish_or_for_each) {
     struct case_values s = parse(refined);
     // quantities in the order of the table: nose, tail, com, speed, mean_heading
     for (int f = 0; f < 2; f++) {
@@ -80,8 +76,7 @@ static void a_reference_is_given_for_all_fish_or_for_each(void **state) {
     case_free(&s);
 }
 
-static void an_expectation_is_about_the_members_with_its_values(void **state) {
-    (void)state;
+TEST(an_expectation_is_about_the_members_with_its_values) {
     struct case_values s = parse(stated);
     assert_int_equal(s.n_expectations, 4);
     assert_string_equal(s.expect[3].fails, "is: unstable");
@@ -112,8 +107,7 @@ static void an_expectation_is_about_the_members_with_its_values(void **state) {
     case_free(&s);
 }
 
-static void a_wrong_member_is_named(void **state) {
-    (void)state;
+TEST(a_wrong_member_is_named) {
     struct case_values study =
         parse("format: 1\ntime: {end: 1}\nfish: [{}]\nsweep: [{key: wake.lifetime, values: [1, 0.003]}]\n");
     struct case_values s;
@@ -125,8 +119,7 @@ static void a_wrong_member_is_named(void **state) {
     case_free(&study);
 }
 
-static void a_sweep_is_refused_as_one_run_with_a_remedy(void **state) {
-    (void)state;
+TEST(a_sweep_is_refused_as_one_run_with_a_remedy) {
     struct case_values s = parse(minimal);
     assert_int_equal(sweep_refuse(&s), STATUS_OK);
     case_free(&s);
@@ -134,17 +127,4 @@ static void a_sweep_is_refused_as_one_run_with_a_remedy(void **state) {
     assert_int_equal(sweep_refuse(&s), STATUS_CASE);
     assert_non_null(strstr(status_message(), "error: sweep: this case has a sweep of 3 axes: use `shoal study`"));
     case_free(&s);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sweep_keeps_its_values_as_assignments_take_them),
-        cmocka_unit_test(members_are_numbered_with_the_last_axis_fastest),
-        cmocka_unit_test(the_merged_text_is_the_complete_study),
-        cmocka_unit_test(a_reference_is_given_for_all_fish_or_for_each),
-        cmocka_unit_test(an_expectation_is_about_the_members_with_its_values),
-        cmocka_unit_test(a_wrong_member_is_named),
-        cmocka_unit_test(a_sweep_is_refused_as_one_run_with_a_remedy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

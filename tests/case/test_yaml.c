@@ -64,25 +64,21 @@ static void is_refused(const char *text, size_t length, const char *want) {
 
 // ---- reading
 
-static void maps_lists_and_scalars_become_a_tree(void **state) {
-    (void)state;
+TEST(maps_lists_and_scalars_become_a_tree) {
     reads_as("time: {end: 3}\nfish:\n  - nodes: 7\n  - [a, b]\n", "{time: {end: 3}, fish: [{nodes: 7}, [a, b]]}");
 }
 
-static void block_and_flow_read_the_same(void **state) {
-    (void)state;
+TEST(block_and_flow_read_the_same) {
     reads_as("a:\n  b: 1\n  c:\n  - 2\n  - x y\n", "{a: {b: 1, c: [2, x y]}}");
     reads_as("{a: {b: 1, c: [2, x y]}}", "{a: {b: 1, c: [2, x y]}}");
 }
 
-static void scalars_are_texts_whatever_they_look_like(void **state) {
-    (void)state;
+TEST(scalars_are_texts_whatever_they_look_like) {
     reads_as("[no, 1e5, 0x10, 2001-01-01, .nan, 012]", "[no, 1e5, 0x10, 2001-01-01, .nan, 012]");
     reads_as("a:\nb: ~\nc: 'no'\n", "{a: \"\", b: \"~\", c: no}");
 }
 
-static void keys_and_values_know_their_places(void **state) {
-    (void)state;
+TEST(keys_and_values_know_their_places) {
     struct fixture f;
     read_text(&f, "# comment\nfish:\n  - größe: ä\n    nodes: 7\n");
     const struct yaml_node *const fish = yaml_tree_find(f.root, "fish")->entry[0].value;
@@ -95,8 +91,7 @@ static void keys_and_values_know_their_places(void **state) {
     release(&f);
 }
 
-static void a_text_without_values_has_no_root(void **state) {
-    (void)state;
+TEST(a_text_without_values_has_no_root) {
     static const char *const strings[] = {"", "\n\n", "# nothing\n", "---\n...\n"};
     for (size_t i = 0; i < sizeof strings / sizeof *strings; i++) {
         struct fixture f;
@@ -107,16 +102,14 @@ static void a_text_without_values_has_no_root(void **state) {
     }
 }
 
-static void a_mark_of_utf8_and_crlf_are_accepted(void **state) {
-    (void)state;
+TEST(a_mark_of_utf8_and_crlf_are_accepted) {
     reads_as(
         "\xEF\xBB\xBF"
         "a: 1\r\nb: 2\r\n",
         "{a: 1, b: 2}");
 }
 
-static void depth_32_is_read_and_33_refused(void **state) {
-    (void)state;
+TEST(depth_32_is_read_and_33_refused) {
     char text[128];
     for (int depth = 32; depth <= 33; depth++) {
         memset(text, '[', (size_t)depth);
@@ -130,8 +123,7 @@ static void depth_32_is_read_and_33_refused(void **state) {
     }
 }
 
-static void what_is_not_in_the_subset_is_refused_with_its_place(void **state) {
-    (void)state;
+TEST(what_is_not_in_the_subset_is_refused_with_its_place) {
     static const char *const cases[][2] = {
         {"a: &x 1\n", "x.yaml:1:4: error: anchors"},
         {"a: &x [1]\n", "x.yaml:1:4: error: anchors"},
@@ -159,16 +151,14 @@ static void what_is_not_in_the_subset_is_refused_with_its_place(void **state) {
     is_refused("a: \0", 4, "x.yaml:1:4: error: not a text file (control character 0x00)");
 }
 
-static void all_refusals_of_a_text_are_listed(void **state) {
-    (void)state;
+TEST(all_refusals_of_a_text_are_listed) {
     struct fixture f;
     read_text(&f, "a: &x 1\na: !y 2\n<<: 3\n");
     assert_int_equal(f.errors.n, 4);
     release(&f);
 }
 
-static void more_than_256_keys_or_4_mib_are_refused(void **state) {
-    (void)state;
+TEST(more_than_256_keys_or_4_mib_are_refused) {
     char keys[4000];
     size_t length = 0;
     for (int i = 0; i <= 256; i++) length += (size_t)snprintf(keys + length, sizeof keys - length, "k%d: 1\n", i);
@@ -181,8 +171,7 @@ static void more_than_256_keys_or_4_mib_are_refused(void **state) {
 
 // ---- the tree
 
-static void find_follows_a_path_of_keys(void **state) {
-    (void)state;
+TEST(find_follows_a_path_of_keys) {
     struct fixture f;
     read_text(&f, "a: {b: {c: 1}}\nab: 2\n");
     assert_string_equal(yaml_tree_find(f.root, "a.b.c")->text, "1");
@@ -193,8 +182,7 @@ static void find_follows_a_path_of_keys(void **state) {
     release(&f);
 }
 
-static void merging_joins_maps_and_replaces_the_rest(void **state) {
-    (void)state;
+TEST(merging_joins_maps_and_replaces_the_rest) {
     struct fixture base, over;
     read_text(&base, "a: {x: 1, y: [1, 2]}\nb: 1\nc: {z: 1}\n");
     read_text(&over, "a: {y: [3], w: 2}\nc: 5\nd: 6\n");
@@ -205,8 +193,7 @@ static void merging_joins_maps_and_replaces_the_rest(void **state) {
     release(&over);
 }
 
-static void a_copy_is_equal_and_its_own(void **state) {
-    (void)state;
+TEST(a_copy_is_equal_and_its_own) {
     struct fixture f;
     read_text(&f, "a: [1, {b: c}]\n");
     struct yaml_node *copy;
@@ -216,8 +203,7 @@ static void a_copy_is_equal_and_its_own(void **state) {
     yaml_tree_free(copy);
 }
 
-static void a_failed_allocation_leaves_nothing_allocated(void **state) {
-    (void)state;
+TEST(a_failed_allocation_leaves_nothing_allocated) {
     static const char text[] = "a: {x: 1, y: [1, 2, {b: c}]}\nb: &a 1\nc: [1, 2, 3, 4, 5, 6]\n";
     const int n_before = n_live;
     int n_failures = 0;
@@ -238,8 +224,7 @@ static void a_failed_allocation_leaves_nothing_allocated(void **state) {
 
 // ---- errors
 
-static void errors_are_listed_by_place_with_a_caret(void **state) {
-    (void)state;
+TEST(errors_are_listed_by_place_with_a_caret) {
     struct fixture f;
     read_text(&f, "a: 1\nb: größe 2\n");
     const struct yaml_mark late = {&f.source, 2, 10}, early = {&f.source, 1, 4};
@@ -252,8 +237,7 @@ static void errors_are_listed_by_place_with_a_caret(void **state) {
     release(&f);
 }
 
-static void twenty_errors_are_listed_and_the_rest_counted(void **state) {
-    (void)state;
+TEST(twenty_errors_are_listed_and_the_rest_counted) {
     struct fixture f;
     read_text(&f, "a: 1\n");
     const struct yaml_mark mark = {&f.source, 1, 1};
@@ -266,8 +250,7 @@ static void twenty_errors_are_listed_and_the_rest_counted(void **state) {
     release(&f);
 }
 
-static void of_a_long_line_the_neighbourhood_is_shown(void **state) {
-    (void)state;
+TEST(of_a_long_line_the_neighbourhood_is_shown) {
     static char text[3000];
     memset(text, 'x', sizeof text - 1);
     text[1500] = 'Y';
@@ -282,8 +265,7 @@ static void of_a_long_line_the_neighbourhood_is_shown(void **state) {
     yaml_errors_free(&errors);
 }
 
-static void a_place_after_the_end_is_harmless(void **state) {
-    (void)state;
+TEST(a_place_after_the_end_is_harmless) {
     struct yaml_source source = {"x.yaml", "a", 1, 0, false, NULL, NULL};
     struct yaml_errors errors = {0};
     yaml_errors_add(&errors, (struct yaml_mark){&source, 9, 900}, "here");
@@ -294,8 +276,7 @@ static void a_place_after_the_end_is_harmless(void **state) {
 
 // ---- writing
 
-static void strings_of_any_kind_are_written_so_that_they_read_back(void **state) {
-    (void)state;
+TEST(strings_of_any_kind_are_written_so_that_they_read_back) {
     static const char *const strings[] = {"eel", "a b",  "a: b", "#x",   "x #y", "",      " a", "a ",        "-",
                                           "- a", "---",  "...",  "a,b",  "[a]",  "{",     "*a", "&a",        "!a",
                                           "'a'", "a\"b", "a\\b", "a\nb", "a\tb", "größe", "?a", "fish[*].x", "%a",
@@ -312,29 +293,4 @@ static void strings_of_any_kind_are_written_so_that_they_read_back(void **state)
         release(&f);
         text_free(&text);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(maps_lists_and_scalars_become_a_tree),
-        cmocka_unit_test(block_and_flow_read_the_same),
-        cmocka_unit_test(scalars_are_texts_whatever_they_look_like),
-        cmocka_unit_test(keys_and_values_know_their_places),
-        cmocka_unit_test(a_text_without_values_has_no_root),
-        cmocka_unit_test(a_mark_of_utf8_and_crlf_are_accepted),
-        cmocka_unit_test(depth_32_is_read_and_33_refused),
-        cmocka_unit_test(what_is_not_in_the_subset_is_refused_with_its_place),
-        cmocka_unit_test(all_refusals_of_a_text_are_listed),
-        cmocka_unit_test(more_than_256_keys_or_4_mib_are_refused),
-        cmocka_unit_test(find_follows_a_path_of_keys),
-        cmocka_unit_test(merging_joins_maps_and_replaces_the_rest),
-        cmocka_unit_test(a_copy_is_equal_and_its_own),
-        cmocka_unit_test(a_failed_allocation_leaves_nothing_allocated),
-        cmocka_unit_test(errors_are_listed_by_place_with_a_caret),
-        cmocka_unit_test(twenty_errors_are_listed_and_the_rest_counted),
-        cmocka_unit_test(of_a_long_line_the_neighbourhood_is_shown),
-        cmocka_unit_test(a_place_after_the_end_is_harmless),
-        cmocka_unit_test(strings_of_any_kind_are_written_so_that_they_read_back),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,8 +46,7 @@ static const struct closest *step(struct pair *pair, int f, double dx, double dy
 }
 
 // many pairs at the same distance, and enough fish for several threads
-static void of_pairs_at_the_same_distance_the_first_one_counts(void **state) {
-    (void)state;
+TEST(of_pairs_at_the_same_distance_the_first_one_counts) {
     enum { N_FISH = 30 };
     char text[4096] = TIME "defaults: {fish: {wave: {amplitude: 0}}}\nfish: [{}";
     for (int f = 1; f < N_FISH; f++) {
@@ -81,15 +80,13 @@ static void of_pairs_at_the_same_distance_the_first_one_counts(void **state) {
     clear(&pair);
 }
 
-static void one_fish_is_close_to_none(void **state) {
-    (void)state;
+TEST(one_fish_is_close_to_none) {
     struct pair pair = place(TIME "fish: [{}]\n");
     NEAR(step(&pair, 0, 1, 0, 0.1)->distance, INFINITY, 0, 0);
     clear(&pair);
 }
 
-static void closest_approach_is_that_of_all_steps(void **state) {
-    (void)state;
+TEST(closest_approach_is_that_of_all_steps) {
     struct pair pair = place(PAIR("0", "0.5"));
     NEAR(pair.setup.state->closest->distance, 0.4, 1e-14, 0);
     NEAR(step(&pair, 1, 0, -0.2, 0.1)->distance, 0.2, 1e-14, 0);
@@ -101,8 +98,7 @@ static void closest_approach_is_that_of_all_steps(void **state) {
     clear(&pair);
 }
 
-static void bodies_that_cross_between_two_steps_have_touched(void **state) {
-    (void)state;
+TEST(bodies_that_cross_between_two_steps_have_touched) {
     // head on, at ten lengths per step; the bodies are lengths apart at both ends of the step
     struct pair pair = place(PAIR("5", "0"));
     const struct closest *const closest = step(&pair, 1, -10, 0, 0.5);
@@ -116,8 +112,7 @@ static void bodies_that_cross_between_two_steps_have_touched(void **state) {
     clear(&pair);
 }
 
-static void bodies_meet_within_the_step_in_which_they_touch(void **state) {
-    (void)state;
+TEST(bodies_meet_within_the_step_in_which_they_touch) {
     struct pair pair = place(PAIR("5", "0"));
     step(&pair, 1, 0, 0, 0.5);
     // the gap is 4 of the 10 lengths of the step from 0.5 s to 0.7 s, minus two halves of the thickness
@@ -126,8 +121,7 @@ static void bodies_meet_within_the_step_in_which_they_touch(void **state) {
 }
 
 // two bodies swing about their noses at rest: their tails are 1.2 m apart at both ends of the step, and meet in between
-static void two_bodies_that_turn_towards_each_other_have_touched(void **state) {
-    (void)state;
+TEST(two_bodies_that_turn_towards_each_other_have_touched) {
     struct pair pair = place(PAIR("0", "3"));
     double *const y = pair.setup.state->y;
     const double height[] = {0, 1.5};
@@ -149,8 +143,7 @@ static void two_bodies_that_turn_towards_each_other_have_touched(void **state) {
 }
 
 // a body that turns about its nose at rest, through the nose of the other one
-static void a_body_that_sweeps_over_another_has_touched_it(void **state) {
-    (void)state;
+TEST(a_body_that_sweeps_over_another_has_touched_it) {
     for (int sweeper = 0; sweeper < 2; sweeper++) {
         struct setup setup;
         school_build(&setup, PAIR("0", "3"));
@@ -178,8 +171,7 @@ static void a_body_that_sweeps_over_another_has_touched_it(void **state) {
     }
 }
 
-static void bodies_that_pass_each_other_have_not(void **state) {
-    (void)state;
+TEST(bodies_that_pass_each_other_have_not) {
     struct pair pair = place(PAIR("5", "0.15"));
     const struct closest *const closest = step(&pair, 1, -10, 0, 0.5);
     // 0.05 m side by side at the closest approach; the advances resolve this within that distance
@@ -194,8 +186,7 @@ static void bodies_that_pass_each_other_have_not(void **state) {
     clear(&pair);
 }
 
-static void bodies_that_have_touched_stay_so(void **state) {
-    (void)state;
+TEST(bodies_that_have_touched_stay_so) {
     struct pair pair = place(PAIR("0", "0.5"));
     NEAR(step(&pair, 1, 0, -0.5, 0.1)->distance, 0, 0, 0);
     const struct closest *const closest = step(&pair, 1, 0, 5, 0.2);
@@ -218,8 +209,7 @@ static double of_all_pairs(const struct pair *pair, const double *before) {
     return least;
 }
 
-static void the_record_of_a_school_is_that_of_all_pairs(void **state) {
-    (void)state;
+TEST(the_record_of_a_school_is_that_of_all_pairs) {
     enum { FISH = 20, STEPS = 30 };
     char text[2048];
     int length = snprintf(text, sizeof text, TIME "defaults: {fish: {body: {thickness: 0.05}}}\nfish:\n");
@@ -254,20 +244,4 @@ static void the_record_of_a_school_is_that_of_all_pairs(void **state) {
     ABOVE(n_records, 3);
     free(before);
     clear(&pair);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(of_pairs_at_the_same_distance_the_first_one_counts),
-        cmocka_unit_test(one_fish_is_close_to_none),
-        cmocka_unit_test(closest_approach_is_that_of_all_steps),
-        cmocka_unit_test(bodies_that_cross_between_two_steps_have_touched),
-        cmocka_unit_test(bodies_meet_within_the_step_in_which_they_touch),
-        cmocka_unit_test(two_bodies_that_turn_towards_each_other_have_touched),
-        cmocka_unit_test(a_body_that_sweeps_over_another_has_touched_it),
-        cmocka_unit_test(bodies_that_pass_each_other_have_not),
-        cmocka_unit_test(bodies_that_have_touched_stay_so),
-        cmocka_unit_test(the_record_of_a_school_is_that_of_all_pairs),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@
 #define STRAIGHT "defaults: {fish: {sheet_points: 9, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"
 #define BESIDE(y) STRAIGHT "fish: [{}, {start: {position: [0, " y "]}}]\n"
 
-static void nobody_repels_what_is_farther_than_the_range(void **state) {
-    (void)state;
+TEST(nobody_repels_what_is_farther_than_the_range) {
     const struct {
         const char *text;
         int n;
@@ -51,8 +50,7 @@ static double energy_of_school(struct setup *setup, const double *y) {
          "fish: [{sheet_points: 9}, {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.35], heading: " \
          "190}}, {nodes: 9, sheet_points: 11, start: {position: [0.1, -0.35], heading: 170}}]\n"
 
-static void forces_are_the_gradient_of_the_energy(void **state) {
-    (void)state;
+TEST(forces_are_the_gradient_of_the_energy) {
     struct setup setup;
     school_build(&setup, NEAR_ANOTHER);
     school_stir(&setup);
@@ -77,8 +75,7 @@ static void forces_are_the_gradient_of_the_energy(void **state) {
     school_clear(&setup);
 }
 
-static void forces_and_powers_of_all_add_up_to_nothing(void **state) {
-    (void)state;
+TEST(forces_and_powers_of_all_add_up_to_nothing) {
     struct setup setup;
     school_build(&setup, NEAR_ANOTHER);
     school_stir(&setup);
@@ -112,8 +109,7 @@ static void forces_and_powers_of_all_add_up_to_nothing(void **state) {
     school_clear(&setup);
 }
 
-static void walls_push_with_the_gradient_of_the_energy(void **state) {
-    (void)state;
+TEST(walls_push_with_the_gradient_of_the_energy) {
     struct setup setup;
     school_build(&setup, TIME
                  "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5, action: warn}\n"
@@ -153,8 +149,7 @@ static void walls_push_with_the_gradient_of_the_energy(void **state) {
 }
 
 // doc/model.md, section 16: half of phi of every end of each edge above each wall
-static void the_energy_above_walls_is_that_of_all_ends(void **state) {
-    (void)state;
+TEST(the_energy_above_walls_is_that_of_all_ends) {
     struct setup setup;
     school_build(&setup, TIME "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5}\nfish: [{sheet_points: 9}]\n");
     school_stir(&setup);
@@ -176,8 +171,7 @@ static void the_energy_above_walls_is_that_of_all_ends(void **state) {
     school_clear(&setup);
 }
 
-static void two_bodies_with_given_motions_pass_through_each_other(void **state) {
-    (void)state;
+TEST(two_bodies_with_given_motions_pass_through_each_other) {
     static const char *const motions[] = {"all", "head"};
     for (int i = 0; i < 2; i++) {
         char text[512];
@@ -198,8 +192,7 @@ static void two_bodies_with_given_motions_pass_through_each_other(void **state) 
     }
 }
 
-static void who_is_beyond_a_wall_asks_for_a_smaller_step(void **state) {
-    (void)state;
+TEST(who_is_beyond_a_wall_asks_for_a_smaller_step) {
     struct setup setup;
     school_build(&setup, TIME STRAIGHT "fluid: {walls: [-0.2]}\nfish: [{}]\n");
     const struct fish *const fish = &setup.school->fish[0];
@@ -215,8 +208,7 @@ static void who_is_beyond_a_wall_asks_for_a_smaller_step(void **state) {
     school_clear(&setup);
 }
 
-static void what_crosses_on_its_way_asks_for_a_smaller_step(void **state) {
-    (void)state;
+TEST(what_crosses_on_its_way_asks_for_a_smaller_step) {
     struct setup setup;
     school_build(&setup, TIME BESIDE("0.2"));
     struct contact *const contact = setup.residual->contact;
@@ -292,8 +284,7 @@ static void meet(const char *name, const char *text, double end, double audit_li
     simulate_free(simulation);
 }
 
-static void bodies_that_meet_do_not_cross(void **state) {
-    (void)state;
+TEST(bodies_that_meet_do_not_cross) {
     meet("head on, 1 m/s", "solver: {rtol: 1.0e-6}\n" HEAD_ON("1"), 0.3, 5e-3);
     meet("head on, 5 m/s", "solver: {rtol: 1.0e-6}\n" HEAD_ON("5"), 0.1, 5e-3);
     meet("head on, 15 m/s", "solver: {rtol: 1.0e-6}\n" HEAD_ON("15"), 0.03, 5e-3);
@@ -321,8 +312,7 @@ static void bodies_that_meet_do_not_cross(void **state) {
 }
 
 // Two plates heave and swim in line; the faster plate behind pushes the plate in front and does not pass through.
-static void plates_that_swim_in_line_do_not_cross(void **state) {
-    (void)state;
+TEST(plates_that_swim_in_line_do_not_cross) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME
                           "defaults: {fish: {nodes: 5, sheet_points: 17, force: pressure, pressure: {span: infinite}, "
@@ -354,8 +344,7 @@ static void plates_that_swim_in_line_do_not_cross(void **state) {
          "taper_beside: 0}\nfish: [{" PASSIVE ", start: {position: [0, " height "], heading: 280, speed: " speed \
          "}}]\n"
 
-static void walls_throw_bodies_back(void **state) {
-    (void)state;
+TEST(walls_throw_bodies_back) {
     meet("at a wall, 1 m/s", AT_A_WALL("0.15", "1"), 0.4, 5e-3);
     meet("at a wall, 5 m/s", AT_A_WALL("0.15", "5"), 0.1, 5e-3);
     meet("at a wall, 15 m/s", AT_A_WALL("0.25", "15"), 0.05, 5e-3);
@@ -370,8 +359,7 @@ static void walls_throw_bodies_back(void **state) {
 
 // Two bodies with sheet pressure, point-symmetric: the momentum of bodies and fluid stays 0, and the energy balance
 // includes every power.
-static void bodies_under_pressure_throw_each_other_back(void **state) {
-    (void)state;
+TEST(bodies_under_pressure_throw_each_other_back) {
     struct simulation *const simulation = school_simulation(
         SCHOOL_DEFAULTS TIME
         "solver: {rtol: 1.0e-6}\n"
@@ -403,8 +391,7 @@ static void bodies_under_pressure_throw_each_other_back(void **state) {
 }
 
 // A body that is thrown back moves tail first, and the tail overtakes the newest marker.
-static void bodies_that_are_thrown_back_go_on_tail_first(void **state) {
-    (void)state;
+TEST(bodies_that_are_thrown_back_go_on_tail_first) {
     static const struct {
         const char *defaults, *text;
     } cases[] = {// at a wall, at a right angle: the tail turns back within an interval
@@ -443,8 +430,7 @@ static void bodies_that_are_thrown_back_go_on_tail_first(void **state) {
     }
 }
 
-static void every_integrator_keeps_bodies_apart(void **state) {
-    (void)state;
+TEST(every_integrator_keeps_bodies_apart) {
     static const char *const methods[] = {"method: implicit_euler, step: 1.0e-3", "method: trapezoid, step: 1.0e-3",
                                           "method: rk4, step: 2.0e-4", "method: dormand_prince"};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
@@ -459,8 +445,7 @@ static void every_integrator_keeps_bodies_apart(void **state) {
     }
 }
 
-static void a_fixed_step_that_is_too_long_fails_and_says_so(void **state) {
-    (void)state;
+TEST(a_fixed_step_that_is_too_long_fails_and_says_so) {
     struct simulation *const simulation =
         school_simulation("solver: {method: implicit_euler, step: 0.01}\n" HEAD_ON("15"));
     enum status status = STATUS_OK;
@@ -477,8 +462,7 @@ static void a_fixed_step_that_is_too_long_fails_and_says_so(void **state) {
          "}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\nfish: [{" PASSIVE ", start: {position: [0, " y \
          "], heading: " heading ", speed: 5}}]\n"
 
-static void a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap(void **state) {
-    (void)state;
+TEST(a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap) {
     static const struct {
         const char *text, *message, *unit;
     } cases[] = {
@@ -510,8 +494,7 @@ static void a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap(void 
     }
 }
 
-static void of_many_contacts_the_least_gap_is_named(void **state) {
-    (void)state;
+TEST(of_many_contacts_the_least_gap_is_named) {
     // gaps of 0.08, 0.04 and 0.06 m above the wall, and of e above d
     static const char *const height[] = {"1.18", "1.12"},
                              *const named[] = {"; b was in contact with the wall at y = 0, with a gap of 0.04 m",
@@ -555,8 +538,7 @@ static char *crowd(void) {
     return text;
 }
 
-static void of_256_fish_no_two_get_through_each_other(void **state) {
-    (void)state;
+TEST(of_256_fish_no_two_get_through_each_other) {
     char *const text = crowd();
     struct simulation *const simulation = school_simulation(text);
     free(text);
@@ -590,8 +572,7 @@ static void of_256_fish_no_two_get_through_each_other(void **state) {
     simulate_free(simulation);
 }
 
-static void stop_ends_the_run_at_the_time_and_with_the_names(void **state) {
-    (void)state;
+TEST(stop_ends_the_run_at_the_time_and_with_the_names) {
     struct simulation *const simulation = school_simulation(
         "contact: {action: stop}\n" TIME STRAIGHT
         "fish: [{name: quick, start: {position: [0, 0.16], speed: 1, heading: 190}}, {name: lazy}]\n");
@@ -604,8 +585,7 @@ static void stop_ends_the_run_at_the_time_and_with_the_names(void **state) {
     simulate_free(simulation);
 }
 
-static void stop_does_not_wait_until_bodies_touch(void **state) {
-    (void)state;
+TEST(stop_does_not_wait_until_bodies_touch) {
     // the bodies pass each other at 0.1 range, 2 mm
     struct simulation *const simulation =
         school_simulation("contact: {action: stop}\nfluid: {density: 0}\n" TIME STRAIGHT
@@ -654,8 +634,7 @@ static double energy_of_pair(const struct school *school, const struct fish *a, 
     return energy;
 }
 
-static void the_energy_is_that_of_all_ends_above_all_edges(void **state) {
-    (void)state;
+TEST(the_energy_is_that_of_all_ends_above_all_edges) {
     // random shapes, and two bodies in line: edges with near ends may have first nodes far apart
     static const char *const texts[] = {
         NEAR_ANOTHER, TIME "contact: {range: 0.5}\n" STRAIGHT "fish: [{}, {start: {position: [1.4, 0.01]}}]\n",
@@ -676,31 +655,4 @@ static void the_energy_is_that_of_all_ends_above_all_edges(void **state) {
         NEAR(energy_of_school(&setup, y), want, 0, 1e-12);
         school_clear(&setup);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nobody_repels_what_is_farther_than_the_range),
-        cmocka_unit_test(forces_are_the_gradient_of_the_energy),
-        cmocka_unit_test(forces_and_powers_of_all_add_up_to_nothing),
-        cmocka_unit_test(walls_push_with_the_gradient_of_the_energy),
-        cmocka_unit_test(the_energy_above_walls_is_that_of_all_ends),
-        cmocka_unit_test(two_bodies_with_given_motions_pass_through_each_other),
-        cmocka_unit_test(who_is_beyond_a_wall_asks_for_a_smaller_step),
-        cmocka_unit_test(walls_throw_bodies_back),
-        cmocka_unit_test(what_crosses_on_its_way_asks_for_a_smaller_step),
-        cmocka_unit_test(bodies_that_meet_do_not_cross),
-        cmocka_unit_test(plates_that_swim_in_line_do_not_cross),
-        cmocka_unit_test(bodies_under_pressure_throw_each_other_back),
-        cmocka_unit_test(bodies_that_are_thrown_back_go_on_tail_first),
-        cmocka_unit_test(a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap),
-        cmocka_unit_test(every_integrator_keeps_bodies_apart),
-        cmocka_unit_test(a_fixed_step_that_is_too_long_fails_and_says_so),
-        cmocka_unit_test(of_many_contacts_the_least_gap_is_named),
-        cmocka_unit_test(of_256_fish_no_two_get_through_each_other),
-        cmocka_unit_test(stop_does_not_wait_until_bodies_touch),
-        cmocka_unit_test(the_energy_is_that_of_all_ends_above_all_edges),
-        cmocka_unit_test(stop_ends_the_run_at_the_time_and_with_the_names),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

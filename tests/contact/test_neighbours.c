@@ -40,8 +40,7 @@ static int check(const struct neighbours *neighbours) {
     return n_pairs;
 }
 
-static void overlaps_are_those_of_all_pairs(void **state) {
-    (void)state;
+TEST(overlaps_are_those_of_all_pairs) {
     const struct {
         int n;
         double size;
@@ -63,8 +62,7 @@ static void overlaps_are_those_of_all_pairs(void **state) {
     }
 }
 
-static void boxes_that_share_an_edge_overlap(void **state) {
-    (void)state;
+TEST(boxes_that_share_an_edge_overlap) {
     struct neighbours *neighbours;
     neighbours = neighbours_create(test_arena(), 3);
     neighbours->box[0] = (struct box){{0, 0}, {1, 1}};
@@ -73,12 +71,4 @@ static void boxes_that_share_an_edge_overlap(void **state) {
     neighbours_find(neighbours);
     assert_int_equal(neighbours->first[3], 2);
     assert_int_equal(neighbours->other[0], 1);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(overlaps_are_those_of_all_pairs),
-        cmocka_unit_test(boxes_that_share_an_edge_overlap),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

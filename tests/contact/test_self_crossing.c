@@ -73,30 +73,26 @@ static double sharp(double s) {
     return s < 0.5 ? 0 : 1;
 }
 
-static void bent_bodies_do_not_cross_themselves(void **state) {
-    (void)state;
+TEST(bent_bodies_do_not_cross_themselves) {
     assert_false(crosses(0.02, straight));
     assert_false(crosses(0.2, straight));
     assert_false(crosses(0.02, wave));
     assert_false(crosses(0.02, spiral));
 }
 
-static void a_line_crosses_itself_beyond_a_circle(void **state) {
-    (void)state;
+TEST(a_line_crosses_itself_beyond_a_circle) {
     assert_false(crosses(0.01, open_circle));
     assert_true(crosses(0.01, more_than_a_circle));
     assert_true(crosses(0.01, loop));
 }
 
-static void an_outline_crosses_itself_where_it_is_thicker_than_the_gap(void **state) {
-    (void)state;
+TEST(an_outline_crosses_itself_where_it_is_thicker_than_the_gap) {
     // the legs of the hairpin are 0.1 m apart; the radius of the bend, 0.05 m, is at least half the thickness
     assert_false(crosses(0.09, hairpin));
     assert_true(crosses(0.11, hairpin));
 }
 
-static void a_tail_that_enters_the_right_side_of_the_nose_crosses_the_outline(void **state) {
-    (void)state;
+TEST(a_tail_that_enters_the_right_side_of_the_nose_crosses_the_outline) {
     // once around, then from below to the middle of the first edge, where the outline is 0.0034 m below the line;
     // only the closing segment of the outline, from the last point to the nose, is crossed
     const double x[] = {0, 0.2, 0.2, -0.1, -0.1, 0.1, 0.1}, y_of_tail[] = {-0.005, -0.002, 0.002};
@@ -116,15 +112,13 @@ static void a_tail_that_enters_the_right_side_of_the_nose_crosses_the_outline(vo
     school_clear(&setup);
 }
 
-static void a_bend_sharper_than_half_the_thickness_is_folded(void **state) {
-    (void)state;
+TEST(a_bend_sharper_than_half_the_thickness_is_folded) {
     // one joint turns by 1 rad: edges of 0.025 m have the radius 0.025/(2 tan(1/2)) = 0.0229 m
     assert_false(crosses(0.045, sharp));
     assert_true(crosses(0.047, sharp));
 }
 
-static void a_run_remembers_the_first_fish_and_when(void **state) {
-    (void)state;
+TEST(a_run_remembers_the_first_fish_and_when) {
     // the second body is limp, and only the muscle bends the body: the body curls up
     struct simulation *const simulation = school_simulation(
         SCHOOL_DEFAULTS TIME
@@ -144,16 +138,4 @@ static void a_run_remembers_the_first_fish_and_when(void **state) {
     school_run(simulation, first + 0.1);
     NEAR(now->crossed_t, first, 0, 0);
     simulate_free(simulation);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bent_bodies_do_not_cross_themselves),
-        cmocka_unit_test(a_line_crosses_itself_beyond_a_circle),
-        cmocka_unit_test(an_outline_crosses_itself_where_it_is_thicker_than_the_gap),
-        cmocka_unit_test(a_tail_that_enters_the_right_side_of_the_nose_crosses_the_outline),
-        cmocka_unit_test(a_bend_sharper_than_half_the_thickness_is_folded),
-        cmocka_unit_test(a_run_remembers_the_first_fish_and_when),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,8 +8,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-static void heading_points_from_a_third_of_the_length_to_the_nose(void **state) {
-    (void)state;
+TEST(heading_points_from_a_third_of_the_length_to_the_nose) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{start: {heading: 130}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -21,8 +20,7 @@ static void heading_points_from_a_third_of_the_length_to_the_nose(void **state) 
     school_clear(&setup);
 }
 
-static void headings_in_time_are_linear_between_their_times(void **state) {
-    (void)state;
+TEST(headings_in_time_are_linear_between_their_times) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{control: {law: heading, desired_heading: [[1, 180], [2, 120], [4, 160]]}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -34,8 +32,7 @@ static void headings_in_time_are_linear_between_their_times(void **state) {
     school_clear(&setup);
 }
 
-static void law_turns_towards_the_desired_heading_the_short_way(void **state) {
-    (void)state;
+TEST(law_turns_towards_the_desired_heading_the_short_way) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{control: {law: heading, desired_heading: 170, gain: 3, limit: 0.4}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -47,8 +44,7 @@ static void law_turns_towards_the_desired_heading_the_short_way(void **state) {
     school_clear(&setup);
 }
 
-static void without_a_law_the_bias_is_the_given_one(void **state) {
-    (void)state;
+TEST(without_a_law_the_bias_is_the_given_one) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{control: {bias: 0.25}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -58,8 +54,7 @@ static void without_a_law_the_bias_is_the_given_one(void **state) {
     school_clear(&setup);
 }
 
-static void waypoints_are_visited_in_order_and_the_last_course_is_held(void **state) {
-    (void)state;
+TEST(waypoints_are_visited_in_order_and_the_last_course_is_held) {
     struct setup setup;
     school_build(&setup,
                  TIME "fish: [{control: {law: heading, waypoints: [[-2, 0], [-2, 3]], acceptance_radius: 0.4}}]\n");
@@ -86,8 +81,7 @@ static void waypoints_are_visited_in_order_and_the_last_course_is_held(void **st
     school_clear(&setup);
 }
 
-static void the_course_that_is_held_is_that_of_the_last_leg(void **state) {
-    (void)state;
+TEST(the_course_that_is_held_is_that_of_the_last_leg) {
     // from waypoint to waypoint, and from the start for a single waypoint
     const struct {
         const char *text;
@@ -111,8 +105,7 @@ static void the_course_that_is_held_is_that_of_the_last_leg(void **state) {
     }
 }
 
-static void waypoints_close_together_are_passed_at_one_event(void **state) {
-    (void)state;
+TEST(waypoints_close_together_are_passed_at_one_event) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{control: {law: heading, waypoints: [[-0.1, 0], [-0.2, 0], [-3, 0]]}}]\n");
     const struct control_view view = {.t = 0.1, .interval = 0.02};
@@ -121,8 +114,7 @@ static void waypoints_close_together_are_passed_at_one_event(void **state) {
     school_clear(&setup);
 }
 
-static void averaged_heading_moves_the_bias_with_bounded_rate(void **state) {
-    (void)state;
+TEST(averaged_heading_moves_the_bias_with_bounded_rate) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 2, limit: 0.5}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -157,8 +149,7 @@ static double moment_seen(struct setup *setup, double since) {
     return atanh(-setup->value[fish->at.phi0] / fish->control.limit);
 }
 
-static void feedforward_acts_through_a_moving_mean(void **state) {
-    (void)state;
+TEST(feedforward_acts_through_a_moving_mean) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{control: {law: heading, feedforward: 1, filter: 0.4}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -185,8 +176,7 @@ static void feedforward_acts_through_a_moving_mean(void **state) {
     school_clear(&setup);
 }
 
-static void averaged_heading_takes_the_newest_mean_of_the_moment(void **state) {
-    (void)state;
+TEST(averaged_heading_takes_the_newest_mean_of_the_moment) {
     struct setup setup;
     school_build(&setup,
                  TIME "fish: [{control: {law: averaged_heading, rate: 1.0e+9, feedforward: 0.7, filter: 0.4}}]\n");
@@ -199,8 +189,7 @@ static void averaged_heading_takes_the_newest_mean_of_the_moment(void **state) {
     school_clear(&setup);
 }
 
-static void course_is_damped_and_waits_for_a_whole_period(void **state) {
-    (void)state;
+TEST(course_is_damped_and_waits_for_a_whole_period) {
     struct setup setup;
     school_build(&setup, TIME
                  "fish: [{wave: {frequency: 2}, control: {law: course, desired_heading: 90, gain: 0.7, damping: 1.5,\n"
@@ -227,8 +216,7 @@ static void course_is_damped_and_waits_for_a_whole_period(void **state) {
     school_clear(&setup);
 }
 
-static void rate_is_that_of_the_bias_of_a_moving_fish(void **state) {
-    (void)state;
+TEST(rate_is_that_of_the_bias_of_a_moving_fish) {
     const char *const texts[] = {
         TIME "fish: [{control: {bias: 0.2}}]\n",
         TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150, feedforward: 2}}]\n",
@@ -259,8 +247,7 @@ static void rate_is_that_of_the_bias_of_a_moving_fish(void **state) {
     }
 }
 
-static void the_rate_of_a_table_is_that_of_what_follows(void **state) {
-    (void)state;
+TEST(the_rate_of_a_table_is_that_of_what_follows) {
     struct setup setup;
     school_build(&setup, TIME
                  "fish: [{start: {heading: 150}, control: {law: heading, "
@@ -277,8 +264,7 @@ static void the_rate_of_a_table_is_that_of_what_follows(void **state) {
     school_clear(&setup);
 }
 
-static void a_law_falls_as_fast_as_it_rises(void **state) {
-    (void)state;
+TEST(a_law_falls_as_fast_as_it_rises) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 2, limit: 0.5}}]\n");
     struct control_memory *const memory = &setup.state->control[0];
@@ -301,8 +287,7 @@ static void jacobian_of_control(struct setup *setup, double cj, const double *y,
     control_jacobian(setup->school->fish, &setup->state->control[0], setup->t, setup->t - setup->state->t, y, jacobian);
 }
 
-static void derivatives_agree_with_differences(void **state) {
-    (void)state;
+TEST(derivatives_agree_with_differences) {
     const char *const texts[] = {TIME "fish: [{control: {bias: 0.2}}]\n",
                                  TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150}}]\n",
                                  TIME "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n",
@@ -322,8 +307,7 @@ static void derivatives_agree_with_differences(void **state) {
 
 // ---- values set from outside during a run
 
-static void a_value_that_was_never_led_is_zero(void **state) {
-    (void)state;
+TEST(a_value_that_was_never_led_is_zero) {
     const struct lead lead = {.start = 0};
     for (double t = 0; t < 3; t += 0.7) {
         NEAR(lead_value(&lead, t), 0, 0, 0);
@@ -332,8 +316,7 @@ static void a_value_that_was_never_led_is_zero(void **state) {
     }
 }
 
-static void a_change_from_rest_is_the_ramp(void **state) {
-    (void)state;
+TEST(a_change_from_rest_is_the_ramp) {
     struct lead lead = {.start = 0};
     lead_change(&lead, 0.5, 2, 3);
     for (double t = 0.5; t < 4; t += 0.1) {
@@ -353,8 +336,7 @@ static void derivatives(const struct lead *lead, double t, int side, double h, d
     got[3] = side * (-5 * f[0] + 18 * f[1] - 24 * f[2] + 14 * f[3] - 3 * f[4]) / (2 * h * h * h);
 }
 
-static void a_change_of_a_change_has_three_continuous_derivatives(void **state) {
-    (void)state;
+TEST(a_change_of_a_change_has_three_continuous_derivatives) {
     struct lead before = {.start = 0};
     lead_change(&before, 0, 2, 1);
     struct lead after = before;
@@ -371,8 +353,7 @@ static void a_change_of_a_change_has_three_continuous_derivatives(void **state) 
     NEAR(lead_value(&after, 1.2 - 1e-4), -2, 1e-12, 0);
 }
 
-static void rate_and_integral_belong_to_the_value(void **state) {
-    (void)state;
+TEST(rate_and_integral_belong_to_the_value) {
     struct lead lead = {.start = 0};
     double sum = 0;
     const double h = 1e-3;
@@ -388,8 +369,7 @@ static void rate_and_integral_belong_to_the_value(void **state) {
     }
 }
 
-static void the_same_target_again_changes_nothing(void **state) {
-    (void)state;
+TEST(the_same_target_again_changes_nothing) {
     struct lead lead = {.start = 0};
     lead_change(&lead, 0.1, 1, 2);
     const struct lead before = lead;
@@ -397,8 +377,7 @@ static void the_same_target_again_changes_nothing(void **state) {
     assert_memory_equal(&lead, &before, sizeof lead);
 }
 
-static void changes_at_every_event_do_not_run_away(void **state) {
-    (void)state;
+TEST(changes_at_every_event_do_not_run_away) {
     struct lead lead = {.start = 0};
     double most = 0;
     unsigned seed = 1;
@@ -412,8 +391,7 @@ static void changes_at_every_event_do_not_run_away(void **state) {
     BELOW(most, 1.25);
 }
 
-static void it_can_begin_with_a_value_and_a_rate(void **state) {
-    (void)state;
+TEST(it_can_begin_with_a_value_and_a_rate) {
     struct lead lead = {.start = 0};
     lead_begin(&lead, 2, 0.5, 0.3, -1.5, 1);
     NEAR(lead_value(&lead, 2), 0.3, 1e-15, 0);
@@ -423,8 +401,7 @@ static void it_can_begin_with_a_value_and_a_rate(void **state) {
 
 // ---- values set from outside
 
-static void values_that_are_set_are_reached_after_the_ramp(void **state) {
-    (void)state;
+TEST(values_that_are_set_are_reached_after_the_ramp) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{wave: {amplitude: 0.8, frequency: 1.5}, control: {bias: 0.2, ramp: 0.5}}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -453,8 +430,7 @@ static void values_that_are_set_are_reached_after_the_ramp(void **state) {
     school_clear(&setup);
 }
 
-static void rates_of_a_gait_that_changes_are_those_of_its_values(void **state) {
-    (void)state;
+TEST(rates_of_a_gait_that_changes_are_those_of_its_values) {
     // during the ramp of the start, too
     struct setup setup;
     school_build(&setup, TIME "fish: [{wave: {amplitude: 0.8, ramp: 6}, control: {ramp: 0.5}}]\n");
@@ -472,8 +448,7 @@ static void rates_of_a_gait_that_changes_are_those_of_its_values(void **state) {
     school_clear(&setup);
 }
 
-static void a_heading_that_is_set_is_reached_the_short_way(void **state) {
-    (void)state;
+TEST(a_heading_that_is_set_is_reached_the_short_way) {
     struct setup setup;
     school_build(&setup, TIME
                  "fish: [{control: {law: heading, ramp: 0.5, limit: 0.3, "
@@ -494,8 +469,7 @@ static void a_heading_that_is_set_is_reached_the_short_way(void **state) {
     school_clear(&setup);
 }
 
-static void waypoints_that_are_set_begin_where_the_fish_is(void **state) {
-    (void)state;
+TEST(waypoints_that_are_set_begin_where_the_fish_is) {
     struct setup setup;
     school_build(&setup,
                  TIME "fish: [{control: {law: heading, waypoints: [[-2, 0], [-3, 0]], acceptance_radius: 0.4}}]\n");
@@ -514,36 +488,4 @@ static void waypoints_that_are_set_begin_where_the_fish_is(void **state) {
     // the course of the leg from the place of the fish at that time
     NEAR(control_desired_heading(fish, memory, 0, y), atan2(3, 4), 1e-14, 0);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heading_points_from_a_third_of_the_length_to_the_nose),
-        cmocka_unit_test(headings_in_time_are_linear_between_their_times),
-        cmocka_unit_test(law_turns_towards_the_desired_heading_the_short_way),
-        cmocka_unit_test(without_a_law_the_bias_is_the_given_one),
-        cmocka_unit_test(waypoints_are_visited_in_order_and_the_last_course_is_held),
-        cmocka_unit_test(the_course_that_is_held_is_that_of_the_last_leg),
-        cmocka_unit_test(waypoints_close_together_are_passed_at_one_event),
-        cmocka_unit_test(averaged_heading_moves_the_bias_with_bounded_rate),
-        cmocka_unit_test(feedforward_acts_through_a_moving_mean),
-        cmocka_unit_test(averaged_heading_takes_the_newest_mean_of_the_moment),
-        cmocka_unit_test(course_is_damped_and_waits_for_a_whole_period),
-        cmocka_unit_test(rate_is_that_of_the_bias_of_a_moving_fish),
-        cmocka_unit_test(derivatives_agree_with_differences),
-        cmocka_unit_test(a_value_that_was_never_led_is_zero),
-        cmocka_unit_test(a_change_from_rest_is_the_ramp),
-        cmocka_unit_test(a_change_of_a_change_has_three_continuous_derivatives),
-        cmocka_unit_test(rate_and_integral_belong_to_the_value),
-        cmocka_unit_test(the_same_target_again_changes_nothing),
-        cmocka_unit_test(changes_at_every_event_do_not_run_away),
-        cmocka_unit_test(it_can_begin_with_a_value_and_a_rate),
-        cmocka_unit_test(values_that_are_set_are_reached_after_the_ramp),
-        cmocka_unit_test(rates_of_a_gait_that_changes_are_those_of_its_values),
-        cmocka_unit_test(a_heading_that_is_set_is_reached_the_short_way),
-        cmocka_unit_test(waypoints_that_are_set_begin_where_the_fish_is),
-        cmocka_unit_test(the_rate_of_a_table_is_that_of_what_follows),
-        cmocka_unit_test(a_law_falls_as_fast_as_it_rises),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@ static double sum(int n, const double *value) {
     return total;
 }
 
-static void joukowski_body_has_the_mass_of_the_reference(void **state) {
-    (void)state;
+TEST(joukowski_body_has_the_mass_of_the_reference) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{}]\n");
     const struct fish *fish = &setup.school->fish[0];
@@ -27,8 +26,7 @@ static void joukowski_body_has_the_mass_of_the_reference(void **state) {
     school_clear(&setup);
 }
 
-static void mean_sections_give_the_mass_and_the_stiffness_of_the_foil(void **state) {
-    (void)state;
+TEST(mean_sections_give_the_mass_and_the_stiffness_of_the_foil) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{nodes: 17, body: {section: mean, density: 1000, modulus: 1}}]\n");
     const struct fish *fish = &setup.school->fish[0];
@@ -45,8 +43,7 @@ static void mean_sections_give_the_mass_and_the_stiffness_of_the_foil(void **sta
     school_clear(&setup);
 }
 
-static void added_mass_takes_the_mean_square_of_the_thickness(void **state) {
-    (void)state;
+TEST(added_mass_takes_the_mean_square_of_the_thickness) {
     struct setup setup;
     school_build(&setup, TIME
                  "fish: [{body: {section: mean}}, {start: {position: [0, 2]}, body: {section: mean}, "
@@ -62,8 +59,7 @@ static void added_mass_takes_the_mean_square_of_the_thickness(void **state) {
     school_clear(&setup);
 }
 
-static void second_moments_are_the_two_formulas(void **state) {
-    (void)state;
+TEST(second_moments_are_the_two_formulas) {
     const char *const texts[] = {
         TIME "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5}}]\n", TIME
         "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5, second_moment: published}}]\n"};
@@ -80,8 +76,7 @@ static void second_moments_are_the_two_formulas(void **state) {
     }
 }
 
-static void damping_and_wave_scale_with_refinement(void **state) {
-    (void)state;
+TEST(damping_and_wave_scale_with_refinement) {
     struct setup setup;
     school_build(&setup, TIME
                  "fish: [{nodes: 13, body: {bending_damping: 0.5, stretching_damping: 2, relaxation_time: "
@@ -102,8 +97,7 @@ static void damping_and_wave_scale_with_refinement(void **state) {
     school_clear(&setup);
 }
 
-static void table_of_heights_is_taken_as_it_is(void **state) {
-    (void)state;
+TEST(table_of_heights_is_taken_as_it_is) {
     struct setup setup;
     school_build(
         &setup, TIME
@@ -118,8 +112,7 @@ static void table_of_heights_is_taken_as_it_is(void **state) {
     school_clear(&setup);
 }
 
-static void drag_coefficients_follow_the_extent(void **state) {
-    (void)state;
+TEST(drag_coefficients_follow_the_extent) {
     struct setup setup;
     for (int wide = 0; wide < 2; wide++) {
         school_build(&setup, wide ? TIME
@@ -139,8 +132,7 @@ static double arc_of(const struct fish *fish, const struct stencil *point) {
     return fish_mean(point, fish->arc);
 }
 
-static void sheet_points_are_cosine_points_and_weights_add_up_to_the_length(void **state) {
-    (void)state;
+TEST(sheet_points_are_cosine_points_and_weights_add_up_to_the_length) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{sheet_points: 11, length: 1.2}]\n");
     const struct fish *fish = &setup.school->fish[0];
@@ -154,8 +146,7 @@ static void sheet_points_are_cosine_points_and_weights_add_up_to_the_length(void
     school_clear(&setup);
 }
 
-static void control_points_are_chebyshev_points_or_midpoints_of_chords(void **state) {
-    (void)state;
+TEST(control_points_are_chebyshev_points_or_midpoints_of_chords) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{sheet_points: 11}]\n");
     for (int c = 0; c < 10; c++) {
@@ -175,8 +166,7 @@ static void control_points_are_chebyshev_points_or_midpoints_of_chords(void **st
     school_clear(&setup);
 }
 
-static void smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature(void **state) {
-    (void)state;
+TEST(smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature) {
     struct setup smooth, polygon;
     for (int midpoint = 0; midpoint < 2; midpoint++) {
         char text[2][200];
@@ -198,8 +188,7 @@ static void smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature(v
     }
 }
 
-static void start_is_straight_behind_the_nose_with_one_velocity(void **state) {
-    (void)state;
+TEST(start_is_straight_behind_the_nose_with_one_velocity) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{start: {position: [2, 3], heading: 30, speed: 0.7}}]\n");
     const struct fish *fish = &setup.school->fish[0];
@@ -213,8 +202,7 @@ static void start_is_straight_behind_the_nose_with_one_velocity(void **state) {
     school_clear(&setup);
 }
 
-static void start_without_ramp_has_the_natural_shape(void **state) {
-    (void)state;
+TEST(start_without_ramp_has_the_natural_shape) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{wave: {ramp: 0, phase: 40}, control: {bias: 0.3}}]\n");
     const struct fish *fish = &setup.school->fish[0];
@@ -228,8 +216,7 @@ static void start_without_ramp_has_the_natural_shape(void **state) {
     school_clear(&setup);
 }
 
-static void overlapping_fish_are_refused(void **state) {
-    (void)state;
+TEST(overlapping_fish_are_refused) {
     struct case_values values;
     school_settings(&values, TIME "fish: [{}, {start: {position: [0.3, 0.05]}}]\n");
     struct school *school = (struct school *)&values;
@@ -239,8 +226,7 @@ static void overlapping_fish_are_refused(void **state) {
     case_free(&values);
 }
 
-static void fish_that_begin_beyond_a_wall_are_refused(void **state) {
-    (void)state;
+TEST(fish_that_begin_beyond_a_wall_are_refused) {
     // half of the body is 0.05 thick; with a single wall the first fish is on the side of the fluid
     static const struct {
         const char *walls, *fish;
@@ -269,8 +255,7 @@ static void fish_that_begin_beyond_a_wall_are_refused(void **state) {
     }
 }
 
-static void unknowns_stand_fish_after_fish_in_the_documented_order(void **state) {
-    (void)state;
+TEST(unknowns_stand_fish_after_fish_in_the_documented_order) {
     struct setup setup;
     school_build(&setup,
                  TIME "fish: [{nodes: 5, sheet_points: 6}, {nodes: 4, sheet_points: 5, start: {position: [0, 2]}}]\n");
@@ -284,8 +269,7 @@ static void unknowns_stand_fish_after_fish_in_the_documented_order(void **state)
     school_clear(&setup);
 }
 
-static void gust_blows_across_the_stream(void **state) {
-    (void)state;
+TEST(gust_blows_across_the_stream) {
     struct setup setup;
     school_build(&setup, TIME "fluid: {velocity: [3, 4], gust: {amplitude: 0.5, frequency: 2}}\nfish: [{}]\n");
     NEAR(setup.school->gust[0], -0.4, 1e-15, 0);
@@ -294,8 +278,7 @@ static void gust_blows_across_the_stream(void **state) {
     school_clear(&setup);
 }
 
-static void a_wave_has_an_amplitude_a_frequency_and_a_free_body(void **state) {
-    (void)state;
+TEST(a_wave_has_an_amplitude_a_frequency_and_a_free_body) {
     static const struct {
         const char *fish;
         int has_wave;
@@ -322,8 +305,7 @@ static void a_wave_has_an_amplitude_a_frequency_and_a_free_body(void **state) {
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
-static void distance_is_that_of_the_outlines(void **state) {
-    (void)state;
+TEST(distance_is_that_of_the_outlines) {
     struct setup setup;
     school_build(&setup, TIME
                  "defaults: {fish: {body: {profile: uniform, thickness: 0.1}}}\n"
@@ -354,8 +336,7 @@ double __wrap_hypot(double x, double y) {
     return __real_hypot(x, y);
 }
 
-static void bodies_in_boxes_apart_are_not_compared_edge_by_edge(void **state) {
-    (void)state;
+TEST(bodies_in_boxes_apart_are_not_compared_edge_by_edge) {
     enum { ROWS = 6, COLUMNS = 5 };
     char text[4000] = TIME "fish:\n";
     for (int i = 0; i < ROWS * COLUMNS; i++) {
@@ -392,8 +373,7 @@ static double sampled_distance(const struct fish *a, const struct fish *b, const
     return fmax(0, least - (a->thickness[0] + b->thickness[0]) / 2);
 }
 
-static void distance_of_bent_bodies_is_the_least_of_their_points(void **state) {
-    (void)state;
+TEST(distance_of_bent_bodies_is_the_least_of_their_points) {
     struct setup setup;
     school_build(&setup, TIME
                  "defaults: {fish: {nodes: 4, sheet_points: 5, body: {profile: uniform, thickness: 0.02}}}\n"
@@ -423,8 +403,7 @@ static void distance_of_bent_bodies_is_the_least_of_their_points(void **state) {
     school_clear(&setup);
 }
 
-static void distance_from_a_wall_counts_the_thicker_edge_of_a_node(void **state) {
-    (void)state;
+TEST(distance_from_a_wall_counts_the_thicker_edge_of_a_node) {
     struct setup setup;
     school_build(&setup, TIME
                  "fluid: {walls: [-1]}\nfish: [{nodes: 5, wave: {amplitude: 0}, body: {profile: table, "
@@ -440,8 +419,7 @@ static void distance_from_a_wall_counts_the_thicker_edge_of_a_node(void **state)
     school_clear(&setup);
 }
 
-static void a_street_has_two_staggered_rows_along_the_stream(void **state) {
-    (void)state;
+TEST(a_street_has_two_staggered_rows_along_the_stream) {
     struct setup setup;
     school_build(&setup, TIME
                  "fluid: {velocity: [0, 2]}\n"
@@ -459,32 +437,4 @@ static void a_street_has_two_staggered_rows_along_the_stream(void **state) {
                  TIME "wake: {street: {vortices: 2, spacing: 2, circulation: 1}}\nfish: [{force: published}]\n");
     NEAR(setup.school->vortices[1] - setup.school->vortices[4], 2 * 0.28055, 1e-5, 0);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(joukowski_body_has_the_mass_of_the_reference),
-        cmocka_unit_test(mean_sections_give_the_mass_and_the_stiffness_of_the_foil),
-        cmocka_unit_test(added_mass_takes_the_mean_square_of_the_thickness),
-        cmocka_unit_test(second_moments_are_the_two_formulas),
-        cmocka_unit_test(damping_and_wave_scale_with_refinement),
-        cmocka_unit_test(table_of_heights_is_taken_as_it_is),
-        cmocka_unit_test(drag_coefficients_follow_the_extent),
-        cmocka_unit_test(sheet_points_are_cosine_points_and_weights_add_up_to_the_length),
-        cmocka_unit_test(control_points_are_chebyshev_points_or_midpoints_of_chords),
-        cmocka_unit_test(smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature),
-        cmocka_unit_test(start_is_straight_behind_the_nose_with_one_velocity),
-        cmocka_unit_test(start_without_ramp_has_the_natural_shape),
-        cmocka_unit_test(overlapping_fish_are_refused),
-        cmocka_unit_test(fish_that_begin_beyond_a_wall_are_refused),
-        cmocka_unit_test(unknowns_stand_fish_after_fish_in_the_documented_order),
-        cmocka_unit_test(gust_blows_across_the_stream),
-        cmocka_unit_test(a_street_has_two_staggered_rows_along_the_stream),
-        cmocka_unit_test(a_wave_has_an_amplitude_a_frequency_and_a_free_body),
-        cmocka_unit_test(distance_is_that_of_the_outlines),
-        cmocka_unit_test(distance_of_bent_bodies_is_the_least_of_their_points),
-        cmocka_unit_test(distance_from_a_wall_counts_the_thicker_edge_of_a_node),
-        cmocka_unit_test(bodies_in_boxes_apart_are_not_compared_edge_by_edge),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

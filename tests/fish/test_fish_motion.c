@@ -6,8 +6,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-static void prescribed_velocity_and_acceleration_are_derivatives(void **state) {
-    (void)state;
+TEST(prescribed_velocity_and_acceleration_are_derivatives) {
     struct setup setup;
     school_build(&setup, TIME
                  "fish: [{start: {heading: 20}, motion: {prescribed: all, speed: 0.6, heave: 0.2, pitch: 25, "
@@ -26,8 +25,7 @@ static void prescribed_velocity_and_acceleration_are_derivatives(void **state) {
     school_clear(&setup);
 }
 
-static void prescribed_body_is_straight_and_turns_about_its_pivot(void **state) {
-    (void)state;
+TEST(prescribed_body_is_straight_and_turns_about_its_pivot) {
     struct setup setup;
     school_build(
         &setup, TIME
@@ -48,8 +46,7 @@ static void prescribed_body_is_straight_and_turns_about_its_pivot(void **state) 
     school_clear(&setup);
 }
 
-static void pitch_is_its_phase_before_heave(void **state) {
-    (void)state;
+TEST(pitch_is_its_phase_before_heave) {
     struct setup setup;
     school_build(&setup, TIME
                  "fish: [{start: {heading: 0}, motion: {prescribed: all, heave: 0.2, pitch: 25, pitch_phase: 90, "
@@ -66,13 +63,4 @@ static void pitch_is_its_phase_before_heave(void **state) {
         NEAR(nose[1], heave[i], 1e-15, 0);
     }
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(prescribed_velocity_and_acceleration_are_derivatives),
-        cmocka_unit_test(prescribed_body_is_straight_and_turns_about_its_pivot),
-        cmocka_unit_test(pitch_is_its_phase_before_heave),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

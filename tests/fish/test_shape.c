@@ -18,8 +18,7 @@ static double sum(const struct stencil *stencil, const double *value) {
     return total;
 }
 
-static void polygon_is_straight_between_two_nodes(void **state) {
-    (void)state;
+TEST(polygon_is_straight_between_two_nodes) {
     const double value[] = {2, 5, 3, -1};
     const double u[] = {0, 0.25, 1, 1.5, 2.75, 3}, want[] = {2, 2.75, 5, 4, 0, -1};
     struct curve *curve = make(4, 6);
@@ -31,8 +30,7 @@ static void polygon_is_straight_between_two_nodes(void **state) {
     curve_free(curve);
 }
 
-static void middles_of_the_polygon_hold_each_node_once(void **state) {
-    (void)state;
+TEST(middles_of_the_polygon_hold_each_node_once) {
     const double value[] = {2, 5, 3, -1};
     struct curve *curve = make(4, 6);
     const struct stencil a = curve_polygon_point(curve, 0.25), b = curve_polygon_point(curve, 0.75),
@@ -54,8 +52,7 @@ static void middles_of_the_polygon_hold_each_node_once(void **state) {
 static const double places[] = {0, 1e-300, 1e-12, 0.3, 0.5, 1 - 1e-15, 1, 1 + 1e-9, 1.7, 2.5, 3 - 4e-16, 3};
 enum { N_PLACES = sizeof places / sizeof *places };
 
-static void smooth_curve_reproduces_cubics_and_their_slopes(void **state) {
-    (void)state;
+TEST(smooth_curve_reproduces_cubics_and_their_slopes) {
     for (int n = 4; n <= 40; n += 3) {
         struct curve *curve = make(n, 2 * N_PLACES);
         for (int i = 0; i < N_PLACES; i++) {
@@ -78,8 +75,7 @@ static void smooth_curve_reproduces_cubics_and_their_slopes(void **state) {
     }
 }
 
-static void smooth_curve_goes_through_its_nodes(void **state) {
-    (void)state;
+TEST(smooth_curve_goes_through_its_nodes) {
     struct curve *curve = make(9, 9);
     for (int k = 0; k < 9; k++) {
         const struct stencil point = curve_smooth_point(curve, k);
@@ -88,8 +84,7 @@ static void smooth_curve_goes_through_its_nodes(void **state) {
     curve_free(curve);
 }
 
-static void slope_is_the_derivative_of_the_point(void **state) {
-    (void)state;
+TEST(slope_is_the_derivative_of_the_point) {
     const double h = 1e-3;
     for (int n = 4; n <= 13; n += 3) {
         struct curve *curve = make(n, 1000);
@@ -125,14 +120,12 @@ static double error_of_arc(int n) {
     return largest;
 }
 
-static void smooth_curve_is_of_fourth_order(void **state) {
-    (void)state;
+TEST(smooth_curve_is_of_fourth_order) {
     const double coarse = error_of_arc(41), fine = error_of_arc(81);
     assert_in_range((int)(100 * log2(coarse / fine)), 380, 420);
 }
 
-static void missing_memory_is_reported_and_leaks_nothing(void **state) {
-    (void)state;
+TEST(missing_memory_is_reported_and_leaks_nothing) {
     const int before = n_live;
     int n_failures = 0;
     for (enum status status = STATUS_MEMORY; status != STATUS_OK; n_failures++) {
@@ -161,8 +154,7 @@ static struct fish_parameters foil(int nodes, double thickness, enum section sec
         .body = {.profile = PROFILE_JOUKOWSKI, .thickness = thickness, .depth = 0.25, .section = section}};
 }
 
-static void joukowski_heights_are_those_of_the_mapped_circle(void **state) {
-    (void)state;
+TEST(joukowski_heights_are_those_of_the_mapped_circle) {
     // the thickness of both ends of an edge; s(theta) and r from z(theta): check with theta of every node from s by
     // Newton's method
     const double d = 0.15, r0 = 1.3 * (1 - d) / 4, c = r0 * (1 + d), nose = 2 * r0 * (1 + d * d) / (d - 1);
@@ -208,8 +200,7 @@ static void whole(double d, double length, double integral[3]) {
     }
 }
 
-static void means_over_the_edges_add_up_to_the_foil_with_any_number_of_nodes(void **state) {
-    (void)state;
+TEST(means_over_the_edges_add_up_to_the_foil_with_any_number_of_nodes) {
     const double thickness[] = {0.05, 0.2, 0.6, 0.95};
     for (int t = 0; t < 4; t++) {
         double want[3];
@@ -236,8 +227,7 @@ static void means_over_the_edges_add_up_to_the_foil_with_any_number_of_nodes(voi
     }
 }
 
-static void means_are_good_to_ten_figures_next_to_the_blunt_nose(void **state) {
-    (void)state;
+TEST(means_are_good_to_ten_figures_next_to_the_blunt_nose) {
     // h = alpha sqrt(s) (1 + beta s + ...) there: h^2 is smooth in s, so Gauss-Legendre in s is exact. The thickness at
     // s follows from an independent bisection in theta
     const struct fish_parameters fish = foil(41, 0.2, SECTION_MEAN);
@@ -264,8 +254,7 @@ static void means_are_good_to_ten_figures_next_to_the_blunt_nose(void **state) {
     NEAR(edge.h * edge.h * edge.square, mean, 0, 1e-10);
 }
 
-static void uniform_and_table_have_one_section_along_an_edge(void **state) {
-    (void)state;
+TEST(uniform_and_table_have_one_section_along_an_edge) {
     for (enum section section = SECTION_MEAN; section <= SECTION_NODES; section++) {
         struct fish_parameters fish = foil(4, 0.1, section);
         fish.body.profile = PROFILE_UNIFORM;
@@ -286,8 +275,7 @@ static void uniform_and_table_have_one_section_along_an_edge(void **state) {
     }
 }
 
-static void a_foil_ends_in_a_cusp_or_with_the_thickness_of_its_tail(void **state) {
-    (void)state;
+TEST(a_foil_ends_in_a_cusp_or_with_the_thickness_of_its_tail) {
     struct fish_parameters fish = foil(4, 0.1, SECTION_MEAN);
     NEAR(profile_tail_thickness(&fish), 0, 0, 0);
     fish.body.tail_thickness = 0.03;
@@ -310,8 +298,7 @@ static double thickness_at(double d, double tail, double length, double sigma) {
     return sqrt(h * h + tail * length * sigma * tail * length * sigma);
 }
 
-static void a_tail_of_some_thickness_changes_the_whole_outline_smoothly(void **state) {
-    (void)state;
+TEST(a_tail_of_some_thickness_changes_the_whole_outline_smoothly) {
     // nodes: the outline itself
     struct fish_parameters fish = foil(9, 0.2, SECTION_NODES);
     fish.body.tail_thickness = 0.04;
@@ -334,8 +321,7 @@ static void a_tail_of_some_thickness_changes_the_whole_outline_smoothly(void **s
     NEAR_ARRAY(3, got, mean, 0, 1e-9);
 }
 
-static void means_with_a_tail_are_good_to_twelve_figures_next_to_the_blunt_nose(void **state) {
-    (void)state;
+TEST(means_with_a_tail_are_good_to_twelve_figures_next_to_the_blunt_nose) {
     // h^2 is smooth in s, with a tail as well: Gauss-Legendre in s, exact for degree 9
     struct fish_parameters fish = foil(41, 0.2, SECTION_MEAN);
     fish.body.tail_thickness = 0.04;
@@ -352,8 +338,7 @@ static void means_with_a_tail_are_good_to_twelve_figures_next_to_the_blunt_nose(
     NEAR(edge.h * edge.h * edge.square, mean, 0, 1e-11);
 }
 
-static void the_masses_of_the_default_body_are_those_of_its_outline(void **state) {
-    (void)state;
+TEST(the_masses_of_the_default_body_are_those_of_its_outline) {
     // 1000 kg/m3, length 1 m, width 0.25: with and without a tail
     const double tail[] = {0, 0.04}, mass[] = {30.84, 31.87};
     for (int i = 0; i < 2; i++) {
@@ -364,25 +349,4 @@ static void the_masses_of_the_default_body_are_those_of_its_outline(void **state
         for (int k = 0; k < 24; k++) sum += 1000 * pi / 4 * profile_edge(&fish, k).h * 0.25 / 24;
         NEAR(sum, mass[i], 0.006, 0);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(polygon_is_straight_between_two_nodes),
-        cmocka_unit_test(middles_of_the_polygon_hold_each_node_once),
-        cmocka_unit_test(smooth_curve_reproduces_cubics_and_their_slopes),
-        cmocka_unit_test(smooth_curve_goes_through_its_nodes),
-        cmocka_unit_test(slope_is_the_derivative_of_the_point),
-        cmocka_unit_test(smooth_curve_is_of_fourth_order),
-        cmocka_unit_test(missing_memory_is_reported_and_leaks_nothing),
-        cmocka_unit_test(joukowski_heights_are_those_of_the_mapped_circle),
-        cmocka_unit_test(means_over_the_edges_add_up_to_the_foil_with_any_number_of_nodes),
-        cmocka_unit_test(means_are_good_to_ten_figures_next_to_the_blunt_nose),
-        cmocka_unit_test(uniform_and_table_have_one_section_along_an_edge),
-        cmocka_unit_test(a_foil_ends_in_a_cusp_or_with_the_thickness_of_its_tail),
-        cmocka_unit_test(a_tail_of_some_thickness_changes_the_whole_outline_smoothly),
-        cmocka_unit_test(means_with_a_tail_are_good_to_twelve_figures_next_to_the_blunt_nose),
-        cmocka_unit_test(the_masses_of_the_default_body_are_those_of_its_outline),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

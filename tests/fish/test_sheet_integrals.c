@@ -37,8 +37,7 @@ static double first_two_edges(int edge) {
     return edge < 2 ? 1 : 0;
 }
 
-static void control_points_have_the_circulation_of_their_intervals(void **state) {
-    (void)state;
+TEST(control_points_have_the_circulation_of_their_intervals) {
     struct sheet_integrals *const integrals = make(three);
     for (int m = 0; m < N_SHEET - 1; m++) {
         double q[N_SHEET], around[N_SHEET - 1], before[N_SHEET - 1];
@@ -54,8 +53,7 @@ static void control_points_have_the_circulation_of_their_intervals(void **state)
     sheet_integrals_free(integrals);
 }
 
-static void a_kink_at_the_tail_is_what_the_series_lacks(void **state) {
-    (void)state;
+TEST(a_kink_at_the_tail_is_what_the_series_lacks) {
     struct sheet_integrals *const integrals = make(three);
     const double h = pi / (N_SHEET - 1);
     for (int c = 0; c < N_SHEET - 1; c++) {
@@ -89,8 +87,7 @@ static double integral(const struct sheet_integrals *integrals, const double *we
 
 static const double one[N_NODES] = {1, 1, 1, 1, 1, 1, 1}, place[N_NODES] = {0, 1, 2, 3, 4, 5, 6};
 
-static void momentum_of_a_sheet_of_constant_g_is_the_exact_one(void **state) {
-    (void)state;
+TEST(momentum_of_a_sheet_of_constant_g_is_the_exact_one) {
     double q[N_SHEET];
     cosine(0, q);
     // C = theta, and with u = (N-1)(1 - cos theta)/2: integral of theta du, and of theta u du
@@ -109,8 +106,7 @@ static void momentum_of_a_sheet_of_constant_g_is_the_exact_one(void **state) {
 }
 
 // g = cos(m theta) has C = sin(m theta)/m; its momentum to the end of the second edge
-static void momentum_of_every_cosine_is_the_exact_one(void **state) {
-    (void)state;
+TEST(momentum_of_every_cosine_is_the_exact_one) {
     struct sheet_integrals *const part = make(first_two_edges);
     const double half = (N_NODES - 1) / 2.0, end = acos(1 - 2 / half);
     for (int m = 1; m < N_SHEET; m++) {
@@ -156,8 +152,7 @@ static void momentum_by_weights(int n, int n_sheet, int j, double *matrix) {
 }
 
 // partial fractions lose no digits, although each has poles at the nodes
-static void partial_fractions_are_the_products_of_weights_and_slopes(void **state) {
-    (void)state;
+TEST(partial_fractions_are_the_products_of_weights_and_slopes) {
     const struct {
         int n, n_sheet, vortex;
     } sizes[] = {{4, 7, 0}, {7, 13, 5}, {25, 49, 24}, {25, 49, 48}, {60, 119, 7}, {199, 397, 396}};
@@ -191,8 +186,7 @@ static void partial_fractions_are_the_products_of_weights_and_slopes(void **stat
 }
 
 // four numbers for each vortex and node: 40 kB at 25 nodes
-static void memory_is_the_product_of_nodes_and_vortices(void **state) {
-    (void)state;
+TEST(memory_is_the_product_of_nodes_and_vortices) {
     double density[199];
     for (int k = 0; k < 199; k++) density[k] = 1;
     for (int n = 25; n < 200; n = 2 * n + 49) {
@@ -205,8 +199,7 @@ static void memory_is_the_product_of_nodes_and_vortices(void **state) {
     }
 }
 
-static void no_memory_leaves_nothing(void **state) {
-    (void)state;
+TEST(no_memory_leaves_nothing) {
     const double density[N_NODES - 1] = {1, 1, 1, 1, 1, 1};
     const int before = n_live;
     enum status status = STATUS_MEMORY;
@@ -221,17 +214,4 @@ static void no_memory_leaves_nothing(void **state) {
         assert_int_equal(n_live, before);
     }
     ABOVE(n, 4);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(control_points_have_the_circulation_of_their_intervals),
-        cmocka_unit_test(a_kink_at_the_tail_is_what_the_series_lacks),
-        cmocka_unit_test(momentum_of_a_sheet_of_constant_g_is_the_exact_one),
-        cmocka_unit_test(momentum_of_every_cosine_is_the_exact_one),
-        cmocka_unit_test(partial_fractions_are_the_products_of_weights_and_slopes),
-        cmocka_unit_test(memory_is_the_product_of_nodes_and_vortices),
-        cmocka_unit_test(no_memory_leaves_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,8 +45,7 @@ static void add_fish(const struct setup *setup, int g, double x, double y, doubl
     }
 }
 
-static void every_point_feels_the_sources_that_the_model_says(void **state) {
-    (void)state;
+TEST(every_point_feels_the_sources_that_the_model_says) {
     struct setup setup;
     school_build(&setup, TWO);
     school_stir(&setup);
@@ -83,8 +82,7 @@ static void every_point_feels_the_sources_that_the_model_says(void **state) {
     school_clear(&setup);
 }
 
-static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
-    (void)state;
+TEST(wake_vortices_feel_everything_with_smoothed_sheets) {
     struct setup setup;
     school_build(&setup, TWO);
     school_stir(&setup);
@@ -113,8 +111,7 @@ static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
     school_clear(&setup);
 }
 
-static void external_flow_is_stream_plus_shear_plus_gust(void **state) {
-    (void)state;
+TEST(external_flow_is_stream_plus_shear_plus_gust) {
     struct setup setup;
     school_build(&setup, TWO);
     double u, v;
@@ -126,8 +123,7 @@ static void external_flow_is_stream_plus_shear_plus_gust(void **state) {
 }
 
 // a gust of unit amplitude across a stream along (3, 4)/5
-static void a_travelling_gust_moves_along_the_stream(void **state) {
-    (void)state;
+TEST(a_travelling_gust_moves_along_the_stream) {
     static const char *const profiles[] = {"profile: sine, wavelength: 0.7", "profile: step, gradient_distance: 0.4"};
     for (int i = 0; i < 2; i++) {
         char text[512];
@@ -170,8 +166,7 @@ static void a_travelling_gust_moves_along_the_stream(void **state) {
     }
 }
 
-static void external_acceleration_is_that_of_a_particle_of_the_fluid(void **state) {
-    (void)state;
+TEST(external_acceleration_is_that_of_a_particle_of_the_fluid) {
     struct setup setup;
     school_build(&setup, TWO);
     const double t = 0.3, h = 1e-5, y = 2;
@@ -236,8 +231,7 @@ static void compare_derivatives(const char *text) {
     school_clear(&setup);
 }
 
-static void derivative_by_every_unknown_agrees_with_differences(void **state) {
-    (void)state;
+TEST(derivative_by_every_unknown_agrees_with_differences) {
     compare_derivatives(TWO);
     // free sheets: fish of two lengths have a smoothing of the pair, and so do images
     compare_derivatives("wake: {shedding: sheet}\n" TWO);
@@ -315,8 +309,7 @@ static void same_wake(const struct flow *one, const struct flow *other, int f) {
     NEAR_ARRAY(n, one->wake_v + i, other->wake_v + k, 1e-13, 1e-12);
 }
 
-static void beside_a_wall_everything_feels_mirrored_fish(void **state) {
-    (void)state;
+TEST(beside_a_wall_everything_feels_mirrored_fish) {
     static const char *const wakes[] = {"wake: {shedding: continuous}\n",
                                         "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\n"};
     for (int w = 0; w < 2; w++) {
@@ -353,8 +346,7 @@ static void beside_a_wall_everything_feels_mirrored_fish(void **state) {
     }
 }
 
-static void changed_wakes_are_placed_again(void **state) {
-    (void)state;
+TEST(changed_wakes_are_placed_again) {
     struct setup setup;
     school_build(&setup, TWO);
     school_stir(&setup);
@@ -368,8 +360,7 @@ static void changed_wakes_are_placed_again(void **state) {
     school_clear(&setup);
 }
 
-static void gradient_pass_leaves_the_velocity_as_it_is(void **state) {
-    (void)state;
+TEST(gradient_pass_leaves_the_velocity_as_it_is) {
     struct setup setup;
     school_build(&setup, TWO);
     school_stir(&setup);
@@ -384,8 +375,7 @@ static void gradient_pass_leaves_the_velocity_as_it_is(void **state) {
     school_clear(&setup);
 }
 
-static void threads_change_no_bit(void **state) {
-    (void)state;
+TEST(threads_change_no_bit) {
     struct setup setup;
     school_build(&setup, TWO);
     school_stir(&setup);
@@ -403,20 +393,4 @@ static void threads_change_no_bit(void **state) {
     // the ones that the residual has allocated
     setup.school->threads = 1;
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_point_feels_the_sources_that_the_model_says),
-        cmocka_unit_test(wake_vortices_feel_everything_with_smoothed_sheets),
-        cmocka_unit_test(external_flow_is_stream_plus_shear_plus_gust),
-        cmocka_unit_test(a_travelling_gust_moves_along_the_stream),
-        cmocka_unit_test(external_acceleration_is_that_of_a_particle_of_the_fluid),
-        cmocka_unit_test(derivative_by_every_unknown_agrees_with_differences),
-        cmocka_unit_test(beside_a_wall_everything_feels_mirrored_fish),
-        cmocka_unit_test(changed_wakes_are_placed_again),
-        cmocka_unit_test(gradient_pass_leaves_the_velocity_as_it_is),
-        cmocka_unit_test(threads_change_no_bit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

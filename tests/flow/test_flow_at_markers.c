@@ -146,8 +146,7 @@ static void build(struct setup *setup, const char *fluid) {
 static const char *const fluids[] = {"", "fluid: {walls: [-1]}\n", "fluid: {walls: [-1, 2]}\n"};
 
 // with walls only the impulse along the walls is conserved: the walls exert a force across
-static void a_body_and_a_wake_have_opposite_forces_for_each_other(void **state) {
-    (void)state;
+TEST(a_body_and_a_wake_have_opposite_forces_for_each_other) {
     for (int w = 0; w < 3; w++) {
         struct setup setup;
         build(&setup, fluids[w]);
@@ -175,8 +174,7 @@ static void a_body_and_a_wake_have_opposite_forces_for_each_other(void **state) 
     }
 }
 
-static void two_wakes_have_opposite_forces_for_each_other(void **state) {
-    (void)state;
+TEST(two_wakes_have_opposite_forces_for_each_other) {
     for (int w = 0; w < 3; w++) {
         struct setup setup;
         build(&setup, fluids[w]);
@@ -209,12 +207,4 @@ static void two_wakes_have_opposite_forces_for_each_other(void **state) {
 
         school_clear(&setup);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_body_and_a_wake_have_opposite_forces_for_each_other),
-        cmocka_unit_test(two_wakes_have_opposite_forces_for_each_other),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -197,8 +197,7 @@ static void check_midpoints_feel_bodies_wakes_and_images(void) {
     school_clear(&setup);
 }
 
-static void midpoints_feel_bodies_wakes_and_images(void **state) {
-    (void)state;
+TEST(midpoints_feel_bodies_wakes_and_images) {
     for (kind = 0; kind < N_KERNELS; kind++) check_midpoints_feel_bodies_wakes_and_images();
 }
 
@@ -256,8 +255,7 @@ static void check_control_points_feel_their_own_body_and_wake(void) {
     school_clear(&setup);
 }
 
-static void control_points_feel_their_own_body_and_wake(void **state) {
-    (void)state;
+TEST(control_points_feel_their_own_body_and_wake) {
     for (kind = 0; kind < N_KERNELS; kind++) check_control_points_feel_their_own_body_and_wake();
 }
 
@@ -304,8 +302,7 @@ static void check_a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stre
     school_clear(&setup);
 }
 
-static void a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it(void **state) {
-    (void)state;
+TEST(a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it) {
     for (kind = 0; kind < N_KERNELS; kind++)
         check_a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it();
 }
@@ -346,14 +343,12 @@ static void check_the_newborn_marker_feels_its_body_behind_the_tail(void) {
     school_clear(&setup);
 }
 
-static void the_newborn_marker_feels_its_body_behind_the_tail(void **state) {
-    (void)state;
+TEST(the_newborn_marker_feels_its_body_behind_the_tail) {
     for (kind = 0; kind < N_KERNELS; kind++) check_the_newborn_marker_feels_its_body_behind_the_tail();
 }
 
 // no flow through the wall; the labels change with the divergence at markers
-static void markers_are_stretched_and_a_wall_lets_nothing_through(void **state) {
-    (void)state;
+TEST(markers_are_stretched_and_a_wall_lets_nothing_through) {
     struct setup setup;
     kind = FINITE;
     build(&setup, "fluid: {walls: [-0.9]}\n", TWO);
@@ -478,14 +473,12 @@ static void check_markers_feel_all_bodies_all_markers_and_all_images(void) {
     school_clear(&setup);
 }
 
-static void markers_feel_all_bodies_all_markers_and_all_images(void **state) {
-    (void)state;
+TEST(markers_feel_all_bodies_all_markers_and_all_images) {
     for (kind = 0; kind < N_KERNELS; kind++) check_markers_feel_all_bodies_all_markers_and_all_images();
 }
 
 // the points of a graded sheet: s by the length of the sheet between tail and point, at both ends of the interval
-static void legs_of_graded_points_begin_at_the_tail(void **state) {
-    (void)state;
+TEST(legs_of_graded_points_begin_at_the_tail) {
     struct setup setup;
     kind = FINITE;
     build(&setup, "", TWO);
@@ -612,8 +605,7 @@ static void check_large_schools_are_summed_by_the_tree_to_half_the_tolerance(voi
     school_clear(&fast);
 }
 
-static void large_schools_are_summed_by_the_tree_to_half_the_tolerance(void **state) {
-    (void)state;
+TEST(large_schools_are_summed_by_the_tree_to_half_the_tolerance) {
     for (kind = 0; kind < N_KERNELS; kind++) check_large_schools_are_summed_by_the_tree_to_half_the_tolerance();
 }
 
@@ -671,8 +663,7 @@ static void compare_derivatives(const char *fluid) {
     school_clear(&setup);
 }
 
-static void derivatives_agree_with_differences(void **state) {
-    (void)state;
+TEST(derivatives_agree_with_differences) {
     for (kind = 0; kind < N_KERNELS; kind++) {
         compare_derivatives("");
         compare_derivatives("fluid: {walls: [-0.9]}\n");
@@ -681,8 +672,7 @@ static void derivatives_agree_with_differences(void **state) {
 }
 
 // the images of both walls, and the divergence of the legs: no flow through the walls, continuity of the field
-static void the_field_does_not_go_through_walls(void **state) {
-    (void)state;
+TEST(the_field_does_not_go_through_walls) {
     enum { N = 40 };
     for (kind = 0; kind < N_KERNELS; kind++) {
         struct setup setup;
@@ -710,20 +700,4 @@ static void the_field_does_not_go_through_walls(void **state) {
         }
         school_clear(&setup);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(midpoints_feel_bodies_wakes_and_images),
-        cmocka_unit_test(control_points_feel_their_own_body_and_wake),
-        cmocka_unit_test(a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it),
-        cmocka_unit_test(the_newborn_marker_feels_its_body_behind_the_tail),
-        cmocka_unit_test(markers_are_stretched_and_a_wall_lets_nothing_through),
-        cmocka_unit_test(markers_feel_all_bodies_all_markers_and_all_images),
-        cmocka_unit_test(legs_of_graded_points_begin_at_the_tail),
-        cmocka_unit_test(large_schools_are_summed_by_the_tree_to_half_the_tolerance),
-        cmocka_unit_test(derivatives_agree_with_differences),
-        cmocka_unit_test(the_field_does_not_go_through_walls),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -56,8 +56,7 @@ static void ring_make(struct sources *rings, double span) {
 }
 
 // targets up to 6 channel widths away; bound: part of the largest velocity on a wall, 2 q/(4 H) without depth
-static void rings_and_images_cause_no_flow_through_a_channel(void **state) {
-    (void)state;
+TEST(rings_and_images_cause_no_flow_through_a_channel) {
     static const struct {
         double depth, bound;
         int n;
@@ -84,8 +83,7 @@ static void rings_and_images_cause_no_flow_through_a_channel(void **state) {
 }
 
 // the sum over 40 000 images
-static void few_images_of_rings_are_the_sum_over_all(void **state) {
-    (void)state;
+TEST(few_images_of_rings_are_the_sum_over_all) {
     enum { MANY = 10000 };
     struct image *image, *all = calloc(4 * MANY, sizeof *all);
     assert_non_null(all);
@@ -157,8 +155,7 @@ static void row_add(double x, double y, double square, double sign, double veloc
     velocity[1] += scale * x / length * sinh(s);
 }
 
-static void images_of_a_vortex_in_a_channel_are_the_closed_sum(void **state) {
-    (void)state;
+TEST(images_of_a_vortex_in_a_channel_are_the_closed_sum) {
     // largest error of the weighted images; the velocity of the vortex at the distance H is 0.1
     static const struct { double distance, error; } cases[] = {{4.5, 1e-11}, {9, 1e-10}, {30, 1e-6}};
     const double square = 0.0004, from[2] = {0.1, 0.8};
@@ -179,8 +176,7 @@ static void images_of_a_vortex_in_a_channel_are_the_closed_sum(void **state) {
     sources_free(&vortex);
 }
 
-static void distances_are_those_from_the_nearest_wall(void **state) {
-    (void)state;
+TEST(distances_are_those_from_the_nearest_wall) {
     const struct walls none = {0};
     assert_true(isinf(fish_walls_distance(&none, 3)));
     NEAR(fish_walls_distance(&below, 0.1), 0.5, 1e-15, 0);
@@ -201,8 +197,7 @@ static double speed_of_one(const struct walls *walls, double y) {
     return u;
 }
 
-static void a_vortex_goes_along_the_wall_at_the_classical_speed(void **state) {
-    (void)state;
+TEST(a_vortex_goes_along_the_wall_at_the_classical_speed) {
     // Lamb, Hydrodynamics, 155: G/(4 pi d) beside a wall; between two walls G/(4H) cot(pi d/H)
     for (double d = 0.05; d < 1.5; d += 0.1) {
         NEAR(speed_of_one(&below, below.y[0] + d), 1 / (4 * pi * d), 0, 1e-11);
@@ -211,8 +206,7 @@ static void a_vortex_goes_along_the_wall_at_the_classical_speed(void **state) {
     }
 }
 
-static void a_pair_that_meets_a_wall_parts_along_it(void **state) {
-    (void)state;
+TEST(a_pair_that_meets_a_wall_parts_along_it) {
     // Lamb, 155: the path of each vortex is 1/x^2 + 1/d^2 = constant, d from the wall
     struct sources pair = {0};
     assert_int_equal(sources_append(&pair, 2), STATUS_OK);
@@ -248,16 +242,4 @@ static void a_pair_that_meets_a_wall_parts_along_it(void **state) {
     ABOVE(pair.x[0], 0.3);
     BELOW(pair.x[1], -0.3);
     sources_free(&pair);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rings_and_images_cause_no_flow_through_a_channel),
-        cmocka_unit_test(few_images_of_rings_are_the_sum_over_all),
-        cmocka_unit_test(images_of_a_vortex_in_a_channel_are_the_closed_sum),
-        cmocka_unit_test(distances_are_those_from_the_nearest_wall),
-        cmocka_unit_test(a_vortex_goes_along_the_wall_at_the_classical_speed),
-        cmocka_unit_test(a_pair_that_meets_a_wall_parts_along_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -62,8 +62,7 @@ static const struct source source = {
 static const struct kernel_pair own = {.kernel = &kernel_finite, .span = 0.0625, .factor = 1, .square = 0.0005};
 
 // numbers of an independent program (NumPy)
-static void velocity_and_divergence_are_those_of_the_formulas(void **state) {
-    (void)state;
+TEST(velocity_and_divergence_are_those_of_the_formulas) {
     const struct sum sum = induce(&own, &source, 0.4, -0.15, 0.0625 * 0.0625 / 2, 0.002, 0.0005);
     NEAR(sum.u, -0.34840178, 5e-9, 0);
     NEAR(sum.v, 0.54962393, 5e-9, 0);
@@ -74,8 +73,7 @@ static void velocity_and_divergence_are_those_of_the_formulas(void **state) {
     NEAR(sum.edge[1], h / 2 * 0.03, 0, 1e-13);
 }
 
-static void the_root_has_full_precision_at_any_distance(void **state) {
-    (void)state;
+TEST(the_root_has_full_precision_at_any_distance) {
     // induce compares the root that begins in single precision with a root in double precision
     for (int i = 0; i < 3000; i++) {
         const double r = pow(10, -15 + 0.01 * i);
@@ -98,8 +96,7 @@ static void the_root_has_full_precision_at_any_distance(void **state) {
 }
 
 // K_e(r) = (-r_y, r_x)/(2 pi (r^2 + e^2)), with the squares of source, target and pair
-static void infinite_span_is_a_smoothed_vortex(void **state) {
-    (void)state;
+TEST(infinite_span_is_a_smoothed_vortex) {
     const struct kernel_pair pair = kernel_infinite.other(7, 0.0005);
     const struct sum sum = induce(&pair, &source, 0.4, -0.15, 3, 4, 0.0007);
     const double r[2] = {0.1, 0.05}, e2 = 0.0005 + 0.0007 + 0.0015, d = r[0] * r[0] + r[1] * r[1] + e2;
@@ -111,8 +108,7 @@ static void infinite_span_is_a_smoothed_vortex(void **state) {
     NEAR(fabs(sum.div) + fabs(sum.leg_u) + fabs(sum.edge[0]), 0, 0, 0);
 }
 
-static void a_deep_strip_is_that_of_two_dimensions(void **state) {
-    (void)state;
+TEST(a_deep_strip_is_that_of_two_dimensions) {
     const double b = 1e5;
     const struct kernel_pair pair = {.kernel = &kernel_finite, .span = b, .factor = 1};
     struct source deep = source;
@@ -127,8 +123,7 @@ static void a_deep_strip_is_that_of_two_dimensions(void **state) {
 }
 
 // seen from outside, from afar, a ring is a dipole whose moment is its circulation, depth and length
-static void far_away_a_closed_ring_is_a_dipole_of_its_area(void **state) {
-    (void)state;
+TEST(far_away_a_closed_ring_is_a_dipole_of_its_area) {
     const double w = 0.25, length = 0.01, far = 30;
     const struct kernel_pair outside = {.kernel = &kernel_finite, .span = w / 2, .factor = 4};
     // spanwise parts 1 and -1 at both ends of a leg along x, w deep
@@ -146,8 +141,7 @@ static void far_away_a_closed_ring_is_a_dipole_of_its_area(void **state) {
     NEAR(v, m / (2 * two_pi * r3) * (3 * n[1] * n[1] - 1), 1e-3 * m / (2 * two_pi * r3), 0);
 }
 
-static void gradients_agree_with_differences(void **state) {
-    (void)state;
+TEST(gradients_agree_with_differences) {
     const double half = 0.003, leg = 0.002, square = 0.0004, step = 1e-6, x = 0.37, y = -0.11;
     for (int k = 0; k < 2; k++) {
         const struct kernel_pair pair = k == 0 ? own : kernel_infinite.own(0, 0.0005);
@@ -187,8 +181,7 @@ static void gradients_agree_with_differences(void **state) {
     }
 }
 
-static void a_source_has_no_spanwise_part_at_its_own_place(void **state) {
-    (void)state;
+TEST(a_source_has_no_spanwise_part_at_its_own_place) {
     struct source at_target = source;
     at_target.square = 0;
     const struct kernel_pair exact = {.kernel = &kernel_finite, .span = 0.0625, .factor = 1};
@@ -199,8 +192,7 @@ static void a_source_has_no_spanwise_part_at_its_own_place(void **state) {
 }
 
 // the wall is half way between a source and its image, and no fluid goes through
-static void a_ring_and_its_image_cause_no_flow_through_the_wall(void **state) {
-    (void)state;
+TEST(a_ring_and_its_image_cause_no_flow_through_the_wall) {
     struct sources rings = {0}, image = {0};
     assert_int_equal(sources_append(&rings, 1), STATUS_OK);
     rings.x[0] = 0.1;
@@ -229,8 +221,7 @@ static double number(int i) {
     return 2 * fmod(0.618033988749895 * (i + 1) * (i + 7), 1) - 1;
 }
 
-static void fused_variants_round_identically(void **state) {
-    (void)state;
+TEST(fused_variants_round_identically) {
     enum { N = 37 };
     double value[8][N];
     for (int i = 0; i < 8 * N; i++) value[i / N][i % N] = number(i);
@@ -300,8 +291,7 @@ static void fused_variants_round_identically(void **state) {
     }
 }
 
-static void sources_cause_the_same_velocity_one_by_one_and_mutually(void **state) {
-    (void)state;
+TEST(sources_cause_the_same_velocity_one_by_one_and_mutually) {
     // several tiles, and a last tile and block that are not full
     enum { N = 137 };
     struct sources rings = {0};
@@ -328,8 +318,7 @@ static void sources_cause_the_same_velocity_one_by_one_and_mutually(void **state
     sources_free(&rings);
 }
 
-static void a_lack_of_memory_is_reported(void **state) {
-    (void)state;
+TEST(a_lack_of_memory_is_reported) {
     struct sources rings = {0};
     assert_int_equal(sources_append(&rings, 2), STATUS_OK);
     rings.x[1] = 3;
@@ -339,21 +328,4 @@ static void a_lack_of_memory_is_reported(void **state) {
     assert_int_equal(rings.n, 2);
     NEAR(rings.x[1], 3, 0, 0);
     sources_free(&rings);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(velocity_and_divergence_are_those_of_the_formulas),
-        cmocka_unit_test(infinite_span_is_a_smoothed_vortex),
-        cmocka_unit_test(the_root_has_full_precision_at_any_distance),
-        cmocka_unit_test(a_deep_strip_is_that_of_two_dimensions),
-        cmocka_unit_test(far_away_a_closed_ring_is_a_dipole_of_its_area),
-        cmocka_unit_test(gradients_agree_with_differences),
-        cmocka_unit_test(a_source_has_no_spanwise_part_at_its_own_place),
-        cmocka_unit_test(a_ring_and_its_image_cause_no_flow_through_the_wall),
-        cmocka_unit_test(fused_variants_round_identically),
-        cmocka_unit_test(sources_cause_the_same_velocity_one_by_one_and_mutually),
-        cmocka_unit_test(a_lack_of_memory_is_reported),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -128,8 +128,7 @@ static void keep_worse(double *worst, double error) {
     if (!(error <= *worst)) *worst = error;
 }
 
-static void errors_are_below_the_tolerance_and_not_far_below(void **state) {
-    (void)state;
+TEST(errors_are_below_the_tolerance_and_not_far_below) {
     static const struct {
         const char *name;
         distribution *place;
@@ -183,8 +182,7 @@ static void errors_are_below_the_tolerance_and_not_far_below(void **state) {
 }
 
 // the exponent falls to 1; between 16 and 64 wakes 1.4
-static void interactions_grow_almost_as_the_number_of_rings(void **state) {
-    (void)state;
+TEST(interactions_grow_almost_as_the_number_of_rings) {
     static struct sums got;
     double before = 0;
     for (int fish = 16; fish <= MOST_FISH; fish *= 4) {
@@ -200,8 +198,7 @@ static void interactions_grow_almost_as_the_number_of_rings(void **state) {
     }
 }
 
-static void the_bits_do_not_depend_on_threads_or_earlier_sums(void **state) {
-    (void)state;
+TEST(the_bits_do_not_depend_on_threads_or_earlier_sums) {
     static struct sums one, three;
     const struct kernel_pair pair = kernel_finite.other(0.25, 0.0025);
     struct sources rings = fill(wakes, 16 * PER_WAKE, 0.25), others = fill(square, 3000, 1);
@@ -219,8 +216,7 @@ static void the_bits_do_not_depend_on_threads_or_earlier_sums(void **state) {
     sources_free(&others);
 }
 
-static void few_rings_and_few_targets_are_summed_too(void **state) {
-    (void)state;
+TEST(few_rings_and_few_targets_are_summed_too) {
     static struct sums got, direct;
     const struct kernel_pair pair = kernel_finite.other(0.25, 0.0025);
     const int numbers[] = {0, 1, 2, 129, 2000};
@@ -237,8 +233,7 @@ static void few_rings_and_few_targets_are_summed_too(void **state) {
     }
 }
 
-static void the_tree_is_for_many_rings_and_a_tolerance(void **state) {
-    (void)state;
+TEST(the_tree_is_for_many_rings_and_a_tolerance) {
     assert_true(tree_is_faster(&kernel_finite, 4800, 2e7, 1e-7));
     assert_false(tree_is_faster(&kernel_finite, 4800, 2e7, 0));
     assert_false(tree_is_faster(&kernel_finite, 4800, 1e5, 1e-7));
@@ -246,8 +241,7 @@ static void the_tree_is_for_many_rings_and_a_tolerance(void **state) {
     assert_false(tree_is_faster(&kernel_infinite, 4800, 2e7, 1e-7));
 }
 
-static void a_lack_of_memory_adds_nothing(void **state) {
-    (void)state;
+TEST(a_lack_of_memory_adds_nothing) {
     static struct sums got, zero;
     const struct kernel_pair pair = kernel_finite.other(0.25, 0.0025);
     struct sources rings = fill(wakes, 16 * PER_WAKE, 0.25);
@@ -276,16 +270,4 @@ static void a_lack_of_memory_adds_nothing(void **state) {
     n_until_failure = -1;
     tree_free(tree);
     sources_free(&rings);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_are_below_the_tolerance_and_not_far_below),
-        cmocka_unit_test(interactions_grow_almost_as_the_number_of_rings),
-        cmocka_unit_test(the_bits_do_not_depend_on_threads_or_earlier_sums),
-        cmocka_unit_test(few_rings_and_few_targets_are_summed_too),
-        cmocka_unit_test(the_tree_is_for_many_rings_and_a_tolerance),
-        cmocka_unit_test(a_lack_of_memory_adds_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

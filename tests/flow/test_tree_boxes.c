@@ -47,8 +47,7 @@ static void assert_encloses(const struct tree_boxes *boxes) {
     }
 }
 
-static void a_lack_of_memory_leaves_no_box(void **state) {
-    (void)state;
+TEST(a_lack_of_memory_leaves_no_box) {
     scatter();
     struct tree_boxes boxes = {0};
     n_until_failure = 1;
@@ -58,20 +57,11 @@ static void a_lack_of_memory_leaves_no_box(void **state) {
     tree_boxes_clear(&boxes);
 }
 
-static void threads_make_the_same_boxes(void **state) {
-    (void)state;
+TEST(threads_make_the_same_boxes) {
     scatter();
     struct tree_boxes one = filled(LEAF, 1), more = filled(LEAF, 3);
     assert_encloses(&one);
     assert_same(&more, &one);
     tree_boxes_clear(&one);
     tree_boxes_clear(&more);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_lack_of_memory_leaves_no_box),
-        cmocka_unit_test(threads_make_the_same_boxes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

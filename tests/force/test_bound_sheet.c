@@ -46,8 +46,7 @@ static void jacobian_of_sheet(struct setup *setup, double cj, const double *y, s
     }
 }
 
-static void derivatives_agree_with_differences(void **state) {
-    (void)state;
+TEST(derivatives_agree_with_differences) {
     const char *const texts[] = {
         TIME "fish: [{sheet_points: 9}]\n",
         TIME "sheet: {collocation: midpoint}\nfish: [{sheet_points: 21}]\n",
@@ -99,9 +98,7 @@ static void solve_plate(const char *collocation, const char *kutta, int m, const
     school_clear(&setup);
 }
 
-static void plate_without_circulation_is_exact_with_chebyshev_points(void **state) {
-    (void)state;
-
+TEST(plate_without_circulation_is_exact_with_chebyshev_points) {
     // gamma = -2 w (L/2 - s)/sqrt(s (L-s)) with w = 0.6, as circulations of Gauss-Lobatto quadrature
     for (int m = 5; m <= 33; m += 7) {
         double q[64], want[64];
@@ -114,8 +111,7 @@ static void plate_without_circulation_is_exact_with_chebyshev_points(void **stat
     }
 }
 
-static void plate_with_kutta_condition_is_exact_with_chebyshev_points(void **state) {
-    (void)state;
+TEST(plate_with_kutta_condition_is_exact_with_chebyshev_points) {
     for (int m = 5; m <= 33; m += 7) {
         double q[64], total = 0;
         solve_plate("chebyshev", "edge", m, "", q);
@@ -138,8 +134,7 @@ static double error_of_midpoints(int m) {
     return error;
 }
 
-static void plate_with_midpoints_converges(void **state) {
-    (void)state;
+TEST(plate_with_midpoints_converges) {
     const double coarse = error_of_midpoints(41), fine = error_of_midpoints(81);
     BELOW(fine, 0.03);
 
@@ -173,8 +168,7 @@ static double circulation_beside_a_vortex(int m) {
     return circulation;
 }
 
-static void chebyshev_points_converge_spectrally(void **state) {
-    (void)state;
+TEST(chebyshev_points_converge_spectrally) {
     const double limit = circulation_beside_a_vortex(161);
     double before = fabs(circulation_beside_a_vortex(11) - limit);
     BELOW(before, 0.1);
@@ -224,8 +218,7 @@ static void arc(double s, double place[2]) {
     place[1] = radius * (cos(angle) - cos(pi / 6));
 }
 
-static void smooth_curve_has_the_circulation_of_an_arc(void **state) {
-    (void)state;
+TEST(smooth_curve_has_the_circulation_of_an_arc) {
     const double exact = -3 / cos(pi / 12) * sin(pi / 18 + pi / 12);
     const int n_nodes[] = {7, 11, 21, 41};
     const double allowed[] = {1e-4, 2e-5, 2e-6, 2e-7};
@@ -254,8 +247,7 @@ static void beat(double s, double place[2]) {
     }
 }
 
-static void smooth_curve_and_polygon_of_a_bent_fish_have_one_limit(void **state) {
-    (void)state;
+TEST(smooth_curve_and_polygon_of_a_bent_fish_have_one_limit) {
     const double limit = circulation_of_a_bent_body(beat, "smooth", 641, 65);
 
     // about 16 N^-3.5 and 2.5 N^-1.5 on this body
@@ -276,8 +268,7 @@ static void smooth_curve_and_polygon_of_a_bent_fish_have_one_limit(void **state)
     NEAR(circulation_of_a_bent_body(beat, "polygon", 641, 65), limit, 0, 1e-3);
 }
 
-static void strength_is_circulation_per_length_of_the_body_as_it_is(void **state) {
-    (void)state;
+TEST(strength_is_circulation_per_length_of_the_body_as_it_is) {
     struct setup setup;
     school_build(&setup, TIME "sheet: {curve: smooth}\nfish: [{sheet_points: 9, length: 1.2, start: {heading: 30}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -299,9 +290,7 @@ static void strength_is_circulation_per_length_of_the_body_as_it_is(void **state
     school_clear(&setup);
 }
 
-static void end_correction_makes_a_sheet_that_ends_with_a_step_exact(void **state) {
-    (void)state;
-
+TEST(end_correction_makes_a_sheet_that_ends_with_a_step_exact) {
     // a plate along x at rest with the strength s/L, except 0 at the tail point: normal velocity by Cauchy's integral
     for (int m = 5; m <= 33; m += 14) {
         char text[200];
@@ -333,8 +322,7 @@ static void end_correction_makes_a_sheet_that_ends_with_a_step_exact(void **stat
     }
 }
 
-static void kelvin_counts_bound_shed_and_dissipated_circulation(void **state) {
-    (void)state;
+TEST(kelvin_counts_bound_shed_and_dissipated_circulation) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{sheet_points: 9}]\n");
     school_stir(&setup);
@@ -351,8 +339,7 @@ static void kelvin_counts_bound_shed_and_dissipated_circulation(void **state) {
     school_clear(&setup);
 }
 
-static void shedding_rate_is_edge_strength_times_slip(void **state) {
-    (void)state;
+TEST(shedding_rate_is_edge_strength_times_slip) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{sheet_points: 9}]\n");
     school_stir(&setup);
@@ -368,21 +355,4 @@ static void shedding_rate_is_edge_strength_times_slip(void **state) {
     const double along = (slip[0] * e[0] + slip[1] * e[1]) / hypot(e[0], e[1]);
     NEAR(bound_sheet_shedding_rate(fish, 0.6, u, v, y), 0.6 * y[fish->at.gamma + 8] * along, 0, 1e-13);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(derivatives_agree_with_differences),
-        cmocka_unit_test(plate_without_circulation_is_exact_with_chebyshev_points),
-        cmocka_unit_test(plate_with_kutta_condition_is_exact_with_chebyshev_points),
-        cmocka_unit_test(plate_with_midpoints_converges),
-        cmocka_unit_test(chebyshev_points_converge_spectrally),
-        cmocka_unit_test(smooth_curve_has_the_circulation_of_an_arc),
-        cmocka_unit_test(smooth_curve_and_polygon_of_a_bent_fish_have_one_limit),
-        cmocka_unit_test(strength_is_circulation_per_length_of_the_body_as_it_is),
-        cmocka_unit_test(end_correction_makes_a_sheet_that_ends_with_a_step_exact),
-        cmocka_unit_test(kelvin_counts_bound_shed_and_dissipated_circulation),
-        cmocka_unit_test(shedding_rate_is_edge_strength_times_slip),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,8 +38,7 @@ static void compare_slope(const struct fish *fish, int k, const double w[2], dou
     }
 }
 
-static void slope_of_the_force_agrees_with_differences(void **state) {
-    (void)state;
+TEST(slope_of_the_force_agrees_with_differences) {
     const char *const texts[] = {TIME "fish: [{drag: {tangential: 0.3}}]\n",
                                  TIME "fish: [{drag: {tangential: 0.3, law: linear_quadratic}}]\n",
                                  TIME "fluid: {viscosity: 0.1}\nfish: [{drag: {skin: laminar}}]\n"};
@@ -84,9 +83,7 @@ static double turbulent_over_blasius(double reynolds) {
     return 0.074 * pow(reynolds, -0.2) / (1.328 * pow(reynolds, -0.5));
 }
 
-static void boundary_layer_of_a_plate_is_laminar_turbulent_or_between(void **state) {
-    (void)state;
-
+TEST(boundary_layer_of_a_plate_is_laminar_turbulent_or_between) {
     // u0 = 1e-4 * 0.5 m/s; far from the transition the error of the blend is (Re/Re_t)^4
     NEAR(friction_over_blasius(PLATE("9", BARE), 0.01), 1, 0, 1e-4);
     NEAR(friction_over_blasius(PLATE("9", BARE ", transition: 1.0e+9"), 1), 1, 0, 1e-6);
@@ -102,8 +99,7 @@ static void boundary_layer_of_a_plate_is_laminar_turbulent_or_between(void **sta
 }
 
 // at the transition Reynolds number of the middle of an edge, half of the friction of the edge is turbulent
-static void transition_of_an_edge_is_that_of_its_middle(void **state) {
-    (void)state;
+TEST(transition_of_an_edge_is_that_of_its_middle) {
     struct setup setup;
     school_build(&setup, PLATE("9", BARE));
     const struct fish *const fish = setup.school->fish;
@@ -121,8 +117,7 @@ static void transition_of_an_edge_is_that_of_its_middle(void **state) {
     school_clear(&setup);
 }
 
-static void factors_multiply_the_friction(void **state) {
-    (void)state;
+TEST(factors_multiply_the_friction) {
     const double form = 1 + 2 * 0.1 + 60 * 1e-4;
 
     // laminar: form and waving; turbulent: form factor of the thickness only
@@ -133,8 +128,7 @@ static void factors_multiply_the_friction(void **state) {
          1.2 * turbulent_over_blasius(2e6), 0, 1e-6);
 }
 
-static void a_body_with_a_wave_has_the_factor_of_waving(void **state) {
-    (void)state;
+TEST(a_body_with_a_wave_has_the_factor_of_waving) {
     const struct {
         const char *fish;
         double waving;
@@ -160,8 +154,7 @@ static void a_body_with_a_wave_has_the_factor_of_waving(void **state) {
 }
 
 // across transition, at rest and at high speed; friction takes energy from the body at any velocity
-static void boundary_layer_is_smooth_and_takes_energy(void **state) {
-    (void)state;
+TEST(boundary_layer_is_smooth_and_takes_energy) {
     const char *const texts[] = {PLATE("9", ""), PLATE("9", ", waving: 1.7"), PLATE("9", ", waving: 0.6, form: 3"),
                                  PLATE("9", ", transition: 0"), PLATE("9", ", transition: 1.0e+4, waving: 2")};
     const double speeds[] = {1e-9, 2e-5, 1e-4, 1e-3, 0.03, 0.1, 0.3, 1, 3, 30};
@@ -193,8 +186,7 @@ static void boundary_layer_is_smooth_and_takes_energy(void **state) {
 }
 
 // Blasius: 1.328 rho w sqrt(nu L) U^(3/2) for both sides
-static void laminar_friction_of_a_plate_is_that_of_its_boundary_layer(void **state) {
-    (void)state;
+TEST(laminar_friction_of_a_plate_is_that_of_its_boundary_layer) {
     struct setup setup;
     school_build(&setup, TIME
                  "fluid: {viscosity: 0.002, density: 3}\n"
@@ -236,8 +228,7 @@ static double moment_about(const struct fish *fish, const double *u, const doubl
     return moment;
 }
 
-static void moment_is_that_of_the_forces_that_the_flow_adds(void **state) {
-    (void)state;
+TEST(moment_is_that_of_the_forces_that_the_flow_adds) {
     struct setup setup;
     school_build(
         &setup, TIME
@@ -261,18 +252,4 @@ static void moment_is_that_of_the_forces_that_the_flow_adds(void **state) {
     ABOVE(fabs(moment / scale), 1e-4);
     NEAR(drag_moment(fish, still, still, y), 0, 0, 0);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slope_of_the_force_agrees_with_differences),
-        cmocka_unit_test(boundary_layer_of_a_plate_is_laminar_turbulent_or_between),
-        cmocka_unit_test(transition_of_an_edge_is_that_of_its_middle),
-        cmocka_unit_test(factors_multiply_the_friction),
-        cmocka_unit_test(a_body_with_a_wave_has_the_factor_of_waving),
-        cmocka_unit_test(boundary_layer_is_smooth_and_takes_energy),
-        cmocka_unit_test(laminar_friction_of_a_plate_is_that_of_its_boundary_layer),
-        cmocka_unit_test(moment_is_that_of_the_forces_that_the_flow_adds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,8 +43,7 @@ static void jacobian_of_forces(struct setup *setup, double cj, const double *y, 
     }
 }
 
-static void jacobian_agrees_with_differences(void **state) {
-    (void)state;
+TEST(jacobian_agrees_with_differences) {
     const char *const texts[] = {
         TIME "fish: [{sheet_points: 9}]\n",
         TIME "fish: [{sheet_points: 9, drag: {law: linear_quadratic, tangential: 0.3}}]\n",
@@ -102,9 +101,7 @@ static void force_on_plate(const char *keys, double vx, double vy, double ay, do
     school_clear(&setup);
 }
 
-static void forces_on_a_plate_are_the_formulas(void **state) {
-    (void)state;
-
+TEST(forces_on_a_plate_are_the_formulas) {
     // rho 1000, L 1, h 0.1, w 0.25, C_F 0.02, C_D 0.5, C_A 1.5
     const double pi = acos(-1), ct = 1000 * pi * 0.02 * 0.35 / 8, cn = 1000 * 0.5 * 0.1 / 2,
                  mu = pi * 1000 * 1.5 * 0.01 / 4;
@@ -134,8 +131,7 @@ static void forces_on_a_plate_are_the_formulas(void **state) {
     NEAR(force[1], -5 * mu, 0, 1e-13);
 }
 
-static void powers_are_those_of_the_forces(void **state) {
-    (void)state;
+TEST(powers_are_those_of_the_forces) {
     const char *const forces[] = {"published", "reactive"};
     for (int i = 0; i < 2; i++) {
         char text[256];
@@ -163,8 +159,7 @@ static void powers_are_those_of_the_forces(void **state) {
     }
 }
 
-static void friction_is_the_tangential_part_of_the_drag(void **state) {
-    (void)state;
+TEST(friction_is_the_tangential_part_of_the_drag) {
     const double about[2] = {0.3, -0.7};
     struct setup setup;
     school_build(&setup, TIME
@@ -195,8 +190,7 @@ static void friction_is_the_tangential_part_of_the_drag(void **state) {
     school_clear(&setup);
 }
 
-static void added_mass_takes_up_no_tangential_acceleration(void **state) {
-    (void)state;
+TEST(added_mass_takes_up_no_tangential_acceleration) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{start: {speed: 0}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -210,9 +204,7 @@ static void added_mass_takes_up_no_tangential_acceleration(void **state) {
     school_clear(&setup);
 }
 
-static void the_reactive_force_does_not_feel_the_own_wake(void **state) {
-    (void)state;
-
+TEST(the_reactive_force_does_not_feel_the_own_wake) {
     // displacement of the nose after 1 s, from rest; the smoothing of the wake changes the velocity at the body
     const struct {
         const char *force;
@@ -237,16 +229,4 @@ static void the_reactive_force_does_not_feel_the_own_wake(void **state) {
     NEAR_ARRAY(2, nose[0], nose[1], 1e-7, 0);
     NEAR_ARRAY(2, nose[2], nose[1], 1e-7, 0);
     ABOVE(hypot(nose[4][0] - nose[3][0], nose[4][1] - nose[3][1]), 1e-4);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(jacobian_agrees_with_differences),
-        cmocka_unit_test(forces_on_a_plate_are_the_formulas),
-        cmocka_unit_test(powers_are_those_of_the_forces),
-        cmocka_unit_test(friction_is_the_tangential_part_of_the_drag),
-        cmocka_unit_test(the_reactive_force_does_not_feel_the_own_wake),
-        cmocka_unit_test(added_mass_takes_up_no_tangential_acceleration),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

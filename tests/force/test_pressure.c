@@ -53,8 +53,7 @@ static void added_momentum(struct setup *setup, const double *velocity, double *
 
 // Heave: pi/4 rho L^2. Rotation about the middle: pi/128 rho L^4. The error of order M^-4 comes from the end
 // correction, which assumes a sheet that sheds.
-static void added_mass_of_a_plate_is_that_of_potential_flow(void **state) {
-    (void)state;
+TEST(added_mass_of_a_plate_is_that_of_potential_flow) {
     const struct {
         int points;
         double heave, rotation;  // tolerances
@@ -105,8 +104,7 @@ static double smallest_eigenvalue(int nodes, int points) {
     return value[0];
 }
 
-static void added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only(void **state) {
-    (void)state;
+TEST(added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only) {
     NEAR(smallest_eigenvalue(17, 33), 1.6e-4, 0.1e-4, 0);
     NEAR(smallest_eigenvalue(7, 33), 1.1e-3, 0.1e-3, 0);
     BELOW(smallest_eigenvalue(17, 17), -1e-4);
@@ -114,8 +112,7 @@ static void added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only(voi
 
 // Ratios to the two-dimensional added mass, by an independent program (NumPy), with 65 points. Limits: w/L for a
 // slender plate, 1 for a deep plate.
-static void added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep(void **state) {
-    (void)state;
+TEST(added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep) {
     static const struct {
         double depth, part;
     } cases[] = {{0.1, 0.0958}, {0.25, 0.2238}, {0.5, 0.3983}, {1, 0.6292},
@@ -152,8 +149,7 @@ static void added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep(v
 
 // A smooth bend of a body of varying depth: the matrix from velocities to momenta is positive, and symmetric except for
 // a term neglected by the model (2.5 per cent, doc/model.md, section 18). Constant depth: symmetric.
-static void added_mass_of_finite_span_is_symmetric_and_positive(void **state) {
-    (void)state;
+TEST(added_mass_of_finite_span_is_symmetric_and_positive) {
     enum { N = 9 };
     static const struct {
         const char *depth;
@@ -197,8 +193,7 @@ static void added_mass_of_finite_span_is_symmetric_and_positive(void **state) {
 }
 
 // modes of a free plate from the added-mass matrix, against the iteration of the warning of slow modes
-static void slow_modes_have_the_added_mass_of_the_sheet(void **state) {
-    (void)state;
+TEST(slow_modes_have_the_added_mass_of_the_sheet) {
     enum { N = 17 };
     struct setup setup;
     build_plate(&setup, N, 33, "density: 1, modulus: 1.0e+4");
@@ -224,8 +219,7 @@ static void slow_modes_have_the_added_mass_of_the_sheet(void **state) {
 
 // A stream of 0.1 across a stiff free plate starts impulsively: with p conserved the plate velocity becomes 0.1 mu/(m +
 // mu), mu = pi/4.
-static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) {
-    (void)state;
+TEST(a_stream_that_starts_at_once_pushes_by_the_added_mass) {
     char body[128];
     const double mass = 0.1;
     snprintf(body, sizeof body, "density: %.17g, modulus: 1.0e+9, relaxation_time: 0.01", mass / (pi / 4 * 0.1));
@@ -253,8 +247,7 @@ static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) 
 }
 
 // the scale of the momenta: 1 + m_L L/m_k for the strip of the deeper end
-static void momenta_scale_with_the_deeper_end(void **state) {
-    (void)state;
+TEST(momenta_scale_with_the_deeper_end) {
     static const char *const depths[] = {"0.1, 0.2, 0.2, 0.3", "0.3, 0.2, 0.2, 0.1"};
     for (int i = 0; i < 2; i++) {
         struct setup setup;
@@ -278,8 +271,7 @@ static void momenta_scale_with_the_deeper_end(void **state) {
 
 // the force on the nodes equals the integral of the jump along the line, and the reactions of a prescribed body balance
 // this force
-static void force_and_reaction_are_those_of_the_jump(void **state) {
-    (void)state;
+TEST(force_and_reaction_are_those_of_the_jump) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
                           "time: {end: 1, shedding_interval: 0.01}\n"
@@ -337,9 +329,7 @@ static void force_and_reaction_are_those_of_the_jump(void **state) {
 
 // ---- the limit of the suction
 
-static void suction_law_has_its_limits_its_bound_and_its_derivatives(void **state) {
-    (void)state;
-
+TEST(suction_law_has_its_limits_its_bound_and_its_derivatives) {
     // attached: error of the fourth power of the ratio; separated: the bound
     NEAR(pressure_suction_law(3e-4, 3).value, 3e-4, 0, 1e-15);
     NEAR(pressure_suction_law(0.5, 1).value, 0.5 / pow(1 + 1.0 / 16, 0.25), 0, 1e-15);
@@ -367,8 +357,7 @@ static void suction_law_has_its_limits_its_bound_and_its_derivatives(void **stat
 }
 
 // at rest: zero suction, and no NaN
-static void suction_law_has_a_value_at_rest(void **state) {
-    (void)state;
+TEST(suction_law_has_a_value_at_rest) {
     const double at[][2] = {{0, 0}, {0, 2}, {2, 0}, {1e-300, 1e-300}, {1e-310, 2}, {2, 1e-310}};
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
         const struct suction_law law = pressure_suction_law(at[i][0], at[i][1]);
@@ -405,8 +394,7 @@ static double size_of(const double force[2]) {
 
 // A_0 = qhat/tau. Attached flow: the suction is S pi rho w L qhat^2, and the velocity past the nose is the velocity
 // along the plate.
-static void suction_of_a_plate_ends_at_its_limit(void **state) {
-    (void)state;
+TEST(suction_of_a_plate_ends_at_its_limit) {
     const double scale = 0.8 * pi * 2 * 0.5, along = 3 * cos(20 * pi / 180);
     struct simulation *plate[4];
     const double limit[4] = {0, 1000, 0.15, 0.03};
@@ -442,8 +430,7 @@ static void suction_of_a_plate_ends_at_its_limit(void **state) {
 }
 
 // a free fish with nearly no suction: the energy balance is as accurate as without a limit
-static void energy_balance_is_closed_where_the_limit_acts(void **state) {
-    (void)state;
+TEST(energy_balance_is_closed_where_the_limit_acts) {
     double imbalance[2];
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
@@ -468,8 +455,7 @@ static void energy_balance_is_closed_where_the_limit_acts(void **state) {
 
 // The jump of dC/dt alone, and the jump of the strengths in a stream along the plate, at control point c, for the
 // circulation g dtheta with g = 1: singular at both ends, exact cosine series, no kink.
-static void a_strength_that_is_singular_at_the_tail_has_no_kink(void **state) {
-    (void)state;
+TEST(a_strength_that_is_singular_at_the_tail_has_no_kink) {
     struct setup setup;
     build_plate(&setup, 17, 33, "density: 1");
     const struct fish *const fish = setup.school->fish;
@@ -508,8 +494,7 @@ static void a_strength_that_is_singular_at_the_tail_has_no_kink(void **state) {
 
 // g = sin(theta) (1 - cos(theta)) has the kink of a sheet that goes on behind the tail: C = (1 - cos(theta))^2/2, for
 // the rate of the circulation and, with finite span, for the flow that diverges
-static void a_kink_at_the_tail_has_its_exact_circulation(void **state) {
-    (void)state;
+TEST(a_kink_at_the_tail_has_its_exact_circulation) {
     struct setup setup;
     school_build(&setup, SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.01}\n"
@@ -539,8 +524,7 @@ static void a_kink_at_the_tail_has_its_exact_circulation(void **state) {
 }
 
 // a soft free fish starts to beat: energy balance, and momentum against forces
-static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
-    (void)state;
+TEST(energy_and_momentum_of_a_free_fish_are_accounted_for) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
                           "time: {end: 1, shedding_interval: 0.01}\n"
@@ -570,8 +554,7 @@ static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
     simulate_free(simulation);
 }
 
-static void no_memory_leaves_nothing(void **state) {
-    (void)state;
+TEST(no_memory_leaves_nothing) {
     struct setup setup;
     build_plate(&setup, 5, 9, "density: 1");
     const int before = n_live;
@@ -585,26 +568,4 @@ static void no_memory_leaves_nothing(void **state) {
     }
 
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(added_mass_of_a_plate_is_that_of_potential_flow),
-        cmocka_unit_test(added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only),
-        cmocka_unit_test(added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep),
-        cmocka_unit_test(added_mass_of_finite_span_is_symmetric_and_positive),
-        cmocka_unit_test(slow_modes_have_the_added_mass_of_the_sheet),
-        cmocka_unit_test(a_stream_that_starts_at_once_pushes_by_the_added_mass),
-        cmocka_unit_test(momenta_scale_with_the_deeper_end),
-        cmocka_unit_test(force_and_reaction_are_those_of_the_jump),
-        cmocka_unit_test(suction_law_has_its_limits_its_bound_and_its_derivatives),
-        cmocka_unit_test(suction_law_has_a_value_at_rest),
-        cmocka_unit_test(suction_of_a_plate_ends_at_its_limit),
-        cmocka_unit_test(energy_balance_is_closed_where_the_limit_acts),
-        cmocka_unit_test(a_strength_that_is_singular_at_the_tail_has_no_kink),
-        cmocka_unit_test(a_kink_at_the_tail_has_its_exact_circulation),
-        cmocka_unit_test(energy_and_momentum_of_a_free_fish_are_accounted_for),
-        cmocka_unit_test(no_memory_leaves_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,8 +55,7 @@ static void go_on(const double *state, const double *acceleration, double tau, d
     }
 }
 
-static void force_follows_from_lagrange_s_equations_of_the_kinetic_energy(void **state) {
-    (void)state;
+TEST(force_follows_from_lagrange_s_equations_of_the_kinetic_energy) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{nodes: 4, sheet_points: 5, force: reactive, added_mass: {extent: depth}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -91,8 +90,7 @@ static void force_follows_from_lagrange_s_equations_of_the_kinetic_energy(void *
     school_clear(&setup);
 }
 
-static void a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_surrounds(void **state) {
-    (void)state;
+TEST(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_surrounds) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{force: reactive, added_mass: {extent: depth}}]\n");
     school_stir(&setup);
@@ -153,9 +151,7 @@ static void forces_on_plate(const char *motion, double t, double force[7][2]) {
 
 static const double mass_per_length = 1000 * 3.14159265358979323846 * 0.09 / 4; /* of the plate above, C_A 1 */
 
-static void towed_plate_feels_a_couple_and_loses_at_its_tail(void **state) {
-    (void)state;
-
+TEST(towed_plate_feels_a_couple_and_loses_at_its_tail) {
     // heading 180 degrees, pitched by 10 degrees at all times, towed at 2 m/s: w_t = -2 cos, w_n = -+2 sin
     double force[7][2], sum[2] = {0, 0}, moment = 0;
     forces_on_plate("speed: 2, pitch: 10, frequency: 0, phase: 90", 0, force);
@@ -179,9 +175,7 @@ static void towed_plate_feels_a_couple_and_loses_at_its_tail(void **state) {
     NEAR(moment, -mass_per_length * wn * wt, 0, 1e-12);
 }
 
-static void oscillating_plate_feels_its_added_mass(void **state) {
-    (void)state;
-
+TEST(oscillating_plate_feels_its_added_mass) {
     // at the end of the stroke the plate is at rest: -mu a on all nodes, half on each end node
     double force[7][2];
     forces_on_plate("speed: 0, heave: 0.1, frequency: 2", 0.125, force);
@@ -193,9 +187,7 @@ static void oscillating_plate_feels_its_added_mass(void **state) {
     }
 }
 
-static void mean_thrust_of_a_plate_of_small_amplitude_is_lighthill_s(void **state) {
-    (void)state;
-
+TEST(mean_thrust_of_a_plate_of_small_amplitude_is_lighthill_s) {
     // heave and pitch at the nose; at the tail h = heave sin + pitch sin(angle + phase) L to the left
     enum { N = 64 };
     const double speed = 1.5, heave = 2e-3, pitch = 3e-3, phase = 70 * pi / 180, omega = 2 * pi * 1.2;
@@ -230,9 +222,7 @@ static double whole_energy(const struct diagnostics_fish *fish) {
     return fish->kinetic_energy + fish->bending_energy + fish->stretching_energy + fish->added_mass_energy;
 }
 
-static void energy_of_body_and_fluid_is_the_work_of_the_muscle(void **state) {
-    (void)state;
-
+TEST(energy_of_body_and_fluid_is_the_work_of_the_muscle) {
     // no drag, no damping, a pointed tail: energy is conserved
     const double rtol[] = {1e-5, 1e-7};
     double worst[2] = {0, 0};
@@ -264,8 +254,7 @@ static void energy_of_body_and_fluid_is_the_work_of_the_muscle(void **state) {
     ABOVE(worst[0] / worst[1], 10);
 }
 
-static void no_fish_gains_energy_from_still_fluid(void **state) {
-    (void)state;
+TEST(no_fish_gains_energy_from_still_fluid) {
     struct setup random = {.seed = 7};
     for (int i = 0; i < 5; i++) {
         const double amplitude = 0.4 + 0.2 * school_random(&random), number = 8 * school_random(&random);
@@ -307,9 +296,7 @@ static struct simulation *ideal_fish(double amplitude, double number, double pha
     return school_simulation(text);
 }
 
-static void reversing_the_wave_reverses_the_path(void **state) {
-    (void)state;
-
+TEST(reversing_the_wave_reverses_the_path) {
     // after a period the wave is reversed in time: kbar(t) becomes kbar(T - t), and all velocities change sign
     struct simulation *const there = ideal_fish(0.4, -6, 20), *const back = ideal_fish(-0.4, 6, -20);
     const struct fish *fish = there->school->fish;
@@ -333,18 +320,4 @@ static void reversing_the_wave_reverses_the_path(void **state) {
     NEAR_ARRAY(14, y + fish->at.x, start, 1e-5 * gone, 0);
     simulate_free(there);
     simulate_free(back);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(force_follows_from_lagrange_s_equations_of_the_kinetic_energy),
-        cmocka_unit_test(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_surrounds),
-        cmocka_unit_test(towed_plate_feels_a_couple_and_loses_at_its_tail),
-        cmocka_unit_test(oscillating_plate_feels_its_added_mass),
-        cmocka_unit_test(mean_thrust_of_a_plate_of_small_amplitude_is_lighthill_s),
-        cmocka_unit_test(energy_of_body_and_fluid_is_the_work_of_the_muscle),
-        cmocka_unit_test(no_fish_gains_energy_from_still_fluid),
-        cmocka_unit_test(reversing_the_wave_reverses_the_path),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,8 +21,7 @@ static double separation(void) {
     return NAN;
 }
 
-static void a_flat_plate_has_the_friction_of_blasius(void **state) {
-    (void)state;
+TEST(a_flat_plate_has_the_friction_of_blasius) {
     for (int i = 0; i < N; i++) {
         x[i] = (double)i / (N - 1);
         u[i] = 1;
@@ -37,8 +36,7 @@ static void a_flat_plate_has_the_friction_of_blasius(void **state) {
 }
 
 // u = x^m: f''(0) of Falkner and Skan by Hartree, times ((m + 1)/2)^(1/2)
-static void wedges_have_the_friction_of_falkner_and_skan(void **state) {
-    (void)state;
+TEST(wedges_have_the_friction_of_falkner_and_skan) {
     static const struct { double m, wall; } wedges[] = {{1, 1.2326}, {1.0 / 3, 0.7575}, {1.0 / 9, 0.5120}};
     for (int k = 0; k < 3; k++) {
         const double m = wedges[k].m;
@@ -55,8 +53,7 @@ static void wedges_have_the_friction_of_falkner_and_skan(void **state) {
 }
 
 // 103.1 degrees by Thwaites' method, 104.5 by the equations of the boundary layer; 0.123 and 0.120 in u = 1 - x
-static void layers_separate_from_a_cylinder_and_in_a_decelerated_flow(void **state) {
-    (void)state;
+TEST(layers_separate_from_a_cylinder_and_in_a_decelerated_flow) {
     for (int i = 0; i < N; i++) {
         x[i] = pi * i / (N - 1);
         u[i] = 2 * sin(x[i]);
@@ -72,8 +69,7 @@ static void layers_separate_from_a_cylinder_and_in_a_decelerated_flow(void **sta
 }
 
 // a layer towards smaller x is the mirror image, and layers on both sides of a stagnation point are independent
-static void layers_run_in_the_direction_of_the_flow(void **state) {
-    (void)state;
+TEST(layers_run_in_the_direction_of_the_flow) {
     for (int i = 0; i < N; i++) {
         x[i] = 2.0 * i / (N - 1) - 1;
         u[i] = tanh(4 * x[i]);
@@ -106,8 +102,7 @@ static struct simulation *plate(const char *stream, double thickness) {
     return school_simulation(text);
 }
 
-static void a_plate_has_half_of_blasius_friction_on_each_side(void **state) {
-    (void)state;
+TEST(a_plate_has_half_of_blasius_friction_on_each_side) {
     struct simulation *const simulation = plate("1, 0", 1e-5);
     school_run(simulation, 0.2);
     const struct side_friction sides = friction_of(simulation);
@@ -122,8 +117,7 @@ static void a_plate_has_half_of_blasius_friction_on_each_side(void **state) {
 
 /* A parabolic nose a = r/2: u = k (s/(s + a))^(1/2) in the stream 1, dx = ((s + a)/s)^(1/2) ds; the integral of u^5 is
  * k^5 (s - 2 a ln(1 + s/a) + a s/(s + a)). An ellipse of the thickness h has k = 1 + h/L and a = h^2/(4 L). */
-static void a_thick_plate_has_the_friction_of_the_flow_round_its_nose(void **state) {
-    (void)state;
+TEST(a_thick_plate_has_the_friction_of_the_flow_round_its_nose) {
     static const double thickness[] = {0.02, 0.1, 0.2};
     for (int i = 0; i < 3; i++) {
         struct simulation *const simulation = plate("1, 0", thickness[i]);
@@ -148,8 +142,7 @@ static void a_thick_plate_has_the_friction_of_the_flow_round_its_nose(void **sta
 }
 
 // at incidence the layer separates on the side away from the stream, and the mirrored plate exchanges the sides
-static void incidence_separates_the_layer_on_one_side(void **state) {
-    (void)state;
+TEST(incidence_separates_the_layer_on_one_side) {
     struct side_friction sides[2];
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = plate(i == 0 ? "1, 0.1" : "1, -0.1", 0.12);
@@ -165,17 +158,4 @@ static void incidence_separates_the_layer_on_one_side(void **state) {
     assert_true(isnan(sides[0].separation[0]));
     ABOVE(sides[0].separation[1], 0);
     BELOW(sides[0].separation[1], 0.3);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_flat_plate_has_the_friction_of_blasius),
-        cmocka_unit_test(wedges_have_the_friction_of_falkner_and_skan),
-        cmocka_unit_test(layers_separate_from_a_cylinder_and_in_a_decelerated_flow),
-        cmocka_unit_test(layers_run_in_the_direction_of_the_flow),
-        cmocka_unit_test(a_plate_has_half_of_blasius_friction_on_each_side),
-        cmocka_unit_test(a_thick_plate_has_the_friction_of_the_flow_round_its_nose),
-        cmocka_unit_test(incidence_separates_the_layer_on_one_side),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,8 +7,7 @@
 static const double pi = 3.14159265358979323846;
 
 // a straight body in steady motion: p = U^2/2 (1 - s/(s + r/2)), the pressure of a stagnation point at the nose
-static void a_body_that_glides_reads_the_stagnation_pressure_at_the_nose(void **state) {
-    (void)state;
+TEST(a_body_that_glides_reads_the_stagnation_pressure_at_the_nose) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
                           "time: {end: 1}\n"
@@ -158,8 +157,7 @@ static void compare_with_differences(const char *keys, const char *fish, int n_m
     simulate_free(simulation);
 }
 
-static void the_rate_of_the_potential_is_its_difference_in_time(void **state) {
-    (void)state;
+TEST(the_rate_of_the_potential_is_its_difference_in_time) {
     static const struct mirror none[] = {{1, 0}}, wall[] = {{1, 0}, {-1, -0.6}};
     compare_with_differences("", ", pressure: {span: infinite}", 1, none, 0.005);
     compare_with_differences("", ", pressure: {span: finite}", 1, none, 0.005);
@@ -167,8 +165,7 @@ static void the_rate_of_the_potential_is_its_difference_in_time(void **state) {
     compare_with_differences("fluid: {walls: [-0.3]}\n", ", pressure: {span: finite}", 2, wall, 0.005);
 }
 
-static void in_a_channel_the_rate_of_the_potential_is_its_difference_in_time(void **state) {
-    (void)state;
+TEST(in_a_channel_the_rate_of_the_potential_is_its_difference_in_time) {
     enum { ROWS = 50 };
     static struct mirror mirrors[2 * (2 * ROWS + 1)];
     int n = 0;
@@ -184,8 +181,7 @@ static void in_a_channel_the_rate_of_the_potential_is_its_difference_in_time(voi
 // ---- sides
 
 // the pressure on the right less the pressure on the left is the jump at a control point, up to the round nose
-static void both_sides_differ_by_the_jump(void **state) {
-    (void)state;
+TEST(both_sides_differ_by_the_jump) {
     // sensors at the control points 12, 24 and 36
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
@@ -207,8 +203,7 @@ static void both_sides_differ_by_the_jump(void **state) {
 }
 
 // a school that is mirrored in x exchanges left and right
-static void mirrored_fish_exchange_left_and_right(void **state) {
-    (void)state;
+TEST(mirrored_fish_exchange_left_and_right) {
     struct simulation *two[2];
     for (int i = 0; i < 2; i++) {
         char text[600];
@@ -231,15 +226,4 @@ static void mirrored_fish_exchange_left_and_right(void **state) {
         }
     }
     for (int i = 0; i < 2; i++) simulate_free(two[i]);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_body_that_glides_reads_the_stagnation_pressure_at_the_nose),
-        cmocka_unit_test(the_rate_of_the_potential_is_its_difference_in_time),
-        cmocka_unit_test(in_a_channel_the_rate_of_the_potential_is_its_difference_in_time),
-        cmocka_unit_test(both_sides_differ_by_the_jump),
-        cmocka_unit_test(mirrored_fish_exchange_left_and_right),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,8 +39,7 @@ static void jacobian_of_flux(struct setup *setup, double cj, const double *y, st
     }
 }
 
-static void derivatives_agree_with_differences(void **state) {
-    (void)state;
+TEST(derivatives_agree_with_differences) {
     const char *const texts[] = {
         TIME "fish: [{nodes: 4, sheet_points: 9, force: reactive, " WIDE "}]\n",
         TIME "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE ", start: {speed: 2}}]\n",
@@ -61,8 +60,7 @@ static void derivatives_agree_with_differences(void **state) {
     }
 }
 
-static void it_takes_from_the_body_what_it_leaves_in_the_wake(void **state) {
-    (void)state;
+TEST(it_takes_from_the_body_what_it_leaves_in_the_wake) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{nodes: 6, force: reactive, " WIDE "}]\n");
     const struct fish *fish = setup.school->fish;
@@ -95,8 +93,7 @@ static void it_takes_from_the_body_what_it_leaves_in_the_wake(void **state) {
     school_clear(&setup);
 }
 
-static void it_has_the_velocity_of_a_linear_flow_at_the_tail(void **state) {
-    (void)state;
+TEST(it_has_the_velocity_of_a_linear_flow_at_the_tail) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{nodes: 6, force: reactive, " WIDE "}]\n");
     const struct fish *fish = setup.school->fish;
@@ -124,8 +121,7 @@ static void it_has_the_velocity_of_a_linear_flow_at_the_tail(void **state) {
     school_clear(&setup);
 }
 
-static void its_mass_is_that_of_the_extent_at_the_tail(void **state) {
-    (void)state;
+TEST(its_mass_is_that_of_the_extent_at_the_tail) {
     const struct {
         const char *keys;
         double mass;
@@ -145,9 +141,7 @@ static void its_mass_is_that_of_the_extent_at_the_tail(void **state) {
     }
 }
 
-static void a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes(void **state) {
-    (void)state;
-
+TEST(a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes) {
     // a uniform body without wake, so that only the resolution of the tail matters; from rest, speed after 4 s
     const int nodes[] = {17, 33, 65};
     double speed[3];
@@ -169,15 +163,4 @@ static void a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes(void **st
     print_message("%.5f %.5f %.5f m/s: order %.1f\n", speed[0], speed[1], speed[2], order);
     ABOVE(order, 1.8);
     NEAR(speed[2], 0.4245, 1e-4, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(derivatives_agree_with_differences),
-        cmocka_unit_test(it_takes_from_the_body_what_it_leaves_in_the_wake),
-        cmocka_unit_test(it_has_the_velocity_of_a_linear_flow_at_the_tail),
-        cmocka_unit_test(its_mass_is_that_of_the_extent_at_the_tail),
-        cmocka_unit_test(a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,8 +12,7 @@ static void set(const struct simulation *simulation, const char *key, double val
     school_ok(handle_set_key(simulation, 0, key, 1, &value));
 }
 
-static void the_phase_of_the_beat_is_continuous(void **state) {
-    (void)state;
+TEST(the_phase_of_the_beat_is_continuous) {
     struct simulation *const simulation = school_simulation(TIME "fish: [{control: {ramp: 0.2}}]\n");
     school_run(simulation, 0.6);
     const struct fish *const fish = simulation->school->fish;
@@ -30,8 +29,7 @@ static void the_phase_of_the_beat_is_continuous(void **state) {
     simulate_free(simulation);
 }
 
-static void amplitude_and_bias_get_there_within_the_ramp(void **state) {
-    (void)state;
+TEST(amplitude_and_bias_get_there_within_the_ramp) {
     struct simulation *const simulation =
         school_simulation(TIME "fish: [{wave: {amplitude: 0.4, ramp: 0}, control: {ramp: 0.2, bias: 0.1}}]\n");
     school_run(simulation, 0.6);
@@ -74,8 +72,7 @@ static double led_swim(const char *solver, int is_led, long *steps) {
     return nose;
 }
 
-static void every_method_integrates_the_same_led_swim(void **state) {
-    (void)state;
+TEST(every_method_integrates_the_same_led_swim) {
     long steps, steps_alone;
     const double exact = led_swim("{method: rk4, step: 2.5e-4}", 1, &steps);
     const double tight = led_swim("{rtol: 1e-8}", 1, &steps), usual = led_swim("{rtol: 1e-5}", 1, &steps);
@@ -87,8 +84,7 @@ static void every_method_integrates_the_same_led_swim(void **state) {
     BELOW(2 * steps, 3 * steps_alone);
 }
 
-static void a_desired_heading_is_taken_up_the_short_way(void **state) {
-    (void)state;
+TEST(a_desired_heading_is_taken_up_the_short_way) {
     struct simulation *const simulation =
         school_simulation(TIME "fish: [{control: {law: heading, ramp: 0.2, desired_heading: [[0, 170], [2, 178]]}}]\n");
     school_run(simulation, 0.5);
@@ -104,8 +100,7 @@ static void a_desired_heading_is_taken_up_the_short_way(void **state) {
     simulate_free(simulation);
 }
 
-static void waypoints_are_taken_up(void **state) {
-    (void)state;
+TEST(waypoints_are_taken_up) {
     struct simulation *const simulation =
         school_simulation(TIME "fish: [{control: {law: course, waypoints: [[-9, 0]], acceptance_radius: 0.3}}]\n");
     school_run(simulation, 0.1);
@@ -132,8 +127,7 @@ static void refused(const struct simulation *simulation, const char *key, int n,
     assert_memory_equal(&before, &simulation->state->control[0], sizeof before);
 }
 
-static void what_has_no_use_is_refused(void **state) {
-    (void)state;
+TEST(what_has_no_use_is_refused) {
     struct simulation *simulation = school_simulation(TIME "fish: [{}]\n");
     refused(simulation, "wave.number", 1, 1, "'wave.number' cannot be set");
     refused(simulation, "wave.amplitude", 1, NAN, "is not finite");
@@ -152,16 +146,4 @@ static void what_has_no_use_is_refused(void **state) {
     refused(simulation, "control.waypoints", 3, 1, "3 numbers: give 1 to 32 pairs");
     refused(simulation, "control.waypoints", 66, 1, "66 numbers: give 1 to 32 pairs");
     simulate_free(simulation);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_phase_of_the_beat_is_continuous),
-        cmocka_unit_test(amplitude_and_bias_get_there_within_the_ramp),
-        cmocka_unit_test(every_method_integrates_the_same_led_swim),
-        cmocka_unit_test(a_desired_heading_is_taken_up_the_short_way),
-        cmocka_unit_test(waypoints_are_taken_up),
-        cmocka_unit_test(what_has_no_use_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -42,6 +42,8 @@ static int remove_case(void **state) {
     return unlink(*state);
 }
 
+TEST_GROUP(write_case, remove_case)
+
 static struct shoal *opened(const char *path, int n_assignments, const char *const *assignments) {
     struct shoal *run;
     if (shoal_open(&run, path, n_assignments, assignments) != 0) fail_msg("%s", shoal_message());
@@ -49,7 +51,7 @@ static struct shoal *opened(const char *path, int n_assignments, const char *con
     return run;
 }
 
-static void a_run_begins_with_the_start_of_its_case(void **state) {
+TEST(a_run_begins_with_the_start_of_its_case) {
     struct shoal *const run = opened(*state, 0, NULL);
     NEAR(shoal_time(run), 0, 0, 0);
     NEAR(shoal_end(run), 0.1, 0, 0);
@@ -67,7 +69,7 @@ static void a_run_begins_with_the_start_of_its_case(void **state) {
     shoal_close(run);
 }
 
-static void assignments_change_the_case(void **state) {
+TEST(assignments_change_the_case) {
     const char *const assignments[] = {"time.end=0.06", "fish[0].nodes=9"};
     struct shoal *run = opened(*state, 1, assignments);
     NEAR(shoal_end(run), 0.06, 0, 0);
@@ -79,7 +81,7 @@ static void assignments_change_the_case(void **state) {
     shoal_close(run);
 }
 
-static void a_step_goes_to_the_next_event_and_releases_a_vortex_of_each_fish(void **state) {
+TEST(a_step_goes_to_the_next_event_and_releases_a_vortex_of_each_fish) {
     struct shoal *const run = opened(*state, 0, NULL);
     int n_steps = 0;
     while (shoal_time(run) < shoal_end(run)) {
@@ -93,7 +95,7 @@ static void a_step_goes_to_the_next_event_and_releases_a_vortex_of_each_fish(voi
     shoal_close(run);
 }
 
-static void bodies_and_wakes_are_those_of_the_simulation(void **state) {
+TEST(bodies_and_wakes_are_those_of_the_simulation) {
     struct case_values values;
     struct simulation *simulation;
     school_ok(case_read(&values, *state, 0, NULL));
@@ -126,7 +128,7 @@ static void bodies_and_wakes_are_those_of_the_simulation(void **state) {
     case_free(&values);
 }
 
-static void two_runs_do_not_know_each_other(void **state) {
+TEST(two_runs_do_not_know_each_other) {
     struct shoal *const one = opened(*state, 0, NULL), *const other = opened(*state, 0, NULL);
     assert_int_equal(shoal_step(one), 0);
     assert_int_equal(shoal_step(one), 0);
@@ -147,7 +149,7 @@ static const char *refusal(const char *path, const char *assignment) {
     return shoal_message();
 }
 
-static void what_cannot_be_opened_is_refused_with_the_words_of_the_program(void **state) {
+TEST(what_cannot_be_opened_is_refused_with_the_words_of_the_program) {
     const char *const path = *state;
     assert_non_null(
         strstr(refusal("/no/such/case.yaml", NULL), "/no/such/case.yaml: error: the case file cannot be read"));
@@ -156,7 +158,7 @@ static void what_cannot_be_opened_is_refused_with_the_words_of_the_program(void 
     assert_non_null(strstr(refusal(path, "sweep=[{key: solver.rtol, values: [1e-4]}]"), "shoal study"));
 }
 
-static void a_run_that_fails_can_be_read_and_closed(void **state) {
+TEST(a_run_that_fails_can_be_read_and_closed) {
     const char *const assignments[] = {"solver.max_steps=1"};
     struct shoal *const run = opened(*state, 1, assignments);
     BELOW(shoal_step(run), 0);
@@ -175,8 +177,7 @@ static void *fail_in_a_thread(void *message) {
     return NULL;
 }
 
-static void each_thread_has_its_own_message(void **state) {
-    (void)state;
+TEST(each_thread_has_its_own_message) {
     refusal("/no/such/case.yaml", NULL);
     pthread_t thread;
     int has_message = 0;
@@ -236,7 +237,7 @@ static void *swim_in_a_thread(void *data) {
     return NULL;
 }
 
-static void runs_in_many_threads_are_those_alone(void **state) {
+TEST(runs_in_many_threads_are_those_alone) {
     pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
     struct shoal *const origin = opened(*state, 0, NULL);
     struct worker alone = {.path = *state, .origin = origin, .turn = &turn}, worker[N_THREADS];
@@ -255,12 +256,11 @@ static void runs_in_many_threads_are_those_alone(void **state) {
     shoal_close(origin);
 }
 
-static void closing_nothing_is_allowed(void **state) {
-    (void)state;
+TEST(closing_nothing_is_allowed) {
     shoal_close(NULL);
 }
 
-static void opening_without_memory_fails_and_leaves_nothing(void **state) {
+TEST(opening_without_memory_fails_and_leaves_nothing) {
     int n_failed = 0, is_reached = 1;
     for (int n = 0; is_reached; n++) {
         const int n_before = n_live;
@@ -286,8 +286,7 @@ static void refuses(int code, const char *words) {
     if (!strstr(shoal_message(), words)) fail_msg("'%s' is not in: %s", words, shoal_message());
 }
 
-static void a_run_that_is_not_there_is_refused_by_every_function(void **state) {
-    (void)state;
+TEST(a_run_that_is_not_there_is_refused_by_every_function) {
     double two[2] = {0, 0};
     struct shoal_array array;
     refuses(shoal_open(NULL, "x.yaml", 0, NULL), "run is NULL");
@@ -308,7 +307,7 @@ static void a_run_that_is_not_there_is_refused_by_every_function(void **state) {
     assert_non_null(strstr(shoal_message(), "shoal_interval: run is NULL"));
 }
 
-static void a_fish_that_is_not_there_is_refused(void **state) {
+TEST(a_fish_that_is_not_there_is_refused) {
     struct shoal *const run = opened(*state, 0, NULL);
     double x[7], y[7];
     const int wrong[] = {-1, 2, 99, INT_MAX, INT_MIN};
@@ -321,7 +320,7 @@ static void a_fish_that_is_not_there_is_refused(void **state) {
     shoal_close(run);
 }
 
-static void arrays_that_are_not_there_are_refused(void **state) {
+TEST(arrays_that_are_not_there_are_refused) {
     struct shoal *const run = opened(*state, 0, NULL);
     assert_int_equal(shoal_step(run), SHOAL_OK);
     double x[7];
@@ -339,7 +338,7 @@ static void arrays_that_are_not_there_are_refused(void **state) {
     shoal_close(run);
 }
 
-static void what_a_fish_is_set_to_is_checked(void **state) {
+TEST(what_a_fish_is_set_to_is_checked) {
     struct shoal *const run = opened(*state, 0, NULL);
     const double value = 0.2;
     refuses(shoal_set(NULL, 0, "wave.amplitude", 1, &value), "run is NULL");
@@ -359,7 +358,7 @@ static double of_fish(struct shoal *run, const char *name, int fish) {
 }
 
 // both values change by half within half of control.ramp
-static void the_gait_in_force_can_be_read(void **state) {
+TEST(the_gait_in_force_can_be_read) {
     const char *const more[] = {"time.end=0.6", "fish[*].wave.ramp=0.1", "fish[*].control.ramp=0.2"};
     struct shoal *const run = opened(*state, 3, more);
     NEAR(of_fish(run, "wave_amplitude", 0), 0, 0, 0);
@@ -382,7 +381,7 @@ static void the_gait_in_force_can_be_read(void **state) {
     shoal_close(run);
 }
 
-static void assignments_are_checked(void **state) {
+TEST(assignments_are_checked) {
     struct shoal *run;
     const char *const none = NULL;
     refuses(shoal_open(&run, *state, -1, NULL), "-1 assignments");
@@ -393,7 +392,7 @@ static void assignments_are_checked(void **state) {
     assert_null(run);
 }
 
-static void a_step_past_the_end_is_refused(void **state) {
+TEST(a_step_past_the_end_is_refused) {
     struct shoal *const run = opened(*state, 0, NULL);
     assert_int_equal(shoal_advance(run, shoal_end(run)), SHOAL_OK);
     NEAR(shoal_time(run), 0.1, 1e-15, 0);
@@ -402,7 +401,7 @@ static void a_step_past_the_end_is_refused(void **state) {
     shoal_close(run);
 }
 
-static void a_run_advances_to_the_event_at_or_after_a_time(void **state) {
+TEST(a_run_advances_to_the_event_at_or_after_a_time) {
     struct shoal *const run = opened(*state, 0, NULL);
     NEAR(shoal_interval(run), 0.02, 0, 0);
     assert_int_equal(shoal_advance(run, 0.03), SHOAL_OK);
@@ -419,7 +418,7 @@ static void a_run_advances_to_the_event_at_or_after_a_time(void **state) {
     shoal_close(run);
 }
 
-static void a_failed_run_makes_no_step_and_says_why(void **state) {
+TEST(a_failed_run_makes_no_step_and_says_why) {
     const char *const assignments[] = {"solver.max_steps=1"};
     struct shoal *const run = opened(*state, 1, assignments);
     assert_int_equal(shoal_step(run), SHOAL_SOLVER);
@@ -432,7 +431,7 @@ static void a_failed_run_makes_no_step_and_says_why(void **state) {
     shoal_close(run);
 }
 
-static void a_run_that_ends_in_contact_has_failed(void **state) {
+TEST(a_run_that_ends_in_contact_has_failed) {
     const char *const assignments[] = {"contact.action=stop", "fish[1].start.position=[0.2,0.25]",
                                        "fish[1].start.heading=225"};
     struct shoal *const run = opened(*state, 3, assignments);
@@ -446,7 +445,7 @@ static void a_run_that_ends_in_contact_has_failed(void **state) {
 
 // ---- a case from text
 
-static void the_text_of_a_case_is_a_case(void **state) {
+TEST(the_text_of_a_case_is_a_case) {
     struct shoal *const by_path = opened(*state, 0, NULL), *by_text;
     assert_int_equal(shoal_open_text(&by_text, case_text, NULL, 0, NULL), SHOAL_OK);
     double x[2][7], y[2][7];
@@ -460,8 +459,7 @@ static void the_text_of_a_case_is_a_case(void **state) {
     shoal_close(by_text);
 }
 
-static void an_error_in_a_text_has_its_line(void **state) {
-    (void)state;
+TEST(an_error_in_a_text_has_its_line) {
     struct shoal *run;
     assert_int_equal(shoal_open_text(&run, "format: 1\nname: x\nfihs: []\n", NULL, 0, NULL), SHOAL_USAGE);
     assert_null(run);
@@ -476,7 +474,7 @@ static const double *read_doubles(struct shoal *run, const char *name, struct sh
     return array->values;
 }
 
-static void a_variable_is_read_with_its_shape(void **state) {
+TEST(a_variable_is_read_with_its_shape) {
     struct shoal *const run = opened(*state, 0, NULL);
     assert_int_equal(shoal_advance(run, 0.04), SHOAL_OK);
     struct shoal_array array;
@@ -508,7 +506,7 @@ static void a_variable_is_read_with_its_shape(void **state) {
     shoal_close(run);
 }
 
-static void a_wake_is_read_without_empty_slots(void **state) {
+TEST(a_wake_is_read_without_empty_slots) {
     struct shoal *const run = opened(*state, 0, NULL);
     struct shoal_array array;
     read_doubles(run, "wake_x", &array);
@@ -526,7 +524,7 @@ static void a_wake_is_read_without_empty_slots(void **state) {
     shoal_close(run);
 }
 
-static void names_and_counts_are_read_too(void **state) {
+TEST(names_and_counts_are_read_too) {
     struct shoal *const run = opened(*state, 0, NULL);
     struct shoal_array array;
     assert_int_equal(shoal_read(run, "fish_name", &array), SHOAL_OK);
@@ -542,7 +540,7 @@ static void names_and_counts_are_read_too(void **state) {
     shoal_close(run);
 }
 
-static void every_variable_of_the_table_can_be_read(void **state) {
+TEST(every_variable_of_the_table_can_be_read) {
     struct shoal *const run = opened(*state, 0, NULL);
     assert_int_equal(shoal_step(run), SHOAL_OK);
     int n = 0;
@@ -559,7 +557,7 @@ static void every_variable_of_the_table_can_be_read(void **state) {
     shoal_close(run);
 }
 
-static void what_has_been_read_holds_until_the_next_step(void **state) {
+TEST(what_has_been_read_holds_until_the_next_step) {
     struct shoal *const run = opened(*state, 0, NULL);
     struct shoal_array array;
     const double *const x = read_doubles(run, "x", &array), *const v = read_doubles(run, "v", &array);
@@ -582,7 +580,7 @@ static struct shoal *swum(const char *path) {
     return run;
 }
 
-static void far_from_everything_the_flow_is_the_external_one(void **state) {
+TEST(far_from_everything_the_flow_is_the_external_one) {
     const char *const assignments[] = {"fluid.velocity=[0.3, -0.1]", "fluid.shear=0.5"};
     struct shoal *const run = opened(*state, 2, assignments);
     assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
@@ -595,7 +593,7 @@ static void far_from_everything_the_flow_is_the_external_one(void **state) {
     shoal_close(run);
 }
 
-static void the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own(void **state) {
+TEST(the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own) {
     struct shoal *const run = swum(*state);
     enum { N = 4000 };
     static double points[2 * N], velocity[2 * N];
@@ -617,7 +615,7 @@ static void the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own(v
     shoal_close(run);
 }
 
-static void vorticity_is_the_curl_of_the_velocity(void **state) {
+TEST(vorticity_is_the_curl_of_the_velocity) {
     struct shoal *const run = swum(*state);
     const double h = 1e-4, x = 1.1, y = 0.02;
     const double points[] = {x, y, x + h, y, x - h, y, x, y + h, x, y - h};
@@ -629,7 +627,7 @@ static void vorticity_is_the_curl_of_the_velocity(void **state) {
     shoal_close(run);
 }
 
-static void looking_does_not_change_a_run(void **state) {
+TEST(looking_does_not_change_a_run) {
     // shoal_flow must not change the wake interpolation
     const char *const assignments[] = {"time.end=0.4", "wake.tolerance=1e-4"};
     struct shoal *const seen = opened(*state, 2, assignments), *const alone = opened(*state, 2, assignments);
@@ -655,7 +653,7 @@ static void looking_does_not_change_a_run(void **state) {
 
 // ---- result files
 
-static void a_result_file_has_the_rows_that_are_due(void **state) {
+TEST(a_result_file_has_the_rows_that_are_due) {
     const char *const assignments[] = {"time.output_interval=0.04"};
     struct shoal *const run = opened(*state, 1, assignments);
     char path[] = "/tmp/test_shoal_result_XXXXXX";
@@ -678,7 +676,7 @@ static void a_result_file_has_the_rows_that_are_due(void **state) {
     assert_int_equal(unlink(path), 0);
 }
 
-static void a_checkpoint_stands_beside_the_result(void **state) {
+TEST(a_checkpoint_stands_beside_the_result) {
     struct shoal *const run = opened(*state, 0, NULL);
     char folder[] = "/tmp/test_shoal_folder_XXXXXX", path[64];
     assert_non_null(mkdtemp(folder));
@@ -721,7 +719,7 @@ static size_t n_rows_of(const char *path) {
     return n_rows;
 }
 
-static void two_runs_of_one_process_do_not_write_the_same_result(void **state) {
+TEST(two_runs_of_one_process_do_not_write_the_same_result) {
     struct shoal *const one = opened(*state, 1, every_event), *const other = opened(*state, 1, every_event);
     make_result_folder();
     assert_int_equal(shoal_write(one, result_path, 0), SHOAL_OK);
@@ -764,7 +762,7 @@ static int use_in_a_fork(struct shoal *run, int how) {
     return 0;
 }
 
-static void a_fork_leaves_the_result_and_its_lock_alone(void **state) {
+TEST(a_fork_leaves_the_result_and_its_lock_alone) {
     struct shoal *const run = opened(*state, 1, every_event);
     make_result_folder();
     assert_int_equal(shoal_write(run, result_path, 0), SHOAL_OK);
@@ -790,7 +788,7 @@ static void a_fork_leaves_the_result_and_its_lock_alone(void **state) {
     assert_int_equal(rmdir(result_folder), 0);
 }
 
-static void a_result_file_that_cannot_be_written_is_said_so(void **state) {
+TEST(a_result_file_that_cannot_be_written_is_said_so) {
     struct shoal *const run = opened(*state, 0, NULL);
     assert_int_equal(shoal_write(run, "/no/such/folder/x.nc", 0), SHOAL_FILE);
     assert_non_null(strstr(shoal_message(), "/no/such/folder"));
@@ -822,7 +820,7 @@ static void same_in_all(struct shoal *one, struct shoal *other) {
 static const char *const led[] = {"time.end=0.6", "fish[*].wave.ramp=0.1", "fish[1].control.law=course",
                                   "fish[1].control.waypoints=[[-3, 1], [-6, 0]]"};
 
-static void a_copy_goes_on_with_the_bits_of_the_run(void **state) {
+TEST(a_copy_goes_on_with_the_bits_of_the_run) {
     struct shoal *const run = opened(*state, 4, led), *copy;
     assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
     const double amplitude = 0.3;
@@ -843,7 +841,7 @@ static void a_copy_goes_on_with_the_bits_of_the_run(void **state) {
     shoal_close(second);
 }
 
-static void a_copy_shows_what_the_run_shows(void **state) {
+TEST(a_copy_shows_what_the_run_shows) {
     struct shoal *const run = opened(*state, 4, led), *const alone = opened(*state, 4, led), *copy;
     assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
     assert_int_equal(shoal_advance(alone, 0.4), SHOAL_OK);
@@ -855,7 +853,7 @@ static void a_copy_shows_what_the_run_shows(void **state) {
     shoal_close(alone);
 }
 
-static void a_run_is_put_back_to_a_copy(void **state) {
+TEST(a_run_is_put_back_to_a_copy) {
     struct shoal *const run = opened(*state, 4, led), *kept, *first;
     assert_int_equal(shoal_clone(&kept, run), SHOAL_OK);
     assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
@@ -872,7 +870,7 @@ static void a_run_is_put_back_to_a_copy(void **state) {
     shoal_close(run);
 }
 
-static void a_run_that_has_failed_is_whole_when_it_is_put_back(void **state) {
+TEST(a_run_that_has_failed_is_whole_when_it_is_put_back) {
     const char *const assignments[] = {"solver.max_steps=9", "time.end=2", "fish[*].wave.ramp=0.01"};
     struct shoal *const run = opened(*state, 3, assignments), *kept;
     assert_int_equal(shoal_clone(&kept, run), SHOAL_OK);
@@ -891,7 +889,7 @@ static void a_run_that_has_failed_is_whole_when_it_is_put_back(void **state) {
     shoal_close(kept);
 }
 
-static void only_copies_can_be_put_in_the_place_of_one_another(void **state) {
+TEST(only_copies_can_be_put_in_the_place_of_one_another) {
     struct shoal *const run = opened(*state, 0, NULL), *const other = opened(*state, 0, NULL), *copy;
     refuses(shoal_clone(NULL, run), "copy is NULL");
     refuses(shoal_clone(&copy, NULL), "run is NULL");
@@ -903,7 +901,7 @@ static void only_copies_can_be_put_in_the_place_of_one_another(void **state) {
     shoal_close(other);
 }
 
-static void copying_without_memory_fails_and_leaves_the_run(void **state) {
+TEST(copying_without_memory_fails_and_leaves_the_run) {
     struct shoal *const run = opened(*state, 0, NULL), *copy;
     assert_int_equal(shoal_step(run), SHOAL_OK);
     assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
@@ -947,7 +945,7 @@ static struct shoal *opened_to_change(void **state, double t) {
     return run;
 }
 
-static void a_body_is_where_it_was_put_with_its_velocity(void **state) {
+TEST(a_body_is_where_it_was_put_with_its_velocity) {
     struct shoal *const run = opened_to_change(state, 0.2);
     double x[18], v[18], x_now[18], v_now[18], audit[3];
     const double moment = one_of(run, "angular_momentum_balance", 0);
@@ -985,7 +983,7 @@ static void a_body_is_where_it_was_put_with_its_velocity(void **state) {
     shoal_close(run);
 }
 
-static void a_state_that_is_set_to_itself_stays(void **state) {
+TEST(a_state_that_is_set_to_itself_stays) {
     struct shoal *const run = opened_to_change(state, 0.2), *copy;
     double x[18], v[18];
     assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
@@ -1011,7 +1009,7 @@ static void a_state_that_is_set_to_itself_stays(void **state) {
     shoal_close(run);
 }
 
-static void a_state_that_no_body_can_have_is_refused(void **state) {
+TEST(a_state_that_no_body_can_have_is_refused) {
     struct shoal *const run = opened_to_change(state, 0.1), *copy;
     double x[18], v[18], wrong[18];
     assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
@@ -1051,7 +1049,7 @@ static void a_state_that_no_body_can_have_is_refused(void **state) {
     shoal_close(run);
 }
 
-static void a_vortex_from_outside_keeps_momentum_and_circulation(void **state) {
+TEST(a_vortex_from_outside_keeps_momentum_and_circulation) {
     // without pressure there is no momentum balance
     static const char *const shedding[] = {"wake.shedding=sheet", "wake.shedding=continuous",
                                            "wake.shedding=impulsive"};
@@ -1103,7 +1101,7 @@ static void a_vortex_from_outside_keeps_momentum_and_circulation(void **state) {
     }
 }
 
-static void a_changed_run_is_copied_and_saved_like_any_other(void **state) {
+TEST(a_changed_run_is_copied_and_saved_like_any_other) {
     struct shoal *const run = opened_to_change(state, 0.2), *copy, *loaded;
     double x[18];
     assert_int_equal(shoal_add_vortex(run, 1, -1, 0, 0.02), SHOAL_OK);
@@ -1130,7 +1128,7 @@ static void a_changed_run_is_copied_and_saved_like_any_other(void **state) {
     assert_int_equal(rmdir(result_folder), 0);
 }
 
-static void the_longest_wake_has_all_its_slots_and_the_other_ends_in_nan(void **state) {
+TEST(the_longest_wake_has_all_its_slots_and_the_other_ends_in_nan) {
     for (int f = 0; f < 2; f++) {
         struct shoal *const run = opened_to_change(state, 0.1);
         assert_int_equal(shoal_add_vortex(run, f, -1, 0.5, 0.01), SHOAL_OK);
@@ -1154,7 +1152,7 @@ static void the_longest_wake_has_all_its_slots_and_the_other_ends_in_nan(void **
     }
 }
 
-static void a_vortex_without_room_is_refused(void **state) {
+TEST(a_vortex_without_room_is_refused) {
     struct shoal *const run = opened_to_change(state, 0.1);
     assert_int_equal(shoal_add_vortex(run, 2, 0, 0, 1), SHOAL_USAGE);
     assert_int_equal(shoal_add_vortex(NULL, 0, 0, 0, 1), SHOAL_USAGE);
@@ -1173,7 +1171,7 @@ static void a_vortex_without_room_is_refused(void **state) {
     shoal_close(other);
 }
 
-static void changing_without_memory_leaves_the_run(void **state) {
+TEST(changing_without_memory_leaves_the_run) {
     struct shoal *const run = opened_to_change(state, 0.1), *copy;
     assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
     shoal_close(copy);
@@ -1204,7 +1202,7 @@ static void make_saved_path(void) {
     assert_int_equal(unlink(saved_path), 0);
 }
 
-static void a_saved_run_goes_on_with_the_bits_of_the_run(void **state) {
+TEST(a_saved_run_goes_on_with_the_bits_of_the_run) {
     struct shoal *const run = opened(*state, sizeof led / sizeof *led, led), *loaded;
     assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
     assert_int_equal(shoal_set(run, 0, "wave.amplitude", 1, (const double[]){0.2}), SHOAL_OK);
@@ -1222,7 +1220,7 @@ static void a_saved_run_goes_on_with_the_bits_of_the_run(void **state) {
     assert_int_equal(unlink(saved_path), 0);
 }
 
-static void only_a_checkpoint_is_replaced_or_loaded(void **state) {
+TEST(only_a_checkpoint_is_replaced_or_loaded) {
     struct shoal *const run = opened(*state, 0, NULL), *loaded = run;
     assert_int_equal(shoal_save(run, *state), SHOAL_FILE);
     assert_int_equal(shoal_save(run, "/no/such/folder/x.ckpt"), SHOAL_FILE);
@@ -1237,7 +1235,7 @@ static void only_a_checkpoint_is_replaced_or_loaded(void **state) {
     shoal_close(run);
 }
 
-static void loading_without_memory_fails_and_leaves_nothing(void **state) {
+TEST(loading_without_memory_fails_and_leaves_nothing) {
     struct shoal *const run = opened(*state, 0, NULL), *loaded;
     make_saved_path();
     assert_int_equal(shoal_save(run, saved_path), SHOAL_OK);
@@ -1259,7 +1257,7 @@ static void loading_without_memory_fails_and_leaves_nothing(void **state) {
     assert_int_equal(unlink(saved_path), 0);
 }
 
-static void a_fork_of_a_run_with_threads_goes_on(void **state) {
+TEST(a_fork_of_a_run_with_threads_goes_on) {
     // steps of the velocity sums that threads share
     const char *const many[] = {"solver.threads=2", "fish[*].sheet_points=129", "fish[*].nodes=17"};
     struct shoal *const run = opened(*state, 3, many);
@@ -1276,7 +1274,7 @@ static void a_fork_of_a_run_with_threads_goes_on(void **state) {
     shoal_close(run);
 }
 
-static void the_end_is_the_time_of_an_event(void **state) {
+TEST(the_end_is_the_time_of_an_event) {
     // 100 * 0.29 is less than 29 by a rounding error
     const char *const assignments[] = {"time.end=29", "time.shedding_interval=0.29", "fish[*].wave.amplitude=0"};
     struct shoal *const run = opened(*state, 3, assignments);
@@ -1285,71 +1283,7 @@ static void the_end_is_the_time_of_an_event(void **state) {
     shoal_close(run);
 }
 
-static void the_version_is_that_of_the_program(void **state) {
-    (void)state;
+TEST(the_version_is_that_of_the_program) {
     assert_string_equal(shoal_version(), version_short());
     assert_memory_equal(shoal_version(), "shoal ", 6);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_run_begins_with_the_start_of_its_case),
-        cmocka_unit_test(assignments_change_the_case),
-        cmocka_unit_test(a_step_goes_to_the_next_event_and_releases_a_vortex_of_each_fish),
-        cmocka_unit_test(bodies_and_wakes_are_those_of_the_simulation),
-        cmocka_unit_test(two_runs_do_not_know_each_other),
-        cmocka_unit_test(what_cannot_be_opened_is_refused_with_the_words_of_the_program),
-        cmocka_unit_test(a_run_that_fails_can_be_read_and_closed),
-        cmocka_unit_test(each_thread_has_its_own_message),
-        cmocka_unit_test(runs_in_many_threads_are_those_alone),
-        cmocka_unit_test(closing_nothing_is_allowed),
-        cmocka_unit_test(opening_without_memory_fails_and_leaves_nothing),
-        cmocka_unit_test(a_run_that_is_not_there_is_refused_by_every_function),
-        cmocka_unit_test(a_fish_that_is_not_there_is_refused),
-        cmocka_unit_test(arrays_that_are_not_there_are_refused),
-        cmocka_unit_test(what_a_fish_is_set_to_is_checked),
-        cmocka_unit_test(the_gait_in_force_can_be_read),
-        cmocka_unit_test(assignments_are_checked),
-        cmocka_unit_test(a_step_past_the_end_is_refused),
-        cmocka_unit_test(a_run_advances_to_the_event_at_or_after_a_time),
-        cmocka_unit_test(a_failed_run_makes_no_step_and_says_why),
-        cmocka_unit_test(a_run_that_ends_in_contact_has_failed),
-        cmocka_unit_test(the_text_of_a_case_is_a_case),
-        cmocka_unit_test(an_error_in_a_text_has_its_line),
-        cmocka_unit_test(a_variable_is_read_with_its_shape),
-        cmocka_unit_test(a_wake_is_read_without_empty_slots),
-        cmocka_unit_test(names_and_counts_are_read_too),
-        cmocka_unit_test(every_variable_of_the_table_can_be_read),
-        cmocka_unit_test(what_has_been_read_holds_until_the_next_step),
-        cmocka_unit_test(far_from_everything_the_flow_is_the_external_one),
-        cmocka_unit_test(the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own),
-        cmocka_unit_test(vorticity_is_the_curl_of_the_velocity),
-        cmocka_unit_test(looking_does_not_change_a_run),
-        cmocka_unit_test(a_result_file_has_the_rows_that_are_due),
-        cmocka_unit_test(a_checkpoint_stands_beside_the_result),
-        cmocka_unit_test(two_runs_of_one_process_do_not_write_the_same_result),
-        cmocka_unit_test(a_fork_leaves_the_result_and_its_lock_alone),
-        cmocka_unit_test(a_result_file_that_cannot_be_written_is_said_so),
-        cmocka_unit_test(a_copy_goes_on_with_the_bits_of_the_run),
-        cmocka_unit_test(a_copy_shows_what_the_run_shows),
-        cmocka_unit_test(a_run_is_put_back_to_a_copy),
-        cmocka_unit_test(a_run_that_has_failed_is_whole_when_it_is_put_back),
-        cmocka_unit_test(only_copies_can_be_put_in_the_place_of_one_another),
-        cmocka_unit_test(copying_without_memory_fails_and_leaves_the_run),
-        cmocka_unit_test(a_body_is_where_it_was_put_with_its_velocity),
-        cmocka_unit_test(a_state_that_is_set_to_itself_stays),
-        cmocka_unit_test(a_state_that_no_body_can_have_is_refused),
-        cmocka_unit_test(a_vortex_from_outside_keeps_momentum_and_circulation),
-        cmocka_unit_test(a_changed_run_is_copied_and_saved_like_any_other),
-        cmocka_unit_test(the_longest_wake_has_all_its_slots_and_the_other_ends_in_nan),
-        cmocka_unit_test(a_vortex_without_room_is_refused),
-        cmocka_unit_test(changing_without_memory_leaves_the_run),
-        cmocka_unit_test(a_saved_run_goes_on_with_the_bits_of_the_run),
-        cmocka_unit_test(only_a_checkpoint_is_replaced_or_loaded),
-        cmocka_unit_test(loading_without_memory_fails_and_leaves_nothing),
-        cmocka_unit_test(a_fork_of_a_run_with_threads_goes_on),
-        cmocka_unit_test(the_end_is_the_time_of_an_event),
-        cmocka_unit_test(the_version_is_that_of_the_program),
-    };
-    return cmocka_run_group_tests(tests, write_case, remove_case);
 }

@@ -55,8 +55,9 @@ static int tear_down(void **state) {
     return rmdir(folder);
 }
 
-static void all_that_is_written_is_read(void **state) {
-    (void)state;
+TEST_GROUP(set_up, tear_down)
+
+TEST(all_that_is_written_is_read) {
     struct checkpoint read;
     struct state *fresh;
     school_ok(checkpoint_read(&read, path));
@@ -89,8 +90,7 @@ static void all_that_is_written_is_read(void **state) {
     checkpoint_free(&read);
 }
 
-static void every_bit_that_flips_is_noticed(void **state) {
-    (void)state;
+TEST(every_bit_that_flips_is_noticed) {
     school_ok(sections_check(whole, n_whole));
     for (size_t byte = 0; byte < n_whole; byte++) {
         // all bits of the first ones, one of the others
@@ -103,8 +103,7 @@ static void every_bit_that_flips_is_noticed(void **state) {
     school_ok(sections_check(whole, n_whole));
 }
 
-static void every_truncation_is_noticed_and_so_is_more(void **state) {
-    (void)state;
+TEST(every_truncation_is_noticed_and_so_is_more) {
     for (size_t n = 0; n < n_whole; n++) {
         if (sections_check(whole, n) != STATUS_FILE) fail_msg("%zu of %zu bytes", n, n_whole);
     }
@@ -127,8 +126,7 @@ static void other_format(size_t at, uint32_t number, const char *reason) {
     free(bytes);
 }
 
-static void another_format_is_refused_by_name(void **state) {
-    (void)state;
+TEST(another_format_is_refused_by_name) {
     other_format(8, 2, "format 2, but this program reads format");
     other_format(12, 0x04030201, "format");
     assert_int_equal(sections_check((const unsigned char *)"CDF\5", 4), STATUS_FILE);
@@ -167,8 +165,7 @@ static void crafted(const char *section, const void *bytes, size_t n, const char
     sections_free(&writer);
 }
 
-static void what_no_run_has_written_is_refused(void **state) {
-    (void)state;
+TEST(what_no_run_has_written_is_refused) {
     const int many[] = {0, 1 << 30}, negative[] = {0, -1}, few[] = {0, 29}, large = 1 << 20;
     crafted("program", "shoal 9", 7, "written by shoal 9, but this program is ");
     crafted("libraries", "SUNDIALS 1", 10, "written by SUNDIALS 1, but this program is ");
@@ -187,8 +184,7 @@ static void what_no_run_has_written_is_refused(void **state) {
 }
 
 /* A value that is not finite, in a checkpoint whose checksums fit, is refused with the name of its field. */
-static void values_that_are_not_finite_are_refused(void **state) {
-    (void)state;
+TEST(values_that_are_not_finite_are_refused) {
     const double wrong[] = {NAN, INFINITY};
     int n_refused = 0;
     for (int i = 0; i < state_table_n; i++) {
@@ -214,8 +210,7 @@ static void values_that_are_not_finite_are_refused(void **state) {
 }
 
 /* What a machine of the other order of bytes would write: all numbers the other way round. */
-static void a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name(void **state) {
-    (void)state;
+TEST(a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name) {
     unsigned char *const other = malloc(n_whole);
     const size_t numbers[][2] = {{8, 4}, {12, 4}, {16, 8}};
     memcpy(other, whole, n_whole);
@@ -233,8 +228,7 @@ static void a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name(void **s
     school_ok(durable_replace(path, previous, whole, n_whole));
 }
 
-static void only_checkpoints_may_be_replaced(void **state) {
-    (void)state;
+TEST(only_checkpoints_may_be_replaced) {
     char other[64];
     snprintf(other, sizeof other, "%s/other", folder);
     school_ok(checkpoint_check_target(other, "run.nc"));
@@ -250,18 +244,4 @@ static void only_checkpoints_may_be_replaced(void **state) {
     assert_int_equal(symlink(path, other), 0);
     assert_int_equal(checkpoint_check_target(other, "run.nc"), STATUS_FILE);
     unlink(other);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_that_is_written_is_read),
-        cmocka_unit_test(every_bit_that_flips_is_noticed),
-        cmocka_unit_test(every_truncation_is_noticed_and_so_is_more),
-        cmocka_unit_test(another_format_is_refused_by_name),
-        cmocka_unit_test(what_no_run_has_written_is_refused),
-        cmocka_unit_test(values_that_are_not_finite_are_refused),
-        cmocka_unit_test(a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name),
-        cmocka_unit_test(only_checkpoints_may_be_replaced),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

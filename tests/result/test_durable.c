@@ -40,6 +40,8 @@ static int tear_down(void **state) {
     return rmdir(folder);
 }
 
+TEST_GROUP(set_up, tear_down)
+
 static void put(const char *name, const char *text) {
     FILE *const file = fopen(name, "w");
     fputs(text, file);
@@ -67,8 +69,7 @@ static void ok(enum status status) {
     if (status != STATUS_OK) fail_msg("%s", status_message());
 }
 
-static void the_last_two_are_kept(void **state) {
-    (void)state;
+TEST(the_last_two_are_kept) {
     const char *const texts[] = {"first", "second one", "third"};
     for (int i = 0; i < 3; i++) {
         assert_int_equal(durable_replace(path, previous, texts[i], strlen(texts[i])), STATUS_OK);
@@ -82,8 +83,7 @@ static void the_last_two_are_kept(void **state) {
 
 // ---- files in the making
 
-static void a_part_is_new_locked_and_becomes_the_target_as_a_whole(void **state) {
-    (void)state;
+TEST(a_part_is_new_locked_and_becomes_the_target_as_a_whole) {
     struct durable_part part;
     put(path, "old");
     assert_int_equal(durable_begin(&part, path, 0666), 0);
@@ -107,8 +107,7 @@ static void a_part_is_new_locked_and_becomes_the_target_as_a_whole(void **state)
     unlink(path);
 }
 
-static void a_part_that_is_given_up_leaves_what_was_there(void **state) {
-    (void)state;
+TEST(a_part_that_is_given_up_leaves_what_was_there) {
     struct durable_part part;
     put(path, "old");
     assert_int_equal(durable_begin(&part, path, 0666), 0);
@@ -123,8 +122,7 @@ static void a_part_that_is_given_up_leaves_what_was_there(void **state) {
     durable_end(&part);
 }
 
-static void a_part_is_no_file_of_another_program_and_no_link(void **state) {
-    (void)state;
+TEST(a_part_is_no_file_of_another_program_and_no_link) {
     char name[128], target[64];
     snprintf(target, sizeof target, "%s/target", folder);
     snprintf(name, sizeof name, "%s.part", path);
@@ -150,8 +148,7 @@ static void a_part_is_no_file_of_another_program_and_no_link(void **state) {
     unlink(target);
 }
 
-static void the_part_of_a_process_that_died_is_used_again(void **state) {
-    (void)state;
+TEST(the_part_of_a_process_that_died_is_used_again) {
     char name[128];
     snprintf(name, sizeof name, "%s.part", path);
     static const char *const left[] = {"", "CDF\1 of a run that died", "SHOAL\r\n\x1a...", "<!DOCTYPE html>..."};
@@ -169,8 +166,7 @@ static void the_part_of_a_process_that_died_is_used_again(void **state) {
 
 // ---- claims
 
-static void a_claim_excludes_runs_of_this_and_of_other_processes(void **state) {
-    (void)state;
+TEST(a_claim_excludes_runs_of_this_and_of_other_processes) {
     struct durable_claim one, other;
     for (int exists = 0; exists < 2; exists++) {
         if (exists) put(path, "CDF");
@@ -193,8 +189,7 @@ static void a_claim_excludes_runs_of_this_and_of_other_processes(void **state) {
     unlink(path);
 }
 
-static void a_claim_goes_with_the_file_to_its_name_and_to_all_others(void **state) {
-    (void)state;
+TEST(a_claim_goes_with_the_file_to_its_name_and_to_all_others) {
     struct durable_claim one, other;
     struct durable_part part;
     char second[64];
@@ -221,8 +216,7 @@ static void a_claim_goes_with_the_file_to_its_name_and_to_all_others(void **stat
     unlink(path);
 }
 
-static void a_fork_does_not_release_a_claim(void **state) {
-    (void)state;
+TEST(a_fork_does_not_release_a_claim) {
     struct durable_claim one, other;
     ok(durable_claim_take(&one, path));
     const pid_t child = fork();
@@ -239,8 +233,7 @@ static void a_fork_does_not_release_a_claim(void **state) {
     assert_int_equal(n_files(), 0);
 }
 
-static void of_runs_that_race_one_has_the_claim_and_no_part_stays(void **state) {
-    (void)state;
+TEST(of_runs_that_race_one_has_the_claim_and_no_part_stays) {
     // each process takes the claim, publishes its file, and removes it again, as fast as it can
     enum { RIVALS = 4, ROUNDS = 300 };
     pid_t child[RIVALS];
@@ -277,8 +270,7 @@ static enum status count_work(void *data) {
     return durable_claim_take(&other, path) == STATUS_FILE ? STATUS_MISSED : STATUS_OK;
 }
 
-static void work_is_done_under_the_claim_and_only_then(void **state) {
-    (void)state;
+TEST(work_is_done_under_the_claim_and_only_then) {
     int n = 0;
     assert_int_equal(durable_claim_hold(path, count_work, &n), STATUS_MISSED);
     assert_int_equal(durable_claim_hold("/no/folder/a", count_work, &n), STATUS_FILE);
@@ -289,8 +281,7 @@ static void work_is_done_under_the_claim_and_only_then(void **state) {
     unlink(path);
 }
 
-static void a_lock_belongs_to_an_open_file_and_not_to_the_process(void **state) {
-    (void)state;
+TEST(a_lock_belongs_to_an_open_file_and_not_to_the_process) {
     put(path, "");
     const int one = open(path, O_RDWR), two = open(path, O_RDWR);
     assert_int_equal(durable_lock(one, 0, 4), 0);
@@ -307,8 +298,7 @@ static void a_lock_belongs_to_an_open_file_and_not_to_the_process(void **state) 
     close(two);
 }
 
-static void a_failure_leaves_what_was_there(void **state) {
-    (void)state;
+TEST(a_failure_leaves_what_was_there) {
     assert_int_equal(durable_replace(path, previous, "good", 4), STATUS_OK);
     assert_int_equal(mkdir(previous, 0777), 0);
     assert_int_equal(durable_replace(path, previous, "bad", 3), STATUS_FILE);
@@ -321,8 +311,7 @@ static void a_failure_leaves_what_was_there(void **state) {
     assert_int_equal(durable_sync_folder("/tmp/a"), 0);
 }
 
-static void a_name_that_is_not_on_the_disk_is_an_error(void **state) {
-    (void)state;
+TEST(a_name_that_is_not_on_the_disk_is_an_error) {
     struct durable_part part;
     assert_int_equal(durable_begin(&part, path, 0666), 0);
     folder_fails = 1;
@@ -335,8 +324,7 @@ static void a_name_that_is_not_on_the_disk_is_an_error(void **state) {
     unlink(previous);
 }
 
-static void only_ordinary_files_are_read_and_a_pipe_is_not_waited_for(void **state) {
-    (void)state;
+TEST(only_ordinary_files_are_read_and_a_pipe_is_not_waited_for) {
     unsigned char *bytes;
     size_t n;
     assert_int_equal(mkfifo(path, 0666), 0);
@@ -346,24 +334,4 @@ static void only_ordinary_files_are_read_and_a_pipe_is_not_waited_for(void **sta
         assert_null(bytes);
     }
     unlink(path);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_last_two_are_kept),
-        cmocka_unit_test(a_part_is_new_locked_and_becomes_the_target_as_a_whole),
-        cmocka_unit_test(a_part_that_is_given_up_leaves_what_was_there),
-        cmocka_unit_test(a_part_is_no_file_of_another_program_and_no_link),
-        cmocka_unit_test(the_part_of_a_process_that_died_is_used_again),
-        cmocka_unit_test(a_claim_excludes_runs_of_this_and_of_other_processes),
-        cmocka_unit_test(a_claim_goes_with_the_file_to_its_name_and_to_all_others),
-        cmocka_unit_test(a_fork_does_not_release_a_claim),
-        cmocka_unit_test(of_runs_that_race_one_has_the_claim_and_no_part_stays),
-        cmocka_unit_test(work_is_done_under_the_claim_and_only_then),
-        cmocka_unit_test(a_lock_belongs_to_an_open_file_and_not_to_the_process),
-        cmocka_unit_test(a_failure_leaves_what_was_there),
-        cmocka_unit_test(a_name_that_is_not_on_the_disk_is_an_error),
-        cmocka_unit_test(only_ordinary_files_are_read_and_a_pipe_is_not_waited_for),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

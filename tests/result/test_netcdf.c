@@ -112,7 +112,7 @@ static enum status write_file(const char *path, bool overwrite) {
 
 // ---- writing
 
-static void what_is_written_reads_back(void **state) {
+TEST_WITH(what_is_written_reads_back, set_up, tear_down) {
     const struct fixture *const f = *state;
     assert_int_equal(write_file(f->path, false), STATUS_OK);
     struct netcdf_reader reader;
@@ -141,7 +141,7 @@ static void what_is_written_reads_back(void **state) {
     netcdf_close(&reader);
 }
 
-static void a_file_is_on_disk_before_its_name_and_the_name_before_the_rows(void **state) {
+TEST_WITH(a_file_is_on_disk_before_its_name_and_the_name_before_the_rows, set_up, tear_down) {
     const struct fixture *const f = *state;
     const char *const folder = strrchr(f->folder, '/') + 1;
     char want[512];
@@ -157,7 +157,7 @@ static void a_file_is_on_disk_before_its_name_and_the_name_before_the_rows(void 
     assert_string_equal(deeds, want);
 }
 
-static void a_file_that_came_meanwhile_is_not_replaced(void **state) {
+TEST_WITH(a_file_that_came_meanwhile_is_not_replaced, set_up, tear_down) {
     const struct fixture *const f = *state;
     assert_int_equal(target_check(f->path, TARGET_NETCDF, false), STATUS_OK);
     assert_int_equal(write_file(f->path, false), STATUS_OK);
@@ -167,7 +167,7 @@ static void a_file_that_came_meanwhile_is_not_replaced(void **state) {
     assert_int_equal(target_check(f->path, TARGET_NETCDF, true), STATUS_OK);
 }
 
-static void a_missing_folder_is_named(void **state) {
+TEST_WITH(a_missing_folder_is_named, set_up, tear_down) {
     const struct fixture *const f = *state;
     char path[96];
     snprintf(path, sizeof path, "%s/no/run.nc", f->folder);
@@ -178,7 +178,7 @@ static void a_missing_folder_is_named(void **state) {
     assert_int_equal(target_check("/no-such-folder.nc", TARGET_NETCDF, true), STATUS_OK);
 }
 
-static void every_failing_allocation_leaves_what_was_there(void **state) {
+TEST_WITH(every_failing_allocation_leaves_what_was_there, set_up, tear_down) {
     const struct fixture *const f = *state;
     for (int overwrite = 0; overwrite < 2; overwrite++) {
         if (overwrite) assert_int_equal(write_file(f->path, false), STATUS_OK);
@@ -235,7 +235,7 @@ static enum status read_crafted(const char *path, bool as_text, const struct net
     return status;
 }
 
-static void only_what_is_expected_is_read(void **state) {
+TEST_WITH(only_what_is_expected_is_read, set_up, tear_down) {
     const struct fixture *const f = *state;
     const struct netcdf_slice ab[] = {{"a", 0, 2}, {"b", 0, 3}, {NULL}}, long_b[] = {{"a", 0, 2}, {"b", 1, 3}, {NULL}},
                               ac[] = {{"a", 0, 2}, {"c", 0, 3}, {NULL}}, far_a[] = {{"a", 3, 0}, {"b", 0, 3}, {NULL}},
@@ -262,7 +262,7 @@ static void only_what_is_expected_is_read(void **state) {
     }
 }
 
-static void attributes_and_lengths_are_checked_too(void **state) {
+TEST_WITH(attributes_and_lengths_are_checked_too, set_up, tear_down) {
     const struct fixture *const f = *state;
     craft(f->path, NC_DOUBLE, 2);
     struct netcdf_reader reader;
@@ -303,7 +303,7 @@ static enum status try_to_open(const char *path) {
     return status;
 }
 
-static void what_is_no_file_is_refused(void **state) {
+TEST_WITH(what_is_no_file_is_refused, set_up, tear_down) {
     const struct fixture *const f = *state;
     assert_int_equal(try_to_open(f->path), STATUS_FILE);
     assert_message("No such file");
@@ -380,7 +380,7 @@ static void cut_everywhere(const char *path, int n_growing) {
     }
 }
 
-static void a_file_that_was_cut_anywhere_has_its_whole_rows(void **state) {
+TEST_WITH(a_file_that_was_cut_anywhere_has_its_whole_rows, set_up, tear_down) {
     const struct fixture *const f = *state;
     const int formats[] = {0, NC_64BIT_OFFSET, NC_64BIT_DATA};
     for (int i = 0; i < 3; i++) {
@@ -401,7 +401,7 @@ static void count_rows(const char *path, uint64_t n) {
     close(file);
 }
 
-static void a_header_that_counts_more_rows_than_there_are_does_not_count(void **state) {
+TEST_WITH(a_header_that_counts_more_rows_than_there_are_does_not_count, set_up, tear_down) {
     const struct fixture *const f = *state;
     const uint64_t counts[] = {6, 0x7900000000, UINT64_MAX};
     for (int n_growing = 0; n_growing < 3; n_growing++) {
@@ -426,7 +426,7 @@ static size_t random_below(size_t n) {
     return (size_t)(seed >> 33) % n;
 }
 
-static void no_damage_of_a_header_does_harm(void **state) {
+TEST_WITH(no_damage_of_a_header_does_harm, set_up, tear_down) {
     const struct fixture *const f = *state;
     enum { N_DAMAGES = 20000, MAX_BYTES = 8192 };
     static unsigned char whole[MAX_BYTES], damaged[MAX_BYTES];
@@ -462,23 +462,4 @@ static void no_damage_of_a_header_does_harm(void **state) {
     // most bytes belong to strings
     print_message("%d of %d damaged files could be read\n", n_read, N_DAMAGES);
     assert_in_range(n_read, 1, N_DAMAGES - 1);
-}
-
-#define WITH_FILE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        WITH_FILE(what_is_written_reads_back),
-        WITH_FILE(a_file_is_on_disk_before_its_name_and_the_name_before_the_rows),
-        WITH_FILE(a_file_that_came_meanwhile_is_not_replaced),
-        WITH_FILE(a_missing_folder_is_named),
-        WITH_FILE(every_failing_allocation_leaves_what_was_there),
-        WITH_FILE(only_what_is_expected_is_read),
-        WITH_FILE(attributes_and_lengths_are_checked_too),
-        WITH_FILE(what_is_no_file_is_refused),
-        WITH_FILE(a_file_that_was_cut_anywhere_has_its_whole_rows),
-        WITH_FILE(a_header_that_counts_more_rows_than_there_are_does_not_count),
-        WITH_FILE(no_damage_of_a_header_does_harm),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

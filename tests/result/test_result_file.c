@@ -21,7 +21,7 @@ void *__wrap_calloc(size_t n, size_t size) {
 
 // ---- what is in the file ----
 
-static void format_is_cdf5(void **state) {
+TEST_WITH(format_is_cdf5, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 1);
     int file = open_to_read(f), format;
@@ -45,7 +45,7 @@ static void coordinates_are_complete(const struct result_variable *variable, con
     assert_string_equal(coordinates, want);
 }
 
-static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name(void **state) {
+TEST_WITH(every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name, set_up, tear_down) {
     struct fixture *f = *state;
     f->values.output.forces = OUTPUT_FORCES_SIDES;
     f->school->walls = (struct walls){2, {-7, 8}, {1, -1}};
@@ -77,8 +77,7 @@ static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_na
     nc_close(file);
 }
 
-static void the_list_has_every_variable_with_its_dimensions(void **state) {
-    (void)state;
+TEST(the_list_has_every_variable_with_its_dimensions) {
     struct result_listed listed;
     int n = 0;
     for (; result_table_listed(n, &listed); n++) {
@@ -93,8 +92,7 @@ static void the_list_has_every_variable_with_its_dimensions(void **state) {
     assert_int_equal(n, result_table_n);
 }
 
-static void versions_of_the_libraries_are_those_loaded(void **state) {
-    (void)state;
+TEST(versions_of_the_libraries_are_those_loaded) {
     char text[VERSION_LENGTH];
     version_libraries(text);
     int suitesparse[3], found[3];
@@ -105,7 +103,7 @@ static void versions_of_the_libraries_are_those_loaded(void **state) {
     for (int i = 0; i < 3; i++) assert_int_equal(found[i], suitesparse[i]);
 }
 
-static void dimensions_are_those_of_the_largest_fish(void **state) {
+TEST_WITH(dimensions_are_those_of_the_largest_fish, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 3);
     const int file = open_to_read(f);
@@ -120,7 +118,7 @@ static void dimensions_are_those_of_the_largest_fish(void **state) {
     nc_close(file);
 }
 
-static void attributes_name_the_case_the_program_and_the_conventions(void **state) {
+TEST_WITH(attributes_name_the_case_the_program_and_the_conventions, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 1);
     const int file = open_to_read(f);
@@ -135,7 +133,7 @@ static void attributes_name_the_case_the_program_and_the_conventions(void **stat
     nc_close(file);
 }
 
-static void constants_are_those_of_the_fish(void **state) {
+TEST_WITH(constants_are_those_of_the_fish, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 0);
     const int file = open_to_read(f);
@@ -153,7 +151,7 @@ static void constants_are_those_of_the_fish(void **state) {
     nc_close(file);
 }
 
-static void unknowns_of_each_fish_come_back(void **state) {
+TEST_WITH(unknowns_of_each_fish_come_back, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 2);
     const int file = open_to_read(f);
@@ -170,7 +168,7 @@ static void unknowns_of_each_fish_come_back(void **state) {
     nc_close(file);
 }
 
-static void sheet_starts_at_the_nose_and_ends_at_the_tail(void **state) {
+TEST_WITH(sheet_starts_at_the_nose_and_ends_at_the_tail, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 1);
     const int file = open_to_read(f);
@@ -180,7 +178,7 @@ static void sheet_starts_at_the_nose_and_ends_at_the_tail(void **state) {
     nc_close(file);
 }
 
-static void curvature_of_a_right_angle_is_two(void **state) {
+TEST_WITH(curvature_of_a_right_angle_is_two, set_up, tear_down) {
     struct fixture *f = *state;
     const struct layout *at = &f->school->fish[0].at;
     const double x[] = {0, 1, 1, 0, 0}, y[] = {0, 0, 1, 1, 0};
@@ -192,7 +190,7 @@ static void curvature_of_a_right_angle_is_two(void **state) {
     nc_close(file);
 }
 
-static void unused_slots_hold_nan(void **state) {
+TEST_WITH(unused_slots_hold_nan, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 1);
     const int file = open_to_read(f);
@@ -207,7 +205,7 @@ static void unused_slots_hold_nan(void **state) {
     nc_close(file);
 }
 
-static void derived_quantities_have_their_names(void **state) {
+TEST_WITH(derived_quantities_have_their_names, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 2);
     const int file = open_to_read(f);
@@ -228,7 +226,7 @@ static void derived_quantities_have_their_names(void **state) {
     nc_close(file);
 }
 
-static void walls_are_there_where_the_case_has_them(void **state) {
+TEST_WITH(walls_are_there_where_the_case_has_them, set_up, tear_down) {
     struct fixture *f = *state;
     for (int n = 0; n <= 2; n++) {
         f->school->walls = (struct walls){n, {-7, 8}, {1, -1}};
@@ -246,7 +244,7 @@ static void walls_are_there_where_the_case_has_them(void **state) {
     }
 }
 
-static void sensors_are_there_where_the_case_has_them(void **state) {
+TEST_WITH(sensors_are_there_where_the_case_has_them, set_up, tear_down) {
     struct fixture *f = *state;
     double place[2] = {0.25, 0.5};
     struct fish *const fish = &f->school->fish[1];
@@ -269,8 +267,7 @@ static void sensors_are_there_where_the_case_has_them(void **state) {
     }
 }
 
-static void every_diagnostic_of_a_fish_has_a_variable(void **state) {
-    (void)state;
+TEST(every_diagnostic_of_a_fish_has_a_variable) {
     bool is_written[N_OF_FISH] = {false};
     for (int i = 0; i < result_table_n; i++) {
         if (result_table[i].owner != OF_DIAGNOSTICS_FISH) continue;
@@ -281,7 +278,7 @@ static void every_diagnostic_of_a_fish_has_a_variable(void **state) {
     for (size_t k = 0; k < N_OF_FISH; k++) assert_true(is_written[k]);
 }
 
-static void wake_is_oldest_first_and_can_be_left_out(void **state) {
+TEST_WITH(wake_is_oldest_first_and_can_be_left_out, set_up, tear_down) {
     struct fixture *f = *state;
     struct wake *wake = &f->state->wake[1];
     struct result_file *result = create(f);
@@ -307,7 +304,7 @@ static void wake_is_oldest_first_and_can_be_left_out(void **state) {
     nc_close(file);
 }
 
-static void single_precision_keeps_time_and_scalars_double(void **state) {
+TEST_WITH(single_precision_keeps_time_and_scalars_double, set_up, tear_down) {
     struct fixture *f = *state;
     f->values.output.precision = PRECISION_SINGLE;
     f->state->y[f->school->fish[0].at.x] = 0.1;
@@ -325,7 +322,7 @@ static void single_precision_keeps_time_and_scalars_double(void **state) {
     nc_close(file);
 }
 
-static void forces_of_edges_are_there_on_request_only(void **state) {
+TEST_WITH(forces_of_edges_are_there_on_request_only, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 1);
     const int file = open_to_read(f);
@@ -336,7 +333,7 @@ static void forces_of_edges_are_there_on_request_only(void **state) {
     nc_close(file);
 }
 
-static void long_status_is_cut(void **state) {
+TEST_WITH(long_status_is_cut, set_up, tear_down) {
     struct fixture *f = *state;
     char reason[1000];
     memset(reason, 'x', sizeof reason);
@@ -352,7 +349,7 @@ static void long_status_is_cut(void **state) {
 
 // ---- while it is written ----
 
-static void file_can_be_read_between_rows(void **state) {
+TEST_WITH(file_can_be_read_between_rows, set_up, tear_down) {
     struct fixture *f = *state;
     struct result_file *result = create(f);
     for (size_t n = 0; n < 4; n++) {
@@ -369,8 +366,7 @@ static void file_can_be_read_between_rows(void **state) {
     assert_int_equal(result_file_close(result, "stopped"), STATUS_OK);
 }
 
-static void closing_nothing_is_allowed(void **state) {
-    (void)state;
+TEST(closing_nothing_is_allowed) {
     assert_int_equal(result_file_close(NULL, "complete"), STATUS_OK);
 }
 
@@ -385,7 +381,7 @@ static void assert_refused(struct fixture *f, const char *path, int overwrite, c
     assert_message(part);
 }
 
-static void existing_file_stays_untouched(void **state) {
+TEST_WITH(existing_file_stays_untouched, set_up, tear_down) {
     struct fixture *f = *state;
     FILE *other = fopen(f->path, "w");
     fputs("mine", other);
@@ -405,7 +401,7 @@ static size_t number_of_rows(const struct fixture *f) {
     return n;
 }
 
-static void a_file_without_its_name_leaves_nothing(void **state) {
+TEST_WITH(a_file_without_its_name_leaves_nothing, set_up, tear_down) {
     struct fixture *f = *state;
     struct result_file *result;
     write_file(f, 3);
@@ -416,7 +412,7 @@ static void a_file_without_its_name_leaves_nothing(void **state) {
 }
 
 /* What another program, or a user, has made is not replaced, however the file begins. */
-static void existing_file_of_another_program_is_never_replaced(void **state) {
+TEST_WITH(existing_file_of_another_program_is_never_replaced, set_up, tear_down) {
     struct fixture *f = *state;
     const char *const texts[] = {"mine", "format: 1\n", "CDF\1 of another program", "<!DOCTYPE html>"};
     for (int i = 0; i < 4; i++) {
@@ -427,7 +423,7 @@ static void existing_file_of_another_program_is_never_replaced(void **state) {
     }
 }
 
-static void existing_file_is_replaced_when_asked(void **state) {
+TEST_WITH(existing_file_is_replaced_when_asked, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 3);
     struct result_file *result;
@@ -438,7 +434,7 @@ static void existing_file_is_replaced_when_asked(void **state) {
     assert_int_equal(number_of_rows(f), 0);
 }
 
-static void wrong_places_are_named(void **state) {
+TEST_WITH(wrong_places_are_named, set_up, tear_down) {
     struct fixture *f = *state;
     char missing[64];
     snprintf(missing, sizeof missing, "%s/no/run.nc", f->folder);
@@ -461,7 +457,7 @@ static rlim_t limit_file_size(rlim_t size) {
     return before;
 }
 
-static void full_disk_leaves_no_file_without_a_header(void **state) {
+TEST_WITH(full_disk_leaves_no_file_without_a_header, set_up, tear_down) {
     struct fixture *f = *state;
     for (rlim_t size = 0; size < 20000; size += 3000) {
         const rlim_t before = limit_file_size(size);
@@ -474,7 +470,7 @@ static void full_disk_leaves_no_file_without_a_header(void **state) {
     }
 }
 
-static void full_disk_keeps_the_rows_before(void **state) {
+TEST_WITH(full_disk_keeps_the_rows_before, set_up, tear_down) {
     struct fixture *f = *state;
     struct result_file *result = create(f);
     const rlim_t before = limit_file_size(100000);
@@ -495,7 +491,7 @@ static void full_disk_keeps_the_rows_before(void **state) {
     nc_close(file);
 }
 
-static void too_many_vortices_are_refused(void **state) {
+TEST_WITH(too_many_vortices_are_refused, set_up, tear_down) {
     struct fixture *f = *state;
     struct result_file *result = create(f);
     for (int i = 0; i <= wake_most(f->school, 10); i++)
@@ -505,7 +501,7 @@ static void too_many_vortices_are_refused(void **state) {
     assert_int_equal(result_file_close(result, "failed"), STATUS_OK);
 }
 
-static void no_memory_leaves_no_file(void **state) {
+TEST_WITH(no_memory_leaves_no_file, set_up, tear_down) {
     struct fixture *f = *state;
     struct result_file *result;
     enum status status = STATUS_MEMORY;
@@ -521,40 +517,4 @@ static void no_memory_leaves_no_file(void **state) {
     }
     assert_int_equal(status, STATUS_OK);
     assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        WITH_FILE(format_is_cdf5),
-        WITH_FILE(every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name),
-        cmocka_unit_test(the_list_has_every_variable_with_its_dimensions),
-        cmocka_unit_test(versions_of_the_libraries_are_those_loaded),
-        WITH_FILE(dimensions_are_those_of_the_largest_fish),
-        WITH_FILE(attributes_name_the_case_the_program_and_the_conventions),
-        WITH_FILE(constants_are_those_of_the_fish),
-        WITH_FILE(unknowns_of_each_fish_come_back),
-        WITH_FILE(sheet_starts_at_the_nose_and_ends_at_the_tail),
-        WITH_FILE(curvature_of_a_right_angle_is_two),
-        WITH_FILE(unused_slots_hold_nan),
-        WITH_FILE(derived_quantities_have_their_names),
-        cmocka_unit_test_setup_teardown(walls_are_there_where_the_case_has_them, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(sensors_are_there_where_the_case_has_them, set_up, tear_down),
-        cmocka_unit_test(every_diagnostic_of_a_fish_has_a_variable),
-        WITH_FILE(wake_is_oldest_first_and_can_be_left_out),
-        WITH_FILE(single_precision_keeps_time_and_scalars_double),
-        WITH_FILE(forces_of_edges_are_there_on_request_only),
-        WITH_FILE(long_status_is_cut),
-        WITH_FILE(file_can_be_read_between_rows),
-        cmocka_unit_test(closing_nothing_is_allowed),
-        WITH_FILE(existing_file_stays_untouched),
-        WITH_FILE(a_file_without_its_name_leaves_nothing),
-        WITH_FILE(existing_file_of_another_program_is_never_replaced),
-        WITH_FILE(existing_file_is_replaced_when_asked),
-        WITH_FILE(wrong_places_are_named),
-        WITH_FILE(full_disk_leaves_no_file_without_a_header),
-        WITH_FILE(full_disk_keeps_the_rows_before),
-        WITH_FILE(too_many_vortices_are_refused),
-        WITH_FILE(no_memory_leaves_no_file),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

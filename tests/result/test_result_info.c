@@ -23,7 +23,7 @@ static const char *info(const char *path, int case_only, enum status *status) {
     return text;
 }
 
-static void info_sums_up(void **state) {
+TEST_WITH(info_sums_up, set_up, tear_down) {
     struct fixture *f = *state;
     f->diagnostics.momentum_balance[0] = -3e-3;
     f->diagnostics.momentum_balance[1] = 4e-3;
@@ -76,7 +76,7 @@ static void is_printed(const char *got, const char *want) {
     if (got[i] != want[i]) fail_msg("from \"%.60s\" on:\n%s", want + i, got);
 }
 
-static void info_is_printed_whole(void **state) {
+TEST_WITH(info_is_printed_whole, set_up, tear_down) {
     struct fixture *f = *state;
     for (int i = 0; i < N_FISH; i++) {
         struct diagnostics_fish *const of = &f->of_fish[i];
@@ -119,7 +119,7 @@ static void info_is_printed_whole(void **state) {
         "  wall_time                   28.00 s   0.0536 times real time\n");
 }
 
-static void a_steady_state_is_printed_whole(void **state) {
+TEST_WITH(a_steady_state_is_printed_whole, set_up, tear_down) {
     struct fixture *f = *state;
     double numbers[2 * 20];
     for (int i = 0; i < 40; i++) numbers[i] = 0.123456 * (i + 1);
@@ -178,7 +178,7 @@ static void a_steady_state_is_printed_whole(void **state) {
                "  wall_time                   28.00 s   0 times real time\n");
 }
 
-static void info_shows_the_multipliers_of_a_steady_state_and_a_table(void **state) {
+TEST_WITH(info_shows_the_multipliers_of_a_steady_state_and_a_table, set_up, tear_down) {
     struct fixture *f = *state;
     struct steady_fish fish[N_FISH] = {{.speed = 0.5, .place = {0, 0}, .force = {4, 5}, .lift = NAN, .drag = NAN},
                                        {.speed = 0.25, .place = {-3, 2}, .force = {7, 8}, .lift = NAN, .drag = 6}};
@@ -211,7 +211,7 @@ static void info_shows_the_multipliers_of_a_steady_state_and_a_table(void **stat
     has_lines(steady_summary(f, &values), 2, unstable);
 }
 
-static void info_says_how_bodies_without_a_beat_lose_their_stability(void **state) {
+TEST_WITH(info_says_how_bodies_without_a_beat_lose_their_stability, set_up, tear_down) {
     struct fixture *f = *state;
     const double two_pi = 6.283185307179586;
     static const struct {
@@ -246,7 +246,7 @@ static void info_says_how_bodies_without_a_beat_lose_their_stability(void **stat
     }
 }
 
-static void info_of_a_file_without_rows_says_so(void **state) {
+TEST_WITH(info_of_a_file_without_rows_says_so, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 0);
     enum status status;
@@ -254,7 +254,7 @@ static void info_of_a_file_without_rows_says_so(void **state) {
     assert_int_equal(status, STATUS_OK);
 }
 
-static void info_prints_the_case_exactly(void **state) {
+TEST_WITH(info_prints_the_case_exactly, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 1);
     enum status status;
@@ -270,7 +270,7 @@ static void assert_no_info(const struct fixture *f, const char *part) {
     assert_message(part);
 }
 
-static void info_refuses_other_files(void **state) {
+TEST_WITH(info_refuses_other_files, set_up, tear_down) {
     struct fixture *f = *state;
     assert_no_info(f, "No such file");
     mkdir(f->path, 0700);
@@ -289,7 +289,7 @@ static void info_refuses_other_files(void **state) {
     assert_no_info(f, "not of shoal");
 }
 
-static void info_refuses_another_schema(void **state) {
+TEST_WITH(info_refuses_another_schema, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 1);
     int file;
@@ -300,7 +300,7 @@ static void info_refuses_another_schema(void **state) {
     assert_no_info(f, "written in schema 2");
 }
 
-static void info_shows_the_whole_rows_of_a_file_that_was_cut(void **state) {
+TEST_WITH(info_shows_the_whole_rows_of_a_file_that_was_cut, set_up, tear_down) {
     struct fixture *f = *state;
     enum status status;
     struct netcdf_rows rows;
@@ -328,7 +328,7 @@ static void info_shows_the_whole_rows_of_a_file_that_was_cut(void **state) {
     }
 }
 
-static void info_refuses_variables_that_do_not_fit(void **state) {
+TEST_WITH(info_refuses_variables_that_do_not_fit, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 3);
     size_t n;
@@ -355,8 +355,7 @@ static void info_refuses_variables_that_do_not_fit(void **state) {
 
 // ---- the list of variables and the version ----
 
-static void the_list_has_one_line_per_variable(void **state) {
-    (void)state;
+TEST(the_list_has_one_line_per_variable) {
     const struct result_kind kinds[] = {run, run};
     for (int as_json = 0; as_json < 2; as_json++) {
         static char text[65536];
@@ -373,8 +372,7 @@ static void the_list_has_one_line_per_variable(void **state) {
     }
 }
 
-static void version_names_every_library(void **state) {
-    (void)state;
+TEST(version_names_every_library) {
     char libraries[VERSION_LENGTH];
     version_libraries(libraries);
     const char *const names[] = {"SUNDIALS ", "KLU ", "SuiteSparse ", "NetCDF ", "libyaml "};
@@ -384,23 +382,4 @@ static void version_names_every_library(void **state) {
         assert_in_range(name[strlen(names[i])], '0', '9');
     }
     assert_memory_equal(version_short(), "shoal ", 6);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        WITH_FILE(info_sums_up),
-        WITH_FILE(info_is_printed_whole),
-        WITH_FILE(a_steady_state_is_printed_whole),
-        WITH_FILE(info_shows_the_multipliers_of_a_steady_state_and_a_table),
-        WITH_FILE(info_says_how_bodies_without_a_beat_lose_their_stability),
-        WITH_FILE(info_of_a_file_without_rows_says_so),
-        WITH_FILE(info_prints_the_case_exactly),
-        WITH_FILE(info_refuses_other_files),
-        WITH_FILE(info_refuses_another_schema),
-        WITH_FILE(info_shows_the_whole_rows_of_a_file_that_was_cut),
-        WITH_FILE(info_refuses_variables_that_do_not_fit),
-        cmocka_unit_test(the_list_has_one_line_per_variable),
-        cmocka_unit_test(version_names_every_library),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

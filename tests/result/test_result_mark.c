@@ -8,7 +8,7 @@ static void are_equal(const struct result_mark *got, const struct result_mark *w
     assert_int_equal(got->check, want->check);
 }
 
-static void a_growing_file_has_the_marks_of_a_whole_one(void **state) {
+TEST_WITH(a_growing_file_has_the_marks_of_a_whole_one, set_up, tear_down) {
     struct fixture *const f = *state;
     struct result_file *const result = create(f);
     struct result_mark mark[3], again;
@@ -32,7 +32,7 @@ static void a_growing_file_has_the_marks_of_a_whole_one(void **state) {
     assert_message("has 3 rows, but the checkpoint requires 4");
 }
 
-static void other_rows_and_other_cases_are_refused(void **state) {
+TEST_WITH(other_rows_and_other_cases_are_refused, set_up, tear_down) {
     struct fixture *const f = *state;
     struct result_checksum checksum = {0};
     struct result_mark mark;
@@ -65,7 +65,7 @@ static void other_rows_and_other_cases_are_refused(void **state) {
 }
 
 /* After a power cut the header may count rows that have not reached the disk; or these end in the middle of one. */
-static void only_the_rows_of_a_mark_have_to_be_there(void **state) {
+TEST_WITH(only_the_rows_of_a_mark_have_to_be_there, set_up, tear_down) {
     struct fixture *const f = *state;
     struct netcdf_rows rows;
     struct result_mark mark;
@@ -101,7 +101,7 @@ static void only_the_rows_of_a_mark_have_to_be_there(void **state) {
     }
 }
 
-static void a_file_goes_on_behind_a_mark(void **state) {
+TEST_WITH(a_file_goes_on_behind_a_mark, set_up, tear_down) {
     struct fixture *const f = *state;
     struct result_checksum checksum = {0};
     struct result_mark mark;
@@ -163,19 +163,10 @@ static void extend_and_compare(struct fixture *f, bool drop) {
     nc_close(file);
 }
 
-static void a_longer_run_begins_with_the_rows(void **state) {
+TEST_WITH(a_longer_run_begins_with_the_rows, set_up, tear_down) {
     struct fixture *const f = *state;
     for (int g = 0; g < 2; g++) assert_int_equal(wake_release(&f->state->wake[g], 1, 2, 3 + g, 0), STATUS_OK);
     extend_and_compare(f, true);
     unlink(f->path);
     extend_and_compare(f, false);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        WITH_FILE(a_growing_file_has_the_marks_of_a_whole_one), WITH_FILE(other_rows_and_other_cases_are_refused),
-        WITH_FILE(only_the_rows_of_a_mark_have_to_be_there),    WITH_FILE(a_file_goes_on_behind_a_mark),
-        WITH_FILE(a_longer_run_begins_with_the_rows),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,6 +24,8 @@ static int tear_down(void **state) {
     return rmdir(folder);
 }
 
+TEST_GROUP(set_up, tear_down)
+
 static void put(const char *name, const void *bytes, size_t n) {
     FILE *const file = fopen(name, "w");
     assert_int_equal(fwrite(bytes, 1, n, file), n);
@@ -54,8 +56,7 @@ static const struct sample {
 };
 enum { N_SAMPLES = sizeof samples / sizeof *samples };
 
-static void a_file_replaces_only_one_of_its_kind(void **state) {
-    (void)state;
+TEST(a_file_replaces_only_one_of_its_kind) {
     for (int i = 0; i < N_SAMPLES; i++) {
         put(path, samples[i].text, samples[i].n);
         for (enum target_kind kind = TARGET_NETCDF; kind <= TARGET_TABLE; kind++) {
@@ -68,8 +69,7 @@ static void a_file_replaces_only_one_of_its_kind(void **state) {
     }
 }
 
-static void a_file_without_the_mark_is_foreign_and_an_empty_one_is_free(void **state) {
-    (void)state;
+TEST(a_file_without_the_mark_is_foreign_and_an_empty_one_is_free) {
     for (int i = 0; i < N_SAMPLES; i++) {
         // all but the last byte of the mark
         put(path, samples[i].text, samples[i].n - 1);
@@ -81,8 +81,7 @@ static void a_file_without_the_mark_is_foreign_and_an_empty_one_is_free(void **s
     }
 }
 
-static void links_folders_and_pipes_are_refused(void **state) {
-    (void)state;
+TEST(links_folders_and_pipes_are_refused) {
     unlink(path);
     assert_int_equal(symlink(other, path), 0);
     refused(TARGET_NETCDF, true, "is a link");
@@ -96,8 +95,7 @@ static void links_folders_and_pipes_are_refused(void **state) {
     unlink(path);
 }
 
-static void an_input_is_no_output_under_any_of_its_names(void **state) {
-    (void)state;
+TEST(an_input_is_no_output_under_any_of_its_names) {
     put(path, "x", 1);
     assert_int_equal(link(path, other), 0);
     assert_int_equal(target_refuse_input(path, path), STATUS_FILE);
@@ -109,8 +107,7 @@ static void an_input_is_no_output_under_any_of_its_names(void **state) {
     unlink(other);
 }
 
-static void the_beginning_of_a_file_may_be_cut_or_zeros(void **state) {
-    (void)state;
+TEST(the_beginning_of_a_file_may_be_cut_or_zeros) {
     const unsigned char zeros[8] = {0};
     assert_true(target_may_begin(zeros, 0));
     assert_true(target_may_begin(zeros, 8));
@@ -123,24 +120,11 @@ static void the_beginning_of_a_file_may_be_cut_or_zeros(void **state) {
     assert_false(target_may_begin((const unsigned char *)"\0\0mine", 6));
 }
 
-static void the_folder_of_a_file(void **state) {
-    (void)state;
+TEST(the_folder_of_a_file) {
     const char *const of[][2] = {{"a", "."}, {"b/a", "b"}, {"/a", "/"}, {"/b/c/a", "/b/c"}};
     for (int i = 0; i < 4; i++) {
         char found[PATH_MAX];
         target_folder(of[i][0], found);
         assert_string_equal(found, of[i][1]);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_file_replaces_only_one_of_its_kind),
-        cmocka_unit_test(a_file_without_the_mark_is_foreign_and_an_empty_one_is_free),
-        cmocka_unit_test(links_folders_and_pipes_are_refused),
-        cmocka_unit_test(an_input_is_no_output_under_any_of_its_names),
-        cmocka_unit_test(the_beginning_of_a_file_may_be_cut_or_zeros),
-        cmocka_unit_test(the_folder_of_a_file),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -9,8 +9,7 @@
 
 #define SCHOOL "time: {end: 1, shedding_interval: 0.02, checkpoint_interval: 0.2}\nfish: [{}]\n"
 
-static void a_checkpoint_is_named_after_its_result(void **state) {
-    (void)state;
+TEST(a_checkpoint_is_named_after_its_result) {
     const char *const names[][2] = {{"run.nc", "run.ckpt"},    {"a/b.nc", "a/b.ckpt"},
                                     {"run", "run.checkpoint"}, {"run.nc.old", "run.nc.old.checkpoint"},
                                     {".nc", ".nc.checkpoint"}, {"a/.nc", "a/.nc.checkpoint"}};
@@ -24,8 +23,7 @@ static void a_checkpoint_is_named_after_its_result(void **state) {
     }
 }
 
-static void checkpoints_are_due_at_the_interval_and_where_they_are_asked_for(void **state) {
-    (void)state;
+TEST(checkpoints_are_due_at_the_interval_and_where_they_are_asked_for) {
     struct case_values values;
     struct checkpoints checkpoints;
     school_settings(&values, SCHOOL);
@@ -47,8 +45,7 @@ static void checkpoints_are_due_at_the_interval_and_where_they_are_asked_for(voi
     case_free(&values);
 }
 
-static void times_that_no_event_has_are_refused(void **state) {
-    (void)state;
+TEST(times_that_no_event_has_are_refused) {
     const char *const wrong[] = {"0.03", "0.02,x", "1.02", "-0.02", "0.02,,0.04", "nan", "0.02 0.04"};
     struct case_values values;
     struct checkpoints checkpoints;
@@ -61,8 +58,7 @@ static void times_that_no_event_has_are_refused(void **state) {
     case_free(&values);
 }
 
-static void times_may_be_rounded_but_not_wrong(void **state) {
-    (void)state;
+TEST(times_may_be_rounded_but_not_wrong) {
     // an event at 0.06 s; the rounding error of a decimal time is far below 1e-9 of the time
     const char *const right[] = {"0.06", "0.06000000000001", "0.05999999999999"};
     const char *const wrong[] = {"0.0600001", "0.0599999", "0.0606"};
@@ -80,8 +76,7 @@ static void times_may_be_rounded_but_not_wrong(void **state) {
     case_free(&values);
 }
 
-static void a_run_that_is_resumed_keeps_its_places_and_writes_none_twice(void **state) {
-    (void)state;
+TEST(a_run_that_is_resumed_keeps_its_places_and_writes_none_twice) {
     struct case_values values;
     struct checkpoints checkpoints;
     struct checkpoint from = {.places = "0.06,0.1", .effective = "the case"};
@@ -98,8 +93,7 @@ static void a_run_that_is_resumed_keeps_its_places_and_writes_none_twice(void **
     case_free(&values);
 }
 
-static void the_one_before_the_newest_takes_its_name(void **state) {
-    (void)state;
+TEST(the_one_before_the_newest_takes_its_name) {
     struct case_values values;
     struct checkpoints checkpoints;
     char folder[] = "/tmp/test_checkpoints_XXXXXX", result[64];
@@ -115,16 +109,4 @@ static void the_one_before_the_newest_takes_its_name(void **state) {
     checkpoints_free(&checkpoints);
     case_free(&values);
     assert_int_equal(rmdir(folder), 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_checkpoint_is_named_after_its_result),
-        cmocka_unit_test(checkpoints_are_due_at_the_interval_and_where_they_are_asked_for),
-        cmocka_unit_test(times_that_no_event_has_are_refused),
-        cmocka_unit_test(times_may_be_rounded_but_not_wrong),
-        cmocka_unit_test(a_run_that_is_resumed_keeps_its_places_and_writes_none_twice),
-        cmocka_unit_test(the_one_before_the_newest_takes_its_name),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

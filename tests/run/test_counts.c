@@ -53,8 +53,7 @@ static struct cost cost_of_article(int nodes, int sheet_points, const char *seco
     return cost;
 }
 
-static void stiffness_costs_nothing(void **state) {
-    (void)state;
+TEST(stiffness_costs_nothing) {
     const double moduli[] = {1e4, 1e6, 1e8, 1e10};
     for (size_t i = 0; i < sizeof moduli / sizeof *moduli; i++) {
         const struct cost cost = cost_of_article(7, 21, "published", moduli[i]);
@@ -64,8 +63,7 @@ static void stiffness_costs_nothing(void **state) {
     }
 }
 
-static void a_fine_body_costs_few_steps(void **state) {
-    (void)state;
+TEST(a_fine_body_costs_few_steps) {
     const char *const moments[] = {"ellipse", "published"};
     for (int i = 0; i < 2; i++) {
         const struct cost cost = cost_of_article(41, 65, moments[i], 1e7);
@@ -75,8 +73,7 @@ static void a_fine_body_costs_few_steps(void **state) {
     }
 }
 
-static void a_default_fish_costs_as_little(void **state) {
-    (void)state;
+TEST(a_default_fish_costs_as_little) {
     const double moduli[] = {1e4, 3e4, 1e5, 1e6, 1e8, 1e10};
     for (size_t i = 0; i < sizeof moduli / sizeof *moduli; i++) {
         const double end = 4;
@@ -94,8 +91,7 @@ static void a_default_fish_costs_as_little(void **state) {
 }
 
 // the rod of the first Jacobians, with steps of the initial size, is nearly singular; the later ones are not
-static void blocks_are_factorised_in_parts_again_after_a_failure(void **state) {
-    (void)state;
+TEST(blocks_are_factorised_in_parts_again_after_a_failure) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS "time: {end: 2, shedding_interval: 0.02}\nfish: [{start: {speed: 0.79}}]\n");
     n_divided = 0;
@@ -109,8 +105,7 @@ static void blocks_are_factorised_in_parts_again_after_a_failure(void **state) {
 
 /* Fish in a square lattice at their cruising speed, interval 0.02 s. IDA's default bounds of the step take 0.34, 0.49
  * and 0.64 Jacobians per event. */
-static void a_step_keeps_its_size_and_its_jacobian(void **state) {
-    (void)state;
+TEST(a_step_keeps_its_size_and_its_jacobian) {
     const struct {
         int n;
         double end, jacobians;
@@ -134,8 +129,7 @@ static void a_step_keeps_its_size_and_its_jacobian(void **state) {
     }
 }
 
-static void two_fish_beside_each_other_cost_as_little(void **state) {
-    (void)state;
+TEST(two_fish_beside_each_other_cost_as_little) {
     const struct cost cost =
         cost_per_event(SCHOOL_DEFAULTS "time: {end: 2}\nfish: [{}, {start: {position: [0, 0.3]}}]\n", 2);
     print_cost("two default fish", 1e6, &cost);
@@ -147,8 +141,7 @@ static void two_fish_beside_each_other_cost_as_little(void **state) {
 
 /* Nine fish 1.3 lengths from nose to nose and 0.4 beside each other: without coupling blocks, Newton's method takes
  * 17 iterations per event, mostly with one failure. The solver must detect the need for coupling blocks. */
-static void a_dense_school_couples_what_it_needs(void **state) {
-    (void)state;
+TEST(a_dense_school_couples_what_it_needs) {
     char text[1024];
     int length =
         snprintf(text, sizeof text, SCHOOL_DEFAULTS "time: {end: 0.5}\nsolver: {coupling_distance: 0}\nfish:\n");
@@ -166,8 +159,7 @@ static void a_dense_school_couples_what_it_needs(void **state) {
 
 // the corners of E I/(rho f^2 L^5) = 0.05 to 1e6 and added mass over mass of 1 to 100, without damping. Interior
 // points: cases/studies/added_mass.yaml
-static void a_light_or_stiff_body_under_pressure_costs_as_little(void **state) {
-    (void)state;
+TEST(a_light_or_stiff_body_under_pressure_costs_as_little) {
     const double densities[] = {5.59017, 0.0559017}, moduli[] = {177.94, 3.5588e9};
     for (int i = 0; i < 4; i++) {
         char text[512];
@@ -186,18 +178,4 @@ static void a_light_or_stiff_body_under_pressure_costs_as_little(void **state) {
         AT_MOST(cost.jacobians, 1);
         AT_MOST(cost.failures, 0.02);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stiffness_costs_nothing),
-        cmocka_unit_test(a_fine_body_costs_few_steps),
-        cmocka_unit_test(a_default_fish_costs_as_little),
-        cmocka_unit_test(blocks_are_factorised_in_parts_again_after_a_failure),
-        cmocka_unit_test(a_step_keeps_its_size_and_its_jacobian),
-        cmocka_unit_test(two_fish_beside_each_other_cost_as_little),
-        cmocka_unit_test(a_dense_school_couples_what_it_needs),
-        cmocka_unit_test(a_light_or_stiff_body_under_pressure_costs_as_little),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -68,8 +68,7 @@ static struct estimate estimate_of(const char *text, double patience) {
 // Other programs on the machine disturb single measurements: one of these attempts has to agree.
 enum { ATTEMPTS = 5 };
 
-static void a_run_that_is_done_whole_takes_what_it_took(void **state) {
-    (void)state;
+TEST(a_run_that_is_done_whole_takes_what_it_took) {
     NEEDS_TRUE_COSTS();
     int agree = 0;
     for (int attempt = 0; attempt < ATTEMPTS && !agree; attempt++) {
@@ -85,8 +84,7 @@ static void a_run_that_is_done_whole_takes_what_it_took(void **state) {
     assert_true(agree);
 }
 
-static void a_wake_that_grows_costs_more_than_its_first_events(void **state) {
-    (void)state;
+TEST(a_wake_that_grows_costs_more_than_its_first_events) {
     const char long_run[] =
         "time: {end: 2000, shedding_interval: 0.02, output_interval: 0.02}\n"
         "wake: {lifetime: %d}\n" FISH;
@@ -100,8 +98,7 @@ static void a_wake_that_grows_costs_more_than_its_first_events(void **state) {
     ABOVE(seconds[1], 5 * seconds[0]);
 }
 
-static void every_event_is_as_costly_as_those_measured_after_the_first(void **state) {
-    (void)state;
+TEST(every_event_is_as_costly_as_those_measured_after_the_first) {
     static const char text[] = "time: {end: 8, shedding_interval: 0.02}\nwake: {lifetime: 6}\n" FISH;
     counts_evaluations = 1;
     // time for a few events and for wakes that are made up
@@ -124,8 +121,7 @@ static void every_event_is_as_costly_as_those_measured_after_the_first(void **st
     NEAR(estimate.seconds, want, 0, 0.03);
 }
 
-static void a_long_wake_is_extrapolated_from_a_short_one(void **state) {
-    (void)state;
+TEST(a_long_wake_is_extrapolated_from_a_short_one) {
     NEEDS_TRUE_COSTS();
     // 200,000 vortices, of which whole events cost seconds; and a direct sum, which grows with the square of the number
     static const char *const texts[] = {
@@ -152,8 +148,7 @@ static void a_long_wake_is_extrapolated_from_a_short_one(void **state) {
 
 static volatile sig_atomic_t stop_at_once;
 
-static void a_first_event_that_is_stopped_is_estimated_from_its_part(void **state) {
-    (void)state;
+TEST(a_first_event_that_is_stopped_is_estimated_from_its_part) {
     static const char text[] = "time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\n" FISH;
     struct simulation *const simulation = school_simulation(text);
     struct estimate part;
@@ -168,8 +163,7 @@ static void a_first_event_that_is_stopped_is_estimated_from_its_part(void **stat
     BELOW(part.seconds, 20 * whole.seconds);
 }
 
-static void every_kind_of_wake_can_be_made_up(void **state) {
-    (void)state;
+TEST(every_kind_of_wake_can_be_made_up) {
     const char *const kinds[] = {"sheet", "continuous", "impulsive"};
     for (int i = 0; i < 3; i++) {
         struct simulation *const simulation = school_simulation_of(
@@ -193,25 +187,11 @@ static void every_kind_of_wake_can_be_made_up(void **state) {
     }
 }
 
-static void a_run_that_fails_at_once_has_no_estimate(void **state) {
-    (void)state;
+TEST(a_run_that_fails_at_once_has_no_estimate) {
     struct simulation *const simulation =
         school_simulation("time: {end: 1, shedding_interval: 0.02}\nsolver: {max_steps: 1}\n" FISH);
     struct estimate estimate;
     assert_int_equal(estimate_run(simulation, 1, &estimate), STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "solver.max_steps"));
     simulate_free(simulation);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_run_that_is_done_whole_takes_what_it_took),
-        cmocka_unit_test(a_wake_that_grows_costs_more_than_its_first_events),
-        cmocka_unit_test(every_event_is_as_costly_as_those_measured_after_the_first),
-        cmocka_unit_test(a_long_wake_is_extrapolated_from_a_short_one),
-        cmocka_unit_test(a_first_event_that_is_stopped_is_estimated_from_its_part),
-        cmocka_unit_test(every_kind_of_wake_can_be_made_up),
-        cmocka_unit_test(a_run_that_fails_at_once_has_no_estimate),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,8 +11,7 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
-static void events_are_at_the_multiples_that_a_decimal_names(void **state) {
-    (void)state;
+TEST(events_are_at_the_multiples_that_a_decimal_names) {
     // 7 * 0.1 is not 0.7; the last interval is no short decimal, but a ratio
     static const struct {
         const char *interval;
@@ -50,8 +49,7 @@ static void events_are_at_the_multiples_that_a_decimal_names(void **state) {
     assert_in_range(n_rounded, 1000, 60000);
 }
 
-static void an_event_without_finite_velocities_is_final(void **state) {
-    (void)state;
+TEST(an_event_without_finite_velocities_is_final) {
     const char *const texts[] = {TIME "fish: [{}]\n",
                                  TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\nfish: [{}]\n"};
     for (int i = 0; i < 2; i++) {
@@ -68,8 +66,7 @@ static void an_event_without_finite_velocities_is_final(void **state) {
     }
 }
 
-static void a_start_that_fails_leaves_no_mode_behind(void **state) {
-    (void)state;
+TEST(a_start_that_fails_leaves_no_mode_behind) {
     const char *const texts[] = {TIME "wake: {shedding: sheet}\nfish: [{}]\n", TIME "fish: [{}]\n"};
     for (int i = 0; i < 2; i++) {
         struct setup setup;
@@ -84,8 +81,7 @@ static void a_start_that_fails_leaves_no_mode_behind(void **state) {
     }
 }
 
-static void one_vortex_is_released_at_every_event_with_what_was_shed(void **state) {
-    (void)state;
+TEST(one_vortex_is_released_at_every_event_with_what_was_shed) {
     struct simulation *const simulation = school_simulation(TIME "fish: [{}]\n");
     const struct fish *fish = simulation->school->fish;
     const struct wake *wake = &simulation->state->wake[0];
@@ -137,8 +133,7 @@ static void fields_are_continuous(const char *wake) {
     simulate_free(simulation);
 }
 
-static void fields_are_continuous_across_a_continuous_event(void **state) {
-    (void)state;
+TEST(fields_are_continuous_across_a_continuous_event) {
     fields_are_continuous("lifetime: 0.2");
     fields_are_continuous("lifetime: 0.2, removed_circulation: dropped");
     // a decay shorter than an interval, no decay, and a lifetime that is not a multiple of the interval
@@ -147,8 +142,7 @@ static void fields_are_continuous_across_a_continuous_event(void **state) {
     fields_are_continuous("lifetime: 0.213, decay: 0, removed_circulation: dropped");
 }
 
-static void wake_holds_one_lifetime(void **state) {
-    (void)state;
+TEST(wake_holds_one_lifetime) {
     struct simulation *const simulation = school_simulation(TIME "wake: {lifetime: 0.2}\nfish: [{}]\n");
     for (int n = 1; n <= 30; n++) {
         school_ok(simulate_step(simulation));
@@ -159,8 +153,7 @@ static void wake_holds_one_lifetime(void **state) {
 }
 
 // the slots of a result, in which every wake has room
-static void the_largest_wake_of_a_run_is_known_before(void **state) {
-    (void)state;
+TEST(the_largest_wake_of_a_run_is_known_before) {
     static const struct {
         const char *wake;
         int most;
@@ -188,8 +181,7 @@ static void the_largest_wake_of_a_run_is_known_before(void **state) {
     }
 }
 
-static void impulses_conserve_circulation_and_meet_kutta(void **state) {
-    (void)state;
+TEST(impulses_conserve_circulation_and_meet_kutta) {
     struct simulation *const simulation =
         school_simulation(TIME "wake: {shedding: impulsive}\nfish: [{sheet_points: 11}]\n");
     const struct fish *fish = simulation->school->fish;
@@ -215,8 +207,7 @@ static void impulses_conserve_circulation_and_meet_kutta(void **state) {
     simulate_free(simulation);
 }
 
-static void impulses_by_rate_are_the_rate_times_the_interval(void **state) {
-    (void)state;
+TEST(impulses_by_rate_are_the_rate_times_the_interval) {
     struct simulation *const simulation =
         school_simulation(TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\nfish: [{sheet_points: 11}]\n");
     const struct fish *fish = simulation->school->fish;
@@ -236,8 +227,7 @@ static void impulses_by_rate_are_the_rate_times_the_interval(void **state) {
     simulate_free(simulation);
 }
 
-static void waypoints_advance_during_a_run(void **state) {
-    (void)state;
+TEST(waypoints_advance_during_a_run) {
     struct simulation *const simulation = school_simulation(
         TIME
         "fish: [{control: {law: heading, waypoints: [[-0.6, 0], [-0.8, 0.3], [-2, 2]], acceptance_radius: 0.25}}]\n");
@@ -254,8 +244,7 @@ static void waypoints_advance_during_a_run(void **state) {
     simulate_free(simulation);
 }
 
-static void averaged_heading_changes_the_bias_at_a_bounded_rate(void **state) {
-    (void)state;
+TEST(averaged_heading_changes_the_bias_at_a_bounded_rate) {
     struct simulation *const simulation =
         school_simulation(TIME "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 1.5}}]\n");
     const int phi0 = simulation->school->fish[0].at.phi0;
@@ -275,8 +264,7 @@ static void averaged_heading_changes_the_bias_at_a_bounded_rate(void **state) {
 }
 
 // the powers of a muscle have a kink where the rate of its bias jumps: their integral begins again at such an event
-static void samples_of_the_power_begin_again_where_the_bias_kinks(void **state) {
-    (void)state;
+TEST(samples_of_the_power_begin_again_where_the_bias_kinks) {
     static const char *const laws[] = {"none", "averaged_heading"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
@@ -310,8 +298,7 @@ static void turn_with_feedforward(const char *modulus, const char *solver, doubl
     simulate_free(simulation);
 }
 
-static void feedforward_does_not_depend_on_the_integrator(void **state) {
-    (void)state;
+TEST(feedforward_does_not_depend_on_the_integrator) {
     const char *const cases[][2] = {{"1.0e+4", "method: rk4, step: 5.0e-4"}, {"1.0e+6", "method: rk4, step: 1.0e-4"}};
     for (int i = 0; i < 2; i++) {
         double place[2][14], phi0[2];
@@ -322,8 +309,7 @@ static void feedforward_does_not_depend_on_the_integrator(void **state) {
     }
 }
 
-static void a_fish_reaches_its_waypoints(void **state) {
-    (void)state;
+TEST(a_fish_reaches_its_waypoints) {
     struct simulation *const simulation = school_simulation(
         SCHOOL_DEFAULTS
         "time: {end: 30, shedding_interval: 0.02}\nfish: [{control: {waypoints: [[-4, 1], [-8, -1], [-12, 0]]}}]\n");
@@ -337,8 +323,7 @@ static void a_fish_reaches_its_waypoints(void **state) {
 
 // The vortices of the case are in the fluid from the start: the sheet of a fish has a stretch for each vortex, and both
 // ends of the stretch move together; the total circulation of fish and wake is the circulation of the vortices.
-static void vortices_of_the_case_meet_the_fish(void **state) {
-    (void)state;
+TEST(vortices_of_the_case_meet_the_fish) {
     static const char *const wakes[] = {"", "shedding: continuous, "};
     static const char *const fish[] = {"nodes: 9, force: pressure, pressure: {span: infinite}", "force: published"};
     for (int i = 0; i < 2; i++) {
@@ -374,25 +359,4 @@ static void vortices_of_the_case_meet_the_fish(void **state) {
         NEAR(sum, -0.01, 0, 1e-12);
         simulate_free(simulation);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(events_are_at_the_multiples_that_a_decimal_names),
-        cmocka_unit_test(a_start_that_fails_leaves_no_mode_behind),
-        cmocka_unit_test(one_vortex_is_released_at_every_event_with_what_was_shed),
-        cmocka_unit_test(fields_are_continuous_across_a_continuous_event),
-        cmocka_unit_test(wake_holds_one_lifetime),
-        cmocka_unit_test(the_largest_wake_of_a_run_is_known_before),
-        cmocka_unit_test(impulses_conserve_circulation_and_meet_kutta),
-        cmocka_unit_test(impulses_by_rate_are_the_rate_times_the_interval),
-        cmocka_unit_test(waypoints_advance_during_a_run),
-        cmocka_unit_test(an_event_without_finite_velocities_is_final),
-        cmocka_unit_test(samples_of_the_power_begin_again_where_the_bias_kinks),
-        cmocka_unit_test(averaged_heading_changes_the_bias_at_a_bounded_rate),
-        cmocka_unit_test(a_fish_reaches_its_waypoints),
-        cmocka_unit_test(vortices_of_the_case_meet_the_fish),
-        cmocka_unit_test(feedforward_does_not_depend_on_the_integrator),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,17 +54,9 @@ static void sweep(const char *solver, const char *fish, int least) {
     case_free(&values);
 }
 
-static void every_allocation_of_a_run_may_fail(void **state) {
-    (void)state;
+TEST(every_allocation_of_a_run_may_fail) {
     sweep("method: ida", plain, 300);
     sweep("method: ida", pressure, 400);
     sweep("method: rk4", plain, 200);
     sweep("method: trapezoid, step: 0.01", plain, 200);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_allocation_of_a_run_may_fail),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

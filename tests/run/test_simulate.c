@@ -52,8 +52,7 @@ static void same(const struct outcome *got, const struct outcome *want) {
     "{name: b, nodes: 6, sheet_points: 15, length: 0.8, start: {position: [0.2, 0.5], heading: 170}, wave: {phase: " \
     "60}}"
 
-static void order_of_the_fish_does_not_matter(void **state) {
-    (void)state;
+TEST(order_of_the_fish_does_not_matter) {
     struct outcome one[2], other[2];
     outcomes_of(TIME TIGHT "fish: [" LEFT ", " RIGHT "]\n", 2, one);
     outcomes_of(TIME TIGHT "fish: [" RIGHT ", " LEFT "]\n", 2, other);
@@ -61,8 +60,7 @@ static void order_of_the_fish_does_not_matter(void **state) {
     same(&one[1], &other[0]);
 }
 
-static void a_shift_of_the_start_shifts_the_run(void **state) {
-    (void)state;
+TEST(a_shift_of_the_start_shifts_the_run) {
     struct outcome at_origin, elsewhere;
     outcomes_of(TIME TIGHT "fish: [{body: {modulus: 1.0e+5}}]\n", 1, &at_origin);
     outcomes_of(TIME TIGHT "fish: [{body: {modulus: 1.0e+5}, start: {position: [3, -7]}}]\n", 1, &elsewhere);
@@ -74,8 +72,7 @@ static void a_shift_of_the_start_shifts_the_run(void **state) {
     same(&elsewhere, &at_origin);
 }
 
-static void a_turn_of_everything_turns_the_run(void **state) {
-    (void)state;
+TEST(a_turn_of_everything_turns_the_run) {
     struct outcome one[2], turned[2];
     outcomes_of(TIME TIGHT
                 "fluid: {velocity: [0.1, 0.05]}\n"
@@ -98,8 +95,7 @@ static void a_turn_of_everything_turns_the_run(void **state) {
     }
 }
 
-static void the_mirror_image_of_a_case_runs_as_the_mirror_image(void **state) {
-    (void)state;
+TEST(the_mirror_image_of_a_case_runs_as_the_mirror_image) {
     struct outcome one[2], mirrored[2];
     outcomes_of(TIME TIGHT
                 "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
@@ -122,24 +118,21 @@ static void the_mirror_image_of_a_case_runs_as_the_mirror_image(void **state) {
     }
 }
 
-static void fish_far_apart_swim_as_if_alone(void **state) {
-    (void)state;
+TEST(fish_far_apart_swim_as_if_alone) {
     struct outcome alone, pair[2];
     outcomes_of(TIME TIGHT "fish: [{}]\n", 1, &alone);
     outcomes_of(TIME TIGHT "fish: [{}, {start: {position: [0, 1.0e+5]}}]\n", 2, pair);
     same(&pair[0], &alone);
 }
 
-static void two_runs_of_one_case_have_the_same_bits(void **state) {
-    (void)state;
+TEST(two_runs_of_one_case_have_the_same_bits) {
     struct outcome one[2], other[2];
     outcomes_of(TIME "fish: [" LEFT ", " RIGHT "]\n", 2, one);
     outcomes_of(TIME "fish: [" LEFT ", " RIGHT "]\n", 2, other);
     assert_memory_equal(one, other, sizeof one);
 }
 
-static void an_uncoupled_jacobian_gives_the_same_run(void **state) {
-    (void)state;
+TEST(an_uncoupled_jacobian_gives_the_same_run) {
     struct outcome one[2], other[2];
     outcomes_of(TIME TIGHT "fish: [" LEFT ", " RIGHT "]\n", 2, one);
     outcomes_of(TIME "solver: {rtol: 1.0e-8, coupling_distance: 0}\nfish: [" LEFT ", " RIGHT "]\n", 2, other);
@@ -147,8 +140,7 @@ static void an_uncoupled_jacobian_gives_the_same_run(void **state) {
     same(&other[1], &one[1]);
 }
 
-static void places_are_second_order_in_the_shedding_interval(void **state) {
-    (void)state;
+TEST(places_are_second_order_in_the_shedding_interval) {
     struct outcome at[3];
     const char *const intervals[] = {"0.02", "0.01", "0.005"};
     for (int i = 0; i < 3; i++) {
@@ -172,8 +164,7 @@ static void places_are_second_order_in_the_shedding_interval(void **state) {
     BELOW(shed, 2.8);
 }
 
-static void positive_bias_turns_right(void **state) {
-    (void)state;
+TEST(positive_bias_turns_right) {
     double heading[2];
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
@@ -219,7 +210,7 @@ static char *read_attribute(const char *path, const char *name) {
     return text;
 }
 
-static void notes_of_a_run_count_the_vortices_of_all_fish(void **state) {
+TEST(notes_of_a_run_count_the_vortices_of_all_fish) {
     const char *const path = *state;
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
     run_into(TIME "wake: {merge: 0.01}\nfish: [{}, {start: {position: [0, 2]}}, {start: {position: [0, 4]}}]\n",
@@ -235,7 +226,7 @@ static void notes_of_a_run_count_the_vortices_of_all_fish(void **state) {
     free(none);
 }
 
-static void the_times_of_checkpoints_are_a_list_in_the_result(void **state) {
+TEST(the_times_of_checkpoints_are_a_list_in_the_result) {
     const char *const path = *state;
     const struct simulate_options options = {
         .path = path, .overwrite = 1, .command = "test", .checkpoint_at = "0.04,0.1,0.5"};
@@ -250,7 +241,7 @@ static void the_times_of_checkpoints_are_a_list_in_the_result(void **state) {
     free(previous);
 }
 
-static void a_run_tells_its_progress_at_every_event(void **state) {
+TEST(a_run_tells_its_progress_at_every_event) {
     const char *const path = *state;
     const struct simulate_options options = {
         .path = path, .overwrite = 1, .command = "test", .progress = count_progress};
@@ -275,7 +266,7 @@ static void read_wake(const char *path, int n_vortices[5], int holds_wake[5]) {
     nc_close(file);
 }
 
-static void the_wake_is_written_at_its_own_interval_and_at_the_end(void **state) {
+TEST(the_wake_is_written_at_its_own_interval_and_at_the_end) {
     const char *const path = *state;
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
     run_into(
@@ -296,7 +287,7 @@ static void stop_at_the_fifth(const struct simulate_progress *progress, void *da
     stop = progress->event >= 5;
 }
 
-static void a_signal_stops_a_run_at_the_next_event(void **state) {
+TEST(a_signal_stops_a_run_at_the_next_event) {
     const struct simulate_options options = {
         .path = *state, .overwrite = 1, .command = "test", .progress = stop_at_the_fifth, .stop = &stop};
     stop = 0;
@@ -304,7 +295,7 @@ static void a_signal_stops_a_run_at_the_next_event(void **state) {
     assert_non_null(strstr(status_message(), "t = 0.1"));
 }
 
-static void a_result_with_only_the_previous_checkpoint_is_unfinished_too(void **state) {
+TEST(a_result_with_only_the_previous_checkpoint_is_unfinished_too) {
     const char *const text = TIME "fish: [{}]\n";
     char *const path = checkpoints_path(*state), *const previous = path ? checkpoints_previous(path) : NULL;
     assert_non_null(previous);
@@ -345,7 +336,7 @@ static void note_the_first(const struct simulate_progress *progress, void *data)
     if (progress->event == 3) first_resumed = progress->wall_time;
 }
 
-static void wall_time_of_a_resumed_run_continues(void **state) {
+TEST(wall_time_of_a_resumed_run_continues) {
     char *const path = checkpoints_path(*state);
     struct simulate_options options = {
         .path = *state, .overwrite = 1, .command = "test", .progress = take_a_tenth_of_a_second, .stop = &stop};
@@ -369,7 +360,7 @@ int __wrap_KINSol(void *kinsol, N_Vector solution, int strategy, N_Vector soluti
     return __real_KINSol(kinsol, solution, strategy, solution_scale, value_scale);
 }
 
-static void a_signal_within_the_event_of_a_run_leads_back_to_the_last_one(void **state) {
+TEST(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one) {
     static const char text[] = TIME "wake: {shedding: impulsive}\nfish: [{}]\n";
     char *const path = checkpoints_path(*state);
     assert_non_null(path);
@@ -393,7 +384,7 @@ static void a_signal_within_the_event_of_a_run_leads_back_to_the_last_one(void *
     free(path);
 }
 
-static void a_signal_during_the_start_leaves_nothing(void **state) {
+TEST(a_signal_during_the_start_leaves_nothing) {
     const struct simulate_options options = {.path = *state, .overwrite = 1, .command = "test", .stop = &stop};
     char *const path = checkpoints_path(*state);
     assert_non_null(path);
@@ -407,7 +398,7 @@ static void a_signal_during_the_start_leaves_nothing(void **state) {
     free(path);
 }
 
-static void a_failing_run_says_when_and_keeps_its_file(void **state) {
+TEST(a_failing_run_says_when_and_keeps_its_file) {
     const char *const path = *state;
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
     run_into(TIME "solver: {max_steps: 1}\nfish: [{}]\n", &options, STATUS_SOLVER);
@@ -416,7 +407,7 @@ static void a_failing_run_says_when_and_keeps_its_file(void **state) {
     assert_int_equal(access(path, R_OK), 0);
 }
 
-static void a_run_that_diverges_ends_with_its_last_finite_row(void **state) {
+TEST(a_run_that_diverges_ends_with_its_last_finite_row) {
     const char *const path = *state;
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
 
@@ -467,6 +458,8 @@ static int remove_path(void **state) {
     return unlink(*state);
 }
 
+TEST_GROUP(make_path, remove_path)
+
 // ---- before the start
 
 static int n_schools;
@@ -478,7 +471,7 @@ enum status __wrap_fish_school_create(struct school **school, const void *parame
     return __real_fish_school_create(school, parameters);
 }
 
-static void a_result_that_cannot_be_written_is_told_before_the_start(void **state) {
+TEST(a_result_that_cannot_be_written_is_told_before_the_start) {
     const char *const places[][2] = {{*state, "exists"}, {"/no/folder/run.nc", "there is no folder"}};
     struct case_values values;
     const char *const text = "format: 1\n" TIME "fish: [" LEFT "]\n";
@@ -493,8 +486,7 @@ static void a_result_that_cannot_be_written_is_told_before_the_start(void **stat
     case_free(&values);
 }
 
-static void a_limp_fish_swims_on(void **state) {
-    (void)state;
+TEST(a_limp_fish_swims_on) {
     // the body bends back and forth: the tail overtakes the markers
     static const char *const forces[] = {"reactive", "pressure"};
     for (int i = 0; i < 2; i++) {
@@ -512,8 +504,7 @@ static void a_limp_fish_swims_on(void **state) {
     }
 }
 
-static void a_failure_of_a_folded_body_says_so(void **state) {
-    (void)state;
+TEST(a_failure_of_a_folded_body_says_so) {
     static const char *const amplitudes[] = {"1.2", "0.2"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
@@ -541,8 +532,7 @@ static int order_of(const char *solver, const char *fish) {
     return order;
 }
 
-static void order_3_needs_bodies_whose_stiffness_is_damped(void **state) {
-    (void)state;
+TEST(order_3_needs_bodies_whose_stiffness_is_damped) {
     assert_int_equal(order_of("", "[{}]"), 3);
     assert_int_equal(order_of("", "[{wave: {frequency: 0.7}}]"), 3);
     assert_int_equal(order_of("", "[{wave: {frequency: 0.7}, body: {relaxation_time: 0.001}}]"), 2);
@@ -555,8 +545,7 @@ static void order_3_needs_bodies_whose_stiffness_is_damped(void **state) {
     assert_int_equal(order_of("", "[{}, {start: {position: [0, 2]}, body: {relaxation_time: 1e-4}}]"), 2);
 }
 
-static void order_5_is_for_bodies_slower_than_their_beat(void **state) {
-    (void)state;
+TEST(order_5_is_for_bodies_slower_than_their_beat) {
     // the slowest mode of a fish with the reactive force has 0.6 Hz at 6.6e4 Pa, and grows with the root of the modulus
     assert_int_equal(order_of("", "[{force: reactive, body: {modulus: 6e4}}]"), 5);
     assert_int_equal(order_of("", "[{force: reactive, body: {modulus: 1e5}}]"), 3);
@@ -565,35 +554,4 @@ static void order_5_is_for_bodies_slower_than_their_beat(void **state) {
         order_of("", "[{force: reactive, body: {modulus: 6e4}}, {force: reactive, start: {position: [2, 0]}}]"), 3);
     assert_int_equal(order_of("", "[{force: reactive, body: {modulus: 6e4, relaxation_time: 0}}]"), 2);
     assert_int_equal(order_of("order: 3", "[{force: reactive, body: {modulus: 6e4}}]"), 3);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(order_3_needs_bodies_whose_stiffness_is_damped),
-        cmocka_unit_test(order_5_is_for_bodies_slower_than_their_beat),
-        cmocka_unit_test(a_limp_fish_swims_on),
-        cmocka_unit_test(a_failure_of_a_folded_body_says_so),
-        cmocka_unit_test(order_of_the_fish_does_not_matter),
-        cmocka_unit_test(a_shift_of_the_start_shifts_the_run),
-        cmocka_unit_test(a_turn_of_everything_turns_the_run),
-        cmocka_unit_test(the_mirror_image_of_a_case_runs_as_the_mirror_image),
-        cmocka_unit_test(fish_far_apart_swim_as_if_alone),
-        cmocka_unit_test(two_runs_of_one_case_have_the_same_bits),
-        cmocka_unit_test(an_uncoupled_jacobian_gives_the_same_run),
-        cmocka_unit_test(places_are_second_order_in_the_shedding_interval),
-        cmocka_unit_test(positive_bias_turns_right),
-        cmocka_unit_test(notes_of_a_run_count_the_vortices_of_all_fish),
-        cmocka_unit_test(the_times_of_checkpoints_are_a_list_in_the_result),
-        cmocka_unit_test(a_run_tells_its_progress_at_every_event),
-        cmocka_unit_test(the_wake_is_written_at_its_own_interval_and_at_the_end),
-        cmocka_unit_test(a_signal_stops_a_run_at_the_next_event),
-        cmocka_unit_test(a_result_with_only_the_previous_checkpoint_is_unfinished_too),
-        cmocka_unit_test(wall_time_of_a_resumed_run_continues),
-        cmocka_unit_test(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one),
-        cmocka_unit_test(a_signal_during_the_start_leaves_nothing),
-        cmocka_unit_test(a_failing_run_says_when_and_keeps_its_file),
-        cmocka_unit_test(a_run_that_diverges_ends_with_its_last_finite_row),
-        cmocka_unit_test(a_result_that_cannot_be_written_is_told_before_the_start),
-    };
-    return cmocka_run_group_tests(tests, make_path, remove_path);
 }

@@ -72,8 +72,7 @@ static struct simulation *taken_up(const struct simulation *from, const char *te
     return simulation;
 }
 
-static void a_run_goes_on_from_its_state_alone_with_the_same_bits(void **state) {
-    (void)state;
+TEST(a_run_goes_on_from_its_state_alone_with_the_same_bits) {
     for (int i = 0; i < N_CASES; i++) {
         struct simulation *const one = school_simulation(cases[i]);
         steps(one, N_BEFORE);
@@ -87,8 +86,7 @@ static void a_run_goes_on_from_its_state_alone_with_the_same_bits(void **state) 
     }
 }
 
-static void a_run_may_be_taken_up_at_its_first_event(void **state) {
-    (void)state;
+TEST(a_run_may_be_taken_up_at_its_first_event) {
     struct simulation *const one = school_simulation(cases[0]);
     school_ok(simulate_renew(one));
     struct simulation *const other = taken_up(one, cases[0]);
@@ -100,8 +98,7 @@ static void a_run_may_be_taken_up_at_its_first_event(void **state) {
 }
 
 // Sheets and wakes summed by the tree of the event, also with another number of threads.
-static void a_large_school_goes_on_with_the_same_bits_on_other_threads(void **state) {
-    (void)state;
+TEST(a_large_school_goes_on_with_the_same_bits_on_other_threads) {
     enum { MANY = 20 };
     char text[2][4096];
     for (int k = 0; k < 2; k++) {
@@ -127,13 +124,4 @@ static void a_large_school_goes_on_with_the_same_bits_on_other_threads(void **st
     school_same_bits(other, one, text[1]);
     simulate_free(one);
     simulate_free(other);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_run_goes_on_from_its_state_alone_with_the_same_bits),
-        cmocka_unit_test(a_run_may_be_taken_up_at_its_first_event),
-        cmocka_unit_test(a_large_school_goes_on_with_the_same_bits_on_other_threads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,26 +53,14 @@ static void compare_threads(const char *settings, const char *force, int n_event
     simulate_free(one);
 }
 
-static void threads_change_no_bit_of_a_school_in_contact(void **state) {
-    (void)state;
+TEST(threads_change_no_bit_of_a_school_in_contact) {
     compare_threads(SCHOOL_DEFAULTS, "pressure, pressure: {span: infinite}", 2);
 }
 
-static void threads_change_no_bit_of_sheets_of_finite_span(void **state) {
-    (void)state;
+TEST(threads_change_no_bit_of_sheets_of_finite_span) {
     compare_threads(SCHOOL_DEFAULTS, "pressure, sheet_points: 21, pressure: {span: finite}", 2);
 }
 
-static void threads_change_no_bit_where_vortices_are_shed_at_once(void **state) {
-    (void)state;
+TEST(threads_change_no_bit_where_vortices_are_shed_at_once) {
     compare_threads(SCHOOL_DEFAULTS "wake: {shedding: impulsive}\n", "published", 2);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(threads_change_no_bit_of_a_school_in_contact),
-        cmocka_unit_test(threads_change_no_bit_of_sheets_of_finite_span),
-        cmocka_unit_test(threads_change_no_bit_where_vortices_are_shed_at_once),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

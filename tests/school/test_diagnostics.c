@@ -34,8 +34,7 @@ static struct audit_result audit_of(const char *text, double t) {
     return result;
 }
 
-static void energy_audit_closes_within_ten_times_the_tolerance(void **state) {
-    (void)state;
+TEST(energy_audit_closes_within_ten_times_the_tolerance) {
     // the energy is the energy at the start plus the work of the muscle
     const double moduli[] = {1e5, 1e6, 1e7};
     for (int i = 0; i < 3; i++) {
@@ -49,8 +48,7 @@ static void energy_audit_closes_within_ten_times_the_tolerance(void **state) {
     }
 }
 
-static void energy_audit_falls_with_the_tolerance(void **state) {
-    (void)state;
+TEST(energy_audit_falls_with_the_tolerance) {
     // errors of BDF of order 2 are of the size rtol^(2/3) or less: a factor of 21 and more from 1e-5 to 1e-7
     double worst[2];
     for (int i = 0; i < 2; i++) {
@@ -62,8 +60,7 @@ static void energy_audit_falls_with_the_tolerance(void **state) {
     ABOVE(worst[0] / worst[1], 10);
 }
 
-static void powers_are_integrated_with_third_order(void **state) {
-    (void)state;
+TEST(powers_are_integrated_with_third_order) {
     // with BDF of order 5 the error of the quadrature dominates: 1e-6 J measured, 3e-5 J with the trapezoidal rule
     const struct audit_result balance = audit_of(TIME "solver: {rtol: 1.0e-7, order: 5}\nfish: [{}]\n", 2);
     print_message("balance %.2e J at 1e-7 and order 5\n", balance.worst);
@@ -72,8 +69,7 @@ static void powers_are_integrated_with_third_order(void **state) {
 
 /* The integrated strains of a soft body with strain damping, whose places know the strains as well: largest difference
  * at events. Steps of the fourth order leave the error of the parabola through three stresses, of the third order. */
-static void strains_are_integrated_with_third_order(void **state) {
-    (void)state;
+TEST(strains_are_integrated_with_third_order) {
     double worst[2] = {0, 0};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
@@ -100,8 +96,7 @@ static void strains_are_integrated_with_third_order(void **state) {
     NEAR(order, 3, 0.3, 0);
 }
 
-static void energy_audit_closes_with_every_kind_of_power(void **state) {
-    (void)state;
+TEST(energy_audit_closes_with_every_kind_of_power) {
     const char *const texts[] = {
         // a bias that jumps at waypoints
         TIME "fish: [{control: {law: heading, waypoints: [[-0.6, 0.1], [-3, 2]], acceptance_radius: 0.1}}]\n",
@@ -126,8 +121,7 @@ static void energy_audit_closes_with_every_kind_of_power(void **state) {
     }
 }
 
-static void a_bias_that_moves_across_impulses_keeps_the_balance(void **state) {
-    (void)state;
+TEST(a_bias_that_moves_across_impulses_keeps_the_balance) {
     // the state jumps at every event; the bias must be continuous: an earlier defect set the bias back by an interval
     const struct audit_result balance = audit_of(TIME
                                                  "wake: {shedding: impulsive}\nsolver: {rtol: 1.0e-6}\n"
@@ -142,8 +136,7 @@ static void a_bias_that_moves_across_impulses_keeps_the_balance(void **state) {
     AT_MOST(published.worst, 0.01 * published.put_in);
 }
 
-static void after_a_jump_the_balance_goes_on_from_the_powers_of_then(void **state) {
-    (void)state;
+TEST(after_a_jump_the_balance_goes_on_from_the_powers_of_then) {
     struct simulation *const simulation =
         school_simulation(TIME "wake: {shedding: impulsive}\nfish: [{body: {modulus: 1.0e+5}, wave: {ramp: 0}}]\n");
     for (int n = 1; n <= 5; n++) {
@@ -162,8 +155,7 @@ static void after_a_jump_the_balance_goes_on_from_the_powers_of_then(void **stat
     simulate_free(simulation);
 }
 
-static void total_circulation_vanishes_at_every_event(void **state) {
-    (void)state;
+TEST(total_circulation_vanishes_at_every_event) {
     const char *const texts[] = {
         TIME "wake: {lifetime: 0.3}\nfish: [{}, {start: {position: [0.3, 0.7]}, nodes: 9, sheet_points: 13}]\n",
         TIME "wake: {lifetime: 0.3}\nsheet: {kutta: rate, collocation: midpoint}\nfish: [{}]\n",
@@ -219,8 +211,7 @@ static void change_of_momentum(const char *rtol, double change[3]) {
     simulate_free(simulation);
 }
 
-static void momentum_is_constant_without_fluid(void **state) {
-    (void)state;
+TEST(momentum_is_constant_without_fluid) {
     double change[3];
     // a linear invariant: every step of BDF conserves linear invariants up to the residual of the Newton iteration
     change_of_momentum("1.0e-5", change);
@@ -236,8 +227,7 @@ static void momentum_is_constant_without_fluid(void **state) {
     NEAR_ARRAY(3, change, ((const double[]){0, 0, 0}), 1e-9, 0);
 }
 
-static void a_body_that_does_not_travel_has_no_numbers_per_speed(void **state) {
-    (void)state;
+TEST(a_body_that_does_not_travel_has_no_numbers_per_speed) {
     // its bias steps, and it vibrates about the centre of mass, which rounding moves
     struct simulation *const simulation = school_simulation(
         TIME
@@ -267,8 +257,7 @@ static double reversals(int n, const double *bias, double limit) {
 }
 
 // a hundredth of the limit, in either direction; small moves back count once they add up to that
-static void a_bias_reverses_where_it_moves_back_by_a_hundredth_of_the_limit(void **state) {
-    (void)state;
+TEST(a_bias_reverses_where_it_moves_back_by_a_hundredth_of_the_limit) {
     for (int sign = -1; sign <= 1; sign += 2) {
         const double small = 0.0199 * sign, large = 0.0201 * sign;
         NEAR(reversals(7, (double[]){0, small, 0, small, 0, small, 0}, 2), 0, 0, 0);
@@ -281,8 +270,7 @@ static void a_bias_reverses_where_it_moves_back_by_a_hundredth_of_the_limit(void
     }
 }
 
-static void mean_heading_is_the_trapezoidal_mean(void **state) {
-    (void)state;
+TEST(mean_heading_is_the_trapezoidal_mean) {
     struct sample samples[6];
     struct history history = {.capacity = 5, .n_slots = 6, .last = -1, .sample = samples};
     const double headings[] = {9, 9, 1, 2, 4, 8, 5};
@@ -296,8 +284,7 @@ static void mean_heading_is_the_trapezoidal_mean(void **state) {
 
 /* Means of a force over five samples of a free fish that swims at the speed 1 towards -x: by the trapezoidal rule a
  * constant force is its own mean, and so is the middle of a force that grows at a constant rate. */
-static void mean_forces_are_exact_for_forces_that_grow_evenly(void **state) {
-    (void)state;
+TEST(mean_forces_are_exact_for_forces_that_grow_evenly) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{}]\n");
     for (int i = 0; i < 2; i++) {
@@ -320,8 +307,7 @@ static void mean_forces_are_exact_for_forces_that_grow_evenly(void **state) {
     school_clear(&setup);
 }
 
-static void course_is_the_direction_of_the_way_in_the_last_period(void **state) {
-    (void)state;
+TEST(course_is_the_direction_of_the_way_in_the_last_period) {
     struct sample sample[3] = {
         {.com = {1, 0}, .velocity = {0.2, 0.1}}, {.com = {5, 5}}, {.com = {-1, 2}, .velocity = {0.5, 0}}};
     struct history history = {.capacity = 3, .n = 2, .last = 1, .sample = sample};
@@ -339,8 +325,7 @@ static void course_is_the_direction_of_the_way_in_the_last_period(void **state) 
     assert_int_equal(diagnostics_course(&history, &course, &rate), 0);
 }
 
-static void speed_and_strouhal_number_are_those_of_a_driven_plate(void **state) {
-    (void)state;
+TEST(speed_and_strouhal_number_are_those_of_a_driven_plate) {
     // an oblique heading: both coordinates of the tail count
     struct simulation *const simulation = school_simulation(
         TIME "fish: [{start: {heading: 60}, motion: {prescribed: all, speed: 1.5, heave: 0.1, frequency: 2}}]\n");
@@ -364,8 +349,7 @@ static void speed_and_strouhal_number_are_those_of_a_driven_plate(void **state) 
 }
 
 // the mean over the last period does not depend on the frame: the same swim in still water and in a stream
-static void means_are_those_of_the_way_through_the_water(void **state) {
-    (void)state;
+TEST(means_are_those_of_the_way_through_the_water) {
     struct diagnostics_fish of[2];
     for (int i = 0; i < 2; i++) {
         char text[256];
@@ -390,8 +374,7 @@ static void means_are_those_of_the_way_through_the_water(void **state) {
     NEAR(of[1].heading_error, of[0].heading_error, 0.02, 0);
 }
 
-static void stream_at_the_fish_is_integrated_by_trapezoids(void **state) {
-    (void)state;
+TEST(stream_at_the_fish_is_integrated_by_trapezoids) {
     // a plate across a gust that grows from zero: at rest over ground
     struct simulation *const simulation = school_simulation(
         TIME
@@ -410,8 +393,7 @@ static void stream_at_the_fish_is_integrated_by_trapezoids(void **state) {
     simulate_free(simulation);
 }
 
-static void drift_is_the_change_of_the_speed_in_a_period(void **state) {
-    (void)state;
+TEST(drift_is_the_change_of_the_speed_in_a_period) {
     struct simulation *const simulation = school_simulation(TIME "fish: [{wave: {frequency: 2}}]\n");
     double speed[2];
     for (int i = 1; i <= 3; i++) {
@@ -429,8 +411,7 @@ static void drift_is_the_change_of_the_speed_in_a_period(void **state) {
     simulate_free(simulation);
 }
 
-static void cost_of_transport_is_what_fluid_and_damping_take(void **state) {
-    (void)state;
+TEST(cost_of_transport_is_what_fluid_and_damping_take) {
     // a muscle; a heaving plate at free speed; a pitching towed plate; a loaded plate
     const char *const fish[] = {
         "{force: reactive, added_mass: {extent: depth}, body: {modulus: 1.0e+5}}",
@@ -463,8 +444,7 @@ static void cost_of_transport_is_what_fluid_and_damping_take(void **state) {
     }
 }
 
-static void cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream(void **state) {
-    (void)state;
+TEST(cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream) {
     double cost[2];
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
@@ -482,8 +462,7 @@ static void cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream(void **st
     ABOVE(cost[0], 0);
 }
 
-static void thrust_and_power_of_a_held_plate_are_means_over_the_last_period(void **state) {
-    (void)state;
+TEST(thrust_and_power_of_a_held_plate_are_means_over_the_last_period) {
     enum { N = 100 };
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
@@ -516,8 +495,7 @@ static void thrust_and_power_of_a_held_plate_are_means_over_the_last_period(void
 }
 
 /* A plate with damping and a muscle: the drive pays for both, and the power is the same in a stream. */
-static void power_of_a_held_plate_is_the_work_of_muscle_and_drive(void **state) {
-    (void)state;
+TEST(power_of_a_held_plate_is_the_work_of_muscle_and_drive) {
     double power[2];
     for (int i = 0; i < 2; i++) {
         char text[768];
@@ -552,8 +530,7 @@ static void power_of_a_held_plate_is_the_work_of_muscle_and_drive(void **state) 
     NEAR(power[1], power[0], 0, 1e-4);
 }
 
-static void forces_by_name_make_up_momentum_and_angular_momentum(void **state) {
-    (void)state;
+TEST(forces_by_name_make_up_momentum_and_angular_momentum) {
     const char *const texts[] = {
         TIME
         "fluid: {velocity: [0.3, 0.1], shear: 0.4, gust: {amplitude: 0.3, frequency: 1}}\n"
@@ -631,8 +608,7 @@ static double largest_difference(int i, int n_events, const double *value, const
 }
 
 // errors relative to the largest value; with the slope at the end of an interval 1.5 %
-static void pressure_at_events_has_the_accuracy_of_the_motion(void **state) {
-    (void)state;
+TEST(pressure_at_events_has_the_accuracy_of_the_motion) {
     enum { N = 100 };
     static const char *const fish[] = {SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n",
                                        SCHOOL_DEFAULTS
@@ -667,8 +643,7 @@ static void pressure_at_events_has_the_accuracy_of_the_motion(void **state) {
 }
 
 // 0.2 % of the largest force, 7.9 N; central differences over five events, which use no rate
-static void force_at_events_is_the_rate_of_the_momentum(void **state) {
-    (void)state;
+TEST(force_at_events_is_the_rate_of_the_momentum) {
     enum { N = 100 };
     static double value[N * N_OF_EVENT];
     record_events(SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n", N, value);
@@ -682,8 +657,7 @@ static void force_at_events_is_the_rate_of_the_momentum(void **state) {
     }
 }
 
-static void vortices_inside_an_outline_are_counted(void **state) {
-    (void)state;
+TEST(vortices_inside_an_outline_are_counted) {
     struct setup setup;
     // two straight bodies of 0.1 m thickness from x = 0 to 1
     school_build(
@@ -707,8 +681,7 @@ static void vortices_inside_an_outline_are_counted(void **state) {
     school_clear(&setup);
 }
 
-static void a_body_that_sweeps_over_a_wake_loses_no_circulation(void **state) {
-    (void)state;
+TEST(a_body_that_sweeps_over_a_wake_loses_no_circulation) {
     // a prescribed plate crosses the wake of another plate
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.02}\nwake: {shedding: sheet}\n"
@@ -727,8 +700,7 @@ static void a_body_that_sweeps_over_a_wake_loses_no_circulation(void **state) {
     simulate_free(simulation);
 }
 
-static void heading_is_unwrapped(void **state) {
-    (void)state;
+TEST(heading_is_unwrapped) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{start: {heading: 170}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -745,8 +717,7 @@ static void heading_is_unwrapped(void **state) {
     school_clear(&setup);
 }
 
-static void the_desired_heading_is_unwrapped_next_to_the_heading(void **state) {
-    (void)state;
+TEST(the_desired_heading_is_unwrapped_next_to_the_heading) {
     const double desired[] = {160, -150, 100}, want[] = {160, 210, 100};
     for (int i = 0; i < 3; i++) {
         struct simulation *const simulation = school_simulation_of(
@@ -758,8 +729,7 @@ static void the_desired_heading_is_unwrapped_next_to_the_heading(void **state) {
     }
 }
 
-static void polarisation_and_least_distance_are_those_of_the_school(void **state) {
-    (void)state;
+TEST(polarisation_and_least_distance_are_those_of_the_school) {
     struct simulation *simulation =
         school_simulation(TIME
                           "defaults: {fish: {body: {profile: uniform, thickness: 0.1}}}\n"
@@ -776,8 +746,7 @@ static void polarisation_and_least_distance_are_those_of_the_school(void **state
     simulate_free(simulation);
 }
 
-static void powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass(void **state) {
-    (void)state;
+TEST(powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass) {
     static const char *const forces[] = {"reactive", "pressure"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
@@ -805,8 +774,7 @@ static void powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass(v
     }
 }
 
-static void balances_that_begin_again_are_closed(void **state) {
-    (void)state;
+TEST(balances_that_begin_again_are_closed) {
     struct simulation *const simulation = school_simulation(
         SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.02}\ndefaults: {fish: {force: pressure, pressure: {span: infinite}}}\n"
@@ -829,42 +797,4 @@ static void balances_that_begin_again_are_closed(void **state) {
     NEAR(simulation->diagnostics->momentum_balance[0], 0, 1e-12, 0);
     assert_int_equal(now->crossed, -1);
     simulate_free(simulation);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(energy_audit_closes_within_ten_times_the_tolerance),
-        cmocka_unit_test(energy_audit_falls_with_the_tolerance),
-        cmocka_unit_test(powers_are_integrated_with_third_order),
-        cmocka_unit_test(strains_are_integrated_with_third_order),
-        cmocka_unit_test(energy_audit_closes_with_every_kind_of_power),
-        cmocka_unit_test(a_bias_that_moves_across_impulses_keeps_the_balance),
-        cmocka_unit_test(after_a_jump_the_balance_goes_on_from_the_powers_of_then),
-        cmocka_unit_test(total_circulation_vanishes_at_every_event),
-        cmocka_unit_test(momentum_is_constant_without_fluid),
-        cmocka_unit_test(a_body_that_does_not_travel_has_no_numbers_per_speed),
-        cmocka_unit_test(a_bias_reverses_where_it_moves_back_by_a_hundredth_of_the_limit),
-        cmocka_unit_test(mean_heading_is_the_trapezoidal_mean),
-        cmocka_unit_test(mean_forces_are_exact_for_forces_that_grow_evenly),
-        cmocka_unit_test(course_is_the_direction_of_the_way_in_the_last_period),
-        cmocka_unit_test(speed_and_strouhal_number_are_those_of_a_driven_plate),
-        cmocka_unit_test(means_are_those_of_the_way_through_the_water),
-        cmocka_unit_test(stream_at_the_fish_is_integrated_by_trapezoids),
-        cmocka_unit_test(drift_is_the_change_of_the_speed_in_a_period),
-        cmocka_unit_test(cost_of_transport_is_what_fluid_and_damping_take),
-        cmocka_unit_test(cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream),
-        cmocka_unit_test(thrust_and_power_of_a_held_plate_are_means_over_the_last_period),
-        cmocka_unit_test(power_of_a_held_plate_is_the_work_of_muscle_and_drive),
-        cmocka_unit_test(forces_by_name_make_up_momentum_and_angular_momentum),
-        cmocka_unit_test(pressure_at_events_has_the_accuracy_of_the_motion),
-        cmocka_unit_test(force_at_events_is_the_rate_of_the_momentum),
-        cmocka_unit_test(vortices_inside_an_outline_are_counted),
-        cmocka_unit_test(a_body_that_sweeps_over_a_wake_loses_no_circulation),
-        cmocka_unit_test(heading_is_unwrapped),
-        cmocka_unit_test(the_desired_heading_is_unwrapped_next_to_the_heading),
-        cmocka_unit_test(polarisation_and_least_distance_are_those_of_the_school),
-        cmocka_unit_test(powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass),
-        cmocka_unit_test(balances_that_begin_again_are_closed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

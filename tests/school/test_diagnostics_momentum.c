@@ -55,8 +55,7 @@ static struct balance run(const char *text, double end) {
 }
 
 /* Every force and every loss of circulation; the error is the discretisation error in the interval. */
-static void the_balance_is_closed_with_every_external_force(void **state) {
-    (void)state;
+TEST(the_balance_is_closed_with_every_external_force) {
     static const struct {
         const char *name, *text;
     } cases[] = {
@@ -133,8 +132,7 @@ static void the_balance_is_closed_with_every_external_force(void **state) {
 }
 
 // bodies in contact without fluid, one body with a load: rounding, and the error of the integral of the load
-static void without_a_fluid_it_is_closed_too(void **state) {
-    (void)state;
+TEST(without_a_fluid_it_is_closed_too) {
     const struct balance worst = run(SCHOOL_DEFAULTS TIME
                                      "fluid: {density: 0}\nsolver: {rtol: 1.0e-7}\n"
                                      "defaults: {fish: {nodes: 9, wave: {amplitude: 0}, start: {speed: 1}}}\n"
@@ -146,8 +144,7 @@ static void without_a_fluid_it_is_closed_too(void **state) {
 }
 
 // between events that remove no circulation only the legs lose impulse
-static void legs_are_booked_by_the_trapezoidal_rule(void **state) {
-    (void)state;
+TEST(legs_are_booked_by_the_trapezoidal_rule) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME "wake: {lifetime: 10}\nfish: [{" STRIP "}]\n");
     const struct momentum_balance *const now = simulation->state->momentum;
@@ -168,8 +165,7 @@ static void legs_are_booked_by_the_trapezoidal_rule(void **state) {
     simulate_free(simulation);
 }
 
-static void forces_without_a_reaction_have_no_balance(void **state) {
-    (void)state;
+TEST(forces_without_a_reaction_have_no_balance) {
     static const struct {
         const char *text;
         int has_impulse, has_external, has_balance;
@@ -214,8 +210,7 @@ static void fill(const char *fluid, const char *start, struct diagnostics_fish *
     simulate_free(simulation);
 }
 
-static void impulses_do_not_depend_on_the_origin(void **state) {
-    (void)state;
+TEST(impulses_do_not_depend_on_the_origin) {
     struct diagnostics_fish here, there;
     double imbalance[2][3];
     fill("", "start: {speed: 0.5}", &here, imbalance[0]);
@@ -229,8 +224,7 @@ static void impulses_do_not_depend_on_the_origin(void **state) {
     NEAR(imbalance[1][2], imbalance[0][2] + 1000 * imbalance[0][1] + 500 * imbalance[0][0], 1e-3, 0);
 }
 
-static void a_stream_changes_no_balance(void **state) {
-    (void)state;
+TEST(a_stream_changes_no_balance) {
     struct diagnostics_fish still, moving;
     double imbalance[2][3];
     fill("", "start: {speed: 0.5}", &still, imbalance[0]);
@@ -242,8 +236,7 @@ static void a_stream_changes_no_balance(void **state) {
     ABOVE(hypot(imbalance[0][0], imbalance[0][1]), 1e-4);
 }
 
-static void a_restart_begins_the_balance_again(void **state) {
-    (void)state;
+TEST(a_restart_begins_the_balance_again) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME "wake: {lifetime: 0.1}\nfish: [{" FISH "}]\n");
     school_run(simulation, 0.3);
@@ -290,8 +283,7 @@ static void swim_among_many(const char *fluid, double tolerance, double balance[
     simulate_free(simulation);
 }
 
-static void it_is_closed_where_the_tree_sums(void **state) {
-    (void)state;
+TEST(it_is_closed_where_the_tree_sums) {
     static const char *const fluids[] = {"", "fluid: {walls: [-1]}\n"};
     for (size_t w = 0; w < sizeof fluids / sizeof *fluids; w++) {
         double direct[3], summed[3], size, error = 0;
@@ -308,18 +300,4 @@ static void it_is_closed_where_the_tree_sums(void **state) {
         ABOVE(error, 0);
         BELOW(error, 1e-3);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_balance_is_closed_with_every_external_force),
-        cmocka_unit_test(without_a_fluid_it_is_closed_too),
-        cmocka_unit_test(legs_are_booked_by_the_trapezoidal_rule),
-        cmocka_unit_test(forces_without_a_reaction_have_no_balance),
-        cmocka_unit_test(impulses_do_not_depend_on_the_origin),
-        cmocka_unit_test(a_stream_changes_no_balance),
-        cmocka_unit_test(a_restart_begins_the_balance_again),
-        cmocka_unit_test(it_is_closed_where_the_tree_sums),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

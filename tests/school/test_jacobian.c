@@ -27,8 +27,7 @@ static void build(struct setup *setup, const char *text) {
     school_ok(residual_jacobian(setup->residual, setup->t, 37, setup->state->y, setup->jacobian));
 }
 
-static void blocks_are_those_of_the_coupled_fish(void **state) {
-    (void)state;
+TEST(blocks_are_those_of_the_coupled_fish) {
     struct setup setup;
     build(&setup, FIVE(1));
     const struct jacobian *jacobian = setup.jacobian;
@@ -51,8 +50,7 @@ static void blocks_are_those_of_the_coupled_fish(void **state) {
     school_clear(&setup);
 }
 
-static void couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks(void **state) {
-    (void)state;
+TEST(couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks) {
     struct setup setup;
     build(&setup, FIVE(1));
     const int n = setup.school->n_unknowns;
@@ -79,8 +77,7 @@ static void couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks(v
     school_clear(&setup);
 }
 
-static void masked_rows_have_no_couplings(void **state) {
-    (void)state;
+TEST(masked_rows_have_no_couplings) {
     struct setup setup;
     build(&setup, FIVE(1));
     const struct layout *at = &setup.school->fish[2].at;
@@ -97,8 +94,7 @@ static void masked_rows_have_no_couplings(void **state) {
     school_clear(&setup);
 }
 
-static void threads_change_no_bit(void **state) {
-    (void)state;
+TEST(threads_change_no_bit) {
     struct setup one, more;
     build(&one, FIVE(1));
     double *const want = school_dense_jacobian(one.jacobian);
@@ -119,14 +115,4 @@ static void threads_change_no_bit(void **state) {
     }
     free(want);
     school_clear(&one);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blocks_are_those_of_the_coupled_fish),
-        cmocka_unit_test(couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks),
-        cmocka_unit_test(masked_rows_have_no_couplings),
-        cmocka_unit_test(threads_change_no_bit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -231,8 +231,7 @@ static void value_of_school(struct setup *setup, const double *y, const double *
     school_ok(residual_evaluate(setup->residual, setup->t, y, yp, value));
 }
 
-static void jacobian_agrees_with_differences_for_every_option(void **state) {
-    (void)state;
+TEST(jacobian_agrees_with_differences_for_every_option) {
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
         struct setup setup;
         school_build(&setup, variants[i].text);
@@ -248,8 +247,7 @@ static void jacobian_agrees_with_differences_for_every_option(void **state) {
 
 // Below, at, and above the leading-edge parameter that the bodies have; they are soft, so that the derivatives by the
 // places are those of the fluid. In a channel, with a second fish.
-static void jacobian_agrees_with_differences_where_the_suction_ends(void **state) {
-    (void)state;
+TEST(jacobian_agrees_with_differences_where_the_suction_ends) {
     static const char text[] = TIME FAR
         "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
         "fluid: {velocity: [0.3, 0], shear: 0.7, walls: [-1.2, 1.3]}\n"
@@ -303,8 +301,7 @@ static void compare_overtaken(const char *keys, int with_legs) {
     school_clear(&setup);
 }
 
-static void jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake(void **state) {
-    (void)state;
+TEST(jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake) {
     compare_overtaken("sheet_points: 9, pressure: {span: infinite}, body: {modulus: 1}", 0);
     compare_overtaken("sheet_points: 21, pressure: {span: finite}, body: {modulus: 1}", 1);
     // the depth varies: force of the side edges
@@ -314,8 +311,7 @@ static void jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake
         1);
 }
 
-static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **state) {
-    (void)state;
+TEST(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else) {
     const char *const text = TIME
         "solver: {coupling_distance: 0.6}\n"
         "fish: [{sheet_points: 9}, {sheet_points: 9, start: {position: [0, 1]}}]\n";
@@ -344,8 +340,7 @@ static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **sta
     school_clear(&setup);
 }
 
-static void unknowns_have_names_kinds_and_scales(void **state) {
-    (void)state;
+TEST(unknowns_have_names_kinds_and_scales) {
     struct setup setup;
     school_build(
         &setup, TIME
@@ -389,8 +384,7 @@ static void unknowns_have_names_kinds_and_scales(void **state) {
     school_clear(&setup);
 }
 
-static void circulation_shed_is_differential_only_with_a_rate(void **state) {
-    (void)state;
+TEST(circulation_shed_is_differential_only_with_a_rate) {
     const struct {
         const char *text;
         int algebraic, algebraic_at_impulse;
@@ -408,8 +402,7 @@ static void circulation_shed_is_differential_only_with_a_rate(void **state) {
     }
 }
 
-static void a_value_that_is_not_finite_asks_for_a_retry_and_says_where(void **state) {
-    (void)state;
+TEST(a_value_that_is_not_finite_asks_for_a_retry_and_says_where) {
     struct setup setup;
     school_build(&setup, TIME FISH);
     school_stir(&setup);
@@ -420,8 +413,7 @@ static void a_value_that_is_not_finite_asks_for_a_retry_and_says_where(void **st
     school_clear(&setup);
 }
 
-static void rows_of_prescribed_nodes_vanish_on_their_motion_only(void **state) {
-    (void)state;
+TEST(rows_of_prescribed_nodes_vanish_on_their_motion_only) {
     struct setup setup;
     school_build(
         &setup, TIME
@@ -445,8 +437,7 @@ static void rows_of_prescribed_nodes_vanish_on_their_motion_only(void **state) {
     school_clear(&setup);
 }
 
-static void load_at_the_tip_accelerates_the_tail_only(void **state) {
-    (void)state;
+TEST(load_at_the_tip_accelerates_the_tail_only) {
     struct setup with, without;
     school_build(&with, TIME "fish: [{sheet_points: 9, load: {tip: [3, -2]}}]\n");
     school_build(&without, TIME "fish: [{sheet_points: 9}]\n");
@@ -470,8 +461,7 @@ static int n_coupled(const struct residual *residual) {
     return n;
 }
 
-static void more_fish_couple_when_asked_until_all_do(void **state) {
-    (void)state;
+TEST(more_fish_couple_when_asked_until_all_do) {
     struct setup setup;
     // gaps of 0.5, 1.5, and 3 between those that are not neighbours
     school_build(&setup, TIME
@@ -492,20 +482,4 @@ static void more_fish_couple_when_asked_until_all_do(void **state) {
     assert_int_equal(residual_couple_more(&residual->couplings, y), 0);
     assert_int_equal(n_coupled(residual), 9);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(jacobian_agrees_with_differences_for_every_option),
-        cmocka_unit_test(jacobian_agrees_with_differences_where_the_suction_ends),
-        cmocka_unit_test(jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake),
-        cmocka_unit_test(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else),
-        cmocka_unit_test(unknowns_have_names_kinds_and_scales),
-        cmocka_unit_test(circulation_shed_is_differential_only_with_a_rate),
-        cmocka_unit_test(a_value_that_is_not_finite_asks_for_a_retry_and_says_where),
-        cmocka_unit_test(rows_of_prescribed_nodes_vanish_on_their_motion_only),
-        cmocka_unit_test(load_at_the_tip_accelerates_the_tail_only),
-        cmocka_unit_test(more_fish_couple_when_asked_until_all_do),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

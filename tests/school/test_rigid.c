@@ -20,8 +20,7 @@ static void lengths_of(const struct fish *fish, const double *y, double *length)
     }
 }
 
-static void a_rigid_motion_is_read_exactly(void **state) {
-    (void)state;
+TEST(a_rigid_motion_is_read_exactly) {
     struct setup setup;
     set_up(&setup);
     const struct fish *const fish = &setup.school->fish[1];
@@ -38,8 +37,7 @@ static void a_rigid_motion_is_read_exactly(void **state) {
     school_clear(&setup);
 }
 
-static void a_place_is_seen_ahead_and_to_the_left(void **state) {
-    (void)state;
+TEST(a_place_is_seen_ahead_and_to_the_left) {
     const struct rigid one = {.place = {1, 2}, .heading = M_PI / 2}, other = {.place = {0.7, 4}, .heading = 3};
     double place[2];
     rigid_relative_place(&one, &other, place);
@@ -47,8 +45,7 @@ static void a_place_is_seen_ahead_and_to_the_left(void **state) {
     NEAR(place[1], 0.3, 1e-15, 0);
 }
 
-static void what_is_added_is_read_and_other_fish_stay(void **state) {
-    (void)state;
+TEST(what_is_added_is_read_and_other_fish_stay) {
     struct setup setup;
     set_up(&setup);
     const struct fish *const other = &setup.school->fish[0], *const fish = &setup.school->fish[1];
@@ -71,8 +68,7 @@ static void what_is_added_is_read_and_other_fish_stay(void **state) {
     school_clear(&setup);
 }
 
-static void a_vortex_lies_where_the_faster_tail_would_have_left_it(void **state) {
-    (void)state;
+TEST(a_vortex_lies_where_the_faster_tail_would_have_left_it) {
     struct setup setup;
     set_up(&setup);
     const struct wake *const wake = &setup.state->wake[1];
@@ -87,8 +83,7 @@ static void a_vortex_lies_where_the_faster_tail_would_have_left_it(void **state)
     school_clear(&setup);
 }
 
-static void a_vortex_lies_where_the_tail_of_a_turning_fish_would_have_left_it(void **state) {
-    (void)state;
+TEST(a_vortex_lies_where_the_tail_of_a_turning_fish_would_have_left_it) {
     struct setup setup;
     set_up(&setup);
     const struct wake *const wake = &setup.state->wake[1];
@@ -102,8 +97,7 @@ static void a_vortex_lies_where_the_tail_of_a_turning_fish_would_have_left_it(vo
 }
 
 // places turn about the centre of mass and are displaced, all other vectors turn
-static void every_vector_of_the_past_turns_with_the_fish(void **state) {
-    (void)state;
+TEST(every_vector_of_the_past_turns_with_the_fish) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
                           "time: {end: 3, shedding_interval: 0.05}\nfluid: {velocity: [0.4, -0.2], shear: 0.3}\n"
@@ -141,8 +135,7 @@ static void every_vector_of_the_past_turns_with_the_fish(void **state) {
     simulate_free(simulation);
 }
 
-static void means_over_the_last_period_do_not_notice_a_displacement(void **state) {
-    (void)state;
+TEST(means_over_the_last_period_do_not_notice_a_displacement) {
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, 0.5);
     simulate_measure(simulation);
@@ -154,8 +147,7 @@ static void means_over_the_last_period_do_not_notice_a_displacement(void **state
     simulate_free(simulation);
 }
 
-static void means_over_the_last_period_do_not_notice_a_turn_in_a_stream(void **state) {
-    (void)state;
+TEST(means_over_the_last_period_do_not_notice_a_turn_in_a_stream) {
     struct simulation *const simulation = school_simulation(
         SCHOOL_DEFAULTS
         "time: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\nfluid: {velocity: [0.4, -0.2]}\n"
@@ -179,8 +171,7 @@ static void means_over_the_last_period_do_not_notice_a_turn_in_a_stream(void **s
     simulate_free(simulation);
 }
 
-static void the_drift_of_a_stream_goes_on_with_the_stream_that_is_there(void **state) {
-    (void)state;
+TEST(the_drift_of_a_stream_goes_on_with_the_stream_that_is_there) {
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\nfluid: {velocity: [0.4, 0], shear: 0.5}\n"
         "fish: [{}]\n");
@@ -192,8 +183,7 @@ static void the_drift_of_a_stream_goes_on_with_the_stream_that_is_there(void **s
     simulate_free(simulation);
 }
 
-static void the_tail_of_a_fish_that_turns_faster_goes_faster(void **state) {
-    (void)state;
+TEST(the_tail_of_a_fish_that_turns_faster_goes_faster) {
     struct setup setup;
     set_up(&setup);
     const struct fish *const fish = &setup.school->fish[1];
@@ -214,8 +204,7 @@ static void the_tail_of_a_fish_that_turns_faster_goes_faster(void **state) {
     school_clear(&setup);
 }
 
-static void all_vectors_of_fish_and_wake_turn_together(void **state) {
-    (void)state;
+TEST(all_vectors_of_fish_and_wake_turn_together) {
     struct setup setup;
     set_up(&setup);
     struct history *const history = &setup.state->history[1];
@@ -240,21 +229,4 @@ static void all_vectors_of_fish_and_wake_turn_together(void **state) {
     NEAR_ARRAY(2, wake->slip, ((double[]){-12, 11}), 1e-14, 0);
     NEAR(state_recall(history, 0)->heading, 1 + M_PI / 2, 1e-15, 0);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_rigid_motion_is_read_exactly),
-        cmocka_unit_test(a_place_is_seen_ahead_and_to_the_left),
-        cmocka_unit_test(what_is_added_is_read_and_other_fish_stay),
-        cmocka_unit_test(a_vortex_lies_where_the_faster_tail_would_have_left_it),
-        cmocka_unit_test(every_vector_of_the_past_turns_with_the_fish),
-        cmocka_unit_test(a_vortex_lies_where_the_tail_of_a_turning_fish_would_have_left_it),
-        cmocka_unit_test(means_over_the_last_period_do_not_notice_a_displacement),
-        cmocka_unit_test(means_over_the_last_period_do_not_notice_a_turn_in_a_stream),
-        cmocka_unit_test(the_drift_of_a_stream_goes_on_with_the_stream_that_is_there),
-        cmocka_unit_test(the_tail_of_a_fish_that_turns_faster_goes_faster),
-        cmocka_unit_test(all_vectors_of_fish_and_wake_turn_together),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,20 +37,17 @@ static void expect_warnings(const char *text, double t, const char *expected) {
     simulate_free(simulation);
 }
 
-static void a_short_run_of_a_default_fish_has_none(void **state) {
-    (void)state;
+TEST(a_short_run_of_a_default_fish_has_none) {
     expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{}]\n", 1, "");
 }
 
-static void a_fish_that_gathers_speed_drifts(void **state) {
-    (void)state;
+TEST(a_fish_that_gathers_speed_drifts) {
     expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{}]\n", 2.5, "d");
     // without fluid no fish swims, so a changing speed is no defect
     expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{}]\n", 2.5, "");
 }
 
-static void a_tail_without_a_limit_is_told(void **state) {
-    (void)state;
+TEST(a_tail_without_a_limit_is_told) {
 #define CUSP(keys) SCHOOL_DEFAULTS TIME "fish: [{force: reactive, body: {tail_thickness: 0}, " keys "}]\n"
     expect_warnings(CUSP("nodes: 25"), 0.1, "u");
     // for any number of nodes; not if the tail does not bend
@@ -59,8 +56,7 @@ static void a_tail_without_a_limit_is_told(void **state) {
     expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{body: {tail_thickness: 0}}]\n", 0.1, "");
 }
 
-static void few_nodes_at_the_tail_are_told(void **state) {
-    (void)state;
+TEST(few_nodes_at_the_tail_are_told) {
     // (EI/(m_L omega^2))^(1/4) of a uniform body, 0.1 by 0.25, 1e7 Pa, 2 Hz
     const double pi = acos(-1), EI = 1e7 * pi * 0.25 * 1e-3 / 64, m = 1000 * pi * 0.0625 / 4, omega = 4 * pi;
     const double length = pow(EI / (m * omega * omega), 0.25);
@@ -76,8 +72,7 @@ static void few_nodes_at_the_tail_are_told(void **state) {
     }
 }
 
-static void a_controller_that_chatters_is_told(void **state) {
-    (void)state;
+TEST(a_controller_that_chatters_is_told) {
     // a stiff body under a large damping: each beat of the course has more than four reversals
 #define STEERED(keys)                                                                                  \
     SCHOOL_DEFAULTS                                                                                    \
@@ -90,28 +85,24 @@ static void a_controller_that_chatters_is_told(void **state) {
     expect_warnings(STEERED(""), 7, "d");
 }
 
-static void the_published_force_is_told_and_nothing_else(void **state) {
-    (void)state;
+TEST(the_published_force_is_told_and_nothing_else) {
     // few events, energy balance, drift, cusp: all suppressed for the published force
     expect_warnings("time: {end: 3, shedding_interval: 0.0625}\npreset: published\nfish: [{}]\n", 2.5, "p");
     expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{force: published}, {start: {position: [0, 2]}}]\n", 0.1, "p");
 }
 
-static void few_events_in_a_beat_are_told(void **state) {
-    (void)state;
+TEST(few_events_in_a_beat_are_told) {
     expect_warnings(SCHOOL_DEFAULTS "time: {end: 3, shedding_interval: 0.0625}\nfish: [{}]\n", 0.5, "v");
     expect_warnings(SCHOOL_DEFAULTS "time: {end: 3, shedding_interval: 0.05}\nfish: [{}]\n", 0.5, "");
 }
 
-static void a_soft_body_is_slower_than_its_beat(void **state) {
-    (void)state;
+TEST(a_soft_body_is_slower_than_its_beat) {
     expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{nodes: 33, body: {modulus: 1e5}}]\n", 0.1, "m");
     // any stiffness of a passive body is allowed
     expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{body: {modulus: 1e5}, wave: {amplitude: 0}}]\n", 0.1, "");
 }
 
-static void the_worst_fish_is_named(void **state) {
-    (void)state;
+TEST(the_worst_fish_is_named) {
     // beats of 10 and 5 events, then the other way round; the third one has enough
     static const char *const frequencies[][2] = {{"2", "4"}, {"4", "2"}};
     for (int i = 0; i < 2; i++) {
@@ -131,8 +122,7 @@ static void the_worst_fish_is_named(void **state) {
     }
 }
 
-static void few_sheet_points_for_a_short_stretch_are_told(void **state) {
-    (void)state;
+TEST(few_sheet_points_for_a_short_stretch_are_told) {
 #define PLATE(n)                                                     \
     SCHOOL_DEFAULTS TIME "fish: [{force: reactive, sheet_points: " n \
                          ", wave: {frequency: 0}, motion: {prescribed: all, speed: 1}}]\n"
@@ -146,8 +136,7 @@ static void few_sheet_points_for_a_short_stretch_are_told(void **state) {
         0.1, "");
 }
 
-static void an_open_energy_balance_is_told(void **state) {
-    (void)state;
+TEST(an_open_energy_balance_is_told) {
     // a plate that pitches once in two events: the events do not resolve the power
     expect_warnings(SCHOOL_DEFAULTS
                     "time: {end: 10, shedding_interval: 0.5, output_interval: 0.5}\nfish: [{force: reactive, wave: "
@@ -155,8 +144,7 @@ static void an_open_energy_balance_is_told(void **state) {
                     10, "ev");
 }
 
-static void an_open_energy_balance_is_told_within_the_first_beat(void **state) {
-    (void)state;
+TEST(an_open_energy_balance_is_told_within_the_first_beat) {
     struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{start: {speed: 1}}]\n");
     school_run(simulation, 0.5);
     const struct fish *const fish = simulation->school->fish;
@@ -171,8 +159,7 @@ static void an_open_energy_balance_is_told_within_the_first_beat(void **state) {
 }
 
 // the first interval after a sudden transverse start of a plate; not in the first beat
-static void an_open_momentum_balance_is_told(void **state) {
-    (void)state;
+TEST(an_open_momentum_balance_is_told) {
 #define HEAVE(phase)                                                                                          \
     SCHOOL_DEFAULTS                                                                                           \
     "time: {end: 3, shedding_interval: 0.01}\n"                                                               \
@@ -184,8 +171,7 @@ static void an_open_momentum_balance_is_told(void **state) {
     expect_warnings(HEAVE("90"), 0.6, "");
 }
 
-static void a_run_that_diverges_in_its_first_beat_says_so(void **state) {
-    (void)state;
+TEST(a_run_that_diverges_in_its_first_beat_says_so) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
     school_run(simulation, 0.1);
@@ -213,8 +199,7 @@ static void a_run_that_diverges_in_its_first_beat_says_so(void **state) {
     simulate_free(simulation);
 }
 
-static void speeds_that_the_case_gives_are_no_divergence(void **state) {
-    (void)state;
+TEST(speeds_that_the_case_gives_are_no_divergence) {
     // a beat of 1 Hz alone would be exceeded a hundred times at 628 m/s, or m2/s
 #define REST SCHOOL_DEFAULTS TIME "fluid: {density: 0%s}\nfish: [{force: reactive, wave: {amplitude: 0}, %s}]\n"
     static const struct {
@@ -243,8 +228,7 @@ static void speeds_that_the_case_gives_are_no_divergence(void **state) {
     ABOVE(least, 700);
 }
 
-static void a_body_that_crosses_itself_is_told_without_a_fluid_too(void **state) {
-    (void)state;
+TEST(a_body_that_crosses_itself_is_told_without_a_fluid_too) {
     expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{}]\n", 0.9, "");
     expect_warnings(SCHOOL_DEFAULTS TIME
                     "fluid: {density: 0}\nfish: [{wave: {amplitude: 0.4, constant: 3, linear: 0, quadratic: 0,"
@@ -252,8 +236,7 @@ static void a_body_that_crosses_itself_is_told_without_a_fluid_too(void **state)
                     0.9, "x");
 }
 
-static void separation_at_the_nose_is_told(void **state) {
-    (void)state;
+TEST(separation_at_the_nose_is_told) {
 #define INCLINED(degrees, more)                                                               \
     SCHOOL_DEFAULTS TIME "fish: [{force: pressure, pressure: {span: infinite" more            \
                          "}, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, motion: " \
@@ -267,8 +250,7 @@ static void separation_at_the_nose_is_told(void **state) {
     expect_warnings(INCLINED("30", ", suction: 0"), 0.1, "");
 }
 
-static void bodies_that_pass_through_each_other_are_told(void **state) {
-    (void)state;
+TEST(bodies_that_pass_through_each_other_are_told) {
     // between two rows, and between two steps: without a fluid a prescribed motion needs few
     expect_warnings(
         "time: {end: 3, shedding_interval: 0.05}\nfluid: {density: 0}\ndefaults: {fish: {wave: {amplitude: 0}, motion: "
@@ -305,8 +287,7 @@ static void expect_line(const struct simulation *simulation, enum warning warnin
     if (part && !strstr(line, part)) fail_msg("'%s' without '%s'", line, part);
 }
 
-static void a_run_shorter_than_two_beats_has_no_means_of_a_cycle(void **state) {
-    (void)state;
+TEST(a_run_shorter_than_two_beats_has_no_means_of_a_cycle) {
     // the slowest fish decides
     struct simulation *simulation =
         school_simulation(SCHOOL_DEFAULTS TIME
@@ -327,8 +308,7 @@ static void a_run_shorter_than_two_beats_has_no_means_of_a_cycle(void **state) {
     simulate_free(simulation);
 }
 
-static void the_limits_are_those_of_the_manual(void **state) {
-    (void)state;
+TEST(the_limits_are_those_of_the_manual) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME
                           "fish: [{force: pressure, pressure: {span: infinite}, wave: {frequency: 0.5}}, {force: "
@@ -369,8 +349,7 @@ static void the_limits_are_those_of_the_manual(void **state) {
     simulate_free(simulation);
 }
 
-static void the_energy_balance_is_compared_with_the_largest_work(void **state) {
-    (void)state;
+TEST(the_energy_balance_is_compared_with_the_largest_work) {
     struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}]\n");
     simulate_measure(simulation);
     struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
@@ -397,8 +376,7 @@ static void the_energy_balance_is_compared_with_the_largest_work(void **state) {
     simulate_free(simulation);
 }
 
-static void the_advice_is_enough(void **state) {
-    (void)state;
+TEST(the_advice_is_enough) {
     // 3.2/sqrt(U Dt/L) = 32: 33 points are enough, 0.9 of 32 edges are allowed, and 29 edges are the first such number
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME "fish: [{force: reactive, sheet_points: 29}]\n");
@@ -436,8 +414,7 @@ static void the_advice_is_enough(void **state) {
     simulate_free(simulation);
 }
 
-static void a_mode_is_slow_below_the_frequency_of_the_beat(void **state) {
-    (void)state;
+TEST(a_mode_is_slow_below_the_frequency_of_the_beat) {
     struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}]\n");
     simulate_measure(simulation);
     struct fish *const fish = &simulation->school->fish[0];
@@ -449,8 +426,7 @@ static void a_mode_is_slow_below_the_frequency_of_the_beat(void **state) {
     simulate_free(simulation);
 }
 
-static void a_small_gap_is_told_where_nothing_repels(void **state) {
-    (void)state;
+TEST(a_small_gap_is_told_where_nothing_repels) {
     static const char *const actions[] = {"repel", "warn"};
     for (int warns = 0; warns < 2; warns++) {
         struct simulation *const simulation = school_simulation_of(
@@ -472,8 +448,7 @@ static void a_small_gap_is_told_where_nothing_repels(void **state) {
     }
 }
 
-static void divergence_is_a_hundred_times_the_speeds_of_the_case(void **state) {
-    (void)state;
+TEST(divergence_is_a_hundred_times_the_speeds_of_the_case) {
     // a length of 2 m: a pitch of 90 degrees at 3 Hz, and the free acceleration by a load of 50 N for 8 s
     static const char *const texts[] = {
         "fish: [{length: 2, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all, speed: 0, pitch: 90, "
@@ -497,8 +472,7 @@ static void divergence_is_a_hundred_times_the_speeds_of_the_case(void **state) {
     }
 }
 
-static void the_worst_divergence_of_all_events_is_kept(void **state) {
-    (void)state;
+TEST(the_worst_divergence_of_all_events_is_kept) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
     school_run(simulation, 0.1);
@@ -525,8 +499,7 @@ static void the_worst_divergence_of_all_events_is_kept(void **state) {
     simulate_free(simulation);
 }
 
-static void a_balance_that_is_not_finite_is_open_and_no_row(void **state) {
-    (void)state;
+TEST(a_balance_that_is_not_finite_is_open_and_no_row) {
     static const double broken[] = {NAN, INFINITY, -INFINITY};
     struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}]\n");
     simulate_measure(simulation);
@@ -566,37 +539,4 @@ static void a_balance_that_is_not_finite_is_open_and_no_row(void **state) {
     unequal->state->t = 5;
     expect_line(unequal, WARNING_MOMENTUM, NULL);
     simulate_free(unequal);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_short_run_of_a_default_fish_has_none),
-        cmocka_unit_test(a_fish_that_gathers_speed_drifts),
-        cmocka_unit_test(a_tail_without_a_limit_is_told),
-        cmocka_unit_test(few_nodes_at_the_tail_are_told),
-        cmocka_unit_test(a_controller_that_chatters_is_told),
-        cmocka_unit_test(the_published_force_is_told_and_nothing_else),
-        cmocka_unit_test(few_events_in_a_beat_are_told),
-        cmocka_unit_test(a_soft_body_is_slower_than_its_beat),
-        cmocka_unit_test(the_worst_fish_is_named),
-        cmocka_unit_test(few_sheet_points_for_a_short_stretch_are_told),
-        cmocka_unit_test(an_open_energy_balance_is_told),
-        cmocka_unit_test(an_open_energy_balance_is_told_within_the_first_beat),
-        cmocka_unit_test(an_open_momentum_balance_is_told),
-        cmocka_unit_test(a_run_that_diverges_in_its_first_beat_says_so),
-        cmocka_unit_test(speeds_that_the_case_gives_are_no_divergence),
-        cmocka_unit_test(a_body_that_crosses_itself_is_told_without_a_fluid_too),
-        cmocka_unit_test(separation_at_the_nose_is_told),
-        cmocka_unit_test(bodies_that_pass_through_each_other_are_told),
-        cmocka_unit_test(a_run_shorter_than_two_beats_has_no_means_of_a_cycle),
-        cmocka_unit_test(the_limits_are_those_of_the_manual),
-        cmocka_unit_test(the_energy_balance_is_compared_with_the_largest_work),
-        cmocka_unit_test(the_advice_is_enough),
-        cmocka_unit_test(a_mode_is_slow_below_the_frequency_of_the_beat),
-        cmocka_unit_test(a_small_gap_is_told_where_nothing_repels),
-        cmocka_unit_test(divergence_is_a_hundred_times_the_speeds_of_the_case),
-        cmocka_unit_test(the_worst_divergence_of_all_events_is_kept),
-        cmocka_unit_test(a_balance_that_is_not_finite_is_open_and_no_row),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -94,8 +94,7 @@ static void rigid(const struct fish *fish, const double *place, int which, doubl
     }
 }
 
-static void each_map_is_the_inverse_of_the_other(void **state) {
-    (void)state;
+TEST(each_map_is_the_inverse_of_the_other) {
     struct configurations both;
     set_up(&both, 2.5, 0.4);
     corotation_to_current(both.corotation, both.image);
@@ -106,8 +105,7 @@ static void each_map_is_the_inverse_of_the_other(void **state) {
     clear(&both);
 }
 
-static void the_inner_product_weighted_with_masses_is_preserved(void **state) {
-    (void)state;
+TEST(the_inner_product_weighted_with_masses_is_preserved) {
     struct configurations both;
     set_up(&both, -1, 0.4);
     corotation_to_current(both.corotation, both.image);
@@ -124,8 +122,7 @@ static void the_inner_product_weighted_with_masses_is_preserved(void **state) {
     clear(&both);
 }
 
-static void momenta_are_mapped_as_velocities_are(void **state) {
-    (void)state;
+TEST(momenta_are_mapped_as_velocities_are) {
     struct configurations both;
     set_up(&both, 0.8, 0.4);
     const struct fish *const fish = &both.setup.school->fish[2];
@@ -140,8 +137,7 @@ static void momenta_are_mapped_as_velocities_are(void **state) {
     clear(&both);
 }
 
-static void a_rigid_motion_is_mapped_to_a_rigid_motion(void **state) {
-    (void)state;
+TEST(a_rigid_motion_is_mapped_to_a_rigid_motion) {
     struct configurations both;
     set_up(&both, 0.8, 0.3);
     for (int which = 0; which < 3; which++) {
@@ -176,8 +172,7 @@ static void orthonormalise(const struct fish *fish, int n, double basis[][2 * MA
     for (int k = 0; k < 2 * fish->n_nodes; k++) a[k] /= size;
 }
 
-static void a_node_rotates_by_the_mean_of_its_edges(void **state) {
-    (void)state;
+TEST(a_node_rotates_by_the_mean_of_its_edges) {
     struct configurations both;
     set_up(&both, 0, 0);
     const struct fish *fish = &both.setup.school->fish[2];
@@ -205,8 +200,7 @@ static void a_node_rotates_by_the_mean_of_its_edges(void **state) {
     clear(&both);
 }
 
-static void where_nodes_are_prescribed_vectors_rotate_with_the_nodes(void **state) {
-    (void)state;
+TEST(where_nodes_are_prescribed_vectors_rotate_with_the_nodes) {
     struct configurations both;
     set_up(&both, 0.8, 0);
     corotation_to_current(both.corotation, both.image);
@@ -219,8 +213,7 @@ static void where_nodes_are_prescribed_vectors_rotate_with_the_nodes(void **stat
     clear(&both);
 }
 
-static void other_unknowns_are_not_mapped(void **state) {
-    (void)state;
+TEST(other_unknowns_are_not_mapped) {
     struct configurations both;
     set_up(&both, 0.8, 0.3);
     corotation_to_current(both.corotation, both.image);
@@ -288,8 +281,7 @@ static double largest_difference(int n, const double *a, const double *b) {
     return largest;
 }
 
-static void an_elastic_matrix_rotates_with_the_body(void **state) {
-    (void)state;
+TEST(an_elastic_matrix_rotates_with_the_body) {
     const double bends[] = {0, 0.02};
     for (int i = 0; i < 2; i++) {
         for (int f = 0; f < 3; f += 2) {
@@ -311,8 +303,7 @@ static void an_elastic_matrix_rotates_with_the_body(void **state) {
     }
 }
 
-static void a_mapped_elastic_force_has_no_net_force_and_moment(void **state) {
-    (void)state;
+TEST(a_mapped_elastic_force_has_no_net_force_and_moment) {
     for (int f = 0; f < 3; f += 2) {
         struct configurations both;
         set_up(&both, 0.3, 0.3);
@@ -347,19 +338,4 @@ static void a_mapped_elastic_force_has_no_net_force_and_moment(void **state) {
         ABOVE(unmapped, 1e-3 * fish->total_mass * largest);
         clear(&both);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_map_is_the_inverse_of_the_other),
-        cmocka_unit_test(the_inner_product_weighted_with_masses_is_preserved),
-        cmocka_unit_test(momenta_are_mapped_as_velocities_are),
-        cmocka_unit_test(a_rigid_motion_is_mapped_to_a_rigid_motion),
-        cmocka_unit_test(a_node_rotates_by_the_mean_of_its_edges),
-        cmocka_unit_test(where_nodes_are_prescribed_vectors_rotate_with_the_nodes),
-        cmocka_unit_test(other_unknowns_are_not_mapped),
-        cmocka_unit_test(an_elastic_matrix_rotates_with_the_body),
-        cmocka_unit_test(a_mapped_elastic_force_has_no_net_force_and_moment),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

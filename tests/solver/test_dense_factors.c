@@ -35,8 +35,7 @@ static double error_of_order(int n, int tiny_diagonal) {
     return error;
 }
 
-static void systems_of_any_order_are_solved(void **state) {
-    (void)state;
+TEST(systems_of_any_order_are_solved) {
     // below, at and above the width of a panel, and with every remainder of a tile; the factor 1e-11 is the rounding
     // times the condition of random matrices
     for (int n = 1; n <= 72; n++) BELOW(error_of_order(n, 0), 1e-11);
@@ -44,8 +43,7 @@ static void systems_of_any_order_are_solved(void **state) {
     for (int n = 2; n <= 72; n += 7) BELOW(error_of_order(n, 1), 1e-11);
 }
 
-static void the_factors_are_those_of_elimination_by_hand(void **state) {
-    (void)state;
+TEST(the_factors_are_those_of_elimination_by_hand) {
     // rows 1 2, 3 4: pivot 3, L = 1/3, U = 3 4, 0 2/3
     struct dense_factors factors = dense_factors_create(test_arena(), 2);
     memcpy(dense_factors_column(&factors, 0), (double[]){1, 3}, 2 * sizeof(double));
@@ -58,21 +56,11 @@ static void the_factors_are_those_of_elimination_by_hand(void **state) {
     NEAR(dense_factors_column(&factors, 1)[1], 2.0 / 3, 0, 1e-15);
 }
 
-static void a_singular_matrix_is_reported(void **state) {
-    (void)state;
+TEST(a_singular_matrix_is_reported) {
     const double value[] = {0, NAN, INFINITY};
     for (int v = 0; v < 3; v++) {
         struct dense_factors factors = dense_factors_create(test_arena(), 40);
         for (int k = 0; k < 40; k++) dense_factors_column(&factors, k)[k] = k == 33 ? value[v] : 1;
         assert_false(dense_factors_set_up(&factors));
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(systems_of_any_order_are_solved),
-        cmocka_unit_test(the_factors_are_those_of_elimination_by_hand),
-        cmocka_unit_test(a_singular_matrix_is_reported),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,8 +40,7 @@ static void run_value(const struct rig *rig, double *value) {
     school_ok(residual_evaluate(rig->simulation->residual, state->t, state->y, state->yp, value));
 }
 
-static void the_equations_of_a_run_hold_at_rest(void **state) {
-    (void)state;
+TEST(the_equations_of_a_run_hold_at_rest) {
     struct rig rig = rig_of(pair);
     const struct school *const school = rig.simulation->school;
     const struct residual *const residual = rig.simulation->residual;
@@ -67,8 +66,7 @@ static void the_equations_of_a_run_hold_at_rest(void **state) {
     clear(&rig);
 }
 
-static void bodies_that_go_on_together_are_at_rest_in_their_frame(void **state) {
-    (void)state;
+TEST(bodies_that_go_on_together_are_at_rest_in_their_frame) {
     struct rig held = rig_of(SCHOOL_DEFAULTS STREAM "fish: [{" PLATE "}]\n");
     struct rig goes = rig_of(SCHOOL_DEFAULTS TIME
                              "fluid: {density: 1, velocity: [1.5, 0.2], viscosity: 0}\n"
@@ -171,8 +169,7 @@ static void stiffness_is_that_of_differences(const char *span, const char *fluid
     clear(&rig);
 }
 
-static void the_stiffness_is_that_of_differences_with_sheets_that_follow(void **state) {
-    (void)state;
+TEST(the_stiffness_is_that_of_differences_with_sheets_that_follow) {
     // two dimensions; rings with legs to infinity, and their images in a channel
     static const char *const spans[][2] = {{"infinite", "velocity: [1, 0.2]"},
                                            {"finite", "velocity: [1, 0.2]"},
@@ -180,8 +177,7 @@ static void the_stiffness_is_that_of_differences_with_sheets_that_follow(void **
     for (size_t i = 0; i < sizeof spans / sizeof *spans; i++)
         stiffness_is_that_of_differences(spans[i][0], spans[i][1]);
 }
-static void only_displacements_that_grow_without_oscillation_are_counted(void **state) {
-    (void)state;
+TEST(only_displacements_that_grow_without_oscillation_are_counted) {
     // between the streams at which nothing and at which every bending displacement grows, the eigenvalues with a
     // negative real part are pairs: at 6 m/s one pair, at 12 m/s two
     static const struct {
@@ -202,8 +198,7 @@ static void only_displacements_that_grow_without_oscillation_are_counted(void **
     }
 }
 
-static void nothing_bends_where_the_whole_motion_is_given(void **state) {
-    (void)state;
+TEST(nothing_bends_where_the_whole_motion_is_given) {
     struct rig rig = rig_of(SCHOOL_DEFAULTS STREAM
                             "fish: [{nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite},"
                             " wave: {amplitude: 0, frequency: 0}, start: {heading: 170, speed: 0},"
@@ -214,15 +209,4 @@ static void nothing_bends_where_the_whole_motion_is_given(void **state) {
     assert_int_equal(stiffness.n_negative, 0);
     NEAR(stiffness.log_determinant, 0, 0, 0);
     clear(&rig);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_equations_of_a_run_hold_at_rest),
-        cmocka_unit_test(bodies_that_go_on_together_are_at_rest_in_their_frame),
-        cmocka_unit_test(the_stiffness_is_that_of_differences_with_sheets_that_follow),
-        cmocka_unit_test(only_displacements_that_grow_without_oscillation_are_counted),
-        cmocka_unit_test(nothing_bends_where_the_whole_motion_is_given),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static struct integrator_counts counts_of(const struct simulation *simulation) {
     return counts;
 }
 
-static void a_body_with_prescribed_nodes_follows_the_given_motion(void **state) {
-    (void)state;
+TEST(a_body_with_prescribed_nodes_follows_the_given_motion) {
     const char *const texts[] = {
         TIME "fish: [{motion: {prescribed: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n",
         TIME "fish: [{motion: {prescribed: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"};
@@ -40,8 +39,7 @@ static void a_body_with_prescribed_nodes_follows_the_given_motion(void **state) 
     }
 }
 
-static void continuous_events_cost_no_restart(void **state) {
-    (void)state;
+TEST(continuous_events_cost_no_restart) {
     // a restart begins at order 1 and with a new Jacobian: at continuous events the order stays
     struct simulation *simulation = school_simulation("time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n");
     school_run(simulation, 0.5);
@@ -62,8 +60,7 @@ static void continuous_events_cost_no_restart(void **state) {
     simulate_free(simulation);
 }
 
-static void steps_divide_the_interval_and_keep_the_jacobian(void **state) {
-    (void)state;
+TEST(steps_divide_the_interval_and_keep_the_jacobian) {
     struct simulation *const simulation = school_simulation("time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n");
     school_run(simulation, 0.5);
     struct integrator_counts before = counts_of(simulation);
@@ -82,8 +79,7 @@ static void steps_divide_the_interval_and_keep_the_jacobian(void **state) {
     simulate_free(simulation);
 }
 
-static void a_very_stiff_body_keeps_its_course(void **state) {
-    (void)state;
+TEST(a_very_stiff_body_keeps_its_course) {
     // the error of Newton's iteration in the equations of motion must have no moment: an angular acceleration of 5e-4
     // rad/s2 would move the tail by a thousandth of a length
     double tail[2][2];
@@ -102,8 +98,7 @@ static void a_very_stiff_body_keeps_its_course(void **state) {
     NEAR(tail[0][1], tail[1][1], 5e-5, 0);
 }
 
-static void counts_go_on_across_restarts(void **state) {
-    (void)state;
+TEST(counts_go_on_across_restarts) {
     struct simulation *const simulation = school_simulation(TIME "wake: {shedding: impulsive}\nfish: [{}]\n");
     struct integrator_counts before = counts_of(simulation);
     for (int n = 0; n < 20; n++) {
@@ -120,8 +115,7 @@ static void counts_go_on_across_restarts(void **state) {
     simulate_free(simulation);
 }
 
-static void a_restart_without_a_jump_does_not_change_the_path(void **state) {
-    (void)state;
+TEST(a_restart_without_a_jump_does_not_change_the_path) {
     double tail[2];
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
@@ -138,8 +132,7 @@ static void a_restart_without_a_jump_does_not_change_the_path(void **state) {
     ABOVE(fabs(tail[0]), 1e-3);
 }
 
-static void too_many_steps_end_with_time_and_remedy(void **state) {
-    (void)state;
+TEST(too_many_steps_end_with_time_and_remedy) {
     struct simulation *const simulation = school_simulation(TIME "solver: {max_steps: 1}\nfish: [{}]\n");
     enum status status = STATUS_OK;
     while (status == STATUS_OK && simulation->state->t < 1) status = simulate_step(simulation);
@@ -149,8 +142,7 @@ static void too_many_steps_end_with_time_and_remedy(void **state) {
     simulate_free(simulation);
 }
 
-static void equations_without_a_finite_value_end_with_time_fish_and_reason(void **state) {
-    (void)state;
+TEST(equations_without_a_finite_value_end_with_time_fish_and_reason) {
     struct simulation *const simulation = school_simulation(TIME "fish: [{name: nemo}]\n");
     school_run(simulation, 0.1);
     // no smaller step can mend this
@@ -163,8 +155,7 @@ static void equations_without_a_finite_value_end_with_time_fish_and_reason(void 
     simulate_free(simulation);
 }
 
-static void an_edge_that_is_pressed_to_nothing_is_named(void **state) {
-    (void)state;
+TEST(an_edge_that_is_pressed_to_nothing_is_named) {
     // far more than E A of the last edge
     struct simulation *const simulation =
         school_simulation(TIME
@@ -178,8 +169,7 @@ static void an_edge_that_is_pressed_to_nothing_is_named(void **state) {
     simulate_free(simulation);
 }
 
-static void kinds_of_unknowns_are_the_same_in_all_intervals(void **state) {
-    (void)state;
+TEST(kinds_of_unknowns_are_the_same_in_all_intervals) {
     // IDA and the one-step methods look them up once
     const char *const texts[] = {TIME "fish: [{}]\n", TIME "wake: {shedding: impulsive}\nfish: [{}]\n",
                                  TIME "sheet: {kutta: rate}\nfish: [{}]\n",
@@ -199,8 +189,7 @@ static void kinds_of_unknowns_are_the_same_in_all_intervals(void **state) {
     }
 }
 
-static void an_unreachable_tolerance_ends_with_a_message(void **state) {
-    (void)state;
+TEST(an_unreachable_tolerance_ends_with_a_message) {
     struct simulation *const simulation =
         school_simulation(TIME "solver: {rtol: 1.0e-14, max_steps: 200}\nfish: [{body: {modulus: 1.0e+9}}]\n");
     enum status status = STATUS_OK;
@@ -210,8 +199,7 @@ static void an_unreachable_tolerance_ends_with_a_message(void **state) {
     simulate_free(simulation);
 }
 
-static void an_iteration_that_ignores_other_fish_ends_with_a_remedy(void **state) {
-    (void)state;
+TEST(an_iteration_that_ignores_other_fish_ends_with_a_remedy) {
     // a column of fish of which each sees none of the others in its Jacobian
     char text[2000];
     int length = snprintf(text, sizeof text,
@@ -227,22 +215,4 @@ static void an_iteration_that_ignores_other_fish_ends_with_a_remedy(void **state
     assert_non_null(strstr(status_message(), "no coupling of 120 of 120 pairs of fish, which are more than 0 m apart"));
     assert_non_null(strstr(status_message(), "increase solver.coupling_distance"));
     simulate_free(simulation);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_body_with_prescribed_nodes_follows_the_given_motion),
-        cmocka_unit_test(continuous_events_cost_no_restart),
-        cmocka_unit_test(steps_divide_the_interval_and_keep_the_jacobian),
-        cmocka_unit_test(a_very_stiff_body_keeps_its_course),
-        cmocka_unit_test(counts_go_on_across_restarts),
-        cmocka_unit_test(a_restart_without_a_jump_does_not_change_the_path),
-        cmocka_unit_test(too_many_steps_end_with_time_and_remedy),
-        cmocka_unit_test(equations_without_a_finite_value_end_with_time_fish_and_reason),
-        cmocka_unit_test(an_edge_that_is_pressed_to_nothing_is_named),
-        cmocka_unit_test(kinds_of_unknowns_are_the_same_in_all_intervals),
-        cmocka_unit_test(an_unreachable_tolerance_ends_with_a_message),
-        cmocka_unit_test(an_iteration_that_ignores_other_fish_ends_with_a_remedy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -120,8 +120,7 @@ static int solve(struct problem *problem, double tolerance, int evaluate, long *
     return code;
 }
 
-static void an_exact_jacobian_needs_two_iterations(void **state) {
-    (void)state;
+TEST(an_exact_jacobian_needs_two_iterations) {
     struct problem problem = {.updated = 0};
     long iterations;
     set_up(&problem);
@@ -133,8 +132,7 @@ static void an_exact_jacobian_needs_two_iterations(void **state) {
     clear(&problem);
 }
 
-static void the_error_left_is_below_the_tolerance(void **state) {
-    (void)state;
+TEST(the_error_left_is_below_the_tolerance) {
     // linear convergence: the estimate from the rate is the error itself
     const double wrongs[] = {0.01, 0.1, 0.3, -0.3};
     const double tolerances[] = {1e-2, 4e-3};
@@ -161,8 +159,7 @@ static void the_error_left_is_below_the_tolerance(void **state) {
     }
 }
 
-static void an_old_jacobian_that_does_not_converge_is_replaced(void **state) {
-    (void)state;
+TEST(an_old_jacobian_that_does_not_converge_is_replaced) {
     // too slow, divergent, or not within the maximum of iterations
     const double wrongs[] = {0.95, -1.5, 0.8};
     for (size_t i = 0; i < sizeof wrongs / sizeof *wrongs; i++) {
@@ -185,8 +182,7 @@ static void an_old_jacobian_that_does_not_converge_is_replaced(void **state) {
     }
 }
 
-static void slow_places_show_beside_fast_algebraic_unknowns(void **state) {
-    (void)state;
+TEST(slow_places_show_beside_fast_algebraic_unknowns) {
     struct problem problem = {.updated = 0};
     long iterations;
     set_up(&problem);
@@ -205,8 +201,7 @@ static void slow_places_show_beside_fast_algebraic_unknowns(void **state) {
     clear(&problem);
 }
 
-static void an_old_jacobian_is_updated_once_in_a_solution(void **state) {
-    (void)state;
+TEST(an_old_jacobian_is_updated_once_in_a_solution) {
     struct problem problem = {.updated = 0.01};
     long iterations;
     set_up(&problem);
@@ -224,8 +219,7 @@ static void an_old_jacobian_is_updated_once_in_a_solution(void **state) {
     clear(&problem);
 }
 
-static void small_corrections_that_do_not_shrink_are_noise(void **state) {
-    (void)state;
+TEST(small_corrections_that_do_not_shrink_are_noise) {
     struct problem problem = {.updated = 0};
     long iterations, failures;
     set_up(&problem);
@@ -241,8 +235,7 @@ static void small_corrections_that_do_not_shrink_are_noise(void **state) {
     clear(&problem);
 }
 
-static void a_new_jacobian_that_leaves_something_out_may_take_longer(void **state) {
-    (void)state;
+TEST(a_new_jacobian_that_leaves_something_out_may_take_longer) {
     struct problem problem = {.updated = 0};
     long iterations;
     set_up(&problem);
@@ -260,8 +253,7 @@ static void a_new_jacobian_that_leaves_something_out_may_take_longer(void **stat
     clear(&problem);
 }
 
-static void a_failure_with_a_new_jacobian_asks_for_a_smaller_step(void **state) {
-    (void)state;
+TEST(a_failure_with_a_new_jacobian_asks_for_a_smaller_step) {
     struct problem problem = {.updated = 0};
     long iterations;
     set_up(&problem);
@@ -273,8 +265,7 @@ static void a_failure_with_a_new_jacobian_asks_for_a_smaller_step(void **state) 
     clear(&problem);
 }
 
-static void the_last_correction_is_the_guess_while_the_step_stays(void **state) {
-    (void)state;
+TEST(the_last_correction_is_the_guess_while_the_step_stays) {
     struct problem problem = {.updated = 0};
     long iterations;
     set_up(&problem);
@@ -294,8 +285,7 @@ static void the_last_correction_is_the_guess_while_the_step_stays(void **state) 
     clear(&problem);
 }
 
-static void the_start_has_the_period_of_the_corrections(void **state) {
-    (void)state;
+TEST(the_start_has_the_period_of_the_corrections) {
     // corrections with a period of solutions, which grow: the first solution of the third period starts at the root
     for (int period = 1; period <= 4; period++) {
         struct problem problem = {.is_periodic = 1};
@@ -316,8 +306,7 @@ static void the_start_has_the_period_of_the_corrections(void **state) {
     }
 }
 
-static void without_a_period_the_start_is_the_last_correction(void **state) {
-    (void)state;
+TEST(without_a_period_the_start_is_the_last_correction) {
     struct problem problem = {.updated = 0};
     long iterations;
     set_up(&problem);
@@ -331,8 +320,7 @@ static void without_a_period_the_start_is_the_last_correction(void **state) {
     clear(&problem);
 }
 
-static void a_jacobian_that_has_become_expensive_is_evaluated_again(void **state) {
-    (void)state;
+TEST(a_jacobian_that_has_become_expensive_is_evaluated_again) {
     struct problem problem = {.updated = 0};
     long iterations, before = 0;
     set_up(&problem);
@@ -352,22 +340,4 @@ static void a_jacobian_that_has_become_expensive_is_evaluated_again(void **state
     BELOW(before * (served - 1), spent - before + 5 + served);
     ABOVE(served, 2);
     clear(&problem);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_exact_jacobian_needs_two_iterations),
-        cmocka_unit_test(the_error_left_is_below_the_tolerance),
-        cmocka_unit_test(an_old_jacobian_that_does_not_converge_is_replaced),
-        cmocka_unit_test(slow_places_show_beside_fast_algebraic_unknowns),
-        cmocka_unit_test(an_old_jacobian_is_updated_once_in_a_solution),
-        cmocka_unit_test(small_corrections_that_do_not_shrink_are_noise),
-        cmocka_unit_test(a_new_jacobian_that_leaves_something_out_may_take_longer),
-        cmocka_unit_test(a_failure_with_a_new_jacobian_asks_for_a_smaller_step),
-        cmocka_unit_test(the_last_correction_is_the_guess_while_the_step_stays),
-        cmocka_unit_test(the_start_has_the_period_of_the_corrections),
-        cmocka_unit_test(without_a_period_the_start_is_the_last_correction),
-        cmocka_unit_test(a_jacobian_that_has_become_expensive_is_evaluated_again),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -62,8 +62,7 @@ static void check_residual(struct setup *setup, double t, const char *text) {
     free(kind);
 }
 
-static void all_equations_hold_at_the_start_for_every_option(void **state) {
-    (void)state;
+TEST(all_equations_hold_at_the_start_for_every_option) {
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup;
         school_build(&setup, texts[i]);
@@ -75,8 +74,7 @@ static void all_equations_hold_at_the_start_for_every_option(void **state) {
     }
 }
 
-static void blocks_left_out_of_the_jacobian_change_no_solution(void **state) {
-    (void)state;
+TEST(blocks_left_out_of_the_jacobian_change_no_solution) {
     struct setup setup;
     school_build(&setup, uncoupled);
     assert_int_equal(setup.residual->couplings.coupled[1], 0);
@@ -87,8 +85,7 @@ static void blocks_left_out_of_the_jacobian_change_no_solution(void **state) {
     school_clear(&setup);
 }
 
-static void all_equations_hold_again_from_any_state(void **state) {
-    (void)state;
+TEST(all_equations_hold_again_from_any_state) {
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup;
         school_build(&setup, texts[i]);
@@ -103,8 +100,7 @@ static void all_equations_hold_again_from_any_state(void **state) {
     }
 }
 
-static void differential_unknowns_stay_as_they_are(void **state) {
-    (void)state;
+TEST(differential_unknowns_stay_as_they_are) {
     struct setup setup;
     school_build(&setup, TIME "sheet: {kutta: rate}\n" FISH);
     school_stir(&setup);
@@ -131,8 +127,7 @@ static void differential_unknowns_stay_as_they_are(void **state) {
 }
 
 // places and velocities at the start, later places and momenta; the prescribed node has its motion at all times
-static void momenta_follow_at_the_start_and_velocities_later(void **state) {
-    (void)state;
+TEST(momenta_follow_at_the_start_and_velocities_later) {
     struct setup setup;
     school_build(&setup, TIME
                  "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
@@ -162,8 +157,7 @@ static void momenta_follow_at_the_start_and_velocities_later(void **state) {
     school_clear(&setup);
 }
 
-static void stiffness_takes_no_iterations_where_momenta_are_kept(void **state) {
-    (void)state;
+TEST(stiffness_takes_no_iterations_where_momenta_are_kept) {
     // the equations are linear but for the rounding of elastic forces in accelerations, on which nothing depends
     static const char *const moduli[] = {"1.0e+6", "1.0e+10", "1.0e+13"};
     for (int i = 0; i < 3; i++) {
@@ -179,8 +173,7 @@ static void stiffness_takes_no_iterations_where_momenta_are_kept(void **state) {
     }
 }
 
-static void light_bodies_take_no_iterations_either(void **state) {
-    (void)state;
+TEST(light_bodies_take_no_iterations_either) {
     // the momentum over the mass is many times the velocity
     static const char *const densities[] = {"1.0e+3", "1.0e-1", "1.0e-5"};
     for (int i = 0; i < 3; i++) {
@@ -196,8 +189,7 @@ static void light_bodies_take_no_iterations_either(void **state) {
     }
 }
 
-static void a_second_solution_changes_nothing(void **state) {
-    (void)state;
+TEST(a_second_solution_changes_nothing) {
     struct setup setup;
     school_build(&setup, TIME FISH);
     school_stir(&setup);
@@ -214,8 +206,7 @@ static void a_second_solution_changes_nothing(void **state) {
     school_clear(&setup);
 }
 
-static void a_state_that_is_not_a_number_is_refused_and_kept(void **state) {
-    (void)state;
+TEST(a_state_that_is_not_a_number_is_refused_and_kept) {
     struct setup setup;
     school_build(&setup, TIME FISH);
     school_stir(&setup);
@@ -234,8 +225,7 @@ static void a_state_that_is_not_a_number_is_refused_and_kept(void **state) {
     school_clear(&setup);
 }
 
-static void a_singular_jacobian_is_named(void **state) {
-    (void)state;
+TEST(a_singular_jacobian_is_named) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{name: nemo, sheet_points: 11}]\n");
     // Kelvin's theorem without circulations, and its residual
@@ -250,8 +240,7 @@ static void a_singular_jacobian_is_named(void **state) {
     school_clear(&setup);
 }
 
-static void a_rate_that_is_not_a_number_does_not_matter(void **state) {
-    (void)state;
+TEST(a_rate_that_is_not_a_number_does_not_matter) {
     struct setup setup;
     school_build(&setup, TIME FISH);
     const struct fish *fish = setup.school->fish;
@@ -261,21 +250,4 @@ static void a_rate_that_is_not_a_number_does_not_matter(void **state) {
     school_ok(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp));
     NEAR(setup.state->yp[fish->at.x + 1], setup.state->y[fish->at.vx + 1], 0, 0);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_equations_hold_at_the_start_for_every_option),
-        cmocka_unit_test(blocks_left_out_of_the_jacobian_change_no_solution),
-        cmocka_unit_test(all_equations_hold_again_from_any_state),
-        cmocka_unit_test(differential_unknowns_stay_as_they_are),
-        cmocka_unit_test(momenta_follow_at_the_start_and_velocities_later),
-        cmocka_unit_test(stiffness_takes_no_iterations_where_momenta_are_kept),
-        cmocka_unit_test(light_bodies_take_no_iterations_either),
-        cmocka_unit_test(a_second_solution_changes_nothing),
-        cmocka_unit_test(a_state_that_is_not_a_number_is_refused_and_kept),
-        cmocka_unit_test(a_singular_jacobian_is_named),
-        cmocka_unit_test(a_rate_that_is_not_a_number_does_not_matter),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

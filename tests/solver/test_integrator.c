@@ -25,8 +25,7 @@ static void set(struct setup *setup, double t) {
     }
 }
 
-static void rates_of_parabolas_are_exact_from_the_second_step_on(void **state) {
-    (void)state;
+TEST(rates_of_parabolas_are_exact_from_the_second_step_on) {
     struct setup setup;
     school_build(&setup, two_fish);
     const struct fish *fish = setup.school->fish;
@@ -64,8 +63,7 @@ static const char rod_alone[] =
     "fish: [{body: {modulus: 1.0e+4, relaxation_time: 0, bending_damping: 0, "
     "stretching_damping: 0}, wave: {ramp: 0.1}}]\n";
 
-static void methods_have_their_integrators(void **state) {
-    (void)state;
+TEST(methods_have_their_integrators) {
     assert_ptr_equal(integrator_of(METHOD_IDA), &ida_integrator);
     assert_ptr_equal(integrator_of(METHOD_IMPLICIT_EULER), &one_step_integrator);
     assert_ptr_equal(integrator_of(METHOD_TRAPEZOID), &one_step_integrator);
@@ -91,8 +89,7 @@ static double tail_after(const char *word, const char *step, const char *fish_te
     return tail;
 }
 
-static void all_methods_agree_and_report_their_order(void **state) {
-    (void)state;
+TEST(all_methods_agree_and_report_their_order) {
     int order;
     const double of_soft = tail_after("ida", "0", soft, &order), of_rod = tail_after("ida", "0", rod_alone, &order);
     ABOVE(fabs(of_soft), 1e-2);
@@ -111,13 +108,4 @@ static void all_methods_agree_and_report_their_order(void **state) {
             assert_int_equal(order, method->order);
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rates_of_parabolas_are_exact_from_the_second_step_on),
-        cmocka_unit_test(methods_have_their_integrators),
-        cmocka_unit_test(all_methods_agree_and_report_their_order),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -142,8 +142,7 @@ static double error_of(const struct system *system) {
     return error / size;
 }
 
-static void uncoupled_fish_need_no_iteration(void **state) {
-    (void)state;
+TEST(uncoupled_fish_need_no_iteration) {
     struct system system;
     build(&system, SCHOOL, 1e-3);
     uncouple(&system);
@@ -158,8 +157,7 @@ static void uncoupled_fish_need_no_iteration(void **state) {
     clear(&system);
 }
 
-static void coupled_fish_are_solved_to_the_tolerance(void **state) {
-    (void)state;
+TEST(coupled_fish_are_solved_to_the_tolerance) {
     const double tolerances[] = {1e-1, 1e-3, 1e-6, 1e-10};
     long before = 0;
     for (size_t i = 0; i < sizeof tolerances / sizeof *tolerances; i++) {
@@ -180,8 +178,7 @@ static void coupled_fish_are_solved_to_the_tolerance(void **state) {
     }
 }
 
-static void sheets_of_many_points_are_eliminated_by_lapack(void **state) {
-    (void)state;
+TEST(sheets_of_many_points_are_eliminated_by_lapack) {
     // what is masked when initial conditions are sought, too
     for (int masked = 0; masked < 2; masked++) {
         struct system system;
@@ -213,8 +210,7 @@ static void set_pair(struct sparse *own, int sheet, double e) {
     sparse_end(own);
 }
 
-static void a_rod_that_is_nearly_singular_is_not_eliminated_alone(void **state) {
-    (void)state;
+TEST(a_rod_that_is_nearly_singular_is_not_eliminated_alone) {
     struct system system;
     build(&system, SHEETS, 1e-6);
     uncouple(&system);
@@ -246,8 +242,7 @@ static void a_rod_that_is_nearly_singular_is_not_eliminated_alone(void **state) 
     clear(&system);
 }
 
-static void a_small_residual_ends_the_iteration(void **state) {
-    (void)state;
+TEST(a_small_residual_ends_the_iteration) {
     struct system system;
     build(&system, SCHOOL, 1e-6);
     const struct linear_tolerance tolerance = {.relative = 1e-6, .absolute = 1e-3};
@@ -272,8 +267,7 @@ static void a_small_residual_ends_the_iteration(void **state) {
     clear(&system);
 }
 
-static void patterns_are_analysed_once(void **state) {
-    (void)state;
+TEST(patterns_are_analysed_once) {
     struct system system;
     build(&system, SCHOOL, 1e-6);
     school_ok(linear_setup(system.linear));
@@ -321,8 +315,7 @@ static double replace(struct system *system, const double *by_shed) {
     return change;
 }
 
-static void the_column_of_the_circulation_shed_can_be_updated(void **state) {
-    (void)state;
+TEST(the_column_of_the_circulation_shed_can_be_updated) {
     static const char *const texts[] = {
         SHEETS, "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n" SCHOOL,
         "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
@@ -380,8 +373,7 @@ static void set_pieces(struct sparse *own, double on_diagonal, double above, dou
     sparse_end(own);
 }
 
-static void bad_factors_are_replaced_by_ones_with_other_pivots(void **state) {
-    (void)state;
+TEST(bad_factors_are_replaced_by_ones_with_other_pivots) {
     struct system system;
     build(&system, SCHOOL, 1e-6);
     uncouple(&system);
@@ -404,8 +396,7 @@ static void bad_factors_are_replaced_by_ones_with_other_pivots(void **state) {
     clear(&system);
 }
 
-static void a_block_that_becomes_nearly_singular_gets_new_pivots(void **state) {
-    (void)state;
+TEST(a_block_that_becomes_nearly_singular_gets_new_pivots) {
     struct system system;
     build(&system, SCHOOL, 1e-6);
     uncouple(&system);
@@ -437,8 +428,7 @@ static void set_growth(struct sparse *own, double e) {
     sparse_end(own);
 }
 
-static void a_block_whose_factors_grow_gets_new_pivots(void **state) {
-    (void)state;
+TEST(a_block_whose_factors_grow_gets_new_pivots) {
     struct system system;
     build(&system, SCHOOL, 1e-6);
     uncouple(&system);
@@ -455,8 +445,7 @@ static void a_block_whose_factors_grow_gets_new_pivots(void **state) {
     clear(&system);
 }
 
-static void a_singular_block_is_final_at_first_and_a_retry_later(void **state) {
-    (void)state;
+TEST(a_singular_block_is_final_at_first_and_a_retry_later) {
     struct system system;
     build(&system, SCHOOL, 1e-6);
     uncouple(&system);
@@ -479,8 +468,7 @@ static void a_singular_block_is_final_at_first_and_a_retry_later(void **state) {
     clear(&system);
 }
 
-static void a_right_hand_side_without_a_finite_value_asks_for_a_retry(void **state) {
-    (void)state;
+TEST(a_right_hand_side_without_a_finite_value_asks_for_a_retry) {
     struct system system;
     build(&system, SCHOOL, 1e-6);
     school_ok(linear_setup(system.linear));
@@ -510,8 +498,7 @@ static double milliseconds(void) {
     return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
 }
 
-static void a_school_costs_in_proportion_to_its_couplings(void **state) {
-    (void)state;
+TEST(a_school_costs_in_proportion_to_its_couplings) {
     const struct {
         int n;
         double along, beside;
@@ -554,8 +541,7 @@ static void a_school_costs_in_proportion_to_its_couplings(void **state) {
     }
 }
 
-static void threads_change_no_bit(void **state) {
-    (void)state;
+TEST(threads_change_no_bit) {
     double *first = NULL;
     for (int threads = 1; threads <= 3; threads++) {
         // enough fish that threads share the solutions too
@@ -581,24 +567,4 @@ static void threads_change_no_bit(void **state) {
         clear(&system);
     }
     free(first);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(uncoupled_fish_need_no_iteration),
-        cmocka_unit_test(sheets_of_many_points_are_eliminated_by_lapack),
-        cmocka_unit_test(a_rod_that_is_nearly_singular_is_not_eliminated_alone),
-        cmocka_unit_test(coupled_fish_are_solved_to_the_tolerance),
-        cmocka_unit_test(a_small_residual_ends_the_iteration),
-        cmocka_unit_test(patterns_are_analysed_once),
-        cmocka_unit_test(the_column_of_the_circulation_shed_can_be_updated),
-        cmocka_unit_test(bad_factors_are_replaced_by_ones_with_other_pivots),
-        cmocka_unit_test(a_block_that_becomes_nearly_singular_gets_new_pivots),
-        cmocka_unit_test(a_block_whose_factors_grow_gets_new_pivots),
-        cmocka_unit_test(a_singular_block_is_final_at_first_and_a_retry_later),
-        cmocka_unit_test(a_right_hand_side_without_a_finite_value_asks_for_a_retry),
-        cmocka_unit_test(a_school_costs_in_proportion_to_its_couplings),
-        cmocka_unit_test(threads_change_no_bit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -47,8 +47,7 @@ static struct newton problem_of(struct pair *pair) {
                            .data = pair};
 }
 
-static void two_equations_are_solved_with_a_value_and_a_jacobian_for_each_step(void **state) {
-    (void)state;
+TEST(two_equations_are_solved_with_a_value_and_a_jacobian_for_each_step) {
     struct pair pair = {.n_values = 0};
     const struct newton problem = problem_of(&pair);
     double u[2] = {2, 0};
@@ -60,8 +59,7 @@ static void two_equations_are_solved_with_a_value_and_a_jacobian_for_each_step(v
     assert_int_equal(pair.n_values, 6);
 }
 
-static void no_step_is_longer_than_the_longest(void **state) {
-    (void)state;
+TEST(no_step_is_longer_than_the_longest) {
     struct pair pair = {.n_values = 0};
     struct newton problem = problem_of(&pair);
     problem.max_step = 1.5;
@@ -72,8 +70,7 @@ static void no_step_is_longer_than_the_longest(void **state) {
     assert_non_null(strstr(status_message(), "did not converge"));
 }
 
-static void a_value_that_fails_ends_it_with_its_own_reason(void **state) {
-    (void)state;
+TEST(a_value_that_fails_ends_it_with_its_own_reason) {
     struct pair pair = {.fails_at = 3};
     const struct newton problem = problem_of(&pair);
     double u[2] = {2, 0};
@@ -82,8 +79,7 @@ static void a_value_that_fails_ends_it_with_its_own_reason(void **state) {
     assert_int_equal(pair.n_values, 3);
 }
 
-static void a_singular_jacobian_is_named(void **state) {
-    (void)state;
+TEST(a_singular_jacobian_is_named) {
     struct pair pair = {.n_values = 0};
     struct newton problem = problem_of(&pair);
     problem.jacobian = singular;
@@ -104,8 +100,7 @@ static void image_of(const double *v, double *image) {
 
 enum { N = 3, COLUMNS = 5 };
 
-static void eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told(void **state) {
-    (void)state;
+TEST(eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told) {
     // five vectors that span the space, mixed so that no column is an eigenvector
     const double before[N * COLUMNS] = {1, 2, -1, 0, 1, 3, 2, -1, 1, -2, 0, 1, 1, 1, 1};
     const double want_way[N] = {3, -1, 2};
@@ -121,8 +116,7 @@ static void eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told(void
     NEAR_ARRAY(N, imaginary, want_imaginary, 1e-14, 0);
 }
 
-static void errors_of_single_images_are_averaged(void **state) {
-    (void)state;
+TEST(errors_of_single_images_are_averaged) {
     // one dimension: images of 1, 2, -2 under 0.5, of which the first is wrong by 0.09: least squares have 0.5 + 0.09/9
     const double before[3] = {1, 2, -2}, after[3] = {0.59, 1, -1};
     const double change = 0.98;
@@ -134,8 +128,7 @@ static void errors_of_single_images_are_averaged(void **state) {
     NEAR(way, 2, 1e-13, 0);
 }
 
-static void columns_that_do_not_span_the_space_tell_nothing(void **state) {
-    (void)state;
+TEST(columns_that_do_not_span_the_space_tell_nothing) {
     const double before[4] = {0, 0, 0, 0}, after[4] = {1, 1, 2, 2};
     const double change[2] = {0, 0};
     double real[2], imaginary[2], way[2];
@@ -144,8 +137,7 @@ static void columns_that_do_not_span_the_space_tell_nothing(void **state) {
     assert_non_null(strstr(status_message(), "multipliers"));
 }
 
-static void a_direction_that_has_died_has_a_multiplier_of_zero(void **state) {
-    (void)state;
+TEST(a_direction_that_has_died_has_a_multiplier_of_zero) {
     // 0.8 along the first axis; of the second only errors are left, which seem to grow
     const double before[8] = {1, 1e-3, 0.8, 2e-3, 0.64, -1e-3, 0.512, 3e-3};
     const double after[8] = {0.8, 2e-3, 0.64, -1e-3, 0.512, 3e-3, 0.4096, -5e-3}, change[2] = {0.2, 0};
@@ -157,26 +149,10 @@ static void a_direction_that_has_died_has_a_multiplier_of_zero(void **state) {
     NEAR(way[0], 1, 1e-4, 0);
 }
 
-static void a_map_that_keeps_what_it_gets_has_no_fixed_point(void **state) {
-    (void)state;
+TEST(a_map_that_keeps_what_it_gets_has_no_fixed_point) {
     const double before[4] = {1, 0, 0, 1}, change[2] = {1, 1};
     double real[2], imaginary[2], way[2];
     assert_int_equal(newton_multipliers(test_arena(), 2, 2, before, before, change, real, imaginary, way), STATUS_OK);
     NEAR(way[0], 0, 0, 0);
     NEAR(way[1], 0, 0, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_equations_are_solved_with_a_value_and_a_jacobian_for_each_step),
-        cmocka_unit_test(no_step_is_longer_than_the_longest),
-        cmocka_unit_test(a_value_that_fails_ends_it_with_its_own_reason),
-        cmocka_unit_test(a_singular_jacobian_is_named),
-        cmocka_unit_test(eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told),
-        cmocka_unit_test(errors_of_single_images_are_averaged),
-        cmocka_unit_test(columns_that_do_not_span_the_space_tell_nothing),
-        cmocka_unit_test(a_direction_that_has_died_has_a_multiplier_of_zero),
-        cmocka_unit_test(a_map_that_keeps_what_it_gets_has_no_fixed_point),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

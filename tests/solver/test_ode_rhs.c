@@ -48,8 +48,7 @@ static const char *const cases[] = {
     "  - {nodes: 6, sheet_points: 23, force: reactive, start: {position: [0, 2]}}\n",
 };
 
-static void all_equations_hold_for_the_computed_unknowns(void **state) {
-    (void)state;
+TEST(all_equations_hold_for_the_computed_unknowns) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct setup setup;
         school_build(&setup, cases[i]);
@@ -64,8 +63,7 @@ static void all_equations_hold_for_the_computed_unknowns(void **state) {
     }
 }
 
-static void what_is_not_finite_asks_for_a_smaller_step(void **state) {
-    (void)state;
+TEST(what_is_not_finite_asks_for_a_smaller_step) {
     struct setup setup;
     school_build(&setup, cases[0]);
     struct ode_rhs *rhs;
@@ -75,8 +73,7 @@ static void what_is_not_finite_asks_for_a_smaller_step(void **state) {
     school_clear(&setup);
 }
 
-static void a_singular_system_asks_for_a_smaller_step(void **state) {
-    (void)state;
+TEST(a_singular_system_asks_for_a_smaller_step) {
     for (int i = 0; i < 2; i++) {
         struct setup setup;
         school_build(&setup, cases[0]);
@@ -90,13 +87,4 @@ static void a_singular_system_asks_for_a_smaller_step(void **state) {
         assert_non_null(strstr(status_message(), i == 0 ? "the bound sheets" : "the accelerations of fish fish1"));
         school_clear(&setup);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_equations_hold_for_the_computed_unknowns),
-        cmocka_unit_test(what_is_not_finite_asks_for_a_smaller_step),
-        cmocka_unit_test(a_singular_system_asks_for_a_smaller_step),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

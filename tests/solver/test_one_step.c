@@ -36,8 +36,7 @@ static double tail_at_end(const char *text, const char *solver) {
     return tail;
 }
 
-static void steps_converge_with_the_order_of_the_method(void **state) {
-    (void)state;
+TEST(steps_converge_with_the_order_of_the_method) {
     static const char *const methods[] = {"implicit_euler", "trapezoid"};
     // the explicit reference solves the same equations to 1e-11
     const double exact = tail_at_end(cases[0], "method: dormand_prince, rtol: 1.0e-12");
@@ -54,8 +53,7 @@ static void steps_converge_with_the_order_of_the_method(void **state) {
     }
 }
 
-static void all_cases_agree_with_ida(void **state) {
-    (void)state;
+TEST(all_cases_agree_with_ida) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const double want = tail_at_end(cases[i], "rtol: 1.0e-9, order: 5");
         // second order: four times the steps, a sixteenth of the error
@@ -71,16 +69,14 @@ static void all_cases_agree_with_ida(void **state) {
     "time: {end: 0.4, shedding_interval: 0.02}\n" \
     "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+9}}]\n"
 
-static void a_very_stiff_body_needs_no_shorter_steps(void **state) {
-    (void)state;
+TEST(a_very_stiff_body_needs_no_shorter_steps) {
     const double exact = tail_at_end(STIFF, "rtol: 1.0e-9, order: 5");
     // a quarter of the shedding interval; an explicit method needs thousands of steps per interval
     NEAR(tail_at_end(STIFF, "method: trapezoid, step: 0.005"), exact, 1e-5, 0);
     NEAR(tail_at_end(STIFF, "method: implicit_euler, step: 0.005"), exact, 2e-3, 0);
 }
 
-static void soft_rods_of_many_nodes_converge_whatever_the_step(void **state) {
-    (void)state;
+TEST(soft_rods_of_many_nodes_converge_whatever_the_step) {
     // a base that heaves, in no fluid: pivots a thousandth of the largest would lose the digits that Newton's iteration
     // needs, the more so the smaller the step
     static const int nodes[] = {31, 41, 51};
@@ -97,8 +93,7 @@ static void soft_rods_of_many_nodes_converge_whatever_the_step(void **state) {
     }
 }
 
-static void a_jacobian_is_kept_for_many_steps(void **state) {
-    (void)state;
+TEST(a_jacobian_is_kept_for_many_steps) {
     struct simulation *const simulation = school_simulation("time: {end: 0.4, shedding_interval: 0.02}\n" FISH
                                                             "solver: {method: trapezoid, step: 0.005}\n");
     school_run(simulation, 0.4);
@@ -113,8 +108,7 @@ static void a_jacobian_is_kept_for_many_steps(void **state) {
     simulate_free(simulation);
 }
 
-static void the_rate_of_the_shed_circulation_is_a_difference_of_events(void **state) {
-    (void)state;
+TEST(the_rate_of_the_shed_circulation_is_a_difference_of_events) {
     static const char *const methods[] = {"implicit_euler", "trapezoid"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
@@ -132,8 +126,7 @@ static void fails(const char *text, const char *message) {
     simulate_free(simulation);
 }
 
-static void a_failure_tells_the_time(void **state) {
-    (void)state;
+TEST(a_failure_tells_the_time) {
     // half a beat in one step
     fails(
         "time: {end: 50, shedding_interval: 0.5}\nsolver: {method: implicit_euler, step: 0.5}\n"
@@ -180,8 +173,7 @@ static void ends_of(const char *solver, double tail[2], double *imbalance) {
     simulate_free(simulation);
 }
 
-static void steps_converge_with_the_square_of_their_length(void **state) {
-    (void)state;
+TEST(steps_converge_with_the_square_of_their_length) {
     double exact[2], coarse[2], fine[2], imbalance[3];
     ends_of("method: rk4, step: 0.001", exact, &imbalance[0]);
     ends_of("method: verlet, step: 0.001", coarse, &imbalance[1]);
@@ -195,8 +187,7 @@ static void steps_converge_with_the_square_of_their_length(void **state) {
     NEAR(log2(imbalance[1] / imbalance[2]), 2, 0.3, 0);
 }
 
-static void steps_back_lead_to_the_start(void **state) {
-    (void)state;
+TEST(steps_back_lead_to_the_start) {
     // without a muscle and with the signs of all velocities changed the method goes back the way it came
     struct simulation *const simulation = open_with(
         TIMES "fish: [{nodes: 7, sheet_points: 13, wave: {amplitude: 0}, body: {modulus: 1.0e+5, " NO_DAMPING "}}]\n",
@@ -213,8 +204,7 @@ static void steps_back_lead_to_the_start(void **state) {
     simulate_free(simulation);
 }
 
-static void all_equations_hold_at_events(void **state) {
-    (void)state;
+TEST(all_equations_hold_at_events) {
     struct simulation *const simulation = open_with(RODS, "method: verlet, step: 0.001");
     school_run(simulation, 1);
     struct residual *const residual = simulation->residual;
@@ -232,8 +222,7 @@ static void all_equations_hold_at_events(void **state) {
     simulate_free(simulation);
 }
 
-static void verlet_has_the_rate_of_the_circulation_over_events(void **state) {
-    (void)state;
+TEST(verlet_has_the_rate_of_the_circulation_over_events) {
     struct simulation *const simulation = open_with(RODS, "method: verlet, step: 0.001");
     school_shed_event_by_event(simulation);
     simulate_free(simulation);
@@ -246,27 +235,8 @@ static void verlet_fails(const char *solver, const char *message) {
     simulate_free(simulation);
 }
 
-static void a_failure_of_verlet_tells_the_time(void **state) {
-    (void)state;
+TEST(a_failure_of_verlet_tells_the_time) {
     verlet_fails("method: verlet, step: 0.01", "unstable at t = ");
     verlet_fails("method: verlet, step: 0.001, max_steps: 10",
                  "20 steps between two events are more than solver.max_steps");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_converge_with_the_order_of_the_method),
-        cmocka_unit_test(all_cases_agree_with_ida),
-        cmocka_unit_test(a_very_stiff_body_needs_no_shorter_steps),
-        cmocka_unit_test(soft_rods_of_many_nodes_converge_whatever_the_step),
-        cmocka_unit_test(a_jacobian_is_kept_for_many_steps),
-        cmocka_unit_test(the_rate_of_the_shed_circulation_is_a_difference_of_events),
-        cmocka_unit_test(a_failure_tells_the_time),
-        cmocka_unit_test(steps_converge_with_the_square_of_their_length),
-        cmocka_unit_test(steps_back_lead_to_the_start),
-        cmocka_unit_test(all_equations_hold_at_events),
-        cmocka_unit_test(verlet_has_the_rate_of_the_circulation_over_events),
-        cmocka_unit_test(a_failure_of_verlet_tells_the_time),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

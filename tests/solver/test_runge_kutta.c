@@ -23,8 +23,7 @@ static double tail_at_end(const char *method, double step, double rtol) {
     return tail;
 }
 
-static void fixed_steps_converge_with_the_order_of_the_method(void **state) {
-    (void)state;
+TEST(fixed_steps_converge_with_the_order_of_the_method) {
     const double exact = tail_at_end("dormand_prince", 0, 1e-12);
     // steps small enough to be stable and in the asymptotic range, large enough to stay above round-off
     static const struct {
@@ -41,8 +40,7 @@ static void fixed_steps_converge_with_the_order_of_the_method(void **state) {
 }
 
 // every method is exact where all rates are constant; a solution that lags behind its time would show
-static void one_evaluation_serves_the_end_of_a_step_and_the_start_of_the_next(void **state) {
-    (void)state;
+TEST(one_evaluation_serves_the_end_of_a_step_and_the_start_of_the_next) {
     static const struct {
         const char *method;
         int stages;
@@ -58,8 +56,7 @@ static void one_evaluation_serves_the_end_of_a_step_and_the_start_of_the_next(vo
     }
 }
 
-static void a_body_without_forces_coasts_as_far_as_its_speed_says(void **state) {
-    (void)state;
+TEST(a_body_without_forces_coasts_as_far_as_its_speed_says) {
     static const char *const methods[] = {"euler", "heun", "rk4", "dormand_prince"};
     for (size_t i = 0; i < 2 * sizeof methods / sizeof *methods; i++) {
         struct simulation *const simulation = school_simulation_of(
@@ -75,8 +72,7 @@ static void a_body_without_forces_coasts_as_far_as_its_speed_says(void **state) 
     }
 }
 
-static void explicit_and_implicit_solutions_agree(void **state) {
-    (void)state;
+TEST(explicit_and_implicit_solutions_agree) {
     // both within some hundred of their tolerances per second
     NEAR(tail_at_end("dormand_prince", 0, 1e-10), tail_at_end("ida", 0, 1e-10), 1e-7, 0);
     NEAR(tail_at_end("rk4", 0, 1e-10), tail_at_end("ida", 0, 1e-10), 1e-7, 0);
@@ -84,8 +80,7 @@ static void explicit_and_implicit_solutions_agree(void **state) {
     NEAR(tail_at_end("euler", 0, 1e-6), tail_at_end("ida", 0, 1e-10), 1e-2, 0);
 }
 
-static void an_unstable_step_ends_with_a_message_that_tells_the_time(void **state) {
-    (void)state;
+TEST(an_unstable_step_ends_with_a_message_that_tells_the_time) {
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.02}\n"
         "solver: {method: rk4, step: 0.02}\n"
@@ -98,8 +93,7 @@ static void an_unstable_step_ends_with_a_message_that_tells_the_time(void **stat
     simulate_free(simulation);
 }
 
-static void a_torn_body_is_no_result(void **state) {
-    (void)state;
+TEST(a_torn_body_is_no_result) {
     // in no fluid too long a step tears the body apart, and every number stays finite
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 0}\n"
@@ -110,8 +104,7 @@ static void a_torn_body_is_no_result(void **state) {
     simulate_free(simulation);
 }
 
-static void impulses_restart_the_explicit_method_too(void **state) {
-    (void)state;
+TEST(impulses_restart_the_explicit_method_too) {
     double tail[2];
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
@@ -135,8 +128,7 @@ enum status __wrap_ode_rhs_rates(struct ode_rhs *rhs, double t, double *y, doubl
     return t > silent_from ? STATUS_RETRY : __real_ode_rhs_rates(rhs, t, y, yp);
 }
 
-static void a_failure_without_a_reason_is_not_explained_by_an_old_message(void **state) {
-    (void)state;
+TEST(a_failure_without_a_reason_is_not_explained_by_an_old_message) {
     static const char *const old[] = {"", "a message of something else"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(soft, "rk4", 0.005, 1e-5);
@@ -150,8 +142,7 @@ static void a_failure_without_a_reason_is_not_explained_by_an_old_message(void *
     }
 }
 
-static void the_rate_of_the_shed_circulation_is_a_difference_of_events(void **state) {
-    (void)state;
+TEST(the_rate_of_the_shed_circulation_is_a_difference_of_events) {
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.005}\n"
         "solver: {method: rk4, step: 0.005}\n"
@@ -159,19 +150,4 @@ static void the_rate_of_the_shed_circulation_is_a_difference_of_events(void **st
         "        control: {law: heading, desired_heading: 150}}]\n");
     school_shed_event_by_event(simulation);
     simulate_free(simulation);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fixed_steps_converge_with_the_order_of_the_method),
-        cmocka_unit_test(one_evaluation_serves_the_end_of_a_step_and_the_start_of_the_next),
-        cmocka_unit_test(a_body_without_forces_coasts_as_far_as_its_speed_says),
-        cmocka_unit_test(explicit_and_implicit_solutions_agree),
-        cmocka_unit_test(a_torn_body_is_no_result),
-        cmocka_unit_test(an_unstable_step_ends_with_a_message_that_tells_the_time),
-        cmocka_unit_test(a_failure_without_a_reason_is_not_explained_by_an_old_message),
-        cmocka_unit_test(the_rate_of_the_shed_circulation_is_a_difference_of_events),
-        cmocka_unit_test(impulses_restart_the_explicit_method_too),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

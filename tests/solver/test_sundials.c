@@ -63,8 +63,7 @@ static void operate(N_Vector *v) {
     N_VConst(0.3, v[1]);
 }
 
-static void every_element_has_the_bits_of_the_serial_vector(void **state) {
-    (void)state;
+TEST(every_element_has_the_bits_of_the_serial_vector) {
     for (int threads = 1; threads <= 3; threads++) {
         struct both both;
         fill();
@@ -75,8 +74,7 @@ static void every_element_has_the_bits_of_the_serial_vector(void **state) {
     }
 }
 
-static void norms_have_the_bits_of_the_serial_vector(void **state) {
-    (void)state;
+TEST(norms_have_the_bits_of_the_serial_vector) {
     for (int threads = 1; threads <= 3; threads++) {
         struct both both;
         fill();
@@ -95,8 +93,7 @@ static void norms_have_the_bits_of_the_serial_vector(void **state) {
     }
 }
 
-static void a_clone_has_values_of_its_own(void **state) {
-    (void)state;
+TEST(a_clone_has_values_of_its_own) {
     struct both both;
     fill();
     create(&both, 2);
@@ -121,8 +118,7 @@ static int clone_vector(N_Vector vector) {
 }
 
 // SUNDIALS 6 does not check clones
-static void a_clone_without_memory_ends_the_boundary(void **state) {
-    (void)state;
+TEST(a_clone_without_memory_ends_the_boundary) {
     for (int threads = 1; threads <= 2; threads++) {
         struct both both;
         fill();
@@ -142,8 +138,7 @@ static void a_clone_without_memory_ends_the_boundary(void **state) {
 }
 
 // a call that IDA refuses: its message is ours, unless a callback has failed before, whose message is the cause
-static void errors_of_a_package_become_messages(void **state) {
-    (void)state;
+TEST(errors_of_a_package_become_messages) {
     struct both both;
     create(&both, 1);
     void *ida = IDACreate(both.context.context);
@@ -156,15 +151,4 @@ static void errors_of_a_package_become_messages(void **state) {
     assert_string_equal(status_message(), "the cause");
     IDAFree(&ida);
     clear(&both);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_element_has_the_bits_of_the_serial_vector),
-        cmocka_unit_test(norms_have_the_bits_of_the_serial_vector),
-        cmocka_unit_test(a_clone_has_values_of_its_own),
-        cmocka_unit_test(a_clone_without_memory_ends_the_boundary),
-        cmocka_unit_test(errors_of_a_package_become_messages),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

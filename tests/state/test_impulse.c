@@ -7,8 +7,7 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
-static void impulses_are_those_of_point_vortices(void **state) {
-    (void)state;
+TEST(impulses_are_those_of_point_vortices) {
     struct impulse_moments sum = {0};
     impulse_add(&sum, 2, 3, -1);
     impulse_add_stretch(&sum, 4, (const double[]){1, 2}, (const double[]){3, 6});
@@ -25,8 +24,7 @@ static void impulses_are_those_of_point_vortices(void **state) {
     NEAR(impulse[2], -600, 0, 0);
 }
 
-static void a_depth_that_varies_is_none(void **state) {
-    (void)state;
+TEST(a_depth_that_varies_is_none) {
     struct setup setup;
     school_build(
         &setup, TIME
@@ -79,8 +77,7 @@ static double wither(const char *text) {
     return lost;
 }
 
-static void what_fades_or_is_removed_is_booked_where_it_is(void **state) {
-    (void)state;
+TEST(what_fades_or_is_removed_is_booked_where_it_is) {
     static const char *const wakes[] = {"shedding: sheet, decay: 0.2}\nsheet: {curve: smooth",
                                         "shedding: sheet, decay: 0", "shedding: continuous, decay: 0.15",
                                         "shedding: continuous, decay: 0", "shedding: impulsive, decay: 0"};
@@ -92,8 +89,7 @@ static void what_fades_or_is_removed_is_booked_where_it_is(void **state) {
 }
 
 // dropped circulation returns to the body at the tail: the loss contains only the displacement to the tail
-static void what_is_dropped_goes_to_the_tail(void **state) {
-    (void)state;
+TEST(what_is_dropped_goes_to_the_tail) {
     struct setup setup;
     school_build(&setup, TIME "wake: {lifetime: 0.3, decay: 0.2, removed_circulation: dropped}\nfish: [{}]\n");
     school_stir(&setup);
@@ -117,8 +113,7 @@ static void what_is_dropped_goes_to_the_tail(void **state) {
     school_clear(&setup);
 }
 
-static void what_merging_changes_is_booked(void **state) {
-    (void)state;
+TEST(what_merging_changes_is_booked) {
     enum { N = 200 };
     struct setup setup;
     school_build(
@@ -141,15 +136,4 @@ static void what_merging_changes_is_booked(void **state) {
     NEAR_ARRAY(3, after, before, 1e-12, 1e-12);
     ABOVE(fabs(setup.state->momentum[0].lost[2]), 1e-6);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(impulses_are_those_of_point_vortices),
-        cmocka_unit_test(a_depth_that_varies_is_none),
-        cmocka_unit_test(what_fades_or_is_removed_is_booked_where_it_is),
-        cmocka_unit_test(what_is_dropped_goes_to_the_tail),
-        cmocka_unit_test(what_merging_changes_is_booked),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,8 +9,7 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
-static void state_before_the_start_is_placed_and_empty(void **state) {
-    (void)state;
+TEST(state_before_the_start_is_placed_and_empty) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{start: {heading: 90}}, {start: {position: [1, 2]}}]\n");
     const struct state *start = setup.state;
@@ -29,8 +28,7 @@ static void state_before_the_start_is_placed_and_empty(void **state) {
     school_clear(&setup);
 }
 
-static void a_fish_without_a_beat_remembers_one_sample(void **state) {
-    (void)state;
+TEST(a_fish_without_a_beat_remembers_one_sample) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{wave: {frequency: 0}}]\n");
     assert_int_equal(setup.state->history[0].capacity, 1);
@@ -44,8 +42,7 @@ static void a_fish_without_a_beat_remembers_one_sample(void **state) {
     school_clear(&setup);
 }
 
-static void samples_take_memory_for_the_events_of_the_run(void **state) {
-    (void)state;
+TEST(samples_take_memory_for_the_events_of_the_run) {
     // a beat of 1e6 s has 1e8 events of 0.01 s, of which a run has twenty
     struct setup setup;
     school_build(&setup,
@@ -75,8 +72,7 @@ static void samples_take_memory_for_the_events_of_the_run(void **state) {
     school_clear(&setup);
 }
 
-static void a_kept_state_returns_without_a_copy_of_the_samples(void **state) {
-    (void)state;
+TEST(a_kept_state_returns_without_a_copy_of_the_samples) {
     struct setup setup;
     struct state *before;
     school_build(&setup, "time: {end: 2, shedding_interval: 0.2, output_interval: 0.2}\nfish: [{}]\n");
@@ -101,8 +97,7 @@ static void a_kept_state_returns_without_a_copy_of_the_samples(void **state) {
     school_clear(&setup);
 }
 
-static void history_recalls_the_newest_ones_in_order(void **state) {
-    (void)state;
+TEST(history_recalls_the_newest_ones_in_order) {
     struct sample samples[5];
     struct history history = {.capacity = 4, .n_slots = 5, .last = -1, .sample = samples};
     for (int i = 0; i < 11; i++) {
@@ -130,8 +125,7 @@ static void set_unknowns(struct setup *setup, double t) {
     }
 }
 
-static void rates_of_quartics_are_exact_after_five_events_without_a_jump(void **state) {
-    (void)state;
+TEST(rates_of_quartics_are_exact_after_five_events_without_a_jump) {
     static const char two_fish[] = TIME
         "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{nodes: 5, sheet_points: 9, force: pressure, "
         "pressure: "
@@ -242,8 +236,7 @@ static int is_owner(const char *field) {
     return 0;
 }
 
-static void every_field_has_a_row(void **state) {
-    (void)state;
+TEST(every_field_has_a_row) {
     int n_fields = 0;
     for (int i = 0; i < N_OWNERS; i++) {
         char body[4096], field[64], name[128];
@@ -259,8 +252,7 @@ static void every_field_has_a_row(void **state) {
     assert_int_equal(n_fields, state_table_n);
 }
 
-static void the_rows_cover_every_byte(void **state) {
-    (void)state;
+TEST(the_rows_cover_every_byte) {
     for (int i = 0; i < N_OWNERS; i++) {
         unsigned char is_covered[sizeof(struct state) + sizeof(struct wake) + sizeof(struct control_memory)] = {0};
         AT_MOST(owners[i].bytes, sizeof is_covered);
@@ -275,8 +267,7 @@ static void the_rows_cover_every_byte(void **state) {
     }
 }
 
-static void a_sample_is_nothing_but_doubles(void **state) {
-    (void)state;
+TEST(a_sample_is_nothing_but_doubles) {
     char body[4096];
     read_definition("src/state/state.h", "sample", body, sizeof body);
     int n = 0;
@@ -304,8 +295,7 @@ static void fill_with(struct state *to, const struct school *school, double firs
     }
 }
 
-static void a_copy_has_every_value_and_knows_that_its_wakes_have_changed(void **state) {
-    (void)state;
+TEST(a_copy_has_every_value_and_knows_that_its_wakes_have_changed) {
     struct setup one, other;
     school_build(&one, SCHOOL);
     school_build(&other, SCHOOL);
@@ -338,8 +328,7 @@ static void a_copy_has_every_value_and_knows_that_its_wakes_have_changed(void **
     school_clear(&other);
 }
 
-static void indices_that_no_run_has_are_refused(void **state) {
-    (void)state;
+TEST(indices_that_no_run_has_are_refused) {
     struct setup setup;
     school_build(&setup, SCHOOL);
     struct state *const s = setup.state;
@@ -366,21 +355,4 @@ static void indices_that_no_run_has_are_refused(void **state) {
     s->event = -1;
     assert_int_equal(state_table_check(s, setup.school), STATUS_FILE);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(state_before_the_start_is_placed_and_empty),
-        cmocka_unit_test(a_fish_without_a_beat_remembers_one_sample),
-        cmocka_unit_test(samples_take_memory_for_the_events_of_the_run),
-        cmocka_unit_test(a_kept_state_returns_without_a_copy_of_the_samples),
-        cmocka_unit_test(history_recalls_the_newest_ones_in_order),
-        cmocka_unit_test(rates_of_quartics_are_exact_after_five_events_without_a_jump),
-        cmocka_unit_test(every_field_has_a_row),
-        cmocka_unit_test(the_rows_cover_every_byte),
-        cmocka_unit_test(a_sample_is_nothing_but_doubles),
-        cmocka_unit_test(a_copy_has_every_value_and_knows_that_its_wakes_have_changed),
-        cmocka_unit_test(indices_that_no_run_has_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

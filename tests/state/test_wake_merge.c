@@ -138,8 +138,7 @@ static void check_bound(const char *text) {
     school_clear(&setup);
 }
 
-static void the_velocity_at_the_bodies_changes_by_less_than_the_bound(void **state) {
-    (void)state;
+TEST(the_velocity_at_the_bodies_changes_by_less_than_the_bound) {
     check_bound(TIME "wake: {lifetime: 16, shedding: continuous, merge: 1.0e-4}\n" TWO);
     check_bound(TIME "wake: {lifetime: 16, shedding: continuous, merge: 1.0e-2}\n" TWO);
     check_bound(TIME "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-4}\n" TWO);
@@ -153,8 +152,7 @@ static int count_between(const struct wake *wake, double low, double high) {
     return n;
 }
 
-static void nothing_is_merged_near_a_body_or_where_one_will_be(void **state) {
-    (void)state;
+TEST(nothing_is_merged_near_a_body_or_where_one_will_be) {
     struct setup setup;
     trail(&setup, TIME "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\n" TWO);
     struct wake *const wake = &setup.state->wake[0];
@@ -175,8 +173,7 @@ static void nothing_is_merged_near_a_body_or_where_one_will_be(void **state) {
     school_clear(&setup);
 }
 
-static void the_newest_vortices_are_never_merged(void **state) {
-    (void)state;
+TEST(the_newest_vortices_are_never_merged) {
     static const char *const kinds[] = {"sheet", "continuous"};
     // also without the newest vortex: the older ones then pair in the other way
     for (int i = 0; i < 4; i++) {
@@ -204,8 +201,7 @@ static void the_newest_vortices_are_never_merged(void **state) {
     }
 }
 
-static void a_pair_that_dies_before_a_body_comes_is_merged(void **state) {
-    (void)state;
+TEST(a_pair_that_dies_before_a_body_comes_is_merged) {
     // the second body is 100 away and comes near with 8 a second, in 12 s; the oldest vortices have some tenths of a
     // second to live, the newest ones 16 s
     struct setup setup;
@@ -255,8 +251,7 @@ static double merging_distance(int reversed) {
     return distance[0];
 }
 
-static void the_distance_does_not_know_which_end_of_the_sheet_is_newer(void **state) {
-    (void)state;
+TEST(the_distance_does_not_know_which_end_of_the_sheet_is_newer) {
     const double distance = merging_distance(0);
     // neither the least distance of all pairs nor the end of the search
     ABOVE(distance, 4);
@@ -264,8 +259,7 @@ static void the_distance_does_not_know_which_end_of_the_sheet_is_newer(void **st
     NEAR(merging_distance(1), distance, 1e-8, 0);
 }
 
-static void wakes_take_turns(void **state) {
-    (void)state;
+TEST(wakes_take_turns) {
     struct setup setup;
     trail(&setup, TIME "wake: {lifetime: 16, merge: 0.01}\n" TWO);
     setup.state->event = 1601;
@@ -282,24 +276,10 @@ static void wakes_take_turns(void **state) {
     school_clear(&setup);
 }
 
-static void without_the_key_nothing_is_merged(void **state) {
-    (void)state;
+TEST(without_the_key_nothing_is_merged) {
     struct setup setup;
     trail(&setup, TIME "wake: {lifetime: 16}\n" TWO);
     assert_int_equal(merge_all(&setup), 0);
     assert_int_equal(setup.state->wake[0].n_vortex, N);
     school_clear(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_velocity_at_the_bodies_changes_by_less_than_the_bound),
-        cmocka_unit_test(nothing_is_merged_near_a_body_or_where_one_will_be),
-        cmocka_unit_test(the_newest_vortices_are_never_merged),
-        cmocka_unit_test(a_pair_that_dies_before_a_body_comes_is_merged),
-        cmocka_unit_test(the_distance_does_not_know_which_end_of_the_sheet_is_newer),
-        cmocka_unit_test(wakes_take_turns),
-        cmocka_unit_test(without_the_key_nothing_is_merged),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

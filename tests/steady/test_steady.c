@@ -27,8 +27,7 @@ static void run_long(const char *text, int n_beats, struct brute *brute) {
     steady_setup_close(&setup);
 }
 
-static void speed_and_multiplier_are_those_of_a_long_run(void **state) {
-    (void)state;
+TEST(speed_and_multiplier_are_those_of_a_long_run) {
     static const char text[] = COARSE "steady: {tolerance: 5e-5}\nfish: [{" FISH "}]\n";
     struct steady_setup setup;
     struct brute brute[50];
@@ -45,8 +44,7 @@ static void speed_and_multiplier_are_those_of_a_long_run(void **state) {
 
 /* The steps between two events are limited so that a beat fails after a large increment of the speed, but no beat of a
  * run. */
-static void a_beat_that_fails_after_an_increment_is_repeated_after_a_smaller_one(void **state) {
-    (void)state;
+TEST(a_beat_that_fails_after_an_increment_is_repeated_after_a_smaller_one) {
 #define LIMITED(max_steps)                                                                    \
     SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.05}\nsolver: {max_steps: " max_steps \
                     "}\nfish: [{force: reactive, nodes: 9}]\n"
@@ -62,8 +60,7 @@ static void a_beat_that_fails_after_an_increment_is_repeated_after_a_smaller_one
 }
 
 // a plate with a part of the leading-edge suction of attached flow; a slower plate loses more suction
-static void a_plate_with_limited_suction_has_the_speed_of_a_long_run(void **state) {
-    (void)state;
+TEST(a_plate_with_limited_suction_has_the_speed_of_a_long_run) {
     static const char text[] = SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
         "fluid: {density: 1, viscosity: 1.25e-3}\nsteady: {tolerance: 5e-5}\n"
@@ -105,8 +102,7 @@ static void circle(const char *text, double least_turn, int most_beats) {
     steady_setup_close(&setup);
 }
 
-static void a_fish_that_is_steered_to_one_side_goes_in_a_circle(void **state) {
-    (void)state;
+TEST(a_fish_that_is_steered_to_one_side_goes_in_a_circle) {
     circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.02}}]\n", 0.02,
            22);
     circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n", 0.2,
@@ -123,8 +119,7 @@ static void a_fish_that_is_steered_to_one_side_goes_in_a_circle(void **state) {
 }
 
 // the influence of the initial state decays by 1 % per beat
-static void a_fish_that_coasts_has_the_same_speed_from_two_starts(void **state) {
-    (void)state;
+TEST(a_fish_that_coasts_has_the_same_speed_from_two_starts) {
     double speed[2];
     for (int i = 0; i < 2; i++) {
         struct steady_setup setup;
@@ -145,8 +140,7 @@ static void a_fish_that_coasts_has_the_same_speed_from_two_starts(void **state) 
     NEAR(speed[0], speed[1], 0, 3e-3);
 }
 
-static void circulation_that_is_added_changes_nothing_else(void **state) {
-    (void)state;
+TEST(circulation_that_is_added_changes_nothing_else) {
     static const struct steady_unknown unknown[] = {
         {0, STEADY_SPEED}, {0, STEADY_SLIP}, {0, STEADY_TURN}, {0, STEADY_SHED}};
     const double add[] = {0, 0, 0, 0.1};
@@ -167,8 +161,7 @@ static void circulation_that_is_added_changes_nothing_else(void **state) {
     steady_setup_close(&setup);
 }
 
-static void a_law_of_control_brings_the_heading_to_where_a_run_has_it(void **state) {
-    (void)state;
+TEST(a_law_of_control_brings_the_heading_to_where_a_run_has_it) {
     static const char text[] = COARSE
         "steady: {tolerance: 5e-5}\n"
         "fish: [{" FISH ", start: {speed: 0.7, heading: 170}, control: {law: heading, desired_heading: 180}}]\n";
@@ -190,8 +183,7 @@ static void a_law_of_control_brings_the_heading_to_where_a_run_has_it(void **sta
     steady_setup_close(&setup);
 }
 
-static void the_state_stays_where_its_multipliers_are_taken(void **state) {
-    (void)state;
+TEST(the_state_stays_where_its_multipliers_are_taken) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE "fish: [{" FISH ", start: {speed: 0.8}}]\n");
     steady_setup_beats(&setup, 3);
@@ -210,8 +202,7 @@ static void the_state_stays_where_its_multipliers_are_taken(void **state) {
 }
 
 // the mean change of the speed in the last four of eight beats, over 1 minus the largest multiplier, that of the speed
-static void the_step_of_the_multipliers_leads_to_the_fixed_point(void **state) {
-    (void)state;
+TEST(the_step_of_the_multipliers_leads_to_the_fixed_point) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE "fish: [{" FISH ", start: {speed: 0.8}}]\n");
     steady_setup_beats(&setup, 3);
@@ -228,8 +219,7 @@ static void the_step_of_the_multipliers_leads_to_the_fixed_point(void **state) {
     steady_setup_close(&setup);
 }
 
-static void scales_are_lengths_and_beats(void **state) {
-    (void)state;
+TEST(scales_are_lengths_and_beats) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE "fish: [{" FISH ", length: 0.6}]\n");
     setup.problem.map.period = 0.8;
@@ -243,8 +233,7 @@ static void scales_are_lengths_and_beats(void **state) {
     steady_setup_close(&setup);
 }
 
-static void a_held_fish_is_steady_when_its_forces_repeat(void **state) {
-    (void)state;
+TEST(a_held_fish_is_steady_when_its_forces_repeat) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE
                       "fluid: {velocity: [1, 0]}\n"
@@ -260,8 +249,7 @@ static void a_held_fish_is_steady_when_its_forces_repeat(void **state) {
     steady_setup_close(&setup);
 }
 
-static void a_beat_without_a_finite_value_is_not_steady(void **state) {
-    (void)state;
+TEST(a_beat_without_a_finite_value_is_not_steady) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE
                       "fluid: {velocity: [1, 0]}\n"
@@ -283,8 +271,7 @@ static void a_beat_without_a_finite_value_is_not_steady(void **state) {
     steady_setup_close(&setup);
 }
 
-static void two_beats_in_a_row_are_steady(void **state) {
-    (void)state;
+TEST(two_beats_in_a_row_are_steady) {
     // a tolerance that every beat meets
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE
@@ -301,8 +288,7 @@ static void two_beats_in_a_row_are_steady(void **state) {
     steady_setup_close(&setup);
 }
 
-static void mean_powers_are_the_works_of_a_beat(void **state) {
-    (void)state;
+TEST(mean_powers_are_the_works_of_a_beat) {
     static const char *const fish[] = {
         "fish: [{" FISH ", body: {modulus: 1e8}}]\n",
         "fluid: {velocity: [1, 0]}\n"
@@ -346,8 +332,7 @@ static enum status note_thrust(void *data) {
     return STATUS_OK;
 }
 
-static void mean_forces_are_trapezoids_over_the_events_of_a_beat(void **state) {
-    (void)state;
+TEST(mean_forces_are_trapezoids_over_the_events_of_a_beat) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE
                       "fluid: {velocity: [1, 0]}\nfish: [{" FISH
@@ -375,8 +360,7 @@ static void mean_forces_are_trapezoids_over_the_events_of_a_beat(void **state) {
     steady_setup_close(&setup);
 }
 
-static void a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without(void **state) {
-    (void)state;
+TEST(a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without) {
     for (int has_bias = 0; has_bias < 2; has_bias++) {
         struct steady_setup setup;
         steady_setup_open(
@@ -388,8 +372,7 @@ static void a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without(void **s
     }
 }
 
-static void of_a_held_fish_thrust_and_power_must_repeat(void **state) {
-    (void)state;
+TEST(of_a_held_fish_thrust_and_power_must_repeat) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE
                       "fluid: {velocity: [1, 0]}\nfish: [{" FISH
@@ -415,8 +398,7 @@ static void of_a_held_fish_thrust_and_power_must_repeat(void **state) {
     steady_setup_close(&setup);
 }
 
-static void headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is_steered(void **state) {
-    (void)state;
+TEST(headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is_steered) {
     struct simulation *const simulation = school_simulation(
         COARSE "defaults: {fish: {" FISH
                "}}\n"
@@ -438,8 +420,7 @@ static void headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is
     simulate_free(simulation);
 }
 
-static void a_formation_turns_with_its_first_fish(void **state) {
-    (void)state;
+TEST(a_formation_turns_with_its_first_fish) {
     struct simulation *const simulation = school_simulation(
         COARSE "defaults: {fish: {" FISH "}}\nfish: [{}, {start: {position: [1, 2], heading: 150}}]\n");
     struct steady_map map;
@@ -461,8 +442,7 @@ static void a_formation_turns_with_its_first_fish(void **state) {
     simulate_free(simulation);
 }
 
-static void a_fish_is_not_placed_on_another(void **state) {
-    (void)state;
+TEST(a_fish_is_not_placed_on_another) {
     struct simulation *const simulation =
         school_simulation(COARSE "defaults: {fish: {" FISH
                                  "}}\nfish: [{name: a}, {name: b, start: {position: [1, 2]}}, "
@@ -478,8 +458,7 @@ static void a_fish_is_not_placed_on_another(void **state) {
     simulate_free(simulation);
 }
 
-static void speed_and_slip_are_those_through_the_water(void **state) {
-    (void)state;
+TEST(speed_and_slip_are_those_through_the_water) {
     struct steady_setup setup;
     steady_setup_open(&setup,
                       COARSE "fluid: {velocity: [0.3, 0.1]}\nfish: [{" FISH ", start: {heading: 150, speed: 0}}]\n");
@@ -495,8 +474,7 @@ static void speed_and_slip_are_those_through_the_water(void **state) {
     steady_setup_close(&setup);
 }
 
-static void what_can_have_no_steady_state_is_refused_with_the_reason(void **state) {
-    (void)state;
+TEST(what_can_have_no_steady_state_is_refused_with_the_reason) {
     steady_setup_fails(COARSE "fish: [{" FISH ", wave: {frequency: 1.01}}]\n", STATUS_CASE,
                        "set time.shedding_interval to 0.0495049505, and");
     steady_setup_fails(COARSE "fish: [{" FISH ", wave: {frequency: 0, amplitude: 0}}]\n", STATUS_CASE, "no fish beats");
@@ -513,15 +491,13 @@ static void what_can_have_no_steady_state_is_refused_with_the_reason(void **stat
                        "2 of 2 fish swim at independent speeds");
 }
 
-static void a_search_that_takes_too_long_says_how_far_it_came(void **state) {
-    (void)state;
+TEST(a_search_that_takes_too_long_says_how_far_it_came) {
     steady_setup_fails(COARSE "steady: {beats: 5}\nfish: [{" FISH "}]\n", STATUS_SOLVER,
                        "no steady state in 5 beats (steady.beats)");
 }
 
 // no search meets such a tolerance: the fish swims without increments at the end, as in a run
-static void a_search_that_fails_says_what_the_last_beats_have_in_common(void **state) {
-    (void)state;
+TEST(a_search_that_fails_says_what_the_last_beats_have_in_common) {
     steady_setup_fails(COARSE "steady: {tolerance: 1e-12, beats: 70}\nfish: [{" FISH "}]\n", STATUS_SOLVER,
                        " % between the last 16 beats; if the residual no longer falls from beat to beat, reduce "
                        "solver.rtol");
@@ -536,8 +512,7 @@ static double beat_balance(struct steady_map *map, double balance[3]) {
     return hypot(balance[0], balance[1]) / simulation->diagnostics->momentum_size;
 }
 
-static void the_balance_of_momentum_begins_with_the_rows_and_is_kept(void **state) {
-    (void)state;
+TEST(the_balance_of_momentum_begins_with_the_rows_and_is_kept) {
     struct steady_setup setup;
     struct state *kept = NULL;
     double searched[3], first[3], again[3];
@@ -564,35 +539,4 @@ static void the_balance_of_momentum_begins_with_the_rows_and_is_kept(void **stat
     // to the tolerance of the solver
     NEAR_ARRAY(3, again, first, 1e-6, 0);
     steady_setup_close(&setup);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(speed_and_multiplier_are_those_of_a_long_run),
-        cmocka_unit_test(a_beat_that_fails_after_an_increment_is_repeated_after_a_smaller_one),
-        cmocka_unit_test(a_plate_with_limited_suction_has_the_speed_of_a_long_run),
-        cmocka_unit_test(a_fish_that_is_steered_to_one_side_goes_in_a_circle),
-        cmocka_unit_test(a_fish_that_coasts_has_the_same_speed_from_two_starts),
-        cmocka_unit_test(circulation_that_is_added_changes_nothing_else),
-        cmocka_unit_test(a_law_of_control_brings_the_heading_to_where_a_run_has_it),
-        cmocka_unit_test(the_state_stays_where_its_multipliers_are_taken),
-        cmocka_unit_test(the_step_of_the_multipliers_leads_to_the_fixed_point),
-        cmocka_unit_test(scales_are_lengths_and_beats),
-        cmocka_unit_test(a_held_fish_is_steady_when_its_forces_repeat),
-        cmocka_unit_test(a_beat_without_a_finite_value_is_not_steady),
-        cmocka_unit_test(two_beats_in_a_row_are_steady),
-        cmocka_unit_test(mean_powers_are_the_works_of_a_beat),
-        cmocka_unit_test(mean_forces_are_trapezoids_over_the_events_of_a_beat),
-        cmocka_unit_test(a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without),
-        cmocka_unit_test(of_a_held_fish_thrust_and_power_must_repeat),
-        cmocka_unit_test(headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is_steered),
-        cmocka_unit_test(a_formation_turns_with_its_first_fish),
-        cmocka_unit_test(a_fish_is_not_placed_on_another),
-        cmocka_unit_test(speed_and_slip_are_those_through_the_water),
-        cmocka_unit_test(what_can_have_no_steady_state_is_refused_with_the_reason),
-        cmocka_unit_test(a_search_that_takes_too_long_says_how_far_it_came),
-        cmocka_unit_test(a_search_that_fails_says_what_the_last_beats_have_in_common),
-        cmocka_unit_test(the_balance_of_momentum_begins_with_the_rows_and_is_kept),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

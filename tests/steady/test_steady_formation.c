@@ -18,8 +18,7 @@ static double spacing(const struct steady_setup *setup) {
     return (-last[1].place[0] - 1) / last[0].speed;
 }
 
-static void a_follower_finds_the_place_where_it_is_as_fast_as_its_leader(void **state) {
-    (void)state;
+TEST(a_follower_finds_the_place_where_it_is_as_fast_as_its_leader) {
     struct steady_setup setup;
     steady_setup_find(&setup, PLATES "fish: [{}, {start: {position: [5.2, 0]}}]\n");
     // two speeds and a distance
@@ -39,8 +38,7 @@ static void a_follower_finds_the_place_where_it_is_as_fast_as_its_leader(void **
     steady_setup_close(&setup);
 }
 
-static void between_two_stable_places_is_one_that_the_follower_leaves(void **state) {
-    (void)state;
+TEST(between_two_stable_places_is_one_that_the_follower_leaves) {
     struct steady_setup setup;
     steady_setup_find(&setup, PLATES "fish: [{}, {start: {position: [7.4, 0]}}]\n");
     // half a wavelength beyond the first stable place
@@ -62,8 +60,7 @@ static void between_two_stable_places_is_one_that_the_follower_leaves(void **sta
     steady_setup_close(&setup);
 }
 
-static void fish_that_swim_freely_keep_the_place_that_is_found(void **state) {
-    (void)state;
+TEST(fish_that_swim_freely_keep_the_place_that_is_found) {
     struct steady_setup setup;
     steady_setup_open(&setup, COARSE
                       "steady: {formation: true, tolerance: 1e-3}\n"
@@ -82,8 +79,7 @@ static void fish_that_swim_freely_keep_the_place_that_is_found(void **state) {
     steady_setup_close(&setup);
 }
 
-static void a_diamond_of_plates_is_found_and_stable(void **state) {
-    (void)state;
+TEST(a_diamond_of_plates_is_found_and_stable) {
     struct steady_setup setup;
     steady_setup_find(&setup, PLATES
                       "fish: [{}, {start: {position: [5.3, 0.5]}}, {start: {position: [5.3, -0.5]}},\n"
@@ -105,8 +101,7 @@ static void a_diamond_of_plates_is_found_and_stable(void **state) {
     steady_setup_close(&setup);
 }
 
-static void a_follower_of_a_held_leader_takes_its_speed(void **state) {
-    (void)state;
+TEST(a_follower_of_a_held_leader_takes_its_speed) {
     struct steady_setup setup;
     steady_setup_find(&setup, PLATES "fish: [{motion: {surge: given, speed: 4}}, {start: {position: [5.2, 0]}}]\n");
     // speed and distance of the follower
@@ -122,8 +117,7 @@ static void a_follower_of_a_held_leader_takes_its_speed(void **state) {
                        STATUS_SOLVER, "drift: after release, fish2 drifts back relative to fish1 by");
 }
 
-static void from_between_two_places_it_goes_where_the_fish_would(void **state) {
-    (void)state;
+TEST(from_between_two_places_it_goes_where_the_fish_would) {
     struct steady_setup setup;
     // the thrust is largest near this place: Newton's method alone moves the fish apart until the interaction vanishes
     steady_setup_open(&setup, SCHOOL_DEFAULTS
@@ -142,8 +136,7 @@ static void from_between_two_places_it_goes_where_the_fish_would(void **state) {
 /* Two fish and a search of at most 20 beats. */
 #define SCHOOL COARSE "steady: {formation: true, beats: 20}\ndefaults: {fish: {" FISH ", start: {speed: 0.8}}}\n"
 
-static void where_no_formation_is_found_the_reason_is_what_the_fish_do(void **state) {
-    (void)state;
+TEST(where_no_formation_is_found_the_reason_is_what_the_fish_do) {
     // across the path of the first fish
     steady_setup_fails(SCHOOL "fish: [{name: a}, {name: b, start: {position: [0.4, 0.8], heading: 210}}]\n",
                        STATUS_SOLVER, "in 20 beats (steady.beats): collision: after release, a and b approach to");
@@ -160,17 +153,4 @@ static void where_no_formation_is_found_the_reason_is_what_the_fish_do(void **st
     // fish side by side separate
     steady_setup_fails(PLATES "fish: [{}, {start: {position: [0, 40]}}]\n", STATUS_SOLVER,
                        "no equilibrium: the fish hardly interact");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_follower_finds_the_place_where_it_is_as_fast_as_its_leader),
-        cmocka_unit_test(between_two_stable_places_is_one_that_the_follower_leaves),
-        cmocka_unit_test(a_diamond_of_plates_is_found_and_stable),
-        cmocka_unit_test(a_follower_of_a_held_leader_takes_its_speed),
-        cmocka_unit_test(fish_that_swim_freely_keep_the_place_that_is_found),
-        cmocka_unit_test(from_between_two_places_it_goes_where_the_fish_would),
-        cmocka_unit_test(where_no_formation_is_found_the_reason_is_what_the_fish_do),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

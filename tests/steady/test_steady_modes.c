@@ -42,8 +42,7 @@ static int nearest(const struct found *found, double omega) {
 #define CLAMPED \
     "force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: head}, "
 
-static void without_water_they_are_those_of_a_clamped_beam(void **state) {
-    (void)state;
+TEST(without_water_they_are_those_of_a_clamped_beam) {
     static const char text[] = SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1e-9, velocity: [1, 0], viscosity: 0}\n"
         "wake: {lifetime: 2}\n"
@@ -62,8 +61,7 @@ static void without_water_they_are_those_of_a_clamped_beam(void **state) {
 }
 
 // modes that decay alike, here not at all, differ by their frequencies
-static void modes_without_damping_are_told_apart(void **state) {
-    (void)state;
+TEST(modes_without_damping_are_told_apart) {
     static const char text[] = SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 1e-9, velocity: [1, 0], viscosity: 0}\n"
         "wake: {lifetime: 1}\n"
@@ -91,8 +89,7 @@ static void modes_without_damping_are_told_apart(void **state) {
 #define SOFT_FLAG "nodes: 9, sheet_points: 17, " CLAMPED PLATE_OF("10000") "relaxation_time: 0}, "
 
 /* A flag disturbed by 1e-5 rad: logarithmic decrement of the tail over three periods. */
-static void a_run_grows_as_fast(void **state) {
-    (void)state;
+TEST(a_run_grows_as_fast) {
     struct found found;
     find(&found, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}]\n");
     ABOVE(found.rate[0], 0.1);
@@ -123,8 +120,7 @@ static void a_run_grows_as_fast(void **state) {
     simulate_free(run);
 }
 
-static void they_do_not_depend_on_who_moves(void **state) {
-    (void)state;
+TEST(they_do_not_depend_on_who_moves) {
     struct found still, moving;
     find(&still, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}]\n");
     find(&moving, STREAM("[0, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 1}}]\n");
@@ -150,8 +146,7 @@ static void find_in_wake(struct found *found, const char *flag, const char *wake
 }
 
 /* For a long vortex lifetime the modes include the newest part of the wake only, which must decay all the same. */
-static void the_lifetime_of_a_long_wake_does_not_matter(void **state) {
-    (void)state;
+TEST(the_lifetime_of_a_long_wake_does_not_matter) {
     static const char *const wake[] = {"lifetime: 12, decay: 9", "lifetime: 1000", "lifetime: 1000, decay: 100"};
     struct found found[3];
     for (int k = 0; k < 3; k++) {
@@ -163,8 +158,7 @@ static void the_lifetime_of_a_long_wake_does_not_matter(void **state) {
 }
 
 /* Growth has no limit: only modes that decay within the life of the wake are left out. */
-static void a_mode_that_grows_fast_in_a_long_wake_is_found(void **state) {
-    (void)state;
+TEST(a_mode_that_grows_fast_in_a_long_wake_is_found) {
     struct found brief, longer;
     find_in_wake(&brief, SOFT_FLAG, "lifetime: 4, decay: 3");
     find_in_wake(&longer, SOFT_FLAG, "lifetime: 24, decay: 18");
@@ -175,8 +169,7 @@ static void a_mode_that_grows_fast_in_a_long_wake_is_found(void **state) {
     simulate_free(longer.simulation);
 }
 
-static void bodies_far_apart_have_the_modes_of_one(void **state) {
-    (void)state;
+TEST(bodies_far_apart_have_the_modes_of_one) {
     struct found one, two;
     find(&one, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}]\n");
     find(&two, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}, {" FLAG
@@ -197,8 +190,7 @@ static void bodies_far_apart_have_the_modes_of_one(void **state) {
 }
 
 /* A flag with the clamp downstream is a column under the load pi/4 rho U^2 of slender bodies, which buckles. */
-static void what_has_no_stiffness_left_diverges(void **state) {
-    (void)state;
+TEST(what_has_no_stiffness_left_diverges) {
     const double pi = 3.14159265358979, critical = pi / 2 * sqrt(1 / 64.0 / (pi / 4));
     const double part[] = {0.9, 1.1};
     for (int i = 0; i < 2; i++) {
@@ -221,8 +213,7 @@ static void what_has_no_stiffness_left_diverges(void **state) {
     }
 }
 
-static void the_simulation_stays_where_it_is(void **state) {
-    (void)state;
+TEST(the_simulation_stays_where_it_is) {
     struct found found = {.simulation =
                               school_simulation(STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 176, speed: "
                                                                  "0}}]\n")};
@@ -244,8 +235,7 @@ static void the_simulation_stays_where_it_is(void **state) {
     simulate_free(found.simulation);
 }
 
-static void multipliers_become_exponents(void **state) {
-    (void)state;
+TEST(multipliers_become_exponents) {
     double real[] = {0.6, 0.6, 0.5, 0}, imaginary[] = {0.8, -0.8, 0, 0}, rate[4], omega[4];
     struct steady_values values = {
         .n_multipliers = 4, .real = real, .imaginary = imaginary, .rate = rate, .omega = omega};
@@ -255,20 +245,4 @@ static void multipliers_become_exponents(void **state) {
     NEAR(omega[0], atan2(0.8, 0.6) / 2, 0, 1e-12);
     NEAR(rate[1], log(0.5) / 2, 0, 1e-12);
     NEAR(values.growth_frequency, omega[0] / (2 * 3.14159265358979), 0, 1e-12);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_water_they_are_those_of_a_clamped_beam),
-        cmocka_unit_test(modes_without_damping_are_told_apart),
-        cmocka_unit_test(a_run_grows_as_fast),
-        cmocka_unit_test(they_do_not_depend_on_who_moves),
-        cmocka_unit_test(the_lifetime_of_a_long_wake_does_not_matter),
-        cmocka_unit_test(a_mode_that_grows_fast_in_a_long_wake_is_found),
-        cmocka_unit_test(bodies_far_apart_have_the_modes_of_one),
-        cmocka_unit_test(what_has_no_stiffness_left_diverges),
-        cmocka_unit_test(the_simulation_stays_where_it_is),
-        cmocka_unit_test(multipliers_become_exponents),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,6 +27,8 @@ static int tear_down(void **state) {
     return unlink(path);
 }
 
+TEST_GROUP(set_up, tear_down)
+
 /* A steady state of n fish: heading of the first fish in degrees, speeds, nodes (n, N_NODES, 2). */
 static void put_state(int n, double heading, const double *speed, const double *nodes) {
     int file, dimension[4], variable[3];
@@ -45,9 +47,7 @@ static void put_state(int n, double heading, const double *speed, const double *
     assert_int_equal(nc_close(file), NC_NOERR);
 }
 
-static void followers_keep_their_places_in_the_frame_of_the_first_fish(void **state) {
-    (void)state;
-
+TEST(followers_keep_their_places_in_the_frame_of_the_first_fish) {
     // the first fish of the file heads along +y; the nose of the second one is 2 m behind it and 1 m to its right
     double nodes[N_FISH * N_NODES * 2] = {0};
     nodes[0] = 10;
@@ -71,8 +71,7 @@ static void followers_keep_their_places_in_the_frame_of_the_first_fish(void **st
 }
 
 // an arc of a body that is twice as long and points elsewhere, as an arc behind the prescribed first edge
-static void shapes_are_turned_and_scaled_to_the_first_edge(void **state) {
-    (void)state;
+TEST(shapes_are_turned_and_scaled_to_the_first_edge) {
     const double turn = 0.3, first = 2.1;
     struct setup setup;
     school_build(&setup, TIME
@@ -97,8 +96,7 @@ static void shapes_are_turned_and_scaled_to_the_first_edge(void **state) {
     school_clear(&setup);
 }
 
-static void a_file_of_other_bodies_is_refused(void **state) {
-    (void)state;
+TEST(a_file_of_other_bodies_is_refused) {
     double nodes[N_FISH * N_NODES * 2] = {0};
     put_state(1, 0, (double[]){1}, nodes);
     struct fish_parameters fish[N_FISH] = {{.start_heading = 0}}, *found;
@@ -127,13 +125,4 @@ static void a_file_of_other_bodies_is_refused(void **state) {
         if (!is_padded) assert_non_null(strstr(status_message(), "does not have 4 nodes"));
         school_clear(&setup);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(followers_keep_their_places_in_the_frame_of_the_first_fish),
-        cmocka_unit_test(shapes_are_turned_and_scaled_to_the_first_edge),
-        cmocka_unit_test(a_file_of_other_bodies_is_refused),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

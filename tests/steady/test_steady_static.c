@@ -40,8 +40,7 @@ static void is_where_a_run_ends(const struct answer *answer, const char *text, d
     simulate_free(run);
 }
 
-static void a_run_with_damping_comes_to_it(void **state) {
-    (void)state;
+TEST(a_run_with_damping_comes_to_it) {
     static const char pressure[] = SCHOOL_DEFAULTS TIME
         "fluid: {density: 1, velocity: [0.3, 0], viscosity: 0}\nwake: {lifetime: 20}\n"
         "fish: [{" BODY
@@ -69,8 +68,7 @@ static void a_run_with_damping_comes_to_it(void **state) {
 }
 
 // Helmbold's lift at AR 1 is 0.236 of two dimensions; no modes
-static void a_body_of_finite_span_has_legs_to_infinity(void **state) {
-    (void)state;
+TEST(a_body_of_finite_span_has_legs_to_infinity) {
     struct answer found;
     answer(&found, SCHOOL_DEFAULTS TIME
            "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\n"
@@ -106,8 +104,7 @@ static void a_body_of_finite_span_has_legs_to_infinity(void **state) {
     simulate_free(found.simulation);
 }
 
-static void forces_are_those_along_and_across_the_stream(void **state) {
-    (void)state;
+TEST(forces_are_those_along_and_across_the_stream) {
     struct answer found;
     answer(&found, SCHOOL_DEFAULTS TIME
            "fluid: {density: 1, velocity: [0, 2], viscosity: 0}\n"
@@ -125,8 +122,7 @@ static void forces_are_those_along_and_across_the_stream(void **state) {
 }
 
 // a body of finite span that is held in a stream, and the same body that its drive carries through another stream
-static void forces_on_a_carried_body_are_those_in_the_relative_stream(void **state) {
-    (void)state;
+TEST(forces_on_a_carried_body_are_those_in_the_relative_stream) {
     struct answer found[2];
     static const double heading = 120, speed = 0.8;
     for (int i = 0; i < 2; i++) {
@@ -154,8 +150,7 @@ static void forces_on_a_carried_body_are_those_in_the_relative_stream(void **sta
         "fluid: {density: 1, velocity: [-%g, 0]}\n" \
         "fish: [{" HEAD ", drag: {tangential: 0}, start: {heading: 180, speed: 0}}]\n"
 
-static void it_diverges_where_a_column_does(void **state) {
-    (void)state;
+TEST(it_diverges_where_a_column_does) {
     const double pi = 3.14159265358979323846, stiffness = 40000 * pi * 8e-6 / 64;
     const double critical = pi / 2 * sqrt(stiffness / (pi / 4));
     for (int i = 0; i < 3; i++) {
@@ -171,8 +166,7 @@ static void it_diverges_where_a_column_does(void **state) {
     }
 }
 
-static void natural_curvature_is_the_shape_at_rest(void **state) {
-    (void)state;
+TEST(natural_curvature_is_the_shape_at_rest) {
     struct answer found;
     answer(&found, SCHOOL_DEFAULTS TIME
            "fluid: {density: 0}\n"
@@ -199,8 +193,7 @@ static void refused(const char *text, const char *words) {
     simulate_free(found.simulation);
 }
 
-static void what_can_have_no_equilibrium_is_refused_with_the_reason(void **state) {
-    (void)state;
+TEST(what_can_have_no_equilibrium_is_refused_with_the_reason) {
     refused(SCHOOL_DEFAULTS TIME "fish: [{" SLENDER "}]\n", "neither beats nor is held");
     refused(SCHOOL_DEFAULTS TIME "fish: [{" SLENDER ", motion: {prescribed: head, surge: free}}]\n",
             "motion.surge: given");
@@ -224,8 +217,7 @@ static void what_can_have_no_equilibrium_is_refused_with_the_reason(void **state
             "set wave.ramp to 0");
 }
 
-static void where_there_is_none_it_says_how_far_the_stream_can_grow(void **state) {
-    (void)state;
+TEST(where_there_is_none_it_says_how_far_the_stream_can_grow) {
     // the largest axial force of an edge is E A = 628 N; the load reaches 628 N at sqrt(0.628) of the stream
     struct answer found;
     answer(&found, SCHOOL_DEFAULTS TIME
@@ -240,18 +232,4 @@ static void where_there_is_none_it_says_how_far_the_stream_can_grow(void **state
     NEAR(school->velocity[0], 0.01, 0, 0);
     NEAR(school->fish[0].load_tip[0], -1000, 0, 0);
     simulate_free(found.simulation);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_run_with_damping_comes_to_it),
-        cmocka_unit_test(a_body_of_finite_span_has_legs_to_infinity),
-        cmocka_unit_test(forces_on_a_carried_body_are_those_in_the_relative_stream),
-        cmocka_unit_test(forces_are_those_along_and_across_the_stream),
-        cmocka_unit_test(it_diverges_where_a_column_does),
-        cmocka_unit_test(natural_curvature_is_the_shape_at_rest),
-        cmocka_unit_test(what_can_have_no_equilibrium_is_refused_with_the_reason),
-        cmocka_unit_test(where_there_is_none_it_says_how_far_the_stream_can_grow),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,8 +41,7 @@ static void verdict_is(enum error_budget_verdict got, enum error_budget_verdict 
     if (got != want) fail_msg("got '%s', want '%s'", error_budget_words(got), error_budget_words(want));
 }
 
-static void orders_of_powers_are_found(void **state) {
-    (void)state;
+TEST(orders_of_powers_are_found) {
     const double halved[] = {0.05, 0.1, 0.2}, uneven[] = {0.07, 0.1, 0.25}, orders[] = {1, 2, 2.5, 4};
     for (int i = 0; i < 4; i++) {
         double one[3][2], other[3][2];
@@ -65,8 +64,7 @@ static void orders_of_powers_are_found(void **state) {
 
 /* f = 2 + 0.3 h^2: the finest error is 1.25 times the true error, and the base adds the distance from the finest
  * level. */
-static void a_power_is_accepted_and_its_error_is_that_of_richardson(void **state) {
-    (void)state;
+TEST(a_power_is_accepted_and_its_error_is_that_of_richardson) {
     const struct key key = {4, 1, {0.05, 0.1, 0.2, 0.4}, 2, NULL};
     double value[4];
     for (int i = 0; i < 4; i++) value[i] = 2 + 0.3 * key.level[i] * key.level[i];
@@ -79,8 +77,7 @@ static void a_power_is_accepted_and_its_error_is_that_of_richardson(void **state
 }
 
 /* The stated value is coarser than all judged levels: the error is the distance from the limit of the finest four. */
-static void a_stated_value_beyond_the_judged_levels_counts_with_its_distance(void **state) {
-    (void)state;
+TEST(a_stated_value_beyond_the_judged_levels_counts_with_its_distance) {
     const struct key key = {6, 5, {0.1, 0.2, 0.4, 0.8, 1.6, 3.2}, 2, NULL};
     double value[6], turning[6];
     for (int i = 0; i < 6; i++) value[i] = turning[i] = 2 + 0.3 * key.level[i] * key.level[i];
@@ -96,8 +93,7 @@ static void a_stated_value_beyond_the_judged_levels_counts_with_its_distance(voi
 
 /* Half an order above the design order is accepted, with the design order; more is an accident of the finest
  * difference: the larger of the two finest differences is the error. */
-static void an_order_far_above_the_design_order_is_flagged(void **state) {
-    (void)state;
+TEST(an_order_far_above_the_design_order_is_flagged) {
     char reason[ERROR_BUDGET_BYTES];
     const struct key near = {4, 1, {0.05, 0.1, 0.2, 0.4}, 2, NULL};
     const double accepted[] = {2, 2.01, 2.065, 2.35};  // orders 2.46 and 2.37
@@ -124,8 +120,7 @@ static void an_order_far_above_the_design_order_is_flagged(void **state) {
 }
 
 /* A Strouhal number whose finest levels differ by 0.0016: Richardson with order 0.09 gave an error of 0.032. */
-static void an_order_below_half_of_the_design_order_is_flagged(void **state) {
-    (void)state;
+TEST(an_order_below_half_of_the_design_order_is_flagged) {
     char reason[ERROR_BUDGET_BYTES];
     const struct key key = {4, 0, {0.01, 0.02, 0.04, 0.08}, 1, NULL};
     const double strouhal[] = {0.2856, 0.2872, 0.2889, 0.2908};
@@ -135,8 +130,7 @@ static void an_order_below_half_of_the_design_order_is_flagged(void **state) {
     assert_string_equal(reason, "the order is below half of the design order, 1: 0.087 from 0.04 to 0.01");
 }
 
-static void three_levels_without_a_finer_one_have_wider_bounds(void **state) {
-    (void)state;
+TEST(three_levels_without_a_finer_one_have_wider_bounds) {
     const struct key key = {3, 0, {25, 17, 13}, 2, NULL};
     const double accepted[] = {0.9364, 0.9297, 0.9205}, low[] = {0.9364, 0.9297, 0.9240};
     const struct error_budget_result result = judge(&key, accepted, 3e-5);
@@ -148,8 +142,7 @@ static void three_levels_without_a_finer_one_have_wider_bounds(void **state) {
 }
 
 /* A tail that ends in a cusp: no limit. The grid convergence index of 9, 17 and 33 nodes was 0.005 m/s. */
-static void a_sequence_that_goes_on_is_flagged(void **state) {
-    (void)state;
+TEST(a_sequence_that_goes_on_is_flagged) {
     char reason[ERROR_BUDGET_BYTES];
     const struct key four = {4, 0, {65, 33, 17, 9}, 2, NULL}, three = {3, 0, {33, 17, 9}, 2, NULL};
     const double from_rest[] = {0.3697, 0.7881, 0.8092, 0.9415}, cost[] = {0.152, 0.110, 0.157};
@@ -162,8 +155,7 @@ static void a_sequence_that_goes_on_is_flagged(void **state) {
     assert_string_equal(reason, "differences change sign at 17");
 }
 
-static void what_is_known_before_flags_whatever_the_levels_say(void **state) {
-    (void)state;
+TEST(what_is_known_before_flags_whatever_the_levels_say) {
     char reason[ERROR_BUDGET_BYTES];
     const struct key key = {3, 0, {33, 17, 9}, 2, "the tail ends in a cusp"};
     const double speed[] = {0.8142, 0.8731, 1.029};
@@ -175,8 +167,7 @@ static void what_is_known_before_flags_whatever_the_levels_say(void **state) {
 
 /* Sheet points with `force: pressure`: the changes grow, -0.11 % and -0.13 %, towards a limit of about -0.4 %, which
  * the largest difference alone does not reach. */
-static void differences_that_do_not_fall_are_flagged(void **state) {
-    (void)state;
+TEST(differences_that_do_not_fall_are_flagged) {
     const struct key key = {3, 2, {97, 69, 49}, 1, NULL};
     const double speed[] = {1.0056 * (1 - 0.0024), 1.0056 * (1 - 0.0011), 1.0056};
     const struct error_budget_result result = judge(&key, speed, 3e-5);
@@ -185,8 +176,7 @@ static void differences_that_do_not_fall_are_flagged(void **state) {
     ABOVE(result.error, 0.004 * 1.0056);
 }
 
-static void differences_below_the_noise_are_none(void **state) {
-    (void)state;
+TEST(differences_below_the_noise_are_none) {
     const struct key key = {3, 1, {1e-6, 1e-5, 1e-4}, 1, NULL};
     const double speed[] = {0.93640, 0.93641, 0.93639};
     const struct error_budget_result result = judge(&key, speed, 2.5e-5);
@@ -198,8 +188,7 @@ static void differences_below_the_noise_are_none(void **state) {
     verdict_is(judge(&key, speed, 0.69e-5).verdict, ERROR_BUDGET_TURNS);
 }
 
-static void orders_decide(void **state) {
-    (void)state;
+TEST(orders_decide) {
     // differences 1, 2, 4 and so on at halved spacings: orders p, p' by log2 of the ratios
     const struct {
         double differences[3], design;
@@ -238,8 +227,7 @@ static void orders_decide(void **state) {
 }
 
 /* Levels of 9, 11, 17 and 24 nodes: the difference from 11 to 17 is larger than from 9 to 11, also at order 2. */
-static void uneven_levels_are_judged_by_their_spacings(void **state) {
-    (void)state;
+TEST(uneven_levels_are_judged_by_their_spacings) {
     const struct key key = {4, 1, {24, 17, 11, 9}, 2, NULL};
     double value[4];
     for (int i = 0; i < 4; i++) value[i] = 2 + 0.3 / pow(key.level[i] - 1, 2);
@@ -249,8 +237,7 @@ static void uneven_levels_are_judged_by_their_spacings(void **state) {
     NEAR(result.coarse_order, 2, 1e-9, 0);
 }
 
-static void a_missing_level_leaves_the_error_unknown(void **state) {
-    (void)state;
+TEST(a_missing_level_leaves_the_error_unknown) {
     const struct key key = {4, 1, {35, 25, 17, 13}, 2, "even where it is flagged before"};
     const double cost[] = {NAN, 0.0728, 0.0720, 0.0708};
     const struct error_budget_result result = judge(&key, cost, 3e-5);
@@ -258,8 +245,7 @@ static void a_missing_level_leaves_the_error_unknown(void **state) {
     assert_true(isnan(result.error));
 }
 
-static void two_levels_give_the_difference_with_a_wide_bound(void **state) {
-    (void)state;
+TEST(two_levels_give_the_difference_with_a_wide_bound) {
     const struct key base = {2, 0, {1e-5, 1e-4}, 1, NULL}, confirmed = {2, 1, {1e-6, 1e-5}, 1, NULL};
     const double speed[] = {1, 1.01};
     verdict_is(judge(&base, speed, 1e-5).verdict, ERROR_BUDGET_FEW);
@@ -267,8 +253,7 @@ static void two_levels_give_the_difference_with_a_wide_bound(void **state) {
     NEAR(judge(&confirmed, speed, 1e-5).error, 0.02, 1e-12, 0);
 }
 
-static void of_many_levels_the_finest_four_count(void **state) {
-    (void)state;
+TEST(of_many_levels_the_finest_four_count) {
     const struct key key = {6, 0, {0.1, 0.2, 0.4, 0.8, 1.6, 3.2}, 2, NULL};
     const double value[] = {1.01, 1.04, 1.16, 1.64, 0.2, 70};
     const struct error_budget_result result = judge(&key, value, 1e-9);
@@ -277,8 +262,7 @@ static void of_many_levels_the_finest_four_count(void **state) {
 }
 
 /* A point in the plane: the differences are vectors. */
-static void points_are_judged_by_the_angle_between_differences(void **state) {
-    (void)state;
+TEST(points_are_judged_by_the_angle_between_differences) {
     const double size[] = {0.1, 0.2, 0.4};
     const double straight[][2] = {{1, 1}, {1, 1.3}, {0.5, 2.1}}, back[][2] = {{1, 1}, {1, 1.3}, {1.9, 1}};
     const struct error_budget_levels levels = {
@@ -291,8 +275,7 @@ static void points_are_judged_by_the_angle_between_differences(void **state) {
 
 /* Steady speed and cost over the nodes, of fish with other moduli and tails; the limits come from 49 nodes and from
  * extrapolation. A stated error has to cover the distance from the limit. */
-static void errors_cover_the_limits_of_tails_with_a_floor(void **state) {
-    (void)state;
+TEST(errors_cover_the_limits_of_tails_with_a_floor) {
     enum { N = 7 };
     static const double nodes[N] = {9, 13, 17, 21, 25, 33, 49};
     static const struct {
@@ -325,27 +308,4 @@ static void errors_cover_the_limits_of_tails_with_a_floor(void **state) {
             if (bars[1] < of_cost) fail_msg("body %d, plan %d: cost %g +- %g", b, p, of_cost, bars[1]);
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(orders_of_powers_are_found),
-        cmocka_unit_test(a_power_is_accepted_and_its_error_is_that_of_richardson),
-        cmocka_unit_test(a_stated_value_beyond_the_judged_levels_counts_with_its_distance),
-        cmocka_unit_test(an_order_far_above_the_design_order_is_flagged),
-        cmocka_unit_test(an_order_below_half_of_the_design_order_is_flagged),
-        cmocka_unit_test(three_levels_without_a_finer_one_have_wider_bounds),
-        cmocka_unit_test(a_sequence_that_goes_on_is_flagged),
-        cmocka_unit_test(what_is_known_before_flags_whatever_the_levels_say),
-        cmocka_unit_test(differences_that_do_not_fall_are_flagged),
-        cmocka_unit_test(differences_below_the_noise_are_none),
-        cmocka_unit_test(orders_decide),
-        cmocka_unit_test(uneven_levels_are_judged_by_their_spacings),
-        cmocka_unit_test(a_missing_level_leaves_the_error_unknown),
-        cmocka_unit_test(two_levels_give_the_difference_with_a_wide_bound),
-        cmocka_unit_test(of_many_levels_the_finest_four_count),
-        cmocka_unit_test(points_are_judged_by_the_angle_between_differences),
-        cmocka_unit_test(errors_cover_the_limits_of_tails_with_a_floor),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -60,8 +60,7 @@ static void levels_are(const struct error_study *study, const char *path, int n,
 
 // ---- the plan
 
-static void the_keys_of_the_table_have_the_levels_of_the_table(void **state) {
-    (void)state;
+TEST(the_keys_of_the_table_have_the_levels_of_the_table) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed}");
     levels_are(&study, "fish.nodes", 4, (double[]){35, 25, 17, 13}, 25);
     levels_are(&study, "fish.sheet_points", 4, (double[]){69, 49, 35, 25}, 49);
@@ -100,16 +99,14 @@ static void the_keys_of_the_table_have_the_levels_of_the_table(void **state) {
     error_plan_free(&study);
 }
 
-static void without_confirm_there_is_no_finer_level(void **state) {
-    (void)state;
+TEST(without_confirm_there_is_no_finer_level) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, confirm: false}");
     levels_are(&study, "fish.nodes", 3, (double[]){25, 17, 13}, 25);
     levels_are(&study, "solver.rtol", 2, (double[]){1e-5, 1e-4}, 1e-5);
     error_plan_free(&study);
 }
 
-static void levels_that_are_no_valid_cases_are_replaced(void **state) {
-    (void)state;
+TEST(levels_that_are_no_valid_cases_are_replaced) {
     // with the pressure a sheet needs 2 nodes - 1 points
     struct error_study study = open_study(
         "format: 1\ntime: {end: 4}\nfish: [{nodes: 25, sheet_points: 49, force: pressure, pressure: {span: "
@@ -136,8 +133,7 @@ static void levels_that_are_no_valid_cases_are_replaced(void **state) {
     error_plan_free(&study);
 }
 
-static void an_interval_divides_the_beat_or_the_run(void **state) {
-    (void)state;
+TEST(an_interval_divides_the_beat_or_the_run) {
     static const char text[] = "format: 1\ntime: {end: 4, shedding_interval: 0.02, output_interval: 0.1}\nfish: [{}]\n";
     struct error_study study = open_study(text, "{of: steady_speed, keys: [shedding_interval]}");
     // 50 events in a beat; 12.5 are none
@@ -161,8 +157,7 @@ static void an_interval_divides_the_beat_or_the_run(void **state) {
     error_plan_free(&study);
 }
 
-static void a_duration_keeps_the_unit_of_the_case(void **state) {
-    (void)state;
+TEST(a_duration_keeps_the_unit_of_the_case) {
     static const struct {
         const char *wake, *unit, *longest, *fade;
         double level[4];
@@ -195,8 +190,7 @@ static void a_duration_keeps_the_unit_of_the_case(void **state) {
     error_plan_free(&study);
 }
 
-static void levels_can_be_given(void **state) {
-    (void)state;
+TEST(levels_can_be_given) {
     struct error_study study =
         open_study(UNIFORM, "{of: steady_speed, keys: {nodes: [17, 33, 65], \"fish[*].sheet_points\": default}}");
     assert_int_equal(study.n_keys, 2);
@@ -204,8 +198,7 @@ static void levels_can_be_given(void **state) {
     error_plan_free(&study);
 }
 
-static void fish_of_different_resolution_change_in_proportion(void **state) {
-    (void)state;
+TEST(fish_of_different_resolution_change_in_proportion) {
     struct error_study study = open_study(
         "format: 1\ntime: {end: 4}\nfish: [{nodes: 13, sheet_points: 33}, {nodes: 25, sheet_points: 49, start: "
         "{position: [3, 0]}}]\n",
@@ -220,8 +213,7 @@ static void fish_of_different_resolution_change_in_proportion(void **state) {
     error_plan_free(&study);
 }
 
-static void an_equilibrium_has_points_only(void **state) {
-    (void)state;
+TEST(an_equilibrium_has_points_only) {
     struct error_study study = open_study(
         "format: 1\ntime: {end: 4}\nfluid: {velocity: [1, 0]}\nfish: [{nodes: 9, force: pressure, pressure: {span: "
         "infinite}, wave: {amplitude: 0, "
@@ -249,8 +241,7 @@ static void an_equilibrium_has_points_only(void **state) {
     error_plan_free(&study);
 }
 
-static void quantities_that_are_not_known_are_refused(void **state) {
-    (void)state;
+TEST(quantities_that_are_not_known_are_refused) {
     static const struct {
         const char *error, *message;
     } examples[] = {
@@ -309,8 +300,7 @@ static void free_members(struct member_file *members, int n) {
     free(members);
 }
 
-static void the_error_is_the_sum_over_the_keys_and_covers_the_true_one(void **state) {
-    (void)state;
+TEST(the_error_is_the_sum_over_the_keys_and_covers_the_true_one) {
     struct error_study study = open_study(UNIFORM, "{of: [steady_speed, steady_cost_of_transport]}");
     struct member_file *const members = make_members(&study);
     error_study_judge(&study, members);
@@ -343,8 +333,7 @@ static void the_error_is_the_sum_over_the_keys_and_covers_the_true_one(void **st
 }
 
 /* Five tolerances, the stated one the coarsest: four of them are judged. */
-static void a_stated_level_beyond_the_judged_ones_has_its_own_value(void **state) {
-    (void)state;
+TEST(a_stated_level_beyond_the_judged_ones_has_its_own_value) {
     struct error_study study = open_study(UNIFORM, "{of: speed, keys: {rtol: [1e-5, 1e-6, 1e-7, 1e-8, 1e-9]}}");
     struct member_file *const members = make_members(&study);
     const struct error_study_key *const key = key_of(&study, "solver.rtol");
@@ -372,8 +361,7 @@ static void contains(const char *text, const char *part) {
 }
 
 /* The cost turns at 17 nodes, the differences of the speed fall. */
-static void a_flag_belongs_to_one_quantity_and_names_its_levels(void **state) {
-    (void)state;
+TEST(a_flag_belongs_to_one_quantity_and_names_its_levels) {
     struct error_study study = open_study(UNIFORM, "{of: [steady_speed, steady_cost_of_transport], keys: [nodes]}");
     struct member_file *const members = make_members(&study);
     const struct error_study_key *const key = key_of(&study, "fish.nodes");
@@ -397,8 +385,7 @@ static void a_flag_belongs_to_one_quantity_and_names_its_levels(void **state) {
 }
 
 /* A finer level cannot take less time: times of short runs are noisy. */
-static void a_finer_level_is_never_cheaper(void **state) {
-    (void)state;
+TEST(a_finer_level_is_never_cheaper) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [shedding_interval]}");
     struct member_file *const members = make_members(&study);
     const struct error_study_key *const key = key_of(&study, "time.shedding_interval");
@@ -434,8 +421,7 @@ static struct member_file *follow(struct error_study *study, int *n_rounds) {
     return members;
 }
 
-static void refinement_ends_where_the_error_is_within_the_bound(void **state) {
-    (void)state;
+TEST(refinement_ends_where_the_error_is_within_the_bound) {
     static const char error[] = "{of: steady_speed, within: 2e-3, most: 1e4}";
     struct error_study study = open_study(UNIFORM, error), again = open_study(UNIFORM, error);
     const int n_planned = sweep_n_members(&study.study);
@@ -465,8 +451,7 @@ static void refinement_ends_where_the_error_is_within_the_bound(void **state) {
     error_plan_free(&again);
 }
 
-static void without_the_members_of_a_step_it_is_not_taken(void **state) {
-    (void)state;
+TEST(without_the_members_of_a_step_it_is_not_taken) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, within: 2e-3}");
     struct member_file *const members = make_members(&study);
     const int n = sweep_n_members(&study.study);
@@ -484,8 +469,7 @@ static void without_the_members_of_a_step_it_is_not_taken(void **state) {
     error_plan_free(&study);
 }
 
-static void what_is_too_dear_is_not_run_and_its_cost_is_said(void **state) {
-    (void)state;
+TEST(what_is_too_dear_is_not_run_and_its_cost_is_said) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, within: 2e-4, most: 3}");
     int n_rounds;
     struct member_file *const members = follow(&study, &n_rounds);
@@ -499,8 +483,7 @@ static void what_is_too_dear_is_not_run_and_its_cost_is_said(void **state) {
     error_plan_free(&study);
 }
 
-static void a_member_that_failed_leaves_the_error_unknown(void **state) {
-    (void)state;
+TEST(a_member_that_failed_leaves_the_error_unknown) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, within: 0.5}");
     struct member_file *const members = make_members(&study);
     const int n = sweep_n_members(&study.study);
@@ -515,8 +498,7 @@ static void a_member_that_failed_leaves_the_error_unknown(void **state) {
     error_plan_free(&study);
 }
 
-static void a_cusp_an_edge_and_a_sheet_are_objected_to(void **state) {
-    (void)state;
+TEST(a_cusp_an_edge_and_a_sheet_are_objected_to) {
     struct error_study study = open_study(
         "format: 1\ntime: {end: 4}\nfish: [{force: reactive, sheet_points: 21, body: {tail_thickness: 0}}]\n",
         "{of: speed}");
@@ -558,15 +540,13 @@ static int is_flagged_with_share(double share) {
     return is_flagged;
 }
 
-static void a_flag_is_explained_from_a_hundredth_of_the_error_on(void **state) {
-    (void)state;
+TEST(a_flag_is_explained_from_a_hundredth_of_the_error_on) {
     assert_true(is_flagged_with_share(0.02));
     assert_false(is_flagged_with_share(0.005));
     assert_true(is_flagged_with_share(NAN));
 }
 
-static void choices_of_the_model_are_not_in_the_sum(void **state) {
-    (void)state;
+TEST(choices_of_the_model_are_not_in_the_sum) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [rtol, smoothing]}");
     struct member_file *const members = make_members(&study);
     set_value(&members[key_of(&study, "wake.smoothing")->member[0]], "steady_speed", 2.5);
@@ -588,8 +568,7 @@ static void is_printed(const char *got, const char *want) {
 }
 
 // every number of a report, and the rows of its table
-static void a_report_is_printed_whole(void **state) {
-    (void)state;
+TEST(a_report_is_printed_whole) {
     struct error_study study = open_study(
         UNIFORM,
         "{of: [steady_speed, steady_cost_of_transport], keys: [nodes, shedding_interval, rtol, smoothing, taper]}");
@@ -640,8 +619,7 @@ static void a_report_is_printed_whole(void **state) {
     error_plan_free(&study);
 }
 
-static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
-    (void)state;
+TEST(every_failing_allocation_is_reported_and_leaves_nothing) {
     static const char text[] = UNIFORM "error: {of: steady_speed, within: 2e-3, keys: [nodes, shedding_interval]}\n";
     struct case_values values;
     assert_int_equal(case_parse(&values, text, strlen(text), "test.yaml", NULL, 0, NULL), STATUS_OK);
@@ -675,32 +653,4 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
     free_members(members, n_members);
     error_plan_free(&whole);
     case_free(&values);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_keys_of_the_table_have_the_levels_of_the_table),
-        cmocka_unit_test(without_confirm_there_is_no_finer_level),
-        cmocka_unit_test(levels_that_are_no_valid_cases_are_replaced),
-        cmocka_unit_test(an_interval_divides_the_beat_or_the_run),
-        cmocka_unit_test(a_duration_keeps_the_unit_of_the_case),
-        cmocka_unit_test(levels_can_be_given),
-        cmocka_unit_test(fish_of_different_resolution_change_in_proportion),
-        cmocka_unit_test(an_equilibrium_has_points_only),
-        cmocka_unit_test(quantities_that_are_not_known_are_refused),
-        cmocka_unit_test(the_error_is_the_sum_over_the_keys_and_covers_the_true_one),
-        cmocka_unit_test(a_stated_level_beyond_the_judged_ones_has_its_own_value),
-        cmocka_unit_test(a_flag_belongs_to_one_quantity_and_names_its_levels),
-        cmocka_unit_test(a_finer_level_is_never_cheaper),
-        cmocka_unit_test(refinement_ends_where_the_error_is_within_the_bound),
-        cmocka_unit_test(without_the_members_of_a_step_it_is_not_taken),
-        cmocka_unit_test(what_is_too_dear_is_not_run_and_its_cost_is_said),
-        cmocka_unit_test(a_member_that_failed_leaves_the_error_unknown),
-        cmocka_unit_test(a_cusp_an_edge_and_a_sheet_are_objected_to),
-        cmocka_unit_test(a_flag_is_explained_from_a_hundredth_of_the_error_on),
-        cmocka_unit_test(choices_of_the_model_are_not_in_the_sum),
-        cmocka_unit_test(a_report_is_printed_whole),
-        cmocka_unit_test(every_failing_allocation_is_reported_and_leaves_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,7 +27,7 @@ static double value(const struct member_file *member, const char *quantity, int 
     return member_file_value(member, member_file_quantity_number(quantity), fish, xy);
 }
 
-static void quantities_of_the_table_are_those_of_the_last_row(void **state) {
+TEST_WITH(quantities_of_the_table_are_those_of_the_last_row, set_up, tear_down) {
     struct fixture *const f = *state;
     struct member_file member;
     read_member(f, &member);
@@ -43,7 +43,7 @@ static void quantities_of_the_table_are_those_of_the_last_row(void **state) {
 }
 
 /* A member whose header counts rows that are not there, or that has no rows to count, is not finished. */
-static void a_member_that_lacks_rows_is_refused(void **state) {
+TEST_WITH(a_member_that_lacks_rows_is_refused, set_up, tear_down) {
     struct fixture *const f = *state;
     const unsigned char count[8] = {0, 0, 0, 0x79};
     for (int has_rows = 0; has_rows < 2; has_rows++) {
@@ -70,7 +70,7 @@ static void a_member_that_lacks_rows_is_refused(void **state) {
     }
 }
 
-static void a_steady_state_has_its_own_values(void **state) {
+TEST_WITH(a_steady_state_has_its_own_values, set_up, tear_down) {
     struct fixture *const f = *state;
     struct result_file *file;
     struct member_file member;
@@ -95,7 +95,7 @@ static void a_steady_state_has_its_own_values(void **state) {
     member_file_free(&member);
 }
 
-static void beats_of_a_search_are_those_of_search_multipliers_and_rows(void **state) {
+TEST_WITH(beats_of_a_search_are_those_of_search_multipliers_and_rows, set_up, tear_down) {
     struct fixture *const f = *state;
     struct result_file *file;
     struct member_file member;
@@ -114,7 +114,7 @@ static void beats_of_a_search_are_those_of_search_multipliers_and_rows(void **st
     member_file_free(&member);
 }
 
-static void nose_and_tail_are_the_ends_of_each_body(void **state) {
+TEST_WITH(nose_and_tail_are_the_ends_of_each_body, set_up, tear_down) {
     struct fixture *const f = *state;
     struct member_file member;
     read_member(f, &member);
@@ -129,7 +129,7 @@ static void nose_and_tail_are_the_ends_of_each_body(void **state) {
     member_file_free(&member);
 }
 
-static void lateral_drift_is_to_the_left_of_the_first_heading(void **state) {
+TEST_WITH(lateral_drift_is_to_the_left_of_the_first_heading, set_up, tear_down) {
     struct fixture *const f = *state;
     struct member_file member;
     read_member(f, &member);
@@ -139,7 +139,7 @@ static void lateral_drift_is_to_the_left_of_the_first_heading(void **state) {
     member_file_free(&member);
 }
 
-static void mean_heading_is_that_of_trapezoids_over_the_last_period(void **state) {
+TEST_WITH(mean_heading_is_that_of_trapezoids_over_the_last_period, set_up, tear_down) {
     struct fixture *const f = *state;
     struct member_file member;
     read_member(f, &member);
@@ -150,7 +150,7 @@ static void mean_heading_is_that_of_trapezoids_over_the_last_period(void **state
     member_file_free(&member);
 }
 
-static void a_member_without_rows_has_no_values(void **state) {
+TEST_WITH(a_member_without_rows_has_no_values, set_up, tear_down) {
     struct fixture *const f = *state;
     write_file(f, 0);
     struct member_file member;
@@ -162,7 +162,7 @@ static void a_member_without_rows_has_no_values(void **state) {
 
 // ---- files that are not whole, or not ours
 
-static void a_member_that_was_cut_is_refused(void **state) {
+TEST_WITH(a_member_that_was_cut_is_refused, set_up, tear_down) {
     struct fixture *const f = *state;
     struct member_file member;
     read_member(f, &member);
@@ -194,7 +194,7 @@ static bool is_quantity(const char *name) {
     return false;
 }
 
-static void a_variable_that_does_not_fit_is_refused(void **state) {
+TEST_WITH(a_variable_that_does_not_fit_is_refused, set_up, tear_down) {
     struct fixture *const f = *state;
     struct member_file member;
     read_member(f, &member);
@@ -223,7 +223,7 @@ static void a_variable_that_does_not_fit_is_refused(void **state) {
     free(bytes);
 }
 
-static void a_body_cannot_have_more_nodes_than_there_are_places(void **state) {
+TEST_WITH(a_body_cannot_have_more_nodes_than_there_are_places, set_up, tear_down) {
     struct fixture *const f = *state;
     const int wrong[] = {8, 0, -1, 2147483647};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
@@ -237,21 +237,4 @@ static void a_body_cannot_have_more_nodes_than_there_are_places(void **state) {
         assert_message("nodes");
         unlink(f->path);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        WITH_FILE(quantities_of_the_table_are_those_of_the_last_row),
-        WITH_FILE(a_member_that_lacks_rows_is_refused),
-        WITH_FILE(a_steady_state_has_its_own_values),
-        WITH_FILE(beats_of_a_search_are_those_of_search_multipliers_and_rows),
-        WITH_FILE(nose_and_tail_are_the_ends_of_each_body),
-        WITH_FILE(lateral_drift_is_to_the_left_of_the_first_heading),
-        WITH_FILE(mean_heading_is_that_of_trapezoids_over_the_last_period),
-        WITH_FILE(a_member_without_rows_has_no_values),
-        WITH_FILE(a_member_that_was_cut_is_refused),
-        WITH_FILE(a_variable_that_does_not_fit_is_refused),
-        WITH_FILE(a_body_cannot_have_more_nodes_than_there_are_places),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

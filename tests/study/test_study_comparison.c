@@ -71,8 +71,7 @@ static void assert_has(const char *text, const char *part) {
     if (!strstr(text, part)) fail_msg("\"%s\" is not in\n%s", part, text);
 }
 
-static void errors_are_distances_from_the_first_member_in_lengths(void **state) {
-    (void)state;
+TEST(errors_are_distances_from_the_first_member_in_lengths) {
     struct case_values study = parse(repeated);
     struct member_file *const members = members_of(&study);
     study_comparison_fill_errors(&study, members);
@@ -87,8 +86,7 @@ static void errors_are_distances_from_the_first_member_in_lengths(void **state) 
     case_free(&study);
 }
 
-static void the_wall_time_is_the_median_of_the_repeats(void **state) {
-    (void)state;
+TEST(the_wall_time_is_the_median_of_the_repeats) {
     struct case_values study = parse(repeated);
     struct member_file *const members = members_of(&study);
     const char *text = print(&study, members);
@@ -110,8 +108,7 @@ static void the_wall_time_is_the_median_of_the_repeats(void **state) {
 
 /* Errors of 4e-5 and 4e-3 for 1000 and 100 evaluations, and of 2e-4 and 2e-2 for 800 and 80: at 1e-3 a power law gives
  * 200 and 357.8. A reference that is off by 1e-5 moves the first by 200 log(10)/log(100) 1e-2. */
-static void the_cost_at_equal_error_is_that_of_a_power_law(void **state) {
-    (void)state;
+TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
     static const char text[] = CASE
         "fish: [{}]\n"
         "sweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step],\n"
@@ -156,8 +153,7 @@ static void the_cost_at_equal_error_is_that_of_a_power_law(void **state) {
 
 /* One method with fixed steps, twice, and with adaptive steps: two rows of costs. The bar of the wall time has half the
  * range of the repeats of the less repeatable setting. */
-static void steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar(void **state) {
-    (void)state;
+TEST(steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar) {
     static const char text[] = CASE
         "fish: [{}]\n"
         "sweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step],\n"
@@ -188,8 +184,7 @@ static void steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar(void **s
     case_free(&study);
 }
 
-static void only_a_sweep_of_these_keys_is_a_comparison(void **state) {
-    (void)state;
+TEST(only_a_sweep_of_these_keys_is_a_comparison) {
     static const char *const sweeps[] = {
         "",
         "sweep: [{key: solver.rtol, values: [1e-3, 1e-4, 1e-5]}]\n",
@@ -238,8 +233,7 @@ static enum status compare(struct arena *arena, const struct case_values *values
     return printed;
 }
 
-static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
-    (void)state;
+TEST(every_failing_allocation_is_reported_and_leaves_nothing) {
     struct case_values values = parse(CASE "fish: [{force: reactive, nodes: 4, sheet_points: 5}]\n");
     char path[] = "/tmp/shoal-comparison-XXXXXX";
     close(mkstemp(path));
@@ -267,16 +261,4 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
     fclose(nowhere);
     unlink(path);
     case_free(&values);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_are_distances_from_the_first_member_in_lengths),
-        cmocka_unit_test(the_wall_time_is_the_median_of_the_repeats),
-        cmocka_unit_test(the_cost_at_equal_error_is_that_of_a_power_law),
-        cmocka_unit_test(steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar),
-        cmocka_unit_test(only_a_sweep_of_these_keys_is_a_comparison),
-        cmocka_unit_test(every_failing_allocation_is_reported_and_leaves_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,8 +18,7 @@
 #include "study/study_orders.h"
 #include "study/study_print.h"
 
-static void a_given_value_gives_the_order_with_two_levels_each(void **state) {
-    (void)state;
+TEST(a_given_value_gives_the_order_with_two_levels_each) {
     // from fine to coarse; errors of order 2 about (3, -1), but for the finest level: that of a sum of orders 2 and 1
     const double sizes[] = {0.1, 0.2, 0.4}, exact[] = {3, -1};
     const double errors[] = {0.02, 0.04, 0.16};
@@ -68,8 +67,7 @@ static double value_of(int file, const char *name, size_t i, size_t j, size_t k)
     return value;
 }
 
-static void orders_are_kept_in_study_nc(void **state) {
-    (void)state;
+TEST(orders_are_kept_in_study_nc) {
     struct case_values study, again;
     assert_int_equal(case_parse(&study, refined, strlen(refined), "refined.yaml", NULL, 0, NULL), STATUS_OK);
     struct member_file member[6], *read;
@@ -134,8 +132,7 @@ static void orders_are_kept_in_study_nc(void **state) {
     case_free(&again);
 }
 
-static void a_study_nc_that_does_not_fit_is_refused(void **state) {
-    (void)state;
+TEST(a_study_nc_that_does_not_fit_is_refused) {
     struct case_values study;
     assert_int_equal(case_parse(&study, refined, strlen(refined), "refined.yaml", NULL, 0, NULL), STATUS_OK);
     struct member_file member[6];
@@ -194,8 +191,7 @@ static void is_table(const char *text, double expected, const char *met) {
 }
 
 // values 5 + 0.3 h
-static void an_order_is_met_within_its_bounds_on_both_sides(void **state) {
-    (void)state;
+TEST(an_order_is_met_within_its_bounds_on_both_sides) {
     static const struct {
         double order;
         enum status want;
@@ -234,8 +230,7 @@ static void an_order_is_met_within_its_bounds_on_both_sides(void **state) {
 }
 
 // differences of 2e-3 are noise where the search is 1e-3 from the fixed point, known or ten times the residual
-static void differences_below_the_error_of_a_search_are_noise(void **state) {
-    (void)state;
+TEST(differences_below_the_error_of_a_search_are_noise) {
     static const double errors[][2] = {{1e-3, 1e-9}, {NAN, 1e-4}, {1e-5, 1e-3}};
     for (int i = 0; i < 3; i++) {
         static const char text[] =
@@ -270,8 +265,7 @@ static void differences_below_the_error_of_a_search_are_noise(void **state) {
     }
 }
 
-static void levels_of_points_are_their_distances_from_coarse_to_fine(void **state) {
-    (void)state;
+TEST(levels_of_points_are_their_distances_from_coarse_to_fine) {
     static const char text[] =
         "format: 1\ntime: {end: 1}\nfish: [{}]\n"
         "sweep: [{key: \"fish[*].nodes\", values: [9, 5, 17], refine: true}]\n";
@@ -355,8 +349,7 @@ static void fail_one_by_one(const struct attempt *attempt, attempt_function *fun
     AT_LEAST(n_failed, min);
 }
 
-static void every_failing_allocation_of_a_study_is_reported_and_leaves_nothing(void **state) {
-    (void)state;
+TEST(every_failing_allocation_of_a_study_is_reported_and_leaves_nothing) {
     struct attempt attempt = {.folder = "/tmp/shoal-study-XXXXXX", .nowhere = fopen("/dev/null", "w")};
     assert_non_null(mkdtemp(attempt.folder));
     assert_int_equal(case_parse(&attempt.study, small, strlen(small), "small.yaml", NULL, 0, NULL), STATUS_OK);
@@ -371,8 +364,7 @@ static void every_failing_allocation_of_a_study_is_reported_and_leaves_nothing(v
     case_free(&attempt.study);
 }
 
-static void quantities_of_a_case_are_those_of_a_study(void **state) {
-    (void)state;
+TEST(quantities_of_a_case_are_those_of_a_study) {
     for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
         // the look-up would run beyond the last one
         const struct member_file_quantity *const quantity =
@@ -385,8 +377,7 @@ static void quantities_of_a_case_are_those_of_a_study(void **state) {
     assert_string_equal(sweep_quantities[SWEEP_TAIL].name, "tail");
 }
 
-static void a_table_has_aligned_columns_and_no_blanks_at_the_end(void **state) {
-    (void)state;
+TEST(a_table_has_aligned_columns_and_no_blanks_at_the_end) {
     struct text_table table;
     assert_int_equal(text_table_create(&table, 2, 3), STATUS_OK);
     text_table_set(&table, 0, 0, "a");
@@ -406,19 +397,4 @@ static void a_table_has_aligned_columns_and_no_blanks_at_the_end(void **state) {
     assert_string_equal(text, wanted);
     free(text);
     text_table_free(&table);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_given_value_gives_the_order_with_two_levels_each),
-        cmocka_unit_test(orders_are_kept_in_study_nc),
-        cmocka_unit_test(a_study_nc_that_does_not_fit_is_refused),
-        cmocka_unit_test(an_order_is_met_within_its_bounds_on_both_sides),
-        cmocka_unit_test(differences_below_the_error_of_a_search_are_noise),
-        cmocka_unit_test(levels_of_points_are_their_distances_from_coarse_to_fine),
-        cmocka_unit_test(every_failing_allocation_of_a_study_is_reported_and_leaves_nothing),
-        cmocka_unit_test(quantities_of_a_case_are_those_of_a_study),
-        cmocka_unit_test(a_table_has_aligned_columns_and_no_blanks_at_the_end),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

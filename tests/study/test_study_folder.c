@@ -70,7 +70,7 @@ static void assert_refused(const struct fixture *f, const struct case_values *st
     if (!strstr(status_message(), words)) fail_msg("'%s' is not in '%s'", words, status_message());
 }
 
-static void finished_members_are_not_run_again(void **state) {
+TEST_WITH(finished_members_are_not_run_again, set_up, tear_down) {
     const struct fixture *const f = *state;
     struct study_plan plan;
     assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 0), STATUS_OK);
@@ -78,7 +78,7 @@ static void finished_members_are_not_run_again(void **state) {
     assert_int_equal(plan.n_done, 3);
 }
 
-static void missing_and_cut_members_run_again(void **state) {
+TEST_WITH(missing_and_cut_members_run_again, set_up, tear_down) {
     const struct fixture *const f = *state;
     assert_int_equal(truncate(f->member[1], 3000), 0);
     assert_one_to_run(f);
@@ -86,20 +86,20 @@ static void missing_and_cut_members_run_again(void **state) {
     assert_one_to_run(f);
 }
 
-static void members_that_are_not_complete_run_again(void **state) {
+TEST_WITH(members_that_are_not_complete_run_again, set_up, tear_down) {
     const struct fixture *const f = *state;
     set_attribute(f->member[1], "run_status", "stopped");
     assert_one_to_run(f);
 }
 
-static void members_of_a_changed_case_run_again(void **state) {
+TEST_WITH(members_of_a_changed_case_run_again, set_up, tear_down) {
     const struct fixture *const f = *state;
     // the same text of the study, but other defaults: those of another version of the program
     set_attribute(f->member[1], "case_effective", "format: 1\n");
     assert_one_to_run(f);
 }
 
-static void members_of_another_study_are_refused_unless_forced(void **state) {
+TEST_WITH(members_of_another_study_are_refused_unless_forced, set_up, tear_down) {
     const struct fixture *const f = *state;
     set_attribute(f->member[1], "study_case", "format: 1\n");
     assert_refused(f, &f->study, f->member[1]);
@@ -109,7 +109,7 @@ static void members_of_another_study_are_refused_unless_forced(void **state) {
     assert_int_equal(plan.member[0], 1);
 }
 
-static void a_member_in_the_place_of_another_is_refused(void **state) {
+TEST_WITH(a_member_in_the_place_of_another_is_refused, set_up, tear_down) {
     const struct fixture *const f = *state;
     size_t n;
     char *const bytes = read_bytes(f->member[0], &n);
@@ -118,7 +118,7 @@ static void a_member_in_the_place_of_another_is_refused(void **state) {
     assert_refused(f, &f->study, f->member[1]);
 }
 
-static void members_beyond_the_last_are_refused_or_removed(void **state) {
+TEST_WITH(members_beyond_the_last_are_refused_or_removed, set_up, tear_down) {
     const struct fixture *const f = *state;
     char path[96];
     snprintf(path, sizeof path, "%s/member-0003.nc", f->folder);
@@ -138,7 +138,7 @@ static void members_beyond_the_last_are_refused_or_removed(void **state) {
     assert_int_equal(access(f->member[2], F_OK), 0);
 }
 
-static void a_part_is_about_its_members_only(void **state) {
+TEST_WITH(a_part_is_about_its_members_only, set_up, tear_down) {
     const struct fixture *const f = *state;
     assert_int_equal(unlink(f->member[0]), 0);
     assert_int_equal(unlink(f->member[2]), 0);
@@ -153,20 +153,4 @@ static void a_part_is_about_its_members_only(void **state) {
                          STATUS_CASE);
         assert_non_null(strstr(status_message(), "the study has members 0 to 2"));
     }
-}
-
-#define WITH_STUDY(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        WITH_STUDY(finished_members_are_not_run_again),
-        WITH_STUDY(missing_and_cut_members_run_again),
-        WITH_STUDY(members_that_are_not_complete_run_again),
-        WITH_STUDY(members_of_a_changed_case_run_again),
-        WITH_STUDY(members_of_another_study_are_refused_unless_forced),
-        WITH_STUDY(a_member_in_the_place_of_another_is_refused),
-        WITH_STUDY(members_beyond_the_last_are_refused_or_removed),
-        WITH_STUDY(a_part_is_about_its_members_only),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -63,37 +63,32 @@ static void check(const char *statement, const char *status_of_the_last, enum st
     free(printed);
 }
 
-static void bounds_hold_for_all_fish_of_all_members_the_bounds_included(void **state) {
-    (void)state;
+TEST(bounds_hold_for_all_fish_of_all_members_the_bounds_included) {
     check("{of: speed, least: 2, most: 4}", "complete", STATUS_OK, "speed, 6 values\n");
     check("{of: speed, least: 2.01}", "complete", STATUS_MISSED, "MISSED   the smallest is 2, expected at least 2.01");
     check("{of: speed, most: 3.99}", "complete", STATUS_MISSED, "MISSED   the largest is 4, expected at most 3.99");
 }
 
-static void a_statement_may_be_about_one_fish_and_some_members(void **state) {
-    (void)state;
+TEST(a_statement_may_be_about_one_fish_and_some_members) {
     check("{of: speed, fish: b, most: 3}", "complete", STATUS_OK, "speed of b, 3 values\n");
     check("{of: speed, where: [solver.order=2, solver.order=3], least: 2}", "complete", STATUS_OK, "speed, 4 values\n");
     check("{of: speed, fish: b, where: [solver.order=2], least: 2.5, most: 2.5}", "complete", STATUS_OK, "1 value\n");
 }
 
-static void a_spread_of_points_is_the_diagonal_of_the_box_around_them(void **state) {
-    (void)state;
+TEST(a_spread_of_points_is_the_diagonal_of_the_box_around_them) {
     check("{of: nose, fish: b, spread: 5}", "complete", STATUS_OK, "met      the spread is 5, expected at most 5");
     check("{of: nose, fish: b, spread: 4.99}", "complete", STATUS_MISSED, "MISSED   the spread is 5");
     check("{of: speed, spread: 2}", "complete", STATUS_OK, "met      the spread is 2");
 }
 
-static void a_ratio_is_one_of_absolute_values(void **state) {
-    (void)state;
+TEST(a_ratio_is_one_of_absolute_values) {
     check("{of: speed, ratio: 2}", "complete", STATUS_OK, "met      the ratio is 2");
     check("{of: speed, ratio: 1.99}", "complete", STATUS_MISSED, "MISSED   the ratio is 2");
     check("{of: lateral_drift, fish: a, ratio: 2}", "complete", STATUS_OK, "met      the ratio is 2");
     check("{of: lateral_drift, fish: a, ratio: 1.99}", "complete", STATUS_MISSED, "MISSED   the ratio is 2");
 }
 
-static void values_of_both_signs_or_zero_miss_every_ratio(void **state) {
-    (void)state;
+TEST(values_of_both_signs_or_zero_miss_every_ratio) {
     static const char missed[] = "MISSED   the ratio is inf";
     check("{of: lateral_drift, ratio: 1e9, fish: b, where: [solver.order=1, solver.order=3]}", "complete",
           STATUS_MISSED, missed);
@@ -103,29 +98,14 @@ static void values_of_both_signs_or_zero_miss_every_ratio(void **state) {
           STATUS_MISSED, missed);
 }
 
-static void a_member_that_is_not_complete_misses_whatever_its_values(void **state) {
-    (void)state;
+TEST(a_member_that_is_not_complete_misses_whatever_its_values) {
     check("{of: speed, least: 0}", "stopped", STATUS_MISSED, "MISSED   member 2 is not complete");
     check("{of: speed, least: 0, where: [solver.order=1, solver.order=2]}", "stopped", STATUS_OK, "4 values");
 }
 
-static void failures_are_expected_by_a_part_of_their_words(void **state) {
-    (void)state;
+TEST(failures_are_expected_by_a_part_of_their_words) {
     check("{fails: unstable, where: [solver.order=3]}", "failed: unstable at t = 1", STATUS_OK, "failures, 1 member\n");
     check("{fails: singular, where: [solver.order=3]}", "failed: unstable at t = 1", STATUS_MISSED,
           "MISSED   member 2 has not failed with 'singular'");
     check("{fails: unstable}", "failed: unstable at t = 1", STATUS_MISSED, "MISSED   member 1 has not failed");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bounds_hold_for_all_fish_of_all_members_the_bounds_included),
-        cmocka_unit_test(a_statement_may_be_about_one_fish_and_some_members),
-        cmocka_unit_test(a_spread_of_points_is_the_diagonal_of_the_box_around_them),
-        cmocka_unit_test(a_ratio_is_one_of_absolute_values),
-        cmocka_unit_test(values_of_both_signs_or_zero_miss_every_ratio),
-        cmocka_unit_test(a_member_that_is_not_complete_misses_whatever_its_values),
-        cmocka_unit_test(failures_are_expected_by_a_part_of_their_words),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -71,8 +71,7 @@ static void place_points(struct points *points) {
 
 // ---- the flow of a row
 
-static void the_flow_of_a_row_is_that_of_the_run(void **state) {
-    (void)state;
+TEST(the_flow_of_a_row_is_that_of_the_run) {
     static const char *const schools[][2] = {{"sheet", SEVENTEEN},
                                              {"continuous", SEVENTEEN},
                                              {"impulsive", SEVENTEEN},
@@ -127,8 +126,7 @@ static void add_fish(const struct fish *fish, const struct school *school, const
     }
 }
 
-static void it_is_the_sum_of_all_wakes_and_sheets(void **state) {
-    (void)state;
+TEST(it_is_the_sum_of_all_wakes_and_sheets) {
     struct simulation *const run = school_simulation(school_of("sheet"));
     struct points points;
     school_run(run, 0.6);
@@ -149,8 +147,7 @@ static void it_is_the_sum_of_all_wakes_and_sheets(void **state) {
 }
 
 // the tail of a body feels all sheets and wakes as another body does
-static void at_a_tail_it_is_what_the_tail_feels(void **state) {
-    (void)state;
+TEST(at_a_tail_it_is_what_the_tail_feels) {
     write_run(school_of("continuous"));
     struct simulation *const run = school_simulation(school_of("continuous"));
     school_run(run, 0.6);
@@ -196,8 +193,7 @@ static void refused(double t, enum status want, const char *part) {
     arena_free(arena);
 }
 
-static void other_times_are_refused(void **state) {
-    (void)state;
+TEST(other_times_are_refused) {
     write_run(school_of("sheet"));
     refused(0.17, STATUS_CASE, "no row at t = 0.17 s: the nearest are at 0.1 s and 0.2 s");
     refused(0.5, STATUS_CASE,
@@ -222,8 +218,7 @@ static void other_times_are_refused(void **state) {
     refused(-2.1e-8, STATUS_CASE, "outside of the rows");
 }
 
-static void damaged_rows_are_refused(void **state) {
-    (void)state;
+TEST(damaged_rows_are_refused) {
     static const struct {
         const char *name, *part;
         double value;
@@ -258,8 +253,7 @@ static double value_of(int file, const char *name, size_t i, size_t j, size_t k,
     return value;
 }
 
-static void the_file_has_the_field_on_its_grid(void **state) {
-    (void)state;
+TEST(the_file_has_the_field_on_its_grid) {
     write_run(school_of("sheet"));
     struct arena *const arena = arena_create(NULL, "a test");
     struct field_row *row;
@@ -321,8 +315,7 @@ static enum status read_and_write(struct arena *arena) {
     return field_file_write(arena, field_path, 0, path, "test", row, &grid);
 }
 
-static void every_allocation_may_fail(void **state) {
-    (void)state;
+TEST(every_allocation_may_fail) {
     write_run(school_of("sheet"));
     enum status status = STATUS_MEMORY;
     const int before = n_live;
@@ -357,15 +350,4 @@ static int remove_folder(void **state) {
     return 0;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_flow_of_a_row_is_that_of_the_run),
-        cmocka_unit_test(it_is_the_sum_of_all_wakes_and_sheets),
-        cmocka_unit_test(at_a_tail_it_is_what_the_tail_feels),
-        cmocka_unit_test(other_times_are_refused),
-        cmocka_unit_test(damaged_rows_are_refused),
-        cmocka_unit_test(the_file_has_the_field_on_its_grid),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
-}
+TEST_GROUP(make_folder, remove_folder)

@@ -45,8 +45,7 @@ static void is_an_ellipse(int n, bool is_mean, double tolerance) {
     NEAR(polygon[2 * OUTLINE_POINTS - 2], 1, 1e-15, 0);
 }
 
-static void an_ellipse_stays_one(void **state) {
-    (void)state;
+TEST(an_ellipse_stays_one) {
     for (int n = 4; n <= MAX_NODES; n += 29) {
         is_an_ellipse(n, false, 1e-12);
         is_an_ellipse(n, true, 1e-7);  // the error of the midpoints
@@ -54,8 +53,7 @@ static void an_ellipse_stays_one(void **state) {
 }
 
 // the half thickness over the angle is a sine times a slope that is even about nose and tail, as in a mirror
-static void an_egg_stays_one(void **state) {
-    (void)state;
+TEST(an_egg_stays_one) {
     double nodes[2 * MAX_NODES], thickness[MAX_NODES], half[MAX_NODES], polygon[2 * OUTLINE_SIDES];
     for (int k = 0; k < MAX_NODES; k++) {
         const double q = (double)k / (MAX_NODES - 1), angle = acos(1 - 2 * q);
@@ -77,8 +75,7 @@ static void an_egg_stays_one(void **state) {
 
 // a parabola over the angle, which is the ratio of half thickness to sine at the middle of every edge, stays one
 // between the second edge and the last but one
-static void a_ratio_that_is_a_parabola_stays_one(void **state) {
-    (void)state;
+TEST(a_ratio_that_is_a_parabola_stays_one) {
     enum { N = 9 };
     double nodes[2 * N], thickness[N - 1], knot[N - 1], polygon[2 * OUTLINE_SIDES];
     for (int k = 0; k < N; k++) {
@@ -104,8 +101,7 @@ static void a_ratio_that_is_a_parabola_stays_one(void **state) {
 }
 
 // thicknesses in reverse order give the half thickness in reverse order
-static void nose_and_tail_are_interpolated_alike(void **state) {
-    (void)state;
+TEST(nose_and_tail_are_interpolated_alike) {
     static const double thickness[] = {0.02, 0.09, 0.16, 0.11, 0.05}, reversed[] = {0.05, 0.11, 0.16, 0.09, 0.02};
     for (int is_mean = 0; is_mean < 2; is_mean++) {
         const struct outline one = outline_create(test_arena(), 6, thickness, is_mean);
@@ -114,8 +110,7 @@ static void nose_and_tail_are_interpolated_alike(void **state) {
     }
 }
 
-static void the_middle_line_is_the_smooth_curve(void **state) {
-    (void)state;
+TEST(the_middle_line_is_the_smooth_curve) {
     // nodes on an arc of one radian: the curve of order 4 through 17 nodes is the circle to 1e-6
     enum { N = 17 };
     double nodes[2 * N], thickness[N], polygon[2 * OUTLINE_SIDES];
@@ -136,24 +131,11 @@ static void the_middle_line_is_the_smooth_curve(void **state) {
     }
 }
 
-static void a_body_in_one_point_has_an_outline(void **state) {
-    (void)state;
+TEST(a_body_in_one_point_has_an_outline) {
     double nodes[2 * MAX_NODES], thickness[MAX_NODES], polygon[2 * OUTLINE_SIDES];
     fill_ellipse(5, true, nodes, thickness);
     memset(nodes, 0, sizeof nodes);
     const struct outline outline = outline_create(test_arena(), 5, thickness, true);
     outline_polygon(&outline, nodes, polygon);
     for (int i = 0; i < 2 * OUTLINE_SIDES; i++) NEAR(polygon[i], 0, 0, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_ellipse_stays_one),
-        cmocka_unit_test(an_egg_stays_one),
-        cmocka_unit_test(a_ratio_that_is_a_parabola_stays_one),
-        cmocka_unit_test(nose_and_tail_are_interpolated_alike),
-        cmocka_unit_test(the_middle_line_is_the_smooth_curve),
-        cmocka_unit_test(a_body_in_one_point_has_an_outline),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

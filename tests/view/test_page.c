@@ -11,7 +11,7 @@
 
 // ---- the reader
 
-static void the_reader_gives_what_was_written(void **state) {
+TEST_WITH(the_reader_gives_what_was_written, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 3);
     struct arena *const arena = arena_create(NULL, "a test");
@@ -56,7 +56,7 @@ static void put_attribute(const struct fixture *f, const char *name, int value) 
     assert_int_equal(nc_close(file), NC_NOERR);
 }
 
-static void the_reader_refuses_other_files(void **state) {
+TEST_WITH(the_reader_refuses_other_files, set_up, tear_down) {
     struct fixture *f = *state;
     cannot_be_read(f->path, "No such file");
     write_file(f, 0);
@@ -78,7 +78,7 @@ static void set_text(const struct fixture *f, const char *name, const char *text
 }
 
 /* Readers need variables only: the text of a case, with names that look like keys, is not searched. */
-static void sections_and_forces_are_those_of_the_fish_whatever_their_names(void **state) {
+TEST_WITH(sections_and_forces_are_those_of_the_fish_whatever_their_names, set_up, tear_down) {
     struct fixture *f = *state;
     f->school->fish[0].has_mean_section = 0;
     f->school->fish[1].has_mean_section = 1;
@@ -98,7 +98,7 @@ static void sections_and_forces_are_those_of_the_fish_whatever_their_names(void 
     }
 }
 
-static void an_outline_needs_its_edges(void **state) {
+TEST_WITH(an_outline_needs_its_edges, set_up, tear_down) {
     struct fixture *f = *state;
     int file, edge, fish, number;
     write_file(f, 1);
@@ -132,7 +132,7 @@ static enum status new_page(const char *from, const char *to, bool overwrite) {
     return status;
 }
 
-static void a_page_is_whole_or_not_there(void **state) {
+TEST_WITH(a_page_is_whole_or_not_there, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 3);
     const char *const page = page_of(f);
@@ -154,7 +154,7 @@ static void a_page_is_whole_or_not_there(void **state) {
     assert_int_not_equal(stat(page, &facts), 0);
 }
 
-static void variables_that_do_not_fit_are_refused(void **state) {
+TEST_WITH(variables_that_do_not_fit_are_refused, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 3);
     size_t n;
@@ -195,7 +195,7 @@ static enum status write_vtk(struct arena *arena, const struct fixture *f) {
     return vtk_export(arena, f->path, folder, true, &list);
 }
 
-static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
+TEST_WITH(every_failing_allocation_is_reported_and_leaves_nothing, set_up, tear_down) {
     struct fixture *f = *state;
     enum status (*const write[])(struct arena * arena, const struct fixture *f) = {write_page, write_vtk};
     char name[80];
@@ -223,19 +223,4 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
     unlink(page_of(f));
     snprintf(name, sizeof name, "%s/vtk", f->folder);
     study_folder_remove(name);
-}
-
-#define WITH_FILE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        WITH_FILE(the_reader_gives_what_was_written),
-        WITH_FILE(the_reader_refuses_other_files),
-        WITH_FILE(sections_and_forces_are_those_of_the_fish_whatever_their_names),
-        WITH_FILE(an_outline_needs_its_edges),
-        WITH_FILE(a_page_is_whole_or_not_there),
-        WITH_FILE(variables_that_do_not_fit_are_refused),
-        WITH_FILE(every_failing_allocation_is_reported_and_leaves_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

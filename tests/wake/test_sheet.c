@@ -9,8 +9,7 @@
 #define SHEET "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
-static void the_panel_integrates_the_inverse_square_root(void **state) {
-    (void)state;
+TEST(the_panel_integrates_the_inverse_square_root) {
     const struct sheet_points panel = {.n_nascent = SHEET_PANEL};
 
     // integral of xi^(-1/2) xi^k over [0, 1]: 1/(k + 1/2); four points are exact up to k = 3
@@ -21,8 +20,7 @@ static void the_panel_integrates_the_inverse_square_root(void **state) {
     }
 }
 
-static void a_marker_is_born_at_the_tail_at_every_event(void **state) {
-    (void)state;
+TEST(a_marker_is_born_at_the_tail_at_every_event) {
     struct simulation *const simulation = school_simulation(TIME SHEET "fish: [{start: {speed: 1}}]\n");
     const struct fish *fish = simulation->school->fish;
     const struct wake *wake = &simulation->state->wake[0];
@@ -49,8 +47,7 @@ static void a_marker_is_born_at_the_tail_at_every_event(void **state) {
     simulate_free(simulation);
 }
 
-static void a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail(void **state) {
-    (void)state;
+TEST(a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail) {
     struct simulation *const simulation = school_simulation(TIME SHEET "fish: [{start: {speed: -1}}]\n");
     const struct fish *fish = simulation->school->fish;
     const struct wake *wake = &simulation->state->wake[0];
@@ -72,8 +69,7 @@ static void a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail(void **sta
 #define SPAN(word) "sheet: {curve: smooth}\nfish: [{force: pressure, sheet_points: 33, pressure: {span: " word "}}]\n"
 
 // every view has the circulation Gamma(t) less the label of the oldest marker; a middle has the whole stretch
-static void every_view_has_the_same_circulation(void **state) {
-    (void)state;
+TEST(every_view_has_the_same_circulation) {
     static const char *const fish[] = {SPAN("infinite"), SPAN("finite")};
     for (int k = 0; k < 2; k++) {
         char text[512];
@@ -108,8 +104,7 @@ static void every_view_has_the_same_circulation(void **state) {
 }
 
 // with finite span labels decay; else the circulation of every stretch decays with the age of the newer marker
-static void stretches_decay_by_labels_only_if_rings_must_stay_closed(void **state) {
-    (void)state;
+TEST(stretches_decay_by_labels_only_if_rings_must_stay_closed) {
     static const char *const fish[] = {SPAN("infinite"), SPAN("finite")};
     for (int k = 0; k < 2; k++) {
         char text[512];
@@ -135,8 +130,7 @@ static void stretches_decay_by_labels_only_if_rings_must_stay_closed(void **stat
     }
 }
 
-static void the_smoothing_tapers_to_nothing_at_the_tail(void **state) {
-    (void)state;
+TEST(the_smoothing_tapers_to_nothing_at_the_tail) {
     struct simulation *const simulation = school_simulation(TIME SHEET "fish: [{start: {speed: 1}}]\n");
     school_run(simulation, 0.8);
     const struct sheet_points *const sheet = &simulation->residual->flow->fish[0].wake.graded;
@@ -157,8 +151,7 @@ static void the_smoothing_tapers_to_nothing_at_the_tail(void **state) {
 
 // beside the body the taper length falls from the length behind the tail, at right angles, to that beside the body, at
 // an angle of 30 degrees with the normal and beyond
-static void the_taper_is_shorter_beside_the_body(void **state) {
-    (void)state;
+TEST(the_taper_is_shorter_beside_the_body) {
     struct setup setup;
     school_build(&setup, TIME SHEET "fish: [{}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -175,8 +168,7 @@ static void the_taper_is_shorter_beside_the_body(void **state) {
 }
 
 // beyond 2.36 times the longer taper the taper is negligible in any direction; slightly closer the taper is finite
-static void far_from_the_tail_the_smoothing_is_full(void **state) {
-    (void)state;
+TEST(far_from_the_tail_the_smoothing_is_full) {
     struct setup setup;
     school_build(&setup, TIME SHEET "fish: [{length: 2}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -196,8 +188,7 @@ static void far_from_the_tail_the_smoothing_is_full(void **state) {
     school_clear(&setup);
 }
 
-static void total_circulation_vanishes(void **state) {
-    (void)state;
+TEST(total_circulation_vanishes) {
     struct simulation *const simulation = school_simulation(
         TIME "wake: {shedding: sheet, lifetime: 0.3}\nfish: [{start: {speed: 1}}, {start: {position: [0.2, 0.6]}}]\n");
     for (int n = 0; n < 30; n++) {
@@ -208,19 +199,4 @@ static void total_circulation_vanishes(void **state) {
 
     assert_int_equal(simulation->state->wake[0].n_vortex, 16);
     simulate_free(simulation);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_panel_integrates_the_inverse_square_root),
-        cmocka_unit_test(a_marker_is_born_at_the_tail_at_every_event),
-        cmocka_unit_test(a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail),
-        cmocka_unit_test(every_view_has_the_same_circulation),
-        cmocka_unit_test(stretches_decay_by_labels_only_if_rings_must_stay_closed),
-        cmocka_unit_test(the_smoothing_tapers_to_nothing_at_the_tail),
-        cmocka_unit_test(the_taper_is_shorter_beside_the_body),
-        cmocka_unit_test(far_from_the_tail_the_smoothing_is_full),
-        cmocka_unit_test(total_circulation_vanishes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

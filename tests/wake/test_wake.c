@@ -13,8 +13,7 @@ static void at_time(const struct wake *wake, const struct school *school, double
     wake_strengths(wake, school, t, tau, tau / school->interval, strength);
 }
 
-static void release_keeps_what_is_there_while_it_grows(void **state) {
-    (void)state;
+TEST(release_keeps_what_is_there_while_it_grows) {
     struct wake wake;
     school_ok(wake_create(&wake, 2));
     for (int i = 0; i < 100; i++) school_ok(wake_release(&wake, i, 2 * i, 3 * i, 4 * i));
@@ -32,8 +31,7 @@ static void release_keeps_what_is_there_while_it_grows(void **state) {
     wake_free(&wake);
 }
 
-static void path_follows_a_velocity_that_is_linear_in_time(void **state) {
-    (void)state;
+TEST(path_follows_a_velocity_that_is_linear_in_time) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{}]\n");
     const double interval = setup.school->interval;
@@ -77,15 +75,13 @@ static double error_on_a_circle(int n) {
     return error;
 }
 
-static void paths_are_second_order_in_the_interval(void **state) {
-    (void)state;
+TEST(paths_are_second_order_in_the_interval) {
     const double order = log2(error_on_a_circle(200) / error_on_a_circle(400));
     // the first interval is of first order, but occurs only once: the global order is two
     NEAR(order, 2, 0.1, 0);
 }
 
-static void new_velocities_push_the_old_ones_back(void **state) {
-    (void)state;
+TEST(new_velocities_push_the_old_ones_back) {
     struct wake wake;
     school_ok(wake_create(&wake, 4));
     for (int i = 0; i < 3; i++) school_ok(wake_release(&wake, i, 0, 1, 0));
@@ -103,8 +99,7 @@ static void new_velocities_push_the_old_ones_back(void **state) {
     wake_free(&wake);
 }
 
-static void strength_fades_as_the_ramp_over_the_last_part_of_life(void **state) {
-    (void)state;
+TEST(strength_fades_as_the_ramp_over_the_last_part_of_life) {
     struct setup setup;
     school_build(&setup, TIME "wake: {lifetime: 1, decay: 0.4}\nfish: [{}]\n");
     for (int i = 0; i <= 4; i++) NEAR(wake_strength(setup.school, 0.59 + 0.1 * i), 1 - ramp_step(0.25 * i), 1e-14, 0);
@@ -122,8 +117,7 @@ static void strength_fades_as_the_ramp_over_the_last_part_of_life(void **state) 
 }
 
 // between two events the strength is linear, also in the interval in which the decay begins
-static void strength_within_an_interval_joins_the_strengths_at_its_ends(void **state) {
-    (void)state;
+TEST(strength_within_an_interval_joins_the_strengths_at_its_ends) {
     static const char *const lives[] = {"lifetime: 1, decay: 0.4",   "lifetime: 1, decay: 0.1",
                                         "lifetime: 1, decay: 0.03",  "lifetime: 1, decay: 0.001",
                                         "lifetime: 1, decay: 0",     "lifetime: 1.013, decay: 0.405",
@@ -150,8 +144,7 @@ static void strength_within_an_interval_joins_the_strengths_at_its_ends(void **s
     }
 }
 
-static void old_vortices_go_and_leave_their_circulation(void **state) {
-    (void)state;
+TEST(old_vortices_go_and_leave_their_circulation) {
     struct setup setup;
     school_build(&setup, TIME "wake: {lifetime: 0.1}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
@@ -170,8 +163,7 @@ static void old_vortices_go_and_leave_their_circulation(void **state) {
     school_clear(&setup);
 }
 
-static void without_fade_a_vortex_vanishes_within_one_interval(void **state) {
-    (void)state;
+TEST(without_fade_a_vortex_vanishes_within_one_interval) {
     struct setup setup;
     school_build(&setup, TIME "wake: {lifetime: 0.105, decay: 0}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
@@ -191,8 +183,7 @@ static void without_fade_a_vortex_vanishes_within_one_interval(void **state) {
     school_clear(&setup);
 }
 
-static void a_stretch_is_as_old_as_its_newer_marker(void **state) {
-    (void)state;
+TEST(a_stretch_is_as_old_as_its_newer_marker) {
     struct setup setup;
     school_build(&setup, TIME "wake: {lifetime: 0.1, decay: 0.06}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
@@ -213,9 +204,7 @@ static void a_stretch_is_as_old_as_its_newer_marker(void **state) {
     school_clear(&setup);
 }
 
-static void what_was_shed_long_ago_changes_no_vortex(void **state) {
-    (void)state;
-
+TEST(what_was_shed_long_ago_changes_no_vortex) {
     // as vortices, and as markers, whose labels are the circulation shed before
     for (int has_markers = 0; has_markers <= 1; has_markers++) {
         struct wake wake;
@@ -243,8 +232,7 @@ static struct wake *queue(const struct setup *setup, int n) {
     return wake;
 }
 
-static void a_vortex_from_outside_is_a_stretch_between_two_without_circulation(void **state) {
-    (void)state;
+TEST(a_vortex_from_outside_is_a_stretch_between_two_without_circulation) {
     struct setup setup;
     school_build(&setup, TIME "wake: {shedding: sheet, taper: 0.1, spare_vortices: 3}\nfish: [{}]\n");
     struct wake *const wake = queue(&setup, 10);
@@ -274,8 +262,7 @@ static void a_vortex_from_outside_is_a_stretch_between_two_without_circulation(v
     school_clear(&setup);
 }
 
-static void a_vortex_from_outside_among_vortices_is_the_newest(void **state) {
-    (void)state;
+TEST(a_vortex_from_outside_among_vortices_is_the_newest) {
     struct setup setup;
     school_build(&setup, TIME "wake: {spare_vortices: 1}\nfish: [{}]\n");
     struct wake *const wake = &setup.state->wake[0];
@@ -288,8 +275,7 @@ static void a_vortex_from_outside_among_vortices_is_the_newest(void **state) {
     school_clear(&setup);
 }
 
-static void a_queue_goes_on_at_a_tail_that_was_moved(void **state) {
-    (void)state;
+TEST(a_queue_goes_on_at_a_tail_that_was_moved) {
     struct setup setup;
     school_build(&setup, TIME "wake: {shedding: sheet, taper: 0.1, spare_vortices: 1}\nfish: [{}]\n");
     struct wake *const wake = queue(&setup, 4);
@@ -304,8 +290,7 @@ static void a_queue_goes_on_at_a_tail_that_was_moved(void **state) {
     school_clear(&setup);
 }
 
-static void markers_at_one_place_move_together(void **state) {
-    (void)state;
+TEST(markers_at_one_place_move_together) {
     struct wake wake;
     school_ok(wake_create(&wake, 4));
     wake.has_markers = 1;
@@ -318,8 +303,7 @@ static void markers_at_one_place_move_together(void **state) {
     wake_free(&wake);
 }
 
-static void the_oldest_label_is_what_was_removed(void **state) {
-    (void)state;
+TEST(the_oldest_label_is_what_was_removed) {
     struct wake wake;
     school_ok(wake_create(&wake, 2));
     wake.has_markers = 1;
@@ -334,8 +318,7 @@ static void the_oldest_label_is_what_was_removed(void **state) {
     wake_free(&wake);
 }
 
-static void most_is_enough_and_not_too_much(void **state) {
-    (void)state;
+TEST(most_is_enough_and_not_too_much) {
     struct setup setup;
     school_build(&setup, TIME "wake: {lifetime: 0.1}\nfish: [{}]\n");
     // markers at both ends of five stretches; a release at every event, and for impulses one at the start
@@ -344,35 +327,11 @@ static void most_is_enough_and_not_too_much(void **state) {
     school_clear(&setup);
 }
 
-static void nascent_vortex_is_the_centroid_of_what_was_shed(void **state) {
-    (void)state;
+TEST(nascent_vortex_is_the_centroid_of_what_was_shed) {
     const struct wake wake = {.slip = {2, -4}};
     const double tail[2] = {1, 1};
     double position[2];
     wake_nascent(&wake, 0.1, tail, position);
     NEAR(position[0], 1.1, 1e-15, 0);
     NEAR(position[1], 0.8, 1e-15, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(release_keeps_what_is_there_while_it_grows),
-        cmocka_unit_test(path_follows_a_velocity_that_is_linear_in_time),
-        cmocka_unit_test(paths_are_second_order_in_the_interval),
-        cmocka_unit_test(new_velocities_push_the_old_ones_back),
-        cmocka_unit_test(strength_fades_as_the_ramp_over_the_last_part_of_life),
-        cmocka_unit_test(strength_within_an_interval_joins_the_strengths_at_its_ends),
-        cmocka_unit_test(old_vortices_go_and_leave_their_circulation),
-        cmocka_unit_test(without_fade_a_vortex_vanishes_within_one_interval),
-        cmocka_unit_test(a_stretch_is_as_old_as_its_newer_marker),
-        cmocka_unit_test(what_was_shed_long_ago_changes_no_vortex),
-        cmocka_unit_test(most_is_enough_and_not_too_much),
-        cmocka_unit_test(nascent_vortex_is_the_centroid_of_what_was_shed),
-        cmocka_unit_test(a_vortex_from_outside_is_a_stretch_between_two_without_circulation),
-        cmocka_unit_test(a_vortex_from_outside_among_vortices_is_the_newest),
-        cmocka_unit_test(a_queue_goes_on_at_a_tail_that_was_moved),
-        cmocka_unit_test(markers_at_one_place_move_together),
-        cmocka_unit_test(the_oldest_label_is_what_was_removed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
