@@ -138,23 +138,8 @@ static void add_sections(struct text *hint, const struct candidate *best, const 
     }
 }
 
-/* Add the present path of a key that had another path in former versions; false if the word is no such key. */
-static bool add_renamed(struct text *hint, const char *section, const char *word) {
-    const size_t length = strlen(section);
-    for (int i = 0; i < case_table_n; i++) {
-        const char *const former = case_table[i].former, *const path = case_table[i].path;
-        if (!former || strncmp(former, section, length) != 0) continue;
-        if (strcmp(former + length + (length > 0 && former[length] == '.'), word) != 0) continue;
-        text_add(hint, "; renamed to '%s'", is_in_fish(path) ? path + strlen("fish.") : path);
-        return true;
-    }
-
-    return false;
-}
-
 /* Add a suggestion such as "; did you mean 'modulus'?". Arguments as of case_path_unknown. */
 static void suggest_key(struct text *hint, const char *section, const char *word, const char *owner) {
-    if (add_renamed(hint, section, word)) return;
     for (size_t i = 0; i < sizeof missing / sizeof *missing; i++) {
         if (distance_to_any(word, missing[i].words) > 0) continue;
         text_add(hint, "%s", missing[i].instead);

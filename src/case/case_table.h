@@ -60,7 +60,6 @@ struct key {
     const char *published;      /* the default under preset: published; NULL: as without the preset */
     const char *const *words;   /* of a CHOICE, in the order of its enum, NULL at the end */
     const char *synonyms;       /* words that users write instead, separated by blanks */
-    const char *former;         /* the path of the key in former versions; NULL: as now */
 };
 
 extern const struct key case_table[];
