@@ -395,8 +395,8 @@ $(c_tests): %: %.o $(test_helpers) $(objects)
 $(B)/doc/cases.md: $(program) scripts/make-cases-doc.py | $(folders)
 	$(quiet)$(program) keys --json | $(PYTHON) scripts/make-cases-doc.py >$@
 
-$(B)/doc/case.schema.json: $(program) | $(folders)
-	$(quiet)$(program) keys --schema >$@
+$(B)/doc/case.schema.json: $(program) scripts/make-schema.py | $(folders)
+	$(quiet)$(program) keys --json | $(PYTHON) scripts/make-schema.py >$@
 
 $(B)/doc/shoal.1: $(program) scripts/make-man.py | $(folders)
 	$(quiet)$(program) --describe | $(PYTHON) scripts/make-man.py shoal.1 >$@

@@ -77,7 +77,7 @@ static const struct command commands[] = {
     {"keys",
      "[WORD]",
      "list all keys of cases, or all variables of result files, or those with a word in name or meaning",
-     {OPTION_JSON, OPTION_SCHEMA, OPTION_OUTPUT, 'h'},
+     {OPTION_JSON, OPTION_OUTPUT, 'h'},
      NULL,
      main_keys},
     {"field",

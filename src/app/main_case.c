@@ -50,11 +50,6 @@ enum status main_show(const struct request *request) {
 
 enum status main_keys(const struct request *request) {
     const char *const word = request->positional;
-    if (request->schema) {
-        case_schema(stdout);
-        return STATUS_OK;
-    }
-
     const int n = request->of_output ? result_kind_variables(N_LISTS, kinds, request->json, word, stdout)
                                      : case_keys(stdout, request->json, word);
     if (n > 0 || request->json) return STATUS_OK;

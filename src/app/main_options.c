@@ -54,7 +54,6 @@ static const struct option_help all_options[] = {
     {'q', "quiet", NULL, "suppress progress, notes and summary; warnings are still printed"},
     {'v', "verbose", NULL, "print a summary of the result at the end"},
     {OPTION_JSON, "json", NULL, "print JSON"},
-    {OPTION_SCHEMA, "schema", NULL, "print the keys as a JSON schema, with which editors check and complete cases"},
     {OPTION_OUTPUT, "output", NULL, "list the variables of result files instead of the keys of cases"},
     {OPTION_CASE, "case", NULL, "print only the complete case stored in the file"},
     {'h', "help", NULL, "print this help"},
@@ -181,7 +180,6 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_MAX_WALL: request->max_wall = argument; break;
         case OPTION_STRICT: request->strict = 1; break;
         case OPTION_JSON: request->json = 1; break;
-        case OPTION_SCHEMA: request->schema = 1; break;
         case OPTION_OUTPUT: request->of_output = 1; break;
         case OPTION_CASE: request->case_only = 1; break;
         case OPTION_VTK: request->vtk = argument; break;

@@ -14,7 +14,6 @@ enum option_code {
     OPTION_THREADS,
     OPTION_FORCE,
     OPTION_JSON,
-    OPTION_SCHEMA,
     OPTION_OUTPUT,
     OPTION_CASE,
     OPTION_MEMBERS,
@@ -46,7 +45,7 @@ struct request {
     struct arena *arena; /* of the command */
     const char *command_line;
     const char *output;
-    int quiet, verbose, force, json, schema, of_output, case_only;
+    int quiet, verbose, force, json, of_output, case_only;
     int n_assignments;
     const char **assignments; /* of --set, "KEY=VALUE" */
     char threads[64];         /* --threads as an assignment */

@@ -33,12 +33,11 @@ enum status case_member(struct case_values *values, const struct case_values *st
  * The caller frees *text. Fails with STATUS_MEMORY. */
 enum status case_show(const struct case_values *values, char **text);
 
-/* case_keys.c: print path, type, default, range, unit and meaning of every key, as text or as JSON (doc/cases.md); or
- * the table of keys as a JSON schema (draft 7), with which editors check and complete case files. Tested by
- * tests/app/test_command.sh and tests/app/test_manual.sh. With a word, print only the keys with the word in path,
- * synonyms, words or meaning (NULL: all keys). Returns the number of printed keys. */
+/* case_keys.c: print path, type, default, range, unit and meaning of every key, as text or as JSON (the source of
+ * doc/cases.md and doc/case.schema.json). Tested by tests/app/test_command.sh and tests/app/test_manual.sh. With a
+ * word, print only the keys with the word in path, synonyms, words or meaning (NULL: all keys). Returns the number of
+ * printed keys. */
 int case_keys(FILE *stream, int as_json, const char *word);
-void case_schema(FILE *stream);
 
 /* case_show.c: a commented case to start from, complete and valid. */
 extern const char case_template[];

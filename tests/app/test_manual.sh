@@ -71,8 +71,8 @@ check numbers_are_not completes 'shoal study -j ' ''
 
 # ---- the schema
 
-run keys --schema
-cp out schema.json
+run keys --json
+"$root/scripts/make-schema.py" <out >schema.json
 check the_schema_is_that_of_doc diff schema.json "$root/doc/case.schema.json"
 cat >validate.py <<'end'
 """Validate cases by the schema as an editor does; the words of what is wrong with each."""
