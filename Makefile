@@ -109,7 +109,7 @@ test_names   = $(or $(TEST),*)
 c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/*/test_%.c)))
 shell_tests  = $(filter-out tests/slurm/%,$(wildcard $(test_names:%=tests/*/test_%.sh)))
 # C tests of more than three seconds, not in make check
-long_c_tests = contact diagnostics diagnostics_momentum estimate flow_at_markers flow_sources simulate skin steady steady_formation take_up tree warnings
+long_c_tests = contact diagnostics diagnostics_momentum estimate flow_at_markers flow_sources sensor_pressure simulate steady steady_formation take_up tree warnings
 quick_c_tests = $(filter-out $(foreach test,$(long_c_tests),%/test_$(test)),$(c_tests))
 test_helpers = $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/*.c))
 

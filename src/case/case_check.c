@@ -269,7 +269,7 @@ static void check_fluid(const struct check *check) {
 
     double initial;
     bool is_viscous = !text_number(case_table_row("fluid.viscosity")->initial, &initial);
-    for (int f = 0; f < school->n_fish; f++) is_viscous |= school->fish[f].drag.skin != SKIN_QUADRATIC;
+    for (int f = 0; f < school->n_fish; f++) is_viscous |= school->fish[f].drag.friction != FRICTION_QUADRATIC;
     complain_if(!is_viscous && fabs(school->fluid.viscosity - initial) > 0, check, "fluid.viscosity",
                 "has no effect: all fish have 'drag.skin: quadratic' with the coefficient drag.tangential");
 }
@@ -399,13 +399,13 @@ static void check_drag(const struct check *check) {
                 check, "fish.drag.law",
                 "linear_quadratic needs wave.frequency above 0, because linear_speed is in lengths per beat: choose "
                 "quadratic");
-    complain_if(drag->skin != SKIN_QUADRATIC && is_given(check, "fish.drag.tangential"), check, "fish.drag.tangential",
-                "has no effect with 'skin: %s', which uses fluid.viscosity: remove the key",
-                drag->skin == SKIN_LAMINAR ? "laminar" : "boundary_layer");
+    complain_if(drag->friction != FRICTION_QUADRATIC && is_given(check, "fish.drag.tangential"), check,
+                "fish.drag.tangential", "has no effect with 'skin: %s', which uses fluid.viscosity: remove the key",
+                drag->friction == FRICTION_LAMINAR ? "laminar" : "boundary_layer");
 
     static const char *const of_layer[] = {"fish.drag.transition", "fish.drag.waving", "fish.drag.form"};
     for (size_t i = 0; i < sizeof of_layer / sizeof *of_layer; i++) {
-        complain_if(drag->skin != SKIN_BOUNDARY_LAYER && is_given(check, of_layer[i]), check, of_layer[i],
+        complain_if(drag->friction != FRICTION_BOUNDARY_LAYER && is_given(check, of_layer[i]), check, of_layer[i],
                     "has an effect only with 'skin: boundary_layer': remove the key");
     }
 }
@@ -844,7 +844,8 @@ void case_notes(const struct case_values *values, const struct case_values *init
     struct check check = {.values = values, .tree = tree, .errors = notes, .is_of_notes = true};
     static const char interval[] = "time.shedding_interval";
     bool has_layer = false;
-    for (int f = 0; f < values->school.n_fish; f++) has_layer |= values->school.fish[f].drag.skin != SKIN_QUADRATIC;
+    for (int f = 0; f < values->school.n_fish; f++)
+        has_layer |= values->school.fish[f].drag.friction != FRICTION_QUADRATIC;
     complain_if(has_layer && values->school.fluid.density > 0 && values->school.fluid.viscosity == 0, &check,
                 "fluid.viscosity", "0 removes the friction of the skin");
     note_rounded(&check, "time.end", values->time.end, interval);

@@ -204,9 +204,10 @@ static enum status derive_span(const struct key_place *at) {
     return STATUS_OK;
 }
 
-static enum status derive_skin(const struct key_place *at) {
+static enum status derive_friction(const struct key_place *at) {
     const bool has_pressure = at->fish->force == FORCE_PRESSURE;
-    if ((int)at->fish->drag.skin < 0) at->fish->drag.skin = has_pressure ? SKIN_BOUNDARY_LAYER : SKIN_QUADRATIC;
+    if ((int)at->fish->drag.friction < 0)
+        at->fish->drag.friction = has_pressure ? FRICTION_BOUNDARY_LAYER : FRICTION_QUADRATIC;
     return STATUS_OK;
 }
 
@@ -539,11 +540,11 @@ const struct key case_table[] = {
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},
-    {"fish.drag.skin", CHOICE, IN_FISH(drag.skin), NULL, ANY, "",
+    {"fish.drag.skin", CHOICE, IN_FISH(drag.friction), NULL, ANY, "",
      .meaning = "law of the tangential drag; quadratic: drag.law with drag.tangential; laminar: laminar boundary layer "
                 "of a plate; boundary_layer: the same with transition, and factors for waving and thickness",
      .words = WORDS("quadratic", "laminar", "boundary_layer"),
-     .derived = "boundary_layer with force pressure, else quadratic", .derive = derive_skin,
+     .derived = "boundary_layer with force pressure, else quadratic", .derive = derive_friction,
      .follows = WORDS("fish.force")},
     {"fish.drag.transition", REAL, IN_FISH(drag.transition), "2e5", FROM(0), "",
      .meaning = "skin boundary_layer: transition Reynolds number, based on the distance from the nose; 0: turbulent "

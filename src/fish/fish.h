@@ -96,15 +96,15 @@ struct fish {
     double ramp;            /* s */
 
     enum force force;
-    double
-        *drag_tangential;   /* c_t, kg m-1; Blasius' factor with other skins than quadratic, kg m-0.5 s-0.5 (n_edges) */
-    double *drag_normal;    /* c_n, kg m-1                                       (n_edges) */
-    double *added_mass;     /* mu, kg                                            (n_edges) */
+    double *
+        drag_tangential; /* c_t, kg m-1; Blasius' factor with other friction than quadratic, kg m-0.5 s-0.5 (n_edges) */
+    double *drag_normal; /* c_n, kg m-1                                       (n_edges) */
+    double *added_mass;  /* mu, kg                                            (n_edges) */
     double *displaced_mass; /* rho_f A lbar, kg                                  (n_edges) */
     double tail_added_mass; /* m_L, kg m-1; 0: no momentum shed at the tail */
     int has_cusp;           /* whether the outline ends in a cusp: joukowski with tail thickness 0 */
     double linear_speed;    /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
-    enum skin skin;
+    enum friction friction;
     double friction_speed;   /* u0 of laminar friction and of a boundary layer, m s-1 */
     double *drag_turbulent;  /* c_T of a boundary layer, kg m-0.8 s-0.2           (n_edges) */
     double *past_transition; /* (x_k/(nu Re_t))^2: 1/(transition speed)^2, s2 m-2                         (n_edges) */

@@ -143,7 +143,7 @@ static void fluid_forces_set(struct fish *fish, const struct fish_parameters *fr
     for (int k = 0; k < fish->n_edges; k++) {
         const double h = fish->thickness[k], w = fish->depth[k], l = fish->edge_length;
         const double across = wide ? w : h, square = wide ? 1 : fish->square[k];
-        fish->drag_tangential[k] = drag->skin == SKIN_QUADRATIC
+        fish->drag_tangential[k] = drag->friction == FRICTION_QUADRATIC
                                        ? density * M_PI * drag->tangential * l * (h + w) / (published ? 8 : 4)
                                        : laminar_friction(fish, k, fluid);
 
@@ -155,7 +155,7 @@ static void fluid_forces_set(struct fish *fish, const struct fish_parameters *fr
 
     fish->force = from->force;
     fish->has_cusp = from->body.profile == PROFILE_JOUKOWSKI && from->body.tail_thickness <= 0;
-    fish->skin = drag->skin;
+    fish->friction = drag->friction;
     boundary_layer_set(fish, drag, fluid);
     // added mass shed at the tail
     const double at_tail = wide ? fish->depth[fish->n_edges - 1] : profile_tail_thickness(from);

@@ -18,7 +18,7 @@ enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
 enum span { SPAN_FINITE, SPAN_INFINITE };
 enum force { FORCE_REACTIVE, FORCE_PUBLISHED, FORCE_PRESSURE };
 enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
-enum skin { SKIN_QUADRATIC, SKIN_LAMINAR, SKIN_BOUNDARY_LAYER };
+enum friction { FRICTION_QUADRATIC, FRICTION_LAMINAR, FRICTION_BOUNDARY_LAYER };
 enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
 enum contact_action { CONTACT_REPEL, CONTACT_WARN, CONTACT_STOP };
@@ -107,10 +107,10 @@ struct wave_parameters {
 
 struct drag_parameters {
     double tangential, normal;
-    enum skin skin;    /* law of the tangential drag */
-    double transition; /* Reynolds number of the distance from the nose; 0: turbulent from the nose on */
-    double waving;     /* factor of laminar friction; NaN: 1.5 with a wave, else 1 */
-    double form;       /* factor of all friction; NaN: by the largest thickness */
+    enum friction friction; /* law of the tangential drag */
+    double transition;      /* Reynolds number of the distance from the nose; 0: turbulent from the nose on */
+    double waving;          /* factor of laminar friction; NaN: 1.5 with a wave, else 1 */
+    double form;            /* factor of all friction; NaN: by the largest thickness */
     enum drag_law law;
     double linear_speed; /* lengths per beat: force reactive, law linear_quadratic */
 };

@@ -6,116 +6,88 @@
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
 
-static double drag_speed_law(const struct fish *fish, double speed) {
-    return speed * (fabs(speed) + fish->linear_speed);
-}
-
-static double drag_speed_law_slope(const struct fish *fish, double speed) {
-    return 2 * fabs(speed) + fish->linear_speed;
-}
-
-/* Friction of a boundary layer on an edge over tangential velocity, kg s-1, and the derivative of this ratio by s2, the
- * sum of the squares of velocity and u0. */
-struct boundary_layer {
-    double resistance, by_square;
+/* Drag at a speed, N, and the derivative by the speed, N s m-1. */
+struct drag_at {
+    double force, slope;
 };
 
-static struct boundary_layer boundary_layer(const struct fish *fish, int k, double square) {
+// factor v (V1 + |v|)
+static struct drag_at drag_speed_law(const struct fish *fish, double factor, double speed) {
+    return (struct drag_at){factor * (speed * (fabs(speed) + fish->linear_speed)),
+                            factor * (2 * fabs(speed) + fish->linear_speed)};
+}
+
+// tangential drag on edge k
+static struct drag_at drag_tangential(const struct fish *fish, int k, double speed) {
+    if (fish->friction == FRICTION_QUADRATIC) return drag_speed_law(fish, fish->drag_tangential[k], speed);
+
+    // c_t (u^2 + u0^2)^(1/4) u
+    if (fish->friction == FRICTION_LAMINAR) {
+        const double size = hypot(speed, fish->friction_speed);
+        const double by_speed = sqrt(size) * (1 + speed / size * (speed / size) / 2);
+        return (struct drag_at){fish->drag_tangential[k] * (sqrt(size) * speed), fish->drag_tangential[k] * by_speed};
+    }
+
     // B: turbulent fraction, 1 - B: laminar fraction; dB/ds2 = 2 B (1 - B)/s2
+    const double square = speed * speed + fish->friction_speed * fish->friction_speed;
     const double ratio = square * fish->past_transition[k], laminar = 1 / (1 + ratio * ratio), turbulent = 1 - laminar;
     const double by_square = 2 * turbulent * laminar / square;
     const double factor = fish->form * (1 + (fish->waving - 1) * laminar);
     const double factor_slope = -fish->form * (fish->waving - 1) * by_square;
 
-    // laminar and turbulent friction, blended
+    // laminar and turbulent friction over the speed, blended, with the derivative by s2
     const double blasius = fish->drag_tangential[k] * sqrt(sqrt(square));
     const double power_law = fish->drag_turbulent[k] * pow(square, 0.4);
     const double sum = laminar * blasius + turbulent * power_law;
     const double slope =
         by_square * (power_law - blasius) + (laminar * blasius / 4 + turbulent * power_law * 2 / 5) / square;
-    return (struct boundary_layer){factor * sum, factor * slope + factor_slope * sum};
+    const double resistance = factor * sum, resistance_slope = factor * slope + factor_slope * sum;
+    return (struct drag_at){resistance * speed, resistance + 2 * resistance_slope * speed * speed};
 }
 
-static double friction_speed_square(const struct fish *fish, double speed) {
-    return speed * speed + fish->friction_speed * fish->friction_speed;
+static struct drag_at drag_normal(const struct fish *fish, int k, double speed) {
+    return drag_speed_law(fish, fish->drag_normal[k], speed);
 }
 
-// tangential drag on edge k; laminar: c_t (u^2 + u0^2)^(1/4) u
-static double skin_drag(const struct fish *fish, int k, double speed) {
-    switch (fish->skin) {
-        case SKIN_LAMINAR: return fish->drag_tangential[k] * (sqrt(hypot(speed, fish->friction_speed)) * speed);
-        case SKIN_BOUNDARY_LAYER: return boundary_layer(fish, k, friction_speed_square(fish, speed)).resistance * speed;
-        case SKIN_QUADRATIC: break;
+void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2],
+                double friction[2]) {
+    const double along = drag_tangential(fish, k, edge_dot(w, s->t)).force;
+    const double across = drag_normal(fish, k, edge_dot(w, s->n)).force;
+    for (int i = 0; i < 2; i++) {
+        force[i] = -along * s->t[i] - across * s->n[i];
+        friction[i] = -along * s->t[i];
     }
-    return fish->drag_tangential[k] * drag_speed_law(fish, speed);
-}
-
-static double skin_drag_slope(const struct fish *fish, int k, double speed) {
-    if (fish->skin == SKIN_BOUNDARY_LAYER) {
-        const struct boundary_layer layer = boundary_layer(fish, k, friction_speed_square(fish, speed));
-        return layer.resistance + 2 * layer.by_square * speed * speed;
-    }
-
-    if (fish->skin == SKIN_QUADRATIC) return fish->drag_tangential[k] * drag_speed_law_slope(fish, speed);
-    const double size = hypot(speed, fish->friction_speed);
-    return fish->drag_tangential[k] * (sqrt(size) * (1 + speed / size * (speed / size) / 2));
-}
-
-void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]) {
-    const double along = skin_drag(fish, k, edge_dot(w, s->t));
-    const double across = fish->drag_normal[k] * drag_speed_law(fish, edge_dot(w, s->n));
-    for (int i = 0; i < 2; i++) force[i] = -along * s->t[i] - across * s->n[i];
-}
-
-void drag_friction(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]) {
-    const double along = skin_drag(fish, k, edge_dot(w, s->t));
-    for (int i = 0; i < 2; i++) force[i] = -along * s->t[i];
 }
 
 void drag_slope(const struct fish *fish, int k, const struct edge *s, const double w[2], double by_velocity[2][2],
                 double by_turn[2]) {
     const double wt = edge_dot(w, s->t), wn = edge_dot(w, s->n);
-    const double along = skin_drag(fish, k, wt);
-    const double across = fish->drag_normal[k] * drag_speed_law(fish, wn);
-    const double along_slope = skin_drag_slope(fish, k, wt);
-    const double across_slope = fish->drag_normal[k] * drag_speed_law_slope(fish, wn);
+    const struct drag_at along = drag_tangential(fish, k, wt), across = drag_normal(fish, k, wn);
 
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) {
-            by_velocity[i][j] = -along_slope * s->t[i] * s->t[j] - across_slope * s->n[i] * s->n[j];
+            by_velocity[i][j] = -along.slope * s->t[i] * s->t[j] - across.slope * s->n[i] * s->n[j];
         }
-        by_turn[i] = -along_slope * wn * s->t[i] - along * s->n[i] + across_slope * wt * s->n[i] + across * s->t[i];
-    }
-}
-
-// the drag that the flow causes on edge k: F(v - u) - F(v)
-static void drag_of_flow(const struct fish *fish, int k, const struct edge *s, const double *u, const double *v,
-                         double force[2]) {
-    double w[2], still[2];
-    flow_relative_velocity(fish, k, s->velocity, u, v, w);
-    drag_force(fish, k, s, w, force);
-    drag_force(fish, k, s, s->velocity, still);
-    force[0] -= still[0];
-    force[1] -= still[1];
-}
-
-static void drag_centre_of_mass(const struct fish *fish, const double *y, double com[2]) {
-    com[0] = com[1] = 0;
-    for (int k = 0; k < fish->n_nodes; k++) {
-        com[0] += fish->mass[k] / fish->total_mass * y[fish->at.x + k];
-        com[1] += fish->mass[k] / fish->total_mass * y[fish->at.y + k];
+        by_turn[i] =
+            -along.slope * wn * s->t[i] - along.force * s->n[i] + across.slope * wt * s->n[i] + across.force * s->t[i];
     }
 }
 
 double drag_moment(const struct fish *fish, const double *u, const double *v, const double *y) {
-    double com[2], moment = 0;
-    drag_centre_of_mass(fish, y, com);
+    double com[2] = {0, 0}, moment = 0;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        com[0] += fish->mass[k] / fish->total_mass * y[fish->at.x + k];
+        com[1] += fish->mass[k] / fish->total_mass * y[fish->at.y + k];
+    }
 
     for (int k = 0; k < fish->n_edges; k++) {
+        // the drag that the flow causes: F(v - u) - F(v)
         const struct edge s = edge_at(fish, k, y);
-        double force[2];
-        drag_of_flow(fish, k, &s, u, v, force);
-        moment += (s.middle[0] - com[0]) * force[1] - (s.middle[1] - com[1]) * force[0];
+        double w[2], force[2], still[2], friction[2];
+        flow_relative_velocity(fish, k, s.velocity, u, v, w);
+        drag_force(fish, k, &s, w, force, friction);
+        drag_force(fish, k, &s, s.velocity, still, friction);
+        moment += (s.middle[0] - com[0]) * (force[1] - still[1]) - (s.middle[1] - com[1]) * (force[0] - still[0]);
     }
 
     return moment / fish->control.torque_scale;

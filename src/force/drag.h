@@ -7,11 +7,10 @@
 #include "fish/fish.h"
 #include "flow/flow.h"
 
-/* Drag on edge k, N; w: velocity of the midpoint relative to the fluid, m s-1. Half of the drag acts on each node. */
-void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]);
-
-/* Friction: the component of the drag along the edge, N. */
-void drag_friction(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]);
+/* Drag on edge k, and friction, the component of the drag along the edge, N; w: velocity of the midpoint relative to
+ * the fluid, m s-1. Half of the drag acts on each node. */
+void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2],
+                double friction[2]);
 
 /* Derivatives of the drag by w, [component][component of w], and by a rotation of the edge (dt = n, dn = -t). */
 void drag_slope(const struct fish *fish, int k, const struct edge *s, const double w[2], double by_velocity[2][2],

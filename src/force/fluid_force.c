@@ -18,8 +18,7 @@ static struct edge_forces forces_of_edge(const struct fish *fish, const struct f
     struct edge_forces on = {.edge = edge_at(fish, k, y)};
     double w[2];
     flow_relative_velocity(fish, k, on.edge.velocity, flow->u, flow->v, w);
-    drag_force(fish, k, &on.edge, w, on.drag);
-    drag_friction(fish, k, &on.edge, w, on.friction);
+    drag_force(fish, k, &on.edge, w, on.drag, on.friction);
     reactive_force(fish, k, &on.edge, w, flow->acceleration, on.reactive);
     if (k == fish->n_edges - 1) tail_flux_force(fish, flow, y, on.tail);
     return on;
@@ -158,8 +157,7 @@ struct fluid_power fluid_force_power(const struct fish *fish, const struct flow_
         const struct edge edge = edge_at(fish, k, y);
         double w[2], drag[2], friction[2];
         flow_relative_velocity(fish, k, edge.velocity, flow->u, flow->v, w);
-        drag_force(fish, k, &edge, w, drag);
-        drag_friction(fish, k, &edge, w, friction);
+        drag_force(fish, k, &edge, w, drag, friction);
         power.drag += edge_dot(drag, edge.velocity);
         power.friction += edge_dot(friction, edge.velocity);
         power.added_mass += reactive_power(fish, k, &edge, w, flow->acceleration);

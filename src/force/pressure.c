@@ -2,10 +2,8 @@
 #include "force/pressure.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/wide.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
@@ -14,67 +12,32 @@
  * circulation between nose and point. */
 enum { LINE, VELOCITY = 2, AROUND = 4, BEFORE, N_AT_POINTS };
 
-static const double pi = 3.14159265358979323846;
-
-enum status pressure_create(struct pressure **pressure, const struct fish *fish) {
-    *pressure = NULL;
+struct pressure *pressure_create(struct arena *arena, const struct fish *fish) {
+    const int n = fish->n_nodes, n_control = fish->n_control;
     struct pressure *new;
-    TRY(MEMORY_NEW(new, 1, "the pressure on a fish"));
-
-    const int n = fish->n_nodes;
-    double **const per_node[] = {&new->momentum, &new->momentum_rate, &new->force};
+    NEW(arena, new, 1);
+    new->arena = arena;
     new->fish = fish;
-    enum status status = MEMORY_ARRAYS(per_node, 2 * n, "the pressure on a fish");
+    NEW(arena, new->momentum, 2 * n);
+    NEW(arena, new->momentum_rate, 2 * n);
+    NEW(arena, new->force, 2 * n);
     struct pressure_matrix *const matrices[] = {&new->matrix, &new->rate};
-    for (int i = 0; i < 2 && status == STATUS_OK; i++) {
-        status = MEMORY_NEW(matrices[i]->circulation, fish->n_sheet, "the pressure on a fish");
-        if (status == STATUS_OK) status = MEMORY_NEW(matrices[i]->value, n * n, "the pressure on a fish");
-    }
-    if (status == STATUS_OK) status = MEMORY_NEW(new->product, n, "the pressure on a fish");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->parts, 4 * n, "the pressure on a fish");
-    if (status == STATUS_OK)
-        status = MEMORY_NEW(new->at_points, N_AT_POINTS * fish->n_control, "the pressure on a fish");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->share, fish->n_control * n, "the pressure on a fish");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->spread, 2 * fish->n_control, "the pressure on a fish");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->point, fish->n_control, "the pressure on a fish");
-    for (int i = 0; i < 2 && status == STATUS_OK && fish->n_sensors > 0; i++) {
-        status = MEMORY_NEW(new->sensor[i], fish->n_sensors, "the sensors of a fish");
-    }
-
-    if (status != STATUS_OK) {
-        pressure_free(new);
-        return status;
-    }
-
-    for (int c = 0; c < fish->n_control; c++) {
-        for (int k = 0; k < fish->n_nodes; k++) {
-            new->share[c * fish->n_nodes + k] = fish->control_point[c].weight[k] / fish->mass[k];
-        }
-    }
-
-    *pressure = new;
-    return STATUS_OK;
-}
-
-void pressure_free(struct pressure *pressure) {
-    if (!pressure) return;
-    const struct pressure_matrix *const matrices[] = {&pressure->matrix, &pressure->rate};
     for (int i = 0; i < 2; i++) {
-        free(matrices[i]->circulation);
-        free(matrices[i]->value);
+        NEW(arena, matrices[i]->circulation, fish->n_sheet);
+        NEW(arena, matrices[i]->value, n * n);
+        if (fish->n_sensors > 0) NEW(arena, new->sensor[i], fish->n_sensors);
     }
+    NEW(arena, new->point, n_control);
+    NEW(arena, new->product, n);
+    NEW(arena, new->parts, 4 * n);
+    NEW(arena, new->at_points, N_AT_POINTS * n_control);
+    NEW(arena, new->spread, 2 * n_control);
 
-    free(pressure->momentum);
-    free(pressure->momentum_rate);
-    free(pressure->force);
-    free(pressure->product);
-    free(pressure->parts);
-    free(pressure->spread);
-    free(pressure->at_points);
-    free(pressure->share);
-    free(pressure->point);
-    for (int i = 0; i < 2; i++) free(pressure->sensor[i]);
-    free(pressure);
+    NEW(arena, new->share, n_control * n);
+    for (int c = 0; c < n_control; c++) {
+        for (int k = 0; k < n; k++) new->share[c * n + k] = fish->control_point[c].weight[k] / fish->mass[k];
+    }
+    return new;
 }
 
 // R = sum over j: P_j times the circulation of vortex j; strength: the unknowns or the rates of the unknowns. R of the
@@ -106,57 +69,50 @@ static double slip_along(const struct pressure_point *point) {
     return edge_dot(point->slip, point->body.t);
 }
 
-// values at all control points; with rings also the circulation before each point
-static void pressure_find_points(struct pressure *p, const double *y) {
-    const struct fish *fish = p->fish;
-    const int n = fish->n_control, n_nodes = fish->n_nodes;
-    const double *const place = fish->control_by_node[0], *const slope = fish->control_by_node[1];
-    double *const at = p->at_points;
-    for (int i = 0; i < 2; i++) {
-        fish_of_nodes(n, n_nodes, slope, y + fish->at.x + i * n_nodes, at + (LINE + i) * n);
-        fish_of_nodes(n, n_nodes, place, y + fish->at.vx + i * n_nodes, at + (VELOCITY + i) * n);
-    }
-    sheet_integrals_around(fish->integrals, p->matrix.circulation, at + AROUND * n);
-    if (fish->strip_depth > 0) sheet_integrals_before(fish->integrals, p->matrix.circulation, at + BEFORE * n);
-}
-
-static void pressure_convect(struct pressure *p, const struct flow_at_body *flow) {
+// forces at the control points, interpolated to the nodes: convection, and with rings of the spanwise flow and along the
+// side edges (doc/model.md, sections 15 and 18)
+static void pressure_convect(struct pressure *p, const struct flow_at_body *flow, const double *y) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes, n_control = fish->n_control;
-    for (int c = 0; c < n_control; c++) {
-        struct pressure_point *const point = &p->point[c];
-        const struct stencil *const at = &fish->control_point[c];
 
+    // values at all control points; with rings also the circulation before each point
+    double *const at = p->at_points;
+    for (int i = 0; i < 2; i++) {
+        fish_of_nodes(n_control, n, fish->control_by_node[1], y + fish->at.x + i * n, at + (LINE + i) * n_control);
+        fish_of_nodes(n_control, n, fish->control_by_node[0], y + fish->at.vx + i * n, at + (VELOCITY + i) * n_control);
+    }
+    sheet_integrals_around(fish->integrals, p->matrix.circulation, at + AROUND * n_control);
+    if (fish->strip_depth > 0) {
+        sheet_integrals_before(fish->integrals, p->matrix.circulation, at + BEFORE * n_control);
+    }
+
+    for (int c = 0; c < n_control; c++) {
         // slip, and circulation of the interval
-        const double *const value = p->at_points + c;
+        struct pressure_point *const point = &p->point[c];
+        const double *const weight = fish->control_point[c].weight, *const value = at + c;
         point->body = fish_direction_of((const double[2]){value[LINE * n_control], value[(LINE + 1) * n_control]});
         point->slip[0] = flow->u[c] - value[VELOCITY * n_control];
         point->slip[1] = flow->v[c] - value[(VELOCITY + 1) * n_control];
         point->circulation = value[AROUND * n_control];
         point->strength = fish->control_density[c] * point->circulation;
 
-        // force -rho w gamma tau n, interpolated to the nodes
+        // convection: -rho w gamma tau n
         const double size = -point->strength * slip_along(point);
         for (int k = 0; k < n; k++) {
-            p->force[k] += at->weight[k] * size * point->body.n[0];
-            p->force[n + k] += at->weight[k] * size * point->body.n[1];
+            p->force[k] += weight[k] * size * point->body.n[0];
+            p->force[n + k] += weight[k] * size * point->body.n[1];
         }
     }
-}
 
-// rings: force of the spanwise flow, and force along the side edges (doc/model.md, section 18)
-static void pressure_span(struct pressure *p, const struct flow_at_body *flow) {
-    const struct fish *fish = p->fish;
-    const int n = fish->n_nodes;
-    for (int c = 0; flow->div && c < fish->n_control; c++) {
+    for (int c = 0; flow->div && c < n_control; c++) {
         struct pressure_point *const point = &p->point[c];
         const double *const weight = fish->control_point[c].weight;
         const double length = point->body.length * fish->control_interval[c];
         const double widening = fish->control_widening[c] * fish->control_interval[c];
-
-        point->before = fish->control_density[c] * p->at_points[BEFORE * fish->n_control + c];
+        point->before = fish->control_density[c] * at[BEFORE * n_control + c];
         point->divergence = flow->div[c];
 
+        // force of the spanwise flow, and force along the side edges
         for (int i = 0; i < 2; i++) {
             point->edge[i] = widening * flow->edge[i * flow->edge_stride + c];
             const double force = point->before * (point->edge[i] - point->divergence * length * point->body.n[i]);
@@ -178,24 +134,6 @@ struct suction_law pressure_suction_law(double full, double bound) {
                                 .by_bound = is_attached ? by_most : by_least};
 }
 
-// suction on the nose, and the part of the attached suction lost to separation
-static void pressure_suck(struct pressure *p, const double *y) {
-    const struct fish *fish = p->fish;
-    const double strength = fish->nose_factor * y[fish->at.gamma], full = strength * strength;
-    const double square = fish->suction_limit * fish->suction_limit, tau = slip_along(&p->point[0]);
-    const struct suction_law law =
-        square > 0 ? pressure_suction_law(full, square * tau * tau) : (struct suction_law){full, 1, 0};
-
-    p->nose = fish_direction(fish, &fish->nose_tangent, y);
-    p->by_strength = fish->suction * law.by_full * 2 * strength * fish->nose_factor;
-    p->by_slip = fish->suction * law.by_bound * 2 * square * tau;
-
-    for (int i = 0; i < 2; i++) {
-        p->suction[i] = -fish->suction * law.value * p->nose.t[i];
-        p->separation[i] = -fish->full_suction * full * p->nose.t[i] - p->suction[i];
-    }
-}
-
 void pressure_update(struct pressure *p, const struct flow_at_body *flow, const double *y) {
     const struct fish *fish = p->fish;
     const size_t size = 2 * (size_t)fish->n_nodes * sizeof *p->momentum;
@@ -204,15 +142,25 @@ void pressure_update(struct pressure *p, const struct flow_at_body *flow, const 
     memset(p->force, 0, size);
     pressure_add_product(p, &p->matrix, y + fish->at.x, p->momentum);
     pressure_add_product(p, &p->matrix, y + fish->at.vx, p->force);
-    pressure_find_points(p, y);
-    pressure_convect(p, flow);
-    pressure_span(p, flow);
-    pressure_suck(p, y);
+    pressure_convect(p, flow, y);
+
+    // suction on the nose, and the part of the attached suction lost to separation
+    const double strength = fish->nose_factor * y[fish->at.gamma], full = strength * strength;
+    const double square = fish->suction_limit * fish->suction_limit, tau = slip_along(&p->point[0]);
+    const struct suction_law law =
+        square > 0 ? pressure_suction_law(full, square * tau * tau) : (struct suction_law){full, 1, 0};
+    p->nose = fish_direction(fish, &fish->nose_tangent, y);
+    p->by_strength = fish->suction * law.by_full * 2 * strength * fish->nose_factor;
+    p->by_slip = fish->suction * law.by_bound * 2 * square * tau;
+    for (int i = 0; i < 2; i++) {
+        p->suction[i] = -fish->suction * law.value * p->nose.t[i];
+        p->separation[i] = -fish->full_suction * full * p->nose.t[i] - p->suction[i];
+    }
 }
 
 double pressure_momentum_ratio(const struct fish *fish, int k) {
     const double at_nose = fish->control_density[0], at_tail = fish->control_density[fish->n_control - 1];
-    const double per_area = pi / 4 * fmax(at_nose, at_tail);
+    const double per_area = M_PI / 4 * fmax(at_nose, at_tail);
     return 1 + per_area * fish->length * fish->edge_length / fish->mass[k];
 }
 
@@ -346,30 +294,24 @@ static void forces_by_places(const struct pressure *p, struct coupling_block *ro
     }
 }
 
-// suction by the strength at the nose, by the tangent at the nose, and through tau by the tangent at control point 0
-static void suction_jacobian(const struct pressure *p, struct coupling_block *rows) {
+void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_block *rows) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
+    forces_by_places(p, rows);
+
+    // suction by the strength at the nose, by the tangent at the nose, and through tau by the tangent at control point 0
     const struct direction *const nose = &p->nose, *const first = &p->point[0].body;
     const double *const turn = fish->nose_tangent.to.weight, *const turn_first = fish->control_tangent[0].to.weight;
-    const double size = -edge_dot(p->suction, nose->t), across = edge_dot(p->point[0].slip, first->n);
-
+    const double suction = -edge_dot(p->suction, nose->t), slip_across = edge_dot(p->point[0].slip, first->n);
     for (int i = 0; i < 2; i++) {
         rows->value[2L * n * rows->n_rows + i * n] += p->by_strength * nose->t[i] / fish->mass[0];
-        const double by_turn = size * nose->n[i] / nose->length / fish->mass[0];
-        const double by_slip = p->by_slip * nose->t[i] / fish->mass[0] * across / first->length;
+        const double by_turn = suction * nose->n[i] / nose->length / fish->mass[0];
+        const double by_slip = p->by_slip * nose->t[i] / fish->mass[0] * slip_across / first->length;
         for (long m = 0; m < 2 * n; m++) {
             rows->value[m * rows->n_rows + i * n] +=
                 by_turn * nose->n[m / n] * turn[m % n] + by_slip * first->n[m / n] * turn_first[m % n];
         }
     }
-}
-
-void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_block *rows) {
-    const struct fish *fish = p->fish;
-    const int n = fish->n_nodes;
-    forces_by_places(p, rows);
-    suction_jacobian(p, rows);
 
     // by the strengths: convection and spanwise flow, then rotation of the momentum
     double *const force[2] = {p->spread, p->spread + fish->n_control};
@@ -397,26 +339,6 @@ void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_
     }
 }
 
-// add the spanwise flow and the force along the side edges, by the velocity in column m
-static void span_by_flow(const struct pressure *p, const struct influence_block *block, long m) {
-    const struct fish *fish = p->fish;
-    const double *const div = block->div + m * block->n_points;
-    const double *const edge = block->edge ? block->edge + m * block->n_points : NULL;
-    const long other = (long)block->n_columns * block->n_points;
-
-    for (int c = 0; c < fish->n_control; c++) {
-        const struct pressure_point *const point = &p->point[c];
-        const double across = point->before * div[c] * point->body.length * fish->control_interval[c];
-        double *const x = p->spread + c, *const y = x + fish->n_control;
-        *x += across * point->body.n[0];
-        *y += across * point->body.n[1];
-        if (!fish->depth_varies || !edge) continue;
-        const double widening = point->before * fish->control_widening[c] * fish->control_interval[c];
-        *x -= widening * edge[c];
-        *y -= widening * edge[other + c];
-    }
-}
-
 void pressure_flow_jacobian(const struct pressure *p, const struct influence_block *block,
                             struct coupling_block *rows) {
     const struct fish *fish = p->fish;
@@ -430,7 +352,20 @@ void pressure_flow_jacobian(const struct pressure *p, const struct influence_blo
             p->spread[fish->n_control + c] = size * body->n[1];
         }
 
-        if (block->div) span_by_flow(p, block, m);
+        // spanwise flow and force along the side edges
+        const double *const div = block->div ? block->div + m * block->n_points : NULL;
+        const double *const edge = fish->depth_varies && block->edge ? block->edge + m * block->n_points : NULL;
+        for (int c = 0; div && c < fish->n_control; c++) {
+            const struct pressure_point *const point = &p->point[c];
+            const double across = point->before * div[c] * point->body.length * fish->control_interval[c];
+            double *const x = p->spread + c, *const y = x + fish->n_control;
+            *x += across * point->body.n[0];
+            *y += across * point->body.n[1];
+            if (!edge) continue;
+            const double widening = point->before * fish->control_widening[c] * fish->control_interval[c];
+            *x -= widening * edge[c];
+            *y -= widening * edge[(long)block->n_columns * block->n_points + c];
+        }
         spread_forces(p, rows->value + m * rows->n_rows);
 
         // suction: tau
@@ -492,7 +427,7 @@ void pressure_of_edge(const struct pressure *p, int k, const double *y, const do
     const struct fish *fish = p->fish;
     force[0] = force[1] = 0;
     for (int c = 0; c < fish->n_control; c++) {
-        const double u = fish->n_edges * (1 - cos(pi * (c + 0.5) / fish->n_control)) / 2;
+        const double u = fish->n_edges * (1 - cos(M_PI * (c + 0.5) / fish->n_control)) / 2;
         if ((int)u != k) continue;
 
         const struct direction *const body = &p->point[c].body;

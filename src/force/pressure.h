@@ -10,6 +10,7 @@
 #ifndef PRESSURE_H
 #define PRESSURE_H
 
+#include "base/arena.h"
 #include "base/sparse.h"
 #include "fish/fish.h"
 #include "flow/flow_at_bodies.h"
@@ -18,7 +19,7 @@
 /* A control point. circulation: of the interval around the point, m2 s-1; strength: circulation times density and
  * depth, kg s-1; slip: velocity of the fluid relative to the body, m s-1; body: tangent and normal. With rings: before:
  * density times depth times the circulation between nose and point, kg s-1; divergence: div u, s-1; edge: a of the edge
- * force times b db/du du, m2 s-1. potential_rate: Phi of the sensors, m2 s-2, set by skin_update. */
+ * force times b db/du du, m2 s-1. potential_rate: Phi of the sensors, m2 s-2, set by sensor_pressure.h. */
 struct pressure_point {
     double circulation, strength, slip[2];
     struct direction body;
@@ -34,6 +35,7 @@ struct pressure_matrix {
 
 /* Pressure force on one fish at the last pressure_update. Order of pairs: x of all nodes, then y. */
 struct pressure {
+    struct arena *arena;
     const struct fish *fish;
     struct pressure_matrix matrix, rate; /* R and dR/dt; the latter set by pressure_update_rate */
     double *momentum;      /* I, the added momentum of the nodes, N s                         (2 n_nodes) */
@@ -48,7 +50,8 @@ struct pressure {
     struct pressure_point *point; /* (n_control) */
     /* workspace: a product with R; of sheet_integrals_matrix; values and forces at the control points */
     double *product, *parts, *at_points, *spread;
-    double *sensor[2]; /* pressure on the left and right side of the fish, Pa: set by skin_update   (n_sensors) */
+    double *wall;      /* workspace of thwaites.h; NULL before the first use */
+    double *sensor[2]; /* pressure on the left and right side of the fish, Pa: set by sensor_pressure.h (n_sensors) */
 };
 
 /* Suction at the nose over S pi rho_f w L, with its derivatives. full: attached flow, qhat^2; bound: the maximum for
@@ -59,9 +62,8 @@ struct suction_law {
 };
 struct suction_law pressure_suction_law(double full, double bound);
 
-/* Create the pressure of a fish with force: pressure. Fails with STATUS_MEMORY; pressure_free accepts NULL. */
-enum status pressure_create(struct pressure **pressure, const struct fish *fish);
-void pressure_free(struct pressure *pressure);
+/* Create the pressure of a fish with force: pressure. */
+struct pressure *pressure_create(struct arena *arena, const struct fish *fish);
 
 /* Update matrix, momentum, force, suction and points from the unknowns y and the velocity of the fluid. All functions
  * below require this update with the same y. */

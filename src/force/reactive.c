@@ -21,18 +21,18 @@ struct tail {
     double w[2], wt, wn;
 };
 
-static double angle_between(const struct edge *before, const struct edge *after) {
-    return atan2(edge_dot(before->n, after->t), edge_dot(before->t, after->t));
-}
-
 static struct tail tail_at(const struct fish *fish, const struct flow_at_body *flow, const double *y) {
     struct tail tail;
     const int last = fish->n_edges - 1;
     for (int i = 0; i < N_ANGLES; i++) tail.edge[i] = edge_at(fish, last - i, y);
 
     // extrapolate the direction: the weights sum to 1, so the turn depends only on the angles of the last two joints
-    const double turn = (angle_weight[0] - 1) * angle_between(&tail.edge[1], &tail.edge[0]) -
-                        angle_weight[2] * angle_between(&tail.edge[2], &tail.edge[1]);
+    double angle[2];
+    for (int i = 0; i < 2; i++) {
+        const struct edge *const after = &tail.edge[i], *const before = after + 1;
+        angle[i] = atan2(edge_dot(before->n, after->t), edge_dot(before->t, after->t));
+    }
+    const double turn = (angle_weight[0] - 1) * angle[0] - angle_weight[2] * angle[1];
 
     const double c = cos(turn), s = sin(turn);
     for (int i = 0; i < 2; i++) {
@@ -50,10 +50,6 @@ static struct tail tail_at(const struct fish *fish, const struct flow_at_body *f
     tail.wt = edge_dot(tail.w, tail.t);
     tail.wn = edge_dot(tail.w, tail.n);
     return tail;
-}
-
-int tail_flux_exists(const struct fish *fish) {
-    return fish->tail_added_mass > 0;
 }
 
 static void tail_force(const struct fish *fish, const struct tail *tail, double force[2]) {
@@ -78,14 +74,14 @@ static void tail_slope(const struct fish *fish, const struct tail *tail, double 
 
 void tail_flux_force(const struct fish *fish, const struct flow_at_body *flow, const double *y, double force[2]) {
     force[0] = force[1] = 0;
-    if (!tail_flux_exists(fish)) return;
+    if (!(fish->tail_added_mass > 0)) return;
     const struct tail tail = tail_at(fish, flow, y);
     tail_force(fish, &tail, force);
 }
 
 void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow, const double *y,
                         struct sparse *jacobian) {
-    if (!tail_flux_exists(fish)) return;
+    if (!(fish->tail_added_mass > 0)) return;
     const struct tail tail = tail_at(fish, flow, y);
     const int node = fish->n_nodes - 1;
     double by_velocity[2][2], by_turn[2];
@@ -109,7 +105,7 @@ void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow
 
 void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body *flow,
                              const struct influence_block *block, const double *y, struct coupling_block *rows) {
-    if (!tail_flux_exists(fish)) return;
+    if (!(fish->tail_added_mass > 0)) return;
     const struct tail tail = tail_at(fish, flow, y);
     const int node = fish->n_nodes - 1, last = fish->n_edges - 1;
     double by_velocity[2][2], by_turn[2];
@@ -129,7 +125,7 @@ void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body 
 }
 
 double tail_flux_power(const struct fish *fish, const struct flow_at_body *flow, const double *y) {
-    if (!tail_flux_exists(fish)) return 0;
+    if (!(fish->tail_added_mass > 0)) return 0;
     const struct tail tail = tail_at(fish, flow, y);
     double force[2];
     tail_force(fish, &tail, force);
@@ -176,22 +172,25 @@ void reactive_force(const struct fish *fish, int k, const struct edge *edge, con
     }
 }
 
-static void reactive_published_slope(const struct fish *fish, int k, const struct edge *edge,
-                                     struct reactive_slope *slope) {
-    const double half_mass = fish->added_mass[k] / 2;
-    const double an = edge_dot(edge->acceleration, edge->n), at = edge_dot(edge->acceleration, edge->t);
-    for (int i = 0; i < 2; i++) {
-        slope->by_turn[0][i] = slope->by_turn[1][i] = half_mass * (at * edge->n[i] + an * edge->t[i]);
-    }
-}
-
-static void reactive_lagrange_slope(const struct fish *fish, int k, const struct edge *edge, const double w[2],
-                                    const double b[2], struct reactive_slope *slope) {
+void reactive_slope(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2],
+                    struct reactive_slope *slope) {
     const double *const t = edge->t, *const n = edge->n, l = edge->length;
     const double half_mass = fish->added_mass[k] / 2;
-    const struct frame f = reactive_frame(fish, k, edge, w, b);
+    memset(slope, 0, sizeof *slope);
+    for (int i = 0; i < 2; i++) {
+        for (int j = 0; j < 2; j++) slope->by_acceleration[i][j] = -half_mass * n[i] * n[j];
+    }
+
+    if (fish->force == FORCE_PUBLISHED) {
+        const double an = edge_dot(edge->acceleration, n), at = edge_dot(edge->acceleration, t);
+        for (int i = 0; i < 2; i++) {
+            slope->by_turn[0][i] = slope->by_turn[1][i] = half_mass * (at * n[i] + an * t[i]);
+        }
+        return;
+    }
 
     // by a rotation: dw_n = -w_t, dw_t = w_n, d(a.n) = -a.t
+    const struct frame f = reactive_frame(fish, k, edge, w, b);
     const double rate_by_turn = -edge_dot(edge->rate, t) / l;
     const double push_by_turn = -f.at - rate_by_turn * f.wt - f.turn_rate * f.wn;
     const double pair_by_turn = 2 * half_mass / l * (f.wn * f.wn - f.wt * f.wt);
@@ -211,23 +210,6 @@ static void reactive_lagrange_slope(const struct fish *fish, int k, const struct
             }
         }
     }
-}
-
-void reactive_slope(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2],
-                    struct reactive_slope *slope) {
-    memset(slope, 0, sizeof *slope);
-    for (int i = 0; i < 2; i++) {
-        for (int j = 0; j < 2; j++) {
-            slope->by_acceleration[i][j] = -fish->added_mass[k] / 2 * edge->n[i] * edge->n[j];
-        }
-    }
-
-    if (fish->force == FORCE_PUBLISHED) {
-        reactive_published_slope(fish, k, edge, slope);
-        return;
-    }
-
-    reactive_lagrange_slope(fish, k, edge, w, b, slope);
 }
 
 double reactive_power(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2]) {

@@ -14,16 +14,13 @@
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_derivative.h"
 
-/* Momentum flux into the wake at the tail (Lighthill), as a force on the tail node. doc/model.md, section
- * 9.
+/* Momentum flux into the wake at the tail (Lighthill), as a force on the tail node. doc/model.md, section 9.
  *
  *     node N-4 -- edge N-4 -- node N-3 -- edge N-3 -- node N-2 -- edge N-2 -- node N-1
  *                  angle                   angle, u                angle, u    tail: angle and u by extrapolation */
 
-/* Whether the fish has a tail flux. Without tail flux the functions below return 0 and add nothing. */
-int tail_flux_exists(const struct fish *fish);
-
-/* The force on the tail node, N. */
+/* The force on the tail node, N. Without tail flux (fish->tail_added_mass 0) this function and the functions below
+ * return 0 and add nothing. */
 void tail_flux_force(const struct fish *fish, const struct flow_at_body *flow, const double *y, double force[2]);
 
 /* Add the derivatives of the rows ax, ay of the tail node, divided by the mass of the node: by the unknowns of the

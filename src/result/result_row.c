@@ -7,7 +7,7 @@
 #include "flow/flow_at_bodies.h"
 #include "force/bound_sheet.h"
 #include "force/fluid_force.h"
-#include "force/side_friction.h"
+#include "force/thwaites.h"
 
 // ---- bodies and wakes
 
@@ -109,21 +109,20 @@ void result_row_sensor_right(const struct result_row *row, int f, double *slots)
 
 // ---- friction on the sides
 
-// all values NaN without force: pressure, and if there is no memory
-static struct side_friction sides_of(const struct result_row *row, int f) {
-    const struct pressure *const pressure = row->residual->pressure[f];
-    struct side_friction sides;
-    if (pressure && side_friction(pressure, row->state->y, row->state->yp, &sides) == STATUS_OK) return sides;
-    return (struct side_friction){{{NAN, NAN}, {NAN, NAN}}, {NAN, NAN}, NAN};
+// all values NaN without force: pressure
+static struct thwaites_friction sides_of(const struct result_row *row, int f) {
+    struct pressure *const pressure = row->residual->pressure[f];
+    if (pressure) return thwaites_friction(pressure, row->state->y, row->state->yp);
+    return (struct thwaites_friction){{{NAN, NAN}, {NAN, NAN}}, {NAN, NAN}, NAN};
 }
 
 void result_row_left_friction(const struct result_row *row, int f, double *slots) {
-    const struct side_friction sides = sides_of(row, f);
+    const struct thwaites_friction sides = sides_of(row, f);
     copy_values(2, sides.force[0], slots);
 }
 
 void result_row_right_friction(const struct result_row *row, int f, double *slots) {
-    const struct side_friction sides = sides_of(row, f);
+    const struct thwaites_friction sides = sides_of(row, f);
     copy_values(2, sides.force[1], slots);
 }
 

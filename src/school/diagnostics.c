@@ -14,7 +14,7 @@
 #include "flow/flow_at_bodies.h"
 #include "force/bound_sheet.h"
 #include "force/fluid_force.h"
-#include "force/skin.h"
+#include "force/sensor_pressure.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
 
@@ -309,7 +309,7 @@ static void diagnostics_fill_fish(struct residual *residual, const struct state 
 
     diagnostics_period(fish, history, residual->school->interval, to);
     diagnostics_forces(residual, f, state->t, y, to);
-    if (residual->pressure[f]) skin_update(residual->flow, state, f, residual->pressure[f]);
+    if (residual->pressure[f]) sensor_pressure_update(residual->flow, state, f, residual->pressure[f]);
     to->swept_vortices = swept_vortices(residual->school, state, diagnostics, f);
 
     to->phi0 = y[fish->at.phi0];

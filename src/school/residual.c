@@ -179,10 +179,6 @@ static void residual_free_flow(void *flow) {
     flow_free(flow);
 }
 
-static void residual_free_pressure(void *pressure) {
-    pressure_free(pressure);
-}
-
 enum status residual_create(struct arena *arena, struct residual **residual, const struct school *school,
                             const struct state *state) {
     struct residual *new;
@@ -197,10 +193,7 @@ enum status residual_create(struct arena *arena, struct residual **residual, con
     int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0, has_edges = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
-        if (fish_has_momentum(fish)) {
-            TRY(pressure_create(&new->pressure[f], fish));
-            arena_defer(arena, residual_free_pressure, new->pressure[f]);
-        }
+        if (fish_has_momentum(fish)) new->pressure[f] = pressure_create(arena, fish);
         new->joints[f] = (struct range){n_joints, fish->n_joints};
         n_joints += fish->n_joints;
         const int points = flow_n_points(fish), columns = flow_n_columns(fish), rows = flow_n_rows(fish);

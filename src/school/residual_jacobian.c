@@ -40,7 +40,7 @@ static void add_own_rows(const struct residual *residual, const struct fish *fis
                          struct sparse *own) {
     const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
     const int rate = residual_sheet_law(residual) == BOUND_SHEET_RATE;
-    const int felt_at_tail = n_nodes - (tail_flux_exists(fish) ? 3 : 2);
+    const int felt_at_tail = n_nodes - (fish->tail_added_mass > 0 ? 3 : 2);
     for (int c = 0; c < rows->n_columns; c++) {
         const double *const value = rows->value + (long)c * rows->n_rows;
         const int column = flow_column(fish, c), node = c % n_nodes;

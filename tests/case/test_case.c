@@ -85,7 +85,7 @@ TEST(the_defaults_are_those_of_the_reference) {
     NEAR(fish->wave.number, -6, 0, 0);
     NEAR(fish->drag.tangential, 4e-3, 0, 0);
     NEAR(fish->drag.normal, 0, 0, 0);
-    assert_int_equal(fish->drag.skin, SKIN_BOUNDARY_LAYER);
+    assert_int_equal(fish->drag.friction, FRICTION_BOUNDARY_LAYER);
     NEAR(fish->added_mass.coefficient, 1, 0, 0);
     assert_int_equal(fish->added_mass.extent, EXTENT_DEPTH);
     assert_int_equal(fish->drag.law, DRAG_QUADRATIC);

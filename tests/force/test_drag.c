@@ -14,11 +14,18 @@ static const double *flow_v(const struct setup *setup, int f) {
     return setup->residual->flow->v + setup->residual->flow->points[f].first;
 }
 
+// the part of the drag along the edge
+static void friction_of(const struct fish *fish, int k, const struct edge *edge, const double w[2],
+                        double friction[2]) {
+    double force[2];
+    drag_force(fish, k, edge, w, force, friction);
+}
+
 // derivatives of the drag on an edge against differences, at a velocity; tolerance relative to the largest derivative
 static void compare_slope(const struct fish *fish, int k, const double w[2], double rtol) {
     const double size = hypot(w[0], w[1]), h = 1e-5, angle = 0.7;
     const struct edge edge = {.t = {cos(angle), sin(angle)}, .n = {-sin(angle), cos(angle)}};
-    double by_velocity[2][2], by_turn[2], force[2][2];
+    double by_velocity[2][2], by_turn[2], force[2][2], friction[2];
 
     drag_slope(fish, k, &edge, w, by_velocity, by_turn);
     for (int j = 0; j < 3; j++) {
@@ -27,7 +34,7 @@ static void compare_slope(const struct fish *fish, int k, const double w[2], dou
             const double moved_by = side == 0 ? -step : step, turned = angle + (j == 2 ? moved_by : 0);
             const struct edge other = {.t = {cos(turned), sin(turned)}, .n = {-sin(turned), cos(turned)}};
             const double moved[2] = {w[0] + (j == 0 ? moved_by : 0), w[1] + (j == 1 ? moved_by : 0)};
-            drag_force(fish, k, &other, moved, force[side]);
+            drag_force(fish, k, &other, moved, force[side], friction);
         }
 
         const double scale = hypot(by_turn[0], by_turn[1]) + size * (fabs(by_velocity[0][0]) + fabs(by_velocity[1][1]));
@@ -69,7 +76,7 @@ static double friction_over_blasius(const char *text, double speed) {
     double total = 0;
     for (int k = 0; k < setup.school->fish->n_edges; k++) {
         double force[2];
-        drag_friction(setup.school->fish, k, &edge, w, force);
+        friction_of(setup.school->fish, k, &edge, w, force);
         NEAR(force[1], 0, 0, 0);
         total += force[0];
     }
@@ -107,7 +114,7 @@ TEST(transition_of_an_edge_is_that_of_its_middle) {
         const double speed = 2e5 * 1e-6 / (2 * (k + 0.5) / 8), w[2] = {-speed, 0};
         const struct edge edge = {.t = {1, 0}, .n = {0, 1}};
         double force[2];
-        drag_friction(fish, k, &edge, w, force);
+        friction_of(fish, k, &edge, w, force);
 
         // u0 is 5e-5 m s-1
         const double half = fish->drag_tangential[k] * pow(speed, 1.5) + fish->drag_turbulent[k] * pow(speed, 1.8);
@@ -147,7 +154,7 @@ TEST(a_body_with_a_wave_has_the_factor_of_waving) {
                  cases[i].fish);
         struct setup setup;
         school_build(&setup, text);
-        assert_int_equal(setup.school->fish->skin, SKIN_BOUNDARY_LAYER);
+        assert_int_equal(setup.school->fish->friction, FRICTION_BOUNDARY_LAYER);
         NEAR(setup.school->fish->waving, cases[i].waving, 0, 0);
         school_clear(&setup);
     }
@@ -167,7 +174,7 @@ TEST(boundary_layer_is_smooth_and_takes_energy) {
             const struct edge edge = {.t = {0.96, 0.28}, .n = {-0.28, 0.96}};
             for (int k = 0; k < fish->n_edges; k++) {
                 double force[2];
-                drag_friction(fish, k, &edge, w, force);
+                friction_of(fish, k, &edge, w, force);
                 BELOW(edge_dot(force, w), 0);
                 // second differences of step h = 1e-5, and rounding over h
                 compare_slope(fish, k, w, 2e-9);
@@ -175,10 +182,10 @@ TEST(boundary_layer_is_smooth_and_takes_energy) {
         }
 
         // at rest: zero force, and the finite slope (u0)^(1/2)
-        double force[2], by_velocity[2][2], by_turn[2];
+        double force[2], friction[2], by_velocity[2][2], by_turn[2];
         const struct edge edge = {.t = {1, 0}, .n = {0, 1}};
         drag_slope(fish, 0, &edge, (const double[]){0, 0}, by_velocity, by_turn);
-        drag_force(fish, 0, &edge, (const double[]){1e-12, 0}, force);
+        drag_force(fish, 0, &edge, (const double[]){1e-12, 0}, force, friction);
         NEAR(force[0], by_velocity[0][0] * 1e-12, 0, 1e-9);
         BELOW(by_velocity[0][0], 0);
         school_clear(&setup);
@@ -197,8 +204,7 @@ TEST(laminar_friction_of_a_plate_is_that_of_its_boundary_layer) {
     const double w[2] = {-0.7, 0.3}, slow[2] = {1e-9, 0};
     double total[2] = {0, 0}, across = 0, force[2], friction[2];
     for (int k = 0; k < fish->n_edges; k++) {
-        drag_force(fish, k, &edge, w, force);
-        drag_friction(fish, k, &edge, w, friction);
+        drag_force(fish, k, &edge, w, force, friction);
         total[0] += force[0];
         total[1] += friction[0];
         across += fabs(force[1]) + fabs(friction[1]);
@@ -209,7 +215,7 @@ TEST(laminar_friction_of_a_plate_is_that_of_its_boundary_layer) {
     NEAR(across, 0, 0, 0);
 
     // near rest the friction is linear: (u0)^(1/2) u
-    drag_force(fish, 0, &edge, slow, force);
+    drag_force(fish, 0, &edge, slow, force, friction);
     NEAR(force[0], -blasius / pow(0.7, 1.5) * sqrt(1.0 / 6) * sqrt(0.5e-4) * 1e-9, 0, 1e-8);
     school_clear(&setup);
 }
@@ -219,9 +225,9 @@ static double moment_about(const struct fish *fish, const double *u, const doubl
     double moment = 0;
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
-        double w[2], force[2];
+        double w[2], force[2], friction[2];
         flow_relative_velocity(fish, k, edge.velocity, u, v, w);
-        drag_force(fish, k, &edge, w, force);
+        drag_force(fish, k, &edge, w, force, friction);
         moment += (edge.middle[0] - com[0]) * force[1] - (edge.middle[1] - com[1]) * force[0];
     }
 

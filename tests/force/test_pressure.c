@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "body/rod.h"
-#include "failing_malloc.h"
 #include "fish/fish_school.h"
 #include "force/pressure.h"
 #include "school.h"
@@ -552,20 +551,4 @@ TEST(energy_and_momentum_of_a_free_fish_are_accounted_for) {
     ABOVE(of->actuation_work, 0.1);
 
     simulate_free(simulation);
-}
-
-TEST(no_memory_leaves_nothing) {
-    struct setup setup;
-    build_plate(&setup, 5, 9, "density: 1");
-    const int before = n_live;
-    for (int n = 0; n < 8; n++) {
-        struct pressure *pressure;
-        n_until_failure = n;
-        assert_int_equal(pressure_create(&pressure, setup.school->fish), STATUS_MEMORY);
-        n_until_failure = -1;
-        assert_null(pressure);
-        assert_int_equal(n_live, before);
-    }
-
-    school_clear(&setup);
 }

@@ -3,7 +3,7 @@
 #include <complex.h>
 #include <math.h>
 
-#include "force/side_friction.h"
+#include "force/thwaites.h"
 #include "linear_theory.h"
 #include "verify.h"
 
@@ -152,11 +152,10 @@ static struct frictions mean_friction(struct simulation *simulation, double from
     struct frictions mean = {0, 0};
     const int n = (int)lround(duration / simulation->school->interval);
     for (int i = 1; i <= n; i++) {
-        struct side_friction sides;
         verify_run(simulation, from + i * duration / n);
         simulate_measure(simulation);
-        verify_ok(
-            side_friction(simulation->residual->pressure[0], simulation->state->y, simulation->state->yp, &sides));
+        const struct thwaites_friction sides =
+            thwaites_friction(simulation->residual->pressure[0], simulation->state->y, simulation->state->yp);
         mean.sides += (sides.force[0][0] + sides.force[1][0]) / n;
         mean.law += simulation->diagnostics->fish[0].friction_force[0] / n;
     }

@@ -1,8 +1,8 @@
-/* Tests of src/force/side_friction.c: Thwaites' method on known flows, and the friction on the sides of plates. */
+/* Tests of src/force/thwaites.c: Thwaites' method on known flows, and the friction on the sides of plates. */
 #include <math.h>
 #include <stdio.h>
 
-#include "force/side_friction.h"
+#include "force/thwaites.h"
 #include "school.h"
 
 static const double pi = 3.14159265358979323846;
@@ -14,8 +14,8 @@ static double x[N], u[N], friction[N], lambda[N];
 // the first point at which the layer separates, between two points
 static double separation(void) {
     for (int i = 1; i < N; i++) {
-        if (lambda[i] >= side_separation) continue;
-        const double part = (side_separation - lambda[i - 1]) / (lambda[i] - lambda[i - 1]);
+        if (lambda[i] >= thwaites_separation) continue;
+        const double part = (thwaites_separation - lambda[i - 1]) / (lambda[i] - lambda[i - 1]);
         return (1 - part) * x[i - 1] + part * x[i];
     }
     return NAN;
@@ -26,7 +26,7 @@ TEST(a_flat_plate_has_the_friction_of_blasius) {
         x[i] = (double)i / (N - 1);
         u[i] = 1;
     }
-    side_thwaites(N, x, u, viscosity, friction, lambda);
+    thwaites_layers(N, x, u, viscosity, friction, lambda);
     for (int i = 1; i < N; i++) {
         // Thwaites: 0.335, Blasius: 0.332
         NEAR(friction[i], sqrt(viscosity / x[i]) * pow(0.09, 0.62) / sqrt(0.45), 0, 1e-12);
@@ -44,7 +44,7 @@ TEST(wedges_have_the_friction_of_falkner_and_skan) {
             x[i] = (double)i / (N - 1);
             u[i] = pow(x[i], m);
         }
-        side_thwaites(N, x, u, viscosity, friction, lambda);
+        thwaites_layers(N, x, u, viscosity, friction, lambda);
         for (int i = N / 2; i < N - 1; i += 50) {
             NEAR(lambda[i], 0.45 * m / (5 * m + 1), 1e-3, 0);
             NEAR(friction[i], u[i] * sqrt(viscosity * u[i] / x[i]) * wedges[k].wall, 0, 0.04);
@@ -58,13 +58,13 @@ TEST(layers_separate_from_a_cylinder_and_in_a_decelerated_flow) {
         x[i] = pi * i / (N - 1);
         u[i] = 2 * sin(x[i]);
     }
-    side_thwaites(N, x, u, viscosity, friction, lambda);
+    thwaites_layers(N, x, u, viscosity, friction, lambda);
     NEAR(separation() * 180 / pi, 103.1, 0.1, 0);
     for (int i = 0; i < N; i++) {
         x[i] = 0.2 * i / (N - 1);
         u[i] = 1 - x[i];
     }
-    side_thwaites(N, x, u, viscosity, friction, lambda);
+    thwaites_layers(N, x, u, viscosity, friction, lambda);
     NEAR(separation(), 0.123, 1e-3, 0);
 }
 
@@ -74,7 +74,7 @@ TEST(layers_run_in_the_direction_of_the_flow) {
         x[i] = 2.0 * i / (N - 1) - 1;
         u[i] = tanh(4 * x[i]);
     }
-    side_thwaites(N, x, u, viscosity, friction, lambda);
+    thwaites_layers(N, x, u, viscosity, friction, lambda);
     for (int i = 0; i < N; i++) {
         NEAR(friction[N - 1 - i], -friction[i], 1e-15, 1e-12);
         NEAR(lambda[N - 1 - i], lambda[i], 1e-15, 1e-12);
@@ -82,11 +82,9 @@ TEST(layers_run_in_the_direction_of_the_flow) {
     ABOVE(friction[3 * N / 4], 0);
 }
 
-static struct side_friction friction_of(struct simulation *simulation) {
-    struct side_friction sides;
+static struct thwaites_friction friction_of(struct simulation *simulation) {
     simulate_measure(simulation);
-    school_ok(side_friction(simulation->residual->pressure[0], simulation->state->y, simulation->state->yp, &sides));
-    return sides;
+    return thwaites_friction(simulation->residual->pressure[0], simulation->state->y, simulation->state->yp);
 }
 
 static struct simulation *plate(const char *stream, double thickness) {
@@ -105,7 +103,7 @@ static struct simulation *plate(const char *stream, double thickness) {
 TEST(a_plate_has_half_of_blasius_friction_on_each_side) {
     struct simulation *const simulation = plate("1, 0", 1e-5);
     school_run(simulation, 0.2);
-    const struct side_friction sides = friction_of(simulation);
+    const struct thwaites_friction sides = friction_of(simulation);
     for (int side = 0; side < 2; side++) {
         NEAR(sides.force[side][0], 0.5 * 0.664 * sqrt(1e-3), 0, 0.015);
         NEAR(sides.force[side][1], 0, 1e-12, 0);
@@ -122,7 +120,7 @@ TEST(a_thick_plate_has_the_friction_of_the_flow_round_its_nose) {
     for (int i = 0; i < 3; i++) {
         struct simulation *const simulation = plate("1, 0", thickness[i]);
         school_run(simulation, 0.2);
-        const struct side_friction sides = friction_of(simulation);
+        const struct thwaites_friction sides = friction_of(simulation);
 
         // midpoint rule in the root of s
         enum { M = 4000 };
@@ -143,7 +141,7 @@ TEST(a_thick_plate_has_the_friction_of_the_flow_round_its_nose) {
 
 // at incidence the layer separates on the side away from the stream, and the mirrored plate exchanges the sides
 TEST(incidence_separates_the_layer_on_one_side) {
-    struct side_friction sides[2];
+    struct thwaites_friction sides[2];
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = plate(i == 0 ? "1, 0.1" : "1, -0.1", 0.12);
         school_run(simulation, 2);
