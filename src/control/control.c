@@ -96,9 +96,9 @@ void lead_begin(struct lead *lead, double t, double ramp, double value, double r
     lead_start(lead, t, ramp, given, target);
 }
 
-static const double pi = 3.14159265358979323846;
+// ---- headings and laws
 
-int control_feels_moment(const struct fish *fish) {
+bool control_uses_moment(const struct fish *fish) {
     return fish->control.law != CONTROL_NONE && fabs(fish->control.feedforward) > 0;
 }
 
@@ -119,7 +119,7 @@ int control_n_waypoints(const struct fish *fish, const struct control_memory *me
     return memory->has_waypoints ? memory->n_waypoints : fish->control.n_waypoints;
 }
 
-static int steers_to_waypoint(const struct fish *fish, const struct control_memory *memory) {
+static bool steers_to_waypoint(const struct fish *fish, const struct control_memory *memory) {
     return memory->waypoint < control_n_waypoints(fish, memory);
 }
 
@@ -143,23 +143,26 @@ static void waypoint_vector(const struct fish *fish, const struct control_memory
     away[1] -= y[fish->at.y];
 }
 
-static double table_heading(const struct control_law_data *control, double t) {
-    const int last = control->n_headings - 1;
-    if (t <= control->heading_time[0]) return control->heading[0];
-    for (int i = 0; i < last; i++) {
+// desired heading of the table and its rate, rad s-1
+static double table_heading(const struct control_law_data *control, double t, double *rate) {
+    *rate = 0;
+    if (t < control->heading_time[0]) return control->heading[0];
+    for (int i = 0; i + 1 < control->n_headings; i++) {
         const double start = control->heading_time[i], end = control->heading_time[i + 1];
-        if (t < end) {
-            return control->heading[i] + (t - start) / (end - start) * (control->heading[i + 1] - control->heading[i]);
-        }
+        if (t >= end) continue;
+        const double rise = control->heading[i + 1] - control->heading[i];
+        *rate = rise / (end - start);
+        return control->heading[i] + (t - start) / (end - start) * rise;
     }
 
-    return control->heading[last];
+    return control->heading[control->n_headings - 1];
 }
 
 double control_desired_heading(const struct fish *fish, const struct control_memory *memory, double t,
                                const double *y) {
     if (control_n_waypoints(fish, memory) == 0) {
-        return memory->has_heading ? lead_value(&memory->heading, t) : table_heading(&fish->control, t);
+        double rate;
+        return memory->has_heading ? lead_value(&memory->heading, t) : table_heading(&fish->control, t, &rate);
     }
 
     if (!steers_to_waypoint(fish, memory)) return memory->held_heading;
@@ -180,15 +183,10 @@ double control_law(const struct fish *fish, const struct control_memory *memory,
     return fish->control.limit * tanh(law_argument(fish, memory, t, direction, more, y));
 }
 
-// tau_f between two events
-static double moment_at(const struct control_memory *memory, double since) {
-    return memory->moment + since * memory->moment_rate;
-}
-
 // law heading, between two events
 static double heading_argument(const struct fish *fish, const struct control_memory *memory, double t, double since,
                                const double *y) {
-    const double feedforward = fish->control.feedforward * moment_at(memory, since);
+    const double feedforward = fish->control.feedforward * (memory->moment + since * memory->moment_rate);
     return law_argument(fish, memory, t, control_heading(fish, y), feedforward, y);
 }
 
@@ -205,32 +203,9 @@ void control_residual(const struct fish *fish, const struct control_memory *memo
     residual[fish->at.phi0] = y[fish->at.phi0] - value;
 }
 
-// rate of the heading in the table, rad s-1
-static double table_rate(const struct control_law_data *control, double t) {
-    for (int i = 0; i + 1 < control->n_headings; i++) {
-        const double start = control->heading_time[i], end = control->heading_time[i + 1];
-        if (start <= t && t < end) return (control->heading[i + 1] - control->heading[i]) / (end - start);
-    }
-    return 0;
-}
-
 // angular rate of a vector
 static double turn_rate(const double vector[2], const double rate[2]) {
     return (vector[0] * rate[1] - vector[1] * rate[0]) / (vector[0] * vector[0] + vector[1] * vector[1]);
-}
-
-static double desired_heading_rate(const struct fish *fish, const struct control_memory *memory, double t,
-                                   const double *y) {
-    if (control_n_waypoints(fish, memory) == 0) {
-        return memory->has_heading ? lead_rate(&memory->heading, t) : table_rate(&fish->control, t);
-    }
-
-    if (!steers_to_waypoint(fish, memory)) return 0;
-    double away[2];
-    waypoint_vector(fish, memory, y, away);
-    const double rate[2] = {-y[fish->at.vx], -y[fish->at.vy]};
-
-    return turn_rate(away, rate);
 }
 
 double control_rate(const struct fish *fish, const struct control_memory *memory, double t, double since,
@@ -243,7 +218,19 @@ double control_rate(const struct fish *fish, const struct control_memory *memory
     rate[0] = y[fish->at.vx] - fish_mean(&fish->heading_point, y + fish->at.vx);
     rate[1] = y[fish->at.vy] - fish_mean(&fish->heading_point, y + fish->at.vy);
 
-    const double error_rate = turn_rate(head, rate) - desired_heading_rate(fish, memory, t, y);
+    // rate of the desired heading
+    double desired = 0;
+    if (steers_to_waypoint(fish, memory)) {
+        double away[2];
+        waypoint_vector(fish, memory, y, away);
+        desired = turn_rate(away, (const double[]){-y[fish->at.vx], -y[fish->at.vy]});
+    } else if (control_n_waypoints(fish, memory) == 0 && memory->has_heading) {
+        desired = lead_rate(&memory->heading, t);
+    } else if (control_n_waypoints(fish, memory) == 0) {
+        table_heading(&fish->control, t, &desired);
+    }
+
+    const double error_rate = turn_rate(head, rate) - desired;
     const double tangent = tanh(heading_argument(fish, memory, t, since, y));
 
     return fish->control.limit * (1 - tangent * tangent) *
@@ -289,10 +276,10 @@ void control_advance(struct control_memory *memory, double interval) {
 }
 
 // Pass the waypoints within the acceptance radius; returns whether a waypoint was passed.
-static int waypoints_pass(const struct fish *fish, struct control_memory *memory, const double *y) {
+static bool waypoints_pass(const struct fish *fish, struct control_memory *memory, const double *y) {
     const struct control_law_data *control = &fish->control;
-    int passed = 0;
-    for (; steers_to_waypoint(fish, memory); memory->waypoint++, passed = 1) {
+    bool passed = false;
+    for (; steers_to_waypoint(fish, memory); memory->waypoint++, passed = true) {
         double away[2];
         waypoint_vector(fish, memory, y, away);
         if (hypot(away[0], away[1]) > control->acceptance_radius) break;
@@ -307,33 +294,30 @@ static int waypoints_pass(const struct fish *fish, struct control_memory *memory
     return passed;
 }
 
-// target of phi0 of an event-based law; phi0 is constant as long as there is no course
-static double event_target(const struct fish *fish, const struct control_memory *memory,
-                           const struct control_view *view, const double *y) {
-    const struct control_law_data *control = &fish->control;
-    if (control->law == CONTROL_COURSE) {
-        if (!view->has_course) return memory->phi0;
-        const double damping = control->damping * fish->period * view->course_rate;
-        return control_law(fish, memory, view->t, view->course, damping, y);
-    }
-
-    const double feedforward = control->feedforward * moment_at(memory, view->interval);
-    return control_law(fish, memory, view->t, view->mean_heading, feedforward, y);
-}
-
-int control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
-                  const double *y) {
-    const int passed = waypoints_pass(fish, memory, y);
+bool control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
+                   const double *y) {
+    const bool passed = waypoints_pass(fish, memory, y);
     // the moving mean approaches the newest value by filter_share of the difference, linearly until the next event
     memory->moment_rate = fish->control.filter_share * (view->moment - memory->moment) / view->interval;
-    if (fish->control.law == CONTROL_NONE) return 0;
+    if (fish->control.law == CONTROL_NONE) return false;
     if (fish->control.law == CONTROL_HEADING) return passed;
 
-    // an event-based law approaches the target by at most rate per second
-    const double most = fish->control.rate, target = event_target(fish, memory, view, y);
+    // target of an event-based law; phi0 is constant as long as there is no course
+    const struct control_law_data *const control = &fish->control;
+    double target = memory->phi0;
+    if (control->law == CONTROL_AVERAGED_HEADING) {
+        const double feedforward = control->feedforward * (memory->moment + view->interval * memory->moment_rate);
+        target = control_law(fish, memory, view->t, view->mean_heading, feedforward, y);
+    } else if (view->has_course) {
+        const double damping = control->damping * fish->period * view->course_rate;
+        target = control_law(fish, memory, view->t, view->course, damping, y);
+    }
+
+    // approach the target by at most rate per second
+    const double most = control->rate;
     memory->phi0_rate = fmax(-most, fmin(most, (target - memory->phi0) / view->interval));
 
-    return 0;
+    return false;
 }
 
 // ---- values set from outside
@@ -343,8 +327,8 @@ struct fish_gait control_gait(const struct fish *fish, const struct control_memo
     const double scale = 1 + lead_value(&memory->amplitude, t);
     gait.amplitude_rate = gait.amplitude_rate * scale + gait.amplitude * lead_rate(&memory->amplitude, t);
     gait.amplitude *= scale;
-    gait.angle += 2 * pi * lead_integral(&memory->frequency, t);
-    gait.omega += 2 * pi * lead_value(&memory->frequency, t);
+    gait.angle += 2 * M_PI * lead_integral(&memory->frequency, t);
+    gait.omega += 2 * M_PI * lead_value(&memory->frequency, t);
 
     return gait;
 }
@@ -354,7 +338,7 @@ void control_set_amplitude(const struct fish *fish, struct control_memory *memor
 }
 
 void control_set_frequency(const struct fish *fish, struct control_memory *memory, double t, double frequency) {
-    lead_change(&memory->frequency, t, fish->control.ramp, frequency - fish->omega / (2 * pi));
+    lead_change(&memory->frequency, t, fish->control.ramp, frequency - fish->omega / (2 * M_PI));
 }
 
 void control_set_bias(const struct fish *fish, struct control_memory *memory, double t, double bias) {
@@ -369,8 +353,9 @@ void control_set_heading(const struct fish *fish, struct control_memory *memory,
         return;
     }
 
-    const double now = table_heading(&fish->control, t);
-    lead_begin(&memory->heading, t, ramp, now, table_rate(&fish->control, t), now + angle_wrap(heading - now));
+    double rate;
+    const double now = table_heading(&fish->control, t, &rate);
+    lead_begin(&memory->heading, t, ramp, now, rate, now + angle_wrap(heading - now));
     memory->has_heading = 1;
 }
 

@@ -3,6 +3,8 @@
 #ifndef CONTROL_H
 #define CONTROL_H
 
+#include <stdbool.h>
+
 #include "base/sparse.h"
 #include "fish/fish.h"
 #include "fish/fish_motion.h"
@@ -60,7 +62,7 @@ struct control_view {
 };
 
 /* Whether the law uses the moment of the flow. */
-int control_feels_moment(const struct fish *fish);
+bool control_uses_moment(const struct fish *fish);
 
 /* The direction from the body point at a third of the length to the nose, rad in (-pi, pi]. */
 double control_heading(const struct fish *fish, const double *y);
@@ -111,7 +113,7 @@ void control_advance(struct control_memory *memory, double interval);
 
 /* At an event, after control_advance: pass the waypoints within the acceptance radius, update the filtered moment, and
  * set the rate towards the value of an event-based law. Returns whether phi0 jumps. */
-int control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
-                  const double *y);
+bool control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
+                   const double *y);
 
 #endif

@@ -145,7 +145,7 @@ static struct control_view event_control_view(const struct state *state, const s
     struct control_view view = {.t = state->t,
                                 .interval = residual->school->interval,
                                 .mean_heading = diagnostics_mean_heading(&state->history[f])};
-    if (control_feels_moment(fish)) view.moment = drag_moment(fish, flow.u, flow.v, state->y);
+    if (control_uses_moment(fish)) view.moment = drag_moment(fish, flow.u, flow.v, state->y);
     view.has_course = diagnostics_course(&state->history[f], &view.course, &view.course_rate);
     return view;
 }
