@@ -69,8 +69,8 @@ static double slip_along(const struct pressure_point *point) {
     return edge_dot(point->slip, point->body.t);
 }
 
-// forces at the control points, interpolated to the nodes: convection, and with rings of the spanwise flow and along the
-// side edges (doc/model.md, sections 15 and 18)
+// forces at the control points, interpolated to the nodes: convection; with rings also the spanwise flow and the force
+// along the side edges (doc/model.md, sections 15 and 18)
 static void pressure_convect(struct pressure *p, const struct flow_at_body *flow, const double *y) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes, n_control = fish->n_control;
@@ -299,7 +299,7 @@ void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_
     const int n = fish->n_nodes;
     forces_by_places(p, rows);
 
-    // suction by the strength at the nose, by the tangent at the nose, and through tau by the tangent at control point 0
+    // suction by strength and tangent at the nose, and through tau by the tangent at control point 0
     const struct direction *const nose = &p->nose, *const first = &p->point[0].body;
     const double *const turn = fish->nose_tangent.to.weight, *const turn_first = fish->control_tangent[0].to.weight;
     const double suction = -edge_dot(p->suction, nose->t), slip_across = edge_dot(p->point[0].slip, first->n);

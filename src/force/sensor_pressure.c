@@ -1,4 +1,4 @@
-/* sensor_pressure.c: rate of the potential at the control points, and Bernoulli's equation on both sides at the sensors. */
+/* sensor_pressure.c: rate of the potential at the control points; Bernoulli's equation on both sides at the sensors. */
 #include "force/sensor_pressure.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* sensor_pressure.h: the pressure of the fluid on both sides of a body, at the sensors of a lateral line. doc/model.md, section
- * 15. Tested by tests/force/test_sensor_pressure.c.
+/* sensor_pressure.h: the pressure of the fluid on both sides of a body, at the sensors of a lateral line.
+ * doc/model.md, section 15. Tested by tests/force/test_sensor_pressure.c.
  *
  * The potential of the flow is a sum over the vortices of all bodies, wakes and images; the rate of the potential at a
  * point that moves with the skin has no singularity of its own sheet and no branch. */
