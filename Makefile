@@ -192,7 +192,7 @@ valgrind: deps  ## let valgrind watch the tests in C (TEST="..."), and a run of 
 
 soak: deps  ## let everything fail that can: all of tests/soak (an hour)
 	@$(parallel) all $(faults)
-	@TIME_LIMIT=14400 scripts/run-tests.sh $(program) $(wildcard tests/soak/*.sh)
+	@TIME_LIMIT=14400 scripts/run-tests.sh $(program) $(filter-out %/common.py,$(wildcard tests/soak/*.sh tests/soak/*.py))
 
 fuzz: deps  ## mutate cases, results and checkpoints for TIME seconds, with the sanitizers
 	@$(parallel) SANITIZE=1 $(if $(clang),FUZZER=1 CC=clang) fuzz-programs
@@ -353,11 +353,9 @@ $(B)/fuzz/%: $(B)/fuzz/%.o $(if $(FUZZER),,$(B)/fuzz/driver.o) $(objects)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(if $(FUZZER),-fsanitize=fuzzer) $(LDFLAGS) -o $@ $^ $(libraries)
 
-# to be preloaded: tests/faults/faults.py, memory.py, power.py
-faults = $(B)/faults.so $(B)/memory.so $(B)/power.so
-$(B)/faults.so: tests/faults/shim.c tests/faults/open_like.h
-$(B)/memory.so: tests/faults/memory.c
-$(B)/power.so: tests/faults/power.c tests/faults/open_like.h
+# to be preloaded: tests/soak/faults.py, memory.py, power.py
+faults = $(B)/files.so $(B)/memory.so
+$(faults): $(B)/%.so: tests/faults/%.c
 $(faults): Makefile | $(folders)
 	$(say) LD $@
 	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow -Wcast-qual $(if $(WERROR),-Werror) -O2 -shared -fPIC -o $@ $(filter %.c,$^)

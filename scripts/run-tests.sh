@@ -3,8 +3,8 @@
 #
 #   scripts/run-tests.sh PROGRAM TEST...
 #
-# A TEST with the suffix .sh is a shell test: the argument is PROGRAM, the last line "N passed, N failed, N skipped".
-# Any other TEST is a cmocka program. Those in shell take longest and begin; one more runs at a time than there are
+# A TEST with the suffix .sh or .py is a script: the argument is PROGRAM, the last line "N passed, N failed, N skipped".
+# Any other TEST is a cmocka program. The scripts take longest and begin; one more runs at a time than there are
 # processors, since some of them wait. The report has the whole output of what failed. A test that crashes, exits early,
 # runs longer than the limit or tests nothing has failed. The limit grows with the load of the machine.
 # The last line printed is the sum: "N passed, N failed, N skipped".
@@ -20,8 +20,8 @@ fi
 program=$1
 shift
 tests=()
-for test in "$@"; do [[ $test != *.sh ]] || tests+=("$test"); done
-for test in "$@"; do [[ $test == *.sh ]] || tests+=("$test"); done
+for test in "$@"; do [[ $test != *.@(sh|py) ]] || tests+=("$test"); done
+for test in "$@"; do [[ $test == *.@(sh|py) ]] || tests+=("$test"); done
 
 folder=$(mktemp -d)
 stop() {
@@ -35,6 +35,7 @@ trap 'exit 130' INT TERM
 
 # the test programs share the processors: waiting threads sleep after microseconds, as in the program (src/app/main.c)
 export GOMP_SPINCOUNT=${GOMP_SPINCOUNT-4000}
+export PYTHONDONTWRITEBYTECODE=1
 # the sanitizers, when built in: show the stack, also where cmocka would catch the signal
 export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=handle_segv=2:handle_sigfpe=2
 # memory kept by clang's OpenMP for its threads is not a leak of shoal
@@ -55,8 +56,8 @@ count_cmocka() {
          END { print passed + 0, announced - passed - skipped, skipped + 0 }' "$1"
 }
 
-# Sums of a shell test: the last line.
-count_shell() {
+# Sums of a script: the last line.
+count_script() {
     local counts
     counts=$(tail -n 1 "$1" | sed -n 's/^\([0-9]\+\) passed, \([0-9]\+\) failed, \([0-9]\+\) skipped$/\1 \2 \3/p')
     echo "${counts:-0 0 0}"
@@ -66,6 +67,7 @@ count_shell() {
 start() {
     local command=("${tests[$1]}")
     [[ ${tests[$1]} != *.sh ]] || command=(bash "${tests[$1]}" "$program")
+    [[ ${tests[$1]} != *.py ]] || command=(/usr/bin/python3 "${tests[$1]}" "$program")
     local load
     read -r load _ </proc/loadavg
     limits[$1]=$((time_limit * (at_once + ${load%.*}) / at_once))
@@ -78,7 +80,7 @@ start() {
 report() {
     local name=${tests[$1]} code=${exit_code[$1]} passed failed skipped note=''
     case $name in
-        *.sh) read -r passed failed skipped < <(count_shell "$folder/$1") ;;
+        *.sh | *.py) read -r passed failed skipped < <(count_script "$folder/$1") ;;
         *) read -r passed failed skipped < <(count_cmocka "$folder/$1") ;;
     esac
     if ((code == 124 || code == 137)); then

@@ -1,5 +1,5 @@
 /* memory.c: allocations and threads of a program that fail on demand, to be preloaded (LD_PRELOAD):
- * tests/faults/memory.py. Those of its libraries pass. The address sanitizer, which has a malloc of its own, cannot do
+ * tests/soak/memory.py. Those of its libraries pass. The address sanitizer, which has a malloc of its own, cannot do
  * with this one.
  *
  *     MEMORY_AT      which allocation fails, from 1; 0: none

@@ -6,8 +6,6 @@
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-shim=$(dirname "$program")/faults.so
-
 cat >small.yaml <<'end'
 format: 1
 name: small
@@ -20,10 +18,13 @@ complete() { [[ $(ncdump -h "$1" | sed -n 's/.*:run_status = "\(.*\)" ;/\1/p') =
 
 # ---- failing calls
 
-sample=$(/usr/bin/python3 "$root/tests/faults/faults.py" "$program" "$shim" 89)
-check "a sample of failing calls: whole rows, one message, exit code 0 or 4" \
-    grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
-((n_failed == 0)) || cat sample.out
+# All must pass.
+sample() {  # name, script of tests/soak, arguments
+    /usr/bin/python3 "$root/tests/soak/$2" "$program" "${@:3}" >sample.out 2>&1
+    check "$1" grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(tail -n 1 sample.out)
+    ((n_failed == 0)) || cat sample.out
+}
+sample "a sample of failing calls: whole rows, one message, exit code 0 or 4" faults.py 89
 
 # ---- standard files
 
@@ -59,14 +60,8 @@ check "signals that are ignored stay so" complete ignored.nc
 if grep -q __asan_init "$program"; then
     skip "little memory" "the address sanitizer needs all of it"
 else
-    sample=$(/usr/bin/python3 "$root/tests/faults/memory.py" "$program" "$(dirname "$program")/memory.so" 401)
-    check "a sample of failing allocations of all commands: exit code 0, or 4 and one message" \
-        grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
-    ((n_failed == 0)) || cat sample.out
-    sample=$(/usr/bin/python3 "$root/tests/faults/limits.py" "$program" 9000)
-    check "every command with too little memory: what it would replace is still there" \
-        grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
-    ((n_failed == 0)) || cat sample.out
+    sample "every command without one of its allocations, or with little memory: exit code 0, or 4 and one message" \
+        memory.py 401 9000
     limited() {  # kilobytes, arguments
         code=0
         (ulimit -v "$1" && exec timeout "$time_limit" "$program" "${@:2}") >out 2>err </dev/null || code=$?
@@ -74,26 +69,6 @@ else
     limited 300000 run small.yaml -q --force -o threads.nc --threads 64
     check "threads that cannot be started: exit 4" ended 4
     check "threads that cannot be started: says so" grep -q 'of 64 threads can be started' err
-    # a school; from the minimum of the program to enough memory: each step ends well or with a message about memory
-    sed 's/^fish.*/fish:/' small.yaml >many.yaml
-    for i in $(seq 25); do
-        echo "  - {name: f$i, force: reactive, nodes: 40, sheet_points: 41, start: {position: [0, $i]}}"
-    done >>many.yaml
-    n_out=0 n_good=0
-    least=60000
-    # the libraries have to fit
-    until (ulimit -v $least && "$program" --version) >out 2>&1; do least=$((least + 2000)); done 2>/dev/null
-    for kilobytes in $(seq $least 3100 $((least + 60000))) 400000; do
-        limited $kilobytes run many.yaml -q --force -o memory.nc --set time.end=0.01 --set time.output_interval=0.01
-        if ((code == 4)) && grep -qi memory err && (($(wc -l <err) == 1)); then
-            n_out=$((n_out + 1))
-        elif ((code == 0)); then
-            n_good=$((n_good + 1))
-        else
-            fail "$kilobytes kB of memory" "exit code $code: $(head -c 400 err)"
-        fi
-    done
-    check "some of these were too little, and some enough" test $n_out -gt 0 -a $n_good -gt 0
 fi
 
 finish

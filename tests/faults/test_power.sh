@@ -80,7 +80,7 @@ check that_one_runs_again_too test "$code" = 0
 
 # ---- cuts at any time
 
-sample=$(/usr/bin/python3 "$root/tests/faults/power.py" "$program" "$(dirname "$program")/power.so" 40)
+sample=$(/usr/bin/python3 "$root/tests/soak/power.py" "$program" 40)
 check "a sample of power cuts: no run is lost" \
     grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
 ((n_failed == 0)) || cat sample.out

@@ -9,13 +9,11 @@ import resource
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-program = os.path.abspath(sys.argv[1])
-random.seed(int(sys.argv[2]) if len(sys.argv) > 2 else 1)
-counts = {"passed": 0, "failed": 0}
+from common import argument, finish, judge, program, read, shoal, succeed, write
+
+random.seed(argument(2, 1))
 CODES = {0, 1, 2, 3, 4, 75}
 CPU, MEMORY = 20, 1 << 30  # seconds and bytes of one command
 
@@ -23,33 +21,17 @@ FISH = "fish: [{name: a}]\n"
 CASE = "format: 1\ntime: {end: 0.1, shedding_interval: 0.01, output_interval: 0.02, checkpoint_interval: 0.05}\n" + FISH
 
 
-def limited():
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU, CPU))
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-
-
-def run(*arguments, seconds=300):
-    return subprocess.run([program, *arguments], stdin=subprocess.DEVNULL, capture_output=True, timeout=seconds,
-                          preexec_fn=limited, env=dict(os.environ, OMP_NUM_THREADS="1"))
-
-
-def judge(name, done, refused=None):
-    """Count one command; refused: whether it has to refuse its input (None: either)."""
-    message = done.stderr.decode(errors="replace")
-    wrong = None
-    if done.returncode not in CODES:
-        wrong = f"exit code {done.returncode}"
-    elif done.returncode not in (0, 75) and not message.strip():
-        wrong = f"exit code {done.returncode} without a message"
-    elif refused is not None and refused != (done.returncode != 0):
-        wrong = f"exit code {done.returncode}"
+def attack(name, *arguments):
+    """Run a command on hostile input and judge its end."""
+    done = shoal(*arguments, limits=[(resource.RLIMIT_CPU, CPU), (resource.RLIMIT_AS, MEMORY)], OMP_NUM_THREADS="1")
+    message, wrong = done.stderr, None
+    if done.returncode not in CODES or done.returncode not in (0, 75) and not message.strip():
+        wrong = f"exit code {done.returncode}: {message}"
     elif "out of memory" in message:
-        wrong = "a case that fits no memory passed the checks"
+        wrong = f"a case that fits no memory passed the checks: {message}"
     elif "nan" in message.lower().split() and done.returncode == 0:
-        wrong = "nan in a message of success"
-    counts["failed" if wrong else "passed"] += 1
-    if wrong:
-        print(f"{name}: {wrong}: {message[:300]}")
+        wrong = f"nan in a message of success: {message}"
+    judge(name, wrong)
 
 
 # ---- case files
@@ -58,11 +40,13 @@ def judge(name, done, refused=None):
 NUMBERS = ["time.end", "time.shedding_interval", "time.output_interval", "time.checkpoint_interval", "solver.rtol",
            "solver.max_steps", "wake.lifetime", "wake.smoothing", "fluid.density", "fluid.viscosity", "fish[0].nodes",
            "fish[0].sheet_points", "fish[0].length", "fish[0].body.depth", "fish[0].body.thickness", "fish[0].body.modulus",
-           "fish[0].body.density", "fish[0].wave.frequency", "fish[0].wave.amplitude", "fish[0].start.speed"]
+           "fish[0].body.density", "fish[0].wave.frequency", "fish[0].wave.amplitude", "fish[0].start.speed",
+           "fluid.shear", "fluid.gust.amplitude", "wake.decay", "fish[0].body.relaxation_time"]
 VALUES = ["0", "-1", "1e-300", "1e300", ".inf", "-.inf", ".nan", "1e-6", "2147483648", "4.5"]
 
 TEXTS = {
-    "nothing": b"", "a byte of zero": b"format: 1\n\0" + FISH.encode(), "a mark of UTF-8": b"\xef\xbb\xbf" + CASE.encode(),
+    "nothing": b"", "a comment": b"# format: 1\n", "100,000 documents": 100000 * b"---\n",
+    "a byte of zero": b"format: 1\n\0" + FISH.encode(), "a mark of UTF-8": b"\xef\xbb\xbf" + CASE.encode(),
     "UTF-16": CASE.encode("utf-16"), "broken UTF-8": b"format: 1\nname: \xff\xfe\n" + FISH.encode(),
     "carriage returns": CASE.replace("\n", "\r\n").encode(), "tabs": CASE.replace("time: {", "time:\t{").encode(),
     "control characters": b"format: 1\nname: \"\\e[31m\\a\"\n" + FISH.encode(), "a scalar": b"format", "a list": b"- format: 1\n",
@@ -97,17 +81,14 @@ TEXTS = {
 
 def attack_cases():
     for name, text in TEXTS.items():
-        with open("case.yaml", "wb") as file:
-            file.write(text)
-        judge(f"check of {name}", run("check", "case.yaml"))
-        judge(f"run of {name}", run("run", "case.yaml", "-q", "--force", "-o", "text.nc", "--max-wall", "5"))
-    with open("case.yaml", "w") as file:
-        file.write(CASE)
-    for key in NUMBERS:
-        for value in VALUES:
-            change = f"--set={key}={value}"
-            judge(f"check with {change}", run("check", "case.yaml", change))
-            judge(f"run with {change}", run("run", "case.yaml", "-q", "--force", "-o", "text.nc", "--max-wall", "5", change))
+        write("case.yaml", text)
+        attack(f"check of {name}", "check", "case.yaml")
+        attack(f"run of {name}", "run", "case.yaml", "-q", "--force", "-o", "text.nc", "--max-wall", "5")
+    write("case.yaml", CASE)
+    for change in [f"--set={key}={value}" for key in NUMBERS for value in VALUES]:
+        attack(f"check with {change}", "check", "case.yaml", change)
+        attack(f"run with {change}", "run", "case.yaml", "-q", "--force", "-o", "text.nc", "--max-wall", "5", change)
+    print(f"{len(TEXTS) + len(NUMBERS) * len(VALUES)} cases")
 
 
 # ---- results and checkpoints
@@ -137,45 +118,31 @@ def crafted(bytes_of_file, i):
 
 
 def attack_files():
-    assert run("run", "case.yaml", "-q", "--force", "-o", "good.nc").returncode == 0
-    result = open("good.nc", "rb").read()
+    succeed("run", "case.yaml", "-q", "--force", "-o", "good.nc")
     reading = [["info"], ["info", "--json"], ["view", "-q", "--force", "-o", "x.html"],
                ["export", "-q", "--force", "--vtk", "vtk"], ["field", "-q", "--force", "--at", "0.04", "--grid", "4,4"]]
+    kept = {name: read(name) for name in ("good.nc", "good.ckpt")}
     for i in range(150):
-        with open("bad.nc", "wb") as file:
-            file.write(crafted(result, i))
+        write("bad.nc", crafted(kept["good.nc"], i))
         command, *options = reading[i % len(reading)]
-        judge(f"crafted result {i}: {command}", run(command, "bad.nc", *options))
-    kept = {name: open(name, "rb").read() for name in ("good.nc", "good.ckpt")}
+        attack(f"crafted result {i}: {command}", command, "bad.nc", *options)
     for i in range(81):
         shutil.rmtree("twin", ignore_errors=True)
         os.mkdir("twin")
         name = "good.ckpt" if i % 3 else "good.nc"
         for other, data in kept.items():
-            with open("twin/" + other, "wb") as file:
-                file.write(crafted(data, i) if other == name else data)
-        judge(f"crafted {name} {i}: resume", run("resume", "twin/good.ckpt", "-q", "--end", "0.12"))
-        counts["failed" if changed(kept) else "passed"] += 1
-
-
-def changed(kept):
-    """Whether a file beside the attacked folder has changed."""
-    names = [name for name, data in kept.items() if open(name, "rb").read() != data]
-    for name in names:
-        print(f"{name} has changed")
-    return names
+            write("twin/" + other, crafted(data, i) if other == name else data)
+        attack(f"crafted {name} {i}: resume", "resume", "twin/good.ckpt", "-q", "--end", "0.12")
+        judge("files beside the attacked folder", [name for name, data in kept.items() if read(name) != data])
 
 
 # ---- kills
 
 def attack_by_signals():
     """Signals at random times; the case makes every command take seconds."""
-    with open("long.yaml", "w") as file:
-        file.write(CASE.replace("end: 0.1", "end: 20").replace("checkpoint_interval: 0.05", "checkpoint_interval: 1"))
-    with open("many.yaml", "w") as file:
-        file.write(CASE + "sweep: [{key: 'fish[0].wave.phase', values: [0, 40, 80, 120]}]\n")
-    with open("fine.yaml", "w") as file:
-        file.write("format: 1\ntime: {end: 1}\nfish: [{nodes: 199}]\n")
+    write("long.yaml", CASE.replace("end: 0.1", "end: 20").replace("checkpoint_interval: 0.05", "checkpoint_interval: 1"))
+    write("many.yaml", CASE + "sweep: [{key: 'fish[0].wave.phase', values: [0, 40, 80, 120]}]\n")
+    write("fine.yaml", "format: 1\ntime: {end: 1}\nfish: [{nodes: 199}]\n")
     commands = [["run", "long.yaml", "-o", "long.nc", "--force"], ["study", "many.yaml", "-o", "many", "--force"],
                 ["steady", "case.yaml", "-o", "steady.nc", "--force"], ["run", "fine.yaml", "-o", "fine.nc", "--force"],
                 ["check", "fine.yaml"], ["error", "case.yaml", "--of", "speed", "-o", "bars", "--force"]]
@@ -193,21 +160,13 @@ def attack_by_signals():
             message = process.communicate()[1].decode(errors="replace") + "still running 60 s after the signal"
         codes = CODES | {-number} if number == signal.SIGKILL or command[0] in ("check", "error", "study") else CODES
         wrong = process.returncode not in codes or "still running" in message
-        counts["failed" if wrong else "passed"] += 1
-        if wrong:
-            print(f"{command} with {number.name} after {time.monotonic() - begun:.1f} s: {process.returncode} {message[:300]}")
+        judge(f"{command} with {number.name}", wrong and
+              f"{time.monotonic() - begun:.1f} s after the signal: {process.returncode} {message}")
         if os.path.exists("long.nc"):
-            judge(f"info after {number.name}", run("info", "long.nc"))
+            attack(f"info after {number.name}", "info", "long.nc")
 
 
-folder = tempfile.mkdtemp()
-os.chdir(folder)
-try:
-    attack_cases()
-    attack_files()
-    attack_by_signals()
-finally:
-    os.chdir("/")
-    shutil.rmtree(folder, ignore_errors=True)
-print(f"{counts['passed']} passed, {counts['failed']} failed, 0 skipped")
-sys.exit(counts["failed"] > 0)
+attack_cases()
+attack_files()
+attack_by_signals()
+finish()

@@ -1,30 +1,23 @@
 #!/usr/bin/python3
-"""pressure_cases.py PROGRAM contact: run random fish with the force of the pressure into each other and into walls: 60
-schools side by side, 20 fish sent into a wall at 2 and 4 m/s, 20 pairs head on, all from soft to stiff, each with
-infinite and with finite span. A quarter of an hour.
+"""pressure_cases.py PROGRAM [CASES [FIRST [BEATS]]]: fish with the force of the pressure in contact, then random legal
+schools. Each run must end well, with finite numbers and no circulation in total. Half an hour.
 
-pressure_cases.py PROGRAM [CASES [FIRST [BEATS]]]: run random legal schools with the force of the pressure (CASES of
-them, numbers FIRST on, for BEATS beats): plates that are driven and fish that swim, 1 to 4 of them in a school, side by
-side, some with the reactive force; from soft to stiff (EI/(rho U^2 L^3) of 0.05 to 1e6) and from light to heavy (mass
-over rho L w of 0.01 to 10; those heavier than the fluid that they move are not limp). Each run must end well, with
-finite numbers and no circulation in total. 500 cases of 1.5 beats: a quarter of an hour."""
+Contact: 60 schools side by side, 20 fish sent into a wall at 2 and 4 m/s, 20 pairs head on, all from soft to stiff, each
+with infinite and with finite span.
+
+Schools: CASES of them (500), numbers FIRST on, for BEATS beats (1.5): plates that are driven and fish that swim, 1 to 4 of
+them in a school, side by side, some with the reactive force; from soft to stiff (EI/(rho U^2 L^3) of 0.05 to 1e6) and from
+light to heavy (mass over rho L w of 0.01 to 10; those heavier than the fluid that they move are not limp)."""
 
 import math
-import os
 import random
-import subprocess
-import sys
-import tempfile
 
 import netCDF4
 import numpy as np
 
-program = os.path.abspath(sys.argv[1])
-is_contact = sys.argv[2:] == ["contact"]
-n_cases = int(sys.argv[2]) if len(sys.argv) > 2 and not is_contact else 500
-first = int(sys.argv[3]) if len(sys.argv) > 3 else 1000
-beats = float(sys.argv[4]) if len(sys.argv) > 4 else 1.5
+from common import argument, finish, judge, shoal, write
 
+n_cases, first, beats = argument(2, 500), argument(3, 1000), argument(4, 1.5)
 MAX_CIRCULATION = 1e-10  # of all sheets and wakes, over length^2 times frequency
 
 
@@ -121,29 +114,19 @@ def draw_head_on(draw):
 
 def cases():
     """The number of each case, its text, its length and its rate."""
-    if not is_contact:
-        for number in range(first, first + n_cases):
-            yield (number, *draw_case(number))
-        return
     for drawn, count in ((draw_dense_school, 60), (draw_wall, 20), (draw_head_on, 20)):
         number = 0
         while count > 0:
             text = "format: 1\n" + drawn(random.Random(number))
-            if not overlaps(text):
+            write("case.yaml", text)
+            if "overlap at the start" not in shoal("check", "case.yaml").stderr:
                 count -= 1
                 for span in ("infinite", "finite"):
                     chosen = text.replace("span: infinite", f"span: {span}")
                     yield f"{number} of {drawn.__name__[5:]}, {span}", chosen, 1, 1
             number += 1
-
-
-def overlaps(text):
-    """Whether bodies of a case overlap at the start, which is refused."""
-    with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
-        file.write(text)
-        file.flush()
-        done = subprocess.run([program, "check", file.name], capture_output=True, text=True)
-    return "overlap at the start" in done.stderr
+    for number in range(first, first + n_cases):
+        yield (number, *draw_case(number))
 
 
 def fault_of(path, length, rate):
@@ -159,25 +142,12 @@ def fault_of(path, length, rate):
     return f"a total circulation of {circulation:.1e}" if circulation > MAX_CIRCULATION else None, counts
 
 
-def main():
-    n_passed, n_failed, most = 0, 0, np.zeros(3)
-    with tempfile.TemporaryDirectory() as folder:
-        for number, text, length, rate in cases():
-            n_passed += 1
-            case, result = os.path.join(folder, "case.yaml"), os.path.join(folder, "case.nc")
-            with open(case, "w") as file:
-                file.write(text)
-            done = subprocess.run([program, "run", case, "-q", "--force", "-o", result], stdin=subprocess.DEVNULL,
-                                  capture_output=True, text=True)
-            errors = [line for line in done.stderr.splitlines() if "warning" not in line]
-            fault, counts = ("\n".join(errors), [0, 0, 0]) if done.returncode else fault_of(result, length, rate)
-            most = np.maximum(most, counts)
-            if fault:
-                n_passed, n_failed = n_passed - 1, n_failed + 1
-                print(f"case {number}: {fault}\n{text}", flush=True)
-    print("most of one case: %.1f steps, %.1f Newton iterations, %.2f Jacobians an event" % tuple(most))
-    print(f"{n_passed} passed, {n_failed} failed, 0 skipped")
-    return n_failed > 0
-
-
-sys.exit(main())
+most = np.zeros(3)
+for number, text, length, rate in cases():
+    write("case.yaml", text)
+    done = shoal("run", "case.yaml", "-q", "--force", "-o", "case.nc")
+    fault, used = (done.stderr, [0, 0, 0]) if done.returncode else fault_of("case.nc", length, rate)
+    most = np.maximum(most, used)
+    judge(f"case {number}", fault and f"{fault}\n{text}")
+print("most of one case: %.1f steps, %.1f Newton iterations, %.2f Jacobians an event" % tuple(most))
+finish()

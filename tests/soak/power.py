@@ -1,22 +1,20 @@
 #!/usr/bin/python3
 """Cut the power at random places of runs with checkpoints, and look whether a run is lost.
 
-    power.py PROGRAM RECORDER CUTS [SEED]
+    power.py PROGRAM [CUTS [SEED]]
 
-The recorder (tests/faults/power.c) logs every change of the files of a run. A power cut leaves what was synchronised
-before it. Of the rest it leaves any part: each write is kept, dropped or torn at the border of a sector, whatever became of
-the writes before it; each change of a name is kept or dropped. The scenarios are a run, a run that is resumed, one that is
+The log of tests/faults/files.c has every change of the files of a run. A power cut leaves what was synchronised before
+it. Of the rest it leaves any part: each write is kept, dropped or torn at the border of a sector, whatever became of the
+writes before it; each change of a name is kept or dropped. The scenarios are a run, a run that is resumed, one that is
 extended, and one that replaces the result of another case.
 
 After each cut `shoal info` reads the result or refuses it with a message. If a checkpoint had been completed, the run is
-resumed to the bits of the run that was not interrupted. A run that replaces another one leaves one of them. Prints a line
-for what is wrong, and as the last one how many passed and failed.
-"""
-import collections, os, random, shutil, struct, subprocess, sys, tempfile
-import netCDF4
+resumed to the bits of the run that was not interrupted. A run that replaces another one leaves one of them."""
+import collections, os, random, shutil, struct
+from common import argument, build, different, finish, judge, parts, read, same, shoal, succeed, values, write
 
-program, recorder, n_cuts = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), int(sys.argv[3])
-random.seed(int(sys.argv[4]) if len(sys.argv) > 4 else 1)
+n_cuts = argument(2, 1000)
+random.seed(argument(3, 1))
 SECTOR = 512
 CASE = """format: 1
 name: victim
@@ -26,14 +24,6 @@ fish: [{force: reactive, nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}
 KINDS = ["create", "write", "truncate", "sync", "sync folder", "rename", "unlink"]
 Entry = collections.namedtuple("Entry", "kind inode offset length name other data")
 LEFT = ["victim.nc", "victim.ckpt", "victim.ckpt.previous"]
-
-
-def shoal(*arguments, **environment):
-    # the address sanitizer accepts a preloaded library in front of it
-    environment["ASAN_OPTIONS"] = "verify_asan_link_order=0:detect_leaks=0"
-    done = subprocess.run([program, *arguments], env={**os.environ, **environment}, stdin=subprocess.DEVNULL,
-                          capture_output=True, text=True, errors="replace", timeout=300)
-    return done.returncode, done.stderr
 
 
 def read_log(path):
@@ -149,54 +139,38 @@ class Disk:
 # ---- checks
 
 
-def values(path):
-    with netCDF4.Dataset(path) as data:
-        data.set_auto_mask(False)
-        return data.run_status.strip("\0"), {name: data[name][...].tobytes() for name in data.variables if name != "wall_time"}
-
-
-def same(name):
-    with open(name, "rb") as one, open("../earlier/" + name, "rb") as other:
-        return one.read() == other.read()
-
-
 def is_earlier():
-    return all(os.path.exists(name) and same(name) for name in LEFT)
+    return all(same(name, "../earlier/" + name) for name in LEFT)
 
 
 def continue_with(command, whole):
     """What is wrong with a run that is resumed, or None."""
-    code, message = shoal(*command, "-q")
-    if code == 2 and "--end 0.24: the checkpoint is at t = 0.24 s already" in message:
-        code, message = shoal("resume", "victim.ckpt", "-q")
-    if code == 2 and "is complete" in message:
-        code = 0
-    if code != 0:
-        return f"it cannot be resumed: exit code {code}: {message}"
-    status, found = values("victim.nc")
-    wrong = [name for name in whole if whole[name] != found.get(name)]
-    return f"{status}, other bits in {', '.join(wrong)}" if wrong or status != "complete" else None
+    done = shoal(*command, "-q")
+    if done.returncode == 2 and "--end 0.24: the checkpoint is at t = 0.24 s already" in done.stderr:
+        done = shoal("resume", "victim.ckpt", "-q")
+    if done.returncode != 0 and not (done.returncode == 2 and "is complete" in done.stderr):
+        return f"it cannot be resumed: exit code {done.returncode}: {done.stderr}"
+    names, status = different("victim.nc", whole), values("victim.nc")[0]
+    return f"{status}, other bits in {', '.join(names)}" if names or status != "complete" else None
 
 
 def wrong(scenario, has_checkpoint):
     """What is wrong with the files of the folder after a cut, or None."""
-    if os.path.exists("victim.nc"):
-        code, message = shoal("info", "victim.nc")
-        if code not in (0, 4) or (code == 4) != bool(message):
-            return f"info: exit code {code}: {message}"
-        if code == 4:
-            return f"the result cannot be read: {message}"
+    if os.path.exists("victim.nc") and (done := shoal("info", "victim.nc")).returncode != 0:
+        return f"info: exit code {done.returncode}: {done.stderr}"
     if scenario.replaces:
         if is_earlier():
             return None
         if not os.path.exists("victim.nc"):
             return "neither the earlier result is there nor the new one"
-        if same("victim.nc"):
+        if same("victim.nc", "../earlier/victim.nc"):
             return "the earlier result has lost its checkpoints"
     if has_checkpoint:
-        return continue_with(scenario.again, scenario.whole)
-    code, message = shoal(*scenario.command, *([] if "--force" in scenario.command else ["--force"]), "-q")
-    return f"it cannot begin again: exit code {code}: {message}" if code != 0 else None
+        bad = continue_with(scenario.again, scenario.whole)
+    else:
+        done = shoal(*scenario.command, *([] if "--force" in scenario.command else ["--force"]), "-q")
+        bad = f"it cannot begin again: exit code {done.returncode}: {done.stderr}" if done.returncode else None
+    return bad or (f"{parts()} are left" if parts() else None)
 
 
 # ---- scenarios
@@ -204,21 +178,25 @@ def wrong(scenario, has_checkpoint):
 Scenario = collections.namedtuple("Scenario", "name before command again whole replaces entries inode_of needs")
 
 
+def renew(files):
+    """Let the folder have the case and these files."""
+    for name in os.listdir("."):
+        os.unlink(name)
+    for name, data in {"case.yaml": CASE, **files}.items():
+        write(name, data)
+
+
 def record(name, prepare, command, again, replaces=False):
     """Run a command on what prepare makes, and log it."""
-    for file in os.listdir("."):
-        os.unlink(file)
-    shutil.copy("../case.yaml", "case.yaml")
+    renew({})
     prepare()
-    files = [file for file in sorted(os.listdir(".")) if file != "case.yaml"]
-    before = {file: open(file, "rb").read() for file in files}
-    inode_of = {os.stat(file).st_ino: file for file in files}
+    before = {file: read(file) for file in sorted(os.listdir(".")) if file != "case.yaml"}
+    inode_of = {os.stat(file).st_ino: file for file in before}
     shutil.rmtree("../earlier", ignore_errors=True)
     shutil.copytree(".", "../earlier")
     if os.path.exists("../log"):
         os.unlink("../log")
-    code, message = shoal(*command, "-q", LD_PRELOAD=recorder, POWER_LOG=os.path.abspath("../log"), POWER_PATH="victim")
-    assert code == 0, message
+    succeed(*command, "-q", LD_PRELOAD=build + "/files.so", FAULT_LOG=os.path.abspath("../log"), FAULT_PATH="victim")
     entries = read_log("../log")
     # a checkpoint is there once its name is safe, or before the command begins
     renames = [i for i, entry in enumerate(entries) if entry.kind == "rename" and entry.other == "victim.ckpt"]
@@ -228,62 +206,32 @@ def record(name, prepare, command, again, replaces=False):
 
 
 def stopped():
-    """A run as a kill leaves it: without its last rows, and with two checkpoints."""
-    assert shoal("run", "case.yaml", "-q", "--set", "time.end=0.12")[0] == 0
-    for name in "victim.ckpt", "victim.ckpt.previous":
-        shutil.copy(name, "../" + name)
-    os.unlink("victim.nc")
-    for name in "victim.ckpt", "victim.ckpt.previous":
-        os.unlink(name)
-    assert shoal("run", "case.yaml", "-q")[0] == 0
-    # the checkpoint at 0.12 s is the one before the last
+    """A run as a kill leaves it: without its last rows, and with its checkpoint at 0.12 s, the one before the last."""
+    succeed("run", "case.yaml", "-q")
     os.rename("victim.ckpt.previous", "victim.ckpt")
-    with open("victim.nc", "r+b") as file:
-        file.truncate(os.path.getsize("victim.nc") - 100)
+    os.truncate("victim.nc", os.path.getsize("victim.nc") - 100)
 
 
-def complete():
-    assert shoal("run", "case.yaml", "-q")[0] == 0
-
-
-def other_case():
-    assert shoal("run", "case.yaml", "-q", "--set", "fish[0].wave.amplitude=0.2")[0] == 0
-
-
+RESUME, EXTEND = ["resume", "victim.ckpt"], ["resume", "victim.ckpt", "--end", "0.24"]
 SCENARIOS = [
-    ("run", lambda: None, ["run", "case.yaml"], ["resume", "victim.ckpt"]),
-    ("resume", stopped, ["resume", "victim.ckpt"], ["resume", "victim.ckpt"]),
-    ("extend", complete, ["resume", "victim.ckpt", "--end", "0.24"], ["resume", "victim.ckpt", "--end", "0.24"]),
-    ("replace", other_case, ["run", "case.yaml", "--force"], ["resume", "victim.ckpt"], True),
+    ("run", lambda: None, ["run", "case.yaml"], RESUME),
+    ("resume", stopped, RESUME, RESUME),
+    ("extend", lambda: succeed("run", "case.yaml", "-q"), EXTEND, EXTEND),
+    ("replace", lambda: succeed("run", "case.yaml", "-q", "--set", "fish[0].wave.amplitude=0.2"),
+     ["run", "case.yaml", "--force"], RESUME, True),
 ]
-counts = {"passed": 0, "failed": 0}
-with tempfile.TemporaryDirectory() as folder:
-    os.makedirs(folder + "/here")
-    open(folder + "/case.yaml", "w").write(CASE)
-    os.chdir(folder + "/here")
-    for arguments in SCENARIOS:
-        scenario = record(*arguments)
-        n_resumed = 0
-        for i in range(n_cuts // len(SCENARIOS)):
-            cut = random.randrange(len(scenario.entries) + 1)
-            disk = Disk(scenario.before)
-            for entry in scenario.entries[:cut]:
-                disk.do(entry, scenario.inode_of)
-            for file in os.listdir("."):
-                os.unlink(file)
-            shutil.copy("../case.yaml", "case.yaml")
-            for name, data in disk.after_cut().items():
-                open(name, "wb").write(data)
-            n_resumed += cut >= scenario.needs
-            bad = wrong(scenario, cut >= scenario.needs)
-            if not bad and not (scenario.replaces and is_earlier()) and [name for name in os.listdir(".") if name.endswith(".part")]:
-                bad = f"{os.listdir('.')} are left"
-            counts["failed" if bad else "passed"] += 1
-            if bad:
-                print(f"FAILED  {scenario.name}, cut {i} behind {cut} of {len(scenario.entries)} changes: {bad.strip()}",
-                      flush=True)
-        print(f"{scenario.name}: {len(scenario.entries)} changes of files; {n_cuts // len(SCENARIOS)} cuts, {n_resumed} of "
-              "them with a checkpoint", flush=True)
-    os.chdir("/")
-print(f"{counts['passed']} passed, {counts['failed']} failed, 0 skipped")
-sys.exit(counts["failed"] > 0)
+os.mkdir("here")
+os.chdir("here")
+for arguments in SCENARIOS:
+    scenario, n_resumed, n = record(*arguments), 0, n_cuts // len(SCENARIOS)
+    for i in range(n):
+        cut = random.randrange(len(scenario.entries) + 1)
+        disk = Disk(scenario.before)
+        for entry in scenario.entries[:cut]:
+            disk.do(entry, scenario.inode_of)
+        renew(disk.after_cut())
+        n_resumed += cut >= scenario.needs
+        judge(f"{scenario.name}, cut {i} behind {cut} of {len(scenario.entries)} changes", wrong(scenario, cut >= scenario.needs))
+    print(f"{scenario.name}: {len(scenario.entries)} changes of files; {n} cuts, {n_resumed} of them with a checkpoint", flush=True)
+os.chdir("..")
+finish()
