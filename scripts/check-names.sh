@@ -21,7 +21,7 @@ complain() {
 
 # Modules of several subjects, and the prefixes of the names
 declare -A beginnings=(
-    [mathematics]='angle_|ramp_|quadrature_|box_' [shape]='curve_|profile_' [rod]='rod_|edge_|actuation_'
+    [mathematics]='angle_|ramp_|quadrature_|box_' [parallel]='parallel_|clock_' [shape]='curve_|profile_' [rod]='rod_|edge_|actuation_'
     [reactive]='reactive_|tail_flux_' [clearance]='clearance_|neighbours_|self_crossing' [control]='control_|lead_' [durable]='durable_|plain_file_'
 )
 

@@ -65,8 +65,8 @@ def program_page(page, about):
     for item in re.split(r",\s+", about["exit_codes"].rstrip(".")):
         code, meaning = item.split(" ", 1)
         lines += [".TP", bold(code), text(meaning)]
-    lines += [".SH ENVIRONMENT", ".TP", bold("OMP_WAIT_POLICY, GOMP_SPINCOUNT, OMP_PROC_BIND, OMP_PLACES")]
-    lines += [text("these variables take precedence over the program's choice of waiting and binding of threads")]
+    lines += [".SH ENVIRONMENT", ".TP", bold("OMP_WAIT_POLICY, GOMP_SPINCOUNT")]
+    lines += [text("these variables take precedence over the program's choice of waiting threads")]
     lines += [".SH EXAMPLES", ".EX"]
     lines += [
         text(line)

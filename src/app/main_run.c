@@ -67,7 +67,6 @@ static enum status with_case(const struct request *request,
 static enum status tell_begin(const struct case_values *values, const char *path, void *data) {
     struct teller *const teller = data;
     TRY(parallel_try_threads(values->school.threads));
-    parallel_choice_spread(values->school.threads);
     return memory_copy_string(&teller->path, path, "a file name");
 }
 
@@ -183,7 +182,6 @@ static enum status find_steady_state(const struct case_values *values, const str
                                            .data = &teller,
                                            .stop = main_stop_signal()};
     TRY(parallel_try_threads(values->school.threads));
-    parallel_choice_spread(values->school.threads);
     if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
     main_catch_signals();
     say_progress_start(&teller.progress);

@@ -15,12 +15,9 @@ static void on_signal(int number) {
     stop_signal = number;
 }
 
-/* Signals that request a stop, and the actions inherited from the parent process. Libraries install handlers before
- * main (SUNDIALS 7 of Debian loads MPI, which catches SIGHUP), so the executable stores the inherited actions before
- * the libraries are loaded. */
-static struct {
+/* Signals that request a stop. */
+static const struct {
     int number, flags;
-    struct sigaction before;
 } asking[] = {
     {.number = SIGINT, .flags = (int)SA_RESETHAND},
     // a batch queue can send these repeatedly while the checkpoint is written
@@ -30,18 +27,6 @@ static struct {
     // soft limit on CPU time; the hard limit kills
     {.number = SIGXCPU},
 };
-enum { N_ASKING = sizeof asking / sizeof *asking };
-
-static void keep_signals(void) {
-    for (int i = 0; i < N_ASKING; i++) sigaction(asking[i].number, NULL, &asking[i].before);
-}
-#ifdef __ELF__
-__attribute__((section(".preinit_array"), used)) static void (*const first_of_all)(void) = keep_signals;
-#else
-__attribute__((constructor)) static void keep_at_start(void) {
-    keep_signals();
-}
-#endif
 
 void main_open_standard(void) {
     // open standard output for reading, so that writing still fails
@@ -58,11 +43,12 @@ void main_reset_signals(void) {
 }
 
 void main_catch_signals(void) {
-    for (int i = 0; i < N_ASKING; i++) {
-        struct sigaction action = {.sa_handler = on_signal, .sa_flags = asking[i].flags};
+    for (size_t i = 0; i < sizeof asking / sizeof *asking; i++) {
+        struct sigaction before, action = {.sa_handler = on_signal, .sa_flags = asking[i].flags};
         sigemptyset(&action.sa_mask);
-        const int is_ignored = asking[i].before.sa_handler == SIG_IGN;
-        sigaction(asking[i].number, is_ignored ? &asking[i].before : &action, NULL);
+        sigaction(asking[i].number, NULL, &before);
+        // a signal that the parent process ignores (nohup) stays ignored
+        if (before.sa_handler != SIG_IGN) sigaction(asking[i].number, &action, NULL);
     }
 
     // report a closed pipe as an error; progress ignores a closed stderr

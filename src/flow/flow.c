@@ -329,8 +329,12 @@ enum status flow_place(struct flow *flow, const struct state *state, double t, c
     }
 
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) flow_place_body(flow, f, y);
+    } else {
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) flow_place_body(flow, f, y);
+        for (int f = 0; f < school->n_fish; f++) flow_place_body(flow, f, y);
+    }
     for (int f = 0; f < school->n_fish; f++) TRY(flow_place_nascent(flow, state, f, y));
     return STATUS_OK;
 }

@@ -275,8 +275,12 @@ static enum status flow_sum(struct flow *flow, const struct state *state, double
         flow_zero(flow, with_gradient);
     }
 
+    if (threads == 1) {
+        for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], with_gradient);
+    } else {
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], with_gradient);
+        for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], with_gradient);
+    }
     return STATUS_OK;
 }
 

@@ -14,6 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/parallel.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "result/durable.h"
@@ -29,12 +30,6 @@ enum {
     do {                                                         \
         if ((writer)->code == NC_NOERR) (writer)->code = (call); \
     } while (0)
-
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 const char *netcdf_reason(int code) {
     return nc_strerror(code);
@@ -220,16 +215,16 @@ void netcdf_write_text(struct netcdf_writer *writer, int variable, const size_t 
 
 void netcdf_sync(struct netcdf_writer *writer, bool now) {
     CALL(writer, nc_sync(writer->file));
-    if (!now && seconds_now() - writer->last_fsync < 1) return;
+    if (!now && clock_seconds(CLOCK_MONOTONIC) - writer->last_fsync < 1) return;
     CALL(writer, durable_sync(writer->part.descriptor));
-    writer->last_fsync = seconds_now();
+    writer->last_fsync = clock_seconds(CLOCK_MONOTONIC);
 }
 
 enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite) {
     CALL(writer, nc_sync(writer->file));
     if (writer->code == NC_NOERR) TRY(target_check(writer->path, TARGET_NETCDF, overwrite));
     CALL(writer, durable_publish(&writer->part, overwrite));
-    writer->last_fsync = seconds_now();
+    writer->last_fsync = clock_seconds(CLOCK_MONOTONIC);
     return writer->code == NC_NOERR ? STATUS_OK : netcdf_failed(writer->path, writer->code);
 }
 

@@ -3,8 +3,8 @@
 
 #include <math.h>
 #include <sys/resource.h>
-#include <time.h>
 
+#include "base/parallel.h"
 #include "flow/tree.h"
 #include "run/event.h"
 
@@ -30,13 +30,6 @@ struct costs {
     int n;
     double vortices[MAX_WAKES + 1], seconds[MAX_WAKES + 1], bytes[MAX_WAKES + 1], power;
 };
-
-/* CPU time of this thread, s: the thread takes part in all parallel work, and other programs do not count. */
-static double processor_time(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 // peak memory of the program so far
 static double bytes_so_far(void) {
@@ -76,20 +69,20 @@ static enum status event_cost(struct simulation *simulation, double evaluations,
     struct residual *const residual = simulation->residual;
     int jumped;
 
-    double start = processor_time();
+    double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     TRY(event_next(state, residual, simulation->consistent, &jumped));
-    *seconds = processor_time() - start;
+    *seconds = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start;
 
-    start = processor_time();
+    start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     TRY(residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch));
-    *seconds += evaluations * (processor_time() - start);
+    *seconds += evaluations * (clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start);
     return STATUS_OK;
 }
 
 // the first events of the run; what one costs, and how often it evaluates the equations
 static enum status measure_first_events(struct simulation *simulation, double patience, struct estimate *estimate,
                                         double *seconds, double *evaluations) {
-    const double start = processor_time();
+    const double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     double first = 0, spent = 0;
     struct integrator_counts after_first = {0};
     long n = 0;
@@ -97,7 +90,7 @@ static enum status measure_first_events(struct simulation *simulation, double pa
         const enum status status = simulate_step(simulation);
         if (status == STATUS_STOPPED) break;
         TRY(status);
-        spent = processor_time() - start;
+        spent = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start;
         if (n++ == 0) {
             first = spent;
             after_first = simulation->totals;
@@ -110,7 +103,8 @@ static enum status measure_first_events(struct simulation *simulation, double pa
         // extrapolate from the completed part of the first event
         struct integrator_counts now;
         simulation->integrator->count(simulation->solver, &now);
-        *seconds = (processor_time() - start) * fmax(1, usual_evaluations / fmax(1, (double)now.residual_evaluations));
+        *seconds = (clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start) *
+                   fmax(1, usual_evaluations / fmax(1, (double)now.residual_evaluations));
         return STATUS_OK;
     }
 
@@ -136,7 +130,7 @@ static enum status measure_synthetic_wakes(struct simulation *simulation, double
     costs->bytes[0] = bytes_so_far();
 
     while (n < most && costs->n <= MAX_WAKES) {
-        const double left = simulation->stop && *simulation->stop ? 0 : end - processor_time();
+        const double left = simulation->stop && *simulation->stop ? 0 : end - clock_seconds(CLOCK_THREAD_CPUTIME_ID);
         if (!(left > 4 * costs->seconds[costs->n - 1])) break;
         n = (int)fmin(most, fmax(FIRST_WAKE, 2.0 * n));
         for (int f = 0; f < school->n_fish; f++) TRY(synthetic_wake(school, state, f, n));
@@ -186,7 +180,7 @@ static double run_bytes(const struct simulation *simulation, const struct costs 
 }
 
 enum status estimate_run(struct simulation *simulation, double patience, struct estimate *estimate) {
-    const double end = processor_time() + patience;
+    const double end = clock_seconds(CLOCK_THREAD_CPUTIME_ID) + patience;
     double each, evaluations;
     struct costs costs = {.n = 1, .vortices = {1}};
     TRY(measure_first_events(simulation, patience / 2, estimate, &each, &evaluations));

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <time.h>
 
+#include "base/parallel.h"
 #include "body/rod.h"
 #include "fish/fish.h"
 #include "fish/fish_school.h"
@@ -12,12 +13,6 @@
 #include "result/result_table.h"
 #include "run/event.h"
 #include "solver/integrator.h"
-
-static double wall_clock(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* Set the highest order of ida. Default (doc/numerics.md, section 3): 2 if the stiffness of a body is not damped, 5 if
  * the slowest bending mode of every fish is below 0.6 of the beat frequency, else 3. */
@@ -55,7 +50,7 @@ static struct simulation *simulation_begin(struct arena *parent, const struct ca
     NEW(arena, new, 1);
     new->arena = arena;
     arena_defer(arena, simulation_release, new);
-    new->started = wall_clock();
+    new->started = clock_seconds(CLOCK_MONOTONIC);
     new->n_events = lround(values->time.end / values->school.shedding_interval);
     new->integrator = integrator_of(values->solver.method);
     new->options = (struct integrator_options){
@@ -204,6 +199,7 @@ static enum status simulation_name_contact(const struct simulation *simulation, 
                        status_message(), name, which, school->walls.y[wall], least);
 }
 
+// integrate to the next event, and perform the event
 static enum status simulation_advance(struct simulation *simulation) {
     struct state *const state = simulation->state;
     const double next = fish_event_time(simulation->school, state->event + 1);
@@ -221,10 +217,7 @@ static enum status simulation_advance(struct simulation *simulation) {
 }
 
 enum status simulate_step(struct simulation *simulation) {
-    const int threads = simulation->school->threads;
-    parallel_choice_begin(&simulation->choice, threads);
     enum status status = simulation_advance(simulation);
-    parallel_choice_end(&simulation->choice, threads);
     if (status != STATUS_SOLVER) return status;
 
     // what the bodies do at a failure of the integrator or of the event
@@ -237,7 +230,7 @@ void simulate_measure(struct simulation *simulation) {
 }
 
 double simulate_wall_time(const struct simulation *simulation) {
-    return wall_clock() - simulation->started;
+    return clock_seconds(CLOCK_MONOTONIC) - simulation->started;
 }
 
 void simulate_row(struct simulation *simulation, struct integrator_counts *counts, struct result_row *row) {

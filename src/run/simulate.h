@@ -5,7 +5,6 @@
 
 #include <signal.h>
 
-#include "base/parallel.h"
 #include "base/status.h"
 #include "case/case.h"
 #include "school/diagnostics.h"
@@ -26,7 +25,6 @@ struct simulation {
     const struct integrator *integrator;
     void *solver;
     struct integrator_options options;
-    struct parallel_choice choice;     /* threads of the next step */
     struct integrator_counts totals;   /* up to the last event, with the size of the last step */
     const volatile sig_atomic_t *stop; /* simulate_step stops when *stop is not 0; may be NULL */
     long n_events;                     /* of the whole run, without the event at t = 0 */

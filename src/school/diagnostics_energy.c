@@ -159,21 +159,12 @@ static void gather_powers(const struct diagnostics_power *power, double *of) {
     of[WORK_DRIVING_ON_WATER] = power->driving_on_water;
 }
 
-/* The end of a step. */
-struct step {
-    struct residual *residual;
-    struct state *state;
-    double t;
-    const double *y;
-};
+// the works of fish f up to the end of a step
+static void add_works(struct residual *residual, struct state *state, int f, double t, const double *y) {
+    struct energy_balance *const balance = &state->balance[f];
+    advance_strains(residual, state, f, t, y);
 
-static void add_works(void *data, int f) {
-    const struct step *const step = data;
-    const double t = step->t;
-    struct energy_balance *const balance = &step->state->balance[f];
-    advance_strains(step->residual, step->state, f, t, step->y);
-
-    const struct diagnostics_power now = diagnostics_power(step->residual, f, t, step->y);
+    const struct diagnostics_power now = diagnostics_power(residual, f, t, y);
     const double times[3] = {t, balance->t[0], balance->t[1]};
     double newest[N_WORKS];
     gather_powers(&now, newest);
@@ -187,14 +178,20 @@ static void add_works(void *data, int f) {
     }
 
     const int has_area = t > times[1];
-    diagnostics_momentum_step(step->residual, step->state, f, t, step->y, has_area ? balance->n + 1 : 0, times);
+    diagnostics_momentum_step(residual, state, f, t, y, has_area ? balance->n + 1 : 0, times);
     for (int i = 0; i < 2; i++) balance->t[i] = times[i];
     if (balance->n < 2) balance->n++;
 }
 
 void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y) {
     const struct school *const school = residual->school;
-    parallel_for(fish_threads(school), school->n_fish, add_works, &(struct step){residual, state, t, y});
+    const int threads = fish_threads(school);
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) add_works(residual, state, f, t, y);
+    } else {
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int f = 0; f < school->n_fish; f++) add_works(residual, state, f, t, y);
+    }
     clearance_step(residual->school, state, t, y, residual->neighbours, residual->scratch);
 }
 

@@ -316,27 +316,9 @@ static void balance(const struct residual *residual, int f, const double *y, dou
     value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
 }
 
-static int all_finite(const double *value, int first, int end) {
-    for (int i = first; i < end; i++) {
-        if (!isfinite(value[i])) return 0;
-    }
-    return 1;
-}
-
-/* An evaluation; n_failed: number of fish with values that are not finite. */
-struct evaluation {
-    struct residual *residual;
-    double t;
-    const double *y, *yp;
-    double *value;
-    int n_failed;
-};
-
-static void evaluate_fish(void *data, int f) {
-    struct evaluation *const of = data;
-    struct residual *const residual = of->residual;
-    const double t = of->t, *const y = of->y, *const yp = of->yp;
-    double *const value = of->value;
+// the equations of fish f
+static void evaluate_fish(struct residual *residual, int f, double t, const double *y, const double *yp,
+                          double *value) {
     const struct school *school = residual->school;
     const struct state *state = residual->state;
     const struct fish *fish = &school->fish[f];
@@ -368,19 +350,6 @@ static void evaluate_fish(void *data, int f) {
                                value);
 
     control_residual(fish, &state->control[f], t, t - state->t, y, value);
-
-    if (all_finite(value, fish->at.x, fish->at.end)) return;
-#pragma omp atomic
-    of->n_failed++;
-}
-
-// fail with the name of the first equation without a finite value
-static enum status fail_not_finite(const struct school *school, double t, const double *value) {
-    int i = 0;
-    while (isfinite(value[i])) i++;
-    const struct unknown_place place = residual_place(school, i);
-    return status_fail(STATUS_RETRY, "the equation for %s[%d] of fish %s has no finite value at t = %g s", place.name,
-                       place.index, school->fish[place.fish].name, t);
 }
 
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
@@ -388,9 +357,21 @@ enum status residual_evaluate(struct residual *residual, double t, const double 
     TRY(flow_velocity(residual->flow, residual->state, t, y));
 
     const struct school *school = residual->school;
-    struct evaluation evaluation = {residual, t, y, yp, value, 0};
-    parallel_for(fish_threads(school), school->n_fish, evaluate_fish, &evaluation);
-    return evaluation.n_failed > 0 ? fail_not_finite(school, t, value) : STATUS_OK;
+    const int threads = fish_threads(school);
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
+    } else {
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int f = 0; f < school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
+    }
+
+    // name the first equation without a finite value
+    int i = 0;
+    while (i < school->n_unknowns && isfinite(value[i])) i++;
+    if (i == school->n_unknowns) return STATUS_OK;
+    const struct unknown_place place = residual_place(school, i);
+    return status_fail(STATUS_RETRY, "the equation for %s[%d] of fish %s has no finite value at t = %g s", place.name,
+                       place.index, school->fish[place.fish].name, t);
 }
 
 void residual_balance(const struct residual *residual, int f, const double *y, double *value) {

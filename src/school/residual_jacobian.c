@@ -77,9 +77,11 @@ static void kinematics_jacobian(const struct residual *residual, const struct fi
 
 // the derivatives of the equations of one fish, in the order of evaluate_fish
 static void fish_jacobian(struct residual *residual, int f, double t, double cj, const double *y,
-                          struct jacobian_scratch *jacobian_scratch, struct jacobian *jacobian) {
+                          struct jacobian *jacobian) {
+    if (residual->stop && *residual->stop) return;
     const struct school *school = residual->school;
     const struct fish *fish = &school->fish[f];
+    struct jacobian_scratch *const jacobian_scratch = &residual->jacobian_scratch[omp_get_thread_num()];
     struct sparse *const own = jacobian->own[f];
     const double *const u = residual->flow->u + residual->flow->points[f].first;
     const double *const v = residual->flow->v + residual->flow->points[f].first;
@@ -130,10 +132,11 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
     for (int f = 0; f < school->n_fish; f++) {
         if (jacobian->own[f]->recording) threads = 1;
     }
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) fish_jacobian(residual, f, t, cj, y, jacobian);
+    } else {
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int f = 0; f < school->n_fish; f++) {
-        if (residual->stop && *residual->stop) continue;
-        fish_jacobian(residual, f, t, cj, y, &residual->jacobian_scratch[omp_get_thread_num()], jacobian);
+        for (int f = 0; f < school->n_fish; f++) fish_jacobian(residual, f, t, cj, y, jacobian);
     }
     return status_ask(residual->stop);
 }

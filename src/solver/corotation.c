@@ -126,16 +126,9 @@ static void find_rotations(struct body *body, const double *position) {
     }
 }
 
-struct configuration {
-    struct corotation *corotation;
-    const double *y;
-};
-
-static void set_current(void *data, int f) {
-    const struct configuration *const current = data;
-    struct body *body = &current->corotation->body[f];
+static void body_set_current(struct body *body, const double *y) {
     const struct fish *fish = body->fish;
-    const double *const position = current->y + fish->at.x;
+    const double *const position = y + fish->at.x;
     body->has_moved = 1;
     find_rotations(body, position);
     if (body->n_rigid == 0) return;
@@ -149,7 +142,13 @@ static void set_current(void *data, int f) {
 
 void corotation_set_current(struct corotation *corotation, const double *y) {
     const struct school *const school = corotation->school;
-    parallel_for(fish_threads(school), school->n_fish, set_current, &(struct configuration){corotation, y});
+    const int threads = fish_threads(school);
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) body_set_current(&corotation->body[f], y);
+    } else {
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int f = 0; f < school->n_fish; f++) body_set_current(&corotation->body[f], y);
+    }
 }
 
 static void body_to_current(const struct body *body, double *a) {
@@ -168,8 +167,7 @@ struct map {
     double *vector;
 };
 
-static void map_fish(void *data, int f) {
-    const struct map *const map = data;
+static void map_fish(const struct map *map, int f) {
     const struct body *body = &map->corotation->body[f];
     if (!body->has_moved) return;
     map->of_body(body, map->vector + body->fish->at.x);
@@ -180,7 +178,13 @@ static void map_fish(void *data, int f) {
 
 static void map_all(struct map map) {
     const struct school *const school = map.corotation->school;
-    parallel_for(fish_threads(school), school->n_fish, map_fish, &map);
+    const int threads = fish_threads(school);
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) map_fish(&map, f);
+    } else {
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int f = 0; f < school->n_fish; f++) map_fish(&map, f);
+    }
 }
 
 void corotation_to_current(const struct corotation *corotation, double *vector) {

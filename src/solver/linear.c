@@ -63,16 +63,22 @@ struct linear *linear_create(struct arena *arena, const struct jacobian *jacobia
     return linear;
 }
 
+static void block_set_up(struct block *block) {
+    block->is_updated = 0;
+    block->status = fish_factors_set_up(block->factors);
+}
+
 enum status linear_setup(struct linear *linear) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
     // a new pattern requests memory, which no parallel region may
     for (int f = 0; f < school->n_fish; f++) fish_factors_prepare(linear->block[f].factors);
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) block_set_up(&linear->block[f]);
+    } else {
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int f = 0; f < school->n_fish; f++) {
-        linear->block[f].is_updated = 0;
-        linear->block[f].status = fish_factors_set_up(linear->block[f].factors);
+        for (int f = 0; f < school->n_fish; f++) block_set_up(&linear->block[f]);
     }
     for (int f = 0; f < school->n_fish; f++) {
         const enum status status = linear->block[f].status;
@@ -115,13 +121,18 @@ struct operation {
     double *to;
 };
 
-static void for_each_fish(parallel_body *body, struct operation operation) {
+static void for_each_fish(void (*of_fish)(const struct operation *of, int f), struct operation operation) {
     const struct school *const school = operation.linear->jacobian->school;
-    parallel_for(fish_threads(school), school->n_fish, body, &operation);
+    const int threads = fish_threads(school);
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) of_fish(&operation, f);
+    } else {
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int f = 0; f < school->n_fish; f++) of_fish(&operation, f);
+    }
 }
 
-static void update_shed(void *data, int f) {
-    const struct operation *const of = data;
+static void update_shed(const struct operation *of, int f) {
     const struct jacobian *const jacobian = of->linear->jacobian;
     const struct fish *fish = &jacobian->school->fish[f];
     struct block *const block = &of->linear->block[f];
@@ -138,8 +149,7 @@ void linear_update_shed(struct linear *linear, const double *value) {
 }
 
 // x = D^-1 b with the diagonal blocks D; both may be the same array
-static void uncoupled_solve(void *data, int f) {
-    const struct operation *const of = data;
+static void uncoupled_solve(const struct operation *of, int f) {
     const struct layout *at = &of->linear->jacobian->school->fish[f].at;
     const int n = at->end - at->x;
     if (of->to != of->from) memcpy(of->to + at->x, of->from + at->x, (size_t)n * sizeof *of->to);
@@ -147,8 +157,7 @@ static void uncoupled_solve(void *data, int f) {
 }
 
 // product = v + D^-1 C v, C: coupling blocks
-static void coupled_multiply(void *data, int f) {
-    const struct operation *const of = data;
+static void coupled_multiply(const struct operation *of, int f) {
     const struct jacobian *jacobian = of->linear->jacobian;
     const struct layout *at = &jacobian->school->fish[f].at;
     double *const product = of->to;

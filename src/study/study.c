@@ -41,8 +41,8 @@ struct report {
 struct job {
     pid_t process; /* 0: none */
     int member;
-    struct timespec started;
-    int is_late; /* stopped after study_options.limit */
+    double started; /* by CLOCK_MONOTONIC, s */
+    int is_late;    /* stopped after study_options.limit */
     struct report *report;
 };
 
@@ -58,19 +58,13 @@ struct study {
     struct study_plan plan;
     int n_next; /* index in the plan of the next member to start */
     struct study_progress progress;
-    struct timespec started;
+    double started; /* by CLOCK_MONOTONIC, s */
     int is_stopping;
     const struct job *required; /* failed required member; NULL: none */
 };
 
 static int is_stopped(const struct study *study) {
     return study->options->stop && *study->options->stop;
-}
-
-static double seconds_since(const struct timespec *start) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
 }
 
 // ---- one member, in a separate process
@@ -176,7 +170,7 @@ static void be_member(const struct study *study, const struct job *job, pid_t pa
 static enum status member_start(struct study *study, struct job *job, const sigset_t *mask) {
     job->member = study->plan.member[study->n_next++];
     job->is_late = 0;
-    clock_gettime(CLOCK_MONOTONIC, &job->started);
+    job->started = clock_seconds(CLOCK_MONOTONIC);
     *job->report = (struct report){0};
     const pid_t parent = getpid();
     fflush(NULL);
@@ -210,7 +204,7 @@ static enum status member_finish(struct study *study, struct job *job, int outco
     if (job->member < study->options->n_required) study->required = job;
     if (job->is_late) {
         snprintf(job->report->reason, REASON_BYTES, "too slow: at t = %.4g s after %.3g s", job->report->t,
-                 seconds_since(&job->started));
+                 clock_seconds(CLOCK_MONOTONIC) - job->started);
     } else if (WIFSIGNALED(outcome)) {
         snprintf(job->report->reason, REASON_BYTES, "killed by signal %d (%s)", WTERMSIG(outcome),
                  strsignal(WTERMSIG(outcome)));
@@ -233,7 +227,7 @@ static int n_running(const struct study *study) {
 static void show_progress(struct study *study) {
     if (!study->options->progress) return;
     struct study_progress *const progress = &study->progress;
-    progress->wall_time = seconds_since(&study->started);
+    progress->wall_time = clock_seconds(CLOCK_MONOTONIC) - study->started;
     progress->n_running = n_running(study);
     const double almost = 0.99;  // a member is done after the end of the process
     double work = study->n_next - progress->n_running;
@@ -265,7 +259,7 @@ static enum status run_until_all_end(struct study *study, const sigset_t *mask) 
         const int is_end = !study->is_stopping && (is_stopped(study) || study->required || status != STATUS_OK);
         for (int j = 0; j < study->n_jobs; j++) {
             struct job *const job = &study->job[j];
-            const int is_late = limit > 0 && !job->is_late && seconds_since(&job->started) > limit;
+            const int is_late = limit > 0 && !job->is_late && clock_seconds(CLOCK_MONOTONIC) - job->started > limit;
             if (!job->process || !(is_end || is_late)) continue;
             if (is_late) job->is_late = 1;
             kill(job->process, SIGTERM);
@@ -377,7 +371,7 @@ static enum status plan_and_run(struct study *study) {
 enum status study_run(const struct case_values *values, const struct study_options *options, int *n_failed) {
     struct arena *const arena = arena_create(NULL, "the processes of a study");
     struct study study = {.arena = arena, .values = values, .options = options, .lock = -1};
-    clock_gettime(CLOCK_MONOTONIC, &study.started);
+    study.started = clock_seconds(CLOCK_MONOTONIC);
     const enum status status = plan_and_run(&study);
     *n_failed = study.progress.n_failed;
     if (study.report) munmap(study.report, (size_t)study.n_jobs * sizeof *study.report);
