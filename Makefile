@@ -126,7 +126,10 @@ completion     = $(B)/doc/completion
 c_files        = $(wildcard src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
 
 # packages for tests beyond scripts/install-deps.sh: a browser, readers of VTK's files, of schemas, of manual pages, and pip
-test_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils python3-pip python3-venv python3-setuptools python3-wheel
+test_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils python3-pip python3-venv python3-setuptools python3-wheel $(site_packages)
+
+# packages of `make site`
+site_packages = python3-sphinx python3-myst-parser furo doxygen python3-breathe
 
 # "commit" or "commit-dirty" of the repository of this folder, not of a surrounding repository
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
@@ -139,7 +142,7 @@ python_modules = $(shell $(PYTHON) -c 'import site, sys; \
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers figures soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers figures site soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -184,6 +187,11 @@ figures: deps  ## draw the figures of the documents that are older than case, sc
 	@scripts/install-deps.sh python3-pil
 	@$(parallel) all
 	@scripts/figures.py $(if $(LIST),--list) $(if $(ALL),--all) $(NAME)
+
+site: deps  ## make the documentation site, build/site/html/index.html: the documents, the API of Python and C, search
+	@scripts/install-deps.sh $(site_packages)
+	@$(parallel) all
+	@scripts/site/make-site.sh $(B)/site $(VERSION)
 
 valgrind: deps  ## let valgrind watch the tests in C (TEST="..."), and a run of the program (an hour)
 	@scripts/install-deps.sh valgrind

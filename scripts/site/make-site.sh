@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# Make the documentation site: the Markdown files of the repository as they are, with an API page for Python (docstrings)
+# and for C (comments of include/shoal.h), and a search.
+#
+#   scripts/site/make-site.sh FOLDER VERSION      writes FOLDER/html; a warning or a broken link is an error
+set -euo pipefail
+
+cd "$(dirname "$0")/../.."
+folder=$(realpath -m "$1")
+source=$folder/source
+rm -rf "$folder"
+mkdir -p "$source/doc" "$folder/xml"
+
+# pages, in the layout of the repository, so that their links hold
+cp -r doc/*.md doc/figures doc/examples "$source/doc/"
+cp -r CONTRIBUTING.md CHANGES.md LICENSE CITATION.cff cases "$source/"
+cp doc/case.schema.json "$source/doc/"
+rm -f "$source/doc/figures/README.md"
+sed -i 's|](README.md)|](index.md)|; s|](../README.md)|](../index.md)|' "$source"/*.md "$source"/doc/*.md
+{
+    cat README.md
+    printf '\n```{toctree}\n:hidden:\n:caption: %s\n\n' Manual
+    printf '%s\n' doc/tutorial doc/install doc/cases doc/output doc/studies doc/steady doc/gallery doc/python doc/glossary
+    printf '```\n\n```{toctree}\n:hidden:\n:caption: %s\n\n' Reference
+    printf '%s\n' doc/api-python doc/api-c doc/model doc/numerics doc/article
+    printf '```\n\n```{toctree}\n:hidden:\n:caption: %s\n\n' Evidence
+    printf '%s\n' doc/verification doc/performance doc/reliability
+    printf '```\n\n```{toctree}\n:hidden:\n:caption: %s\n\n' Development
+    printf '%s\n' doc/architecture doc/style CONTRIBUTING CHANGES
+    printf '```\n'
+} >"$source/index.md"
+cat >"$source/doc/api-python.md" <<'PAGE'
+# Python API
+
+[The guide](python.md) has examples.
+
+```{eval-rst}
+.. automodule:: shoal
+   :imported-members:
+```
+
+## shoal.plot
+
+```{eval-rst}
+.. automodule:: shoal.plot
+   :imported-members:
+```
+PAGE
+cat >"$source/doc/api-c.md" <<'PAGE'
+# C API
+
+`#include <shoal.h>`; `pkg-config --cflags --libs shoal` prints the options of the compiler.
+
+```{eval-rst}
+.. doxygenfile:: shoal.h
+   :sections: briefdescription detaileddescription enum func
+
+.. doxygenstruct:: shoal_array
+   :members:
+```
+PAGE
+
+doxygen - >"$folder/doxygen.log" 2>&1 <<OPTIONS
+PROJECT_NAME = shoal
+INPUT = include/shoal.h
+INPUT_FILTER = "sed -f scripts/site/comments.sed"
+OUTPUT_DIRECTORY = "$folder"
+EXTRACT_ALL = YES
+OPTIMIZE_OUTPUT_FOR_C = YES
+GENERATE_HTML = NO
+GENERATE_LATEX = NO
+GENERATE_XML = YES
+ENABLE_PREPROCESSING = YES
+MACRO_EXPANSION = YES
+AUTOLINK_SUPPORT = NO
+QUIET = YES
+OPTIONS
+
+SHOAL_VERSION=$2 SHOAL_XML=$folder/xml SHOAL_SCRIPTS=$PWD/scripts \
+    /usr/bin/python3 -m sphinx -q -W --keep-going -b html -c scripts/site "$source" "$folder/html"
