@@ -129,7 +129,7 @@ c_files        = $(wildcard src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch]
 test_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils python3-pip python3-venv python3-setuptools python3-wheel $(site_packages)
 
 # packages of `make site`
-site_packages = python3-sphinx python3-myst-parser furo doxygen python3-breathe
+site_packages = python3-sphinx python3-myst-parser furo doxygen python3-breathe jupyter-nbconvert python3-ipykernel
 
 # "commit" or "commit-dirty" of the repository of this folder, not of a surrounding repository
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
@@ -277,7 +277,7 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 $(filter %.1,$(manual)) '$(DESTDIR)$(prefix)/share/man/man1'
 	$(quiet)install -m 644 $(filter %.5,$(manual)) '$(DESTDIR)$(prefix)/share/man/man5'
 	$(quiet)install -m 644 $(completion) '$(DESTDIR)$(prefix)/share/bash-completion/completions/shoal'
-	$(quiet)install -m 644 LICENSE CITATION.cff CHANGES.md doc/*.md doc/case.schema.json '$(DESTDIR)$(prefix)/share/shoal/doc'
+	$(quiet)install -m 644 LICENSE CITATION.cff CHANGES.md doc/*.md doc/shoal.ipynb doc/case.schema.json '$(DESTDIR)$(prefix)/share/shoal/doc'
 	$(quiet)printf '%s\n' 'prefix=$(prefix)' 'libdir=$(libdir)' 'Name: shoal' 'Description: Swimming of fish and schools with their wakes' \
 	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${libdir} -lshoal' \
 	    'Libs.private: $(libraries) $(if $(is_clang),$(shell $(CC) -print-file-name=libomp.so),-fopenmp)' \

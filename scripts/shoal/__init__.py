@@ -7,7 +7,7 @@
     data = shoal.open(shoal.run("case.yaml"))
 
 Needs NumPy, and the library libshoal: beside the package, in build/ of the sources, or named by the environment variable
-SHOAL_LIBRARY. check, steady, study and view call the program shoal (SHOAL_PROGRAM). open needs xarray and netCDF4, plot
+SHOAL_LIBRARY. check, steady, study, error and view call the program shoal (SHOAL_PROGRAM). open needs xarray and netCDF4, plot
 needs matplotlib; Gymnasium is optional.
 """
 
@@ -16,14 +16,14 @@ import re as _re
 from . import _library
 from ._environments import SchoolEnv, SwimEnv, SwimVectorEnv
 from ._library import CaseError, Error, FileError, SolverError, version
-from ._program import CaseWarning, Check, Page, Steady, check, steady, study, view
+from ._program import CaseWarning, Check, Estimate, Page, Steady, check, error, steady, study, view
 from ._results import open, periods  # noqa: A004 - shoal.open, as gzip.open
 from ._run import Run, Variable, load, run, variables
 
 simulate = run
 
-__all__ = ["Run", "run", "simulate", "load", "check", "steady", "study", "open", "periods", "view", "variables", "version",
-           "Variable", "Check", "Steady", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError",
+__all__ = ["Run", "run", "simulate", "load", "check", "steady", "study", "error", "open", "periods", "view", "variables", "version",
+           "Variable", "Check", "Steady", "Estimate", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError",
            "SolverError", "CaseWarning", "__version__"]
 
 

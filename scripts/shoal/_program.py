@@ -1,8 +1,9 @@
-"""Functions of Python that call the program: check, steady, study, view. The library runs cases; the program searches,
+"""Functions of Python that call the program: check, steady, study, error, view. The library runs cases; the program searches,
 sweeps and draws pages."""
 
 from __future__ import annotations
 
+import csv
 import html
 import json
 import os
@@ -17,7 +18,7 @@ from typing import Mapping, NamedTuple
 import numpy as np
 
 from . import _library as lib
-from ._library import CaseError, Error, FileError, SolverError, kind, text_of
+from ._library import CaseError, Error, FileError, SolverError, kind, number_of, text_of
 from ._progress import somebody_looks
 from ._run import strings_of, text_of_case
 
@@ -94,7 +95,7 @@ def _call(words, path, progress=False, shown=None) -> str:
                 if "warning: " in line:
                     said.append(line.strip())
                 elif progress and not re.search("error: ", line):
-                    sys.stderr.write(line)
+                    sys.stderr.write(line.replace(path, shown or path))
                 else:
                     complaints.append(line.rstrip("\n"))
             output = process.stdout.read()
@@ -207,6 +208,22 @@ def steady(case, assignments=None, path=None, overwrite: bool = False, start=Non
 # ---- study
 
 
+def _run_study(command, case, assignments, path, overwrite, processes, progress, folder, options=()) -> str:
+    """Let the program run many members; returns the path of their folder."""
+    if path is None:
+        name = case.get("name", "run") if isinstance(case, Mapping) else os.path.splitext(os.path.basename(os.fspath(case)))[0]
+        path = f"{name}-{command}"
+    arguments = ["-o", os.fsdecode(text_of(path, "path")), *options] + (["--force"] if overwrite else [])
+    arguments += [] if _shows(progress) else ["-q"]
+    if processes is not None:
+        if isinstance(processes, bool) or not isinstance(processes, (int, np.integer)) or processes < 1:
+            raise CaseError(f"{command}: processes is an integer from 1, not {processes!r}")
+        arguments += ["-j", str(processes)]
+    with _CaseFile(case, folder) as file:
+        _call(_words(command, arguments, assignments), file.path, _shows(progress), file.shown)
+    return os.fsdecode(text_of(path, "path"))
+
+
 def study(case, assignments=None, path=None, overwrite: bool = False, processes: int | None = None,
           progress: bool | None = None, folder=None):
     """Run all members of a case with a sweep (doc/studies.md); returns study.nc as an xarray.Dataset.
@@ -214,22 +231,53 @@ def study(case, assignments=None, path=None, overwrite: bool = False, processes:
     path: of the folder of the study (None: the name of the case with -study). overwrite: replace a study that exists;
     else members that are complete are kept. processes: members at once. The path of study.nc is in attrs["path"].
     """
-    if path is None:
-        name = case.get("name", "run") if isinstance(case, Mapping) else os.path.splitext(os.path.basename(os.fspath(case)))[0]
-        path = f"{name}-study"
-    arguments = ["-o", os.fsdecode(text_of(path, "path"))] + (["--force"] if overwrite else [])
-    arguments += [] if _shows(progress) else ["-q"]
-    if processes is not None:
-        if isinstance(processes, bool) or not isinstance(processes, (int, np.integer)) or processes < 1:
-            raise CaseError(f"study: processes is an integer from 1, not {processes!r}")
-        arguments += ["-j", str(processes)]
-    with _CaseFile(case, folder) as file:
-        _call(_words("study", arguments, assignments), file.path, _shows(progress), file.shown)
+    path = _run_study("study", case, assignments, path, overwrite, processes, progress, folder)
     from ._results import open as open_result
 
     data = open_result(os.path.join(path, "study.nc"))
     data.attrs["path"] = os.path.join(path, "study.nc")
     return data
+
+
+# ---- error bars
+
+
+class Estimate(NamedTuple):
+    """A number with its error bar (doc/studies.md, "Error bars")."""
+
+    fish: str  #: name of the fish
+    quantity: str  #: as in of
+    value: float  #: in unit
+    error: float  #: in unit; NaN if a member failed
+    unit: str  #: for example "m s-1"
+    flags: list[str]  #: per flagged key, why the levels of the key are not accepted
+
+    def __str__(self):
+        digits = max(0, 1 - int(np.floor(np.log10(self.error)))) if 0 < self.error < np.inf else 6
+        number = f"{self.value:.{digits}f} ± {self.error:.{digits}f} {self.unit}"
+        return f"{self.quantity}{' of ' + self.fish if self.fish else ''}: {number}{' (flagged)' if self.flags else ''}"
+
+
+def error(case, of, within: float | None = None, assignments=None, path=None, overwrite: bool = False,
+          processes: int | None = None, progress: bool | None = None, folder=None) -> list[Estimate]:
+    """Vary every numerical key of a case by `shoal error`; returns quantities with their error bars, per fish.
+
+    of: a quantity or a list of quantities, as "steady_speed". within: refine until the relative errors are smaller.
+    path: of the folder of the members, study.nc and error.csv (None: the name of the case with -error). An error that
+    cannot be made smaller than within is a shoal.Error.
+    """
+    options = [word for quantity in ([of] if isinstance(of, str) else of) for word in ("--of", text_of(quantity, "of"))]
+    options += [] if within is None else ["--within", repr(number_of(within, "within"))]
+    path = _run_study("error", case, assignments, path, overwrite, processes, progress, folder, options)
+    found: dict = {}
+    with open(os.path.join(path, "error.csv"), encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            place = row["fish"], row["quantity"]
+            if row["key"] == "sum":
+                found[place] = Estimate(*place, float(row["value"]), float(row["error"]), row["unit"], [])
+            elif row["verdict"] not in ("accepted", "none", "a choice of the model, not in the sum"):
+                found[place].flags.append(f"{row['key']}: {row['verdict']}")
+    return list(found.values())
 
 
 # ---- pages

@@ -21,6 +21,7 @@ breathe_projects = {"shoal": os.environ["SHOAL_XML"]}
 breathe_default_project = "shoal"
 breathe_domain_by_extension = {"h": "c"}
 
+html_extra_path = [os.environ["SHOAL_EXTRA"]]
 html_theme = "furo"
 html_title = f"Shoal {release}"
 html_show_sphinx = False

@@ -9,18 +9,19 @@ cd "$(dirname "$0")/../.."
 folder=$(realpath -m "$1")
 source=$folder/source
 rm -rf "$folder"
-mkdir -p "$source/doc" "$folder/xml"
+mkdir -p "$source/doc" "$folder/xml" "$folder/notebook" "$folder/extra"
 
 # pages, in the layout of the repository, so that their links hold
-cp -r doc/*.md doc/figures doc/examples "$source/doc/"
+cp -r doc/*.md doc/shoal.ipynb doc/figures doc/examples "$source/doc/"
 cp -r CONTRIBUTING.md CHANGES.md LICENSE CITATION.cff cases "$source/"
 cp doc/case.schema.json "$source/doc/"
+cp doc/shoal.ipynb "$folder/notebook/"
 rm -f "$source/doc/figures/README.md"
 sed -i 's|](README.md)|](index.md)|; s|](../README.md)|](../index.md)|' "$source"/*.md "$source"/doc/*.md
 {
     cat README.md
     printf '\n```{toctree}\n:hidden:\n:caption: %s\n\n' Manual
-    printf '%s\n' doc/tutorial doc/install doc/cases doc/output doc/studies doc/steady doc/gallery doc/python doc/glossary
+    printf '%s\n' doc/tutorial doc/install doc/cases doc/output doc/studies doc/steady doc/gallery doc/python doc/notebook doc/glossary
     printf '```\n\n```{toctree}\n:hidden:\n:caption: %s\n\n' Reference
     printf '%s\n' doc/api-python doc/api-c doc/model doc/numerics doc/article
     printf '```\n\n```{toctree}\n:hidden:\n:caption: %s\n\n' Evidence
@@ -60,6 +61,15 @@ cat >"$source/doc/api-c.md" <<'PAGE'
 ```
 PAGE
 
+# the notebook, executed, as a page of its own
+cat >"$source/doc/notebook.md" <<'PAGE'
+# Notebook
+
+<a href="../notebook.html">The notebook doc/shoal.ipynb, executed</a>: a run, a movie, a steady state, an error bar.
+PAGE
+PYTHONPATH=$PWD/scripts PYTHONWARNINGS=ignore /usr/bin/python3 -m nbconvert --log-level=ERROR --execute --to html \
+    --output-dir="$folder/extra" --output=notebook.html "$folder/notebook/shoal.ipynb" 2>"$folder/notebook.log"
+
 doxygen - >"$folder/doxygen.log" 2>&1 <<OPTIONS
 PROJECT_NAME = shoal
 INPUT = include/shoal.h
@@ -76,5 +86,5 @@ AUTOLINK_SUPPORT = NO
 QUIET = YES
 OPTIONS
 
-SHOAL_VERSION=$2 SHOAL_XML=$folder/xml SHOAL_SCRIPTS=$PWD/scripts \
+SHOAL_VERSION=$2 SHOAL_XML=$folder/xml SHOAL_EXTRA=$folder/extra SHOAL_SCRIPTS=$PWD/scripts \
     /usr/bin/python3 -m sphinx -q -W --keep-going -b html -c scripts/site "$source" "$folder/html"

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# The documentation site builds without a warning (a broken link is one), and its pages have the words of the interfaces.
+# The documentation site builds without a warning (a broken link is one), and its pages have the words of the interfaces;
+# every cell of the notebook runs.
 #
 #   tests/app/test_site.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-for need in doxygen 'import sphinx' 'import myst_parser' 'import furo' 'import breathe'; do
+for need in doxygen 'import sphinx' 'import myst_parser' 'import furo' 'import breathe' 'import nbconvert' 'import ipykernel'; do
     if [[ $need == import\ * ]]; then /usr/bin/python3 -c "$need" 2>/dev/null; else command -v "$need" >/dev/null; fi && continue
     skip the_site_builds_without_a_warning "${need#import } is missing"
     finish
@@ -42,5 +43,9 @@ names_on_the_python_page() {
 check every_document_is_a_page pages_of_documents
 check every_function_is_on_the_c_page functions_on_the_c_page
 check every_class_and_function_is_on_the_python_page names_on_the_python_page
+the_notebook_ran() {
+    has "$html/notebook.html" "steady_lift of foil: 0.2434" && has "$html/notebook.html" "<iframe srcdoc" && ! grep -n Traceback "$html/notebook.html"
+}
+check the_notebook_shows_a_run_a_movie_and_an_error_bar the_notebook_ran
 check the_search_index_has_the_documents has "$html/searchindex.js" doc/tutorial
 finish
