@@ -150,7 +150,7 @@ static enum status derive_decay(const struct key_place *at) {
 }
 
 static enum status derive_wake_tolerance(const struct key_place *at) {
-    return set_default(&at->values->school.wake.tolerance, at->values->school.rtol / 100);
+    return set_default(&at->values->school.wake.tolerance, at->values->solver.rtol / 100);
 }
 
 static enum status derive_wake_interval(const struct key_place *at) {
@@ -389,7 +389,7 @@ const struct key case_table[] = {
 
     {"solver.method", METHOD, AT(solver.method), "ida", ANY, "", .meaning = "integration method: see below",
      .synonyms = "integrator scheme"},
-    {"solver.rtol", REAL, AT(school.rtol), "1e-5", FROM_TO(1e-14, 0.1), "",
+    {"solver.rtol", REAL, AT(solver.rtol), "1e-5", FROM_TO(1e-14, 0.1), "",
      .meaning = "error allowed per step, over the scale of each unknown (doc/numerics.md, section 3)",
      .synonyms = "tolerance tol reltol relative_tolerance"},
     {"solver.order", INTEGER, AT(solver.order), NULL, FROM_TO(1, 5), "",

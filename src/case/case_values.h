@@ -19,6 +19,7 @@ struct case_time {
 struct case_solver {
     enum method method;
     int order;
+    double rtol;   /* error tolerance: doc/numerics.md, section 3 */
     double step;   /* s; 0: adaptive */
     int max_steps; /* per shedding interval */
 };

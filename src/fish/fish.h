@@ -209,8 +209,7 @@ struct school {
 
     enum contact_action contact; /* of bodies with a gap below contact_range */
     double contact_range;        /* m */
-    double rtol;
-    double coupling_distance; /* m */
+    double coupling_distance;    /* m */
     int threads;
 };
 

@@ -610,7 +610,6 @@ static void fluid_set(struct school *school, const struct school_parameters *par
     school->wake_spare =
         parameters->wake.spare + WAKE_PER_VORTEX * (parameters->wake.vortices.n + parameters->wake.street.n);
     school->contact = parameters->contact.action;
-    school->rtol = parameters->rtol;
     school->threads = parameters->threads;
     double longest = 0;
     for (int f = 0; f < parameters->n_fish; f++) longest = fmax(longest, parameters->fish[f].length);

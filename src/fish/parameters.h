@@ -175,7 +175,6 @@ struct school_parameters {
     struct sheet_parameters sheet;
     struct contact_parameters contact;
     double shedding_interval; /* s */
-    double rtol;              /* of the integrator: doc/numerics.md */
     double coupling_distance; /* body lengths of the longest fish */
     int threads;
     int n_fish;

@@ -53,8 +53,10 @@ static struct simulation *simulation_begin(struct arena *parent, const struct ca
     new->started = clock_seconds(CLOCK_MONOTONIC);
     new->n_events = lround(values->time.end / values->school.shedding_interval);
     new->integrator = integrator_of(values->solver.method);
-    new->options = (struct integrator_options){
-        .method = values->solver.method, .step = values->solver.step, .max_steps = values->solver.max_steps};
+    new->options = (struct integrator_options){.method = values->solver.method,
+                                               .rtol = values->solver.rtol,
+                                               .step = values->solver.step,
+                                               .max_steps = values->solver.max_steps};
     return new;
 }
 

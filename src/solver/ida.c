@@ -138,7 +138,7 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
     NEW(arena, solver->kind, n);
     residual_kinds(residual, solver->kind);
     for (int i = 0; i < n; i++) {
-        solver->tolerance[i] = residual_scale(school, i) * school->rtol;
+        solver->tolerance[i] = residual_scale(school, i) * options->rtol;
         solver->weight[i] = 1 / solver->tolerance[i];
     }
 

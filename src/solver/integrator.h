@@ -22,6 +22,7 @@ struct integrator_counts {
 struct integrator_options {
     enum method method;
     int order;     /* maximum order of BDF */
+    double rtol;   /* error tolerance in units of residual_scale */
     double step;   /* fixed step of all other methods, s; 0: adaptive */
     int max_steps; /* maximum number of steps between two events */
     /* totals so far; zeros at the start of a run. An adaptive method derives the first step from the last step size. */

@@ -54,7 +54,7 @@ static enum status one_step_create(struct arena *arena, void **created, struct r
     residual_kinds(residual, solver->kind);
     for (int i = 0; i < n; i++) {
         // the errors of Newton's iteration in the velocities of a stiff body add up to a spurious momentum
-        const double tolerance = residual->school->rtol * residual_scale(residual->school, i);
+        const double tolerance = options->rtol * residual_scale(residual->school, i);
         solver->tolerance[i] = tolerance * residual_undamped(residual->school, i);
     }
     solver->algebraic_rates = integrator_rates_create(arena, residual->school);

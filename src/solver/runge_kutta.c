@@ -113,7 +113,7 @@ static enum status runge_kutta_create(struct arena *arena, void **created, struc
     NEW(arena, solver->tolerance, n);
     // algebraic unknowns have no rate and no error here; only a tolerance for velocities reveals an instability
     for (int i = 0; i < n; i++) {
-        const double tolerance = school->rtol * residual_scale(school, i);
+        const double tolerance = options->rtol * residual_scale(school, i);
         solver->tolerance[i] = tolerance * residual_undamped(school, i);
     }
     solver->rhs = ode_rhs_create(arena, residual);

@@ -42,7 +42,7 @@ static double lengths_of(const struct error_study *study, const struct member_fi
 static double errors_noise_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
     const struct sweep_axis *const axis = &study->study.sweep[0];
     const int column = error_plan_column(study, "solver.rtol");
-    double rtol = study->study.school.rtol;
+    double rtol = study->study.solver.rtol;
 
     if (column >= 0) text_number(axis->value[m * axis->n_keys + column], &rtol);
     if (study->study.solver.step > 0) rtol = rounding;

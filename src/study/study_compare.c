@@ -110,7 +110,7 @@ static enum status add_sweep(struct text *sweep, const struct case_values *value
     for (int i = 0; i < methods_n; i++) {
         if (i != METHOD_IDA && methods_table[i].has_adaptive_steps) text_add(&standard, ",%s", methods_table[i].word);
     }
-    text_add_number(&rtol, values->school.rtol);
+    text_add_number(&rtol, values->solver.rtol);
     enum status status = STATUS_OK;
     if (standard.failed || rtol.failed) status = memory_check(NULL, "a comparison");
     text_add(sweep, "sweep=[{keys: [solver.method, solver.order, solver.rtol, solver.step], values: [");

@@ -87,7 +87,7 @@ static void orders_read_value(const struct refinement *refinement, int group, in
 /* The error of the values of a member independent of the levels: error of the integrator and of the steady search. */
 static double orders_noise_of(const struct refinement *refinement, const struct member_file *member) {
     const struct case_values *const study = refinement->study;
-    double rtol = study->solver.step > 0 ? 0 : study->school.rtol;
+    double rtol = study->solver.step > 0 ? 0 : study->solver.rtol;
     for (int a = 0; a < study->n_axes; a++) {
         const struct sweep_axis *const axis = &study->sweep[a];
         const int value = sweep_member_value(study, (int)(member - refinement->members), a);

@@ -62,7 +62,7 @@ TEST(the_defaults_are_those_of_the_reference) {
     assert_int_equal(s.school.sheet.collocation, COLLOCATION_CHEBYSHEV);
     assert_int_equal(s.school.wake.removed_circulation, REMOVED_RETAINED);
     assert_int_equal(s.solver.method, METHOD_IDA);
-    NEAR(s.school.rtol, 1e-5, 0, 0);
+    NEAR(s.solver.rtol, 1e-5, 0, 0);
     assert_int_equal(s.solver.order, 0);  // chosen by the simulation
     assert_int_equal(s.school.threads, 1);
     assert_int_equal(s.output.precision, PRECISION_DOUBLE);
