@@ -25,18 +25,6 @@ static void way_through_water(const struct sample *new, const struct sample *old
     for (int i = 0; i < 2; i++) way[i] = new->com[i] - old->com[i] - (new->drifted[i] - old->drifted[i]);
 }
 
-// values of a sample that continue from the sample before: the drift of the stream, by trapezoids, and the unwrapped
-// heading
-static void continue_sample(const struct history *history, double interval, struct sample *sample) {
-    if (history->n == 0) return;
-
-    const struct sample *before = state_recall(history, 0);
-    sample->heading = before->heading + angle_wrap(sample->heading - before->heading);
-    for (int i = 0; i < 2; i++) {
-        sample->drifted[i] = before->drifted[i] + interval * (before->stream[i] + sample->stream[i]) / 2;
-    }
-}
-
 enum status diagnostics_remember(struct residual *residual, struct state *state) {
     const double interval = residual->school->interval;
     const int threads = fish_threads(residual->school);
@@ -66,7 +54,14 @@ enum status diagnostics_remember(struct residual *residual, struct state *state)
         sample.bias = y[fish->at.phi0];
         memcpy(sample.work, state->balance[f].work, sizeof sample.work);
 
-        continue_sample(history, interval, &sample);
+        // continue from the sample before: the unwrapped heading, and the drift of the stream by trapezoids
+        if (history->n > 0) {
+            const struct sample *before = state_recall(history, 0);
+            sample.heading = before->heading + angle_wrap(sample.heading - before->heading);
+            for (int i = 0; i < 2; i++) {
+                sample.drifted[i] = before->drifted[i] + interval * (before->stream[i] + sample.stream[i]) / 2;
+            }
+        }
 
         // mean speed over one period; the sample capacity - 2 events ago is one period older than the new sample
         if (history->capacity > 1 && history->n >= history->capacity - 1) {
@@ -132,12 +127,6 @@ static double peak_to_peak(const struct history *history, const double way[2], d
     return most - least;
 }
 
-// relative change of the mean speed between the last two periods
-static double speed_drift(const struct history *history) {
-    const double now = state_recall(history, 0)->speed, before = state_recall(history, history->n - 1)->speed;
-    return (now - before) / now;
-}
-
 // mean of a force of the samples against the direction of the path, by trapezoids; which: offset in struct sample
 static double mean_against(const struct history *history, size_t which, const double way[2], double distance) {
     double sum = 0;
@@ -147,43 +136,6 @@ static double mean_against(const struct history *history, size_t which, const do
         sum -= weight * (force[0] * way[0] + force[1] * way[1]) / distance;
     }
     return sum / (history->n - 1);
-}
-
-// largest magnitude of A_0; NaN unless force: pressure, and without flow past the nose
-static double leading_edge_most(const struct history *history) {
-    double most = NAN;
-    for (int age = 0; age < history->n; age++) most = fmax(most, fabs(state_recall(history, age)->leading_edge));
-    return most;
-}
-
-// fraction of the period with A_0 above the limit, by trapezoids
-static double separation_share(const struct history *history, double limit) {
-    if (history->n == 1) return fabs(state_recall(history, 0)->leading_edge) > limit;
-
-    double sum = 0;
-    for (int age = 0; age < history->n; age++) {
-        const double weight = age == 0 || age == history->n - 1 ? 0.5 : 1;
-        sum += fabs(state_recall(history, age)->leading_edge) > limit ? weight : 0;
-    }
-    return sum / (history->n - 1);
-}
-
-/* Whether a body has travelled further than rounding: below that the direction and all numbers per speed are noise. */
-static int has_travelled(const struct fish *fish, double distance) {
-    return distance > 1e-9 * fish->length;
-}
-
-/* Mean thrust, power and efficiency of a held body (doc/model.md, section 13): the drive of the body also takes the
- * thrust, whose work is no part of the power of the motion. */
-static void thrust_of_held(const struct fish *fish, const struct history *history, const double way[2], double distance,
-                           struct diagnostics_fish *to) {
-    // in water at rest a body that does not travel has the direction of the heading
-    const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)};
-    const int travels = has_travelled(fish, distance);
-    to->mean_thrust =
-        -mean_against(history, offsetof(struct sample, force), travels ? way : ahead, travels ? distance : 1);
-    to->mean_power += to->mean_thrust * to->speed;
-    to->efficiency = to->mean_thrust * to->speed / to->mean_power;
 }
 
 /* The reversals of the steering bias over the last period: turning points between moves of at least a share of the
@@ -206,9 +158,21 @@ static int bias_reversals(const struct history *history, double limit) {
     return n;
 }
 
-static void means_over_period(const struct fish *fish, const struct history *history, double interval,
-                              struct diagnostics_fish *to) {
+void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
+                        struct diagnostics_fish *to) {
     const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
+
+    // A_0: largest magnitude (NaN unless force: pressure), and fraction of the period above the limit, by trapezoids
+    double most = NAN, share = 0;
+    for (int age = 0; age < history->n; age++) {
+        const double a0 = fabs(state_recall(history, age)->leading_edge);
+        const double weight = history->n > 1 && (age == 0 || age == history->n - 1) ? 0.5 : 1;
+        most = fmax(most, a0);
+        share += a0 > fish->suction_limit ? weight : 0;
+    }
+    to->leading_edge_most = most;
+    to->separation_share = fish->suction_limit > 0 ? share / (history->n > 1 ? history->n - 1 : 1) : 0;
+    to->bias_reversals = fish->control.law == CONTROL_NONE ? 0 : bias_reversals(history, fish->control.limit);
 
     // instantaneous values, until the second sample
     to->ground_speed = hypot(to->com_velocity[0], to->com_velocity[1]);
@@ -225,34 +189,33 @@ static void means_over_period(const struct fish *fish, const struct history *his
     const double distance = hypot(way[0], way[1]);
     to->ground_speed = hypot(new->com[0] - old->com[0], new->com[1] - old->com[1]) / duration;
     to->speed = distance / duration;
-    to->drift = speed_drift(history);
+    to->drift = (new->speed - old->speed) / new->speed;
     to->mean_actuation_power = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / duration;
     const double drive = (new->work[WORK_DRIVING_ON_WATER] - old->work[WORK_DRIVING_ON_WATER]) / duration;
     to->mean_power = to->mean_actuation_power + drive;
-    const int is_held = fish->motion.is_held;
-    if (is_held) thrust_of_held(fish, history, way, distance, to);
-    if (!has_travelled(fish, distance)) return;
+
+    // Held (doc/model.md, section 13): the drive of the body also takes the thrust, whose work is no part of the power
+    // of the motion. A body that has travelled no further than rounding has the direction of its heading.
+    const bool is_held = fish->motion.is_held, has_travelled = distance > 1e-9 * fish->length;
+    if (is_held) {
+        const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)};
+        to->mean_thrust = -mean_against(history, offsetof(struct sample, force), has_travelled ? way : ahead,
+                                        has_travelled ? distance : 1);
+        to->mean_power += to->mean_thrust * to->speed;
+        to->efficiency = to->mean_thrust * to->speed / to->mean_power;
+    }
+    if (!has_travelled) return;
 
     // quantities along the path
     to->heading_error = angle_degrees(angle_wrap(atan2(way[1], way[0]) - angle_radians(to->desired_heading)));
-    const double momentum = fish->total_mass * to->speed;
+    const double momentum = fish->total_mass * to->speed, into_water = old->work[WORK_FLUID] - new->work[WORK_FLUID];
     to->cost_of_transport = (to->mean_actuation_power + drive) / momentum;
-    to->cost_of_transport_fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / duration / momentum;
+    to->cost_of_transport_fluid = into_water / duration / momentum;
     to->cost_of_transport_body = (old->work[WORK_DAMPING] - new->work[WORK_DAMPING]) / duration / momentum;
     to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
     if (is_held) return;
-
-    const double into_water = old->work[WORK_FLUID] - new->work[WORK_FLUID];
     to->mean_thrust = -mean_against(history, offsetof(struct sample, force), way, distance);
     to->efficiency = mean_against(history, offsetof(struct sample, friction), way, distance) * distance / into_water;
-}
-
-void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
-                        struct diagnostics_fish *to) {
-    means_over_period(fish, history, interval, to);
-    to->leading_edge_most = leading_edge_most(history);
-    to->bias_reversals = fish->control.law == CONTROL_NONE ? 0 : bias_reversals(history, fish->control.limit);
-    to->separation_share = fish->suction_limit > 0 ? separation_share(history, fish->suction_limit) : 0;
 }
 
 struct diagnostics *diagnostics_create(struct arena *arena, const struct school *school) {
@@ -262,11 +225,6 @@ struct diagnostics *diagnostics_create(struct arena *arena, const struct school 
     NEW(arena, diagnostics->body, school->n_fish);
     NEW(arena, diagnostics->wake, school->n_fish);
     return diagnostics;
-}
-
-static double shedding_rate(const struct residual *residual, const struct state *state, int f) {
-    if (residual->school->kutta == KUTTA_EDGE) return state->yp[residual->school->fish[f].at.circulation];
-    return residual_kutta_rate(residual, f, state->t, state->y);
 }
 
 // number of free vortices, or markers, inside the outline of a body; the newest own marker lies at the tail: skip
@@ -317,7 +275,8 @@ static void diagnostics_fill_fish(struct residual *residual, const struct state 
     to->wave_amplitude = gait.amplitude * fish->amplitude;
     to->wave_frequency = gait.omega / (2 * M_PI);
     to->shed_circulation = y[fish->at.circulation];
-    to->shedding_rate = shedding_rate(residual, state, f);
+    to->shedding_rate = residual->school->kutta == KUTTA_EDGE ? state->yp[fish->at.circulation]
+                                                              : residual_kutta_rate(residual, f, state->t, y);
 
     // energies, powers, and the energy balance
     const struct diagnostics_energies energies = diagnostics_energies(residual, f, state->t, y);
@@ -344,36 +303,6 @@ static void diagnostics_fill_fish(struct residual *residual, const struct state 
     to->actuation_work = balance->work[WORK_ACTUATION];
 }
 
-// sum over every vortex: bound, nascent, free, removed
-static double total_circulation(const struct residual *residual, const struct state *state) {
-    double total = 0;
-    for (int f = 0; f < residual->school->n_fish; f++) {
-        const struct fish *fish = &residual->school->fish[f];
-        const struct wake *wake = &state->wake[f];
-        total += bound_sheet_circulation(fish, state->y) + (state->y[fish->at.circulation] - wake->shed_before);
-        for (int i = 0; i < wake_n_sources(wake); i++) total += wake_source(wake, i);
-
-        // removed circulation is retained in the sum, or has returned to the body
-        if (residual->school->removed == REMOVED_RETAINED) total += wake->removed;
-        if (residual->school->removed == REMOVED_DROPPED) {
-            total += wake->removed - residual_lost(residual, f, state->t);
-        }
-    }
-    return total;
-}
-
-// smallest distance between two bodies, m; NaN for one fish
-static double least_distance(const struct school *school, const double *y, const struct box *body) {
-    double least = INFINITY;
-    for (int f = 0; f < school->n_fish; f++) {
-        for (int g = 0; g < f; g++) {
-            if (box_gap(&body[f], &body[g]) > least) continue;
-            least = fmin(least, fish_distance(&school->fish[f], &school->fish[g], y, least));
-        }
-    }
-    return school->n_fish > 1 ? least : NAN;
-}
-
 void diagnostics_event(struct residual *residual, const struct state *state, struct diagnostics *diagnostics) {
     const struct school *school = residual->school;
     double sum[2] = {0, 0};
@@ -392,8 +321,28 @@ void diagnostics_event(struct residual *residual, const struct state *state, str
         sum[1] += sin(angle_radians(diagnostics->fish[f].heading));
     }
 
-    diagnostics_momentum(residual, state, diagnostics);
-    diagnostics->least_distance = least_distance(school, state->y, diagnostics->body);
     diagnostics->polarisation = hypot(sum[0], sum[1]) / school->n_fish;
-    diagnostics->total_circulation = total_circulation(residual, state);
+    diagnostics_momentum(residual, state, diagnostics);
+
+    // the smallest distance between two bodies
+    double least = INFINITY;
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int g = 0; g < f; g++) {
+            if (box_gap(&diagnostics->body[f], &diagnostics->body[g]) > least) continue;
+            least = fmin(least, fish_distance(&school->fish[f], &school->fish[g], state->y, least));
+        }
+    }
+    diagnostics->least_distance = school->n_fish > 1 ? least : NAN;
+
+    // the circulation of every vortex: bound, nascent, free, and removed, which is retained or has returned to the body
+    double total = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        const struct wake *wake = &state->wake[f];
+        total += bound_sheet_circulation(fish, state->y) + (state->y[fish->at.circulation] - wake->shed_before);
+        for (int i = 0; i < wake_n_sources(wake); i++) total += wake_source(wake, i);
+        if (school->removed == REMOVED_RETAINED) total += wake->removed;
+        if (school->removed == REMOVED_DROPPED) total += wake->removed - residual_lost(residual, f, state->t);
+    }
+    diagnostics->total_circulation = total;
 }

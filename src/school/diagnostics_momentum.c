@@ -16,24 +16,6 @@
 
 // ---- forces of the fluid, of contacts, of constraints
 
-// constraint forces: reactions of prescribed nodes; moment of the reactions plus the moment of the clamp
-static void find_constraint(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to) {
-    const struct fish *fish = &residual->school->fish[f];
-    double *const reaction = residual->scratch;
-    to->constraint_force[0] = to->constraint_force[1] = 0;
-    to->constraint_moment = clamp_moment(fish, t, y);
-    if (fish->motion.prescribed == PRESCRIBED_NONE) return;
-
-    residual_reaction(residual, f, y, residual->state->yp, reaction);
-    for (int k = 0; k < fish_n_prescribed(fish); k++) {
-        const double along_x = fish_is_prescribed(fish, k, 0) ? reaction[fish->at.ax + k] : 0;
-        const double force[2] = {along_x, reaction[fish->at.ay + k]};
-        const double arm[2] = {y[fish->at.x + k] - to->com[0], y[fish->at.y + k] - to->com[1]};
-        for (int i = 0; i < 2; i++) to->constraint_force[i] += force[i];
-        to->constraint_moment += arm[0] * force[1] - arm[1] * force[0];
-    }
-}
-
 struct pressure_forces diagnostics_pressure(struct residual *residual, int f, const double about[2], const double *y) {
     struct pressure *const pressure = residual->pressure[f];
     if (!pressure) return (struct pressure_forces){.leading_edge_a0 = NAN};
@@ -49,48 +31,49 @@ void diagnostics_fluid_force(const double resistive[2], const double reactive[2]
     for (int i = 0; i < 2; i++) force[i] = resistive[i] + reactive[i] + pressure->pressure[i] + pressure->suction[i];
 }
 
-/* The direction of the thrust: heading of a free fish; of prescribed motion the direction of travel, of a held body
- * through the water without the gust. doc/model.md, section 13. */
-static void thrust_direction(const struct school *school, const struct fish *fish, const double com[2], const double *y,
-                             double direction[2]) {
-    const int is_prescribed = fish->motion.prescribed != PRESCRIBED_NONE;
-    const double heading = is_prescribed ? fish->start_heading : control_heading(fish, y);
-    direction[0] = cos(heading);
-    direction[1] = sin(heading);
-    if (!fish->motion.is_held) return;
-
-    const double travel[2] = {fish->motion.speed * direction[0] - school->velocity[0] - school->shear * com[1],
-                              fish->motion.speed * direction[1] - school->velocity[1]};
-    const double speed = hypot(travel[0], travel[1]);
-    for (int i = 0; i < 2 && speed > 0; i++) direction[i] = travel[i] / speed;
-}
-
 void diagnostics_forces(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to) {
-    const struct fish *fish = &residual->school->fish[f];
+    const struct school *const school = residual->school;
+    const struct fish *fish = &school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    const bool is_prescribed = fish->motion.prescribed != PRESCRIBED_NONE;
+
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, to->com, y);
-    double ahead[2];
-    thrust_direction(residual->school, fish, to->com, y, ahead);
-
-    // total force of the fluid, for the thrust
-    to->pressure = diagnostics_pressure(residual, f, to->com, y);
-    double force[2];
-    diagnostics_fluid_force(forces.resistive, forces.reactive, &to->pressure, force);
-
-    to->thrust = 0;
-    for (int i = 0; i < 2; i++) {
-        to->resistive_force[i] = forces.resistive[i];
-        to->friction_force[i] = forces.friction[i];
-        to->reactive_force[i] = forces.reactive[i];
-        to->thrust += force[i] * ahead[i];
-    }
+    memcpy(to->resistive_force, forces.resistive, sizeof forces.resistive);
+    memcpy(to->friction_force, forces.friction, sizeof forces.friction);
+    memcpy(to->reactive_force, forces.reactive, sizeof forces.reactive);
     to->resistive_moment = forces.resistive_moment;
     to->friction_moment = forces.friction_moment;
     to->reactive_moment = forces.reactive_moment;
+    to->pressure = diagnostics_pressure(residual, f, to->com, y);
 
+    // The direction of the thrust: heading of a free fish; of prescribed motion the direction of travel, of a held body
+    // through the water without the gust. doc/model.md, section 13.
+    const double heading = is_prescribed ? fish->start_heading : control_heading(fish, y);
+    double ahead[2] = {cos(heading), sin(heading)}, force[2];
+    if (fish->motion.is_held) {
+        const double travel[2] = {fish->motion.speed * ahead[0] - school->velocity[0] - school->shear * to->com[1],
+                                  fish->motion.speed * ahead[1] - school->velocity[1]};
+        const double speed = hypot(travel[0], travel[1]);
+        for (int i = 0; i < 2 && speed > 0; i++) ahead[i] = travel[i] / speed;
+    }
+    diagnostics_fluid_force(forces.resistive, forces.reactive, &to->pressure, force);
+    to->thrust = force[0] * ahead[0] + force[1] * ahead[1];
+
+    // constraint forces: reactions of prescribed nodes; moment of the reactions plus the moment of the clamp
     const struct contact_forces contact = contact_forces(residual->contact, f, y);
     memcpy(to->contact_force, contact.force, sizeof to->contact_force);
-    find_constraint(residual, f, t, y, to);
+    to->constraint_force[0] = to->constraint_force[1] = 0;
+    to->constraint_moment = clamp_moment(fish, t, y);
+    if (!is_prescribed) return;
+    double *const reaction = residual->scratch;
+    residual_reaction(residual, f, y, residual->state->yp, reaction);
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        const double along_x = fish_is_prescribed(fish, k, 0) ? reaction[fish->at.ax + k] : 0;
+        const double of_node[2] = {along_x, reaction[fish->at.ay + k]};
+        const double arm[2] = {y[fish->at.x + k] - to->com[0], y[fish->at.y + k] - to->com[1]};
+        for (int i = 0; i < 2; i++) to->constraint_force[i] += of_node[i];
+        to->constraint_moment += arm[0] * of_node[1] - arm[1] * of_node[0];
+    }
 }
 
 /* Whether the momentum of a fish and of the fluid can balance: with force: pressure and constant depth along the body,
@@ -155,54 +138,35 @@ static void add_nascent(struct impulse_moments *sum, const struct flow *flow, co
     }
 }
 
-// add the impulse of the bound sheet; with momenta: added momentum plus bound circulation at the tail, which equals the
-// sum over the control points; call after pressure_update
-static void add_bound_impulse(const struct residual *residual, int f, const double *y, double factor,
-                              double impulse[3]) {
-    const struct flow *const flow = residual->flow;
-    const struct fish *const fish = &residual->school->fish[f];
-    const struct sources *const bound = &flow->fish[f].own;
-    struct impulse_moments sum = {0};
-    double total = 0, of_sum[3];
-
-    for (int j = 0; j < fish->n_sheet; j++) {
-        impulse_add(&sum, bound->q[j], bound->x[j], bound->y[j]);
-        total += bound->q[j];
-    }
-
-    if (residual->pressure[f]) {
-        double tail[2];
-        place_of_tail(fish, y, tail);
-        for (int k = 0; k < fish->n_nodes; k++) {
-            add_with_moment(impulse, y[fish->at.x + k], y[fish->at.y + k], added_momentum(residual, f, 0, k),
-                            added_momentum(residual, f, 1, k));
-        }
-        sum = (struct impulse_moments){0};
-        impulse_add(&sum, total, tail[0], tail[1]);
-    }
-
-    impulse_of(&sum, factor, of_sum);
-    for (int i = 0; i < 3; i++) impulse[i] += of_sum[i];
-}
-
 // impulse of all vortices of a fish at the event of the state; call after pressure_update
 static void impulse_of_fluid(const struct residual *residual, const struct state *state, int f, double impulse[3]) {
     const struct fish *const fish = &residual->school->fish[f];
+    const struct sources *const bound = &residual->flow->fish[f].own;
     const double factor = residual->school->density * impulse_depth(fish);
-    struct impulse_moments wake = impulse_of_wake(&state->wake[f], residual->school, state->t, 0);
+    struct impulse_moments wake = impulse_of_wake(&state->wake[f], residual->school, state->t, 0), sheet = {0};
+    double tail[2], of_sheet[3], total = 0;
 
-    double tail[2];
     place_of_tail(fish, state->y, tail);
     add_nascent(&wake, residual->flow, state, f, 0, tail);
     impulse_of(&wake, factor, impulse);
-    add_bound_impulse(residual, f, state->y, factor, impulse);
-}
 
-// impulse of the lost circulation
-static void lost_impulse(const struct school *school, const struct state *state, int f, double impulse[3]) {
-    const double *const lost = state->momentum[f].lost;
-    const double factor = school->density * impulse_depth(&school->fish[f]);
-    impulse_of(&(struct impulse_moments){.x = lost[0], .y = lost[1], .square = lost[2]}, factor, impulse);
+    // the bound sheet
+    for (int j = 0; j < fish->n_sheet; j++) {
+        impulse_add(&sheet, bound->q[j], bound->x[j], bound->y[j]);
+        total += bound->q[j];
+    }
+
+    // with momenta: added momentum plus bound circulation at the tail, which equals the sum over the control points
+    if (residual->pressure[f]) {
+        for (int k = 0; k < fish->n_nodes; k++) {
+            add_with_moment(impulse, state->y[fish->at.x + k], state->y[fish->at.y + k],
+                            added_momentum(residual, f, 0, k), added_momentum(residual, f, 1, k));
+        }
+        sheet = (struct impulse_moments){0};
+        impulse_add(&sheet, total, tail[0], tail[1]);
+    }
+    impulse_of(&sheet, factor, of_sheet);
+    for (int i = 0; i < 3; i++) impulse[i] += of_sheet[i];
 }
 
 // ---- external forces
@@ -236,30 +200,6 @@ static void add_stream(const struct residual *residual, int f, double t, const d
     force[2] -= factor * (u * sum.x + v * sum.y + school->shear * sum.product);
 }
 
-// Constraint forces of prescribed nodes without the rate of the momentum of these nodes: given_momentum is the integral
-// of this rate.
-static void add_constraint(struct residual *residual, int f, const double *y, double force[3]) {
-    const struct fish *const fish = &residual->school->fish[f];
-    if (fish_n_prescribed(fish) == 0) return;
-
-    // m a minus all forces
-    double *const balance = residual->scratch;
-    residual_balance(residual, f, y, balance);
-    for (int k = 0; k < fish_n_prescribed(fish); k++) {
-        double of_node[2] = {0, 0}, momentum[2] = {0, 0};
-        for (int i = 0; i < 2; i++) {
-            const int node = i * fish->n_nodes + k;
-            if (!fish_is_prescribed(fish, k, i)) continue;
-            of_node[i] = balance[fish->at.ax + node] - fish->mass[k] * y[fish->at.ax + node];
-            momentum[i] = fish->mass[k] * y[fish->at.vx + node] + added_momentum(residual, f, i, k);
-        }
-        add_with_moment(force, y[fish->at.x + k], y[fish->at.y + k], of_node[0], of_node[1]);
-
-        // moment of the momentum rate = rate of the moment minus velocity x momentum
-        force[2] -= y[fish->at.vx + k] * momentum[1] - y[fish->at.vy + k] * momentum[0];
-    }
-}
-
 // all external forces except images; call after pressure_update
 static void external_force(struct residual *residual, int f, double t, const double *y, double force[3]) {
     const struct fish *const fish = &residual->school->fish[f];
@@ -277,7 +217,24 @@ static void external_force(struct residual *residual, int f, double t, const dou
         const double *const separation = residual->pressure[f]->separation;
         add_with_moment(force, y[fish->at.x], y[fish->at.y], -separation[0], -separation[1]);
     }
-    add_constraint(residual, f, y, force);
+
+    // constraint forces of prescribed nodes, from m a minus all forces, without the rate of the momentum of these
+    // nodes: given_momentum is the integral of this rate
+    double *const balance = residual->scratch;
+    if (fish_n_prescribed(fish) > 0) residual_balance(residual, f, y, balance);
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        double of_node[2] = {0, 0}, momentum[2] = {0, 0};
+        for (int i = 0; i < 2; i++) {
+            const int node = i * fish->n_nodes + k;
+            if (!fish_is_prescribed(fish, k, i)) continue;
+            of_node[i] = balance[fish->at.ax + node] - fish->mass[k] * y[fish->at.ax + node];
+            momentum[i] = fish->mass[k] * y[fish->at.vx + node] + added_momentum(residual, f, i, k);
+        }
+        add_with_moment(force, y[fish->at.x + k], y[fish->at.y + k], of_node[0], of_node[1]);
+
+        // moment of the momentum rate = rate of the moment minus velocity x momentum
+        force[2] -= y[fish->at.vx + k] * momentum[1] - y[fish->at.vy + k] * momentum[0];
+    }
     add_stream(residual, f, t, y, force);
 }
 
@@ -303,82 +260,58 @@ static void add_force_on_sources(const double *u, const double *v, const double 
     }
 }
 
-// force of the images at the event on the sheet and the wake of a fish
-static void force_of_images(const struct flow *flow, int f, double force[3]) {
-    const struct school *const school = flow->school;
-    const double factor = school->density * impulse_depth(&school->fish[f]);
-    const int point = flow->points[f].first, marker = flow->wake_range[f].first;
-    memset(force, 0, 3 * sizeof *force);
-    add_force_on_sources(flow->image_u + point, flow->image_v + point, flow->image_div + point, &flow->fish[f].body,
-                         factor, force);
-    add_force_on_sources(flow->wake_image_u + marker, flow->wake_image_v + marker, flow->wake_image_div + marker,
-                         &flow->fish[f].markers, factor, force);
-}
-
-// add the force of a travelling gust on n circulations
-static void add_force_of_gust(const struct school *school, double t, int n, const double *x, const double *y,
-                              const double *circulation, double factor, double force[3]) {
-    for (int i = 0; i < n; i++) {
-        double u, v;
-        flow_external_gust(school, t, x[i], y[i], &u, &v);
-        add_force_of(&u, &v, 1, x + i, y + i, circulation + i, factor, force);
-    }
-}
-
-// force of a travelling gust at the event on the sheet and the wake of a fish
-static void force_of_gust(const struct flow *flow, int f, double force[3]) {
-    const struct school *const school = flow->school;
-    const double factor = school->density * impulse_depth(&school->fish[f]);
-    memset(force, 0, 3 * sizeof *force);
-    const struct sources *const all[] = {&flow->fish[f].body, &flow->fish[f].markers};
-    for (int i = 0; i < 2; i++) {
-        add_force_of_gust(school, flow->t, all[i]->n, all[i]->x, all[i]->y, all[i]->q, factor, force);
-    }
-}
-
-static int any_has_reaction(const struct school *school) {
-    int any = 0;
-    for (int f = 0; f < school->n_fish; f++) any |= diagnostics_has_reaction(school, &school->fish[f]);
-    return any;
-}
-
-// book the momentum of a fish lost by legs of different lengths s, by trapezoids
-static void book_legs(const struct flow *flow, struct state *state, int f) {
-    struct momentum_balance *const momentum = &state->momentum[f];
-    double rate[3];
-    flow_leg_rate(flow, f, rate);
-
-    // from impulse to sums of circulation times x, y and |x|^2
-    const double now[3] = {-rate[1], rate[0], -2 * rate[2]};
-    for (int i = 0; i < 3; i++) {
-        if (state->event > 0) momentum->lost[i] += flow->school->interval / 2 * (momentum->legs[i] + now[i]);
-        momentum->legs[i] = now[i];
-    }
-}
-
 enum status diagnostics_momentum_event(struct residual *residual, struct state *state) {
     const struct school *const school = residual->school;
     struct flow *const flow = residual->flow;
-    for (int f = 0; f < school->n_fish && flow->kernel->has_legs; f++) {
-        if (diagnostics_has_reaction(school, &school->fish[f])) book_legs(flow, state, f);
-    }
+    const double half = school->interval / 2;
+    bool has_reaction = false;
 
-    // walls or a travelling gust, never both
-    const int has_walls = school->walls.n > 0;
-    if ((!has_walls && school->gust_profile == GUST_UNIFORM) || !(school->density > 0) || !any_has_reaction(school)) {
-        return STATUS_OK;
-    }
-
-    if (has_walls) TRY(flow_images(flow, state));
-
+    // the momentum lost by legs of different lengths s, by trapezoids; from impulse to sums of circulation times x, y
+    // and |x|^2
     for (int f = 0; f < school->n_fish; f++) {
         struct momentum_balance *const momentum = &state->momentum[f];
         if (!diagnostics_has_reaction(school, &school->fish[f])) continue;
+        has_reaction = true;
+        if (!flow->kernel->has_legs) continue;
 
-        double now[3];
-        (has_walls ? force_of_images : force_of_gust)(flow, f, now);
+        double rate[3];
+        flow_leg_rate(flow, f, rate);
+        const double now[3] = {-rate[1], rate[0], -2 * rate[2]};
         for (int i = 0; i < 3; i++) {
-            if (state->event > 0) momentum->external[i] += school->interval / 2 * (momentum->images[i] + now[i]);
+            if (state->event > 0) momentum->lost[i] += half * (momentum->legs[i] + now[i]);
+            momentum->legs[i] = now[i];
+        }
+    }
+
+    // walls or a travelling gust, never both
+    const bool has_walls = school->walls.n > 0, has_gust = school->gust_profile != GUST_UNIFORM;
+    if (!has_reaction || !(school->density > 0) || (!has_walls && !has_gust)) return STATUS_OK;
+    if (has_walls) TRY(flow_images(flow, state));
+    for (int f = 0; f < school->n_fish; f++) {
+        if (!diagnostics_has_reaction(school, &school->fish[f])) continue;
+
+        // the force of images, or of a travelling gust, on the sheet and the wake of the fish
+        struct momentum_balance *const momentum = &state->momentum[f];
+        const double factor = school->density * impulse_depth(&school->fish[f]);
+        const struct sources *const all[] = {&flow->fish[f].body, &flow->fish[f].markers};
+        const int point = flow->points[f].first, marker = flow->wake_range[f].first;
+        double now[3] = {0};
+        if (has_walls) {
+            add_force_on_sources(flow->image_u + point, flow->image_v + point, flow->image_div + point, all[0], factor,
+                                 now);
+            add_force_on_sources(flow->wake_image_u + marker, flow->wake_image_v + marker,
+                                 flow->wake_image_div + marker, all[1], factor, now);
+        }
+        for (int i = 0; i < 2 && !has_walls; i++) {
+            for (int j = 0; j < all[i]->n; j++) {
+                double u, v;
+                flow_external_gust(school, flow->t, all[i]->x[j], all[i]->y[j], &u, &v);
+                add_force_of(&u, &v, 1, all[i]->x + j, all[i]->y + j, all[i]->q + j, factor, now);
+            }
+        }
+
+        for (int i = 0; i < 3; i++) {
+            if (state->event > 0) momentum->external[i] += half * (momentum->images[i] + now[i]);
             momentum->images[i] = now[i];
         }
     }
@@ -416,72 +349,54 @@ void diagnostics_momentum_start(struct residual *residual, struct state *state) 
     }
 }
 
-static double plane_norm(const double vector[3]) {
-    return hypot(vector[0], vector[1]);
-}
-
-// fill the impulses of a fish; add the fish to the momentum balance, and to the size of the terms of the balance
-static void momentum_fill_fish(struct residual *residual, const struct state *state, int f, struct diagnostics_fish *to,
-                               double balance[3], double size[3]) {
-    const struct momentum_balance *const momentum = &state->momentum[f];
-    const struct fish *const fish = &residual->school->fish[f];
-    double body[3], fluid[3], lost[3], given[3];
-    diagnostics_pressure(residual, f, (const double[2]){0, 0}, state->y);
-    momentum_of_body(fish, state->y, body);
-    impulse_of_fluid(residual, state, f, fluid);
-    lost_impulse(residual->school, state, f, lost);
-    given_momentum(residual, f, state->y, given);
-
-    const int has_reaction = diagnostics_has_reaction(residual->school, fish);
-    for (int i = 0; i < 3; i++) {
-        to->fluid_impulse[i] = fluid[i] + lost[i];
-        to->lost_impulse[i] = lost[i];
-        to->external_impulse[i] = has_reaction ? momentum->external[i] + given[i] - momentum->first_given[i] : NAN;
-        fluid[i] -= momentum->first_fluid[i];
-        balance[i] += body[i] - momentum->first_body[i] + fluid[i] + lost[i] - to->external_impulse[i];
-    }
-
-    size[0] += plane_norm(body);
-    size[1] += plane_norm(fluid);
-    size[2] += plane_norm(to->external_impulse);
-}
-
-// whether all fish have the same depth: forces between strips of different depths do not cancel
-static int have_one_depth(const struct school *school) {
-    if (school->finite) return 1;  // forces between rings of different depths are equal and opposite
+bool diagnostics_momentum_is_defined(const struct school *school) {
+    // forces between rings of different depths are equal and opposite, forces between strips are not
     const double depth = impulse_depth(&school->fish[0]);
-    for (int f = 1; f < school->n_fish; f++) {
-        if (fabs(impulse_depth(&school->fish[f]) - depth) > 1e-12 * depth) return 0;
-    }
-    return 1;
-}
-
-// sum of the momenta of all bodies at one length per beat
-static double usual_momentum(const struct school *school) {
-    double sum = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
-        sum += fish->total_mass * fish->length * fish_rate(school, fish);
+        if (!diagnostics_has_reaction(school, fish)) return false;
+        if (!(school->density > 0) || school->finite) continue;
+        if (fabs(impulse_depth(fish) - depth) > 1e-12 * depth) return false;
     }
-    return sum;
-}
-
-int diagnostics_momentum_is_defined(const struct school *school) {
-    for (int f = 0; f < school->n_fish; f++) {
-        if (!diagnostics_has_reaction(school, &school->fish[f])) return 0;
-    }
-    return !(school->density > 0) || have_one_depth(school);
+    return true;
 }
 
 void diagnostics_momentum(struct residual *residual, const struct state *state, struct diagnostics *diagnostics) {
     const struct school *const school = residual->school;
-    double size[3] = {0};
-    memset(diagnostics->momentum_balance, 0, sizeof diagnostics->momentum_balance);
+    double *const balance = diagnostics->momentum_balance;
+    memset(balance, 0, sizeof diagnostics->momentum_balance);
+
+    // the sizes of the terms of the balance, and the sum of the momenta of all bodies at one length per beat
+    double of_bodies = 0, of_fluid = 0, external = 0, usual = 0;
     for (int f = 0; f < school->n_fish; f++) {
-        momentum_fill_fish(residual, state, f, &diagnostics->fish[f], diagnostics->momentum_balance, size);
+        const struct momentum_balance *const momentum = &state->momentum[f];
+        const struct fish *const fish = &school->fish[f];
+        struct diagnostics_fish *const to = &diagnostics->fish[f];
+        double body[3], fluid[3], lost[3], given[3];
+        diagnostics_pressure(residual, f, (const double[2]){0, 0}, state->y);
+        momentum_of_body(fish, state->y, body);
+        impulse_of_fluid(residual, state, f, fluid);
+        given_momentum(residual, f, state->y, given);
+        const struct impulse_moments gone = {
+            .x = momentum->lost[0], .y = momentum->lost[1], .square = momentum->lost[2]};
+        impulse_of(&gone, school->density * impulse_depth(fish), lost);
+
+        // fill the impulses of the fish, and add the fish to the balance
+        const bool has_reaction = diagnostics_has_reaction(school, fish);
+        for (int i = 0; i < 3; i++) {
+            to->fluid_impulse[i] = fluid[i] + lost[i];
+            to->lost_impulse[i] = lost[i];
+            to->external_impulse[i] = has_reaction ? momentum->external[i] + given[i] - momentum->first_given[i] : NAN;
+            fluid[i] -= momentum->first_fluid[i];
+            balance[i] += body[i] - momentum->first_body[i] + fluid[i] + lost[i] - to->external_impulse[i];
+        }
+        of_bodies += hypot(body[0], body[1]);
+        of_fluid += hypot(fluid[0], fluid[1]);
+        external += hypot(to->external_impulse[0], to->external_impulse[1]);
+        usual += fish->total_mass * fish->length * fish_rate(school, fish);
     }
 
     const double rounding = 1e-6;
-    diagnostics->momentum_size = fmax(rounding * usual_momentum(school), fmax(size[0], fmax(size[1], size[2])));
-    for (int i = 0; i < 3 && !diagnostics_momentum_is_defined(school); i++) diagnostics->momentum_balance[i] = NAN;
+    diagnostics->momentum_size = fmax(rounding * usual, fmax(of_bodies, fmax(of_fluid, external)));
+    for (int i = 0; i < 3 && !diagnostics_momentum_is_defined(school); i++) balance[i] = NAN;
 }

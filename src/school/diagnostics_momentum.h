@@ -94,7 +94,7 @@ enum status diagnostics_momentum_event(struct residual *residual, struct state *
 void diagnostics_momentum_start(struct residual *residual, struct state *state);
 
 /* Whether the momentum balance is defined: all fish have a reaction and, in a fluid, strips of one depth. */
-int diagnostics_momentum_is_defined(const struct school *school);
+bool diagnostics_momentum_is_defined(const struct school *school);
 
 /* Fill the impulses of all fish, and the momentum balance of the school, at the event of the state. */
 void diagnostics_momentum(struct residual *residual, const struct state *state, struct diagnostics *diagnostics);

@@ -19,10 +19,6 @@ struct jacobian *jacobian_create(struct arena *arena, const struct school *schoo
     return jacobian;
 }
 
-static size_t block_size(const struct coupling_block *rows) {
-    return (size_t)rows->n_rows * (size_t)rows->n_columns;
-}
-
 void jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, unsigned pattern) {
     const struct school *school = jacobian->school;
     const int n_fish = school->n_fish;
@@ -37,7 +33,7 @@ void jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, un
             if (g == f || !coupled[f * n_fish + g]) continue;
             const struct coupling_block rows = {flow_n_rows(&school->fish[f]), flow_n_columns(&school->fish[g]), NULL};
             jacobian->coupling[next++] = (struct jacobian_coupling){g, rows};
-            n_values += block_size(&rows);
+            n_values += (size_t)rows.n_rows * (size_t)rows.n_columns;
         }
         jacobian->first[f + 1] = next;
     }
@@ -46,8 +42,9 @@ void jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, un
     GROW(jacobian->arena, jacobian->values, n_values);
     double *value = jacobian->values;
     for (int i = 0; i < n; i++) {
-        jacobian->coupling[i].rows.value = value;
-        value += block_size(&jacobian->coupling[i].rows);
+        struct coupling_block *const rows = &jacobian->coupling[i].rows;
+        rows->value = value;
+        value += (size_t)rows->n_rows * (size_t)rows->n_columns;
     }
 
     jacobian->n_couplings = n;
@@ -77,5 +74,36 @@ void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const d
         wide_multiply(rows->n_rows, n_places, rows->value, unknowns + other->at.x, product);
         wide_multiply(rows->n_rows, rows->n_columns - n_places, rows->value + (long)n_places * rows->n_rows,
                       unknowns + other->at.gamma, product);
+    }
+}
+
+void jacobian_add(const struct jacobian *jacobian, double factor, int n, const int *row_number,
+                  const int *column_number, double *matrix) {
+    const struct school *const school = jacobian->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        // the own block
+        const struct sparse *const own = jacobian->own[f];
+        for (int c = 0; c < own->n; c++) {
+            const int column = column_number[own->first + c];
+            for (int64_t k = own->column_start[c]; k < own->column_start[c + 1] && column >= 0; k++) {
+                const int row = row_number[own->first + (int)own->row_index[k]];
+                if (row >= 0) matrix[(size_t)row + (size_t)n * (size_t)column] += factor * own->value[k];
+            }
+        }
+
+        // the couplings
+        for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
+            const struct coupling_block *const rows = &jacobian->coupling[i].rows;
+            const struct fish *const other = &school->fish[jacobian->coupling[i].other];
+            for (int c = 0; c < rows->n_columns; c++) {
+                const int column = column_number[flow_column(other, c)];
+                for (int r = 0; r < rows->n_rows && column >= 0; r++) {
+                    const int row = row_number[school->fish[f].at.ax + r];
+                    if (row < 0) continue;
+                    matrix[(size_t)row + (size_t)n * (size_t)column] +=
+                        factor * rows->value[(long)c * rows->n_rows + r];
+                }
+            }
+        }
     }
 }

@@ -39,23 +39,24 @@ static void rotate(const double centre[2], double angle, double *x, double *y) {
     *y = centre[1] + s * dx + c * dy;
 }
 
-static void change_velocity(const struct fish *fish, const struct rigid *before, const double velocity[2], double turn,
-                            double *y) {
-    for (int k = 0; k < fish->n_nodes; k++) {
-        y[fish->at.vx + k] += velocity[0] - turn * (y[fish->at.y + k] - before->place[1]);
-        y[fish->at.vy + k] += velocity[1] + turn * (y[fish->at.x + k] - before->place[0]);
-    }
-}
+static const double origin[2] = {0, 0};
 
-// displace the wake to the wake of a fish with constant new velocity and turn; tail: position of the last node
+// displace the wake to the wake of a fish with constant new velocity and turn, then turn and displace it with the fish;
+// tail: position of the last node
 static void change_wake(struct wake *wake, double t, const double centre[2], const double tail[2],
-                        const double velocity[2], double turn) {
+                        const double velocity[2], double turn, double angle, const double way[2]) {
     const double of_tail[2] = {velocity[0] - turn * (tail[1] - centre[1]), velocity[1] + turn * (tail[0] - centre[0])};
     for (int i = 0; i < wake->n_vortex; i++) {
         const double age = t - wake->birth[i];
         rotate(centre, -turn * age, &wake->x[i], &wake->y[i]);
         wake->x[i] -= age * velocity[0];
         wake->y[i] -= age * velocity[1];
+
+        rotate(centre, angle, &wake->x[i], &wake->y[i]);
+        rotate(origin, angle, &wake->u[i], &wake->v[i]);
+        rotate(origin, angle, &wake->u_before[i], &wake->v_before[i]);
+        wake->x[i] += way[0];
+        wake->y[i] += way[1];
     }
 
     // slip: velocity of the flow minus velocity of the tail
@@ -63,48 +64,10 @@ static void change_wake(struct wake *wake, double t, const double centre[2], con
         wake->tail_velocity[i] += of_tail[i];
         wake->slip[i] -= of_tail[i];
     }
-    wake->version++;
-}
-
-static const double origin[2] = {0, 0};
-
-static void move_wake(struct wake *wake, const double centre[2], double angle, const double way[2]) {
-    for (int i = 0; i < wake->n_vortex; i++) {
-        rotate(centre, angle, &wake->x[i], &wake->y[i]);
-        rotate(origin, angle, &wake->u[i], &wake->v[i]);
-        rotate(origin, angle, &wake->u_before[i], &wake->v_before[i]);
-        wake->x[i] += way[0];
-        wake->y[i] += way[1];
-    }
     rotate(origin, angle, &wake->tail_velocity[0], &wake->tail_velocity[1]);
     rotate(origin, angle, &wake->tail_tangent[0], &wake->tail_tangent[1]);
     rotate(origin, angle, &wake->slip[0], &wake->slip[1]);
     wake->version++;
-}
-
-// rotate every vector of the samples of the last period with the fish: means over the period do not jump
-static void move_history(struct history *history, const double centre[2], double angle, const double way[2]) {
-    for (int i = 0; i < history->n_slots; i++) {
-        struct sample *const sample = &history->sample[i];
-        rotate(centre, angle, &sample->com[0], &sample->com[1]);
-        rotate(centre, angle, &sample->tail[0], &sample->tail[1]);
-        rotate(origin, angle, &sample->velocity[0], &sample->velocity[1]);
-        rotate(origin, angle, &sample->friction[0], &sample->friction[1]);
-        rotate(origin, angle, &sample->force[0], &sample->force[1]);
-        rotate(origin, angle, &sample->stream[0], &sample->stream[1]);
-        rotate(origin, angle, &sample->drifted[0], &sample->drifted[1]);
-        sample->heading += angle;
-        for (int j = 0; j < 2; j++) {
-            sample->com[j] += way[j];
-            sample->tail[j] += way[j];
-        }
-    }
-}
-
-// evaluate the stream of the newest sample at the new position: the next event integrates drifted from this value
-static void renew_stream(const struct school *school, double t, struct history *history) {
-    struct sample *const newest = &history->sample[history->last];
-    flow_external(school, t, newest->com[0], newest->com[1], &newest->stream[0], &newest->stream[1]);
 }
 
 void rigid_change(const struct school *school, struct state *state, int f, const struct rigid *change) {
@@ -116,18 +79,40 @@ void rigid_change(const struct school *school, struct state *state, int f, const
     const double velocity[2] = {c * change->velocity[0] - s * change->velocity[1],
                                 s * change->velocity[0] + c * change->velocity[1]};
 
-    change_velocity(fish, &before, velocity, change->turn, state->y);
-    change_wake(&state->wake[f], state->t, before.place, tail, velocity, change->turn);
+    double *const x = state->y + fish->at.x, *const y = state->y + fish->at.y;
+    double *const vx = state->y + fish->at.vx, *const vy = state->y + fish->at.vy;
 
-    // turn about the nose, then displace
+    // change the velocity, then turn about the centre of mass and displace
     for (int k = 0; k < fish->n_nodes; k++) {
-        rotate(before.place, change->heading, &state->y[fish->at.x + k], &state->y[fish->at.y + k]);
-        rotate(origin, change->heading, &state->y[fish->at.vx + k], &state->y[fish->at.vy + k]);
-        state->y[fish->at.x + k] += change->place[0];
-        state->y[fish->at.y + k] += change->place[1];
+        vx[k] += velocity[0] - change->turn * (y[k] - before.place[1]);
+        vy[k] += velocity[1] + change->turn * (x[k] - before.place[0]);
+        rotate(before.place, change->heading, &x[k], &y[k]);
+        rotate(origin, change->heading, &vx[k], &vy[k]);
+        x[k] += change->place[0];
+        y[k] += change->place[1];
     }
+    change_wake(&state->wake[f], state->t, before.place, tail, velocity, change->turn, change->heading, change->place);
 
-    move_wake(&state->wake[f], before.place, change->heading, change->place);
-    move_history(&state->history[f], before.place, change->heading, change->place);
-    if (state->history[f].n > 0) renew_stream(school, state->t, &state->history[f]);
+    // rotate every vector of the samples of the last period with the fish: means over the period do not jump
+    struct history *const history = &state->history[f];
+    for (int i = 0; i < history->n_slots; i++) {
+        struct sample *const sample = &history->sample[i];
+        rotate(before.place, change->heading, &sample->com[0], &sample->com[1]);
+        rotate(before.place, change->heading, &sample->tail[0], &sample->tail[1]);
+        rotate(origin, change->heading, &sample->velocity[0], &sample->velocity[1]);
+        rotate(origin, change->heading, &sample->friction[0], &sample->friction[1]);
+        rotate(origin, change->heading, &sample->force[0], &sample->force[1]);
+        rotate(origin, change->heading, &sample->stream[0], &sample->stream[1]);
+        rotate(origin, change->heading, &sample->drifted[0], &sample->drifted[1]);
+        sample->heading += change->heading;
+        for (int j = 0; j < 2; j++) {
+            sample->com[j] += change->place[j];
+            sample->tail[j] += change->place[j];
+        }
+    }
+    if (history->n == 0) return;
+
+    // the stream of the newest sample at the new position: the next event integrates drifted from this value
+    struct sample *const newest = &history->sample[history->last];
+    flow_external(school, state->t, newest->com[0], newest->com[1], &newest->stream[0], &newest->stream[1]);
 }

@@ -8,77 +8,189 @@
 #include "base/mathematics.h"
 #include "body/rod.h"
 
-/* Input of a warning about one fish. */
+/* One fish, and all that its warnings read. */
 struct subject {
     const struct school *school;
     const struct state *state;
     const struct diagnostics *diagnostics;
     double *scratch;
-    const struct fish *fish;
     int f;
-    double size; /* of struct kind */
 };
 
 /* The size of a defect without degrees. */
 static const double always = 2;
 
-/* A kind of warning about a single fish: size of the defect, above 1 a warning, and message. */
-struct kind {
-    double (*size)(const struct subject *subject);
-    void (*say)(const struct subject *subject, const char *who, char line[WARNING_BYTES]);
+/* The least number of events in a beat; the largest change of the speed in a beat of nearly steady swimming. */
+enum { MIN_EVENTS = 20 };
+static const double nearly_steady = 0.1;
+
+/* One part in a thousand million for the rounding error of a time or a quotient. */
+static const double rounded = 1 - 1e-9;
+
+// ---- the warnings about one fish: size of the defect, above 1 a warning, and line
+
+double warnings_bending_length(const struct fish *fish) {
+    const double omega = 2 * M_PI * fish->frequency;
+    return pow(fish->tail_stiffness / (fish->tail_added_mass * omega * omega), 0.25);
+}
+
+// whether forces of the fluid bend the tail
+static bool tail_bends(const struct subject *subject) {
+    return subject->school->density > 0 && subject->school->fish[subject->f].motion.prescribed != PRESCRIBED_ALL;
+}
+
+// warnings about the solution
+static double solution_warning(enum warning warning, const struct subject *subject, const char *who,
+                               char line[WARNING_BYTES]) {
+    const struct fish *const fish = &subject->school->fish[subject->f];
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    const double *const works = subject->state->balance[subject->f].work;
+    const double t = subject->state->t, period = fish->period;
+    const double balance = fabs(now->energy_balance);
+    double energy = now->kinetic_energy + now->bending_energy + now->stretching_energy, work = 0;
+
+    switch (warning) {
+        case WARNING_ENERGY:
+            for (int i = 0; i < N_WORKS; i++) work = larger(work, fabs(works[i]));
+            snprintf(line, WARNING_BYTES,
+                     "energy balance of %s: residual %.2g J for %.2g J of work: reduce solver.rtol or solver.step; if "
+                     "the residual remains, the case is outside the range of the model",
+                     who, now->energy_balance, work);
+
+            // the works are small in the first beat: include the energy of the body, and of one length per beat
+            if (t < period) {
+                const double speed = fish->length / period;
+                work = larger(work, larger(energy, fish->total_mass * speed * speed));
+            }
+            if (!isfinite(balance) || isnan(work)) return INFINITY;
+            return balance > 1e-12 * energy && work > 0 ? balance / (0.01 * work) : 0;
+
+        case WARNING_DRIFT:
+            snprintf(line, WARNING_BYTES,
+                     "the speed of %s changes by %.1f %% from one beat to the next: the means are not steady; increase "
+                     "time.end or use `shoal steady`",
+                     who, 100 * now->drift);
+            return subject->school->density > 0 && !isnan(now->drift) ? fabs(now->drift) / 0.01 : 0;
+
+        case WARNING_EDGE:
+            snprintf(line, WARNING_BYTES,
+                     "the flow separates at the nose of %s for %.0f %% of the last period (A_0 up to %.2g, "
+                     "pressure.suction_limit %.3g): thrust and efficiency depend on this limit, compare with 0.11 and "
+                     "0.25",
+                     who, 100 * now->separation_share, now->leading_edge_most, fish->suction_limit);
+
+            // at low speed after a start the circulations are large for the speed
+            if (period > 0 && !(fabs(now->drift) < nearly_steady)) return 0;
+            return fish->suction > 0 ? now->separation_share / 0.1 : 0;
+
+        case WARNING_CHATTER:
+            snprintf(line, WARNING_BYTES,
+                     "the steering bias of %s reverses %.0f times in a period, faster than the beat: reduce "
+                     "control.damping (%.3g) or control.gain (%.3g)",
+                     who, now->bias_reversals, fish->control.damping, fish->control.gain);
+
+            // a bias that follows the beat or its second harmonic reverses up to four times in a period
+            return now->bias_reversals / 4;
+
+        default: return 0;
+    }
+}
+
+// warnings about times, points and nodes: too few of them
+static double resolution_warning(enum warning warning, const struct subject *subject, const char *who,
+                                 char line[WARNING_BYTES]) {
+    const struct fish *const fish = &subject->school->fish[subject->f];
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    const double t = subject->state->t, period = fish->period, interval = subject->school->interval;
+    const double lengths = now->speed * interval / fish->length, n_points = 3.2 / sqrt(lengths);
+    const double bending_length = warnings_bending_length(fish);
+    const bool has_wave = fish_has_wave(fish), has_motion = fish->motion.omega > 0;
+
+    switch (warning) {
+        case WARNING_BEATS:
+            snprintf(line, WARNING_BYTES,
+                     "the run has %.3g beats of %s: means and powers are not those of a cycle; increase time.end to at "
+                     "least %.4g s",
+                     t / period, who, 2 * period);
+            return (has_wave || has_motion) && t > 0 ? rounded * 2 * period / t : 0;
+
+        case WARNING_EVENTS:
+            snprintf(line, WARNING_BYTES,
+                     "a beat of %s has only %.3g events: reduce time.shedding_interval to %.3g s for %d events", who,
+                     period / interval, period / MIN_EVENTS, MIN_EVENTS);
+            return period > 0 ? rounded * MIN_EVENTS * interval / period : 0;
+
+        case WARNING_SHEET:
+            snprintf(line, WARNING_BYTES,
+                     "%s swims %.2g lengths in a shedding_interval, too short for %d sheet_points: use %.0f "
+                     "sheet_points or a longer time.shedding_interval",
+                     who, lengths, fish->n_sheet, ceil(n_points) + 1);
+
+            // only at nearly steady speed: every fish that starts from rest is slow; an equilibrium sheds nothing
+            if (subject->school->shedding != SHEDDING_SHEET || !(now->speed > 0)) return 0;
+            if (subject->state->wake[subject->f].n_vortex == 0) return 0;
+            if (period > 0 && !(fabs(now->drift) < nearly_steady)) return 0;
+
+            // The sheet needs M - 1 >= 3.2/sqrt(U Dt/L). The warning begins at 0.9 of this number, because the error
+            // grows slowly (0.25 % of the circulation at 0.63). A fish that needs 1000 points does not swim.
+            return n_points < 1000 ? 0.9 * n_points / (fish->n_sheet - 1) : 0;
+
+        case WARNING_TAIL:
+            snprintf(line, WARNING_BYTES,
+                     "the edges of %s, %.2g m, are longer than half the bending length of the tail, %.2g m: use at "
+                     "least %.0f nodes",
+                     who, fish->edge_length, bending_length, ceil(2 * fish->length / bending_length) + 1);
+            if (!(has_wave || (fish->motion.prescribed == PRESCRIBED_HEAD && has_motion))) return 0;
+            if (!tail_bends(subject) || fish->has_cusp || !(fish->tail_added_mass > 0)) return 0;
+            return 2 * fish->edge_length / bending_length;
+
+        default: return 0;
+    }
+}
+
+// warnings about the model of the case
+static double model_warning(enum warning warning, const struct subject *subject, const char *who,
+                            char line[WARNING_BYTES]) {
+    const struct fish *const fish = &subject->school->fish[subject->f];
+    double slowest = 0;
+
+    switch (warning) {
+        case WARNING_MODES:
+            if (!fish_has_wave(fish)) return 0;
+            slowest = bending_mode_frequency(fish, subject->scratch);
+            snprintf(line, WARNING_BYTES,
+                     "the slowest bending mode of %s has %.2g Hz, below the beat frequency %.3g Hz: the shape differs "
+                     "from the natural curvature and depends on many modes: compare with twice the nodes",
+                     who, slowest, fish->frequency);
+            return fish->frequency / slowest;
+
+        case WARNING_CUSP:
+            snprintf(line, WARNING_BYTES,
+                     "the tail of %s ends in a cusp: results do not converge with the number of nodes "
+                     "(doc/numerics.md, section 5); set body.tail_thickness",
+                     who);
+            return tail_bends(subject) && fish->has_cusp ? always : 0;
+
+        case WARNING_FORCE:
+            snprintf(line, WARNING_BYTES,
+                     "the published force on %s does not follow from an energy and can create energy: accuracy "
+                     "warnings are suppressed; compare with 'force: reactive'",
+                     who);
+            return subject->school->density > 0 && fish->force == FORCE_PUBLISHED ? always : 0;
+
+        default: return 0;
+    }
+}
+
+/* Which function has a warning about a single fish; NULL: the warning is about the school. */
+static double (*const of_fish[N_WARNINGS])(enum warning, const struct subject *, const char *, char *) = {
+    [WARNING_ENERGY] = solution_warning,   [WARNING_BEATS] = resolution_warning, [WARNING_DRIFT] = solution_warning,
+    [WARNING_EVENTS] = resolution_warning, [WARNING_SHEET] = resolution_warning, [WARNING_MODES] = model_warning,
+    [WARNING_EDGE] = solution_warning,     [WARNING_CHATTER] = solution_warning, [WARNING_CUSP] = model_warning,
+    [WARNING_TAIL] = resolution_warning,   [WARNING_FORCE] = model_warning,
 };
 
-// ---- energy
-
-// the largest work, J
-static double largest_work(const struct subject *subject) {
-    const double *const work = subject->state->balance[subject->f].work;
-    double max = 0;
-    for (int i = 0; i < N_WORKS; i++) max = larger(max, fabs(work[i]));
-    return max;
-}
-
-static double energy_size(const struct subject *subject) {
-    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
-    const double energy = now->kinetic_energy + now->bending_energy + now->stretching_energy;
-    const double balance = fabs(now->energy_balance), rounding = 1e-12 * energy;
-    double work = largest_work(subject);
-
-    // the works are small in the first beat: include the energy of the body, and of one length per beat
-    if (subject->state->t < subject->fish->period) {
-        const double speed = subject->fish->length / subject->fish->period;
-        work = larger(work, larger(energy, subject->fish->total_mass * speed * speed));
-    }
-    if (!isfinite(balance) || isnan(work)) return INFINITY;
-    return balance > rounding && work > 0 ? balance / (0.01 * work) : 0;
-}
-
-static void energy_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    snprintf(
-        line, WARNING_BYTES,
-        "energy balance of %s: residual %.2g J for %.2g J of work: reduce solver.rtol or solver.step; if the residual "
-        "remains, the case is outside the range of the model",
-        who, subject->diagnostics->fish[subject->f].energy_balance, largest_work(subject));
-}
-
 // ---- divergence
-
-// upper bound of the speeds prescribed by the case, m s-1: sum for one fish of beat, motion, start, external flow, and
-// free acceleration by the load; the largest sum of all fish
-static double case_speed(const struct school *school, const struct state *state) {
-    double most = 0;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *const fish = &school->fish[f];
-        const double beat = 2 * 3.14159265358979323846 * fish->length * fish_rate(school, fish);
-        const double motion = fish->motion.omega * (fabs(fish->motion.heave) + fabs(fish->motion.pitch) * fish->length);
-        const double load = hypot(fish->load_tip[0], fish->load_tip[1]) * state->t / fish->total_mass;
-        const double stream = hypot(school->velocity[0], school->velocity[1]) +
-                              hypot(school->gust[0], school->gust[1]) +
-                              fabs(school->shear * fish_mass_mean(fish, state->y + fish->at.y));
-        most = larger(most, beat + motion + load + stream + fabs(fish->start_speed) + fabs(fish->motion.speed));
-    }
-    return most;
-}
 
 // the circulation of a foil is about 3 L U, and a tail may be several times faster than the body: 100 is no physical
 // result
@@ -87,7 +199,21 @@ static const double most_of_case = 100;
 // replace the worst divergence and its fish by a worse divergence of the present state
 static void divergence_find(const struct school *school, const struct state *state, double worst[N_DIVERGENCE],
                             long *diverged) {
-    const double limit = most_of_case * case_speed(school, state);
+    // upper bound of the speeds prescribed by the case: sum for one fish of beat, motion, start, external flow, and
+    // free acceleration by the load; the largest sum of all fish
+    double of_case = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const double beat = 2 * M_PI * fish->length * fish_rate(school, fish);
+        const double motion = fish->motion.omega * (fabs(fish->motion.heave) + fabs(fish->motion.pitch) * fish->length);
+        const double load = hypot(fish->load_tip[0], fish->load_tip[1]) * state->t / fish->total_mass;
+        const double stream = hypot(school->velocity[0], school->velocity[1]) +
+                              hypot(school->gust[0], school->gust[1]) +
+                              fabs(school->shear * fish_mass_mean(fish, state->y + fish->at.y));
+        of_case = larger(of_case, beat + motion + load + stream + fabs(fish->start_speed) + fabs(fish->motion.speed));
+    }
+
+    const double limit = most_of_case * of_case;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         const struct wake *const wake = &state->wake[f];
@@ -110,223 +236,6 @@ static void divergence_find(const struct school *school, const struct state *sta
 
 void warnings_remember(const struct school *school, struct state *state) {
     divergence_find(school, state, state->divergence, &state->diverged);
-}
-
-static int divergence_line(const struct school *school, const struct state *state, char line[WARNING_BYTES]) {
-    double worst[N_DIVERGENCE];
-    long diverged = state->diverged;
-    memcpy(worst, state->divergence, sizeof worst);
-    divergence_find(school, state, worst, &diverged);
-    if (!(worst[DIVERGENCE_SIZE] > 1)) return 0;
-
-    snprintf(line, WARNING_BYTES,
-             "%.40s has diverged: at t = %.4g s node speed %.2g m/s, circulation %.2g m2/s, more than %g times the "
-             "speeds of the case: reduce solver.rtol, solver.step or time.shedding_interval, or stiffen the body",
-             school->fish[diverged].name, worst[DIVERGENCE_T], worst[DIVERGENCE_SPEED], worst[DIVERGENCE_CIRCULATION],
-             most_of_case);
-    return 1;
-}
-
-// ---- means over a beat
-
-// two beats, up to the rounding error of the time
-static double beats_size(const struct subject *subject) {
-    const struct fish *const fish = subject->fish;
-    const double needed = (1 - 1e-9) * 2 * fish->period;
-    const int beats = fish_has_wave(fish) || fish->motion.omega > 0;
-    return beats && subject->state->t > 0 ? needed / subject->state->t : 0;
-}
-
-static void beats_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    const double period = subject->fish->period;
-    snprintf(line, WARNING_BYTES,
-             "the run has %.3g beats of %s: means and powers are not those of a cycle; increase time.end to at least "
-             "%.4g s",
-             subject->state->t / period, who, 2 * period);
-}
-
-// ---- drift of the speed
-
-static double drift_size(const struct subject *subject) {
-    const double drift = subject->diagnostics->fish[subject->f].drift;
-    if (!(subject->school->density > 0) || isnan(drift)) return 0;
-    return fabs(drift) / 0.01;
-}
-
-static void drift_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    snprintf(line, WARNING_BYTES,
-             "the speed of %s changes by %.1f %% from one beat to the next: the means are not steady; increase "
-             "time.end or use "
-             "`shoal steady`",
-             who, 100 * subject->diagnostics->fish[subject->f].drift);
-}
-
-// ---- resolution
-
-enum { MIN_EVENTS = 20 /* in a beat */ };
-
-static double events_size(const struct subject *subject) {
-    const double period = subject->fish->period;
-
-    // tolerate the rounding error of the quotient
-    return period > 0 ? (1 - 1e-9) * MIN_EVENTS * subject->school->interval / period : 0;
-}
-
-static void events_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    snprintf(line, WARNING_BYTES,
-             "a beat of %s has only %.3g events: reduce time.shedding_interval to %.3g s for %d events", who,
-             subject->fish->period / subject->school->interval, subject->fish->period / MIN_EVENTS, MIN_EVENTS);
-}
-
-// The sheet needs M - 1 >= 3.2/sqrt(U Dt/L). The warning begins at 0.9 of this number, because the error grows slowly
-// (0.25 % of the circulation at 0.63), and only at nearly steady speed: every fish that starts from rest is slow.
-static double sheet_needs(const struct subject *subject) {
-    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
-    return 3.2 / sqrt(now->speed * subject->school->interval / subject->fish->length);
-}
-
-static double sheet_size(const struct subject *subject) {
-    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
-    if (subject->school->shedding != SHEDDING_SHEET || !(now->speed > 0)) return 0;
-    // an equilibrium has no shedding
-    if (subject->state->wake[subject->f].n_vortex == 0) return 0;
-
-    const double nearly = 0.1;
-    if (subject->fish->period > 0 && !(fabs(now->drift) < nearly)) return 0;
-
-    // a fish that needs more points does not swim
-    const double most = 1000;
-    return sheet_needs(subject) < most ? 0.9 * sheet_needs(subject) / (subject->fish->n_sheet - 1) : 0;
-}
-
-static void sheet_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    snprintf(line, WARNING_BYTES,
-             "%s swims %.2g lengths in a shedding_interval, too short for %d sheet_points: use %.0f sheet_points or a "
-             "longer "
-             "time.shedding_interval",
-             who, subject->diagnostics->fish[subject->f].speed * subject->school->interval / subject->fish->length,
-             subject->fish->n_sheet, ceil(sheet_needs(subject)) + 1);
-}
-
-// ---- the slowest bending mode
-
-static double modes_size(const struct subject *subject) {
-    const struct fish *const fish = subject->fish;
-    return fish_has_wave(fish) ? fish->frequency / bending_mode_frequency(fish, subject->scratch) : 0;
-}
-
-static void modes_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    snprintf(line, WARNING_BYTES,
-             "the slowest bending mode of %s has %.2g Hz, below the beat frequency %.3g Hz: the shape differs from the "
-             "natural "
-             "curvature and depends on many modes: compare with twice the nodes",
-             who, bending_mode_frequency(subject->fish, subject->scratch), subject->fish->frequency);
-}
-
-// ---- the leading edge
-
-// only at nearly steady speed, as for the sheet: at low speed after a start the circulations are large for the speed
-static double edge_size(const struct subject *subject) {
-    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
-    const double most = 0.1, nearly = 0.1;
-    if (subject->fish->period > 0 && !(fabs(now->drift) < nearly)) return 0;
-    return subject->fish->suction > 0 ? now->separation_share / most : 0;
-}
-
-static void edge_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
-    snprintf(line, WARNING_BYTES,
-             "the flow separates at the nose of %s for %.0f %% of the last period (A_0 up to %.2g, "
-             "pressure.suction_limit %.3g): thrust and efficiency depend on this limit, compare with 0.11 and 0.25",
-             who, 100 * now->separation_share, now->leading_edge_most, subject->fish->suction_limit);
-}
-
-// ---- the controller
-
-// a bias that follows the beat or its second harmonic reverses up to four times in a period
-static double chatter_size(const struct subject *subject) {
-    const double most = 4;
-    return subject->diagnostics->fish[subject->f].bias_reversals / most;
-}
-
-static void chatter_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    snprintf(line, WARNING_BYTES,
-             "the steering bias of %s reverses %.0f times in a period, faster than the beat: reduce control.damping "
-             "(%.3g) or "
-             "control.gain (%.3g)",
-             who, subject->diagnostics->fish[subject->f].bias_reversals, subject->fish->control.damping,
-             subject->fish->control.gain);
-}
-
-// ---- the tail
-
-// whether forces of the fluid bend the tail
-static int tail_bends(const struct subject *subject) {
-    return subject->school->density > 0 && subject->fish->motion.prescribed != PRESCRIBED_ALL;
-}
-
-static double cusp_size(const struct subject *subject) {
-    return tail_bends(subject) && subject->fish->has_cusp ? always : 0;
-}
-
-static void cusp_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    (void)subject;
-    snprintf(line, WARNING_BYTES,
-             "the tail of %s ends in a cusp: results do not converge with the number of nodes (doc/numerics.md, "
-             "section 5); set "
-             "body.tail_thickness",
-             who);
-}
-
-double warnings_bending_length(const struct fish *fish) {
-    const double omega = 2 * 3.14159265358979323846 * fish->frequency;
-    return pow(fish->tail_stiffness / (fish->tail_added_mass * omega * omega), 0.25);
-}
-
-static double tail_size(const struct subject *subject) {
-    const struct fish *const fish = subject->fish;
-    const int beats = fish_has_wave(fish) || (fish->motion.prescribed == PRESCRIBED_HEAD && fish->motion.omega > 0);
-    if (!tail_bends(subject) || !beats || fish->has_cusp || !(fish->tail_added_mass > 0)) return 0;
-    return 2 * fish->edge_length / warnings_bending_length(fish);
-}
-
-static void tail_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    const struct fish *const fish = subject->fish;
-    snprintf(
-        line, WARNING_BYTES,
-        "the edges of %s, %.2g m, are longer than half the bending length of the tail, %.2g m: use at least %.0f nodes",
-        who, fish->edge_length, warnings_bending_length(fish),
-        ceil(2 * fish->length / warnings_bending_length(fish)) + 1);
-}
-
-// ---- the published force
-
-static double force_size(const struct subject *subject) {
-    return subject->school->density > 0 && subject->fish->force == FORCE_PUBLISHED ? always : 0;
-}
-
-static void force_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    (void)subject;
-    snprintf(line, WARNING_BYTES,
-             "the published force on %s does not follow from an energy and can create energy: accuracy warnings are "
-             "suppressed; compare with 'force: reactive'",
-             who);
-}
-
-// ---- all of them
-
-static const struct kind kinds[N_WARNINGS] = {
-    [WARNING_ENERGY] = {energy_size, energy_say}, [WARNING_BEATS] = {beats_size, beats_say},
-    [WARNING_DRIFT] = {drift_size, drift_say},    [WARNING_EVENTS] = {events_size, events_say},
-    [WARNING_SHEET] = {sheet_size, sheet_say},    [WARNING_MODES] = {modes_size, modes_say},
-    [WARNING_EDGE] = {edge_size, edge_say},       [WARNING_CHATTER] = {chatter_size, chatter_say},
-    [WARNING_CUSP] = {cusp_size, cusp_say},       [WARNING_TAIL] = {tail_size, tail_say},
-    [WARNING_FORCE] = {force_size, force_say},
-};
-
-// accuracy warnings are suppressed for the published force
-static int applies_to_force(enum warning warning, const struct fish *fish) {
-    return fish->force != FORCE_PUBLISHED || warning == WARNING_FORCE;
 }
 
 const struct warning_words warnings_words[N_WARNINGS] = {
@@ -367,50 +276,66 @@ const struct warning_words warnings_words[N_WARNINGS] = {
                        "may create energy; the other warnings for this fish are contact, crossing and divergence"},
 };
 
-static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {
-    const int repel = school->contact == CONTACT_REPEL;
-    const char *const a = school->fish[closest->fish[0]].name, *const b = school->fish[closest->fish[1]].name;
-    if (closest->distance <= 0) {
-        snprintf(line, WARNING_BYTES,
-                 "the bodies of %.40s and %.40s touch or cross at t = %.4g s: later results are invalid%s", a, b,
-                 closest->t, repel ? "" : "; set contact.action: repel");
-        return 1;
+// write the line of a warning about the school, if it applies
+static bool school_warning(enum warning warning, const struct school *school, const struct state *state,
+                           const struct diagnostics *diagnostics, char line[WARNING_BYTES]) {
+    const struct closest *const closest = state->closest;
+    const bool repel = school->contact == CONTACT_REPEL;
+    const double *const residual = diagnostics->momentum_balance, balance = hypot(residual[0], residual[1]);
+    double worst[N_DIVERGENCE], period = 0;
+    long diverged = state->diverged;
+
+    switch (warning) {
+        case WARNING_CONTACT:
+            if (closest->distance > 0 && (repel || closest->distance >= school->contact_range)) return false;
+            const char *const a = school->fish[closest->fish[0]].name, *const b = school->fish[closest->fish[1]].name;
+            if (closest->distance <= 0) {
+                snprintf(line, WARNING_BYTES,
+                         "the bodies of %.40s and %.40s touch or cross at t = %.4g s: later results are invalid%s", a,
+                         b, closest->t, repel ? "" : "; set contact.action: repel");
+            } else {
+                snprintf(line, WARNING_BYTES,
+                         "%.40s and %.40s come within %.3g m of each other at t = %.4g s, less than contact.range", a,
+                         b, closest->distance, closest->t);
+            }
+            return true;
+
+        case WARNING_CROSSING:
+            if (state->crossed < 0) return false;
+            snprintf(line, WARNING_BYTES,
+                     "the body of %.40s crosses itself at t = %.4g s: later results are invalid; use a stiffer body or "
+                     "a smaller wave.amplitude",
+                     school->fish[state->crossed].name, state->crossed_t);
+            return true;
+
+        case WARNING_DIVERGENCE:
+            memcpy(worst, state->divergence, sizeof worst);
+            divergence_find(school, state, worst, &diverged);
+            if (!(worst[DIVERGENCE_SIZE] > 1)) return false;
+            snprintf(line, WARNING_BYTES,
+                     "%.40s has diverged: at t = %.4g s node speed %.2g m/s, circulation %.2g m2/s, more than %g times "
+                     "the speeds of the case: reduce solver.rtol, solver.step or time.shedding_interval, or stiffen "
+                     "the body",
+                     school->fish[diverged].name, worst[DIVERGENCE_T], worst[DIVERGENCE_SPEED],
+                     worst[DIVERGENCE_CIRCULATION], most_of_case);
+            return true;
+
+        case WARNING_MOMENTUM:
+            // not in the longest beat; without beat, not in the time of one length
+            for (int f = 0; f < school->n_fish; f++) period = fmax(period, 1 / fish_rate(school, &school->fish[f]));
+            if (state->t < period) return false;
+            if (isfinite(balance) ? !(balance > 0.01 * diagnostics->momentum_size)
+                                  : !diagnostics_momentum_is_defined(school)) {
+                return false;
+            }
+            snprintf(line, WARNING_BYTES,
+                     "momentum balance: residual %.2g N s for %.2g N s: reduce time.shedding_interval, increase "
+                     "sheet_points, or start without a jump of the velocity",
+                     balance, diagnostics->momentum_size);
+            return true;
+
+        default: return false;
     }
-    if (repel || closest->distance >= school->contact_range) return 0;
-    snprintf(line, WARNING_BYTES,
-             "%.40s and %.40s come within %.3g m of each other at t = %.4g s, less than contact.range", a, b,
-             closest->distance, closest->t);
-    return 1;
-}
-
-static int crossing_line(const struct school *school, const struct state *state, char line[WARNING_BYTES]) {
-    if (state->crossed < 0) return 0;
-    snprintf(
-        line, WARNING_BYTES,
-        "the body of %.40s crosses itself at t = %.4g s: later results are invalid; use a stiffer body or a smaller "
-        "wave.amplitude",
-        school->fish[state->crossed].name, state->crossed_t);
-    return 1;
-}
-
-// the momentum balance of the school
-static int momentum_line(const struct school *school, const struct state *state, const struct diagnostics *diagnostics,
-                         char line[WARNING_BYTES]) {
-    const double balance = hypot(diagnostics->momentum_balance[0], diagnostics->momentum_balance[1]);
-
-    // the longest beat; without beat, the time of one length
-    double period = 0;
-    for (int f = 0; f < school->n_fish; f++) period = fmax(period, 1 / fish_rate(school, &school->fish[f]));
-
-    const int is_open =
-        isfinite(balance) ? balance > 0.01 * diagnostics->momentum_size : diagnostics_momentum_is_defined(school);
-    if (state->t < period || !is_open) return 0;
-    snprintf(line, WARNING_BYTES,
-             "momentum balance: residual %.2g N s for %.2g N s: reduce time.shedding_interval, increase sheet_points, "
-             "or start "
-             "without a jump of the velocity",
-             balance, diagnostics->momentum_size);
-    return 1;
 }
 
 enum status warnings_refuse(const struct school *school, const struct state *state,
@@ -442,27 +367,26 @@ enum status warnings_refuse(const struct school *school, const struct state *sta
 
 int warnings_line(enum warning warning, const struct school *school, const struct state *state,
                   const struct diagnostics *diagnostics, double *scratch, char line[WARNING_BYTES]) {
-    if (warning == WARNING_CONTACT) return contact_line(school, state->closest, line);
-    if (warning == WARNING_CROSSING) return crossing_line(school, state, line);
-    if (warning == WARNING_DIVERGENCE) return divergence_line(school, state, line);
-    if (warning == WARNING_MOMENTUM) return momentum_line(school, state, diagnostics, line);
+    if (!of_fish[warning]) return school_warning(warning, school, state, diagnostics, line);
 
-    // the fish with the largest size
-    struct subject worst = {.size = 1};
-    int n = 0;
-    for (int f = 0; f < school->n_fish; f++) {
-        struct subject subject = {school, state, diagnostics, scratch, &school->fish[f], f, 0};
-        if (!applies_to_force(warning, subject.fish)) continue;
-        subject.size = kinds[warning].size(&subject);
-        if (!(subject.size > 1)) continue;
+    // the fish with the largest size; accuracy warnings are suppressed for the published force
+    struct subject subject = {school, state, diagnostics, scratch, 0};
+    double most = 1;
+    int n = 0, worst = 0;
+    for (subject.f = 0; subject.f < school->n_fish; subject.f++) {
+        if (school->fish[subject.f].force == FORCE_PUBLISHED && warning != WARNING_FORCE) continue;
+        const double size = of_fish[warning](warning, &subject, "", line);
+        if (!(size > 1)) continue;
 
         n++;
-        if (subject.size > worst.size) worst = subject;
+        if (size > most) worst = subject.f;
+        most = larger(most, size);
     }
     if (n == 0) return 0;
 
     char who[96];
-    snprintf(who, sizeof who, n > 1 ? "%.40s (the worst of %d fish)" : "%.40s", worst.fish->name, n);
-    kinds[warning].say(&worst, who, line);
+    subject.f = worst;
+    snprintf(who, sizeof who, n > 1 ? "%.40s (the worst of %d fish)" : "%.40s", school->fish[worst].name, n);
+    of_fish[warning](warning, &subject, who, line);
     return 1;
 }

@@ -31,9 +31,6 @@ struct warning_words {
 };
 extern const struct warning_words warnings_words[N_WARNINGS];
 
-/* Whether a warning depends on the case only, and can be printed before a run. */
-int warnings_is_of_case(enum warning warning);
-
 /* The bending length of the tail at the beat frequency, with the added mass at the tail, m; infinite without beat or
  * added mass. doc/numerics.md, section 5. */
 double warnings_bending_length(const struct fish *fish);

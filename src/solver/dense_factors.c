@@ -16,10 +16,6 @@ struct dense_factors dense_factors_create(struct arena *arena, int n) {
     return factors;
 }
 
-double *dense_factors_column(const struct dense_factors *factors, int k) {
-    return factors->value + (long)k * factors->stride;
-}
-
 // eliminate the columns first to end - 1 below the diagonal; returns whether every pivot is finite and not 0
 static WIDE(int, factor_panel, (const struct dense_factors *of, int first, int end), (of, first, end)) {
     const int n = of->n;

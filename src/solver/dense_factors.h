@@ -17,9 +17,6 @@ struct dense_factors {
 /* A matrix of zeros of order n. */
 struct dense_factors dense_factors_create(struct arena *arena, int n);
 
-/* Column k of the matrix (n). */
-double *dense_factors_column(const struct dense_factors *factors, int k);
-
 /* Replace the matrix by the factors. Returns whether the matrix is regular. */
 int dense_factors_set_up(struct dense_factors *factors);
 

@@ -47,39 +47,42 @@ static void equilibrium_list_one(struct equilibrium *e, int unknown, int row, do
     e->row_number[row] = i;
 }
 
-// the force that bends a body by its length, plus the force of the stream, plus rounding
-static double force_scale(const struct school *school, const struct fish *fish) {
-    const double speed = fish->length * fish_rate(school, fish);
-    double stiffness = 0, axial = 0, depth = 0;
-    for (int k = 0; k < fish->n_edges; k++) {
-        axial = fmax(axial, fish->axial_stiffness[k]);
-        depth = fmax(depth, fish->depth[k]);
-    }
-    for (int k = 0; k < fish->n_joints; k++) stiffness = fmax(stiffness, fish->bending_stiffness[k]);
-    const double place = fish->length + hypot(fish->start_position[0], fish->start_position[1]);
-    return stiffness / (fish->length * fish->length) + school->density * speed * speed * fish->length * depth +
-           rounding * axial * place / fish->edge_length;
-}
+// the free positions of all bodies, then the sheets
+static void equilibrium_list(struct equilibrium *e) {
+    const struct school *const school = e->residual->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        // scale: the force that bends the body by its length, plus the force of the stream, plus rounding
+        const struct fish *const fish = &school->fish[f];
+        const double speed = fish->length * fish_rate(school, fish);
+        double stiffness = 0, axial = 0, depth = 0;
+        for (int k = 0; k < fish->n_edges; k++) {
+            axial = fmax(axial, fish->axial_stiffness[k]);
+            depth = fmax(depth, fish->depth[k]);
+        }
+        for (int k = 0; k < fish->n_joints; k++) stiffness = fmax(stiffness, fish->bending_stiffness[k]);
+        const double place = fish->length + hypot(fish->start_position[0], fish->start_position[1]);
+        const double force = stiffness / (fish->length * fish->length) +
+                             school->density * speed * speed * fish->length * depth +
+                             rounding * axial * place / fish->edge_length;
 
-static void list_places(struct equilibrium *e, const struct fish *fish) {
-    const double force = force_scale(e->residual->school, fish);
-    for (int i = 0; i < 2; i++) {
-        for (int k = 0; k < fish->n_nodes; k++) {
-            const int node = i * fish->n_nodes + k;
+        for (int node = 0; node < 2 * fish->n_nodes; node++) {
+            const int i = node / fish->n_nodes, k = node % fish->n_nodes;
             if (fish_is_prescribed(fish, k, i)) continue;
             equilibrium_list_one(e, fish->at.x + node, fish->at.ax + node, fish->length, force / fish->mass[k]);
         }
     }
-}
+    e->n_places = e->n;
 
-static void list_sheet(struct equilibrium *e, const struct fish *fish) {
-    const double speed = fish->length * fish_rate(e->residual->school, fish), circulation = speed * fish->length;
-    for (int j = 0; j < fish->n_sheet; j++) {
-        // the last is Kelvin's equation
-        equilibrium_list_one(e, fish->at.gamma + j, fish->at.gamma + j, speed,
-                             j < fish->n_control ? speed : circulation);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const double speed = fish->length * fish_rate(school, fish), circulation = speed * fish->length;
+        for (int j = 0; j < fish->n_sheet; j++) {
+            // the last is Kelvin's equation
+            equilibrium_list_one(e, fish->at.gamma + j, fish->at.gamma + j, speed,
+                                 j < fish->n_control ? speed : circulation);
+        }
+        equilibrium_list_one(e, fish->at.circulation, fish->at.circulation, circulation, circulation);
     }
-    equilibrium_list_one(e, fish->at.circulation, fish->at.circulation, circulation, circulation);
 }
 
 struct equilibrium *equilibrium_create(struct arena *arena, struct residual *residual, struct state *state) {
@@ -104,9 +107,7 @@ struct equilibrium *equilibrium_create(struct arena *arena, struct residual *res
         e->number[i] = e->row_number[i] = -1;
         e->one[i] = 1;
     }
-    for (int f = 0; f < school->n_fish; f++) list_places(e, &school->fish[f]);
-    e->n_places = e->n;
-    for (int f = 0; f < school->n_fish; f++) list_sheet(e, &school->fish[f]);
+    equilibrium_list(e);
     return e;
 }
 
@@ -117,23 +118,6 @@ void equilibrium_end(struct equilibrium *e) {
 }
 
 // ---- the equations
-
-// set the known values: all nodes have the velocity of the first node, and no acceleration
-static void equilibrium_set_known(struct equilibrium *e) {
-    struct state *const state = e->state;
-    const struct school *school = e->residual->school;
-    memset(state->yp, 0, (size_t)school->n_unknowns * sizeof *state->yp);
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *const fish = &school->fish[f];
-        double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, 0, state->t, position, velocity, acceleration);
-        for (int i = 0; i < 2 * fish->n_nodes; i++) {
-            state->y[fish->at.vx + i] = state->yp[fish->at.x + i] = velocity[i / fish->n_nodes];
-            state->y[fish->at.ax + i] = 0;
-        }
-        state->y[fish->at.phi0] = fish->control.bias;
-    }
-}
 
 static enum status equilibrium_evaluate(struct equilibrium *e) {
     struct state *const state = e->state;
@@ -152,54 +136,17 @@ static enum status equilibrium_value_of(void *data, const double *u, double *val
     return STATUS_OK;
 }
 
-static void equilibrium_put(const struct equilibrium *e, int row, int column, double value, double *matrix) {
-    const int i = e->row_number[row], j = e->number[column];
-    if (i >= 0 && j >= 0) matrix[(size_t)i + (size_t)e->n * (size_t)j] = value * e->scale[j] / e->row_scale[i];
-}
-
-static void put_own(const struct equilibrium *e, const struct sparse *own, double *matrix) {
-    for (int c = 0; c < own->n; c++) {
-        for (int64_t k = own->column_start[c]; k < own->column_start[c + 1]; k++) {
-            equilibrium_put(e, own->first + (int)own->row_index[k], own->first + c, own->value[k], matrix);
-        }
-    }
-}
-
-static void put_coupling(const struct equilibrium *e, int f, const struct jacobian_coupling *coupling, double *matrix) {
-    const struct school *school = e->residual->school;
-    const struct coupling_block *const rows = &coupling->rows;
-    for (int c = 0; c < rows->n_columns; c++) {
-        const int column = flow_column(&school->fish[coupling->other], c);
-        for (int r = 0; r < rows->n_rows; r++) {
-            equilibrium_put(e, school->fish[f].at.ax + r, column, rows->value[(long)c * rows->n_rows + r], matrix);
-        }
-    }
-}
-
 static enum status equilibrium_jacobian_of(void *data, double *matrix) {
     struct equilibrium *const e = data;
     struct jacobian *const jacobian = e->jacobian;
     TRY(residual_jacobian(e->residual, e->state->t, 0, e->state->y, jacobian));
     memset(matrix, 0, (size_t)e->n * (size_t)e->n * sizeof *matrix);
-    for (int f = 0; f < e->residual->school->n_fish; f++) {
-        put_own(e, jacobian->own[f], matrix);
-        for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
-            put_coupling(e, f, &jacobian->coupling[i], matrix);
-        }
+    jacobian_add(jacobian, 1, e->n, e->row_number, e->number, matrix);
+    for (int j = 0; j < e->n; j++) {
+        double *const column = matrix + (size_t)e->n * (size_t)j;
+        for (int i = 0; i < e->n; i++) column[i] = column[i] * e->scale[j] / e->row_scale[i];
     }
     return STATUS_OK;
-}
-
-// momenta follow from positions and sheets
-static void set_momenta(struct equilibrium *e) {
-    const struct school *school = e->residual->school;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *const fish = &school->fish[f];
-        for (int i = 0; i < fish->at.ax - fish->at.px; i++) {
-            const int row = pressure_momentum_row(fish, 0, i / fish->n_nodes, i % fish->n_nodes);
-            e->state->y[fish->at.px + i] -= e->all[row];
-        }
-    }
 }
 
 enum status equilibrium_solve(struct equilibrium *e) {
@@ -212,11 +159,33 @@ enum status equilibrium_solve(struct equilibrium *e) {
                                    .value = equilibrium_value_of,
                                    .jacobian = equilibrium_jacobian_of,
                                    .data = e};
-    equilibrium_set_known(e);
-    for (int i = 0; i < e->n; i++) e->u[i] = e->state->y[e->unknown[i]] / e->scale[i];
+    struct state *const state = e->state;
+    const struct school *const school = e->residual->school;
+
+    // the known values: all nodes have the velocity of the first node, and no acceleration
+    memset(state->yp, 0, (size_t)school->n_unknowns * sizeof *state->yp);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        double position[2], velocity[2], acceleration[2];
+        fish_prescribed_node(fish, 0, state->t, position, velocity, acceleration);
+        for (int i = 0; i < 2 * fish->n_nodes; i++) {
+            state->y[fish->at.vx + i] = state->yp[fish->at.x + i] = velocity[i / fish->n_nodes];
+            state->y[fish->at.ax + i] = 0;
+        }
+        state->y[fish->at.phi0] = fish->control.bias;
+    }
+
+    for (int i = 0; i < e->n; i++) e->u[i] = state->y[e->unknown[i]] / e->scale[i];
     TRY(newton_solve(e->arena, &problem, e->u));
     TRY(equilibrium_value_of(e, e->u, e->value));
-    set_momenta(e);
+
+    // momenta follow from positions and sheets
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        for (int i = 0; i < fish->at.ax - fish->at.px; i++) {
+            state->y[fish->at.px + i] -= e->all[pressure_momentum_row(fish, 0, i / fish->n_nodes, i % fish->n_nodes)];
+        }
+    }
     return equilibrium_evaluate(e);
 }
 
@@ -228,12 +197,25 @@ double equilibrium_residual(const struct equilibrium *e) {
 
 // ---- the stiffness
 
-// replace A by A - B D^-1 C in [A B; C D], A: block of the first n_places unknowns
-static enum status eliminate_sheets(const struct equilibrium *e, double *matrix, lapack_int *pivot) {
+enum status equilibrium_stiffness(struct equilibrium *e, struct equilibrium_stiffness *stiffness) {
     const int n = e->n, p = e->n_places, m = n - p;
+    *stiffness = (struct equilibrium_stiffness){.n_negative = 0};
+    if (p == 0) return STATUS_OK;
+    struct arena *const scratch = arena_create(e->arena, "the static stiffness");
+    double *matrix, *real, *imaginary;
+    lapack_int *pivot;
+    NEW(scratch, matrix, (size_t)n * (size_t)n);
+    NEW(scratch, real, n);
+    NEW(scratch, imaginary, n);
+    NEW(scratch, pivot, n);
+    enum status status = equilibrium_jacobian_of(e, matrix);
+    if (status != STATUS_OK) goto end;
+
+    // replace A by A - B D^-1 C in [A B; C D], A: block of the positions
     double *const right = matrix + (size_t)n * (size_t)p, *const below = matrix + p;
     if (LAPACKE_dgesv(LAPACK_COL_MAJOR, m, p, right + p, n, pivot, below, n) != 0) {
-        return status_fail(STATUS_SOLVER, "the positions of the bodies do not determine the sheets");
+        status = status_fail(STATUS_SOLVER, "the positions of the bodies do not determine the sheets");
+        goto end;
     }
     for (int j = 0; j < p; j++) {
         double *const column = matrix + (size_t)n * (size_t)j;
@@ -243,35 +225,16 @@ static enum status eliminate_sheets(const struct equilibrium *e, double *matrix,
         }
         for (int i = 0; i < p; i++) column[i] *= e->row_scale[i] / e->scale[j];
     }
-    return STATUS_OK;
-}
 
-// real, imaginary: scratch for the eigenvalues
-static enum status take_eigenvalues(const struct equilibrium *e, double *matrix, double *real, double *imaginary,
-                                    struct equilibrium_stiffness *stiffness) {
-    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', e->n_places, matrix, e->n, real, imaginary, NULL, 1, NULL, 1) != 0) {
-        return status_fail(STATUS_SOLVER, "the eigenvalues of the static stiffness do not converge");
+    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', p, matrix, n, real, imaginary, NULL, 1, NULL, 1) != 0) {
+        status = status_fail(STATUS_SOLVER, "the eigenvalues of the static stiffness do not converge");
+        goto end;
     }
-    for (int i = 0; i < e->n_places; i++) {
+    for (int i = 0; i < p; i++) {
         stiffness->log_determinant += log(hypot(real[i], imaginary[i]));
         stiffness->n_negative += real[i] < 0 && fabs(imaginary[i]) <= nearly_real * fabs(real[i]);
     }
-    return STATUS_OK;
-}
-
-enum status equilibrium_stiffness(struct equilibrium *e, struct equilibrium_stiffness *stiffness) {
-    *stiffness = (struct equilibrium_stiffness){.n_negative = 0};
-    if (e->n_places == 0) return STATUS_OK;
-    struct arena *const scratch = arena_create(e->arena, "the static stiffness");
-    const size_t n = (size_t)e->n;
-    double *matrix, *values;
-    lapack_int *pivot;
-    NEW(scratch, matrix, n * n);
-    NEW(scratch, values, 2 * n);
-    NEW(scratch, pivot, n);
-    enum status status = equilibrium_jacobian_of(e, matrix);
-    if (status == STATUS_OK) status = eliminate_sheets(e, matrix, pivot);
-    if (status == STATUS_OK) status = take_eigenvalues(e, matrix, values, values + n, stiffness);
+end:
     arena_free(scratch);
     return status;
 }

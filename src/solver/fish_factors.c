@@ -3,6 +3,7 @@
 
 #include <klu.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "base/wide.h"
@@ -39,6 +40,7 @@ struct sparse_factors {
     klu_l_common common;
     klu_l_symbolic *symbolic;
     klu_l_numeric *numeric;
+    bool lacks_memory;     /* KLU had no memory for the last set-up */
     double rcond, rgrowth; /* when the pivots were chosen */
     struct fish_factors_counts counts;
 };
@@ -57,49 +59,50 @@ static struct sparse_factors *sparse_factors_create(struct arena *arena) {
     return factors;
 }
 
-// factorise with the pivots of the last factorisation; returns whether the factors are good
-static int sparse_refactor(struct sparse_factors *factors, const struct sparse_columns *matrix) {
-    if (!factors->numeric) return 0;
-    klu_l_common *const common = &factors->common;
-    factors->counts.refactorisations++;
-    return klu_l_refactor(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common) &&
-           klu_l_rcond(factors->symbolic, factors->numeric, common) && common->rcond >= min_quality * factors->rcond &&
-           klu_l_rgrowth(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common) &&
-           common->rgrowth >= min_quality * factors->rgrowth;
-}
-
-// choose pivots of at least this fraction (tolerance) of the largest entry
-static enum status sparse_factor(struct sparse_factors *factors, const struct sparse_columns *matrix,
-                                 double tolerance) {
+// choose pivots of at least this fraction (tolerance) of the largest entry; returns whether the matrix is regular
+static bool sparse_factor(struct sparse_factors *factors, const struct sparse_columns *matrix, double tolerance) {
     klu_l_common *const common = &factors->common;
     klu_l_free_numeric(&factors->numeric, common);
     common->tol = tolerance;
     factors->counts.factorisations++;
     factors->numeric = klu_l_factor(matrix->start, matrix->row, matrix->value, factors->symbolic, common);
-    if (!factors->numeric) return common->status == KLU_OUT_OF_MEMORY ? STATUS_MEMORY : STATUS_SOLVER;
+    factors->lacks_memory = !factors->numeric && common->status == KLU_OUT_OF_MEMORY;
+    if (!factors->numeric) return false;
     klu_l_rcond(factors->symbolic, factors->numeric, common);
     factors->rcond = common->rcond;
     klu_l_rgrowth(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common);
     factors->rgrowth = common->rgrowth;
-    return STATUS_OK;
+    return true;
 }
 
-// without a message
-static enum status sparse_factors_set_up(struct sparse_factors *factors, const struct sparse_columns *matrix) {
+// returns whether the matrix is regular
+static bool sparse_factors_set_up(struct sparse_factors *factors, const struct sparse_columns *matrix) {
+    klu_l_common *const common = &factors->common;
     if (factors->version != matrix->version) {
-        klu_l_free_numeric(&factors->numeric, &factors->common);
-        klu_l_free_symbolic(&factors->symbolic, &factors->common);
+        klu_l_free_numeric(&factors->numeric, common);
+        klu_l_free_symbolic(&factors->symbolic, common);
         factors->counts.analyses++;
-        factors->symbolic = klu_l_analyze(matrix->n, matrix->start, matrix->row, &factors->common);
-        if (!factors->symbolic && factors->common.status == KLU_OUT_OF_MEMORY) return STATUS_MEMORY;
+        factors->symbolic = klu_l_analyze(matrix->n, matrix->start, matrix->row, common);
+        factors->lacks_memory = !factors->symbolic && common->status == KLU_OUT_OF_MEMORY;
+        if (factors->lacks_memory) return false;
         factors->version = matrix->version;
         factors->n = matrix->n;
     }
     // without an analysis the matrix is structurally singular
-    if (!factors->symbolic) return STATUS_SOLVER;
-    if (sparse_refactor(factors, matrix)) return STATUS_OK;
-    const enum status status = sparse_factor(factors, matrix, diagonal_tolerance);
-    return status == STATUS_OK && factors->rgrowth < min_growth ? sparse_factor(factors, matrix, 1) : status;
+    if (!factors->symbolic) return false;
+
+    // the pivots of the last factorisation, if the factors are good
+    if (factors->numeric) {
+        factors->counts.refactorisations++;
+        if (klu_l_refactor(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common) &&
+            klu_l_rcond(factors->symbolic, factors->numeric, common) && common->rcond >= min_quality * factors->rcond &&
+            klu_l_rgrowth(matrix->start, matrix->row, matrix->value, factors->symbolic, factors->numeric, common) &&
+            common->rgrowth >= min_quality * factors->rgrowth) {
+            return true;
+        }
+    }
+    if (!sparse_factor(factors, matrix, diagonal_tolerance)) return false;
+    return factors->rgrowth >= min_growth || sparse_factor(factors, matrix, 1);
 }
 
 // x: right-hand sides, one after the other (n_sides, n)
@@ -113,12 +116,13 @@ struct fish_factors {
     struct arena *arena;
     const struct fish *fish;
     const struct sparse *block;
-    int was_factorised;
+    enum status status; /* of the last set-up */
+    bool was_factorised;
     struct sparse_factors *whole;
 
     /* in parts, if the block may be divided: the rows of A are the first rows of the block, the columns of A begin with
      * column first; in_parts: at the last set-up */
-    int may_divide, in_parts;
+    bool may_divide, in_parts;
     struct sparse_factors *a;
     unsigned version; /* version of the divided pattern; 0: none */
     int first, n_rod, n_sheet;
@@ -138,7 +142,7 @@ struct fish_factors *fish_factors_create(struct arena *arena, const struct fish 
     factors->fish = fish;
     factors->block = block;
     // with momenta the law of motion is as full as the rows of the sheet, so the positions belong to the last columns
-    const int is_full = fish_has_momentum(fish);
+    const bool is_full = fish_has_momentum(fish);
     factors->first = is_full ? fish->at.vx - fish->at.x : 0;
     factors->n_rod = (is_full ? fish->at.ax : fish->at.gamma) - fish->at.x;
     factors->n_sheet = block->n - factors->n_rod;
@@ -159,18 +163,6 @@ struct fish_factors *fish_factors_create(struct arena *arena, const struct fish 
 // number in the block of column k of the sheet
 static int sheet_column(const struct fish_factors *factors, int k) {
     return k < factors->first ? k : k + factors->n_rod;
-}
-
-static void take_full(const struct fish_factors *factors) {
-    const struct sparse *const block = factors->block;
-    for (int c = 0; c < factors->n_full; c++) {
-        const int column = factors->first + factors->first_full + c;
-        double *const to = factors->full + (long)c * factors->n_sheet;
-        memset(to, 0, (size_t)factors->n_sheet * sizeof *to);
-        for (int64_t i = factors->split[column]; i < block->column_start[column + 1]; i++) {
-            to[block->row_index[i] - factors->n_rod] = -block->value[i];
-        }
-    }
 }
 
 void fish_factors_prepare(struct fish_factors *factors) {
@@ -212,20 +204,6 @@ void fish_factors_prepare(struct fish_factors *factors) {
     rod->version = factors->version = block->version;
 }
 
-static void factors_take_values(struct fish_factors *factors) {
-    const struct sparse *const block = factors->block;
-    const struct sparse_columns *const rod = &factors->rod;
-    for (int c = 0; c < factors->n_rod; c++) {
-        const double *const from = block->value + block->column_start[factors->first + c];
-        memcpy(rod->value + rod->start[c], from, (size_t)(rod->start[c + 1] - rod->start[c]) * sizeof *from);
-    }
-    memset(factors->row_scale, 0, (size_t)block->n * sizeof *factors->row_scale);
-    for (int64_t i = 0; i < block->n_nonzeros; i++) {
-        double *const scale = &factors->row_scale[block->row_index[i]];
-        *scale = fmax(*scale, fabs(block->value[i]));
-    }
-}
-
 // y -= A x for n rows of a column, with or without gaps between the rows
 static void subtract_column(const struct sparse *block, int64_t start, int64_t end, int64_t first_row, double x,
                             double *restrict y) {
@@ -251,27 +229,19 @@ static void subtract_rod(const struct fish_factors *factors, const double *x, in
     }
 }
 
-// largest entry of a column of S, in units of the rows
-static double schur_largest(const struct fish_factors *factors, const double *column) {
-    double most = 0;
-    for (int r = 0; r < factors->n_sheet; r++) {
-        most = fmax(most, fabs(column[r]) / factors->row_scale[factors->n_rod + r]);
-    }
-    return most;
-}
-
 // n columns of S from column first on, n <= AT_ONCE; returns the smallest ratio of the largest entries of a column of
 // the block and of S, in units of the rows
 static double fill_columns(struct fish_factors *factors, int first, int n) {
     const struct sparse *const block = factors->block;
     double before[AT_ONCE] = {0}, least = 1;
-    int has_rod = 0;
+    bool has_rod = false;
     memset(factors->x_rod, 0, (size_t)n * (size_t)factors->n_rod * sizeof *factors->x_rod);
 
     for (int k = 0; k < n; k++) {
         const int column = sheet_column(factors, first + k);
-        double *const s = dense_factors_column(&factors->schur, first + k), *const x =
-                                                                                factors->x_rod + k * factors->n_rod;
+        double *const s = (factors->schur.value + (long)(first + k) * factors->schur.stride), *const x =
+                                                                                                  factors->x_rod +
+                                                                                                  k * factors->n_rod;
         memset(s, 0, (size_t)factors->schur.stride * sizeof *s);
         for (int64_t i = block->column_start[column]; i < block->column_start[column + 1]; i++) {
             const int64_t row = block->row_index[i];
@@ -283,49 +253,80 @@ static double fill_columns(struct fish_factors *factors, int first, int n) {
 
     if (has_rod) sparse_factors_solve(factors->a, n, factors->x_rod);
     for (int k = 0; k < n; k++) {
-        double *const s = dense_factors_column(&factors->schur, first + k);
+        double *const s = (factors->schur.value + (long)(first + k) * factors->schur.stride);
         if (has_rod) subtract_rod(factors, factors->x_rod + k * factors->n_rod, 0, 0, s);
-        const double after = schur_largest(factors, s);
+        double after = 0;
+        for (int r = 0; r < factors->n_sheet; r++) {
+            after = fmax(after, fabs(s[r]) / factors->row_scale[factors->n_rod + r]);
+        }
         if (after > 0) least = fmin(least, before[k] / after);
     }
     return least;
 }
 
-// STATUS_RETRY: A is singular or nearly singular
+// set up the factors in parts; STATUS_RETRY: A is singular or nearly singular
 static enum status factors_set_up_parts(struct fish_factors *factors) {
-    factors_take_values(factors);
-    take_full(factors);
-    const enum status status = sparse_factors_set_up(factors->a, &factors->rod);
-    if (status != STATUS_OK) return status == STATUS_MEMORY ? status : STATUS_RETRY;
+    const struct sparse *const block = factors->block;
+    const struct sparse_columns *const rod = &factors->rod;
     const int n = factors->n_sheet;
+
+    // the values of A, the scale of each row, and -C where it is nearly full
+    for (int c = 0; c < factors->n_rod; c++) {
+        const double *const from = block->value + block->column_start[factors->first + c];
+        memcpy(rod->value + rod->start[c], from, (size_t)(rod->start[c + 1] - rod->start[c]) * sizeof *from);
+    }
+    memset(factors->row_scale, 0, (size_t)block->n * sizeof *factors->row_scale);
+    for (int64_t i = 0; i < block->n_nonzeros; i++) {
+        double *const scale = &factors->row_scale[block->row_index[i]];
+        *scale = fmax(*scale, fabs(block->value[i]));
+    }
+    memset(factors->full, 0, (size_t)factors->n_full * (size_t)n * sizeof *factors->full);
+    for (int c = 0; c < factors->n_full; c++) {
+        const int column = factors->first + factors->first_full + c;
+        double *const to = factors->full + (long)c * n;
+        for (int64_t i = factors->split[column]; i < block->column_start[column + 1]; i++) {
+            to[block->row_index[i] - factors->n_rod] = -block->value[i];
+        }
+    }
+
+    if (!sparse_factors_set_up(factors->a, rod)) return STATUS_RETRY;
     for (int k = 0; k < n; k += AT_ONCE) {
         if (fill_columns(factors, k, k + AT_ONCE < n ? AT_ONCE : n - k) < min_growth) return STATUS_RETRY;
     }
     return dense_factors_set_up(&factors->schur) ? STATUS_OK : STATUS_SOLVER;
 }
 
-static enum status factors_set_up(struct fish_factors *factors) {
+void fish_factors_set_up(struct fish_factors *factors) {
     const struct sparse *const block = factors->block;
-    if (factors->may_divide) {
-        const enum status status = factors_set_up_parts(factors);
-        factors->in_parts = status == STATUS_OK;
-        if (status != STATUS_RETRY) return status;
-        // factorise the whole block; later values may be divided again, with new pivots
-        klu_l_free_numeric(&factors->a->numeric, &factors->a->common);
+    enum status status = factors->may_divide ? factors_set_up_parts(factors) : STATUS_RETRY;
+    factors->in_parts = status == STATUS_OK;
+
+    // factorise the whole block; later values may be divided again, with new pivots
+    if (status == STATUS_RETRY && !(factors->may_divide && factors->a->lacks_memory)) {
+        const struct sparse_columns whole = {block->n, block->version, block->column_start, block->row_index,
+                                             block->value};
+        if (factors->may_divide) klu_l_free_numeric(&factors->a->numeric, &factors->a->common);
+        status = sparse_factors_set_up(factors->whole, &whole) ? STATUS_OK : STATUS_SOLVER;
     }
-    return sparse_factors_set_up(factors->whole, &(struct sparse_columns){block->n, block->version, block->column_start,
-                                                                          block->row_index, block->value});
+    factors->status = status == STATUS_SOLVER && factors->was_factorised ? STATUS_RETRY : status;
+    factors->was_factorised |= status == STATUS_OK;
 }
 
-enum status fish_factors_set_up(struct fish_factors *factors) {
-    const enum status status = factors_set_up(factors);
-    if (status == STATUS_SOLVER && factors->was_factorised) return STATUS_RETRY;
-    if (status == STATUS_OK) factors->was_factorised = 1;
-    return status;
+enum status fish_factors_status(const struct fish_factors *factors) {
+    const struct sparse_factors *const parts[] = {factors->whole, factors->a};
+    for (int i = 0; i < 2; i++) {
+        if (parts[i] && parts[i]->lacks_memory) arena_lack(factors->arena, 0);
+    }
+    return factors->status;
 }
 
-// unknowns of the sheet: S y = d - C A^-1 b; unknowns of the rod: A z = b - B y
-static void factors_solve_parts(struct fish_factors *factors, double *x) {
+void fish_factors_solve(struct fish_factors *factors, double *x) {
+    if (!factors->in_parts) {
+        sparse_factors_solve(factors->whole, 1, x);
+        return;
+    }
+
+    // unknowns of the sheet: S y = d - C A^-1 b
     const struct sparse *const block = factors->block;
     const int n = factors->n_sheet;
     double *const rod = factors->x_rod, *const sheet = factors->x_sheet;
@@ -335,6 +336,8 @@ static void factors_solve_parts(struct fish_factors *factors, double *x) {
     subtract_rod(factors, rod, factors->first_full, factors->n_full, sheet);
     wide_multiply(n, factors->n_full, factors->full, rod + factors->first_full, sheet);
     dense_factors_solve(&factors->schur, sheet);
+
+    // unknowns of the rod: A z = b - B y
     memcpy(rod, x, (size_t)factors->n_rod * sizeof *rod);
     for (int k = 0; k < n; k++) {
         const int column = sheet_column(factors, k);
@@ -343,13 +346,6 @@ static void factors_solve_parts(struct fish_factors *factors, double *x) {
     sparse_factors_solve(factors->a, 1, rod);
     memcpy(x + factors->first, rod, (size_t)factors->n_rod * sizeof *rod);
     for (int k = 0; k < n; k++) x[sheet_column(factors, k)] = sheet[k];
-}
-
-void fish_factors_solve(struct fish_factors *factors, double *x) {
-    if (factors->in_parts)
-        factors_solve_parts(factors, x);
-    else
-        sparse_factors_solve(factors->whole, 1, x);
 }
 
 void fish_factors_count(const struct fish_factors *factors, struct fish_factors_counts *counts) {

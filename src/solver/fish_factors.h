@@ -34,10 +34,12 @@ struct fish_factors *fish_factors_create(struct arena *arena, const struct fish 
 /* Request the memory for a new pattern of the block: before fish_factors_set_up, outside parallel regions. */
 void fish_factors_prepare(struct fish_factors *factors);
 
-/* Factorise the block with its present values. Fails with STATUS_MEMORY if KLU has no memory. A singular block fails
- * with STATUS_SOLVER at the first factorisation, later with STATUS_RETRY. Failures have no message, because threads
- * factorise several fish. */
-enum status fish_factors_set_up(struct fish_factors *factors);
+/* Factorise the block with its present values; threads may factorise several fish. */
+void fish_factors_set_up(struct fish_factors *factors);
+
+/* The status of the last set-up, without a message; outside parallel regions, because KLU may have had no memory. A
+ * singular block is STATUS_SOLVER at the first factorisation, later STATUS_RETRY. */
+enum status fish_factors_status(const struct fish_factors *factors);
 
 /* Replace the right-hand side x (unknowns of the fish) by the solution. Requires a successful set-up. */
 void fish_factors_solve(struct fish_factors *factors, double *x);

@@ -113,10 +113,6 @@ static enum status ida_first_step(struct ida *solver) {
     return STATUS_OK;
 }
 
-static void release_ida(void *solver) {
-    IDAFree(&((struct ida *)solver)->ida);
-}
-
 static enum status ida_create(struct arena *arena, void **created, struct residual *residual, struct state *state,
                               const struct integrator_options *options) {
     const struct school *const school = residual->school;
@@ -168,8 +164,8 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
                                            .complete = couple_more};
     solver->newton = ida_newton_create(&solver->context, school, rules);
 
-    void *const ida = solver->ida = arena_take(arena, IDACreate(solver->context.context));
-    arena_defer(arena, release_ida, solver);
+    void *const ida = solver->ida =
+        sundials_context_own(&solver->context, OWNED_IDA, IDACreate(solver->context.context));
     if (IDASetErrHandlerFn(ida, sundials_context_message, &solver->failure) || IDASetUserData(ida, solver) ||
         IDAInit(ida, residual_callback, state->t, solver->y, solver->yp) || IDAWFtolerances(ida, weights_callback) ||
         IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
@@ -213,23 +209,6 @@ static enum status ida_restart(void *data) {
     return ida_first_step(solver);
 }
 
-// the unknown with the largest estimated error, in units of its tolerance
-static struct unknown_place worst_unknown(const struct ida *solver, double *size) {
-    int worst = 0;
-    *size = -1;
-    if (IDAGetEstLocalErrors(solver->ida, solver->scratch[0]) == 0) {
-        const double *const error = N_VGetArrayPointer(solver->scratch[0]);
-        for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
-            const double weighted = fabs(error[i]) / solver->tolerance[i];
-            if (!(weighted <= *size)) {
-                *size = weighted;
-                worst = i;
-            }
-        }
-    }
-    return residual_place(solver->residual->school, worst);
-}
-
 static const char *ida_reason(int code) {
     switch (code) {
         case IDA_TOO_MUCH_WORK: return "more steps between two events than solver.max_steps: raise it, or solver.rtol";
@@ -246,84 +225,82 @@ static const char *ida_reason(int code) {
     }
 }
 
-// name an edge that forces have compressed to almost zero length: the elastic force of a rod is finite at length zero
-static void tell_crushed(const struct ida *solver, size_t size, char *text) {
-    const struct school *school = solver->residual->school;
-    const double *const y = N_VGetArrayPointer(solver->y);
-    for (int f = 0; f < school->n_fish; f++) {
-        double ratio;
-        const int edge = rod_shortest_edge(&school->fish[f], y, &ratio);
-        if (ratio >= 0.1) continue;
-        snprintf(text, size,
-                 "; edge %d of fish %.80s is pressed to %.2g of its length: body.modulus is too low for the forces on "
-                 "it",
-                 edge, school->fish[f].name, ratio);
-        return;
-    }
-}
-
-// count the pairs of fish without coupling blocks in the Jacobian, if any
-static void tell_uncoupled(const struct ida *solver, size_t size, char *text) {
-    const struct school *school = solver->residual->school;
-    const int n_pairs = school->n_fish * (school->n_fish - 1) / 2;
-    const int n_uncoupled = n_pairs - solver->jacobian->n_couplings / 2;
-    if (n_uncoupled == 0) return;
-    snprintf(text, size,
-             "; the Jacobian has no coupling of %d of %d pairs of fish, which are more than %.3g m apart: increase "
-             "solver.coupling_distance",
-             n_uncoupled, n_pairs, solver->residual->couplings.reach);
-}
-
 static enum status ida_failed(const struct ida *solver, int code, long steps) {
     const struct school *school = solver->residual->school;
-    double now = 0, step = 0, size;
+    const double *const y = N_VGetArrayPointer(solver->y);
+    double now = 0, step = 0;
     IDAGetCurrentTime(solver->ida, &now);
     IDAGetCurrentStep(solver->ida, &step);
     // the limit of steps is not IDA's, so IDA has no message
     char message[512] = "", error[256] = "", last[64] = "", seen[256] = "";
     if (code != IDA_TOO_MUCH_WORK) snprintf(message, sizeof message, "; %s", status_message());
-    const struct unknown_place place = worst_unknown(solver, &size);
-    // omit an error without an estimate, and the step before the first step
-    if (size > 0) {
+    if (steps > 0) snprintf(last, sizeof last, ", the last of %.3g s", step);
+
+    // the unknown with the largest estimated error, in units of its tolerance; omit an error without an estimate
+    double largest = -1;
+    int worst = 0;
+    if (IDAGetEstLocalErrors(solver->ida, solver->scratch[0]) == 0) {
+        const double *const estimate = N_VGetArrayPointer(solver->scratch[0]);
+        for (int i = 0; i < school->n_unknowns; i++) {
+            const double weighted = fabs(estimate[i]) / solver->tolerance[i];
+            if (weighted <= largest) continue;
+            largest = weighted;
+            worst = i;
+        }
+    }
+    if (largest > 0) {
+        const struct unknown_place place = residual_place(school, worst);
         const int length = snprintf(error, sizeof error, "; largest error: %s[%d] of fish %.80s", place.name,
                                     place.index, school->fish[place.fish].name);
-        if (size > 0.01) snprintf(error + length, sizeof error - (size_t)length, ", %.3g tolerances", size);
+        if (largest > 0.01) snprintf(error + length, sizeof error - (size_t)length, ", %.3g tolerances", largest);
     }
-    tell_crushed(solver, sizeof seen, seen);
-    if (code == IDA_CONV_FAIL && !*seen) tell_uncoupled(solver, sizeof seen, seen);
-    if (steps > 0) snprintf(last, sizeof last, ", the last of %.3g s", step);
+
+    // an edge that forces have compressed to almost zero length: the elastic force of a rod is finite at length zero
+    for (int f = 0; f < school->n_fish && !*seen; f++) {
+        double ratio;
+        const int edge = rod_shortest_edge(&school->fish[f], y, &ratio);
+        if (ratio >= 0.1) continue;
+        snprintf(seen, sizeof seen,
+                 "; edge %d of fish %.80s is pressed to %.2g of its length: body.modulus is too low for the forces on "
+                 "it",
+                 edge, school->fish[f].name, ratio);
+    }
+
+    // pairs of fish without coupling blocks in the Jacobian
+    const int n_pairs = school->n_fish * (school->n_fish - 1) / 2;
+    const int n_uncoupled = n_pairs - solver->jacobian->n_couplings / 2;
+    if (code == IDA_CONV_FAIL && !*seen && n_uncoupled > 0) {
+        snprintf(seen, sizeof seen,
+                 "; the Jacobian has no coupling of %d of %d pairs of fish, which are more than %.3g m apart: increase "
+                 "solver.coupling_distance",
+                 n_uncoupled, n_pairs, solver->residual->couplings.reach);
+    }
     return status_fail(STATUS_SOLVER,
                        "integration failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
                        "event%s%s",
                        now, ida_reason(code), seen, error, solver->options.order, steps, last, message);
 }
 
-// The latest end of the next step: equal parts of the rest of the interval. Steps then keep their size from event to
-// event, and so does the Jacobian.
-static double ida_next_stop(const struct ida *solver, double now, double end) {
-    long steps = 0;
-    double step = 0;
-    IDAGetNumSteps(solver->ida, &steps);
-    IDAGetCurrentStep(solver->ida, &step);
-    // before the first step there is no step size
-    if (steps == 0) return end;
-    // smaller than the difference from the end that IDA ignores
-    const double rounding = 1e-14 * end, n_steps = ceil((end - now - rounding) / step);
-    return n_steps > 1 ? now + (end - now) / n_steps : end;
-}
-
 static enum status ida_advance(void *data, double t, const volatile sig_atomic_t *stop) {
     struct ida *const solver = data;
     struct state *const state = solver->state;
-    double reached = state->t;
+    double reached = state->t, step = 0;
+    long total = 0;
     solver->stop = stop;
     for (long steps = 0; reached < t; steps++) {
         if (steps == solver->options.max_steps) return ida_failed(solver, IDA_TOO_MUCH_WORK, steps);
-        const double end = ida_next_stop(solver, reached, t);
+
+        // The latest end of the step: equal parts of the rest of the interval. Steps then keep their size from event to
+        // event, and so does the Jacobian. Before the first step there is no step size; rounding is smaller than the
+        // difference from the end that IDA ignores.
+        IDAGetNumSteps(solver->ida, &total);
+        IDAGetCurrentStep(solver->ida, &step);
+        const double rounding = 1e-14 * t, n_steps = total > 0 ? ceil((t - reached - rounding) / step) : 1;
+        const double end = n_steps > 1 ? reached + (t - reached) / n_steps : t;
         if (IDASetStopTime(solver->ida, end)) return ida_failed(solver, IDA_ILL_INPUT, steps);
         solver->failure = STATUS_OK;
         const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
-        if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
+        if (solver->failure == STATUS_STOPPED) return STATUS_STOPPED;
         if (code < 0) return ida_failed(solver, code, steps);
         if (code == IDA_TSTOP_RETURN) reached = end;
         integrator_rates_step(solver->algebraic_rates, reached, state);

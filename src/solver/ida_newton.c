@@ -2,6 +2,7 @@
 #include "solver/ida_newton.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 /* The norms of a correction: of all unknowns, and of the differential unknowns only. In the former the algebraic
@@ -32,15 +33,11 @@ struct ida_newton {
 
     /* since the evaluation of the Jacobian: solutions, their iterations, iterations of the last solution */
     int n_solutions, n_iterations, n_last;
-    int is_incomplete; /* a new Jacobian would be more complete */
+    bool is_incomplete; /* a new Jacobian would be more complete */
 };
 
-static struct ida_newton *newton_of(SUNNonlinearSolver solver) {
-    return solver->content;
-}
-
 // judge a correction by one norm: converged, continue, or failed
-static int newton_test_norm(struct ida_newton *newton, int norm, double size, double tolerance) {
+static int newton_test(struct ida_newton *newton, int norm, double size, double tolerance) {
     if (!isfinite(size)) return SUN_NLS_CONV_RECVR;
     if (newton->done == 1) {
         newton->first[norm] = size;
@@ -56,72 +53,47 @@ static int newton_test_norm(struct ida_newton *newton, int norm, double size, do
     return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
 
-// both norms of the correction, weighted root mean squares; each sum in the order of the unknowns
-static void newton_norms(const struct ida_newton *newton, N_Vector weights, double norm[N_NORMS]) {
-    const double *const correction = N_VGetArrayPointer(newton->correction), *const weight =
-                                                                                 N_VGetArrayPointer(weights);
-    const double *const kind = newton->rules.kinds ? N_VGetArrayPointer(newton->rules.kinds) : NULL;
-    const sunindextype n = N_VGetLength(newton->correction);
-    double all = 0, differential = 0;
-    for (sunindextype i = 0; i < n; i++) {
-        const double weighted = correction[i] * weight[i], square = weighted * weighted;
-        all += square;
-        differential += kind && kind[i] > 0 ? square : 0;
-    }
-    norm[ALL] = sqrt(all / (double)n);
-    norm[DIFFERENTIAL] = sqrt(differential / (double)n);
-}
-
-static int newton_test(struct ida_newton *newton, N_Vector weights, double tolerance) {
-    double norm[N_NORMS];
-    newton_norms(newton, weights, norm);
-    const int all = newton_test_norm(newton, ALL, norm[ALL], tolerance);
-    if (all == SUN_NLS_CONV_RECVR || !newton->rules.kinds) return all;
-    if (newton_test_norm(newton, DIFFERENTIAL, norm[DIFFERENTIAL], tolerance) == SUN_SUCCESS) return all;
-    // positions may converge later than the other unknowns
-    return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
-}
-
 // iterate with the present Jacobian; newton->correction holds the residual
 static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector weights, double tolerance, void *ida) {
-    double *const values = N_VGetArrayPointer(newton->correction);
+    double *const correction = N_VGetArrayPointer(newton->correction);
+    const double *const weight = N_VGetArrayPointer(weights);
+    const double *const kind = newton->rules.kinds ? N_VGetArrayPointer(newton->rules.kinds) : NULL;
+    const sunindextype n = N_VGetLength(newton->correction);
     newton->done = 0;
     for (;;) {
         newton->iterations++;
         newton->done++;
+
+        // correct
         N_VScale(-1, newton->correction, newton->correction);
-        corotation_to_reference(newton->corotation, values);
+        corotation_to_reference(newton->corotation, correction);
         int code = newton->solve(newton->correction, ida);
         if (code != 0) return code;
-        corotation_to_current(newton->corotation, values);
+        corotation_to_current(newton->corotation, correction);
         N_VLinearSum(1, total, 1, newton->correction, total);
-        code = newton_test(newton, weights, tolerance);
+
+        // both norms of the correction, weighted root mean squares; each sum in the order of the unknowns
+        double all = 0, differential = 0;
+        for (sunindextype i = 0; i < n; i++) {
+            const double weighted = correction[i] * weight[i], square = weighted * weighted;
+            all += square;
+            differential += kind && kind[i] > 0 ? square : 0;
+        }
+
+        // positions may converge later than the other unknowns
+        code = newton_test(newton, ALL, sqrt(all / (double)n), tolerance);
+        if (code == SUN_NLS_CONV_RECVR) return code;
+        if (kind && newton_test(newton, DIFFERENTIAL, sqrt(differential / (double)n), tolerance) != SUN_SUCCESS) {
+            code = newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
+        }
         if (code != SUN_NLS_CONTINUE) return code;
         code = newton->residual(total, newton->correction, ida);
         if (code != 0) return code;
     }
 }
 
-// whether the last solution cost as much as the mean solution with this Jacobian, including the cost of the Jacobian
-static int jacobian_is_stale(const struct ida_newton *newton) {
-    return newton->n_last * newton->n_solutions >= newton->n_iterations + newton->rules.jacobian_cost;
-}
-
-static int jacobian_complete(const struct ida_newton *newton) {
+static bool jacobian_complete(const struct ida_newton *newton) {
     return newton->rules.complete && newton->rules.complete(newton->rules.data);
-}
-
-// sum of squares of the weighted difference of the last total correction and the total correction lag solutions before
-static double newton_difference(const struct ida_newton *newton, N_Vector weights, int lag) {
-    const double *const last = N_VGetArrayPointer(newton->past[0]),
-                        *const before = N_VGetArrayPointer(newton->past[lag]),
-                        *const weight = N_VGetArrayPointer(weights);
-    double sum = 0;
-    for (sunindextype i = 0; i < N_VGetLength(weights); i++) {
-        const double difference = (last[i] - before[i]) * weight[i];
-        sum += difference * difference;
-    }
-    return sum;
 }
 
 /* The start is the last total correction. With a period, for example of two steps, it is the total correction of one
@@ -134,12 +106,18 @@ static void newton_start(const struct ida_newton *newton, N_Vector weights, N_Ve
     }
 
     const int most = newton->rules.is_periodic ? MOST_LAG : 0;
+    const double *const weight = N_VGetArrayPointer(weights), *const last = N_VGetArrayPointer(newton->past[0]);
     int period = 1;
     double least = INFINITY;
     for (int lag = 1; lag <= most && lag < newton->n_past; lag++) {
-        const double difference = newton_difference(newton, weights, lag);
-        if (!(difference < least)) continue;
-        least = difference;
+        const double *const before = N_VGetArrayPointer(newton->past[lag]);
+        double sum = 0;
+        for (sunindextype i = 0; i < N_VGetLength(weights); i++) {
+            const double difference = (last[i] - before[i]) * weight[i];
+            sum += difference * difference;
+        }
+        if (!(sum < least)) continue;
+        least = sum;
         period = lag;
     }
 
@@ -151,20 +129,14 @@ static void newton_start(const struct ida_newton *newton, N_Vector weights, N_Ve
     }
 }
 
-static void newton_keep(struct ida_newton *newton, N_Vector total) {
-    N_Vector const oldest = newton->past[N_PAST - 1];
-    memmove(newton->past + 1, newton->past, (N_PAST - 1) * sizeof *newton->past);
-    newton->past[0] = oldest;
-    N_VScale(1, total, oldest);
-    if (newton->n_past < N_PAST) newton->n_past++;
-}
-
 static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
                         sunrealtype tolerance, sunbooleantype evaluate, void *ida) {
-    struct ida_newton *const newton = newton_of(solver);
+    struct ida_newton *const newton = solver->content;
     newton->iterations = newton->failures = 0;
-    if (newton->is_incomplete || jacobian_is_stale(newton)) evaluate = SUNTRUE;
-    newton->is_incomplete = 0;
+    // stale: the last solution cost as much as the mean solution with this Jacobian, including the cost of the Jacobian
+    const bool is_stale = newton->n_last * newton->n_solutions >= newton->n_iterations + newton->rules.jacobian_cost;
+    if (newton->is_incomplete || is_stale) evaluate = SUNTRUE;
+    newton->is_incomplete = false;
     if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
 
     // total corrections of another step size are not alike
@@ -188,12 +160,17 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
         newton->most = evaluate ? newton->rules.max_with_new : newton->rules.max_iterations;
         code = newton_iterate(newton, total, weights, tolerance, ida);
         if (code == 0) {
-            newton_keep(newton, total);
+            N_Vector const oldest = newton->past[N_PAST - 1];
+            memmove(newton->past + 1, newton->past, (N_PAST - 1) * sizeof *newton->past);
+            newton->past[0] = oldest;
+            N_VScale(1, total, oldest);
+            if (newton->n_past < N_PAST) newton->n_past++;
             newton->n_solutions++;
             newton->n_last = newton->done;
             newton->n_iterations += newton->done;
-            if (evaluate && newton->done > newton->rules.max_iterations)
+            if (evaluate && newton->done > newton->rules.max_iterations) {
                 newton->is_incomplete = jacobian_complete(newton);
+            }
             return 0;
         }
         newton->failures++;
@@ -206,7 +183,7 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
 
 // restart of IDA: discard the history
 static int newton_initialize(SUNNonlinearSolver solver) {
-    struct ida_newton *const newton = newton_of(solver);
+    struct ida_newton *const newton = solver->content;
     newton->coefficient = 0;
     newton->n_past = 0;
     newton->n_solutions = newton->n_iterations = newton->n_last = 0;
@@ -219,32 +196,28 @@ static SUNNonlinearSolver_Type newton_type(SUNNonlinearSolver solver) {
 }
 
 static int newton_set_residual(SUNNonlinearSolver solver, SUNNonlinSolSysFn function) {
-    newton_of(solver)->residual = function;
+    ((struct ida_newton *)solver->content)->residual = function;
     return 0;
 }
 
 static int newton_set_set_up(SUNNonlinearSolver solver, SUNNonlinSolLSetupFn function) {
-    newton_of(solver)->set_up = function;
+    ((struct ida_newton *)solver->content)->set_up = function;
     return 0;
 }
 
 static int newton_set_solve(SUNNonlinearSolver solver, SUNNonlinSolLSolveFn function) {
-    newton_of(solver)->solve = function;
+    ((struct ida_newton *)solver->content)->solve = function;
     return 0;
 }
 
 static int newton_iterations(SUNNonlinearSolver solver, long *iterations) {
-    *iterations = newton_of(solver)->iterations;
+    *iterations = ((struct ida_newton *)solver->content)->iterations;
     return 0;
 }
 
 static int newton_failures(SUNNonlinearSolver solver, long *failures) {
-    *failures = newton_of(solver)->failures;
+    *failures = ((struct ida_newton *)solver->content)->failures;
     return 0;
-}
-
-static void release_newton(void *solver) {
-    SUNNonlinSolFreeEmpty(solver);
 }
 
 SUNNonlinearSolver ida_newton_create(struct sundials_context *context, const struct school *school,
@@ -257,8 +230,8 @@ SUNNonlinearSolver ida_newton_create(struct sundials_context *context, const str
     newton->correction = sundials_context_vector(context, NULL);
     for (int i = 0; i < N_PAST; i++) newton->past[i] = sundials_context_vector(context, NULL);
 
-    const SUNNonlinearSolver new = arena_take(arena, SUNNonlinSolNewEmpty(context->context));
-    arena_defer(arena, release_newton, new);
+    const SUNNonlinearSolver new =
+        sundials_context_own(context, OWNED_CUSTOM_NEWTON, SUNNonlinSolNewEmpty(context->context));
     new->content = newton;
     new->ops->gettype = newton_type;
     new->ops->initialize = newton_initialize;

@@ -73,17 +73,6 @@ static int algebraic_jacobian(N_Vector solution, N_Vector value, SUNMatrix matri
     return c->failure;
 }
 
-// whether an unknown is an acceleration on which no other equation depends
-static int is_loose(const struct residual *residual, int i) {
-    const struct unknown_place place = residual_place(residual->school, i);
-    const int is_acceleration = place.kind == UNKNOWN_AX || place.kind == UNKNOWN_AY;
-    return is_acceleration && fish_has_momentum(&residual->school->fish[place.fish]);
-}
-
-static void release_kinsol(void *c) {
-    KINFree(&((struct initial_conditions *)c)->kinsol);
-}
-
 enum status initial_conditions_create(struct arena *arena, struct initial_conditions **solver,
                                       struct residual *residual) {
     const int n = residual->school->n_unknowns;
@@ -94,8 +83,12 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
     double **const arrays[] = {&c->y, &c->zero, &c->kind, &c->scale, &c->value, &c->inverse_scale, &c->start};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) NEW(arena, *arrays[i], n);
     for (int i = 0; i < n; i++) {
+        // with momenta no other equation depends on an acceleration
+        const struct unknown_place place = residual_place(residual->school, i);
+        const bool is_acceleration = place.kind == UNKNOWN_AX || place.kind == UNKNOWN_AY;
+        const bool is_loose = is_acceleration && fish_has_momentum(&residual->school->fish[place.fish]);
         c->scale[i] = residual_scale(residual->school, i);
-        c->inverse_scale[i] = 1 / ((is_loose(residual, i) ? loose : 1) * c->scale[i]);
+        c->inverse_scale[i] = 1 / ((is_loose ? loose : 1) * c->scale[i]);
         c->kind[i] = -1;  // unknown
     }
 
@@ -105,8 +98,7 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
     c->inverse_scales = sundials_context_vector(&c->context, c->inverse_scale);
     c->linear = linear_sundials_create(&c->context, c->jacobian, c->scale, linear_tolerance);
     sundials_context_reserve(&c->context, 12);  // KINSOL clones 5
-    c->kinsol = arena_take(arena, KINCreate(c->context.context));
-    arena_defer(arena, release_kinsol, c);
+    c->kinsol = sundials_context_own(&c->context, OWNED_KINSOL, KINCreate(c->context.context));
     // full Newton steps, because the equations are nearly linear, with a new Jacobian in each step
     if (KINSetErrHandlerFn(c->kinsol, sundials_context_message, &c->failure) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||
@@ -118,31 +110,6 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
     }
     *solver = c;
     return STATUS_OK;
-}
-
-// kinds of unknowns may have changed since the last solution: mask the rows of the differential unknowns
-static void initial_update_kinds(struct initial_conditions *c) {
-    double *const kind = c->value;
-    residual_kinds(c->residual, kind);
-    if (memcmp(kind, c->kind, (size_t)c->n * sizeof *kind) == 0) return;
-    memcpy(c->kind, kind, (size_t)c->n * sizeof *kind);
-    residual_mask(c->residual, c->jacobian);
-    for (int f = 0; f < c->residual->school->n_fish; f++) {
-        const struct layout *at = &c->residual->school->fish[f].at;
-        for (int i = at->x; i < at->end; i++) {
-            if (c->kind[i] > 0) sparse_mask(c->jacobian->own[f], i, 1);
-        }
-    }
-}
-
-static const char *initial_reason(int code) {
-    switch (code) {
-        case KIN_MAXITER_REACHED: return "Newton's method did not converge";
-        case KIN_FIRST_SYSFUNC_ERR:
-        case KIN_REPTD_SYSFUNC_ERR: return "the equations have no finite value";
-        case KIN_LSETUP_FAIL: return "the Jacobian is singular";
-        default: return "KINSOL failed";
-    }
 }
 
 // the largest scaled residual of the last evaluation, and its row
@@ -163,6 +130,13 @@ static enum status initial_failed(struct initial_conditions *c, int code) {
     int worst = 0;
     const double max = largest_residual(c, &worst);
     const struct unknown_place place = residual_place(c->residual->school, worst);
+    const char *reason = "KINSOL failed";
+    switch (code) {
+        case KIN_MAXITER_REACHED: reason = "Newton's method did not converge"; break;
+        case KIN_FIRST_SYSFUNC_ERR:
+        case KIN_REPTD_SYSFUNC_ERR: reason = "the equations have no finite value"; break;
+        case KIN_LSETUP_FAIL: reason = "the Jacobian is singular"; break;
+    }
     char cause[512];
     snprintf(cause, sizeof cause, "%s", status_message());
     const char *const name = c->residual->school->fish[place.fish].name;
@@ -175,19 +149,7 @@ static enum status initial_failed(struct initial_conditions *c, int code) {
     return status_fail(
         STATUS_SOLVER,
         "no consistent initial conditions at t = %.10g s: %s: check the units of sizes, speeds and positions%s (%s)",
-        c->t, initial_reason(code), largest, cause);
-}
-
-// set the rates of the differential unknowns only
-static void initial_rates(const struct initial_conditions *c, double t, const double *y, double *yp) {
-    const struct school *school = c->residual->school;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct layout *at = &school->fish[f].at;
-        for (int i = at->x; i < at->vx; i++) yp[i] = y[i + (at->vx - at->x)];
-        const int second = fish_has_momentum(&school->fish[f]) ? at->px : at->vx;
-        for (int i = second; i < at->ax; i++) yp[i] = y[i + (at->ax - second)];
-        if (c->kind[at->circulation] > 0) yp[at->circulation] = residual_shed_rate(c->residual, f, t, y);
-    }
+        c->t, reason, largest, cause);
 }
 
 void initial_conditions_listen(struct initial_conditions *c, const volatile sig_atomic_t *stop) {
@@ -198,23 +160,44 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
     c->t = t;
     memcpy(c->y, y, (size_t)c->n * sizeof *y);
     memcpy(c->start, y, (size_t)c->n * sizeof *y);
-    initial_update_kinds(c);
+
+    // kinds of unknowns may have changed since the last solution: mask the rows of the differential unknowns
+    const struct school *const school = c->residual->school;
+    residual_kinds(c->residual, c->value);
+    if (memcmp(c->value, c->kind, (size_t)c->n * sizeof *c->kind) != 0) {
+        memcpy(c->kind, c->value, (size_t)c->n * sizeof *c->kind);
+        residual_mask(c->residual, c->jacobian);
+        for (int f = 0; f < school->n_fish; f++) {
+            const struct layout *at = &school->fish[f].at;
+            for (int i = at->x; i < at->end; i++) {
+                if (c->kind[i] > 0) sparse_mask(c->jacobian->own[f], i, 1);
+            }
+        }
+    }
+
     c->failure = STATUS_OK;
     const int code = KINSol(c->kinsol, c->solution, KIN_NONE, c->inverse_scales, c->inverse_scales);
     long iterations = 0;
     KINGetNumNonlinSolvIters(c->kinsol, &iterations);
     c->iterations += iterations;
-    if (c->failure == STATUS_MEMORY || c->failure == STATUS_STOPPED) return c->failure;
+    if (c->failure == STATUS_STOPPED) return STATUS_STOPPED;
     int worst;
     const int is_rounded = code == KIN_MAXITER_REACHED && largest_residual(c, &worst) <= rounded;
     if (code < 0 && !is_rounded) return initial_failed(c, code);
     // rates and diagnostics need the velocity of the fluid at the solution
     take_algebraic(c, c->start, c->y);
     c->failure = residual_evaluate(c->residual, t, c->y, c->zero, c->value);
-    if (c->failure == STATUS_MEMORY) return STATUS_MEMORY;
     if (c->failure != STATUS_OK) return initial_failed(c, code);
     memcpy(y, c->y, (size_t)c->n * sizeof *y);
-    initial_rates(c, t, y, yp);
+
+    // the rates of the differential unknowns
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct layout *at = &school->fish[f].at;
+        for (int i = at->x; i < at->vx; i++) yp[i] = y[i + (at->vx - at->x)];
+        const int second = fish_has_momentum(&school->fish[f]) ? at->px : at->vx;
+        for (int i = second; i < at->ax; i++) yp[i] = y[i + (at->ax - second)];
+        if (c->kind[at->circulation] > 0) yp[at->circulation] = residual_shed_rate(c->residual, f, t, y);
+    }
     return STATUS_OK;
 }
 

@@ -19,7 +19,6 @@ enum { MAX_ITERATIONS = 40 };
 /* The diagonal block of one fish. */
 struct block {
     struct fish_factors *factors;
-    enum status status; /* of the last set-up */
     /* change of the column of the shed circulation since the last set-up: z = D^-1 change, over 1 plus the element of z
      * for that circulation                                                            (unknowns of the fish) */
     int is_updated;
@@ -65,7 +64,7 @@ struct linear *linear_create(struct arena *arena, const struct jacobian *jacobia
 
 static void block_set_up(struct block *block) {
     block->is_updated = 0;
-    block->status = fish_factors_set_up(block->factors);
+    fish_factors_set_up(block->factors);
 }
 
 enum status linear_setup(struct linear *linear) {
@@ -81,10 +80,9 @@ enum status linear_setup(struct linear *linear) {
         for (int f = 0; f < school->n_fish; f++) block_set_up(&linear->block[f]);
     }
     for (int f = 0; f < school->n_fish; f++) {
-        const enum status status = linear->block[f].status;
-        if (status == STATUS_MEMORY) arena_lack(linear->arena, 0);
-        if (status != STATUS_OK)
-            return status_fail(status, "the Jacobian of fish %s is singular", school->fish[f].name);
+        const enum status status = fish_factors_status(linear->block[f].factors);
+        if (status == STATUS_OK) continue;
+        return status_fail(status, "the Jacobian of fish %s is singular", school->fish[f].name);
     }
     return STATUS_OK;
 }

@@ -38,6 +38,7 @@ struct modes {
     struct state *state;
     int n_all, n, n_slow, n_shed; /* unknowns of the school; unknowns that are not prescribed; differential unknowns;
                                      circulations, one of each fish */
+    int *number;                  /* 0, 1, ...                                          (n_all) */
     int *unknown;                 /* unknowns that are not prescribed, differential first       (n) */
     double *by_value, *by_rate;   /* dF/dy and dF/dy' without algebraic unknowns: rows of differential unknowns and of
                                      circulations; columns of differential unknowns     (n_slow + n_shed, n_slow) */
@@ -50,25 +51,22 @@ struct modes {
 
 // ---- the wake
 
-/* The window at a stretch that is a events old; 1 if the wake has its full length and decays. */
-static double window_of(const struct modes *modes, int a, int n_vortex) {
-    const struct school *const school = modes->residual->school;
-    const int has_all = (n_vortex + 2) * school->interval >= school->lifetime;
-    if (has_all && school->decay >= 0.99 * window * school->lifetime) return 1;
-    return 1 - ramp_step(((a + 0.5) / n_vortex - (1 - window)) / window);
-}
-
 /* Set the labels of a fish to the labels shed by a motion with exponent lambda, tau after the event: real or imaginary
  * part, times a factor. */
 static void put_labels(const struct modes *modes, int f, double complex lambda, double tau, int is_imaginary,
                        double factor) {
     struct wake *const wake = &modes->state->wake[f];
-    const double interval = modes->residual->school->interval;
+    const struct school *const school = modes->residual->school;
+    const double interval = school->interval;
+    // no window for a wake of full length that decays
+    const bool has_all = (wake->n_vortex + 2) * interval >= school->lifetime;
+    const bool is_whole = has_all && school->decay >= 0.99 * window * school->lifetime;
     const double complex step = cexp(-lambda * interval);
     double complex exact = cexp(-lambda * tau), label = exact;
     wake->shed_before = modes->shed[f] + factor * (is_imaginary ? cimag(exact) : creal(exact));
     for (int i = wake->n_vortex - 1, a = 0; i >= 0; i--, a++) {
-        const double complex strength = window_of(modes, a, wake->n_vortex) * (exact - exact * step);
+        const double part = is_whole ? 1 : 1 - ramp_step(((a + 0.5) / wake->n_vortex - (1 - window)) / window);
+        const double complex strength = part * (exact - exact * step);
         const double complex value = wake->has_markers ? label : strength;
         wake->circulation[i] = modes->label[f][i] + factor * (is_imaginary ? cimag(value) : creal(value));
         label -= strength;
@@ -77,21 +75,17 @@ static void put_labels(const struct modes *modes, int f, double complex lambda, 
     wake->version++;
 }
 
-/* The bodies tau after the event: all nodes have the velocity of the first node. */
-static void modes_place(const struct modes *modes, double tau) {
+/* The residual tau after the event: all nodes of a body have the velocity of the first node. */
+static enum status modes_evaluate(const struct modes *modes, double tau, double *value) {
+    const struct state *const state = modes->state;
     const struct school *const school = modes->residual->school;
-    memcpy(modes->y, modes->state->y, (size_t)modes->n_all * sizeof *modes->y);
+    memcpy(modes->y, state->y, (size_t)modes->n_all * sizeof *modes->y);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, 0, modes->state->t, position, velocity, acceleration);
+        fish_prescribed_node(fish, 0, state->t, position, velocity, acceleration);
         for (int i = 0; i < 2 * fish->n_nodes; i++) modes->y[fish->at.x + i] += tau * velocity[i / fish->n_nodes];
     }
-}
-
-static enum status modes_evaluate(const struct modes *modes, double tau, double *value) {
-    const struct state *const state = modes->state;
-    modes_place(modes, tau);
     const enum status status = residual_evaluate(modes->residual, state->t + tau, modes->y, state->yp, value);
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
@@ -132,42 +126,6 @@ static enum status wake_column(const struct modes *modes, int f, double complex 
 
 // ---- the linear equations
 
-static void add_own(const struct sparse *own, int n, double factor, double *matrix) {
-    for (int c = 0; c < own->n; c++) {
-        for (int64_t k = own->column_start[c]; k < own->column_start[c + 1]; k++) {
-            matrix[(size_t)own->first + (size_t)own->row_index[k] + (size_t)n * (size_t)(own->first + c)] +=
-                factor * own->value[k];
-        }
-    }
-}
-
-static void add_coupling(const struct school *school, int f, const struct jacobian_coupling *coupling, int n,
-                         double factor, double *matrix) {
-    const struct coupling_block *const rows = &coupling->rows;
-    for (int c = 0; c < rows->n_columns; c++) {
-        const int column = flow_column(&school->fish[coupling->other], c);
-        for (int r = 0; r < rows->n_rows; r++) {
-            matrix[(size_t)(school->fish[f].at.ax + r) + (size_t)n * (size_t)column] +=
-                factor * rows->value[(long)c * rows->n_rows + r];
-        }
-    }
-}
-
-/* matrix += factor (dF/dy + cj dF/dy') at a time                                      (n_all, n_all) */
-static enum status add_jacobian(const struct modes *modes, struct jacobian *jacobian, double t, double cj,
-                                double factor, double *matrix) {
-    const struct school *const school = modes->residual->school;
-    TRY(residual_jacobian(modes->residual, t, cj, modes->y, jacobian));
-    for (int f = 0; f < school->n_fish; f++) {
-        add_own(jacobian->own[f], modes->n_all, factor, matrix);
-        jacobian_mask_couplings(jacobian, f);
-        for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
-            add_coupling(school, f, &jacobian->coupling[i], modes->n_all, factor, matrix);
-        }
-    }
-    return STATUS_OK;
-}
-
 /* dF/dy and dF/dy', means over the interval. */
 static enum status modes_linearise(const struct modes *modes, struct jacobian *jacobian, double *by_value,
                                    double *by_rate) {
@@ -175,8 +133,10 @@ static enum status modes_linearise(const struct modes *modes, struct jacobian *j
     for (int p = 0; p < N_POINTS; p++) {
         const double tau = point[p] * modes->residual->school->interval, t = modes->state->t + tau;
         TRY(modes_evaluate(modes, tau, modes->plain));
-        TRY(add_jacobian(modes, jacobian, t, 0, 1.0 / N_POINTS, by_value));
-        TRY(add_jacobian(modes, jacobian, t, 1, 1.0 / N_POINTS, by_rate));
+        for (int cj = 0; cj < 2; cj++) {
+            TRY(residual_jacobian(modes->residual, t, cj, modes->y, jacobian));
+            jacobian_add(jacobian, 1.0 / N_POINTS, modes->n_all, modes->number, modes->number, cj ? by_rate : by_value);
+        }
     }
     for (size_t i = 0; i < size; i++) by_rate[i] -= by_value[i];
     return STATUS_OK;
@@ -371,20 +331,6 @@ static enum status find_still(const struct modes *modes, const double complex *s
     return failed ? status_fail(STATUS_SOLVER, "the modes of the bodies cannot be told apart") : STATUS_OK;
 }
 
-/* Insert a candidate into the list of the slowest candidates; column: index of the vector. */
-static void candidate_insert(const struct modes *modes, double complex lambda, const double *vectors, int column,
-                             struct candidate *candidates, int *n) {
-    if (*n == CANDIDATES && cabs(candidates[CANDIDATES - 1].lambda) <= cabs(lambda)) return;
-    int i = *n < CANDIDATES ? (*n)++ : CANDIDATES - 1;
-    double complex *const vector = candidates[i].vector;
-    for (; i > 0 && cabs(candidates[i - 1].lambda) > cabs(lambda); i--) candidates[i] = candidates[i - 1];
-    candidates[i] = (struct candidate){lambda, vector};
-    const double *const real = vectors + (size_t)modes->n_slow * (size_t)column, *const imaginary =
-                                                                                     real + modes->n_slow;
-    for (int k = 0; k < modes->n_slow; k++) vector[k] = real[k] + (cimag(lambda) > 0 ? I * imaginary[k] : 0);
-    for (int f = 0; f < modes->n_shed; f++) vector[modes->n_slow + f] = 0;
-}
-
 /* Whether the events resolve a mode, and the mode lives as long as the wake; loosely: factor on both limits. */
 static int is_resolved(const struct modes *modes, double complex lambda, double loosely) {
     const double interval = modes->residual->school->interval;
@@ -395,19 +341,6 @@ static int is_resolved(const struct modes *modes, double complex lambda, double 
 }
 
 // ---- all
-
-/* Insert a mode into the list of modes, sorted by falling rate, unless the list contains the mode. */
-static void mode_keep(double complex lambda, int n_most, struct mode *mode, int *n) {
-    const struct mode new = {creal(lambda), cimag(lambda)};
-    for (int i = 0; i < *n; i++) {
-        const double size = same * hypot(new.rate, new.omega);
-        if (hypot(mode[i].rate - new.rate, mode[i].omega - new.omega) <= size) return;
-    }
-    if (*n == n_most && mode[n_most - 1].rate >= new.rate) return;
-    int i = *n < n_most ? (*n)++ : n_most - 1;
-    for (; i > 0 && mode[i - 1].rate < new.rate; i--) mode[i] = mode[i - 1];
-    mode[i] = new;
-}
 
 static enum status modes_find_all(const struct modes *modes, int n_most, struct mode *mode, int *n) {
     struct arena *const arena = modes->arena;
@@ -430,7 +363,17 @@ static enum status modes_find_all(const struct modes *modes, int n_most, struct 
     int n_candidates = 0;
     for (int j = 0; j < slow; j++) {
         const double complex lambda = values[j] + I * values[slow + j];
-        if (is_resolved(modes, lambda, 3)) candidate_insert(modes, lambda, vectors, j, candidates, &n_candidates);
+        const bool is_slow = n_candidates < CANDIDATES || cabs(candidates[CANDIDATES - 1].lambda) > cabs(lambda);
+        if (!is_resolved(modes, lambda, 3) || !is_slow) continue;
+
+        // insert the candidate, sorted by size
+        int i = n_candidates < CANDIDATES ? n_candidates++ : CANDIDATES - 1;
+        double complex *const vector = candidates[i].vector;
+        for (; i > 0 && cabs(candidates[i - 1].lambda) > cabs(lambda); i--) candidates[i] = candidates[i - 1];
+        candidates[i] = (struct candidate){lambda, vector};
+        const double *const real = vectors + slow * j, *const imaginary = real + slow;
+        for (int k = 0; k < slow; k++) vector[k] = real[k] + (cimag(lambda) > 0 ? I * imaginary[k] : 0);
+        for (int f = 0; f < modes->n_shed; f++) vector[slow + f] = 0;
     }
 
     // continue each of them to the full memory of the wake
@@ -440,7 +383,17 @@ static enum status modes_find_all(const struct modes *modes, int n_most, struct 
         for (int step = 1; step <= STEPS && found; step++) {
             TRY(mode_solve(modes, &at, (double)step / STEPS, &candidates[c].lambda, &found));
         }
-        if (found && is_resolved(modes, candidates[c].lambda, 1)) mode_keep(candidates[c].lambda, n_most, mode, n);
+        if (!found || !is_resolved(modes, candidates[c].lambda, 1)) continue;
+
+        // insert the mode, sorted by falling rate, unless the list contains it
+        const struct mode new = {creal(candidates[c].lambda), cimag(candidates[c].lambda)};
+        const double size = same * hypot(new.rate, new.omega);
+        bool is_known = *n == n_most && mode[n_most - 1].rate >= new.rate;
+        for (int i = 0; i < *n; i++) is_known |= hypot(mode[i].rate - new.rate, mode[i].omega - new.omega) <= size;
+        if (is_known) continue;
+        int i = *n < n_most ? (*n)++ : n_most - 1;
+        for (; i > 0 && mode[i - 1].rate < new.rate; i--) mode[i] = mode[i - 1];
+        mode[i] = new;
     }
     return STATUS_OK;
 }
@@ -450,6 +403,8 @@ static enum status modes_pose(struct modes *modes) {
     struct arena *const arena = modes->arena;
     const size_t n = (size_t)modes->n_all;
     NEW(arena, modes->unknown, n);
+    NEW(arena, modes->number, n);
+    for (int i = 0; i < modes->n_all; i++) modes->number[i] = i;
     NEW(arena, modes->y, n);
     NEW(arena, modes->plain, n);
     NEW(arena, modes->shifted, n);

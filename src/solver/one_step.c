@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "school/diagnostics_energy.h"
 #include "school/residual.h"
 #include "solver/integrator.h"
@@ -84,7 +85,7 @@ static enum status one_step_restart(void *data) {
 /* The rates at the end of the step, from the unknowns there. */
 static void one_step_rates(struct one_step *solver, double h) {
     struct state *const state = solver->state;
-    const int is_trapezoid = solver->options.method == METHOD_TRAPEZOID;
+    const bool is_trapezoid = solver->options.method == METHOD_TRAPEZOID;
     for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
         const double change = (state->y[i] - solver->before[i]) / h;
         // integrator_rates_step and state_find_rates replace the rates of algebraic unknowns that are used
@@ -92,104 +93,90 @@ static void one_step_rates(struct one_step *solver, double h) {
     }
 }
 
-/* Evaluate and factorise the Jacobian. */
-static enum status one_step_set_up(struct one_step *solver, double t, double cj) {
-    solver->pattern = solver->residual->couplings.pattern;
-    solver->counts.jacobian_evaluations++;
-    solver->cj = 0;
-    TRY(residual_jacobian(solver->residual, t, cj, solver->state->y, solver->jacobian));
-    const enum status status = linear_setup(solver->linear);
-    if (status == STATUS_SOLVER) return status_fail(STATUS_RETRY, "the Jacobian is singular");
-    TRY(status);
-    solver->cj = cj;
-    return STATUS_OK;
-}
-
-/* One correction of the unknowns, and its size in tolerances. */
-static enum status one_step_correct(struct one_step *solver, double t, double h, double *size) {
+/* Newton's iteration, starting from the unknowns in the state. STATUS_RETRY: no convergence. */
+static enum status one_step_iterate(struct one_step *solver, double t, double h) {
+    struct residual *const residual = solver->residual;
     struct state *const state = solver->state;
-    const int n = solver->residual->school->n_unknowns;
-    one_step_rates(solver, h);
-    solver->counts.residual_evaluations++;
-    solver->counts.newton_iterations++;
-    TRY(residual_evaluate(solver->residual, t, state->y, state->yp, solver->right_hand));
-    TRY(linear_solve(solver->linear, solver->right_hand, solver->correction));
-    *size = 0;
-    for (int i = 0; i < n; i++) {
-        state->y[i] -= solver->correction[i];
-        // NaN must not pass for small
-        const double weighted = fabs(solver->correction[i]) / solver->tolerance[i];
-        if (!(weighted <= *size)) *size = weighted;
-    }
-    return STATUS_OK;
-}
-
-/* Newton's iteration, starting from the unknowns in the state. */
-static enum status one_step_iterate(struct one_step *solver, double t, double h, int *converged) {
-    double before = 0;
-    *converged = 0;
     const double cj = solver->options.method == METHOD_TRAPEZOID ? 2 / h : 1 / h;
+    double before = 0;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         TRY(status_ask(solver->stop));
-        if (solver->cj != cj || solver->pattern != solver->residual->couplings.pattern)
-            TRY(one_step_set_up(solver, t, cj));
+
+        // evaluate and factorise the Jacobian
+        if (solver->cj != cj || solver->pattern != residual->couplings.pattern) {
+            solver->pattern = residual->couplings.pattern;
+            solver->counts.jacobian_evaluations++;
+            solver->cj = 0;
+            TRY(residual_jacobian(residual, t, cj, state->y, solver->jacobian));
+            const enum status status = linear_setup(solver->linear);
+            if (status == STATUS_SOLVER) return status_fail(STATUS_RETRY, "the Jacobian is singular");
+            TRY(status);
+            solver->cj = cj;
+        }
+
+        // correct the unknowns; size of the correction in tolerances
+        one_step_rates(solver, h);
+        solver->counts.residual_evaluations++;
+        solver->counts.newton_iterations++;
+        TRY(residual_evaluate(residual, t, state->y, state->yp, solver->right_hand));
+        TRY(linear_solve(solver->linear, solver->right_hand, solver->correction));
         double size = 0;
-        TRY(one_step_correct(solver, t, h, &size));
-        const double rate = i > 0 ? size / before : 0;
+        for (int k = 0; k < residual->school->n_unknowns; k++) {
+            state->y[k] -= solver->correction[k];
+            size = larger(size, fabs(solver->correction[k]) / solver->tolerance[k]);
+        }
+        if (!isfinite(size)) return STATUS_RETRY;
+
         // the error after this correction, estimated from the rate of convergence
+        const double rate = i > 0 ? size / before : 0;
         const double error = i > 0 && rate < 0.5 ? size * rate / (1 - rate) : size;
         // at the level of rounding corrections no longer shrink
-        *converged = error < newton_coefficient || (rate > 0.9 && size < 1);
-        if (*converged || !isfinite(size)) return STATUS_OK;
+        if (error < newton_coefficient || (rate > 0.9 && size < 1)) return STATUS_OK;
         if (rate > slow_rate) solver->cj = 0;
         before = size;
     }
-    return STATUS_OK;
-}
-
-static enum status one_step_failed(const struct one_step *solver, double t) {
-    return status_fail(STATUS_SOLVER,
-                       "integration failed at t = %.10g s: Newton's iteration did not converge with steps of %.3g s: "
-                       "choose a smaller solver.step, or solver.method: ida",
-                       t, solver->options.step);
-}
-
-/* One step of h to time t. */
-static enum status one_step_step(struct one_step *solver, double t, double h) {
-    struct state *const state = solver->state;
-    const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
-    memcpy(solver->before, state->y, size);
-    memcpy(solver->rates, state->yp, size);
-    int converged = 0;
-    // the second attempt has a new Jacobian
-    for (int attempt = 0; attempt < 2 && !converged; attempt++) {
-        memcpy(state->y, solver->before, size);
-        const enum status status = one_step_iterate(solver, t, h, &converged);
-        if (status < 0) return status;
-        if (status > 0) converged = 0;
-        if (!converged) solver->cj = 0;
-    }
-    if (!converged) return one_step_failed(solver, t - h);
-    one_step_rates(solver, h);
-    solver->counts.steps++;
-    integrator_rates_step(solver->algebraic_rates, t, state);
-    diagnostics_step(solver->residual, state, t, state->y);
-    return STATUS_OK;
+    return STATUS_RETRY;
 }
 
 static enum status one_step_advance(void *data, double t, const volatile sig_atomic_t *stop) {
     struct one_step *const solver = data;
-    solver->stop = stop;
-    const double start = solver->state->t, interval = t - start;
+    struct state *const state = solver->state;
+    const double start = state->t, interval = t - start;
     const long n = lround(interval / solver->options.step);
+    solver->stop = stop;
     if (n > solver->options.max_steps) {
         return status_fail(STATUS_SOLVER,
                            "integration failed at t = %.10g s: %ld steps between two events are more than "
                            "solver.max_steps: raise it, or solver.step",
                            start, n);
     }
+
     const double h = solver->residual->school->interval / (double)n;
-    for (long i = 1; i <= n; i++) TRY(one_step_step(solver, i < n ? start + (double)i * h : t, h));
+    const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
+    for (long i = 1; i <= n; i++) {
+        const double end = i < n ? start + (double)i * h : t;
+        memcpy(solver->before, state->y, size);
+        memcpy(solver->rates, state->yp, size);
+
+        // the second attempt has a new Jacobian
+        enum status status = one_step_iterate(solver, end, h);
+        if (status > 0) {
+            solver->cj = 0;
+            memcpy(state->y, solver->before, size);
+            status = one_step_iterate(solver, end, h);
+        }
+        if (status > 0) {
+            return status_fail(STATUS_SOLVER,
+                               "integration failed at t = %.10g s: Newton's iteration did not converge with steps of "
+                               "%.3g s: choose a smaller solver.step, or solver.method: ida",
+                               end - h, solver->options.step);
+        }
+        TRY(status);
+        one_step_rates(solver, h);
+        solver->counts.steps++;
+        integrator_rates_step(solver->algebraic_rates, end, state);
+        diagnostics_step(solver->residual, state, end, state->y);
+    }
     return STATUS_OK;
 }
 
@@ -239,20 +226,6 @@ static enum status verlet_unstable(const struct verlet *solver, double t) {
         t, solver->options.step);
 }
 
-// the accelerations of fish f at the positions in the state and time t
-static void verlet_accelerate(struct verlet *solver, int f, double t) {
-    const struct fish *fish = &solver->residual->school->fish[f];
-    double *const y = solver->state->y, *const value = solver->residual->scratch;
-    residual_muscle(solver->residual, f, t, y);
-    // without acceleration the balance is minus the forces
-    memset(y + fish->at.ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
-    residual_balance(solver->residual, f, y, value);
-    for (int k = 0; k < fish->n_nodes; k++) {
-        y[fish->at.ax + k] = -value[fish->at.ax + k] / fish->mass[k];
-        y[fish->at.ay + k] = -value[fish->at.ay + k] / fish->mass[k];
-    }
-}
-
 // to[i] += h rate[i] for x and y of all nodes
 static void verlet_move(const struct fish *fish, double h, const double *rate, double *to) {
     for (int i = 0; i < 2 * fish->n_nodes; i++) to[i] += h * rate[i];
@@ -270,20 +243,22 @@ static enum status verlet_step(struct verlet *solver, double t, double h) {
     const enum status status = residual_contact(solver->residual, t, y);
     if (status > 0) return verlet_unstable(solver, t);
     TRY(status);
+    double *const value = solver->residual->scratch;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        verlet_accelerate(solver, f, t);
+        residual_muscle(solver->residual, f, t, y);
+        // without acceleration the balance is minus the forces
+        memset(y + fish->at.ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
+        residual_balance(solver->residual, f, y, value);
+        for (int k = 0; k < fish->n_nodes; k++) {
+            y[fish->at.ax + k] = -value[fish->at.ax + k] / fish->mass[k];
+            y[fish->at.ay + k] = -value[fish->at.ay + k] / fish->mass[k];
+        }
         verlet_move(fish, h / 2, y + fish->at.ax, y + fish->at.vx);
     }
     solver->counts.steps++;
     solver->counts.residual_evaluations++;
     return STATUS_OK;
-}
-
-// the sheets and the rates of the differential unknowns
-static enum status close_interval(struct verlet *solver, double t) {
-    const enum status status = ode_rhs_rates(solver->rhs, t, solver->state->y, solver->state->yp);
-    return status > 0 ? verlet_unstable(solver, t) : status;
 }
 
 static enum status verlet_advance(void *data, double t, const volatile sig_atomic_t *stop) {
@@ -303,7 +278,12 @@ static enum status verlet_advance(void *data, double t, const volatile sig_atomi
         TRY(status_ask(stop));
         const double now = i < n ? start + (double)i * h : t;
         TRY(verlet_step(solver, now, h));
-        if (i == n) TRY(close_interval(solver, t));
+        if (i == n) {
+            // the sheets and the rates of the differential unknowns
+            const enum status status = ode_rhs_rates(solver->rhs, t, state->y, state->yp);
+            if (status > 0) return verlet_unstable(solver, t);
+            TRY(status);
+        }
         diagnostics_step(solver->residual, state, now, state->y);
     }
     return STATUS_OK;

@@ -18,7 +18,7 @@ struct runge_kutta {
 
     /* the last evaluation: all unknowns, and rates */
     double *work, *rates; /*                                                           (n_unknowns) */
-    int known;            /* whether they are valid */
+    bool known;           /* whether they are valid */
     double known_t;
     long known_event;
     long evaluations; /* so far */
@@ -30,31 +30,31 @@ struct runge_kutta {
     struct integrator_counts before; /* totals up to the last restart, which resets the totals of ARKODE */
 };
 
-// whether time, differential unknowns and wakes equal the arguments of the last evaluation
-static int evaluation_is_known(const struct runge_kutta *solver, double t, const double *y) {
-    if (!solver->known || t != solver->known_t || solver->state->event != solver->known_event) return 0;
-    for (int f = 0; f < solver->residual->school->n_fish; f++) {
-        const struct layout *at = &solver->residual->school->fish[f].at;
-        // with momenta the velocities are algebraic
-        const int second = fish_has_momentum(&solver->residual->school->fish[f]) ? at->px : at->vx;
-        const size_t places = (size_t)(at->vx - at->x) * sizeof *y, rest = (size_t)(at->ax - second) * sizeof *y;
-        if (memcmp(y + at->x, solver->work + at->x, places) != 0) return 0;
-        if (memcmp(y + second, solver->work + second, rest) != 0) return 0;
-        const int differential = !residual_shed_is_algebraic(solver->residual);
-        if (differential && memcmp(y + at->circulation, solver->work + at->circulation, sizeof *y) != 0) return 0;
-    }
-    return 1;
-}
-
 // compute work and rates from the differential unknowns in y
 static enum status runge_kutta_evaluate(struct runge_kutta *solver, double t, const double *y) {
-    // one evaluation serves the end of a step and the start of the next
-    if (evaluation_is_known(solver, t, y)) return STATUS_OK;
-    solver->known = 0;
+    const struct school *const school = solver->residual->school;
+    struct residual *const residual = solver->residual;
+
+    // one evaluation serves the end of a step and the start of the next: whether time, differential unknowns and wakes
+    // equal the arguments of the last evaluation
+    bool is_known = solver->known && t == solver->known_t && solver->state->event == solver->known_event;
+    for (int f = 0; f < school->n_fish && is_known; f++) {
+        const struct layout *at = &school->fish[f].at;
+        // with momenta the velocities are algebraic
+        const int second = fish_has_momentum(&school->fish[f]) ? at->px : at->vx;
+        const size_t places = (size_t)(at->vx - at->x) * sizeof *y, rest = (size_t)(at->ax - second) * sizeof *y;
+        is_known = memcmp(y + at->x, solver->work + at->x, places) == 0 &&
+                   memcmp(y + second, solver->work + second, rest) == 0 &&
+                   (residual_shed_is_algebraic(residual) ||
+                    memcmp(y + at->circulation, solver->work + at->circulation, sizeof *y) == 0);
+    }
+    if (is_known) return STATUS_OK;
+
+    solver->known = false;
     solver->evaluations++;
-    memcpy(solver->work, y, (size_t)solver->residual->school->n_unknowns * sizeof *y);
+    memcpy(solver->work, y, (size_t)school->n_unknowns * sizeof *y);
     TRY(ode_rhs_rates(solver->rhs, t, solver->work, solver->rates));
-    solver->known = 1;
+    solver->known = true;
     solver->known_t = t;
     solver->known_event = solver->state->event;
     return STATUS_OK;
@@ -88,14 +88,6 @@ static ARKodeButcherTable tableau_of(enum method method, int adaptive) {
     return table;
 }
 
-static void release_tableau(void *table) {
-    ARKodeButcherTable_Free(table);
-}
-
-static void release_arkode(void *solver) {
-    ARKodeFree(&((struct runge_kutta *)solver)->arkode);
-}
-
 static enum status runge_kutta_create(struct arena *arena, void **created, struct residual *residual,
                                       struct state *state, const struct integrator_options *options) {
     const struct school *const school = residual->school;
@@ -124,11 +116,11 @@ static enum status runge_kutta_create(struct arena *arena, void **created, struc
     solver->y = sundials_context_vector(&solver->context, state->y);
     solver->tolerances = sundials_context_vector(&solver->context, solver->tolerance);
     sundials_context_reserve(&solver->context, 32);  // more than ARKODE clones for seven stages
-    const ARKodeButcherTable table = arena_take(arena, tableau_of(options->method, step <= 0));
-    arena_defer(arena, release_tableau, table);
-    void *const arkode = solver->arkode =
-        arena_take(arena, ARKStepCreate(rates_callback, NULL, state->t, solver->y, solver->context.context));
-    arena_defer(arena, release_arkode, solver);
+    struct sundials_context *const context = &solver->context;
+    const ARKodeButcherTable table =
+        sundials_context_own(context, OWNED_TABLEAU, tableau_of(options->method, step <= 0));
+    void *const arkode = solver->arkode = sundials_context_own(
+        context, OWNED_ARKODE, ARKStepCreate(rates_callback, NULL, state->t, solver->y, context->context));
     // 6.4 interpolates at the stop time, for order one by a constant: Hermite's interpolant is the mean of both ends of
     // the step, Lagrange's interpolant the solution at the end
     if (ARKStepSetErrHandlerFn(arkode, sundials_context_message, &solver->failure) ||
@@ -169,28 +161,25 @@ static enum status runge_kutta_restart(void *data) {
     return STATUS_OK;
 }
 
-// the velocity that is largest in units of its scale, or is not a number
-static struct unknown_place worst_velocity(const struct runge_kutta *solver) {
-    const struct school *const school = solver->residual->school;
-    int worst = school->fish[0].at.vx;
-    double max = -1;
-    for (int f = 0; f < school->n_fish; f++) {
-        for (int i = school->fish[f].at.vx; i < school->fish[f].at.ax; i++) {
-            const double size = fabs(solver->state->y[i]) / residual_scale(solver->residual->school, i);
-            if (size <= max) continue;
-            worst = i;
-            max = isnan(size) ? INFINITY : size;
-        }
-    }
-    return residual_place(school, worst);
-}
-
 static enum status unstable(const struct runge_kutta *solver, double t, const char *why) {
-    double step = 0;
+    const struct school *const school = solver->residual->school;
+    double step = 0, most = -1;
+    int worst = school->fish[0].at.vx;
     if (*why == '\0') why = "the equations have no finite value";
     ARKodeGetLastStep(solver->arkode, &step);
-    const struct unknown_place place = worst_velocity(solver);
-    const struct fish *const fish = &solver->residual->school->fish[place.fish];
+
+    // the velocity that is largest in units of its scale, or is not a number
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int i = school->fish[f].at.vx; i < school->fish[f].at.ax; i++) {
+            const double size = fabs(solver->state->y[i]) / residual_scale(school, i);
+            if (size <= most) continue;
+            worst = i;
+            most = isnan(size) ? INFINITY : size;
+        }
+    }
+
+    const struct unknown_place place = residual_place(school, worst);
+    const struct fish *const fish = &school->fish[place.fish];
     // a too stiff body and an unstable control have the same symptom
     const char *const control = fish->control.law == CONTROL_NONE
                                     ? ""
@@ -203,22 +192,10 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
                        t, why, place.name, place.index, fish->name, step, control);
 }
 
-// the algebraic unknowns and all rates at the end of a step, for the energy balance and the event
-static enum status runge_kutta_close_step(struct runge_kutta *solver, double reached) {
-    struct state *const state = solver->state;
-    const struct school *school = solver->residual->school;
-    const enum status status = runge_kutta_evaluate(solver, reached, state->y);
-    if (status > 0) return unstable(solver, reached, status_message());
-    TRY(status);
-    memcpy(state->yp, solver->rates, (size_t)school->n_unknowns * sizeof *state->yp);
-    memcpy(state->y, solver->work, (size_t)school->n_unknowns * sizeof *state->y);
-    integrator_rates_step(solver->algebraic_rates, reached, state);
-    return STATUS_OK;
-}
-
 static enum status runge_kutta_advance(void *data, double t, const volatile sig_atomic_t *stop) {
     struct runge_kutta *const solver = data;
     struct state *const state = solver->state;
+    const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
     double reached = state->t;
     solver->stop = stop;
     for (long steps = 0; reached < t; steps++) {
@@ -232,10 +209,17 @@ static enum status runge_kutta_advance(void *data, double t, const volatile sig_
         solver->failure = STATUS_OK;
         status_clear();
         const int code = ARKodeEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
-        if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
+        if (solver->failure == STATUS_STOPPED) return STATUS_STOPPED;
         if (code < 0) return unstable(solver, reached, status_message());
         if (code == ARK_TSTOP_RETURN) reached = t;
-        TRY(runge_kutta_close_step(solver, reached));
+
+        // the algebraic unknowns and all rates at the end of the step, for the energy balance and the event
+        const enum status status = runge_kutta_evaluate(solver, reached, state->y);
+        if (status > 0) return unstable(solver, reached, status_message());
+        TRY(status);
+        memcpy(state->yp, solver->rates, size);
+        memcpy(state->y, solver->work, size);
+        integrator_rates_step(solver->algebraic_rates, reached, state);
         diagnostics_step(solver->residual, state, reached, state->y);
     }
     return STATUS_OK;

@@ -22,10 +22,6 @@ static struct sundials_context *context_of(N_Vector vector) {
     return ((const struct content *)vector->content)->context;
 }
 
-static int is_shared(const struct sundials_context *context) {
-    return context->threads > 1;
-}
-
 // in the order of the values, whatever the number of threads
 static double norm(N_Vector x, N_Vector weight) {
     const double *const value = N_VGetArrayPointer(x), *const w = N_VGetArrayPointer(weight);
@@ -56,13 +52,42 @@ static void keep(N_Vector vector) {
     (void)vector;
 }
 
-static void release_vector(void *object) {
-    const N_Vector vector = object;
-    if (is_shared(context_of(vector))) {
-        N_VDestroy_OpenMP(vector);
-    } else {
-        N_VDestroy_Serial(vector);
+/* An object and its kind, for the arena. */
+struct sundials_owned {
+    enum sundials_owned_kind kind;
+    void *object;
+};
+
+static void release_owned(void *data) {
+    struct sundials_owned *const owned = data;
+    void *const object = owned->object;
+    switch (owned->kind) {
+        case OWNED_CONTEXT: SUNContext_Free(object); return;
+        case OWNED_VECTOR:
+            if (context_of(object)->threads > 1) {
+                N_VDestroy_OpenMP(object);
+            } else {
+                N_VDestroy_Serial(object);
+            }
+            return;
+        case OWNED_MATRIX: SUNMatDestroy(object); return;
+        case OWNED_LINEAR: SUNLinSolFree(object); return;
+        case OWNED_CUSTOM_LINEAR: SUNLinSolFreeEmpty(object); return;
+        case OWNED_CUSTOM_NEWTON: SUNNonlinSolFreeEmpty(object); return;
+        case OWNED_TABLEAU: ARKodeButcherTable_Free(object); return;
+        case OWNED_ARKODE: ARKodeFree(&owned->object); return;
+        case OWNED_IDA: IDAFree(&owned->object); return;
+        case OWNED_KINSOL: KINFree(&owned->object); return;
     }
+}
+
+void *sundials_context_own(struct sundials_context *context, enum sundials_owned_kind kind, void *object) {
+    // the place was requested before the object: a lack of memory loses no object
+    struct sundials_owned *const owned = context->next;
+    *owned = (struct sundials_owned){kind, arena_take(context->arena, object)};
+    arena_defer(context->arena, release_owned, owned);
+    NEW(context->arena, context->next, 1);
+    return object;
 }
 
 static N_Vector clone(N_Vector vector) {
@@ -74,8 +99,8 @@ N_Vector sundials_context_vector(struct sundials_context *context, double *value
     struct arena *const arena = context->arena;
     if (!values) NEW(arena, values, context->n);
     const N_Vector vector =
-        arena_take(arena, is_shared(context) ? N_VMake_OpenMP(context->n, values, context->threads, context->context)
-                                             : N_VMake_Serial(context->n, values, context->context));
+        arena_take(arena, context->threads > 1 ? N_VMake_OpenMP(context->n, values, context->threads, context->context)
+                                               : N_VMake_Serial(context->n, values, context->context));
 
     // extend the content of the vector by the context
     struct content *const content = realloc(vector->content, sizeof *content);
@@ -89,17 +114,12 @@ N_Vector sundials_context_vector(struct sundials_context *context, double *value
     vector->ops->nvdestroy = keep;
     vector->ops->nvwrmsnorm = norm;
     vector->ops->nvwrmsnormmask = masked_norm;
-    arena_defer(arena, release_vector, vector);
-    return vector;
+    return sundials_context_own(context, OWNED_VECTOR, vector);
 }
 
 void sundials_context_reserve(struct sundials_context *context, int n) {
     GROW(context->arena, context->spare, n);
     while (context->n_spare < n) context->spare[context->n_spare++] = sundials_context_vector(context, NULL);
-}
-
-static void release_context(void *object) {
-    SUNContext_Free(object);
 }
 
 void sundials_context_create(struct sundials_context *context, struct arena *arena, int n, int threads,
@@ -108,8 +128,9 @@ void sundials_context_create(struct sundials_context *context, struct arena *are
                                          .n = n,
                                          .threads = parallel_threads(threads, n, n, PARALLEL_ELEMENTS),
                                          .failure = failure};
+    NEW(context->arena, context->next, 1);
     if (SUNContext_Create(SUN_COMM_NULL, &context->context) != SUN_SUCCESS) arena_lack(arena, 0);
-    arena_defer(context->arena, release_context, &context->context);
+    sundials_context_own(context, OWNED_CONTEXT, &context->context);
     // no logger, because a logger prints warnings
     if (SUNContext_SetLogger(context->context, NULL) != SUN_SUCCESS ||
         SUNContext_ClearErrHandlers(context->context) != SUN_SUCCESS ||

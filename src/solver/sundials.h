@@ -88,8 +88,9 @@ struct sundials_context {
     struct arena *arena; /* of the context and all vectors, also of clones by SUNDIALS; freed after later objects */
     N_Vector *spare;     /* vectors for the next clones, so that no clone inside SUNDIALS requests memory */
     int n_spare;
-    int n, threads;       /* of every vector: number of values, threads of an operation */
-    enum status *failure; /* status of the last callback; owned by the caller */
+    struct sundials_owned *next; /* place for the next object */
+    int n, threads;              /* of every vector: number of values, threads of an operation */
+    enum status *failure;        /* status of the last callback; owned by the caller */
 };
 
 /* Create a context for vectors of n values. Threads share the operations on long vectors; the bits of each value are
@@ -101,6 +102,22 @@ void sundials_context_create(struct sundials_context *context, struct arena *are
 
 /* Prepare n clones: a jump out of a function of SUNDIALS would lose the memory of that function. */
 void sundials_context_reserve(struct sundials_context *context, int n);
+
+/* Release an object with the arena of the context, before older objects. object NULL is a lack of memory. Returns the
+ * object; the two CUSTOM kinds are empty objects with our operations. */
+enum sundials_owned_kind {
+    OWNED_CONTEXT,
+    OWNED_VECTOR,
+    OWNED_MATRIX,
+    OWNED_LINEAR,
+    OWNED_CUSTOM_LINEAR,
+    OWNED_CUSTOM_NEWTON,
+    OWNED_TABLEAU,
+    OWNED_ARKODE,
+    OWNED_IDA,
+    OWNED_KINSOL
+};
+void *sundials_context_own(struct sundials_context *context, enum sundials_owned_kind kind, void *object);
 
 /* Create a vector on an array of the caller, or, if values is NULL, of zeros. */
 N_Vector sundials_context_vector(struct sundials_context *context, double *values);

@@ -22,8 +22,8 @@ static double error_of_order(int n, int tiny_diagonal) {
     for (int k = 0; k < n; k++) {
         want[k] = number();
         for (int r = 0; r < n; r++) {
-            dense_factors_column(&factors, k)[r] = tiny_diagonal && r == k ? 1e-14 : number();
-            x[r] += dense_factors_column(&factors, k)[r] * want[k];
+            factors.value[r + k * factors.stride] = tiny_diagonal && r == k ? 1e-14 : number();
+            x[r] += factors.value[r + k * factors.stride] * want[k];
         }
     }
 
@@ -46,21 +46,21 @@ TEST(systems_of_any_order_are_solved) {
 TEST(the_factors_are_those_of_elimination_by_hand) {
     // rows 1 2, 3 4: pivot 3, L = 1/3, U = 3 4, 0 2/3
     struct dense_factors factors = dense_factors_create(test_arena(), 2);
-    memcpy(dense_factors_column(&factors, 0), (double[]){1, 3}, 2 * sizeof(double));
-    memcpy(dense_factors_column(&factors, 1), (double[]){2, 4}, 2 * sizeof(double));
+    memcpy(factors.value + 0 * factors.stride, (double[]){1, 3}, 2 * sizeof(double));
+    memcpy(factors.value + 1 * factors.stride, (double[]){2, 4}, 2 * sizeof(double));
     assert_true(dense_factors_set_up(&factors));
     assert_int_equal(factors.pivot[0], 1);
-    NEAR(dense_factors_column(&factors, 0)[0], 3, 0, 0);
-    NEAR(dense_factors_column(&factors, 0)[1], 1.0 / 3, 0, 1e-15);
-    NEAR(dense_factors_column(&factors, 1)[0], 4, 0, 0);
-    NEAR(dense_factors_column(&factors, 1)[1], 2.0 / 3, 0, 1e-15);
+    NEAR(factors.value[0 + 0 * factors.stride], 3, 0, 0);
+    NEAR(factors.value[1 + 0 * factors.stride], 1.0 / 3, 0, 1e-15);
+    NEAR(factors.value[0 + 1 * factors.stride], 4, 0, 0);
+    NEAR(factors.value[1 + 1 * factors.stride], 2.0 / 3, 0, 1e-15);
 }
 
 TEST(a_singular_matrix_is_reported) {
     const double value[] = {0, NAN, INFINITY};
     for (int v = 0; v < 3; v++) {
         struct dense_factors factors = dense_factors_create(test_arena(), 40);
-        for (int k = 0; k < 40; k++) dense_factors_column(&factors, k)[k] = k == 33 ? value[v] : 1;
+        for (int k = 0; k < 40; k++) factors.value[k + k * factors.stride] = k == 33 ? value[v] : 1;
         assert_false(dense_factors_set_up(&factors));
     }
 }
