@@ -26,6 +26,7 @@ enum { N_FISH = 2, N_OF_FISH = sizeof(struct diagnostics_fish) / sizeof(double) 
 
 // Everything a row is made of, each number different from all others, and a folder to write in.
 struct fixture {
+    struct arena *arena;
     struct case_values values;
     struct school *school;
     struct state *state;
@@ -45,6 +46,7 @@ static inline void number_consecutively(double *value, size_t n, double first) {
 
 static inline int set_up(void **state) {
     struct fixture *f = calloc(1, sizeof *f);
+    f->arena = arena_create(NULL, "a test");
     assert_int_equal(case_parse(&f->values, CASE_TEXT, strlen(CASE_TEXT), "case", ".", 0, NULL), STATUS_OK);
     assert_int_equal(fish_school_create(&f->school, &f->values.school), STATUS_OK);
     assert_int_equal(state_create(&f->state, f->school), STATUS_OK);
@@ -79,6 +81,7 @@ static inline int set_up(void **state) {
 static inline int tear_down(void **state) {
     struct fixture *f = *state;
     unlink(f->path);
+    arena_free(f->arena);
     assert_int_equal(rmdir(f->folder), 0);  // nothing else is left in it
     state_free(f->state, f->school);
     fish_school_free(f->school);
@@ -89,11 +92,25 @@ static inline int tear_down(void **state) {
 
 // ---- writing ----
 
+static inline struct result_origin origin_of(struct fixture *f) {
+    return (struct result_origin){.path = f->path,
+                                  .values = &f->values,
+                                  .effective = EFFECTIVE,
+                                  .command = "shoal run case.yaml",
+                                  .school = f->school,
+                                  .n_events = 10};
+}
+
+static inline enum status begin(struct fixture *f, bool overwrite, bool is_steady, struct result_file **result) {
+    struct result_origin origin = origin_of(f);
+    origin.overwrite = overwrite;
+    origin.is_steady = is_steady;
+    return result_file_create(f->arena, result, &origin);
+}
+
 static inline struct result_file *create(struct fixture *f) {
     struct result_file *result;
-    assert_int_equal(
-        result_file_create(&result, f->path, 0, &f->values, EFFECTIVE, "shoal run case.yaml", f->school, 10),
-        STATUS_OK);
+    assert_int_equal(begin(f, false, false, &result), STATUS_OK);
     assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
     return result;
 }

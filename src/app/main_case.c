@@ -78,26 +78,22 @@ enum status main_new(const struct request *request) {
 
 enum status main_info(const struct request *request) {
     const char *const path = request->positional;
-    if (!request->json) return main_print_info(path, request->case_only);
+    if (!request->json) return main_print_info(request->arena, path, request->case_only);
     if (request->case_only) return status_fail(STATUS_CASE, "info: --case prints a case file, which is not JSON");
     if (target_is(path, TARGET_CHECKPOINT)) {
         return status_fail(STATUS_CASE, "info: %s is a checkpoint; --json needs the file of a run, a study or a field",
                            path);
     }
 
-    const char *kind;
-    struct netcdf_reader reader;
-    TRY(result_kind_name(N_KINDS, kinds, path, &kind));
-    TRY(netcdf_open(&reader, path));
-    const enum status status = result_json_summary(&reader, kind, stdout);
-    netcdf_close(&reader);
-    return status;
+    return result_kind_info(request->arena, N_KINDS, kinds, path, RESULT_INFO_JSON, stdout);
 }
 
-enum status main_print_info(const char *path, int case_only) {
+enum status main_print_info(struct arena *arena, const char *path, int case_only) {
+    const enum result_info_form form = case_only ? RESULT_INFO_CASE : RESULT_INFO_TEXT;
     struct say_page page;
     TRY(say_begin(&page));
     return say_end(&page, stdout,
-                   target_is(path, TARGET_CHECKPOINT) ? checkpoint_info(path, case_only, page.stream)
-                                                      : result_kind_info(N_KINDS, kinds, path, case_only, page.stream));
+                   target_is(path, TARGET_CHECKPOINT)
+                       ? checkpoint_info(arena, path, case_only, page.stream)
+                       : result_kind_info(arena, N_KINDS, kinds, path, form, page.stream));
 }

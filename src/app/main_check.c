@@ -120,8 +120,7 @@ static enum status check_case(struct checked *checked) {
     const struct case_values *const values = checked->values;
     TRY(parallel_try_threads(values->school.threads));
     if (is_study(checked)) return check_members(checked);
-    char *path;
-    TRY(record_path(values, &path));
+    const char *const path = record_path(checked->request->arena, values);
     enum status status = target_check(path, TARGET_NETCDF, true);
     if (status == STATUS_OK) status = check_start(checked, 0, values);
 
@@ -129,7 +128,6 @@ static enum status check_case(struct checked *checked) {
     if (status == STATUS_OK && !checked->request->quiet && target_check(path, TARGET_NETCDF, false) != STATUS_OK) {
         say_line(stderr, "shoal: note: %s\n", status_message());
     }
-    free(path);
     return status;
 }
 

@@ -34,6 +34,6 @@ enum status main_export(const struct request *request);
 void main_print_notes(const struct request *request, const struct case_values *values);
 
 /* Print a summary of a file of shoal, or only the case in the file. Fails with STATUS_FILE or STATUS_MEMORY. */
-enum status main_print_info(const char *path, int case_only);
+enum status main_print_info(struct arena *arena, const char *path, int case_only);
 
 #endif

@@ -52,11 +52,7 @@ static enum status with_case(const struct request *request,
     enum status status = sweep_refuse(&values);
     main_print_notes(request, &values);
     if (status == STATUS_OK) {
-        char *path;
-        status =
-            request->output ? memory_copy_string(&path, request->output, "a file name") : record_path(&values, &path);
-        if (status == STATUS_OK) status = make(&values, request, path);
-        free(path);
+        status = make(&values, request, request->output ? request->output : record_path(request->arena, &values));
     }
     case_free(&values);
     return status;
@@ -102,7 +98,7 @@ static enum status run_case(const struct case_values *values, const struct reque
     struct teller teller = {0};
     enum status status = run_with_reports(values, request, path, &teller);
     const char *const result = teller.path ? teller.path : "";
-    if (status == STATUS_OK && request->verbose) status = main_print_info(result, 0);
+    if (status == STATUS_OK && request->verbose) status = main_print_info(request->arena, result, 0);
     if (status == STATUS_OK && !request->quiet && !request->verbose) say_line(stdout, "%s\n", result);
     if (status == STATUS_OK) status = refuse_warnings(request, &teller, result);
     free(teller.path);
@@ -189,12 +185,12 @@ static enum status find_steady_state(const struct case_values *values, const str
     say_progress_end(&teller.progress);
     TRY(status);
     if (request->json) {
-        TRY(netcdf_print(path, result_json_steady, stdout));
+        TRY(netcdf_print(request->arena, path, result_json_steady, stdout));
     } else if (!request->quiet) {
         struct say_page page;
         say_line(stdout, "%s\n", path);
         TRY(say_begin(&page));
-        TRY(say_end(&page, stdout, netcdf_print(path, result_info_steady, page.stream)));
+        TRY(say_end(&page, stdout, netcdf_print(request->arena, path, result_info_steady, page.stream)));
     }
 
     return refuse_warnings(request, &teller, path);

@@ -135,6 +135,7 @@ enum status handle_take_up(struct shoal *run,
 
     // the simulation owns school and state
     run->arena = arena_create(NULL, "a run");
+    run->result_path = record_path(run->arena, values);
     TRY(simulate_take_up(run->arena, &run->simulation, values, school, state, totals));
     run->is_renewed = 1;
     run->when_reached = *totals;

@@ -46,6 +46,7 @@ static enum status check_can_step(const struct shoal *run, const char *function)
 static enum status create_simulation(struct shoal *run) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     run->arena = arena_create(NULL, "a run");
+    run->result_path = record_path(run->arena, &run->shared->values);
     return simulate_create(run->arena, &run->simulation, &run->shared->values);
 }
 
@@ -57,7 +58,6 @@ static enum status step_simulation(struct shoal *run) {
 // create the simulation of a new run, unless reading the case failed; set *run, or release the new run
 static int finish_opening(struct shoal **run, struct shoal *new, enum status status) {
     if (status == STATUS_OK) status = sweep_refuse(&new->shared->values);
-    if (status == STATUS_OK) status = record_path(&new->shared->values, &new->result_path);
     if (status == STATUS_OK) status = create_simulation(new);
     if (status == STATUS_OK) {
         *run = new;
@@ -99,7 +99,8 @@ static int has_ended(const struct shoal *run) {
 static void release_record(struct shoal *run) {
     free(run->record_path);
     run->record_path = NULL;
-    checkpoints_free(&run->checkpoints);
+    arena_free(run->checkpoints.arena);
+    run->checkpoints.arena = NULL;
     durable_claim_release(&run->claim);
 }
 
@@ -148,7 +149,6 @@ void shoal_close(struct shoal *run) {
         free(run->shared);
     }
 
-    free(run->result_path);
     free(run);
 }
 
@@ -398,20 +398,27 @@ const char *shoal_result_path(const struct shoal *run) {
 
 // keep an earlier result file until the first row of the new result is on disk
 static enum status create_result_file(struct shoal *run, int overwrite) {
-    TRY(record_create(&run->record, &run->shared->values, run->simulation->school, run->simulation->n_events,
-                      run->record_path, overwrite, "libshoal"));
+    const struct result_origin origin = {.path = run->record_path,
+                                         .overwrite = overwrite,
+                                         .values = &run->shared->values,
+                                         .command = "libshoal",
+                                         .school = run->simulation->school,
+                                         .n_events = run->simulation->n_events};
+    TRY(record_create(run->arena, &run->record, &origin));
 
     enum status status = shoal_write_row(run);
-    if (status == STATUS_OK) status = record_publish(&run->record, 0);
+    if (status == STATUS_OK) status = result_file_publish(run->record.file, "running");
     return status == STATUS_OK ? STATUS_OK : record_close(&run->record, status);
 }
 
 // claim the path, create the result file, and remove the checkpoints of an earlier run
 static enum status start_record(struct shoal *run, const char *path, int overwrite) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     TRY(memory_copy_string(&run->record_path, path, "a path"));
     TRY(target_check(path, TARGET_NETCDF, overwrite));
     TRY(durable_claim_take(&run->claim, path));
-    TRY(checkpoints_create(&run->checkpoints, &run->shared->values, path, NULL));
+    run->checkpoints.arena = arena_create(run->arena, "the checkpoints");
+    TRY(checkpoints_create(run->checkpoints.arena, &run->checkpoints, &run->shared->values, path, NULL));
 
     pthread_mutex_lock(&handle_netcdf_lock);
     const enum status status = create_result_file(run, overwrite);

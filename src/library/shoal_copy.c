@@ -27,11 +27,8 @@ int shoal_clone(struct shoal **copy, struct shoal *run) {
     atomic_fetch_add(&new->shared->n_users, 1);
     new->claim.descriptor[0] = new->claim.descriptor[1] = -1;
 
-    enum status status = memory_copy_string(&new->result_path, run->result_path, "a path");
-    if (status == STATUS_OK) {
-        status = handle_take_up(new, copy_state, run->simulation->state, &run->simulation->totals);
-        new->when_reached = run->when_reached;
-    }
+    const enum status status = handle_take_up(new, copy_state, run->simulation->state, &run->simulation->totals);
+    new->when_reached = run->when_reached;
     if (status == STATUS_OK) {
         *copy = new;
     } else {
@@ -68,7 +65,7 @@ int shoal_restore(struct shoal *run, struct shoal *from) {
 // ---- checkpoints without a result
 
 // no run can have a result file of this name, so `shoal resume` refuses the checkpoint
-static char no_result[] = "(memory)";
+static const char no_result[] = "(memory)";
 
 int shoal_save(struct shoal *run, const char *path) {
     TRY(handle_need(run, __func__, "run"));
@@ -86,7 +83,7 @@ int shoal_save(struct shoal *run, const char *path) {
                                           .wall_time = simulate_wall_time(run->simulation)};
 
     const enum status status =
-        checkpoint_write(path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
+        checkpoint_write(run->arena, path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
     free(effective);
     return status;
 }
@@ -95,12 +92,16 @@ static enum status load_state(struct state *state, const struct school *school, 
     return checkpoint_set_state(from, state, school);
 }
 
-static enum status load_checkpoint(struct shoal *run, const struct checkpoint *checkpoint) {
-    TRY(checkpoint_check_program(checkpoint));
-    const char *const text = checkpoint->effective;
-    TRY(case_parse(&run->shared->values, text, strlen(text), "case", NULL, 0, NULL));
-    TRY(record_path(&run->shared->values, &run->result_path));
-    return handle_take_up(run, load_state, checkpoint, &checkpoint->totals);
+static enum status load_checkpoint(struct arena **arena, struct shoal *run, const char *path) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct checkpoint checkpoint;
+    *arena = arena_create(NULL, path);
+    TRY(checkpoint_read(*arena, &checkpoint, path));
+    const char *const text = checkpoint.effective;
+    enum status status = checkpoint_check_program(&checkpoint);
+    if (status == STATUS_OK) status = case_parse(&run->shared->values, text, strlen(text), "case", NULL, 0, NULL);
+    if (status == STATUS_OK) status = handle_take_up(run, load_state, &checkpoint, &checkpoint.totals);
+    return status == STATUS_FILE ? status_fail(status, "%s: %s", path, status_message()) : status;
 }
 
 int shoal_load(struct shoal **run, const char *path) {
@@ -108,17 +109,16 @@ int shoal_load(struct shoal **run, const char *path) {
     *run = NULL;
     TRY(handle_need(path, __func__, "path"));
 
-    struct checkpoint checkpoint;
-    TRY(checkpoint_read(&checkpoint, path));
     struct shoal *new;
-    enum status status = handle_create(&new);
-    if (status == STATUS_OK) status = load_checkpoint(new, &checkpoint);
-    checkpoint_free(&checkpoint);
+    struct arena *arena = NULL;
+    TRY(handle_create(&new));
+    const enum status status = load_checkpoint(&arena, new, path);
+    arena_free(arena);
 
     if (status == STATUS_OK) {
         *run = new;
         return STATUS_OK;
     }
     shoal_close(new);
-    return status == STATUS_FILE ? status_fail(status, "%s: %s", path, status_message()) : status;
+    return status;
 }

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "result/result_file.h"
 #include "solver/integrator.h"
@@ -14,11 +15,11 @@
 
 /* The data of a checkpoint besides the state. */
 struct checkpoint {
-    char *program, *libraries, *processor; /* that wrote the checkpoint */
-    char *effective;                       /* the complete case (case_show) */
-    char *result;                          /* name of the result file, which is in the same folder */
-    char *places;                          /* additional times of checkpoints, s: "0.3,1.25", or "" */
-    struct result_mark rows;               /* the rows of the result before the checkpoint */
+    const char *program, *libraries, *processor; /* that wrote the checkpoint */
+    const char *effective;                       /* the complete case (case_show) */
+    const char *result;                          /* name of the result file, which is in the same folder */
+    const char *places;                          /* additional times of checkpoints, s: "0.3,1.25", or "" */
+    struct result_mark rows;                     /* the rows of the result before the checkpoint */
     struct integrator_counts totals;
     double wall_time; /* since the start of the run, s */
     double t;         /* of the state, s */
@@ -27,14 +28,14 @@ struct checkpoint {
 };
 
 /* Write the checkpoint of a state, as durable_replace does. Of *checkpoint, effective, result, places, rows, totals and
- * wall_time are used. Fails with STATUS_FILE or STATUS_MEMORY. */
-enum status checkpoint_write(const char *path, const char *previous, const struct checkpoint *checkpoint,
-                             const struct state *state, const struct school *school);
+ * wall_time are used. arena: for scratch. Fails with STATUS_FILE or, as a boundary, with STATUS_MEMORY. */
+enum status checkpoint_write(struct arena *arena, const char *path, const char *previous,
+                             const struct checkpoint *checkpoint, const struct state *state,
+                             const struct school *school);
 
-/* Read a checkpoint. Fails with STATUS_FILE and the reason for a file that is no checkpoint, incomplete or of another
- * format, or with STATUS_MEMORY; *checkpoint then owns nothing. checkpoint_free releases and zeroes it. */
-enum status checkpoint_read(struct checkpoint *checkpoint, const char *path);
-void checkpoint_free(struct checkpoint *checkpoint);
+/* Read a checkpoint, which is a part of the arena. Fails with STATUS_FILE and the reason for a file that is no
+ * checkpoint, incomplete or of another format. */
+enum status checkpoint_read(struct arena *arena, struct checkpoint *checkpoint, const char *path);
 
 /* Fail with STATUS_FILE unless this program, with these libraries, made the checkpoint. */
 enum status checkpoint_check_program(const struct checkpoint *checkpoint);
@@ -43,11 +44,12 @@ enum status checkpoint_check_program(const struct checkpoint *checkpoint);
  * STATUS_MEMORY; the state can then only be freed. */
 enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct state *state, const struct school *school);
 
-/* Fail with STATUS_FILE where another file than a checkpoint of the result of this name is at path, or with
- * STATUS_MEMORY. */
-enum status checkpoint_check_target(const char *path, const char *result);
+/* Fail with STATUS_FILE where another file than a checkpoint of the result of this name is at path. arena: for
+ * scratch. */
+enum status checkpoint_check_target(struct arena *arena, const char *path, const char *result);
 
-/* Print a summary of a checkpoint, or only the case in the checkpoint. Fails as checkpoint_read. */
-enum status checkpoint_info(const char *path, bool case_only, FILE *stream);
+/* Print a summary of a checkpoint, or only the case in the checkpoint. arena: for scratch. A boundary, for the caller
+ * to close the stream. Fails as checkpoint_read. */
+enum status checkpoint_info(struct arena *arena, const char *path, bool case_only, FILE *stream);
 
 #endif

@@ -11,7 +11,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/memory.h"
 #include "result/target.h"
 
 int durable_sync(int descriptor) {
@@ -103,76 +102,71 @@ static int open_part(const char *name, unsigned permissions, uint64_t byte, int 
     return ENOTUNIQ;
 }
 
-static char *part_name_of(const char *target) {
-    const size_t size = strlen(target) + sizeof ".part";
-    char *const name = malloc(size);
-    if (name) snprintf(name, size, "%s.part", target);
-    return name;
+/* The name of the part of a file: false for a name too long for the system. */
+static bool part_name_of(const char *target, char name[PATH_MAX]) {
+    const int length = snprintf(name, PATH_MAX, "%s.part", target);
+    if (length < PATH_MAX) return true;
+    name[0] = '\0';
+    return false;
 }
 
 // ---- a file in the making
 
 int durable_begin(struct durable_part *part, const char *target, unsigned permissions) {
-    *part = (struct durable_part){.target = strdup(target), .descriptor = -1};
-    char *const name = part->target ? part_name_of(target) : NULL;
-    if (!name) return ENOMEM;
-    const int code = open_part(name, permissions, BYTE_OF_PART, &part->descriptor);
-    if (code != 0) {
-        free(name);
-        return code;
-    }
-    part->name = name;
-    return ftruncate(part->descriptor, 0) == 0 ? 0 : errno;
-}
+    *part = (struct durable_part){.descriptor = -1};
+    if (!part_name_of(target, part->name)) return ENAMETOOLONG;
+    memcpy(part->target, target, strlen(target) + 1);
+    int code = open_part(part->name, permissions, BYTE_OF_PART, &part->descriptor);
 
-/* Rename the part to the target; overwrite: replace a file, else EEXIST. Errno or 0. */
-static int give_name(const struct durable_part *part, bool overwrite) {
-    if (!overwrite) {
-#ifdef RENAME_NOREPLACE
-        if (renameat2(AT_FDCWD, part->name, AT_FDCWD, part->target, RENAME_NOREPLACE) == 0) return 0;
-        if (errno != EINVAL && errno != ENOSYS) return errno;
-#endif
-
-        // a file system without this kind of renaming
-        struct stat facts;
-        if (lstat(part->target, &facts) == 0) return EEXIST;
+    if (code == 0) {
+        code = ftruncate(part->descriptor, 0) == 0 ? 0 : errno;
+    } else {
+        part->name[0] = '\0';
     }
-    return rename(part->name, part->target) == 0 ? 0 : errno;
+    return code;
 }
 
 int durable_publish(struct durable_part *part, bool overwrite) {
     int code = durable_sync(part->descriptor);
-    if (code == 0) code = give_name(part, overwrite);
     if (code != 0) return code;
-    free(part->name);
-    part->name = NULL;
+    bool is_renamed = false;
+
+    if (!overwrite) {
+#ifdef RENAME_NOREPLACE
+        is_renamed = renameat2(AT_FDCWD, part->name, AT_FDCWD, part->target, RENAME_NOREPLACE) == 0;
+        if (!is_renamed && errno != EINVAL && errno != ENOSYS) return errno;
+#endif
+
+        // a file system without this kind of renaming
+        struct stat facts;
+        if (!is_renamed && lstat(part->target, &facts) == 0) return EEXIST;
+    }
+
+    if (!is_renamed && rename(part->name, part->target) != 0) return errno;
+    part->name[0] = '\0';
     return durable_sync_folder(part->target);
 }
 
 void durable_end(struct durable_part *part) {
-    if (part->name) unlink(part->name);
+    if (part->name[0] != '\0') unlink(part->name);
     if (part->descriptor >= 0) close(part->descriptor);
-    free(part->name);
-    free(part->target);
-    *part = (struct durable_part){.descriptor = -1};
+    part->name[0] = '\0';
+    part->descriptor = -1;
 }
 
 void durable_discard(const char *target) {
     struct durable_part part;
-    char *const name = part_name_of(target);
-    if (name && access(name, F_OK) == 0) {
-        durable_begin(&part, target, 0666);
-        durable_end(&part);
-    }
-    free(name);
+    if (!part_name_of(target, part.name) || access(part.name, F_OK) != 0) return;
+    durable_begin(&part, target, 0666);
+    durable_end(&part);
 }
 
 // ---- the claim of a run
 
 enum status durable_claim_take(struct durable_claim *claim, const char *path) {
-    *claim = (struct durable_claim){.part = part_name_of(path), .descriptor = {-1, -1}, .process = getpid()};
-    TRY(memory_check(claim->part, "a file name"));
-    int code = open_part(claim->part, 0666, BYTE_OF_CLAIM, &claim->descriptor[0]);
+    *claim = (struct durable_claim){.descriptor = {-1, -1}, .process = getpid()};
+    int code = part_name_of(path, claim->part) ? 0 : ENAMETOOLONG;
+    if (code == 0) code = open_part(claim->part, 0666, BYTE_OF_CLAIM, &claim->descriptor[0]);
 
     if (code == 0) {
         // a result that cannot be opened for writing has no writer
@@ -188,15 +182,17 @@ enum status durable_claim_take(struct durable_claim *claim, const char *path) {
 }
 
 void durable_claim_release(struct durable_claim *claim) {
+    if (claim->part[0] == '\0') return;
+
     // remove the name before unlocking
-    const bool is_mine = claim->part && claim->process == getpid();
+    const bool is_mine = claim->process == getpid();
     if (is_mine && durable_has_name(claim->descriptor[0], claim->part)) unlink(claim->part);
 
     for (int i = 0; i < 2; i++) {
         if (claim->descriptor[i] >= 0) close(claim->descriptor[i]);
+        claim->descriptor[i] = -1;
     }
-    free(claim->part);
-    *claim = (struct durable_claim){.descriptor = {-1, -1}};
+    claim->part[0] = '\0';
 }
 
 enum status durable_claim_hold(const char *path, enum status (*work)(void *data), void *data) {
@@ -210,66 +206,41 @@ enum status durable_claim_hold(const char *path, enum status (*work)(void *data)
 
 // ---- replacing, and keeping the one before
 
-static int replace(struct durable_part *part, const char *previous, const void *bytes, size_t n) {
-    int code = durable_write(part->descriptor, bytes, n);
-    if (code == 0) code = durable_sync(part->descriptor);
-    if (code == 0 && previous && rename(part->target, previous) != 0 && errno != ENOENT) code = errno;
-    return code == 0 ? durable_publish(part, true) : code;
-}
-
 enum status durable_replace(const char *path, const char *previous, const void *bytes, size_t n) {
     struct durable_part part;
     int code = durable_begin(&part, path, 0666);
-    if (code == 0) code = replace(&part, previous, bytes, n);
+    if (code == 0) code = durable_write(part.descriptor, bytes, n);
+    if (code == 0) code = durable_sync(part.descriptor);
+    if (code == 0 && previous && rename(part.target, previous) != 0 && errno != ENOENT) code = errno;
+    if (code == 0) code = durable_publish(&part, true);
     durable_end(&part);
     return code == 0 ? STATUS_OK : target_failed(path, code, strerror(code));
 }
 
 // ---- reading
 
-// read all bytes; errno or 0
-static int durable_read_all(int descriptor, unsigned char *bytes, size_t n) {
-    while (n > 0) {
-        const ssize_t got = read(descriptor, bytes, n);
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) return errno;
-        if (got == 0) return EIO;  // the file was truncated meanwhile
-        bytes += got;
-        n -= (size_t)got;
-    }
-
-    return 0;
-}
-
-static enum status read_open(int descriptor, const char *path, unsigned char **bytes, size_t *n) {
+enum status durable_read(struct arena *arena, const char *path, unsigned char **bytes, size_t *n) {
+    // request the memory before the file is open
     struct stat facts;
-    if (fstat(descriptor, &facts) != 0 || !S_ISREG(facts.st_mode)) {
-        return status_fail(STATUS_FILE, "%s: is not an ordinary file", path);
-    }
+    if (stat(path, &facts) != 0) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    if (!S_ISREG(facts.st_mode)) return status_fail(STATUS_FILE, "%s: is not an ordinary file", path);
     *n = (size_t)facts.st_size;
-    TRY(MEMORY_NEW(*bytes, *n, path));
-    const int code = durable_read_all(descriptor, *bytes, *n);
-    if (code == 0) return STATUS_OK;
-    free(*bytes);
-    *bytes = NULL;
-    return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(code));
-}
+    NEW(arena, *bytes, *n);
 
-enum status durable_read(const char *path, unsigned char **bytes, size_t *n) {
-    *bytes = NULL;
-    *n = 0;
     const int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (descriptor < 0) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(errno));
-    const enum status status = read_open(descriptor, path, bytes, n);
-    close(descriptor);
-    return status;
+    int code = descriptor < 0 ? errno : 0;
+    for (size_t done = 0; done < *n && code == 0;) {
+        const ssize_t got = read(descriptor, *bytes + done, *n - done);
+        if (got > 0) done += (size_t)got;
+        if (got < 0 && errno != EINTR) code = errno;
+        if (got == 0) code = EIO;  // the file was truncated meanwhile
+    }
+
+    if (descriptor >= 0) close(descriptor);
+    return code == 0 ? STATUS_OK : status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(code));
 }
 
 // ---- a stream over a file in the making
-
-static enum status durable_failed(const char *path, int code) {
-    return target_failed(path, code, strerror(code));
-}
 
 enum status plain_file_open(struct plain_file *file, const char *path, enum target_kind kind, bool overwrite,
                             unsigned permissions) {
@@ -284,27 +255,28 @@ enum status plain_file_open(struct plain_file *file, const char *path, enum targ
     }
 
     durable_end(&file->part);
-    return durable_failed(path, code);
+    return target_failed(path, code, strerror(code));
 }
 
 enum status plain_file_close(struct plain_file *file, enum status status) {
     errno = 0;
     const bool is_broken = fflush(file->stream) != 0 || ferror(file->stream);
+    int code = errno;
 
     // after a failure of an earlier write the reason is lost: another byte fails for the same reason
-    if (is_broken && errno == 0) errno = durable_write(file->part.descriptor, "", 1);
-    if (status == STATUS_OK && is_broken) status = durable_failed(file->path, errno);
+    if (is_broken && code == 0) code = durable_write(file->part.descriptor, "", 1);
+    if (status == STATUS_OK && is_broken) status = target_failed(file->path, code, strerror(code));
     if (status == STATUS_OK) status = target_check(file->path, file->kind, file->overwrite);
 
     if (status == STATUS_OK) {
-        const int code = durable_publish(&file->part, file->overwrite);
-        if (code != 0) status = durable_failed(file->path, code);
+        code = durable_publish(&file->part, file->overwrite);
+        if (code != 0) status = target_failed(file->path, code, strerror(code));
     }
 
     // the stream owns the descriptor
     const bool is_open = fclose(file->stream) != 0;
     file->part.descriptor = -1;
-    if (is_open && status == STATUS_OK) status = durable_failed(file->path, errno);
+    if (is_open && status == STATUS_OK) status = target_failed(file->path, errno, strerror(errno));
     durable_end(&file->part);
     return status;
 }

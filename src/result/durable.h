@@ -11,20 +11,22 @@
 #ifndef DURABLE_H
 #define DURABLE_H
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <sys/types.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "result/target.h"
 
 /* A file in the making. */
 struct durable_part {
-    char *target;   /* owned */
-    char *name;     /* owned; NULL: published, or never created */
-    int descriptor; /* -1: none */
+    char target[PATH_MAX];
+    char name[PATH_MAX]; /* "": published, or never created */
+    int descriptor;      /* -1: none */
 };
 
 /* Flush a file, or the names in the folder of a file, to disk, so that the data survive a power cut; errno or 0. A file
@@ -45,7 +47,7 @@ bool durable_has_name(int descriptor, const char *path);
 
 /* Create a part of the file at target with these permissions, or empty the part of a process that died; errno or 0.
  * EAGAIN: another process makes this file; ENOTUNIQ: a file of another program, or a link, has the name of the part.
- * Call durable_end also after a failure. */
+ * target is not part->target. Call durable_end also after a failure. */
 int durable_begin(struct durable_part *part, const char *target, unsigned permissions);
 
 /* Flush the part to disk and rename the part to the target; the descriptor stays open. overwrite: replace an existing
@@ -58,19 +60,19 @@ void durable_end(struct durable_part *part);
 /* Remove the part that a process left when it died. */
 void durable_discard(const char *target);
 
-/* The right to write a result: locks on the part, which becomes the result, and on an existing result. Initialise to
- * zero with descriptors -1. */
+/* The right to write a result: locks on the part, which becomes the result, and on an existing result. */
 struct durable_claim {
-    char *part;        /* owned; NULL: there is no claim */
-    int descriptor[2]; /* part, result; -1: none */
-    pid_t process;     /* a fork does not release the claim */
+    char part[PATH_MAX]; /* "": there is no claim */
+    int descriptor[2];   /* part, result; -1: none */
+    pid_t process;       /* a fork does not release the claim */
 };
 
 /* Claim the result at a path, new or existing. Fails at once with STATUS_FILE if another run has the claim, in this
  * process or another one. On a file system without locks the claim excludes nobody. */
 enum status durable_claim_take(struct durable_claim *claim, const char *path);
 
-/* Release the claim and remove a part that was not published. In a fork of the process: only clear *claim. */
+/* Release the claim, if there is one, and remove a part that was not published. In a fork of the process: only clear
+ * *claim. */
 void durable_claim_release(struct durable_claim *claim);
 
 /* Do the work under the claim of the result at this path, new or existing (target_check). Fails with STATUS_FILE before
@@ -79,12 +81,12 @@ enum status durable_claim_hold(const char *path, enum status (*work)(void *data)
 
 /* Replace the contents of a file; the old file is renamed to previous, or discarded if previous is NULL. After any
  * failure or power cut, path or previous is a complete file. Fails with STATUS_FILE and a message that begins with the
- * path, or with STATUS_MEMORY. */
+ * path. */
 enum status durable_replace(const char *path, const char *previous, const void *bytes, size_t n);
 
-/* Read a whole regular file into memory that the caller frees. Fails with STATUS_FILE, also for anything but a regular
- * file (without waiting for a pipe), or with STATUS_MEMORY. */
-enum status durable_read(const char *path, unsigned char **bytes, size_t *n);
+/* Read a whole regular file. Fails with STATUS_FILE, also for anything but a regular file (without waiting for a
+ * pipe). */
+enum status durable_read(struct arena *arena, const char *path, unsigned char **bytes, size_t *n);
 
 /* A text file that gets the final name only when complete. */
 
@@ -97,7 +99,7 @@ struct plain_file {
 };
 
 /* Open a file for writing, with these permissions (0777 of a script). The path must live until plain_file_close. Fails
- * with STATUS_FILE (target_check) or STATUS_MEMORY; no file is then left. */
+ * with STATUS_FILE (target_check); no file is then left. */
 enum status plain_file_open(struct plain_file *file, const char *path, enum target_kind kind, bool overwrite,
                             unsigned permissions);
 

@@ -31,19 +31,16 @@ enum {
         if ((writer)->code == NC_NOERR) (writer)->code = (call); \
     } while (0)
 
+// ---- places and failures
+
 const char *netcdf_reason(int code) {
     return nc_strerror(code);
 }
 
-// ---- places and failures
-
-/* The path for NetCDF: without "./" in front, NetCDF would take some names for addresses and drop leading blanks. NULL:
- * out of memory. The caller frees the path. */
-static char *netcdf_local_path(const char *path) {
-    const size_t size = strlen(path) + sizeof "./";
-    char *const local = calloc(size, 1);
-    if (local) snprintf(local, size, "%s%s", path[0] == '/' ? "" : "./", path);
-    return local;
+/* Find the path for NetCDF: without "./" in front, NetCDF would take some names for addresses and drop leading blanks.
+ * 0 or ENAMETOOLONG. */
+static int netcdf_local_path(const char *path, char local[PATH_MAX]) {
+    return snprintf(local, PATH_MAX, "%s%s", path[0] == '/' ? "" : "./", path) < PATH_MAX ? 0 : ENAMETOOLONG;
 }
 
 /* True if the memory that NetCDF can need to create or open a file is available: NetCDF crashes if out of memory. */
@@ -60,9 +57,30 @@ static enum status netcdf_failed(const char *path, int code) {
 
 // ---- definitions
 
-/* Write the attributes on the origin of the file. */
-static void write_origin(struct netcdf_writer *writer, const char *title, const char *command) {
-    char libraries[VERSION_LENGTH], source[2 * VERSION_LENGTH], date[32];
+/* Initialise a writer without a file. */
+static void writer_begin(struct netcdf_writer *writer, const char *path) {
+    *writer = (struct netcdf_writer){.path = path, .part.descriptor = -1, .file = -1, .last_fsync = -INFINITY};
+    if (!netcdf_has_memory()) writer->code = ENOMEM;
+}
+
+/* Whether all went well; a writer that is not open is closed. The path of the writer is now a part of the writer. */
+static enum status opened(struct netcdf_writer *writer, const char *path) {
+    const int code = writer->code;
+    writer->path = writer->part.target + (path[0] == '/' ? 0 : strlen("./"));
+    if (code == NC_NOERR) return STATUS_OK;
+    netcdf_finish(writer);
+    return netcdf_failed(path, code);
+}
+
+enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command) {
+    char local[PATH_MAX], libraries[VERSION_LENGTH], source[2 * VERSION_LENGTH], date[32];
+    size_t buffer_bytes = BUFFER_BYTES;
+    writer_begin(writer, path);
+    CALL(writer, netcdf_local_path(path, local));
+    CALL(writer, durable_begin(&writer->part, local, 0666));
+    CALL(writer, nc__create(writer->part.name, NC_CLOBBER | NC_64BIT_DATA, 0, &buffer_bytes, &writer->file));
+
+    // the origin of the file
     version_libraries(libraries);
     snprintf(source, sizeof source, "%s, %s", version_short(), libraries);
     const time_t now = time(NULL);
@@ -76,43 +94,13 @@ static void write_origin(struct netcdf_writer *writer, const char *title, const 
     netcdf_write_string(writer, NETCDF_GLOBAL, "history", history.failed ? "" : history.text);
     netcdf_write_string(writer, NETCDF_GLOBAL, "source", source);
     text_free(&history);
-}
-
-// whether all went well; a writer that is not open is closed
-static enum status opened(struct netcdf_writer *writer, const char *path) {
-    const int code = writer->code;
-    if (code == NC_NOERR) return STATUS_OK;
-    netcdf_finish(writer);
-    return netcdf_failed(path, code);
-}
-
-/* Initialise a writer without a file; returns the path for NetCDF, which the caller frees, or NULL if out of memory. */
-static char *writer_begin(struct netcdf_writer *writer, const char *path) {
-    *writer = (struct netcdf_writer){.path = path, .part.descriptor = -1, .file = -1, .last_fsync = -INFINITY};
-    char *const local = netcdf_has_memory() ? netcdf_local_path(path) : NULL;
-    if (!local) writer->code = ENOMEM;
-    return local;
-}
-
-static void keep_path(struct netcdf_writer *writer) {
-    if (writer->code == NC_NOERR) writer->path = writer->part.target + (writer->path[0] == '/' ? 0 : strlen("./"));
-}
-
-enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command) {
-    char *const local = writer_begin(writer, path);
-    CALL(writer, durable_begin(&writer->part, local, 0666));
-    free(local);
-    keep_path(writer);
-    size_t buffer_bytes = BUFFER_BYTES;
-    CALL(writer, nc__create(writer->part.name, NC_CLOBBER | NC_64BIT_DATA, 0, &buffer_bytes, &writer->file));
-    write_origin(writer, title, command);
     return opened(writer, path);
 }
 
 enum status netcdf_continue(struct netcdf_writer *writer, const char *path) {
-    writer->part.target = writer_begin(writer, path);
-    keep_path(writer);
     size_t buffer_bytes = BUFFER_BYTES;
+    writer_begin(writer, path);
+    CALL(writer, netcdf_local_path(path, writer->part.target));
     CALL(writer, nc__open(writer->part.target, NC_WRITE, &buffer_bytes, &writer->file));
     CALL(writer, nc_set_fill(writer->file, NC_NOFILL, NULL));
     if (writer->code == NC_NOERR) writer->part.descriptor = open(writer->part.target, O_RDONLY | O_CLOEXEC);
@@ -240,7 +228,7 @@ enum status netcdf_finish(struct netcdf_writer *writer) {
     CALL(writer, closed);
     enum status status = STATUS_OK;
 
-    if (!writer->part.name && writer->code != NC_NOERR) {
+    if (writer->part.name[0] == '\0' && writer->code != NC_NOERR) {
         status = status_fail(STATUS_FILE, "%s: cannot be closed (%s): the end may be missing", writer->path,
                              nc_strerror(writer->code));
     }
@@ -252,14 +240,14 @@ enum status netcdf_finish(struct netcdf_writer *writer) {
 
 void netcdf_abandon(struct netcdf_writer *writer) {
     // nc_close and nc_abort write: the number stays open until the process ends
-    free(writer->part.name);
-    writer->part.name = NULL;
+    writer->part.name[0] = '\0';
     durable_end(&writer->part);
     *writer = (struct netcdf_writer){.part.descriptor = -1, .file = -1};
 }
 
-// ---- check a file for completeness, and find the rows. NetCDF reads a missing end as zeros and trusts the
-// sizes in the header.
+// ---- check a file for completeness, and find the rows. NetCDF reads a missing end as zeros, and requests memory for
+// the numbers of entries in the header before reading the entries: NetCDF 4.9.0 took more than 4 GB, or crashed, with
+// 20 of 4000 damaged headers.
 //
 //     header    = "CDF" version  n_rows  dimensions  attributes  variables
 //     list      = tag  n  n entries; both 0: none          tag: DIMENSION, ATTRIBUTE, VARIABLE
@@ -279,221 +267,158 @@ struct header {
     FILE *file;
     uint64_t size;   /* of the file */
     bool is_damaged; /* also if the file ends within the header */
-    int version, n_bytes;
-    uint64_t n_rows, n_dimensions;
-    uint64_t length[NC_MAX_DIMS];              /* of the dimensions */
-    uint64_t begin, begin_of_rows;             /* of the first value, of the first row */
-    uint64_t end;                              /* of the variables that do not grow */
-    uint64_t end_of_row;                       /* of the first */
-    uint64_t row_bytes, n_growing, last_bytes; /* size and variables of a row; size of the last one without padding */
+    int n_bytes;     /* of most numbers */
 };
 
-// ---- pieces
-
-static uint64_t netcdf_read_number(struct header *header, int n_bytes) {
+/* The next number, of n_bytes bytes; after damage, or above most, the header is damaged and the number is 0. */
+static uint64_t header_number(struct header *header, int n_bytes, uint64_t most) {
     uint64_t number = 0;
     for (int i = 0; i < n_bytes; i++) {
         const int byte = fgetc(header->file);
-        if (byte == EOF) header->is_damaged = true;
+        header->is_damaged |= byte == EOF;
         number = number << 8 | (uint64_t)(byte & 0xff);
     }
-    return number;
+    header->is_damaged |= number > most;
+    return header->is_damaged ? 0 : number;
 }
 
 static uint64_t fill_up(uint64_t n) {
     return (n + 3) / 4 * 4;
 }
 
-/* Skip n bytes and the padding. */
-static void skip(struct header *header, uint64_t n) {
+/* Skip as many bytes as the next number tells, at most `most`, times the size of a value, and the padding. */
+static void header_skip(struct header *header, uint64_t most, uint64_t size) {
+    const uint64_t n = fill_up(size * header_number(header, header->n_bytes, most));
     const off_t place = ftello(header->file);
-    if (place < 0 || n > header->size || fill_up(n) > header->size - (uint64_t)place) {
-        header->is_damaged = true;
-    } else {
-        fseeko(header->file, (off_t)fill_up(n), SEEK_CUR);
-    }
+    header->is_damaged |= place < 0 || (uint64_t)place > header->size || n > header->size - (uint64_t)place;
+    if (!header->is_damaged) fseeko(header->file, (off_t)n, SEEK_CUR);
 }
 
-static void skip_name(struct header *header) {
-    const uint64_t n = netcdf_read_number(header, header->n_bytes);
-    if (n > NC_MAX_NAME) header->is_damaged = true;
-    if (!header->is_damaged) skip(header, n);
-}
-
-/* Bytes of a value of the type that follows; 1 after damage. */
-static uint64_t read_type(struct header *header) {
+/* The bytes of a value of the type that follows. */
+static uint64_t header_type(struct header *header) {
     static const uint64_t bytes[] = {
         [NC_BYTE] = 1,  [NC_CHAR] = 1,   [NC_SHORT] = 2, [NC_INT] = 4,   [NC_FLOAT] = 4, [NC_DOUBLE] = 8,
         [NC_UBYTE] = 1, [NC_USHORT] = 2, [NC_UINT] = 4,  [NC_INT64] = 8, [NC_UINT64] = 8};
-    const uint64_t type = netcdf_read_number(header, 4);
-    if (type >= NC_BYTE && type <= (header->version == 5 ? NC_UINT64 : NC_DOUBLE)) return bytes[type];
-    header->is_damaged = true;
-    return 1;
+    const uint64_t type = header_number(header, 4, header->n_bytes == 8 ? NC_UINT64 : NC_DOUBLE);
+    header->is_damaged |= type == NC_NAT;
+    return bytes[type];
 }
 
 /* The number of entries of a list. */
-static uint64_t netcdf_read_list(struct header *header, enum tag expected) {
-    const uint64_t tag = netcdf_read_number(header, 4), n = netcdf_read_number(header, header->n_bytes);
-    if (tag == 0 && n == 0) return 0;
-    if (tag != expected || n > header->size) header->is_damaged = true;
-    return n;
+static uint64_t header_list(struct header *header, enum tag expected) {
+    const uint64_t tag = header_number(header, 4, VARIABLE + ATTRIBUTE);
+    const uint64_t n = header_number(header, header->n_bytes, header->size);
+    header->is_damaged |= tag != expected && (tag != 0 || n != 0);
+    return header->is_damaged ? 0 : n;
 }
 
-// ---- the lists
-
-static void skip_attributes(struct header *header) {
-    const uint64_t n = netcdf_read_list(header, ATTRIBUTE);
-    for (uint64_t i = 0; i < n && !header->is_damaged; i++) {
-        skip_name(header);
-        const uint64_t bytes = read_type(header), n_values = netcdf_read_number(header, header->n_bytes);
-        if (n_values > header->size) header->is_damaged = true;
-        if (!header->is_damaged) skip(header, n_values * bytes);
+static void header_skip_attributes(struct header *header) {
+    for (uint64_t i = header_list(header, ATTRIBUTE); i > 0 && !header->is_damaged; i--) {
+        header_skip(header, NC_MAX_NAME, 1);
+        header_skip(header, header->size, header_type(header));
     }
 }
 
-/* Read the dimensions of a variable; the number of values, per row if the variable grows. */
-static uint64_t read_shape(struct header *header, bool *grows) {
-    const uint64_t n = netcdf_read_number(header, header->n_bytes);
-    uint64_t n_values = 1;
-    *grows = false;
-    if (n > NC_MAX_VAR_DIMS) header->is_damaged = true;
+/* Read a header behind the version. *end: of the variables that do not grow; *end_of_row: of the first row. */
+static void header_read(struct header *header, int version, struct netcdf_rows *rows, uint64_t *end,
+                        uint64_t *end_of_row) {
+    uint64_t length[NC_MAX_DIMS], n_growing = 0, last_bytes = 0;
+    *rows = (struct netcdf_rows){.begin = max_size, .begin_of_rows = max_size};
+    *end = *end_of_row = 0;
+    rows->n_counted = header_number(header, header->n_bytes, UINT64_MAX);
 
-    for (uint64_t d = 0; d < n && !header->is_damaged; d++) {
-        const uint64_t number = netcdf_read_number(header, header->n_bytes);
-        const uint64_t length = number < header->n_dimensions ? header->length[number] : max_size;
-        if (length == 0 && d == 0) {
-            *grows = true;
-        } else if (length == 0 || n_values > max_size / 8 / length) {
-            header->is_damaged = true;
-        } else {
-            n_values *= length;
+    const uint64_t n_dimensions = header_list(header, DIMENSION);
+    header->is_damaged |= n_dimensions > NC_MAX_DIMS;
+    for (uint64_t i = 0; i < n_dimensions && !header->is_damaged; i++) {
+        header_skip(header, NC_MAX_NAME, 1);
+        length[i] = header_number(header, header->n_bytes, max_size);
+    }
+    header_skip_attributes(header);
+
+    for (uint64_t i = header_list(header, VARIABLE); i > 0 && !header->is_damaged; i--) {
+        // the number of values, per row if the variable grows
+        bool grows = false;
+        uint64_t bytes = 1;
+        header_skip(header, NC_MAX_NAME, 1);
+        const uint64_t n = header_number(header, header->n_bytes, NC_MAX_VAR_DIMS);
+        for (uint64_t d = 0; d < n && !header->is_damaged; d++) {
+            const uint64_t number = header_number(header, header->n_bytes, UINT64_MAX);
+            const uint64_t factor = number < n_dimensions ? length[number] : max_size;
+            grows |= factor == 0;
+            header->is_damaged |= factor == 0 ? d > 0 : bytes > max_size / 8 / factor;
+            if (factor > 0) bytes *= factor;
         }
+        header_skip_attributes(header);
+        bytes *= header_type(header);
+
+        // skip the size, which follows from type and dimensions
+        header_number(header, header->n_bytes, UINT64_MAX);
+        const uint64_t begin = header_number(header, version == 1 ? 4 : 8, max_size);
+        uint64_t *const last = grows ? end_of_row : end;
+        if (begin + bytes > *last) *last = begin + bytes;
+        if (begin < rows->begin) rows->begin = begin;
+        if (!grows) continue;
+        if (begin < rows->begin_of_rows) rows->begin_of_rows = begin;
+        n_growing++;
+        last_bytes = bytes;
+        rows->bytes += fill_up(bytes);
+        header->is_damaged |= rows->bytes > max_size;
     }
-
-    return n_values;
-}
-
-static void read_variable(struct header *header) {
-    bool grows;
-    skip_name(header);
-    const uint64_t n_values = read_shape(header, &grows);
-    if (!header->is_damaged) skip_attributes(header);
-    const uint64_t bytes = n_values * read_type(header);
-    netcdf_read_number(header, header->n_bytes);  // skip the size, which follows from type and dimensions
-    const uint64_t begin = netcdf_read_number(header, header->version == 1 ? 4 : 8);
-    if (begin > max_size) header->is_damaged = true;
-    if (header->is_damaged) return;
-    uint64_t *const end = grows ? &header->end_of_row : &header->end;
-    if (begin + bytes > *end) *end = begin + bytes;
-    if (begin < header->begin) header->begin = begin;
-    if (!grows) return;
-    if (begin < header->begin_of_rows) header->begin_of_rows = begin;
-    header->n_growing++;
-    header->last_bytes = bytes;
-    header->row_bytes += fill_up(bytes);
-    if (header->row_bytes > max_size) header->is_damaged = true;
-}
-
-static void read_header(struct header *header) {
-    char magic[4] = "";
-    header->begin = header->begin_of_rows = max_size;
-    if (fread(magic, 1, sizeof magic, header->file) != sizeof magic) header->is_damaged = true;
-    header->version = magic[3];
-    header->n_bytes = header->version == 5 ? 8 : 4;
-    header->n_rows = netcdf_read_number(header, header->n_bytes);
-
-    // dimensions
-    header->n_dimensions = netcdf_read_list(header, DIMENSION);
-    if (header->n_dimensions > NC_MAX_DIMS) header->is_damaged = true;
-    for (uint64_t i = 0; i < header->n_dimensions && !header->is_damaged; i++) {
-        skip_name(header);
-        header->length[i] = netcdf_read_number(header, header->n_bytes);
-        if (header->length[i] > max_size) header->is_damaged = true;
-    }
-
-    if (!header->is_damaged) skip_attributes(header);
-    const uint64_t n_variables = header->is_damaged ? 0 : netcdf_read_list(header, VARIABLE);
-    for (uint64_t i = 0; i < n_variables && !header->is_damaged; i++) read_variable(header);
 
     // a single variable is not filled up
-    if (header->n_growing == 1) header->row_bytes = header->last_bytes;
-}
-
-/* The number of complete rows: the header can reach the disk before the rows that the header counts. */
-static uint64_t n_whole_rows(const struct header *header) {
-    if (header->n_growing == 0 || header->end_of_row > header->size) return 0;
-    const uint64_t n = (header->size - header->end_of_row) / header->row_bytes + 1;
-    return n < header->n_rows ? n : header->n_rows;
-}
-
-/* True for "CDF" and a known version. */
-static bool is_netcdf(FILE *file) {
-    char magic[4] = "";
-    const bool is_known = fread(magic, 1, sizeof magic, file) == sizeof magic && memcmp(magic, "CDF", 3) == 0 &&
-                          (magic[3] == 1 || magic[3] == 2 || magic[3] == 5);
-    rewind(file);
-    return is_known;
-}
-
-static uint64_t netcdf_size_of(FILE *file) {
-    fseeko(file, 0, SEEK_END);
-    return (uint64_t)ftello(file);
-}
-
-static enum status netcdf_examine(struct header *header, const char *path) {
-    header->file = fopen(path, "rb");
-    if (!header->file) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(errno));
-    enum status status = STATUS_OK;
-
-    if (is_netcdf(header->file)) {
-        header->size = netcdf_size_of(header->file);
-        rewind(header->file);
-        read_header(header);
-        // a row that was added meanwhile counts in the header, which was read after the size
-        header->size = netcdf_size_of(header->file);
-        if (header->is_damaged) {
-            status = status_fail(STATUS_FILE, "%s: cannot be read: the header is damaged", path);
-        } else if (header->end > header->size) {
-            status = status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
-        }
-    } else {
-        status = status_fail(STATUS_FILE,
-                             "%s: cannot be read: not a NetCDF file of a classic format: name a file that shoal wrote",
-                             path);
-    }
-
-    fclose(header->file);
-    return status;
+    if (n_growing == 1) rows->bytes = last_bytes;
 }
 
 enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows) {
-    struct header header = {0};
-    TRY(netcdf_examine(&header, path));
-    *rows = (struct netcdf_rows){.begin = header.begin,
-                                 .begin_of_rows = header.begin_of_rows,
-                                 .bytes = header.n_growing > 0 ? header.row_bytes : 0,
-                                 .n = n_whole_rows(&header),
-                                 .n_counted = header.n_rows};
-    return STATUS_OK;
-}
+    char magic[4] = "";
+    uint64_t end, end_of_row;
+    FILE *const file = fopen(path, "rb");
+    if (!file) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    struct header header = {.file = file};
+    fseeko(file, 0, SEEK_END);
+    header.size = (uint64_t)ftello(file);
+    rewind(file);
+    const bool is_netcdf = fread(magic, 1, sizeof magic, file) == sizeof magic && memcmp(magic, "CDF", 3) == 0 &&
+                           (magic[3] == 1 || magic[3] == 2 || magic[3] == 5);
+    header.n_bytes = magic[3] == 5 ? 8 : 4;
+    header_read(&header, magic[3], rows, &end, &end_of_row);
 
-// Write another number of rows and truncate the file behind the last row; errno or 0.
-static int cut(int descriptor, const struct netcdf_rows *rows, uint64_t n) {
-    unsigned char number[8];
-    for (int i = 0; i < 8; i++) number[i] = (unsigned char)(n >> (8 * (7 - i)) & 0xff);
-    // first the number: a longer file is whole too
-    if (pwrite(descriptor, number, sizeof number, 4) != sizeof number) return errno;
-    const int code = durable_sync(descriptor);
-    if (code != 0) return code;
-    if (ftruncate(descriptor, (off_t)(rows->begin_of_rows + n * rows->bytes)) != 0) return errno;
-    return durable_sync(descriptor);
+    // a row that was added meanwhile counts in the header, which was read after the size
+    fseeko(file, 0, SEEK_END);
+    header.size = (uint64_t)ftello(file);
+    fclose(file);
+
+    if (!is_netcdf) {
+        return status_fail(STATUS_FILE,
+                           "%s: cannot be read: not a NetCDF file of a classic format: name a file that shoal wrote",
+                           path);
+    }
+    if (header.is_damaged) return status_fail(STATUS_FILE, "%s: cannot be read: the header is damaged", path);
+    if (end > header.size) {
+        return status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
+    }
+
+    // whole rows: the header can reach the disk before the rows that the header counts
+    if (rows->bytes > 0 && end_of_row <= header.size) {
+        rows->n = (header.size - end_of_row) / rows->bytes + 1;
+        if (rows->n > rows->n_counted) rows->n = rows->n_counted;
+    }
+    return STATUS_OK;
 }
 
 enum status netcdf_cut_rows(const char *path, const struct netcdf_rows *rows, uint64_t n) {
     if (rows->bytes == 0) return status_fail(STATUS_FILE, "%s: has no rows", path);
     if (rows->n == n && rows->n_counted == n) return STATUS_OK;
+    unsigned char number[8];
+    for (int i = 0; i < 8; i++) number[i] = (unsigned char)(n >> (8 * (7 - i)) & 0xff);
     const int descriptor = open(path, O_WRONLY | O_CLOEXEC);
-    int code = descriptor < 0 ? errno : cut(descriptor, rows, n);
+    int code = descriptor < 0 ? errno : 0;
+
+    // first the number: a longer file is whole too
+    if (code == 0 && pwrite(descriptor, number, sizeof number, 4) != sizeof number) code = errno;
+    if (code == 0) code = durable_sync(descriptor);
+    if (code == 0 && ftruncate(descriptor, (off_t)(rows->begin_of_rows + n * rows->bytes)) != 0) code = errno;
+    if (code == 0) code = durable_sync(descriptor);
     if (descriptor >= 0 && close(descriptor) != 0 && code == 0) code = errno;
     if (code == 0) return STATUS_OK;
     return status_fail(STATUS_FILE, "%s: the last rows cannot be removed: %s", path, strerror(code));
@@ -501,12 +426,8 @@ enum status netcdf_cut_rows(const char *path, const struct netcdf_rows *rows, ui
 
 // ---- reading files that may be anybody's
 
-static enum status netcdf_out_of_memory(const char *path) {
-    return status_fail(STATUS_MEMORY, "%s: out of memory while reading", path);
-}
-
 static enum status cannot_read(const char *path, int code) {
-    if (code == NC_ENOMEM) return netcdf_out_of_memory(path);
+    if (code == NC_ENOMEM) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", path);
     return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, nc_strerror(code));
 }
 
@@ -515,17 +436,17 @@ static enum status cannot_read(const char *path, int code) {
 enum status netcdf_open(struct netcdf_reader *reader, const char *path) {
     *reader = (struct netcdf_reader){.path = path, .file = -1};
     struct stat facts;
+    struct netcdf_rows rows;
+    char local[PATH_MAX];
     if (stat(path, &facts) != 0) return cannot_read(path, errno);
     if (S_ISDIR(facts.st_mode)) return status_fail(STATUS_FILE, "%s is a folder: name a file that shoal wrote", path);
     if (!S_ISREG(facts.st_mode)) return status_fail(STATUS_FILE, "%s: cannot be read: not an ordinary file", path);
-    struct netcdf_rows rows;
     TRY(netcdf_read_rows(path, &rows));
     reader->n_rows = rows.n;
     reader->n_missing = rows.n_counted - rows.n;
-    char *const local = netcdf_has_memory() ? netcdf_local_path(path) : NULL;
-    if (!local) return netcdf_out_of_memory(path);
-    const int code = nc_open(local, NC_NOWRITE, &reader->file);
-    free(local);
+    if (!netcdf_has_memory()) return cannot_read(path, NC_ENOMEM);
+    int code = netcdf_local_path(path, local);
+    if (code == 0) code = nc_open(local, NC_NOWRITE, &reader->file);
 
     // NetCDF also returns NC_ENOMEM for a damaged header with huge sizes
     if (code == NC_ENOMEM)
@@ -533,31 +454,47 @@ enum status netcdf_open(struct netcdf_reader *reader, const char *path) {
     return code == NC_NOERR ? STATUS_OK : cannot_read(path, code);
 }
 
-void netcdf_close(struct netcdf_reader *reader) {
+static void netcdf_release(void *object) {
+    struct netcdf_reader *const reader = object;
     if (reader->file >= 0) nc_close(reader->file);
     reader->file = -1;
 }
 
-static void netcdf_release(void *reader) {
-    netcdf_close(reader);
+void netcdf_close(struct netcdf_reader *reader) {
+    netcdf_release(reader);
 }
 
 enum status netcdf_open_in(struct arena *arena, struct netcdf_reader *reader, const char *path) {
     TRY(netcdf_open(reader, path));
+    reader->arena = arena;
     arena_defer(arena, netcdf_release, reader);
     return STATUS_OK;
 }
 
-enum status netcdf_print(const char *path, enum status (*print)(const struct netcdf_reader *reader, FILE *stream),
-                         FILE *stream) {
-    struct netcdf_reader reader;
-    TRY(netcdf_open(&reader, path));
-    const enum status status = print(&reader, stream);
-    netcdf_close(&reader);
-    return status;
+enum status netcdf_print(struct arena *arena, const char *path,
+                         enum status (*print)(const struct netcdf_reader *reader, FILE *stream), FILE *stream) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct netcdf_reader *reader;
+    struct arena *const scratch = arena_create(arena, path);
+    NEW(scratch, reader, 1);
+    TRY(netcdf_open_in(scratch, reader, path));
+    TRY(print(reader, stream));
+    arena_free(scratch);
+    return STATUS_OK;
 }
 
 // ---- attributes and dimensions
+
+enum status netcdf_attribute(const struct netcdf_reader *reader, const char *name, char **string) {
+    nc_type type = NC_CHAR;
+    size_t length = 0;
+    const bool exists = nc_inq_att(reader->file, NC_GLOBAL, name, &type, &length) == NC_NOERR;
+    *string = NULL;
+    if (type != NC_CHAR) return status_fail(STATUS_FILE, "%s: attribute %s is no string", reader->path, name);
+    NEW(reader->arena, *string, (exists ? length : 0) + 1);
+    const int code = exists ? nc_get_att_text(reader->file, NC_GLOBAL, name, *string) : NC_NOERR;
+    return code == NC_NOERR ? STATUS_OK : cannot_read(reader->path, code);
+}
 
 enum status netcdf_read_string(const struct netcdf_reader *reader, const char *name, char **string) {
     nc_type type = NC_CHAR;
@@ -566,7 +503,7 @@ enum status netcdf_read_string(const struct netcdf_reader *reader, const char *n
     *string = NULL;
     if (type != NC_CHAR) return status_fail(STATUS_FILE, "%s: attribute %s is no string", reader->path, name);
     *string = calloc((exists ? length : 0) + 1, 1);
-    if (!*string) return netcdf_out_of_memory(reader->path);
+    if (!*string) return cannot_read(reader->path, NC_ENOMEM);
     const int code = exists ? nc_get_att_text(reader->file, NC_GLOBAL, name, *string) : NC_NOERR;
     if (code == NC_NOERR) return STATUS_OK;
     free(*string);
@@ -632,52 +569,36 @@ bool netcdf_read_shape(const struct netcdf_reader *reader, int i, struct netcdf_
     return true;
 }
 
-/* Whether a variable has exactly the dimensions of a slice, so long. */
-static bool has_slice(const struct netcdf_reader *reader, int n, const int *dimensions,
-                      const struct netcdf_slice *slice) {
-    for (int d = 0; d < n; d++, slice++) {
-        char name[NC_MAX_NAME + 1];
-        size_t length;
-        if (!slice->dimension || nc_inq_dimname(reader->file, dimensions[d], name) != NC_NOERR) return false;
-        if (read_length(reader, dimensions[d], &length) != NC_NOERR) return false;
-        if (strcmp(name, slice->dimension) != 0) return false;
-        if (slice->first > length || slice->n > length - slice->first) return false;
-    }
-
-    return !slice->dimension;
-}
-
-/* Fail with the expected form of a variable. */
-static enum status refuse_variable(const struct netcdf_reader *reader, const char *name, bool is_text,
-                                   const struct netcdf_slice *slice) {
-    char dimensions[256] = "";
-    for (size_t length = 0; slice->dimension; slice++) {
-        length += (size_t)snprintf(dimensions + length, sizeof dimensions - length, "%s%s[%zu:%zu]",
-                                   length > 0 ? ", " : "", slice->dimension, slice->first, slice->first + slice->n);
-        if (length >= sizeof dimensions) break;
-    }
-    return status_fail(STATUS_FILE, "%s: variable %s was not written by shoal: %s over (%s) %s expected", reader->path,
-                       name, is_text ? "text" : "numbers", dimensions, is_text ? "is" : "are");
-}
-
-/* The number of a variable of the expected form, with the slice as start and count for NetCDF. */
+/* The number of a variable that has exactly the dimensions of a slice, so long, with start and count for NetCDF. */
 static enum status netcdf_find_variable(const struct netcdf_reader *reader, const char *name, bool is_text,
                                         const struct netcdf_slice *slice, int *number, size_t *start, size_t *count) {
-    int n, dimensions[NC_MAX_VAR_DIMS];
+    int n, dimension[NC_MAX_VAR_DIMS];
     nc_type type;
     if (nc_inq_varid(reader->file, name, number) != NC_NOERR)
         return status_fail(STATUS_FILE, "%s: variable %s is missing", reader->path, name);
-    const int code = nc_inq_var(reader->file, *number, NULL, &type, &n, dimensions, NULL);
+    const int code = nc_inq_var(reader->file, *number, NULL, &type, &n, dimension, NULL);
     if (code != NC_NOERR) return cannot_read(reader->path, code);
-    if ((type == NC_CHAR) != is_text || n > NETCDF_MAX_DIMENSIONS || !has_slice(reader, n, dimensions, slice))
-        return refuse_variable(reader, name, is_text, slice);
 
-    for (int d = 0; d < n; d++) {
+    bool is_right = (type == NC_CHAR) == is_text && n <= NETCDF_MAX_DIMENSIONS;
+    for (int d = 0; d < n && is_right; d++) {
+        char found[NC_MAX_NAME + 1];
+        size_t length;
+        is_right = slice[d].dimension && nc_inq_dimname(reader->file, dimension[d], found) == NC_NOERR &&
+                   read_length(reader, dimension[d], &length) == NC_NOERR && strcmp(found, slice[d].dimension) == 0 &&
+                   slice[d].first <= length && slice[d].n <= length - slice[d].first;
         start[d] = slice[d].first;
         count[d] = slice[d].n;
     }
+    if (is_right && !slice[n].dimension) return STATUS_OK;
 
-    return STATUS_OK;
+    // the expected form
+    char dimensions[256] = "";
+    for (size_t length = 0; slice->dimension && length < sizeof dimensions; slice++) {
+        length += (size_t)snprintf(dimensions + length, sizeof dimensions - length, "%s%s[%zu:%zu]",
+                                   length > 0 ? ", " : "", slice->dimension, slice->first, slice->first + slice->n);
+    }
+    return status_fail(STATUS_FILE, "%s: variable %s was not written by shoal: %s over (%s) %s expected", reader->path,
+                       name, is_text ? "text" : "numbers", dimensions, is_text ? "is" : "are");
 }
 
 enum status netcdf_read_doubles(const struct netcdf_reader *reader, const char *name, const struct netcdf_slice *slice,

@@ -22,8 +22,8 @@ enum netcdf_type { NETCDF_TEXT, NETCDF_INT, NETCDF_INT64, NETCDF_FLOAT, NETCDF_D
 
 /* A file that is being written. Once a call has failed, later ones do nothing, and code tells why. */
 struct netcdf_writer {
-    const char *path;         /* as given by the caller */
-    struct durable_part part; /* part.target: the path for NetCDF; part.name: NULL after netcdf_publish */
+    const char *path;         /* of the file: in part.target */
+    struct durable_part part; /* part.target: the path for NetCDF; part.name: "" after netcdf_publish */
     int file;                 /* NetCDF's number; -1: none */
     double last_fsync;        /* s on the monotonic clock */
     int code;                 /* 0, or the reason of the first failure: see netcdf_reason */
@@ -104,6 +104,7 @@ const char *netcdf_reason(int code);
  * writes more values than requested, whatever the contents of the file */
 
 struct netcdf_reader {
+    struct arena *arena; /* of strings; NULL after netcdf_open */
     const char *path;
     int file;         /* NetCDF's number */
     size_t n_rows;    /* that are whole: the length of the dimension that grows */
@@ -124,11 +125,14 @@ void netcdf_close(struct netcdf_reader *reader);
 /* Open a file that the arena closes. The reader must be a part of the arena. */
 enum status netcdf_open_in(struct arena *arena, struct netcdf_reader *reader, const char *path);
 
-/* Open a file, print the contents, close the file. Fails as netcdf_open or print. */
-enum status netcdf_print(const char *path, enum status (*print)(const struct netcdf_reader *reader, FILE *stream),
-                         FILE *stream);
+/* Open a file, print the contents, close the file. arena: for scratch. A boundary, for the caller to close the
+ * stream. Fails as netcdf_open or print. */
+enum status netcdf_print(struct arena *arena, const char *path,
+                         enum status (*print)(const struct netcdf_reader *reader, FILE *stream), FILE *stream);
 
-/* An attribute of the file: a string, "" if missing, which the caller frees; or an integer. */
+/* An attribute of the file: a string in the arena of the reader, "" if missing; or an integer. netcdf_read_string: a
+ * string that the caller frees. */
+enum status netcdf_attribute(const struct netcdf_reader *reader, const char *name, char **string);
 enum status netcdf_read_string(const struct netcdf_reader *reader, const char *name, char **string);
 enum status netcdf_read_integer(const struct netcdf_reader *reader, const char *name, int missing, int *value);
 

@@ -1,11 +1,12 @@
 /* result_file.h: writing the file of a run. doc/output.md lists the variables. Tested by
- * tests/result/test_result_file.c. / */
+ * tests/result/test_result_file.c. */
 #ifndef RESULT_FILE_H
 #define RESULT_FILE_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case.h"
 #include "fish/fish.h"
@@ -55,42 +56,43 @@ struct result_checksum {
 enum status result_mark_take(const char *path, long n_rows, struct result_checksum *checksum, struct result_mark *mark);
 
 /* Fail with STATUS_FILE, and the reason, unless the file at path has the rows of a mark and the same case (effective).
- * *is_complete: the run has reached time.end. *checksum: of the mark. */
-enum status result_mark_check(const char *path, const struct result_mark *mark, const char *effective,
-                              struct result_checksum *checksum, int *is_complete);
+ * *is_complete: the run has reached time.end. *checksum: of the mark. arena: for scratch. */
+enum status result_mark_check(struct arena *arena, const char *path, const struct result_mark *mark,
+                              const char *effective, struct result_checksum *checksum, bool *is_complete);
 
-struct result_file; /* an open result file */
+// ---- an open result file, in an arena of its own
 
-/* Begin a file for path, with the constants of the school. The file appears at path with result_file_publish;
- * result_file_close removes an unpublished file. overwrite: replace an existing result, else fail. effective: the
- * complete case (case_show); command: the command line, for the attribute history; n_events: of the whole run, without
- * the one at the start. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
-enum status result_file_create(struct result_file **result, const char *path, int overwrite,
-                               const struct case_values *values, const char *effective, const char *command,
-                               const struct school *school, long n_events);
+struct result_file;
 
-/* Begin a file with the variables of a steady state, and write the steady state: NaN and 0 before. Otherwise as
- * result_file_create. */
-enum status result_file_create_steady(struct result_file **result, const char *path, int overwrite,
-                                      const struct case_values *values, const char *effective, const char *command,
-                                      const struct school *school, long n_events);
+/* The arguments of a new file. */
+struct result_origin {
+    const char *path;
+    bool overwrite; /* replace an existing result, else fail */
+    const struct case_values *values;
+    const char *effective; /* the complete case (case_show) */
+    const char *command;   /* command line, for the attribute history */
+    const struct school *school;
+    long n_events;                      /* of the whole run, without the one at the start */
+    bool is_steady;                     /* with the variables of a steady state */
+    const struct result_source *source; /* the first rows, of a shorter or longer run of the same case; NULL: none */
+};
+
+/* Begin a file, with the constants of the school and the rows of the source. The file appears at the path with
+ * result_file_publish, which replaces a source at the same path; result_file_close removes an unpublished file, as does
+ * the end of the arena. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
+enum status result_file_create(struct arena *arena, struct result_file **result, const struct result_origin *origin);
+
+/* Write the steady state into a file with these variables: NaN and 0 before. */
 void result_file_steady(struct result_file *result, const struct school *school, const struct steady_values *steady);
-
-/* The same with the rows of a file that a shorter or longer run of the same case left at the same path, which
- * result_file_publish replaces. */
-enum status result_file_extend(struct result_file **result, const struct result_source *source,
-                               const struct case_values *values, const char *effective, const char *command,
-                               const struct school *school, long n_events);
 
 /* Flush all rows to disk, set the attribute run_status, and rename the file to the path. Fails with
  * STATUS_FILE or STATUS_MEMORY; a file that existed at the path is then unchanged. */
 enum status result_file_publish(struct result_file *result, const char *run_status);
 
-/* Continue a file of result_file_create for this case, behind the rows of a mark with this checksum; later rows are
+/* Continue the file of origin->path, made for this case, behind the rows of a mark with this checksum; later rows are
  * removed. run_status is "running" again. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
-enum status result_file_continue(struct result_file **result, const char *path, const struct result_mark *mark,
-                                 const struct result_checksum *checksum, const struct case_values *values,
-                                 const struct school *school, long n_events);
+enum status result_file_continue(struct arena *arena, struct result_file **result, const struct result_origin *origin,
+                                 const struct result_mark *mark, const struct result_checksum *checksum);
 
 /* Flush all rows to disk, and mark the rows. Fails with STATUS_FILE. */
 enum status result_file_mark(struct result_file *result, struct result_mark *mark);
@@ -98,10 +100,10 @@ enum status result_file_mark(struct result_file *result, struct result_mark *mar
 /* Append one row, visible to readers at once; a power cut loses the rows of the last second. Fails with STATUS_FILE. */
 enum status result_file_row(struct result_file *result, const struct result_row *row);
 
-/* Set an attribute with reserved space, before closing: warnings (a line each), closest_approach ("1.2 m between a and
- * b at t = 3 s") or checkpoint_at ("0.3,1.25": times of additional checkpoints, s). The initial attributes are empty. A
- * longer string is cut. */
-enum result_note { RESULT_WARNINGS, RESULT_CLOSEST_APPROACH, RESULT_MERGED, RESULT_CHECKPOINT_AT };
+/* Set an attribute with reserved space, before closing: run_status, warnings (a line each), closest_approach ("1.2 m
+ * between a and b at t = 3 s") or checkpoint_at ("0.3,1.25": times of additional checkpoints, s). At first run_status
+ * is "running", the others are empty. A longer string is cut. */
+enum result_note { RESULT_STATUS, RESULT_WARNINGS, RESULT_CLOSEST_APPROACH, RESULT_MERGED, RESULT_CHECKPOINT_AT };
 void result_file_note(struct result_file *result, enum result_note note, const char *text);
 
 /* Release the file in a fork of the process that writes it: netcdf_abandon. */

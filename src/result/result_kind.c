@@ -1,12 +1,12 @@
 /* result_kind.c: common summary of all files of shoal. */
 #include "result/result_kind.h"
 
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "base/text.h"
 #include "result/netcdf.h"
+#include "result/result_info.h"
 
 // ---- the summary
 
@@ -29,52 +29,37 @@ static enum status find_kind(const struct netcdf_reader *reader, int n_kinds, co
                        kinds[0].schema_name);
 }
 
-static enum status print_attribute(const struct netcdf_reader *reader, const char *format, const char *name,
-                                   FILE *stream) {
+enum status result_kind_info(struct arena *arena, int n_kinds, const struct result_kind *kinds, const char *path,
+                             enum result_info_form form, FILE *stream) {
+    static const char *const lines[][2] = {
+        {"  case        %s\n", "title"}, {"  program     %s\n", "source"}, {"  history     %s\n", "history"}};
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct arena *const scratch = arena_create(arena, path);
+    struct netcdf_reader *reader;
+    const struct result_kind *kind = NULL;
     char *text;
-    TRY(netcdf_read_string(reader, name, &text));
-    fprintf(stream, format, text);
-    free(text);
-    return STATUS_OK;
-}
+    NEW(scratch, reader, 1);
+    TRY(netcdf_open_in(scratch, reader, path));
+    TRY(find_kind(reader, n_kinds, kinds, &kind));
 
-static void print_size(const char *path, FILE *stream) {
-    struct stat facts;
-    if (stat(path, &facts) != 0) return;
-    const double bytes = (double)facts.st_size;
-    fprintf(stream, "  size        %.1f %s\n", bytes < 1e6 ? bytes / 1e3 : bytes / 1e6, bytes < 1e6 ? "kB" : "MB");
-}
-
-static enum status kind_print_head(const struct netcdf_reader *reader, FILE *stream) {
-    fprintf(stream, "%s\n", reader->path);
-    TRY(print_attribute(reader, "  case        %s\n", "title", stream));
-    TRY(print_attribute(reader, "  program     %s\n", "source", stream));
-    TRY(print_attribute(reader, "  history     %s\n", "history", stream));
-    print_size(reader->path, stream);
-    return STATUS_OK;
-}
-
-enum status result_kind_info(int n_kinds, const struct result_kind *kinds, const char *path, int case_only,
-                             FILE *stream) {
-    struct netcdf_reader reader;
-    const struct result_kind *kind = NULL;
-    TRY(netcdf_open(&reader, path));
-    enum status status = find_kind(&reader, n_kinds, kinds, &kind);
-    if (status == STATUS_OK) {
-        status = case_only ? print_attribute(&reader, "%s", kind->case_name, stream) : kind_print_head(&reader, stream);
+    if (form == RESULT_INFO_JSON) {
+        TRY(result_json_summary(reader, kind->name, stream));
+    } else if (form == RESULT_INFO_CASE) {
+        TRY(netcdf_attribute(reader, kind->case_name, &text));
+        fputs(text, stream);
+    } else {
+        fprintf(stream, "%s\n", path);
+        for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+            TRY(netcdf_attribute(reader, lines[i][1], &text));
+            fprintf(stream, lines[i][0], text);
+        }
+        struct stat facts;
+        const double bytes = stat(path, &facts) == 0 ? (double)facts.st_size : 0;
+        fprintf(stream, "  size        %.1f %s\n", bytes < 1e6 ? bytes / 1e3 : bytes / 1e6, bytes < 1e6 ? "kB" : "MB");
     }
-    netcdf_close(&reader);
-    return status == STATUS_OK && !case_only ? kind->info(path, stream) : status;
-}
 
-enum status result_kind_name(int n_kinds, const struct result_kind *kinds, const char *path, const char **name) {
-    struct netcdf_reader reader;
-    const struct result_kind *kind = NULL;
-    TRY(netcdf_open(&reader, path));
-    const enum status status = find_kind(&reader, n_kinds, kinds, &kind);
-    if (status == STATUS_OK) *name = kind->name;
-    netcdf_close(&reader);
-    return status;
+    arena_free(scratch);
+    return form == RESULT_INFO_TEXT ? kind->info(arena, path, stream) : STATUS_OK;
 }
 
 // ---- the list of variables

@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 
 /* A row of the list of variables. */
@@ -15,25 +16,23 @@ struct result_listed {
 };
 
 struct result_kind {
-    const char *name; /* the subject of the file: "run" */
-    const char
-        *schema_name;      /* the attribute that says that a file is of this kind; NULL: a list in words, of no file */
-    int schema;            /* the schema that this program reads */
-    const char *case_name; /* the attribute that holds the case */
+    const char *name;        /* the subject of the file: "run" */
+    const char *schema_name; /* the attribute of a file of this kind; NULL: a list in words, of no file */
+    int schema;              /* the schema that this program reads */
+    const char *case_name;   /* the attribute that holds the case */
 
-    /* Print the summary of this kind, after the common part. Fails with STATUS_FILE or STATUS_MEMORY. */
-    enum status (*info)(const char *path, FILE *stream);
+    /* Print the summary of this kind, after the common part. arena: for scratch. Fails with STATUS_FILE. */
+    enum status (*info)(struct arena *arena, const char *path, FILE *stream);
 
     /* Row i, from 0, of the list of variables; 0 beyond the last. */
     int (*listed)(int i, struct result_listed *listed);
 };
 
-/* Print a summary of a file, or only the case in the file. Fails with STATUS_FILE or STATUS_MEMORY. */
-enum status result_kind_info(int n_kinds, const struct result_kind *kinds, const char *path, int case_only,
-                             FILE *stream);
-
-/* The name of the kind of a file; the string belongs to the table. Fails as result_kind_info. */
-enum status result_kind_name(int n_kinds, const struct result_kind *kinds, const char *path, const char **name);
+/* Print a summary of a file as text, only the case in the file, or a summary as JSON (result_json_summary). arena: for
+ * scratch. A boundary, for the caller to close the stream. Fails with STATUS_FILE. */
+enum result_info_form { RESULT_INFO_TEXT, RESULT_INFO_CASE, RESULT_INFO_JSON };
+enum status result_kind_info(struct arena *arena, int n_kinds, const struct result_kind *kinds, const char *path,
+                             enum result_info_form form, FILE *stream);
 
 /* Print the variables of all kinds: name, dimensions, unit, meaning; as aligned text, or as JSON; and the lists in
  * words. With a word, print only rows whose name or meaning contains the word (NULL: all). Returns the number of rows.

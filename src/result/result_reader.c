@@ -2,10 +2,7 @@
 #include "result/result_reader.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-#include "base/memory.h"
 
 enum { MAX_LENGTH = 100000000 /* of a dimension */ };
 
@@ -68,13 +65,6 @@ static enum status read_counts(struct arena *arena, const struct result_reader *
     return STATUS_OK;
 }
 
-/* Read the walls; most files have none. */
-static enum status read_walls(struct result_reader *reader) {
-    if (!netcdf_has(&reader->file, "wall_y")) return STATUS_OK;
-    TRY(netcdf_read_length(&reader->file, result_table_dimension(WALL), 1, 2, &reader->length[WALL]));
-    return result_reader_row(reader, "wall_y", 0, reader->wall_y);
-}
-
 enum status result_reader_open(struct arena *arena, struct result_reader **opened, const char *path) {
     struct result_reader *reader;
     NEW(arena, reader, 1);
@@ -82,11 +72,14 @@ enum status result_reader_open(struct arena *arena, struct result_reader **opene
     TRY(netcdf_open_in(arena, &reader->file, path));
     TRY(check_kind(reader));
     TRY(read_lengths(reader));
-    TRY(read_walls(reader));
-    TRY(netcdf_read_string(&reader->file, "title", &reader->title));
-    arena_defer(arena, free, reader->title);
-    TRY(netcdf_read_string(&reader->file, "run_status", &reader->run_status));
-    arena_defer(arena, free, reader->run_status);
+    TRY(netcdf_attribute(&reader->file, "title", &reader->title));
+    TRY(netcdf_attribute(&reader->file, "run_status", &reader->run_status));
+
+    // most files have no walls
+    if (netcdf_has(&reader->file, "wall_y")) {
+        TRY(netcdf_read_length(&reader->file, result_table_dimension(WALL), 1, 2, &reader->length[WALL]));
+        TRY(result_reader_row(reader, "wall_y", 0, reader->wall_y));
+    }
 
     // name, fish.body.section and fish.force of each fish
     const size_t n_fish = reader->length[FISH];
@@ -98,7 +91,6 @@ enum status result_reader_open(struct arena *arena, struct result_reader **opene
     TRY(result_reader_row(reader, "fluid_force", 0, force));
     for (size_t f = 0; f < n_fish; f++) {
         TRY(result_reader_name(&reader->file, f, &reader->name[f]));
-        arena_defer(arena, free, reader->name[f]);
         reader->has_mean_section[f] = fabs(section[f] - 1) < 0.5;
         reader->has_pressure |= fabs(force[f] - FORCE_PRESSURE) < 0.5;
     }
@@ -113,15 +105,9 @@ enum status result_reader_open(struct arena *arena, struct result_reader **opene
 
 enum status result_reader_name(const struct netcdf_reader *file, size_t f, char **name) {
     size_t n;
-    *name = NULL;
     TRY(netcdf_read_length(file, "name", 1, MAX_LENGTH, &n));
-    TRY(MEMORY_NEW(*name, n + 1, file->path));
-    const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, n}, {NULL}};
-    const enum status status = netcdf_read_text(file, "fish_name", slice, *name);
-    if (status == STATUS_OK) return STATUS_OK;
-    free(*name);
-    *name = NULL;
-    return status;
+    NEW(file->arena, *name, n + 1);
+    return netcdf_read_text(file, "fish_name", (struct netcdf_slice[]){{"fish", f, 1}, {"name", 0, n}, {NULL}}, *name);
 }
 
 size_t result_reader_n(const struct result_reader *reader, const char *name) {

@@ -32,7 +32,7 @@ enum status result_reader_row(const struct result_reader *reader, const char *na
 enum status result_reader_new(struct arena *arena, const struct result_reader *reader, const char *name, size_t row,
                               double **values);
 
-/* The name of fish f in the file of a run, with or without rows; the caller frees the name. */
+/* The name of fish f in the file of a run, with or without rows, in the arena of the file. */
 enum status result_reader_name(const struct netcdf_reader *file, size_t f, char **name);
 
 /* Whether the wake was written in a row, or there was none to write: *has_wake. */

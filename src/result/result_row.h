@@ -58,36 +58,43 @@ struct result_row {
     bool with_wake;                     /* else the variables of the wake hold NaN */
 };
 
-/* Each function writes a variable of fish f to the slots of f, in the order of the file. Unused slots are unchanged, as
- * are all slots of the wake in a row without wake. Units and meanings: result/result_table.c. */
-void result_row_position(const struct result_row *row, int f, double *slots);
-void result_row_velocity(const struct result_row *row, int f, double *slots);
-void result_row_acceleration(const struct result_row *row, int f, double *slots);
-void result_row_curvature(const struct result_row *row, int f, double *slots);
-void result_row_natural_curvature(const struct result_row *row, int f, double *slots);
-void result_row_sheet_position(const struct result_row *row, int f, double *slots);
-void result_row_sheet_strength(const struct result_row *row, int f, double *slots);
-void result_row_sheet_arc(const struct result_row *row, int f, double *slots);
-void result_row_wake_position(const struct result_row *row, int f, double *slots);
-void result_row_wake_circulation(const struct result_row *row, int f, double *slots);
-void result_row_wake_birth(const struct result_row *row, int f, double *slots);
-void result_row_control_arc(const struct result_row *row, int f, double *slots);
-void result_row_pressure(const struct result_row *row, int f, double *slots);
-void result_row_sensor_left(const struct result_row *row, int f, double *slots);
-void result_row_sensor_right(const struct result_row *row, int f, double *slots);
-void result_row_left_friction(const struct result_row *row, int f, double *slots);
-void result_row_right_friction(const struct result_row *row, int f, double *slots);
-void result_row_left_separation(const struct result_row *row, int f, double *slots);
-void result_row_right_separation(const struct result_row *row, int f, double *slots);
-void result_row_friction_ratio(const struct result_row *row, int f, double *slots);
-void result_row_edge_resistive_force(const struct result_row *row, int f, double *slots);
-void result_row_edge_reactive_force(const struct result_row *row, int f, double *slots);
-void result_row_edge_pressure_force(const struct result_row *row, int f, double *slots);
+/* Variables that are computed from several fields. */
+enum result_part {
+    PART_POSITION,
+    PART_VELOCITY,
+    PART_ACCELERATION,
+    PART_CURVATURE,
+    PART_NATURAL_CURVATURE,
+    PART_SHEET_POSITION,
+    PART_SHEET_STRENGTH,
+    PART_SHEET_ARC,
+    PART_CONTROL_ARC,
+    PART_PRESSURE,
+    PART_SENSOR_LEFT,
+    PART_SENSOR_RIGHT,
+    PART_WAKE_POSITION,
+    PART_WAKE_CIRCULATION,
+    PART_WAKE_BIRTH,
+    PART_LEFT_FRICTION,
+    PART_RIGHT_FRICTION,
+    PART_LEFT_SEPARATION,
+    PART_RIGHT_SEPARATION,
+    PART_FRICTION_RATIO,
+    PART_EDGE_RESISTIVE_FORCE,
+    PART_EDGE_REACTIVE_FORCE,
+    PART_EDGE_PRESSURE_FORCE,
+    PART_MULTIPLIER,
+    PART_EXPONENT
+};
 
-/* The Floquet multipliers of the school, for a row of a steady state; f is ignored. */
-void result_row_multiplier(const struct result_row *row, int f, double *slots);
-
-/* The exponents of disturbances likewise. */
-void result_row_exponent(const struct result_row *row, int f, double *slots);
+/* Write a part of fish f to the slots of f, in the order of the file. Unused slots are unchanged, as are all slots of
+ * the wake in a row without wake. Units and meanings: result/result_table.c. The functions compute the parts of the
+ * body, of the bound sheet, of the wake, of friction by side, of forces on the edges, and of a steady state. */
+void result_row_body(const struct result_row *row, int f, enum result_part part, double *slots);
+void result_row_sheet(const struct result_row *row, int f, enum result_part part, double *slots);
+void result_row_wake(const struct result_row *row, int f, enum result_part part, double *slots);
+void result_row_sides(const struct result_row *row, int f, enum result_part part, double *slots);
+void result_row_edges(const struct result_row *row, int f, enum result_part part, double *slots);
+void result_row_steady(const struct result_row *row, int f, enum result_part part, double *slots);
 
 #endif

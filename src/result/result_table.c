@@ -16,7 +16,12 @@
 #define IN_ROW(field) .owner = OF_ROW, .offset = offsetof(struct result_row, field)
 #define IN_STEADY(field) .of_steady = true, .owner = OF_STEADY, .offset = offsetof(struct steady_values, field)
 #define IN_STEADY_FISH(field) .of_steady = true, .owner = OF_STEADY_FISH, .offset = offsetof(struct steady_fish, field)
-#define GATHERED(function) .gather = function
+#define OF_BODY(name) .gather = result_row_body, .part = PART_##name
+#define OF_SHEET(name) .gather = result_row_sheet, .part = PART_##name
+#define OF_WAKES(name) .gather = result_row_wake, .part = PART_##name
+#define OF_SIDES(name) .gather = result_row_sides, .part = PART_##name
+#define OF_EDGES(name) .gather = result_row_edges, .part = PART_##name
+#define OF_STEADY_STATE(name) .gather = result_row_steady, .part = PART_##name
 
 // clang-format off
 const struct result_variable result_table[] = {
@@ -63,9 +68,9 @@ const struct result_variable result_table[] = {
      .long_name = "force: 0 reactive, 1 published, 2 pressure"},
     {"is_held",               {FISH},                 RESULT_INTEGER, "1",      IN_FISH(motion.is_held),
      .long_name = "1: motion along the heading is prescribed (motion.surge: given); 0: the body swims"},
-    {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",      GATHERED(result_row_sheet_arc),
+    {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",      OF_SHEET(SHEET_ARC),
      .long_name = "arc coordinate of the bound vortices, from the nose"},
-    {"control_arc",           {FISH, CONTROL},        RESULT_REAL,    "m",      GATHERED(result_row_control_arc),
+    {"control_arc",           {FISH, CONTROL},        RESULT_REAL,    "m",      OF_SHEET(CONTROL_ARC),
      .long_name = "arc coordinate of the control points, from the nose"},
     {"sensor_place",          {FISH, SENSOR},         RESULT_REAL,    "1",      ARRAY_IN_FISH(sensor),
      .long_name = "place of the sensors: distance from the nose over the length; in the files of cases with sensors"},
@@ -96,14 +101,14 @@ const struct result_variable result_table[] = {
     {"steady_error",          {NONE},                 RESULT_REAL,    "1",      IN_STEADY(error),
      .long_name = "estimated distance from the steady state, in lengths per beat"},
     {"steady_multiplier",     {MULTIPLIER, XY},       RESULT_REAL,    "1",
-     .of_steady = true, .owner = OF_STEADY, GATHERED(result_row_multiplier),
+     .of_steady = true, .owner = OF_STEADY, OF_STEADY_STATE(MULTIPLIER),
      .long_name = "Floquet multipliers of the slow quantities, real and imaginary parts"},
     {"steady_growth",         {NONE},                 RESULT_REAL,    "s-1",    IN_STEADY(growth),
      .long_name = "growth rate of the least stable disturbance; unstable above 0"},
     {"steady_growth_frequency", {NONE},               RESULT_REAL,    "Hz",     IN_STEADY(growth_frequency),
      .long_name = "frequency of the oscillation, with a beat in addition to the beat frequency; 0: none"},
     {"steady_exponent",       {MULTIPLIER, XY},       RESULT_REAL,    "s-1",
-     .of_steady = true, .owner = OF_STEADY, GATHERED(result_row_exponent),
+     .of_steady = true, .owner = OF_STEADY, OF_STEADY_STATE(EXPONENT),
      .long_name = "growth rates and angular frequencies of disturbances: logarithms of multipliers over the beat, "
                   "or modes without a beat"},
     {"steady_speed",          {FISH},                 RESULT_REAL,    "m s-1",  IN_STEADY_FISH(speed),
@@ -142,27 +147,27 @@ const struct result_variable result_table[] = {
     // the bodies and the fluid
     {"time",                  {TIME},                 RESULT_REAL,    "s",      IN_STATE(t),
      .long_name = "time"},
-    {"x",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m",      GATHERED(result_row_position),
+    {"x",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m",      OF_BODY(POSITION),
      .long_name = "position of the nodes, nose first"},
-    {"v",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-1",  GATHERED(result_row_velocity),
+    {"v",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-1",  OF_BODY(VELOCITY),
      .long_name = "velocity of the nodes"},
-    {"a",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-2",  GATHERED(result_row_acceleration),
+    {"a",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-2",  OF_BODY(ACCELERATION),
      .long_name = "acceleration of the nodes"},
-    {"natural_curvature",     {TIME, FISH, JOINT},    RESULT_BULK,    "1",      GATHERED(result_row_natural_curvature),
+    {"natural_curvature",     {TIME, FISH, JOINT},    RESULT_BULK,    "1",      OF_BODY(NATURAL_CURVATURE),
      .long_name = "natural curvature of the joints, 2 tan(angle/2)"},
-    {"curvature",             {TIME, FISH, JOINT},    RESULT_BULK,    "1",      GATHERED(result_row_curvature),
+    {"curvature",             {TIME, FISH, JOINT},    RESULT_BULK,    "1",      OF_BODY(CURVATURE),
      .long_name = "curvature of the joints, 2 tan(angle/2)"},
-    {"sheet_x",               {TIME, FISH, SHEET, XY},RESULT_BULK,    "m",      GATHERED(result_row_sheet_position),
+    {"sheet_x",               {TIME, FISH, SHEET, XY},RESULT_BULK,    "m",      OF_SHEET(SHEET_POSITION),
      .long_name = "position of the bound vortices"},
-    {"sheet_strength",        {TIME, FISH, SHEET},    RESULT_BULK,    "m s-1",  GATHERED(result_row_sheet_strength),
+    {"sheet_strength",        {TIME, FISH, SHEET},    RESULT_BULK,    "m s-1",  OF_SHEET(SHEET_STRENGTH),
      .long_name = "strength of the bound vortices: circulation per length of body"},
     {"wake_count",            {TIME, FISH},           RESULT_INTEGER, "1",      IN_WAKE(n_vortex),
      .long_name = "number of free vortices"},
-    {"wake_x",                {TIME, FISH, VORTEX, XY},RESULT_BULK,    "m",      GATHERED(result_row_wake_position),
+    {"wake_x",                {TIME, FISH, VORTEX, XY},RESULT_BULK,    "m",      OF_WAKES(WAKE_POSITION),
      .long_name = "position of the free vortices, oldest first"},
-    {"wake_circulation",      {TIME, FISH, VORTEX},   RESULT_BULK,    "m2 s-1", GATHERED(result_row_wake_circulation),
+    {"wake_circulation",      {TIME, FISH, VORTEX},   RESULT_BULK,    "m2 s-1", OF_WAKES(WAKE_CIRCULATION),
      .long_name = "circulation of the free vortices, without decay"},
-    {"wake_birth",            {TIME, FISH, VORTEX},   RESULT_BULK,    "s",      GATHERED(result_row_wake_birth),
+    {"wake_birth",            {TIME, FISH, VORTEX},   RESULT_BULK,    "s",      OF_WAKES(WAKE_BIRTH),
      .long_name = "time of release of the free vortices"},
 
     // derived quantities of each fish
@@ -313,38 +318,38 @@ const struct result_variable result_table[] = {
      .long_name = "angular impulse about the origin, like external_impulse"},
 
     {"edge_resistive_force",  {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
-     GATHERED(result_row_edge_resistive_force), .forces = OUTPUT_FORCES_EDGES,
+     OF_EDGES(EDGE_RESISTIVE_FORCE), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "drag on every edge; with output.forces: edges only"},
     {"edge_reactive_force",   {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
-     GATHERED(result_row_edge_reactive_force), .forces = OUTPUT_FORCES_EDGES,
+     OF_EDGES(EDGE_REACTIVE_FORCE), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "reactive force on every edge, the last with the tail flux; with output.forces: edges only"},
 
     {"edge_pressure_force",   {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
-     GATHERED(result_row_edge_pressure_force), .forces = OUTPUT_FORCES_EDGES,
+     OF_EDGES(EDGE_PRESSURE_FORCE), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "force of the pressure on every edge; with output.forces: edges only"},
-    {"pressure",              {TIME, FISH, CONTROL},  RESULT_BULK,    "Pa",     GATHERED(result_row_pressure),
+    {"pressure",              {TIME, FISH, CONTROL},  RESULT_BULK,    "Pa",     OF_SHEET(PRESSURE),
      .long_name = "pressure jump at control points, right side of the body less left side; NaN unless force: pressure"},
     {"sensor_pressure_left",  {TIME, FISH, SENSOR},   RESULT_REAL,    "Pa",
-     GATHERED(result_row_sensor_left),
+     OF_SHEET(SENSOR_LEFT),
      .long_name = "pressure on the left side of the body at the sensors, less the pressure of the undisturbed stream"},
     {"sensor_pressure_right", {TIME, FISH, SENSOR},   RESULT_REAL,    "Pa",
-     GATHERED(result_row_sensor_right),
+     OF_SHEET(SENSOR_RIGHT),
      .long_name = "pressure on the right side of the body at the sensors, less the pressure of the undisturbed stream"},
     {"left_friction",         {TIME, FISH, XY},       RESULT_REAL,    "N",
-     GATHERED(result_row_left_friction), .forces = OUTPUT_FORCES_SIDES,
+     OF_SIDES(LEFT_FRICTION), .forces = OUTPUT_FORCES_SIDES,
      .long_name = "laminar friction on the left side by Thwaites' method; with output.forces: sides only"},
     {"right_friction",        {TIME, FISH, XY},       RESULT_REAL,    "N",
-     GATHERED(result_row_right_friction), .forces = OUTPUT_FORCES_SIDES,
+     OF_SIDES(RIGHT_FRICTION), .forces = OUTPUT_FORCES_SIDES,
      .long_name = "laminar friction on the right side; with output.forces: sides only"},
     {"left_separation",       {TIME, FISH},           RESULT_REAL,    "1",
-     GATHERED(result_row_left_separation), .forces = OUTPUT_FORCES_SIDES,
+     OF_SIDES(LEFT_SEPARATION), .forces = OUTPUT_FORCES_SIDES,
      .long_name = "separation of the laminar boundary layer on the left: distance from the nose over the length; NaN: "
                   "none; with output.forces: sides only"},
     {"right_separation",      {TIME, FISH},           RESULT_REAL,    "1",
-     GATHERED(result_row_right_separation), .forces = OUTPUT_FORCES_SIDES,
+     OF_SIDES(RIGHT_SEPARATION), .forces = OUTPUT_FORCES_SIDES,
      .long_name = "the same on the right; with output.forces: sides only"},
     {"friction_ratio",        {TIME, FISH},           RESULT_REAL,    "1",
-     GATHERED(result_row_friction_ratio), .forces = OUTPUT_FORCES_SIDES,
+     OF_SIDES(FRICTION_RATIO), .forces = OUTPUT_FORCES_SIDES,
      .long_name = "friction of both sides along the body over that of the law that acts; with output.forces: sides "
                   "only"},
     {"leading_edge_a0",       {TIME, FISH},           RESULT_REAL,    "1",
@@ -437,16 +442,11 @@ const void *result_table_owner(const struct result_row *row, enum result_owner o
 
 // ---- the list of variables
 
-static const char *type_name(enum result_type type) {
-    static const char *const name[] = {"double", "double or float", "int", "int64", "char"};
-    return name[type];
-}
-
 int result_table_listed(int i, struct result_listed *listed) {
+    static const char *const types[] = {"double", "double or float", "int", "int64", "char"};
     if (i >= result_table_n) return 0;
     const struct result_variable *const variable = &result_table[i];
-    *listed =
-        (struct result_listed){variable->name, variable->unit, type_name(variable->type), variable->long_name, ""};
+    *listed = (struct result_listed){variable->name, variable->unit, types[variable->type], variable->long_name, ""};
     size_t length = 0;
 
     for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) {

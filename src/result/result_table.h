@@ -67,11 +67,12 @@ struct result_variable {
     const char *long_name;
 
     /* The source of the value of a school or of fish f: at offset in the owner (is_pointer: the address of an array is
-     * at offset), or gather writes the value to the slots of fish f, initially NaN. */
+     * at offset), or gather writes a part to the slots of fish f, initially NaN. */
     enum result_owner owner;
     size_t offset;
     bool is_pointer;
-    void (*gather)(const struct result_row *row, int f, double *slots);
+    void (*gather)(const struct result_row *row, int f, enum result_part part, double *slots);
+    enum result_part part;
 
     enum output_forces forces; /* in the file if the case has these output.forces; 0: always */
     bool of_steady;            /* in the file of a steady state only */

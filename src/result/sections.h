@@ -13,6 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 
 /* The first eight bytes. */
@@ -20,23 +21,20 @@
 
 enum { SECTIONS_FORMAT = 1, SECTIONS_NAME = 24 /* bytes of a name, the zero included */ };
 
-/* ---- writing: once an allocation has failed, nothing more is added and failed stays true */
+/* ---- writing: start, sections of open, add..., close, then finish */
 
 struct sections_writer {
-    unsigned char *bytes; /* owned */
+    struct arena *arena;
+    unsigned char *bytes;
     size_t n, capacity;
     size_t begin; /* of the open section */
-    bool failed;
 };
 
-void sections_start(struct sections_writer *writer); /* with a zeroed or an unset writer */
+void sections_start(struct arena *arena, struct sections_writer *writer);
 void sections_open(struct sections_writer *writer, const char *name);
 void sections_add(struct sections_writer *writer, const void *bytes, size_t n);
 void sections_close(struct sections_writer *writer);
-
-/* Complete the bytes, or fail with STATUS_MEMORY. */
-enum status sections_finish(struct sections_writer *writer);
-void sections_free(struct sections_writer *writer);
+void sections_finish(struct sections_writer *writer);
 
 /* ---- reading */
 

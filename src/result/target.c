@@ -1,4 +1,5 @@
 /* target.c: marks of the files of shoal, and checks before replacing a file. */
+#define _GNU_SOURCE  // memmem
 #include "result/target.h"
 
 #include <errno.h>
@@ -37,27 +38,11 @@ void target_folder(const char *path, char folder[PATH_MAX]) {
 
 // ---- files of shoal
 
-static bool has_mark(const char *head, size_t n, const char *mark) {
-    const size_t length = strlen(mark);
-    for (size_t i = 0; i + length <= n; i++) {
-        if (memcmp(head + i, mark, length) == 0) return true;
-    }
-    return false;
-}
-
-static bool is_kind(const char *head, size_t n, enum target_kind kind) {
-    const char *const begin = kinds[kind].begin;
-    if (n < strlen(begin) || memcmp(head, begin, strlen(begin)) != 0) return false;
-    for (int m = 0; m < MAX_MARKS && kinds[kind].mark[m]; m++) {
-        if (has_mark(head, n, kinds[kind].mark[m])) return true;
-    }
-    return false;
-}
-
 /* Whether the file at path is a regular file of a kind; errno or 0. */
 static int target_examine(const char *path, enum target_kind kind, bool *is_ours) {
     struct stat facts;
     char head[HEAD];
+    const char *const begin = kinds[kind].begin;
     *is_ours = false;
     const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return errno;
@@ -66,7 +51,14 @@ static int target_examine(const char *path, enum target_kind kind, bool *is_ours
     if (code == 0 && S_ISREG(facts.st_mode)) {
         const ssize_t n = pread(file, head, HEAD, 0);
         if (n < 0) code = errno;
-        *is_ours = n > 0 && is_kind(head, (size_t)n, kind);
+
+        // the first bytes, and one of the marks
+        if (n >= (ssize_t)strlen(begin) && memcmp(head, begin, strlen(begin)) == 0) {
+            for (int m = 0; m < MAX_MARKS && kinds[kind].mark[m]; m++) {
+                const char *const mark = kinds[kind].mark[m];
+                if (memmem(head, (size_t)n, mark, strlen(mark))) *is_ours = true;
+            }
+        }
     }
 
     close(file);

@@ -4,75 +4,41 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "base/text.h"
 #include "case/case.h"
 #include "school/warnings.h"
 
-enum status record_path(const struct case_values *values, char **path) {
-    const char *const name = values->output.file ? values->output.file : values->name;
-    const char *const ending = values->output.file ? "" : ".nc";
-    struct text text = {0};
-    text_add(&text, "%s%s", name, ending);
-    return text_take(&text, path, "a file name");
+char *record_path(struct arena *arena, const struct case_values *values) {
+    const char *const file = values->output.file;
+    return arena_text(arena, "%s%s", file ? file : values->name, file ? "" : ".nc");
 }
 
-static void record_begin(struct record *record, const struct case_values *values, long n_events, const char *path) {
-    *record = (struct record){.path = path, .n_events = n_events};
+static void record_begin(struct record *record, const struct result_origin *origin) {
+    const struct case_values *const values = origin->values;
+    *record = (struct record){.path = origin->path, .n_events = origin->n_events};
     record->events_per_row = lround(values->time.output_interval / values->school.shedding_interval);
     record->events_per_wake = lround(values->output.wake_interval / values->school.shedding_interval);
 }
 
-// result_file_create or result_file_create_steady
-typedef enum status maker(struct result_file **result, const char *path, int overwrite,
-                          const struct case_values *values, const char *effective, const char *command,
-                          const struct school *school, long n_events);
-
-static enum status record_make(maker *make, struct record *record, const struct case_values *values,
-                               const struct school *school, long n_events, const char *path, int overwrite,
-                               const char *command) {
-    record_begin(record, values, n_events, path);
+enum status record_create(struct arena *arena, struct record *record, const struct result_origin *origin) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct result_origin whole = *origin;
     char *effective = NULL;
-    TRY(case_show(values, &effective));
-    const enum status status = make(&record->file, path, overwrite, values, effective, command, school, n_events);
-    free(effective);
-    return status;
+    record_begin(record, origin);
+    TRY(case_show(origin->values, &effective));
+    arena_defer(arena, free, effective);
+    whole.effective = effective;
+    return result_file_create(arena, &record->file, &whole);
 }
 
-enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
-                          long n_events, const char *path, int overwrite, const char *command) {
-    return record_make(result_file_create, record, values, school, n_events, path, overwrite, command);
+enum status record_continue(struct arena *arena, struct record *record, const struct result_origin *origin,
+                            const struct result_mark *mark, const struct result_checksum *checksum) {
+    record_begin(record, origin);
+    return result_file_continue(arena, &record->file, origin, mark, checksum);
 }
 
-enum status record_create_steady(struct record *record, const struct case_values *values, const struct school *school,
-                                 long n_events, const char *path, int overwrite, const char *command) {
-    return record_make(result_file_create_steady, record, values, school, n_events, path, overwrite, command);
-}
-
-enum status record_continue(struct record *record, const struct case_values *values, const struct school *school,
-                            long n_events, const char *path, const struct result_mark *mark,
-                            const struct result_checksum *checksum) {
-    record_begin(record, values, n_events, path);
-    return result_file_continue(&record->file, path, mark, checksum, values, school, n_events);
-}
-
-enum status record_extend(struct record *record, const struct case_values *values, const struct school *school,
-                          long n_events, const struct result_source *source, const char *command) {
-    record_begin(record, values, n_events, source->path);
-    char *effective = NULL;
-    TRY(case_show(values, &effective));
-    const enum status status = result_file_extend(&record->file, source, values, effective, command, school, n_events);
-    free(effective);
-    return status;
-}
-
-enum status record_publish(const struct record *record, int is_complete) {
-    return result_file_publish(record->file, is_complete ? "complete" : "running");
-}
-
-int record_is_due(const struct record *record, long event) {
-    if (!record->file) return 0;
+bool record_is_due(const struct record *record, long event) {
+    if (!record->file) return false;
 
     // the end is a row even if the end is not a multiple of the output interval
     return (event - record->first) % record->events_per_row == 0 || event == record->n_events;
@@ -90,15 +56,9 @@ enum status record_close(struct record *record, enum status status) {
     char reason[4096];
     snprintf(reason, sizeof reason, "%s", status_message());
 
-    char run_status[4096 + 16];
-    if (status == STATUS_OK) {
-        snprintf(run_status, sizeof run_status, "complete");
-    } else if (status == STATUS_STOPPED) {
-        snprintf(run_status, sizeof run_status, "stopped");
-    } else {
-        snprintf(run_status, sizeof run_status, "failed: %s", reason);
-    }
-
+    char failed[4096 + 16];
+    snprintf(failed, sizeof failed, "failed: %s", reason);
+    const char *const run_status = status == STATUS_OK ? "complete" : status == STATUS_STOPPED ? "stopped" : failed;
     const enum status closed = result_file_close(record->file, run_status);
     *record = (struct record){0};
     if (status == STATUS_OK) return closed;

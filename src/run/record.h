@@ -3,6 +3,9 @@
 #ifndef RECORD_H
 #define RECORD_H
 
+#include <stdbool.h>
+
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case.h"
 #include "result/result_file.h"
@@ -16,32 +19,19 @@ struct record {
     long first, n_events; /* the events of the first row and of the end */
 };
 
-/* Path of the result of a case: output.file, or the name of the case with .nc. The caller frees *path. Fails with
- * STATUS_MEMORY. */
-enum status record_path(const struct case_values *values, char **path);
+/* Path of the result of a case: output.file, or the name of the case with .nc. */
+char *record_path(struct arena *arena, const struct case_values *values);
 
-/* Create the file for path, without a row; the record refers to path until record_close. overwrite, command: as in
- * result_file_create. n_events: of the whole run. Fails with STATUS_FILE or STATUS_MEMORY; no file remains then. */
-enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
-                          long n_events, const char *path, int overwrite, const char *command);
+/* Create the file of an origin, without a row (result_file_create); the record refers to the path until record_close.
+ * origin->effective is not used. Fails with STATUS_FILE or, as a boundary, with STATUS_MEMORY; no file remains then. */
+enum status record_create(struct arena *arena, struct record *record, const struct result_origin *origin);
 
-/* The same for the file of a steady state: result_file_create_steady. */
-enum status record_create_steady(struct record *record, const struct case_values *values, const struct school *school,
-                                 long n_events, const char *path, int overwrite, const char *command);
-
-/* The same for an existing file: record_continue appends after the rows of a mark (result_file_continue), record_extend
- * writes a new file for another end with the rows of a source, to be published (result_file_extend). */
-enum status record_continue(struct record *record, const struct case_values *values, const struct school *school,
-                            long n_events, const char *path, const struct result_mark *mark,
-                            const struct result_checksum *checksum);
-enum status record_extend(struct record *record, const struct case_values *values, const struct school *school,
-                          long n_events, const struct result_source *source, const char *command);
-
-/* Give the file the final name, with status "complete" after the last row, else "running": result_file_publish. */
-enum status record_publish(const struct record *record, int is_complete);
+/* Append to an existing file behind the rows of a mark (result_file_continue). */
+enum status record_continue(struct arena *arena, struct record *record, const struct result_origin *origin,
+                            const struct result_mark *mark, const struct result_checksum *checksum);
 
 /* Whether an event is a row: every output interval, and the end. A record without a file has no rows. */
-int record_is_due(const struct record *record, long event);
+bool record_is_due(const struct record *record, long event);
 
 /* Append a row; rows at multiples of output.wake_interval and the last row contain the wake. Fails with STATUS_FILE,
  * or, for a run that has diverged (warnings_refuse), with STATUS_SOLVER. */

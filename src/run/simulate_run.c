@@ -3,14 +3,13 @@
 #include "run/simulate_run.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/arena.h"
-#include "base/memory.h"
-#include "base/text.h"
 #include "base/version.h"
 #include "fish/fish_school.h"
 #include "result/checkpoint.h"
@@ -24,6 +23,7 @@
 
 // a run with result and checkpoints
 struct run {
+    struct arena *arena;
     const struct case_values *values;
     const struct simulate_options *options;
     struct simulation *simulation;
@@ -42,20 +42,6 @@ static enum status run_write_if_due(struct run *run) {
     return record_row(&run->record, &row);
 }
 
-static void run_report_progress(const struct run *run) {
-    if (!run->options->progress) return;
-    const struct simulation *const simulation = run->simulation;
-    struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
-    struct simulate_progress progress = {.t = simulation->state->t,
-                                         .end = run->values->time.end,
-                                         .event = simulation->state->event,
-                                         .steps = counts.steps,
-                                         .wall_time = simulate_wall_time(simulation)};
-    for (int f = 0; f < simulation->school->n_fish; f++) progress.n_vortices += simulation->state->wake[f].n_vortex;
-    run->options->progress(&progress, run->options->data);
-}
-
 static enum status run_checkpoint_if_due(struct run *run) {
     struct simulation *const simulation = run->simulation;
     if (!checkpoints_are_due(&run->checkpoints, simulation->state->event)) return STATUS_OK;
@@ -68,30 +54,43 @@ static enum status run_stop(struct run *run) {
     const double t = run->simulation->state->t;
     TRY(checkpoints_write(&run->checkpoints, run->simulation, &run->record));
     return status_fail(STATUS_STOPPED, "stopped %s at t = %.10g s: continue with 'shoal resume %s'",
-                       simulate_stopped_by(run->options->stop), t, run->checkpoints.word.text);
-}
-
-// advance to the next event, or restore the state at the last event and stop
-static enum status run_step(struct run *run) {
-    struct simulation *const simulation = run->simulation;
-    if (run->options->stop && *run->options->stop) return run_stop(run);
-    if (run->before) TRY(state_table_keep(run->before, simulation->state, simulation->school));
-    const enum status status = simulate_step(simulation);
-    if (status != STATUS_STOPPED) return status;
-    TRY(state_table_keep(simulation->state, run->before, simulation->school));
-    return run_stop(run);
+                       simulate_stopped_by(run->options->stop), t, run->checkpoints.word);
 }
 
 static enum status run_loop(struct run *run) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
+    const struct simulate_options *const options = run->options;
     struct simulation *const simulation = run->simulation;
-    simulation->stop = run->options->stop;
+    simulation->stop = options->stop;
     if (simulation->stop) TRY(state_create(&run->before, simulation->school));
+
     while (simulation->state->event < simulation->n_events) {
-        TRY(run_step(run));
+        // advance to the next event, or restore the state at the last event and stop
+        if (options->stop && *options->stop) return run_stop(run);
+        if (run->before) TRY(state_table_keep(run->before, simulation->state, simulation->school));
+        const enum status status = simulate_step(simulation);
+        if (status == STATUS_STOPPED) {
+            TRY(state_table_keep(simulation->state, run->before, simulation->school));
+            return run_stop(run);
+        }
+        TRY(status);
+
         TRY(run_write_if_due(run));
         TRY(run_checkpoint_if_due(run));
-        run_report_progress(run);
+
+        // report
+        if (!options->progress) continue;
+        struct integrator_counts counts;
+        simulation->integrator->count(simulation->solver, &counts);
+        struct simulate_progress progress = {.t = simulation->state->t,
+                                             .end = run->values->time.end,
+                                             .event = simulation->state->event,
+                                             .steps = counts.steps,
+                                             .wall_time = simulate_wall_time(simulation)};
+        for (int f = 0; f < simulation->school->n_fish; f++) {
+            progress.n_vortices += simulation->state->wake[f].n_vortex;
+        }
+        options->progress(&progress, options->data);
     }
     return STATUS_OK;
 }
@@ -109,30 +108,31 @@ static enum status run_finish(struct run *run, enum status status) {
 
 static void run_release(struct run *run) {
     if (run->simulation) state_free(run->before, run->simulation->school);
-    simulate_free(run->simulation);
-    checkpoints_free(&run->checkpoints);
+    arena_free(run->arena);
 }
 
 // ---- a new run
 
-static int result_is_unfinished(const char *result, const char *path, const char *effective, double *t) {
+/* The rows tell the run: their wall times differ from run to run. */
+static bool result_is_unfinished(struct arena *arena, const char *result, const char *path, const char *effective,
+                                 double *t) {
     struct checkpoint checkpoint;
     struct result_checksum checksum;
-    int is_complete = 1;
-    if (checkpoint_read(&checkpoint, path) != STATUS_OK) return 0;
+    bool is_complete;
+    if (checkpoint_read(arena, &checkpoint, path) != STATUS_OK) return false;
     *t = checkpoint.t;
-    // the rows tell the run: their wall times differ from run to run
-    const int is_good = checkpoint_check_program(&checkpoint) == STATUS_OK &&
-                        result_mark_check(result, &checkpoint.rows, effective, &checksum, &is_complete) == STATUS_OK;
-    checkpoint_free(&checkpoint);
-    return is_good && !is_complete;
+    return checkpoint_check_program(&checkpoint) == STATUS_OK &&
+           result_mark_check(arena, result, &checkpoint.rows, effective, &checksum, &is_complete) == STATUS_OK &&
+           !is_complete;
 }
 
-int simulate_can_resume(const char *result, const char *checkpoint, const char *effective, double *t) {
-    char *const previous = checkpoints_previous(checkpoint);
-    const int is_possible = result_is_unfinished(result, checkpoint, effective, t) ||
-                            (previous && result_is_unfinished(result, previous, effective, t));
-    free(previous);
+bool simulate_can_resume(struct arena *arena, const char *result, const char *checkpoint, const char *effective,
+                         double *t) {
+    struct arena *const scratch = arena_create(arena, checkpoint);
+    const char *const previous = arena_text(scratch, "%s" CHECKPOINTS_PREVIOUS, checkpoint);
+    const bool is_possible = result_is_unfinished(scratch, result, checkpoint, effective, t) ||
+                             result_is_unfinished(scratch, result, previous, effective, t);
+    arena_free(scratch);
     return is_possible;
 }
 
@@ -140,31 +140,37 @@ static enum status run_start(struct run *run) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct simulate_options *const options = run->options;
     struct checkpoints *const checkpoints = &run->checkpoints;
-    TRY(checkpoints_create(checkpoints, run->values, options->path, options->checkpoint_at));
+    run->arena = arena_create(NULL, "a run");
+    TRY(checkpoints_create(run->arena, checkpoints, run->values, options->path, options->checkpoint_at));
     if (!options->overwrite) {
         double t;
-        if (simulate_can_resume(options->path, checkpoints->path, checkpoints->effective, &t)) {
+        if (simulate_can_resume(run->arena, options->path, checkpoints->path, checkpoints->effective, &t)) {
             return status_fail(STATUS_FILE,
                                "%s is an unfinished result of this case: continue from t = %.6g s with 'shoal resume "
                                "%s', or start again with --force",
-                               options->path, t, checkpoints->word.text);
+                               options->path, t, checkpoints->word);
         }
         TRY(target_check(options->path, TARGET_NETCDF, false));
     }
 
     if (options->begin) TRY(options->begin(run->values, options->path, options->data));
 
-    const enum status started = simulate_start(NULL, &run->simulation, run->values, options->stop);
+    const enum status started = simulate_start(run->arena, &run->simulation, run->values, options->stop);
     if (started == STATUS_STOPPED)
         return status_fail(started, "stopped %s during the event at t = 0: start the run again",
                            simulate_stopped_by(run->options->stop));
     TRY(started);
-    TRY(record_create(&run->record, run->values, run->simulation->school, run->simulation->n_events, options->path,
-                      options->overwrite, options->command));
+    const struct result_origin origin = {.path = options->path,
+                                         .overwrite = options->overwrite,
+                                         .values = run->values,
+                                         .command = options->command,
+                                         .school = run->simulation->school,
+                                         .n_events = run->simulation->n_events};
+    TRY(record_create(run->arena, &run->record, &origin));
 
     // an earlier result stays in place until the first row of the new result is safe
     enum status status = run_write_if_due(run);
-    if (status == STATUS_OK) status = record_publish(&run->record, 0);
+    if (status == STATUS_OK) status = result_file_publish(run->record.file, "running");
     if (status == STATUS_OK) {
         checkpoints_remove(checkpoints);
         status = run_checkpoint_if_due(run);
@@ -188,101 +194,83 @@ enum status simulate_run(const struct case_values *values, const struct simulate
 // ---- a run that is resumed
 
 struct resume {
+    struct run run;
+    struct case_values values; /* of the run */
     struct checkpoint checkpoint;
     char *result; /* path of the result */
     struct durable_claim claim;
     struct result_checksum checksum; /* of the rows of the result */
-    int is_complete;                 /* the run of the result has reached the end */
+    bool is_complete;                /* the run of the result has reached the end */
     char *note;                      /* reason for not using the newest checkpoint; NULL: used */
 };
 
 static enum status resume_try(struct resume *resume, const char *path) {
+    struct arena *const arena = resume->run.arena;
     struct checkpoint *const checkpoint = &resume->checkpoint;
-    TRY(checkpoint_read(checkpoint, path));
-    enum status status = checkpoint_check_program(checkpoint);
-    if (status != STATUS_OK) status_fail(status, "%s: cannot be used: %s", path, status_message());
+    TRY(checkpoint_read(arena, checkpoint, path));
+    const enum status status = checkpoint_check_program(checkpoint);
+    if (status != STATUS_OK) return status_fail(status, "%s: cannot be used: %s", path, status_message());
 
     // the result is in the folder of the checkpoint
-    if (status == STATUS_OK && !resume->result) {
+    if (!resume->result) {
         const char *const slash = strrchr(path, '/');
-        struct text result = {0};
-        text_add(&result, "%.*s%s", slash ? (int)(slash + 1 - path) : 0, path, checkpoint->result);
-        status = text_take(&result, &resume->result, "a file name");
+        resume->result = arena_text(arena, "%.*s%s", slash ? (int)(slash + 1 - path) : 0, path, checkpoint->result);
     }
-
-    if (status == STATUS_OK && !resume->claim.part) {
-        status = access(resume->result, F_OK) == 0 ? target_check(resume->result, TARGET_NETCDF, true) : STATUS_OK;
-        if (status == STATUS_OK) status = durable_claim_take(&resume->claim, resume->result);
+    if (resume->claim.part[0] == '\0') {
+        if (access(resume->result, F_OK) == 0) TRY(target_check(resume->result, TARGET_NETCDF, true));
+        TRY(durable_claim_take(&resume->claim, resume->result));
     }
-    if (status == STATUS_OK) {
-        status = result_mark_check(resume->result, &checkpoint->rows, checkpoint->effective, &resume->checksum,
-                                   &resume->is_complete);
-    }
-    if (status != STATUS_OK) checkpoint_free(checkpoint);
-    return status;
+    return result_mark_check(arena, resume->result, &checkpoint->rows, checkpoint->effective, &resume->checksum,
+                             &resume->is_complete);
 }
 
 /* Open the checkpoint at path or, if this checkpoint cannot be used, the previous checkpoint, and claim the result.
- * Fails with STATUS_FILE and the reason, or with STATUS_MEMORY. resume_close releases everything, including the claim,
- * also after a failure. */
+ * Fails with STATUS_FILE and the reason. */
 static enum status resume_open(struct resume *resume, const char *path) {
-    *resume = (struct resume){.claim.descriptor = {-1, -1}};
+    struct arena *const arena = resume->run.arena;
     const enum status status = resume_try(resume, path);
     if (status != STATUS_FILE) return status;
-    char reason[4096];
-    snprintf(reason, sizeof reason, "%s", status_message());
+    const char *const reason = arena_text(arena, "%s", status_message());
 
     // fall back to the previous checkpoint
-    char *const previous = checkpoints_previous(path);
-    TRY(memory_check(previous, "a file name"));
-    if (access(previous, F_OK) == 0 && resume_try(resume, previous) == STATUS_OK) {
-        struct text note = {0};
-        text_add(&note, "%s; resuming from %s", reason, previous);
-        resume->note = note.text;
+    const char *const previous = arena_text(arena, "%s" CHECKPOINTS_PREVIOUS, path);
+    if (access(previous, F_OK) != 0 || resume_try(resume, previous) != STATUS_OK) {
+        return status_fail(STATUS_FILE, "%s", reason);
     }
-
-    free(previous);
-    return resume->note ? STATUS_OK : status_fail(STATUS_FILE, "%s", reason);
-}
-
-static void resume_close(struct resume *resume) {
-    checkpoint_free(&resume->checkpoint);
-    durable_claim_release(&resume->claim);
-    free(resume->result);
-    free(resume->note);
-    *resume = (struct resume){.claim.descriptor = {-1, -1}};
+    resume->note = arena_text(arena, "%s; resuming from %s", reason, previous);
+    return STATUS_OK;
 }
 
 /* Read the case of the checkpoint with assignments, as case_read does. The values include the text of the case file and
- * the study of the result. Fails with STATUS_CASE, STATUS_FILE or STATUS_MEMORY; *values then owns nothing. */
-static enum status resume_case(const struct resume *resume, int n_assignments, const char *const *assignments,
-                               struct case_values *values) {
+ * the study of the result. Fails with STATUS_CASE or STATUS_FILE. */
+static enum status resume_case(struct resume *resume, const struct simulate_changes *changes) {
+    struct case_values *const values = &resume->values;
     const char *const text = resume->checkpoint.effective;
-    TRY(case_parse(values, text, strlen(text), resume->checkpoint.result, NULL, n_assignments, assignments));
+    TRY(case_parse(values, text, strlen(text), resume->checkpoint.result, NULL, changes->n_assignments,
+                   changes->assignments));
+    resume->run.values = values;
 
     // the complete case of the checkpoint contains neither text nor study
     struct netcdf_reader reader;
-    enum status status = netcdf_open(&reader, resume->result);
-    if (status == STATUS_OK) {
-        free(values->text);
-        values->text = NULL;
-        status = netcdf_read_string(&reader, "case_text", &values->text);
-        if (status == STATUS_OK) status = netcdf_read_string(&reader, "study_case", &values->study);
-        if (status == STATUS_OK) status = netcdf_read_integer(&reader, "study_member", 0, &values->member);
-        netcdf_close(&reader);
-    }
+    TRY(netcdf_open(&reader, resume->result));
+    free(values->text);
+    values->text = NULL;
+    enum status status = netcdf_read_string(&reader, "case_text", &values->text);
+    if (status == STATUS_OK) status = netcdf_read_string(&reader, "study_case", &values->study);
+    if (status == STATUS_OK) status = netcdf_read_integer(&reader, "study_member", 0, &values->member);
+    netcdf_close(&reader);
 
     // a run outside a study has an empty text
     if (values->study && !*values->study) {
         free(values->study);
         values->study = NULL;
     }
-    if (status != STATUS_OK) case_free(values);
     return status;
 }
 
-static enum status run_take_up(struct run *run, const struct resume *resume) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
+/* Create the simulation from the state of the checkpoint. */
+static enum status resume_take_up(struct resume *resume) {
+    struct run *const run = &resume->run;
     struct school *school = NULL;
     struct state *state = NULL;
     TRY(fish_school_create(&school, &run->values->school));
@@ -300,84 +288,84 @@ static enum status run_take_up(struct run *run, const struct resume *resume) {
         return status;
     }
 
-    TRY(simulate_take_up(NULL, &run->simulation, run->values, school, state, &resume->checkpoint.totals));
+    TRY(simulate_take_up(run->arena, &run->simulation, run->values, school, state, &resume->checkpoint.totals));
     run->simulation->started -= resume->checkpoint.wall_time;
     return STATUS_OK;
 }
 
-// the result with another end: drop the final row if it was written only because it was final
-static enum status run_extend_record(struct run *run, const struct resume *resume) {
+/* Write the result with another end: without the final row if it was written only because it was final. */
+static enum status resume_extend(struct resume *resume, struct result_origin *origin) {
+    struct run *const run = &resume->run;
     const struct simulation *const simulation = run->simulation;
-    const struct case_time *const time = &run->values->time;
     const double interval = simulation->school->interval;
-    const long event = simulation->state->event, per_row = lround(time->output_interval / interval),
+    const long event = simulation->state->event, per_row = lround(run->values->time.output_interval / interval),
                per_wake = lround(run->values->output.wake_interval / interval);
     const struct result_source source = {resume->result, event / per_row + 1,
                                          event % per_row == 0 && event % per_wake != 0};
-
-    TRY(record_extend(&run->record, run->values, simulation->school, simulation->n_events, &source,
-                      run->options->command));
+    origin->overwrite = true;
+    origin->source = &source;
+    TRY(record_create(run->arena, &run->record, origin));
     result_file_note(run->record.file, RESULT_CHECKPOINT_AT, resume->checkpoint.places);
 
     // in this order one of the last two checkpoints always matches the result
     TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
-    return record_publish(&run->record, 0);
+    return result_file_publish(run->record.file, "running");
 }
 
-static enum status run_resume_at(struct run *run, const struct resume *resume, int with_other_end) {
+static enum status resume_start(struct resume *resume, const char *path, const struct simulate_changes *changes) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct run *const run = &resume->run;
     const struct simulate_options *const options = run->options;
-    TRY(checkpoints_create(&run->checkpoints, run->values, resume->result, options->checkpoint_at));
-    if (options->begin) TRY(options->begin(run->values, resume->result, options->data));
-    TRY(run_take_up(run, resume));
+    run->arena = arena_create(NULL, "a run");
+    TRY(resume_open(resume, path));
 
+    // tell the user of a damaged checkpoint and of another processor
+    char here[VERSION_LENGTH], line[4 * VERSION_LENGTH];
+    version_processor(here);
+    if (options->warn && resume->note) options->warn(resume->note, options->data);
+    if (options->note && strcmp(here, resume->checkpoint.processor) != 0) {
+        snprintf(line, sizeof line,
+                 "this processor, %s, differs from the processor of the checkpoint, %s: last bits may differ", here,
+                 resume->checkpoint.processor);
+        options->note(line, options->data);
+    }
+
+    if (resume->is_complete && !changes->has_other_end) {
+        return status_fail(STATUS_CASE, "%s is complete: give a later --end to extend the result", resume->result);
+    }
+
+    TRY(resume_case(resume, changes));
+    TRY(checkpoints_create(run->arena, &run->checkpoints, run->values, resume->result, options->checkpoint_at));
+    if (options->begin) TRY(options->begin(run->values, resume->result, options->data));
+    TRY(resume_take_up(resume));
     const struct simulation *const simulation = run->simulation;
-    TRY(checkpoints_resume(&run->checkpoints, &resume->checkpoint, simulation->state->event, with_other_end));
-    if (with_other_end && simulation->state->event >= simulation->n_events) {
+    checkpoints_resume(&run->checkpoints, &resume->checkpoint, simulation->state->event, changes->has_other_end);
+    if (changes->has_other_end && simulation->state->event >= simulation->n_events) {
         return status_fail(STATUS_CASE, "--end %.10g: the checkpoint is at t = %.10g s already", run->values->time.end,
                            simulation->state->t);
     }
 
-    if (resume->note) checkpoints_fall_back(&run->checkpoints);
+    // replace a newest checkpoint that cannot be used; after a failed rename, a later resume refuses it again
+    if (resume->note) rename(run->checkpoints.previous, run->checkpoints.path);
 
     // the existing result, without the rows after the checkpoint
-    const enum status status =
-        with_other_end ? run_extend_record(run, resume)
-                       : record_continue(&run->record, run->values, simulation->school, simulation->n_events,
-                                         resume->result, &resume->checkpoint.rows, &resume->checksum);
+    struct result_origin origin = {.path = resume->result,
+                                   .values = run->values,
+                                   .command = options->command,
+                                   .school = simulation->school,
+                                   .n_events = simulation->n_events};
+    const enum status status = changes->has_other_end ? resume_extend(resume, &origin)
+                                                      : record_continue(run->arena, &run->record, &origin,
+                                                                        &resume->checkpoint.rows, &resume->checksum);
     return run->record.file ? run_finish(run, status) : status;
 }
 
 enum status simulate_resume(const char *checkpoint, const struct simulate_changes *changes,
                             const struct simulate_options *options) {
-    struct resume resume;
-    struct case_values values;
-    enum status status = resume_open(&resume, checkpoint);
-    if (status != STATUS_OK) goto close;
-
-    // tell the user of a damaged checkpoint and of another processor
-    char here[VERSION_LENGTH], line[4 * VERSION_LENGTH];
-    version_processor(here);
-    if (options->warn && resume.note) options->warn(resume.note, options->data);
-    if (options->note && strcmp(here, resume.checkpoint.processor) != 0) {
-        snprintf(line, sizeof line,
-                 "this processor, %s, differs from the processor of the checkpoint, %s: last bits may differ", here,
-                 resume.checkpoint.processor);
-        options->note(line, options->data);
-    }
-
-    if (resume.is_complete && !changes->has_other_end) {
-        status = status_fail(STATUS_CASE, "%s is complete: give a later --end to extend the result", resume.result);
-        goto close;
-    }
-
-    status = resume_case(&resume, changes->n_assignments, changes->assignments, &values);
-    if (status == STATUS_OK) {
-        struct run run = {.values = &values, .options = options};
-        status = run_resume_at(&run, &resume, changes->has_other_end);
-        run_release(&run);
-        case_free(&values);
-    }
-close:
-    resume_close(&resume);
+    struct resume resume = {.run = {.options = options}};
+    const enum status status = resume_start(&resume, checkpoint, changes);
+    run_release(&resume.run);
+    if (resume.run.values) case_free(&resume.values);
+    durable_claim_release(&resume.claim);
     return status;
 }

@@ -4,7 +4,9 @@
 #define SIMULATE_RUN_H
 
 #include <signal.h>
+#include <stdbool.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case.h"
 
@@ -19,7 +21,7 @@ struct simulate_progress {
 
 struct simulate_options {
     const char *path;    /* of the result file */
-    int overwrite;       /* replace an existing result */
+    bool overwrite;      /* replace an existing result */
     const char *command; /* command line, for the history attribute */
     /* times of checkpoints in addition to time.checkpoint_interval, s: "0.3,1.25"; NULL: none. Each time must be the
      * time of an event */
@@ -44,14 +46,15 @@ struct simulate_options {
 enum status simulate_run(const struct case_values *values, const struct simulate_options *options);
 
 /* Whether a case (effective) has an unfinished result with a usable checkpoint, or previous checkpoint, of this
- * program; *t: time of the checkpoint, s. */
-int simulate_can_resume(const char *result, const char *checkpoint, const char *effective, double *t);
+ * program; *t: time of the checkpoint, s. arena: for scratch. */
+bool simulate_can_resume(struct arena *arena, const char *result, const char *checkpoint, const char *effective,
+                         double *t);
 
 /* Changes to the case of a resumed run. */
 struct simulate_changes {
     int n_assignments;
     const char *const *assignments; /* to solver.threads, which changes no result, and to time.end */
-    int has_other_end;              /* time.end is assigned */
+    bool has_other_end;             /* time.end is assigned */
 };
 
 /* Resume a run from a checkpoint and append to the result of the checkpoint; path and overwrite of the options are not

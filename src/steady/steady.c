@@ -227,8 +227,14 @@ static enum status find_and_write(struct run *run) {
     // the largest number of events bounds the number of vortices in the file
     const long n_beats = run->values->steady.beats + run->values->steady.output_beats;
     const long n_events = is_static ? 1 : n_beats * run->problem.map.events;
-    TRY(record_create_steady(&run->record, run->values, run->simulation->school, n_events, options->path,
-                             options->overwrite, options->command));
+    const struct result_origin origin = {.path = options->path,
+                                         .overwrite = options->overwrite,
+                                         .values = run->values,
+                                         .command = options->command,
+                                         .school = run->simulation->school,
+                                         .n_events = n_events,
+                                         .is_steady = true};
+    TRY(record_create(run->arena, &run->record, &origin));
 
     const enum status status = steady_find(run, is_static);
     if (status == STATUS_STOPPED && !is_static) {
@@ -244,8 +250,8 @@ static enum status find_and_write(struct run *run) {
     // rename the temporary file to the result file and close the file; a failed search keeps an earlier result
     char reason[4096];
     snprintf(reason, sizeof reason, "%s", status_message());
-    if (status == STATUS_OK) return record_close(&run->record, record_publish(&run->record, 1));
-    if (status != STATUS_MEMORY && access(options->path, F_OK) != 0) record_publish(&run->record, 0);
+    if (status == STATUS_OK) return record_close(&run->record, result_file_publish(run->record.file, "complete"));
+    if (status != STATUS_MEMORY && access(options->path, F_OK) != 0) result_file_publish(run->record.file, "running");
     status_fail(status, "%s", reason);
     return record_close(&run->record, status);
 }

@@ -76,23 +76,15 @@ static void member_report_progress(const struct simulate_progress *now, void *da
 }
 
 /* Run a member, or resume the member from a checkpoint. */
-static enum status run_or_resume(const struct case_values *values, const struct simulate_options *options) {
+static enum status run_or_resume(struct arena *arena, const struct case_values *values,
+                                 const struct simulate_options *options) {
     char *effective;
-    TRY(case_show(values, &effective));
-    char *const checkpoint = checkpoints_path(options->path);
     double t;
-    enum status status;
-    if (!checkpoint) {
-        status = memory_check(NULL, "a file name");
-    } else if (simulate_can_resume(options->path, checkpoint, effective, &t)) {
-        status = simulate_resume(checkpoint, &(struct simulate_changes){0}, options);
-    } else {
-        status = simulate_run(values, options);
-    }
-
-    free(checkpoint);
-    free(effective);
-    return status;
+    TRY(case_show(values, &effective));
+    arena_defer(arena, free, effective);
+    const char *const checkpoint = checkpoints_path(arena, options->path);
+    if (!simulate_can_resume(arena, options->path, checkpoint, effective, &t)) return simulate_run(values, options);
+    return simulate_resume(checkpoint, &(struct simulate_changes){0}, options);
 }
 
 static void member_report_beats(const struct steady_progress *now, void *data) {
@@ -140,7 +132,8 @@ static enum status run_member(const struct study *study, const struct job *job) 
     if (!path) status = STATUS_MEMORY;
     if (status == STATUS_OK) {
         const int is_steady = sweep_is_steady(study->values);
-        status = is_steady ? find_steady(study, job, &values, &options) : run_or_resume(&values, &options);
+        status =
+            is_steady ? find_steady(study, job, &values, &options) : run_or_resume(study->arena, &values, &options);
     }
 
     free(path);

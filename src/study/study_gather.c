@@ -247,12 +247,12 @@ static enum status print_errors(const struct case_values *values, const struct m
     return status;
 }
 
-enum status study_info(const char *path, FILE *stream) {
+enum status study_info(struct arena *parent, const char *path, FILE *stream) {
     struct case_values study;
     struct member_file *members;
     int n;
 
-    struct arena *const arena = arena_create(NULL, owner);
+    struct arena *const arena = arena_create(parent, owner);
     const enum status read = study_file_read(path, &study, &members, &n);
     if (read != STATUS_OK) {
         arena_free(arena);

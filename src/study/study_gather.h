@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "case/case_values.h"
@@ -27,7 +28,7 @@ enum status study_errors(const struct case_values *values, const struct study_op
 enum status study_gather(const char *folder, const char *command, int strict, FILE *stream, FILE *warnings);
 
 /* Print the contents of a study.nc: axes, members and orders. Fails with STATUS_FILE or STATUS_MEMORY. */
-enum status study_info(const char *path, FILE *stream);
+enum status study_info(struct arena *arena, const char *path, FILE *stream);
 
 // ---- study_compare.c: comparison of integration methods and tolerances or steps: error, wall time and counts
 //

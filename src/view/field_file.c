@@ -307,17 +307,15 @@ static enum status grid_print_all(const struct netcdf_reader *file, FILE *stream
     char *text;
     const struct netcdf_slice first[] = {{"time", 0, 1}, {NULL, 0, 0}};
     TRY(netcdf_read_doubles(file, "time", first, &time));
-    TRY(netcdf_read_string(file, "run", &text));
+    TRY(netcdf_attribute(file, "run", &text));
     fprintf(stream, "  run         %s\n  time        %g s\n", text, time);
-    free(text);
     TRY(print_axis(file, "x", stream));
     TRY(print_axis(file, "y", stream));
-    TRY(netcdf_read_string(file, "comment", &text));
+    TRY(netcdf_attribute(file, "comment", &text));
     fprintf(stream, "  it is       %s\n", text);
-    free(text);
     return STATUS_OK;
 }
 
-enum status field_file_info(const char *path, FILE *stream) {
-    return netcdf_print(path, grid_print_all, stream);
+enum status field_file_info(struct arena *arena, const char *path, FILE *stream) {
+    return netcdf_print(arena, path, grid_print_all, stream);
 }

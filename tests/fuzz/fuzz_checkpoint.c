@@ -97,14 +97,16 @@ static void try(const uint8_t *bytes, size_t n) {
     if (!nowhere) nowhere = fopen("/dev/null", "w");
     if (!nowhere) abort();
     write_file(bytes, n);
-    demand_refusal(checkpoint_info(path, false, nowhere));
+    struct arena *const arena = arena_create(NULL, "a test");
+    demand_refusal(checkpoint_info(arena, path, false, nowhere));
     struct checkpoint checkpoint;
-    const enum status status = checkpoint_read(&checkpoint, path);
+    const enum status status = checkpoint_read(arena, &checkpoint, path);
     demand_refusal(status);
-    if (status != STATUS_OK) return;
-    demand_refusal(checkpoint_check_program(&checkpoint));
-    read_state(&checkpoint);
-    checkpoint_free(&checkpoint);
+    if (status == STATUS_OK) {
+        demand_refusal(checkpoint_check_program(&checkpoint));
+        read_state(&checkpoint);
+    }
+    arena_free(arena);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n) {

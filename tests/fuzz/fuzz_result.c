@@ -53,9 +53,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n) {
     if (!nowhere) nowhere = fopen("/dev/null", "w");
     if (!nowhere) abort();
     write_file(bytes, n);
-    demand_file(result_info(path, nowhere));
-    demand_file(study_info(path, nowhere));
-    demand_file(field_file_info(path, nowhere));
+    struct arena *const arena = arena_create(NULL, "a test");
+    demand_file(result_info(arena, path, nowhere));
+    demand_file(study_info(arena, path, nowhere));
+    demand_file(field_file_info(arena, path, nowhere));
+    arena_free(arena);
     struct member_file member;
     const enum status status = member_file_read(&member, path);
     demand_file(status);

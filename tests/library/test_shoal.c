@@ -689,10 +689,11 @@ TEST(a_checkpoint_stands_beside_the_result) {
     shoal_close(run);
     snprintf(path, sizeof path, "%s/run.ckpt", folder);
     struct checkpoint checkpoint;
-    school_ok(checkpoint_read(&checkpoint, path));
+    struct arena *const arena = arena_create(NULL, "a test");
+    school_ok(checkpoint_read(arena, &checkpoint, path));
     NEAR(checkpoint.t, 0.06, 1e-15, 0);
     assert_string_equal(checkpoint.result, "run.nc");
-    checkpoint_free(&checkpoint);
+    arena_free(arena);
     assert_int_equal(unlink(path), 0);
     snprintf(path, sizeof path, "%s/run.nc", folder);
     assert_int_equal(unlink(path), 0);

@@ -19,6 +19,7 @@
 
 static char folder[] = "/tmp/test_checkpoint_XXXXXX", path[64], previous[64];
 static struct setup setup;
+static struct arena *arena;
 static unsigned char *whole;
 static size_t n_whole;
 
@@ -35,20 +36,21 @@ static int set_up(void **state) {
     snprintf(path, sizeof path, "%s/run.ckpt", folder);
     snprintf(previous, sizeof previous, "%s/run.ckpt.previous", folder);
     school_build(&setup, SCHOOL);
+    arena = arena_create(NULL, "a test");
     for (int i = 0; i < 30; i++) school_ok(wake_release(&setup.state->wake[1], i, i + 0.5, 1, 2));
     setup.state->t = 0.6;
     setup.state->event = 30;
     school_ok(state_reserve(setup.state, setup.school));
     for (int f = 0; f < 2; f++) state_remember(&setup.state->history[f], &(struct sample){.speed = NAN, .heading = f});
     for (int i = 0; i < setup.school->n_unknowns; i++) setup.state->y[i] = 1.0 / (i + 1);
-    school_ok(checkpoint_write(path, previous, &written, setup.state, setup.school));
-    school_ok(durable_read(path, &whole, &n_whole));
+    school_ok(checkpoint_write(arena, path, previous, &written, setup.state, setup.school));
+    school_ok(durable_read(arena, path, &whole, &n_whole));
     return 0;
 }
 
 static int tear_down(void **state) {
     (void)state;
-    free(whole);
+    arena_free(arena);
     school_clear(&setup);
     unlink(path);
     unlink(previous);
@@ -60,7 +62,7 @@ TEST_GROUP(set_up, tear_down)
 TEST(all_that_is_written_is_read) {
     struct checkpoint read;
     struct state *fresh;
-    school_ok(checkpoint_read(&read, path));
+    school_ok(checkpoint_read(arena, &read, path));
     school_ok(checkpoint_check_program(&read));
     assert_string_equal(read.effective, written.effective);
     assert_string_equal(read.result, written.result);
@@ -87,7 +89,6 @@ TEST(all_that_is_written_is_read) {
         }
     }
     state_free(fresh, setup.school);
-    checkpoint_free(&read);
 }
 
 TEST(every_bit_that_flips_is_noticed) {
@@ -138,7 +139,7 @@ static void crafted(const char *section, const void *bytes, size_t n, const char
     struct sections_writer writer;
     struct checkpoint read;
     char name[SECTIONS_NAME];
-    sections_start(&writer);
+    sections_start(arena, &writer);
     for (size_t at = 28; at < n_whole;) {
         uint64_t size;
         memcpy(name, whole + at, sizeof name);
@@ -149,20 +150,18 @@ static void crafted(const char *section, const void *bytes, size_t n, const char
         sections_close(&writer);
         at += SECTIONS_NAME + 8 + size + 4;
     }
-    school_ok(sections_finish(&writer));
+    sections_finish(&writer);
     school_ok(durable_replace(path, previous, writer.bytes, writer.n));
-    enum status status = checkpoint_read(&read, path);
+    enum status status = checkpoint_read(arena, &read, path);
     if (status == STATUS_OK) {
         struct state *fresh;
         school_ok(state_create(&fresh, setup.school));
         status = checkpoint_check_program(&read);
         if (status == STATUS_OK) status = checkpoint_set_state(&read, fresh, setup.school);
         state_free(fresh, setup.school);
-        checkpoint_free(&read);
     }
     assert_int_equal(status, STATUS_FILE);
     if (!strstr(status_message(), reason)) fail_msg("%s instead of %s", status_message(), reason);
-    sections_free(&writer);
 }
 
 TEST(what_no_run_has_written_is_refused) {
@@ -222,7 +221,7 @@ TEST(a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name) {
     for (int k = 0; k < 4; k++) other[24 + k] = (unsigned char)(check >> (24 - 8 * k));
     school_ok(durable_replace(path, previous, other, n_whole));
     struct checkpoint read;
-    assert_int_equal(checkpoint_read(&read, path), STATUS_FILE);
+    assert_int_equal(checkpoint_read(arena, &read, path), STATUS_FILE);
     if (!strstr(status_message(), "written on a machine with another byte order")) fail_msg("%s", status_message());
     free(other);
     school_ok(durable_replace(path, previous, whole, n_whole));
@@ -231,17 +230,17 @@ TEST(a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name) {
 TEST(only_checkpoints_may_be_replaced) {
     char other[64];
     snprintf(other, sizeof other, "%s/other", folder);
-    school_ok(checkpoint_check_target(other, "run.nc"));
-    school_ok(checkpoint_check_target(path, "run.nc"));
-    assert_int_equal(checkpoint_check_target(path, "run"), STATUS_FILE);
+    school_ok(checkpoint_check_target(arena, other, "run.nc"));
+    school_ok(checkpoint_check_target(arena, path, "run.nc"));
+    assert_int_equal(checkpoint_check_target(arena, path, "run"), STATUS_FILE);
     if (!strstr(status_message(), "is a checkpoint of run.nc")) fail_msg("%s", status_message());
     FILE *const file = fopen(other, "w");
     fputs("SHOAL is not enough", file);
     fclose(file);
-    assert_int_equal(checkpoint_check_target(other, "run.nc"), STATUS_FILE);
-    assert_int_equal(checkpoint_check_target(folder, "run.nc"), STATUS_FILE);
+    assert_int_equal(checkpoint_check_target(arena, other, "run.nc"), STATUS_FILE);
+    assert_int_equal(checkpoint_check_target(arena, folder, "run.nc"), STATUS_FILE);
     unlink(other);
     assert_int_equal(symlink(path, other), 0);
-    assert_int_equal(checkpoint_check_target(other, "run.nc"), STATUS_FILE);
+    assert_int_equal(checkpoint_check_target(arena, other, "run.nc"), STATUS_FILE);
     unlink(other);
 }

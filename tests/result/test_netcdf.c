@@ -185,7 +185,7 @@ TEST_WITH(every_failing_allocation_leaves_what_was_there, set_up, tear_down) {
         struct stat before, after;
         const int exists = stat(f->path, &before) == 0;
         assert_int_equal(exists, overwrite);
-        for (int n = 0; n < 4; n++) {
+        for (int n = 0; n < 2; n++) {
             n_until_failure = n;
             assert_int_equal(write_file(f->path, overwrite), STATUS_MEMORY);
             n_until_failure = -1;

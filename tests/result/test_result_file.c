@@ -52,8 +52,7 @@ TEST_WITH(every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name
     f->school->fish[1].n_sensors = 2;
     f->school->fish[1].sensor = (double[2]){0.25, 0.5};
     struct result_file *result;
-    assert_int_equal(result_file_create_steady(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10),
-                     STATUS_OK);
+    assert_int_equal(begin(f, false, true, &result), STATUS_OK);
     assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
     assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
     f->school->fish[1].sensor = NULL;
@@ -374,8 +373,10 @@ TEST(closing_nothing_is_allowed) {
 
 static void assert_refused(struct fixture *f, const char *path, int overwrite, const char *part) {
     struct result_file *result;
-    assert_int_equal(result_file_create(&result, path, overwrite, &f->values, EFFECTIVE, "", f->school, 10),
-                     STATUS_FILE);
+    struct result_origin origin = origin_of(f);
+    origin.path = path;
+    origin.overwrite = overwrite;
+    assert_int_equal(result_file_create(f->arena, &result, &origin), STATUS_FILE);
     assert_null(result);
     assert_message(path);
     assert_message(part);
@@ -405,7 +406,7 @@ TEST_WITH(a_file_without_its_name_leaves_nothing, set_up, tear_down) {
     struct fixture *f = *state;
     struct result_file *result;
     write_file(f, 3);
-    assert_int_equal(result_file_create(&result, f->path, 1, &f->values, EFFECTIVE, "", f->school, 10), STATUS_OK);
+    assert_int_equal(begin(f, true, false, &result), STATUS_OK);
     assert_int_equal(append(f, result, 0, 1), STATUS_OK);
     assert_int_equal(result_file_close(result, "failed: for a reason"), STATUS_OK);
     assert_int_equal(number_of_rows(f), 3);
@@ -427,7 +428,7 @@ TEST_WITH(existing_file_is_replaced_when_asked, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 3);
     struct result_file *result;
-    assert_int_equal(result_file_create(&result, f->path, 1, &f->values, EFFECTIVE, "", f->school, 10), STATUS_OK);
+    assert_int_equal(begin(f, true, false, &result), STATUS_OK);
     assert_int_equal(number_of_rows(f), 3);
     assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
     assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
@@ -462,7 +463,7 @@ TEST_WITH(full_disk_leaves_no_file_without_a_header, set_up, tear_down) {
     for (rlim_t size = 0; size < 20000; size += 3000) {
         const rlim_t before = limit_file_size(size);
         struct result_file *result;
-        const enum status status = result_file_create(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10);
+        const enum status status = begin(f, false, false, &result);
         limit_file_size(before);
         assert_int_equal(status, STATUS_FILE);
         assert_message("File too large");
@@ -501,20 +502,31 @@ TEST_WITH(too_many_vortices_are_refused, set_up, tear_down) {
     assert_int_equal(result_file_close(result, "failed"), STATUS_OK);
 }
 
+static enum status begin_in_bounds(struct fixture *f, struct arena **arena, struct result_file **result) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    const struct result_origin origin = origin_of(f);
+    *arena = arena_create(NULL, "a result");
+    return result_file_create(*arena, result, &origin);
+}
+
 TEST_WITH(no_memory_leaves_no_file, set_up, tear_down) {
     struct fixture *f = *state;
-    struct result_file *result;
+    struct result_file *result = NULL;
+    struct arena *arena = NULL;
     enum status status = STATUS_MEMORY;
     for (int i = 1; status != STATUS_OK; i++) {
         failing_allocation = i;
-        status = result_file_create(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10);
+        arena = NULL;
+        status = begin_in_bounds(f, &arena, &result);
         const bool has_failed = failing_allocation == 0;
         failing_allocation = 0;
         if (!has_failed) break;
+        arena_free(arena);
         assert_int_equal(status, STATUS_MEMORY);
         assert_null(result);
         assert_int_not_equal(access(f->path, F_OK), 0);
     }
     assert_int_equal(status, STATUS_OK);
     assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+    arena_free(arena);
 }

@@ -18,7 +18,9 @@ static const char *info(const char *path, int case_only, enum status *status) {
     static char text[8192];
     memset(text, 0, sizeof text);
     FILE *stream = fmemopen(text, sizeof text - 1, "w");
-    *status = result_kind_info(1, &run, path, case_only, stream);
+    struct arena *const arena = arena_create(NULL, "a test");
+    *status = result_kind_info(arena, 1, &run, path, case_only ? RESULT_INFO_CASE : RESULT_INFO_TEXT, stream);
+    arena_free(arena);
     fclose(stream);
     return text;
 }
@@ -55,7 +57,7 @@ static const char *steady_summary(struct fixture *f, const struct steady_values 
     struct result_file *file;
     enum status status;
     unlink(f->path);
-    assert_int_equal(result_file_create_steady(&file, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10), STATUS_OK);
+    assert_int_equal(begin(f, false, true, &file), STATUS_OK);
     assert_int_equal(append(f, file, 0, 0), STATUS_OK);
     result_file_steady(file, f->school, values);
     assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);

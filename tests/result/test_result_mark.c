@@ -22,8 +22,8 @@ TEST_WITH(a_growing_file_has_the_marks_of_a_whole_one, set_up, tear_down) {
         struct result_checksum checksum = {0};
         assert_int_equal(result_mark_take(f->path, i + 1, &checksum, &again), STATUS_OK);
         are_equal(&again, &mark[i]);
-        int is_complete;
-        assert_int_equal(result_mark_check(f->path, &mark[i], EFFECTIVE, &checksum, &is_complete), STATUS_OK);
+        bool is_complete;
+        assert_int_equal(result_mark_check(f->arena, f->path, &mark[i], EFFECTIVE, &checksum, &is_complete), STATUS_OK);
         assert_false(is_complete);
     }
     assert_true(mark[0].check != mark[1].check && mark[1].check != mark[2].check);
@@ -36,12 +36,12 @@ TEST_WITH(other_rows_and_other_cases_are_refused, set_up, tear_down) {
     struct fixture *const f = *state;
     struct result_checksum checksum = {0};
     struct result_mark mark;
-    int is_complete;
+    bool is_complete;
     write_file(f, 3);
     assert_int_equal(result_mark_take(f->path, 2, &checksum, &mark), STATUS_OK);
-    assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &checksum, &is_complete), STATUS_OK);
+    assert_int_equal(result_mark_check(f->arena, f->path, &mark, EFFECTIVE, &checksum, &is_complete), STATUS_OK);
     assert_true(is_complete);
-    assert_int_equal(result_mark_check(f->path, &mark, "another", &checksum, &is_complete), STATUS_FILE);
+    assert_int_equal(result_mark_check(f->arena, f->path, &mark, "another", &checksum, &is_complete), STATUS_FILE);
     assert_message("is the result of another case");
     struct netcdf_rows rows;
     assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
@@ -56,7 +56,7 @@ TEST_WITH(other_rows_and_other_cases_are_refused, set_up, tear_down) {
         fseek(file, (long)places[i], SEEK_SET);
         fputc(byte ^ 1, file);
         fclose(file);
-        assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &checksum, &is_complete), want[i]);
+        assert_int_equal(result_mark_check(f->arena, f->path, &mark, EFFECTIVE, &checksum, &is_complete), want[i]);
         FILE *const back = fopen(f->path, "r+");
         fseek(back, (long)places[i], SEEK_SET);
         fputc(byte, back);
@@ -69,7 +69,8 @@ TEST_WITH(only_the_rows_of_a_mark_have_to_be_there, set_up, tear_down) {
     struct fixture *const f = *state;
     struct netcdf_rows rows;
     struct result_mark mark;
-    int is_complete;
+    bool is_complete;
+    const struct result_origin origin = origin_of(f);
     for (int n_bytes = 0; n_bytes < 3; n_bytes++) {
         struct result_checksum checksum = {0}, found = {0};
         struct result_file *result;
@@ -81,9 +82,9 @@ TEST_WITH(only_the_rows_of_a_mark_have_to_be_there, set_up, tear_down) {
         assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
         assert_int_equal(rows.n, n_bytes < 2 ? 2 : 3);
         assert_int_equal(rows.n_counted, 4);
-        assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &found, &is_complete), STATUS_OK);
+        assert_int_equal(result_mark_check(f->arena, f->path, &mark, EFFECTIVE, &found, &is_complete), STATUS_OK);
         assert_false(is_complete);  // whatever the file says
-        assert_int_equal(result_file_continue(&result, f->path, &mark, &found, &f->values, f->school, 10), STATUS_OK);
+        assert_int_equal(result_file_continue(f->arena, &result, &origin, &mark, &found), STATUS_OK);
         assert_int_equal(append(f, result, 7, 1), STATUS_OK);
         assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
         const int file = open_to_read(f);
@@ -95,7 +96,7 @@ TEST_WITH(only_the_rows_of_a_mark_have_to_be_there, set_up, tear_down) {
         unlink(f->path);
         write_file(f, 4);
         assert_int_equal(truncate(f->path, (off_t)(rows.begin_of_rows + 2 * rows.bytes - 1)), 0);
-        assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &found, &is_complete), STATUS_FILE);
+        assert_int_equal(result_mark_check(f->arena, f->path, &mark, EFFECTIVE, &found, &is_complete), STATUS_FILE);
         assert_message("has 1 rows, but the checkpoint requires 2");
         unlink(f->path);
     }
@@ -106,10 +107,11 @@ TEST_WITH(a_file_goes_on_behind_a_mark, set_up, tear_down) {
     struct result_checksum checksum = {0};
     struct result_mark mark;
     struct result_file *result;
-    int is_complete;
+    const struct result_origin origin = origin_of(f);
+    bool is_complete;
     write_file(f, 4);
     assert_int_equal(result_mark_take(f->path, 2, &checksum, &mark), STATUS_OK);
-    assert_int_equal(result_file_continue(&result, f->path, &mark, &checksum, &f->values, f->school, 10), STATUS_OK);
+    assert_int_equal(result_file_continue(f->arena, &result, &origin, &mark, &checksum), STATUS_OK);
     struct netcdf_rows rows;
     assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
     assert_int_equal(rows.n, 2);
@@ -120,7 +122,7 @@ TEST_WITH(a_file_goes_on_behind_a_mark, set_up, tear_down) {
     struct result_checksum fresh = {0};
     assert_int_equal(result_mark_take(f->path, 3, &fresh, &whole), STATUS_OK);
     are_equal(&whole, &later);
-    assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &checksum, &is_complete), STATUS_OK);
+    assert_int_equal(result_mark_check(f->arena, f->path, &mark, EFFECTIVE, &checksum, &is_complete), STATUS_OK);
     const int file = open_to_read(f);
     assert_int_equal(length_of(file, "time"), 3);
     NEAR(value_at(file, "time", 1, 0, 0, 0), 0.5, 0, 0);
@@ -139,7 +141,11 @@ static void extend_and_compare(struct fixture *f, bool drop) {
     const double bending = value_at(before, "bending_energy", 1, 1, 0, 0);
     nc_close(before);
     const struct result_source source = {f->path, 2, drop};
-    assert_int_equal(result_file_extend(&result, &source, &f->values, EFFECTIVE, "test", f->school, 17), STATUS_OK);
+    struct result_origin origin = origin_of(f);
+    origin.overwrite = true;
+    origin.n_events = 17;
+    origin.source = &source;
+    assert_int_equal(result_file_create(f->arena, &result, &origin), STATUS_OK);
     const int still = open_to_read(f);
     assert_int_equal(length_of(still, "time"), 3);
     nc_close(still);

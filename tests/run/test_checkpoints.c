@@ -14,12 +14,9 @@ TEST(a_checkpoint_is_named_after_its_result) {
                                     {"run", "run.checkpoint"}, {"run.nc.old", "run.nc.old.checkpoint"},
                                     {".nc", ".nc.checkpoint"}, {"a/.nc", "a/.nc.checkpoint"}};
     for (int i = 0; i < 6; i++) {
-        char *const path = checkpoints_path(names[i][0]), *const previous = checkpoints_previous(path);
-        assert_string_equal(path, names[i][1]);
-        assert_int_equal(strncmp(previous, path, strlen(path)), 0);
-        assert_string_equal(previous + strlen(path), ".previous");
-        free(path);
-        free(previous);
+        struct arena *const arena = arena_create(NULL, "a test");
+        assert_string_equal(checkpoints_path(arena, names[i][0]), names[i][1]);
+        arena_free(arena);
     }
 }
 
@@ -27,21 +24,22 @@ TEST(checkpoints_are_due_at_the_interval_and_where_they_are_asked_for) {
     struct case_values values;
     struct checkpoints checkpoints;
     school_settings(&values, SCHOOL);
-    school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", "0,0.06,0.2,1"));
+    school_ok(checkpoints_create(arena_create(NULL, "a test"), &checkpoints, &values, "/tmp/no-such-result.nc",
+                                 "0,0.06,0.2,1"));
     for (long event = 0; event <= 50; event++) {
         const int want = (event > 0 && event % 10 == 0) || event == 0 || event == 3;
         assert_int_equal(checkpoints_are_due(&checkpoints, event), want);
     }
-    checkpoints_free(&checkpoints);
-    school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", NULL));
+    arena_free(checkpoints.arena);
+    school_ok(checkpoints_create(arena_create(NULL, "a test"), &checkpoints, &values, "/tmp/no-such-result.nc", NULL));
     for (long event = 0; event <= 50; event++) {
         assert_int_equal(checkpoints_are_due(&checkpoints, event), event > 0 && event % 10 == 0);
     }
-    checkpoints_free(&checkpoints);
+    arena_free(checkpoints.arena);
     values.time.checkpoint_interval = 0;
-    school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", NULL));
+    school_ok(checkpoints_create(arena_create(NULL, "a test"), &checkpoints, &values, "/tmp/no-such-result.nc", NULL));
     for (long event = 0; event <= 50; event++) assert_int_equal(checkpoints_are_due(&checkpoints, event), 0);
-    checkpoints_free(&checkpoints);
+    arena_free(checkpoints.arena);
     case_free(&values);
 }
 
@@ -51,9 +49,11 @@ TEST(times_that_no_event_has_are_refused) {
     struct checkpoints checkpoints;
     school_settings(&values, SCHOOL);
     for (int i = 0; i < 7; i++) {
-        assert_int_equal(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", wrong[i]), STATUS_CASE);
+        assert_int_equal(
+            checkpoints_create(arena_create(NULL, "a test"), &checkpoints, &values, "/tmp/no-such-result.nc", wrong[i]),
+            STATUS_CASE);
         if (!strstr(status_message(), "is not the time of an event")) fail_msg("%s", status_message());
-        checkpoints_free(&checkpoints);
+        arena_free(checkpoints.arena);
     }
     case_free(&values);
 }
@@ -66,12 +66,15 @@ TEST(times_may_be_rounded_but_not_wrong) {
     struct checkpoints checkpoints;
     school_settings(&values, SCHOOL);
     for (int i = 0; i < 3; i++) {
-        school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", right[i]));
+        school_ok(checkpoints_create(arena_create(NULL, "a test"), &checkpoints, &values, "/tmp/no-such-result.nc",
+                                     right[i]));
         assert_int_equal(checkpoints.n_at, 1);
         assert_int_equal(checkpoints.at[0], 3);
-        checkpoints_free(&checkpoints);
-        assert_int_equal(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", wrong[i]), STATUS_CASE);
-        checkpoints_free(&checkpoints);
+        arena_free(checkpoints.arena);
+        assert_int_equal(
+            checkpoints_create(arena_create(NULL, "a test"), &checkpoints, &values, "/tmp/no-such-result.nc", wrong[i]),
+            STATUS_CASE);
+        arena_free(checkpoints.arena);
     }
     case_free(&values);
 }
@@ -82,31 +85,30 @@ TEST(a_run_that_is_resumed_keeps_its_places_and_writes_none_twice) {
     struct checkpoint from = {.places = "0.06,0.1", .effective = "the case"};
     school_settings(&values, SCHOOL);
     for (int with_other_end = 0; with_other_end < 2; with_other_end++) {
-        school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", NULL));
-        school_ok(checkpoints_resume(&checkpoints, &from, 5, with_other_end));
-        assert_string_equal(checkpoints.places.text, "0.06,0.1");
+        school_ok(
+            checkpoints_create(arena_create(NULL, "a test"), &checkpoints, &values, "/tmp/no-such-result.nc", NULL));
+        checkpoints_resume(&checkpoints, &from, 5, with_other_end);
+        assert_string_equal(checkpoints.places, "0.06,0.1");
         assert_int_equal(checkpoints.last_place, 5);
         assert_int_equal(checkpoints.last, with_other_end ? -1 : 5);
         assert_int_equal(strcmp(checkpoints.effective, "the case") == 0, !with_other_end);
-        checkpoints_free(&checkpoints);
+        arena_free(checkpoints.arena);
     }
     case_free(&values);
 }
 
-TEST(the_one_before_the_newest_takes_its_name) {
+TEST(the_files_of_an_earlier_run_are_removed) {
     struct case_values values;
     struct checkpoints checkpoints;
     char folder[] = "/tmp/test_checkpoints_XXXXXX", result[64];
     assert_non_null(mkdtemp(folder));
     snprintf(result, sizeof result, "%s/run.nc", folder);
     school_settings(&values, SCHOOL);
-    school_ok(checkpoints_create(&checkpoints, &values, result, NULL));
+    school_ok(checkpoints_create(arena_create(NULL, "a test"), &checkpoints, &values, result, NULL));
+    fclose(fopen(checkpoints.path, "w"));
     fclose(fopen(checkpoints.previous, "w"));
-    checkpoints_fall_back(&checkpoints);
-    assert_int_equal(access(checkpoints.path, F_OK), 0);
-    assert_int_not_equal(access(checkpoints.previous, F_OK), 0);
     checkpoints_remove(&checkpoints);
-    checkpoints_free(&checkpoints);
+    arena_free(checkpoints.arena);
     case_free(&values);
     assert_int_equal(rmdir(folder), 0);
 }

@@ -226,6 +226,15 @@ TEST(notes_of_a_run_count_the_vortices_of_all_fish) {
     free(none);
 }
 
+/* The checkpoint of a result, with an ending. */
+static const char *checkpoint_of(const char *result, const char *ending) {
+    static char path[128];
+    struct arena *const arena = arena_create(NULL, "a test");
+    snprintf(path, sizeof path, "%s%s", checkpoints_path(arena, result), ending);
+    arena_free(arena);
+    return path;
+}
+
 TEST(the_times_of_checkpoints_are_a_list_in_the_result) {
     const char *const path = *state;
     const struct simulate_options options = {
@@ -234,11 +243,8 @@ TEST(the_times_of_checkpoints_are_a_list_in_the_result) {
     char *const text = read_attribute(path, "checkpoint_at");
     assert_string_equal(text, "0.04,0.1,0.5");
     free(text);
-    char *const checkpoint = checkpoints_path(path), *const previous = checkpoints_previous(checkpoint);
-    unlink(checkpoint);
-    unlink(previous);
-    free(checkpoint);
-    free(previous);
+    unlink(checkpoint_of(path, ""));
+    unlink(checkpoint_of(path, ".previous"));
 }
 
 TEST(a_run_tells_its_progress_at_every_event) {
@@ -297,8 +303,9 @@ TEST(a_signal_stops_a_run_at_the_next_event) {
 
 TEST(a_result_with_only_the_previous_checkpoint_is_unfinished_too) {
     const char *const text = TIME "fish: [{}]\n";
-    char *const path = checkpoints_path(*state), *const previous = path ? checkpoints_previous(path) : NULL;
-    assert_non_null(previous);
+    char path[128], previous[128];
+    strcpy(path, checkpoint_of(*state, ""));
+    strcpy(previous, checkpoint_of(*state, ".previous"));
     struct simulate_options options = {.path = *state,
                                        .overwrite = 1,
                                        .command = "test",
@@ -319,8 +326,6 @@ TEST(a_result_with_only_the_previous_checkpoint_is_unfinished_too) {
     run_into(text, &options, STATUS_FILE);
     assert_null(strstr(status_message(), "unfinished"));
     assert_non_null(strstr(status_message(), "exists"));
-    free(previous);
-    free(path);
 }
 
 static double wall_time, first_resumed;
@@ -337,7 +342,7 @@ static void note_the_first(const struct simulate_progress *progress, void *data)
 }
 
 TEST(wall_time_of_a_resumed_run_continues) {
-    char *const path = checkpoints_path(*state);
+    const char *const path = checkpoint_of(*state, "");
     struct simulate_options options = {
         .path = *state, .overwrite = 1, .command = "test", .progress = take_a_tenth_of_a_second, .stop = &stop};
     stop = 0;
@@ -347,7 +352,6 @@ TEST(wall_time_of_a_resumed_run_continues) {
     options.progress = note_the_first;
     school_ok(simulate_resume(path, &(struct simulate_changes){0}, &options));
     ABOVE(first_resumed, 0.1);
-    free(path);
 }
 
 // number of the KINSOL call, from 0, at which a signal arrives; -1: no signal
@@ -362,8 +366,7 @@ int __wrap_KINSol(void *kinsol, N_Vector solution, int strategy, N_Vector soluti
 
 TEST(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one) {
     static const char text[] = TIME "wake: {shedding: impulsive}\nfish: [{}]\n";
-    char *const path = checkpoints_path(*state);
-    assert_non_null(path);
+    const char *const path = checkpoint_of(*state, "");
     struct simulation *const undisturbed = school_simulation(text);
     // three solutions at the start, two at each event: in the first and in the second one of the third and fourth event
     for (int event = 2; event <= 3; event++) {
@@ -374,20 +377,19 @@ TEST(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one) {
         run_into(text, &options, STATUS_STOPPED);
         n_until_signal = -1;
         struct checkpoint checkpoint;
-        school_ok(checkpoint_read(&checkpoint, path));
+        struct arena *const arena = arena_create(NULL, "a test");
+        school_ok(checkpoint_read(arena, &checkpoint, path));
         NEAR(checkpoint.t, undisturbed->state->t, 0, 0);
         assert_memory_equal(&checkpoint.totals, &undisturbed->totals, sizeof checkpoint.totals);
-        checkpoint_free(&checkpoint);
+        arena_free(arena);
         assert_int_equal(unlink(path), 0);
     }
     simulate_free(undisturbed);
-    free(path);
 }
 
 TEST(a_signal_during_the_start_leaves_nothing) {
     const struct simulate_options options = {.path = *state, .overwrite = 1, .command = "test", .stop = &stop};
-    char *const path = checkpoints_path(*state);
-    assert_non_null(path);
+    const char *const path = checkpoint_of(*state, "");
     unlink(path);
     stop = 0;
     n_until_signal = 1;
@@ -395,7 +397,6 @@ TEST(a_signal_during_the_start_leaves_nothing) {
     n_until_signal = -1;
     assert_non_null(strstr(status_message(), "stopped by a signal during the event at t = 0"));
     assert_int_equal(access(path, F_OK), -1);
-    free(path);
 }
 
 TEST(a_failing_run_says_when_and_keeps_its_file) {
@@ -452,9 +453,7 @@ static int make_path(void **state) {
 }
 
 static int remove_path(void **state) {
-    char *const checkpoint = checkpoints_path(*state);
-    if (checkpoint) unlink(checkpoint);
-    free(checkpoint);
+    unlink(checkpoint_of(*state, ""));
     return unlink(*state);
 }
 

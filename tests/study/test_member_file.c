@@ -76,9 +76,7 @@ TEST_WITH(a_steady_state_has_its_own_values, set_up, tear_down) {
     struct member_file member;
     struct steady_fish fish[N_FISH] = {{.drag = 3, .force = {4, 5}}, {.drag = 6, .force = {7, 8}}};
     const struct steady_values values = {.stiffness = 0.5, .fish = fish};
-    assert_int_equal(
-        result_file_create_steady(&file, f->path, 0, &f->values, EFFECTIVE, "shoal steady case.yaml", f->school, 10),
-        STATUS_OK);
+    assert_int_equal(begin(f, false, true, &file), STATUS_OK);
     assert_int_equal(append(f, file, 0, 0), STATUS_OK);
     result_file_steady(file, f->school, &values);
     assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);
@@ -101,9 +99,7 @@ TEST_WITH(beats_of_a_search_are_those_of_search_multipliers_and_rows, set_up, te
     struct member_file member;
     struct steady_fish fish[N_FISH] = {{.drag = 3}, {.drag = 6}};
     const struct steady_values values = {.n_beats = 5, .n_multiplier_beats = 7, .fish = fish};
-    assert_int_equal(
-        result_file_create_steady(&file, f->path, 0, &f->values, EFFECTIVE, "shoal steady case.yaml", f->school, 10),
-        STATUS_OK);
+    assert_int_equal(begin(f, false, true, &file), STATUS_OK);
     for (int i = 0; i < 2; i++) assert_int_equal(append(f, file, 3 + 0.75 * i, 0), STATUS_OK);
     result_file_steady(file, f->school, &values);
     assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);

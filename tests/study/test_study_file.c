@@ -310,10 +310,19 @@ static enum status gather_small(const struct attempt *attempt) {
     return study_gather(attempt->folder, "test", 0, attempt->nowhere, attempt->nowhere);
 }
 
+static enum status inform_in_bounds(struct arena **arena, const char *path, FILE *stream) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    *arena = arena_create(NULL, "a test");
+    return study_info(*arena, path, stream);
+}
+
 static enum status inform_of_small(const struct attempt *attempt) {
     char path[80];
     snprintf(path, sizeof path, "%s/study.nc", attempt->folder);
-    return study_info(path, attempt->nowhere);
+    struct arena *arena = NULL;
+    const enum status status = inform_in_bounds(&arena, path, attempt->nowhere);
+    arena_free(arena);
+    return status;
 }
 
 static enum status write_jobs_of_small(const struct attempt *attempt) {
