@@ -99,7 +99,7 @@ def case_of(study, member, refined):
     return ", ".join(f"{v.long_name.split('.')[-1]} {text}" for v, text in zip(others, texts))
 
 
-LEAST_PART, MOST_ABOVE = 0.5, 0.5  # accepted orders, over and above the design order: src/study/error_budget.c
+LEAST_PART, MOST_ABOVE = 0.5, 0.5  # accepted orders, over and above the design order: src/study/convergence.c
 
 
 def draw_design(axes, size, drawn, design):

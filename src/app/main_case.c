@@ -14,7 +14,6 @@
 #include "result/target.h"
 #include "school/warnings.h"
 #include "study/study_file.h"
-#include "study/study_gather.h"
 #include "view/field_file.h"
 
 /* Row i of the list of warnings about a result. */

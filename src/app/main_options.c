@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "study/study_gather.h"
+#include "study/compare.h"
 
 /* One option: its names, the word for the argument (NULL: none), and the meaning (NULL: struct command has the
  * meaning). */
@@ -92,7 +92,7 @@ static void print_wrapped(const char *sentence, FILE *stream) {
 /* Write the meaning of an option of a command; the caller frees *meaning. */
 static void write_meaning(const struct command *command, const struct option_help *option, struct text *meaning) {
     text_add(meaning, "%s", option->meaning ? option->meaning : command->output);
-    if (option->code == OPTION_METHODS) study_compare_words(meaning);
+    if (option->code == OPTION_METHODS) compare_words(meaning);
 }
 
 void main_print_help(const struct command *command, FILE *stream) {

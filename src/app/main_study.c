@@ -12,9 +12,10 @@
 #include "case/case.h"
 #include "case/sweep_error.h"
 #include "result/target.h"
+#include "study/compare.h"
 #include "study/error_plan.h"
 #include "study/study.h"
-#include "study/study_gather.h"
+#include "study/study_file.h"
 
 // ---- study, error, gather
 
@@ -130,22 +131,17 @@ static enum status run_errors(const struct case_values *values, const struct req
             study_errors(values, &options, 0, request->strict, report.tables.stream, report.warnings.stream));
     }
 
-    struct error_study study;
-    enum status status = error_plan_create(&study, values);
-
-    if (status == STATUS_OK) {
-        status = request->slurm ? study_slurm(&study.study, folder, bundle, stdout)
-                                : run_study(&study.study, request, folder);
-    }
-
-    error_plan_free(&study);
-    return status;
+    struct error_sweep *sweep;
+    TRY(error_plan_create(request->arena, &sweep, values));
+    return request->slurm ? study_slurm(request->arena, &sweep->study, folder, bundle, stdout)
+                          : run_study(&sweep->study, request, folder);
 }
 
-static enum status write_scripts(const struct case_values *values, const char *folder, int bundle) {
+static enum status write_scripts(struct arena *arena, const struct case_values *values, const char *folder,
+                                 int bundle) {
     struct say_page page;
     TRY(say_begin(&page));
-    return say_end(&page, stdout, study_slurm(values, folder, bundle, page.stream));
+    return say_end(&page, stdout, study_slurm(arena, values, folder, bundle, page.stream));
 }
 
 static enum status study_run_in_folder(const struct case_values *values, const struct request *request,
@@ -162,7 +158,7 @@ static enum status study_run_in_folder(const struct case_values *values, const s
     if (request->plan) {
         return status_fail(STATUS_CASE, "--plan: the case has no `error`; `shoal check` estimates a sweep");
     }
-    return request->slurm ? write_scripts(values, place, bundle) : run_study(values, request, place);
+    return request->slurm ? write_scripts(request->arena, values, place, bundle) : run_study(values, request, place);
 }
 
 enum status main_study(const struct request *request) {
@@ -236,7 +232,7 @@ enum status main_gather(const struct request *request) {
 // ---- compare
 
 static enum status run_comparison(const struct case_values *values, const struct request *request,
-                                  const struct study_compare_options *options, double limit) {
+                                  const struct compare_options *options, double limit) {
     struct progress progress;
     say_progress_start(&progress);
     const struct study_options run = {.command = request->command_line,
@@ -253,11 +249,11 @@ static enum status run_comparison(const struct case_values *values, const struct
 }
 
 enum status main_compare(const struct request *request) {
-    struct study_compare_options options = {.methods = request->methods,
-                                            .rtols = request->rtols,
-                                            .steps = request->steps,
-                                            .repeats = 3,
-                                            .path = request->output};
+    struct compare_options options = {.methods = request->methods,
+                                      .rtols = request->rtols,
+                                      .steps = request->steps,
+                                      .repeats = 3,
+                                      .path = request->output};
     double limit;
     if (request->repeats) TRY(read_count("--repeats", request->repeats, &options.repeats));
     TRY(study_read_number("--reference-rtol", request->reference_rtol, 1e-9, &options.reference_rtol));

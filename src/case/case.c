@@ -316,9 +316,9 @@ enum status case_member(struct case_values *values, const struct case_values *st
     int n_keys = 0, n = 0;
     for (int a = 0; a < study->n_axes; a++) n_keys += study->sweep[a].n_keys;
     char **assignments;
-    TRY(MEMORY_NEW(assignments, n_keys + 1, "the values of a member"));
+    TRY(MEMORY_NEW(assignments, n_keys + 2, "the values of a member"));
 
-    // the assignments of the member, and one that removes the sweep or the errors
+    // the assignments of the member, and two that remove the sweep and the errors
     enum status status = STATUS_OK;
     for (int a = 0; a < study->n_axes; a++) {
         const int value = sweep_member_value(study, member, a);
@@ -328,8 +328,9 @@ enum status case_member(struct case_values *values, const struct case_values *st
             status = text_take(&text, &assignments[n++], "the values of a member");
         }
     }
-    if (status == STATUS_OK) {
-        const char *const no_study = study->error ? "error=none" : "sweep=[]";
+    for (int i = 0; i < 2 && status == STATUS_OK; i++) {
+        const char *const no_study = i == 0 ? "sweep=[]" : "error=none";
+        if (i == 1 && !study->error) break;
         status = memory_copy_string(&assignments[n++], no_study, "the values of a member");
     }
 

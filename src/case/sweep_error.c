@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "case/sweep.h"
 
 /* The table that studies of convergence, error bars and doc/studies.md share. */
 const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS] = {
@@ -161,12 +162,18 @@ enum status sweep_error_read(struct case_values *values, const struct yaml_node 
         return STATUS_OK;
     }
 
-    if (values->n_axes > 0) yaml_errors_add(errors, map->mark, "error: replaces a sweep: remove error or sweep");
     yaml_tree_check_keys(map, "error", "of, within, keys, confirm, most", errors);
     TRY(MEMORY_NEW(values->error, 1, "the errors of a study"));
     struct sweep_error *const error = values->error;
     error->within = yaml_tree_positive(map, "error", "within", NAN, errors);
     error->most = yaml_tree_positive(map, "error", "most", SWEEP_ERROR_MOST, errors);
+    if (values->n_axes > 0 && !isnan(error->within)) {
+        yaml_errors_add(errors, map->mark, "error.within: refines one case: remove within or sweep");
+    }
+    for (int a = 0; a < values->n_axes; a++) {
+        if (!values->sweep[a].refine) continue;
+        yaml_errors_add(errors, map->mark, "error: replaces the refined axis sweep[%d]: remove error or refine", a);
+    }
     const struct yaml_node *const of = yaml_tree_find(map, "of"), *const keys = yaml_tree_find(map, "keys"),
                                   *const confirm = yaml_tree_find(map, "confirm");
     if (!of) yaml_errors_add(errors, map->mark, "error.of: is required: a quantity, or a list of quantities");

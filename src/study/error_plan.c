@@ -2,119 +2,100 @@
 #include "study/error_plan.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/text.h"
-#include "case/case.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
 #include "fish/fish_school.h"
 #include "school/warnings.h"
 #include "steady/steady_problem.h"
-
-static const char what[] = "the errors of a study"; /* in messages on memory */
+#include "study/study_folder.h"
 
 int error_plan_place(const struct error_study *study, int quantity, int fish) {
     return quantity * study->n_fish + fish;
 }
 
-void error_plan_free(struct error_study *study) {
-    for (int k = 0; k < study->n_keys; k++) free(study->key[k].part);
-    free(study->value);
-    free(study->error);
-    free(study->together);
-    case_free(&study->study);
-    *study = (struct error_study){0};
-}
-
 // ---- columns: the keys that every member sets
-
-static struct sweep_axis *axis_of(const struct error_study *study) {
-    return &study->study.sweep[0];
-}
 
 /* The number of fish, or 1 for a key of the whole case. */
 static int n_owners(const struct case_values *values, const char *path) {
     return case_table_is_of_fish(case_table_row(path)) ? values->school.n_fish : 1;
 }
 
-/* The field of a key; fish is ignored unless the key is of a fish. */
-static const void *field_of(const struct case_values *values, const char *path, int fish) {
-    return case_table_field(case_table_row(path), (struct case_values *)(uintptr_t)values, &values->school.fish[fish]);
-}
-
-/* Whether the case gives the value of a key as a duration in beats. */
-static int is_in_beats(const struct case_values *values, const char *path) {
-    if (case_table_row(path)->type != DURATION) return 0;
-    return !isnan(((const struct duration *)field_of(values, path, 0))->beats);
-}
-
-/* The value of a key, in beats if the case gives a duration in beats. */
+/* The value of a key, in beats if the case gives a duration in beats. fish is ignored unless the key is of a fish. */
 static double plan_number_of(const struct case_values *values, const char *path, int fish) {
     const struct key *const key = case_table_row(path);
-    const void *const field = field_of(values, path, fish);
-    if (is_in_beats(values, path)) return ((const struct duration *)field)->beats;
+    const void *const field =
+        case_table_field(key, (struct case_values *)(uintptr_t)values, &values->school.fish[fish]);
+    if (key->type == DURATION && !isnan(((const struct duration *)field)->beats)) {
+        return ((const struct duration *)field)->beats;
+    }
 
     // a duration begins with its seconds
     return key->type == REAL || key->type == DURATION ? *(const double *)field : *(const int *)field;
 }
 
-static int are_fish_alike(const struct case_values *values, const char *path) {
-    for (int f = 1; f < n_owners(values, path); f++) {
-        if (fabs(plan_number_of(values, path, f) - plan_number_of(values, path, 0)) > 0) return 0;
-    }
-    return 1;
+/* Whether the case gives the value of a key as a duration in beats. */
+static bool is_in_beats(const struct case_values *values, const char *path) {
+    const struct key *const key = case_table_row(path);
+    return key->type == DURATION && !isnan(((const struct duration *)case_table_field(
+                                                key, (struct case_values *)(uintptr_t)values, &values->school.fish[0]))
+                                               ->beats);
 }
 
 /* The text of a value, in the unit of plan_number_of. */
-static char *text_of(const struct case_values *values, const struct key *key, double value) {
+static char *text_of(const struct error_study *study, const struct key *key, double value) {
+    struct arena *const arena = study->sweep->arena;
+    if (key->type == CHOICE) return arena_text(arena, "%s", key->words[(int)value]);
     struct text text = {0};
-    if (key->type == CHOICE) {
-        text_add(&text, "%s", key->words[(int)value]);
-    } else {
-        text_add_number(&text, value);
-        text_add(&text, "%s", is_in_beats(values, key->path) ? " beats" : "");
-    }
+    text_add_number(&text, value);
+    text_add(&text, "%s", is_in_beats(study->values, key->path) ? " beats" : "");
+    arena_defer(arena, free, arena_take(arena, text.text));
     return text.text;
-}
-
-/* Add a key to the axis, per fish if the fish differ, with the value of the case in row 0. */
-static enum status add_columns(struct error_study *study, const struct case_values *values, const char *path) {
-    struct sweep_axis *const axis = axis_of(study);
-    const struct key *const key = case_table_row(path);
-    const int are_alike = are_fish_alike(values, path), n = are_alike ? 1 : n_owners(values, path);
-    TRY(MEMORY_RESIZE(axis->key, axis->n_keys + n, what));
-    TRY(MEMORY_RESIZE(axis->value, axis->n_keys + n, what));
-
-    for (int f = 0; f < n; f++) {
-        // "fish[*].nodes", or "fish[2].nodes" if the fish differ
-        struct text text = {0};
-        if (!case_table_is_of_fish(key)) {
-            text_add(&text, "%s", path);
-        } else if (are_alike) {
-            text_add(&text, "fish[*]%s", path + 4);
-        } else {
-            text_add(&text, "fish[%d]%s", f, path + 4);
-        }
-        axis->value[axis->n_keys] = text_of(values, key, plan_number_of(values, path, f));
-        axis->key[axis->n_keys++] = (struct sweep_key){
-            .path = text.text, .row = key->path, .unit = key->unit, .is_number = key->type != CHOICE};
-        if (!axis->value[axis->n_keys - 1] || !text.text) return memory_check(NULL, what);
-    }
-
-    return STATUS_OK;
 }
 
 // the columns of further fish follow
 int error_plan_column(const struct error_study *study, const char *path) {
-    const struct sweep_axis *const axis = axis_of(study);
-    for (int c = 0; c < axis->n_keys; c++) {
+    const struct sweep_axis *const axis = &study->study->sweep[0];
+    for (int c = study->sweep->n_swept; c < axis->n_keys; c++) {
         if (strcmp(axis->key[c].row, path) == 0) return c;
     }
     return -1;
+}
+
+/* Whether a column of the axis is of all fish: the fish have equal values at every point. */
+static bool is_of_all_fish(const struct error_sweep *sweep, const char *path) {
+    for (int p = 0; p < sweep->n_points; p++) {
+        const struct case_values *const values = sweep->point[p].values;
+        for (int f = 1; f < n_owners(values, path); f++) {
+            if (fabs(plan_number_of(values, path, f) - plan_number_of(values, path, 0)) > 0) return false;
+        }
+    }
+    return true;
+}
+
+/* Add a key to the axis, per fish if the fish differ: "fish[*].nodes", or "fish[2].nodes". */
+static void add_columns(struct error_sweep *sweep, const char *path) {
+    struct arena *const arena = sweep->arena;
+    struct sweep_axis *const axis = &sweep->study.sweep[0];
+    const struct key *const key = case_table_row(path);
+    const bool is_of_all = is_of_all_fish(sweep, path);
+    const int n = is_of_all ? 1 : n_owners(&sweep->study, path);
+    if (error_plan_column(&sweep->point[0], path) >= 0) return;
+    GROW(arena, axis->key, axis->n_keys + n);
+    for (int f = 0; f < n; f++) {
+        axis->key[axis->n_keys++] =
+            (struct sweep_key){.path = !case_table_is_of_fish(key) ? arena_text(arena, "%s", path)
+                                       : is_of_all                 ? arena_text(arena, "fish[*]%s", path + 4)
+                                                                   : arena_text(arena, "fish[%d]%s", f, path + 4),
+                               .row = key->path,
+                               .unit = key->unit,
+                               .is_number = key->type != CHOICE};
+    }
 }
 
 // ---- rows: the members
@@ -122,38 +103,49 @@ int error_plan_column(const struct error_study *study, const char *path) {
 /* A new row of the axis. */
 struct row {
     const struct error_study *study;
-    char **value;    /* (n_keys of the axis) */
-    int is_combined; /* several keys are refined */
-    int failed;
+    char **value;     /* (n_keys of the axis) */
+    bool is_combined; /* several keys are refined */
 };
 
-static void row_set(struct row *row, const char *path, int fish, double value) {
-    const int column = error_plan_column(row->study, path);
+static void row_set(const struct row *row, const char *path, int fish, double value) {
+    const struct error_study *const study = row->study;
+    const int column = error_plan_column(study, path);
     if (column < 0) return;
-    const int c = are_fish_alike(&row->study->study, path) ? column : column + fish;
+    const int c = is_of_all_fish(study->sweep, path) ? column : column + fish;
 
     // if two refined keys set the same points, the finer value counts
     double now;
-    const int are_points = strcmp(path, "fish.sheet_points") == 0;
+    const bool are_points = strcmp(path, "fish.sheet_points") == 0;
     if (row->is_combined && are_points && text_number(row->value[c], &now) && now > value) return;
-    free(row->value[c]);
-    row->value[c] = text_of(&row->study->study, case_table_row(path), value);
-    if (!row->value[c]) row->failed = 1;
+    row->value[c] = text_of(study, case_table_row(path), value);
 }
 
-/* The sheet points of a fish for the finest level of the nodes; all levels of the nodes use the same sheet. */
-static double sheet_for(const struct error_study *study, double finest, int f) {
-    const struct case_values *const values = &study->study;
-    const double part = fmax(1, finest / plan_number_of(values, "fish.nodes", 0));
-    const double nodes = round(part * plan_number_of(values, "fish.nodes", f));
-    return fmax(plan_number_of(values, "fish.sheet_points", f), 2 * nodes - 1);
-}
+static void row_apply(const struct row *row, const struct error_plan_change *change) {
+    const struct error_study *const study = row->study;
+    const struct case_values *const values = study->values;
+    const struct error_study_key *const key = &study->key[change->key];
+    const char *const path = key->row->path, *const companion = key->row->companion;
+    const double part = change->value / plan_number_of(values, path, 0);
+    const bool are_nodes = strcmp(path, "fish.nodes") == 0;
+    if (!are_nodes && !(fabs(part - 1) > 1e-12)) return;
 
-/* Set the times that must be multiples of the interval; the end time has no effect on a steady state. */
-static void set_times(struct row *row, double interval) {
-    const struct case_values *const values = &row->study->study;
-    const double beat = row->study->beat;
-    if (row->study->is_steady && beat > 0) row_set(row, "time.end", 0, beat * ceil(values->time.end / beat - 1e-9));
+    // all levels of the nodes use the sheet of the finest level
+    const double finest = fmax(change->value, key->n_levels > 0 ? key->value[0] : 0);
+    const double nodes_part = fmax(1, finest / plan_number_of(values, "fish.nodes", 0));
+    for (int f = 0; f < n_owners(values, path); f++) {
+        const double value = f == 0 ? change->value : part * plan_number_of(values, path, f);
+        row_set(row, path, f, key->row->kind == SWEEP_POINTS ? round(value) : value);
+        if (!are_nodes) continue;
+        const double nodes = round(nodes_part * plan_number_of(values, "fish.nodes", f));
+        row_set(row, "fish.sheet_points", f, fmax(plan_number_of(values, "fish.sheet_points", f), 2 * nodes - 1));
+    }
+
+    if (companion) row_set(row, companion, 0, part * plan_number_of(values, companion, 0));
+    if (strcmp(path, "time.shedding_interval") != 0) return;
+
+    // times that must be multiples of the interval; the end time has no effect on a steady state
+    const double interval = change->value, beat = study->beat;
+    if (study->is_steady && beat > 0) row_set(row, "time.end", 0, beat * ceil(values->time.end / beat - 1e-9));
     row_set(row, "time.checkpoint_interval", 0, 0);
     const double output = interval * fmax(1, round(values->time.output_interval / interval));
     row_set(row, "time.output_interval", 0, output);
@@ -161,128 +153,79 @@ static void set_times(struct row *row, double interval) {
     if (values->solver.step > 0) row_set(row, "solver.step", 0, interval / ceil(interval / values->solver.step - 1e-9));
 }
 
-static void row_apply(struct row *row, const struct error_plan_change *change) {
-    const struct error_study *const study = row->study;
-    const struct case_values *const values = &study->study;
-    const struct error_study_key *const key = &study->key[change->key];
-    const char *const path = key->row->path, *const companion = key->row->companion;
-    const double part = change->value / plan_number_of(values, path, 0);
-    const int are_nodes = strcmp(path, "fish.nodes") == 0;
-
-    if (!are_nodes && !(fabs(part - 1) > 1e-12)) return;
-    for (int f = 0; f < n_owners(values, path); f++) {
-        const double value = f == 0 ? change->value : part * plan_number_of(values, path, f);
-        row_set(row, path, f, key->row->kind == SWEEP_POINTS ? round(value) : value);
-        if (!are_nodes) continue;
-        const double finest = fmax(change->value, key->n_levels > 0 ? key->value[0] : 0);
-        row_set(row, "fish.sheet_points", f, sheet_for(study, finest, f));
-    }
-
-    if (companion) row_set(row, companion, 0, part * plan_number_of(values, companion, 0));
-    if (strcmp(path, "time.shedding_interval") == 0) set_times(row, change->value);
-}
-
-/* Free a row outside the axis. */
-static void row_free(struct row *row) {
-    for (int c = 0; row->value && c < axis_of(row->study)->n_keys; c++) free(row->value[c]);
-    free(row->value);
-}
-
 /* Whether a quantity of the modes of small disturbances is requested. */
-static int asks_for_modes(const struct error_study *study) {
+static bool asks_for_modes(const struct error_study *study) {
     for (int q = 0; q < study->n_asked; q++) {
-        if (strncmp(member_file_quantity(study->quantity[q])->name, "steady_growth", 13) == 0) return 1;
+        if (strncmp(member_file_quantity(study->quantity[q])->name, "steady_growth", 13) == 0) return true;
     }
-    return 0;
+    return false;
 }
 
-/* The row of the case with some changes. */
-static enum status make_row(const struct error_study *study, int n, const struct error_plan_change *changes,
-                            struct row *row) {
-    const struct sweep_axis *const axis = axis_of(study);
-    *row = (struct row){study, NULL, n > 1, 0};
-    TRY(MEMORY_NEW(row->value, axis->n_keys, what));
-    for (int c = 0; c < axis->n_keys; c++) {
-        row->value[c] = strdup(axis->value[c]);
-        if (!row->value[c]) row->failed = 1;
-    }
+/* The row of the case of a point with some changes. */
+static struct row make_row(const struct error_study *study, int n, const struct error_plan_change *changes) {
+    const struct sweep_axis *const axis = &study->study->sweep[0];
+    struct row row = {study, NULL, n > 1};
+    NEW(study->sweep->arena, row.value, axis->n_keys);
+    memcpy(row.value, axis->value + (size_t)study->base * (size_t)axis->n_keys,
+           (size_t)axis->n_keys * sizeof *row.value);
 
     // only the case itself has multipliers, unless all members need multipliers
-    if (!asks_for_modes(study)) row_set(row, "steady.multipliers", 0, NO);
-    for (int i = 0; i < n; i++) row_apply(row, &changes[i]);
-    if (!row->failed) return STATUS_OK;
-
-    row_free(row);
-    return memory_check(NULL, what);
+    if (!asks_for_modes(study)) row_set(&row, "steady.multipliers", 0, NO);
+    for (int i = 0; i < n; i++) row_apply(&row, &changes[i]);
+    return row;
 }
 
-/* The member with the values of a row, except for multipliers; -1: none. */
-static int plan_find_row(const struct error_study *study, const struct row *row) {
-    const struct sweep_axis *const axis = axis_of(study);
+/* Append a row to the axis; the search of the member starts from the member before. Returns the member. */
+static int row_append(struct error_sweep *sweep, char *const *value, int before) {
+    struct sweep_axis *const axis = &sweep->study.sweep[0];
+    const size_t n = (size_t)axis->n_keys, m = (size_t)axis->n_values;
+    GROW(sweep->arena, axis->value, n * (m + 1));
+    GROW(sweep->arena, axis->before, m + 1);
+    memcpy(axis->value + n * m, value, n * sizeof *axis->value);
+    axis->before[m] = before;
+    return axis->n_values++;
+}
+
+int error_plan_member(struct error_study *study, int n, const struct error_plan_change *changes, int before,
+                      bool *is_new) {
+    const struct sweep_axis *const axis = &study->study->sweep[0];
     const int ignored = error_plan_column(study, "steady.multipliers");
+    const struct row row = make_row(study, n, changes);
+
+    // a member with the same values, except for multipliers
+    *is_new = false;
     for (int m = 0; m < axis->n_values; m++) {
-        int is_same = 1;
+        bool is_same = true;
         for (int c = 0; c < axis->n_keys && is_same; c++) {
-            is_same = c == ignored || strcmp(axis->value[m * axis->n_keys + c], row->value[c]) == 0;
+            is_same = c == ignored || strcmp(axis->value[m * axis->n_keys + c], row.value[c]) == 0;
         }
         if (is_same) return m;
     }
-    return -1;
+
+    *is_new = true;
+    return row_append(study->sweep, row.value, before);
 }
 
-/* Append a row to the axis, which takes over the values; the search of the member starts from the member before. */
-static enum status row_append(struct error_study *study, struct row *row, int before, int *member) {
-    struct sweep_axis *const axis = axis_of(study);
-    const size_t n = (size_t)axis->n_keys, n_values = (size_t)axis->n_values + 1;
-    enum status status = MEMORY_RESIZE(axis->value, n * n_values, what);
-    if (status == STATUS_OK) status = MEMORY_RESIZE(axis->before, n_values, what);
-    if (status != STATUS_OK) {
-        row_free(row);
-        return status;
-    }
-
-    memcpy(axis->value + n * (n_values - 1), row->value, n * sizeof *axis->value);
-    axis->before[n_values - 1] = before;
-    free(row->value);
-    *member = axis->n_values++;
-    return STATUS_OK;
+void error_plan_shorten(struct error_study *study, int n_members) {
+    study->study->sweep[0].n_values = n_members;
 }
 
-enum status error_plan_member(struct error_study *study, int n, const struct error_plan_change *changes, int before,
-                              int *member, int *is_new) {
-    struct row row;
-    TRY(make_row(study, n, changes, &row));
-    *member = plan_find_row(study, &row);
-    *is_new = *member < 0;
-    if (*is_new) return row_append(study, &row, before, member);
-    row_free(&row);
-    return STATUS_OK;
-}
-
-void error_plan_shorten(struct error_study *study, int n_values) {
-    struct sweep_axis *const axis = axis_of(study);
-    for (; axis->n_values > n_values; axis->n_values--) {
-        for (int c = 0; c < axis->n_keys; c++) free(axis->value[(axis->n_values - 1) * axis->n_keys + c]);
-    }
-}
-
-/* Whether a level of a key is a valid case. Fails with STATUS_MEMORY. */
-static enum status test_level(struct error_study *study, int k, double value, int *is_valid) {
-    struct row row;
-    struct case_values member;
-    int number;
-    TRY(make_row(study, 1, &(struct error_plan_change){k, value}, &row));
-    TRY(row_append(study, &row, -1, &number));
-    const enum status status = case_member(&member, &study->study, number);
-    *is_valid = status == STATUS_OK;
-    if (status == STATUS_OK) case_free(&member);
-    error_plan_shorten(study, number);
-    return status == STATUS_MEMORY ? status : STATUS_OK;
+/* Whether a level of a key is a valid case. */
+static bool is_valid_level(struct error_study *study, int k, double value) {
+    struct arena *const scratch = arena_create(study->sweep->arena, "a level of an error study");
+    struct case_values *values;
+    const struct row row = make_row(study, 1, &(struct error_plan_change){k, value});
+    const int member = row_append(study->sweep, row.value, -1);
+    const enum status status = study_folder_case(scratch, &values, study->study, member);
+    if (status == STATUS_MEMORY) arena_lack(scratch, 0);
+    error_plan_shorten(study, member);
+    arena_free(scratch);
+    return status == STATUS_OK;
 }
 
 // ---- levels
 
-static int is_finer(const struct sweep_error_key *row, double a, double b) {
+static bool is_finer(const struct sweep_error_key *row, double a, double b) {
     return row->kind == SWEEP_POINTS || row->kind == SWEEP_DURATION ? a > b : a < b;
 }
 
@@ -309,89 +252,89 @@ void error_plan_insert(struct error_study_key *key, double value) {
     if (i <= key->first_stated && key->n_levels > 1) key->first_stated++;
 }
 
-enum status error_plan_find_level(struct error_study *study, int k, double from, double factor, double *level) {
-    const struct case_values *const values = &study->study;
+double error_plan_find_level(struct error_study *study, int k, double from, double factor) {
+    const struct case_values *const values = study->values;
     const struct error_study_key *const key = &study->key[k];
-    const int is_interval = strcmp(key->row->path, "time.shedding_interval") == 0;
-    const int is_step = strcmp(key->row->path, "solver.step") == 0;
+    const bool is_interval = strcmp(key->row->path, "time.shedding_interval") == 0;
+    const bool is_step = strcmp(key->row->path, "solver.step") == 0;
     const double run = study->is_steady && study->beat > 0 ? study->beat : values->time.end;
     const double whole = is_step ? values->school.shedding_interval : run;
     const double target = is_interval || is_step ? whole / (from * factor) : from * factor;
-
-    *level = NAN;
-    int is_valid;
     if (key->row->kind != SWEEP_POINTS && !is_interval && !is_step) {
-        TRY(test_level(study, k, target, &is_valid));
-        if (is_valid) *level = target;
-        return STATUS_OK;
+        return is_valid_level(study, k, target) ? target : NAN;
     }
 
     // integers around the target
     for (int j = 0; j <= target / 4; j++) {
         for (int sign = -1; sign <= 1; sign += 2) {
             const double n = floor(target + 0.5) + sign * j, value = is_interval || is_step ? whole / n : n;
-            const int is_same = !(fabs(value - from) > 1e-9 * from);
+            const bool is_same = !(fabs(value - from) > 1e-9 * from);
             if (n < 1 || is_same || is_finer(key->row, value, from) != is_finer(key->row, from * factor, from))
                 continue;
-            TRY(test_level(study, k, value, &is_valid));
-            if (!is_valid) continue;
-            *level = value;
-            return STATUS_OK;
+            if (is_valid_level(study, k, value)) return value;
         }
         // other numbers of points or steps would be refused, too
-        if (!is_interval) return STATUS_OK;
+        if (!is_interval) return NAN;
     }
 
-    return STATUS_OK;
+    return NAN;
 }
 
-/* Add a level near from*factor; *is_there: such a level exists. */
-static enum status add_level(struct error_study *study, int k, double from, double factor, int *is_there) {
-    double level;
-    *is_there = 0;
-    if (!(factor > 0)) return STATUS_OK;
-    TRY(error_plan_find_level(study, k, from, factor, &level));
-    *is_there = !isnan(level);
-    if (*is_there) error_plan_insert(&study->key[k], level);
-    return STATUS_OK;
-}
+/* Set the levels of each key: given in the case, or of the table, which has coarser levels, and a finer level with
+ * confirm. Finer levels replace invalid coarser levels. */
+static enum status choose_levels(struct error_study *study) {
+    const struct sweep_error *const error = study->study->error;
+    for (int k = 0; k < study->n_keys; k++) {
+        struct error_study_key *const key = &study->key[k];
+        const struct sweep_error_key *const row = key->row;
+        const struct sweep_error_levels *given = NULL;
+        for (int i = 0; i < error->n_keys; i++) {
+            if (error->levels[i].key == row && error->levels[i].n > 0) given = &error->levels[i];
+        }
+        for (int i = 0; given && i < given->n; i++) {
+            if (!is_valid_level(study, k, given->value[i])) {
+                return status_fail(STATUS_CASE, "error.keys: level %g: %s", given->value[i], status_message());
+            }
+            error_plan_insert(key, given->value[i]);
+        }
 
-/* Add the levels of the table: coarser levels, and a finer level with confirm. Finer levels replace invalid coarser
- * levels. */
-static enum status add_default_levels(struct error_study *study, int k) {
-    struct error_study_key *const key = &study->key[k];
-    const struct sweep_error_key *const row = key->row;
-    const double base = key->value[0];
-    int is_there, n_missing = 0, n_finer = row->kind == SWEEP_MODEL || study->study.error->confirm;
+        // the far wake converges with the design order only after two halvings of the spacing; the other keys have four
+        // levels all the same: three would be judged by twice the largest difference
+        const double base = key->value[0];
+        int n_missing = 0, n_finer = row->kind == SWEEP_MODEL || error->confirm;
+        for (int i = 0; i < 2 && !given; i++) {
+            if (!(row->coarser[i] > 0)) continue;
+            const double level = error_plan_find_level(study, k, base, row->coarser[i]);
+            if (!isnan(level)) error_plan_insert(key, level);
+            n_missing += isnan(level);
+        }
+        n_finer = row->kind == SWEEP_DURATION ? 2 * n_finer : n_finer + n_missing;
+        for (int i = 0; i < n_finer && !given && row->finer > 0; i++) {
+            const double level = error_plan_find_level(study, k, key->value[0], row->finer);
+            if (!isnan(level)) error_plan_insert(key, level);
+        }
 
-    // the far wake converges with the design order only after two halvings of the spacing
-    if (row->kind == SWEEP_DURATION) n_finer *= 2;
-    for (int i = 0; i < 2; i++) {
-        if (!(row->coarser[i] > 0)) continue;
-        TRY(add_level(study, k, base, row->coarser[i], &is_there));
-        n_missing += !is_there;
+        if (key->n_levels > 1) continue;
+        snprintf(key->objection, CONVERGENCE_BYTES, "no other level is a valid case");
     }
 
-    // four levels all the same: three would be judged by twice the largest difference
-    if (row->kind != SWEEP_DURATION) n_finer += n_missing;
-    for (int i = 0; i < n_finer; i++) TRY(add_level(study, k, key->value[0], row->finer, &is_there));
     return STATUS_OK;
 }
 
 // ---- keys
 
 /* Whether a key affects the results of this case. */
-static int is_used(const struct error_study *study, const struct sweep_error_key *row) {
-    const struct case_values *const values = &study->study;
+static bool is_used(const struct error_study *study, const struct sweep_error_key *row) {
+    const struct case_values *const values = study->values;
     const double value = plan_number_of(values, row->path, 0);
-    const int is_wake = strncmp(row->path, "wake.", 5) == 0, has_fluid = values->school.fluid.density > 0;
+    const bool is_wake = strncmp(row->path, "wake.", 5) == 0, has_fluid = values->school.fluid.density > 0;
 
     // an equilibrium has no events, but the wake of the modes is shed at events
-    const int is_interval = strcmp(row->path, "time.shedding_interval") == 0;
+    const bool is_interval = strcmp(row->path, "time.shedding_interval") == 0;
     if (study->is_static) return row->kind == SWEEP_POINTS || (is_interval && asks_for_modes(study));
     if (strcmp(row->path, "solver.rtol") == 0) return !(values->solver.step > 0);
     if (strcmp(row->path, "solver.step") == 0) return values->solver.step > 0;
-    if (strcmp(row->path, "fish.nodes") != 0 && !has_fluid) return 0;
+    if (strcmp(row->path, "fish.nodes") != 0 && !has_fluid) return false;
     if (row->kind == SWEEP_DURATION && !study->is_steady) {
         return row->coarser[0] * values->school.wake.lifetime.seconds < values->time.end;
     }
@@ -399,50 +342,53 @@ static int is_used(const struct error_study *study, const struct sweep_error_key
     return !is_wake || value > 0;
 }
 
-/* Add all varied keys, without levels. */
+/* Add all varied keys of a point, without levels; no key of the sweep. */
 static enum status choose_keys(struct error_study *study) {
-    const struct sweep_error *const error = study->study.error;
+    const struct sweep_error *const error = study->study->error;
+    const struct sweep_axis *const axis = &study->study->sweep[0];
     for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
         const struct sweep_error_key *const row = &sweep_error_keys[i];
-        int is_wanted = error->n_keys == 0;
+        bool is_wanted = error->n_keys == 0;
         for (int k = 0; k < error->n_keys; k++) is_wanted |= error->levels[k].key == row;
-        if (!is_wanted || !is_used(study, row)) continue;
+        for (int c = 0; c < study->sweep->n_swept; c++) is_wanted &= strcmp(axis->key[c].row, row->path) != 0;
+        const bool is_local = strcmp(row->path, "fish.nodes") == 0 || strcmp(row->path, "time.shedding_interval") == 0;
+        if (!is_wanted || !is_used(study, row) || !(study->is_full || is_local)) continue;
 
         struct error_study_key *const key = &study->key[study->n_keys++];
         *key = (struct error_study_key){.row = row,
-                                        .unit = is_in_beats(&study->study, row->path) ? " beats" : "",
+                                        .unit = is_in_beats(study->values, row->path) ? " beats" : "",
                                         .n_levels = 1,
-                                        .value = {plan_number_of(&study->study, row->path, 0)},
+                                        .value = {plan_number_of(study->values, row->path, 0)},
                                         .member = {-1}};
-        TRY(MEMORY_NEW(key->part, study->n_asked * study->n_fish, what));
+        NEW(study->sweep->arena, key->part, study->n_asked * study->n_fish);
     }
 
-    if (study->n_keys > 0) return STATUS_OK;
+    if (study->n_keys > 0 || !study->is_full) return STATUS_OK;
     return status_fail(STATUS_CASE, "error.keys: none of these keys changes anything in this case");
 }
 
-/* Add the columns of the axis: varied keys, companions of the varied keys, and times that must fit the interval. */
-static enum status add_all_columns(struct error_study *study) {
-    const struct case_values *const values = &study->study;
+/* Add the columns of the axis for the keys of a point: varied keys, companions of the varied keys, and times that must
+ * fit the interval. */
+static void add_all_columns(struct error_study *study) {
+    struct error_sweep *const sweep = study->sweep;
+    const struct case_values *const values = study->values;
     for (int k = 0; k < study->n_keys; k++) {
         const struct sweep_error_key *const row = study->key[k].row;
-        if (error_plan_column(study, row->path) < 0) TRY(add_columns(study, values, row->path));
-        if (row->companion) TRY(add_columns(study, values, row->companion));
-        const int are_nodes = strcmp(row->path, "fish.nodes") == 0;
-        if (are_nodes && values->school.fluid.density > 0) TRY(add_columns(study, values, "fish.sheet_points"));
+        const bool are_nodes = strcmp(row->path, "fish.nodes") == 0;
+        add_columns(sweep, row->path);
+        if (row->companion) add_columns(sweep, row->companion);
+        if (are_nodes && values->school.fluid.density > 0) add_columns(sweep, "fish.sheet_points");
         if (strcmp(row->path, "time.shedding_interval") != 0) continue;
-        TRY(add_columns(study, values, "time.end"));
-        TRY(add_columns(study, values, "time.checkpoint_interval"));
-        TRY(add_columns(study, values, "time.output_interval"));
-        TRY(add_columns(study, values, "output.wake_interval"));
+        add_columns(sweep, "time.end");
+        add_columns(sweep, "time.checkpoint_interval");
+        add_columns(sweep, "time.output_interval");
+        add_columns(sweep, "output.wake_interval");
     }
 
-    if (error_plan_column(study, "time.shedding_interval") >= 0 && values->solver.step > 0 &&
-        error_plan_column(study, "solver.step") < 0) {
-        TRY(add_columns(study, values, "solver.step"));
+    if (error_plan_column(study, "time.shedding_interval") >= 0 && values->solver.step > 0) {
+        add_columns(sweep, "solver.step");
     }
-
-    return study->is_steady ? add_columns(study, values, "steady.multipliers") : STATUS_OK;
+    if (study->is_steady) add_columns(sweep, "steady.multipliers");
 }
 
 /* Fill the objections that follow from the case alone. */
@@ -452,26 +398,27 @@ static void list_objections(struct error_study *study, const struct school *scho
         for (int f = 0; f < school->n_fish && !*key->objection; f++) {
             const struct fish *const fish = &school->fish[f];
             if (strcmp(key->row->path, "fish.sheet_points") == 0 && fish->n_sheet < 2 * fish->n_nodes - 1) {
-                snprintf(key->objection, ERROR_BUDGET_BYTES, "%.60s has fewer sheet_points than 2 nodes - 1",
+                snprintf(key->objection, CONVERGENCE_BYTES, "%.60s has fewer sheet_points than 2 nodes - 1",
                          fish->name);
             }
             if (strcmp(key->row->path, "fish.nodes") != 0 || !(school->density > 0)) continue;
             if (fish->has_cusp) {
-                snprintf(key->objection, ERROR_BUDGET_BYTES, "the tail of %.60s ends in a cusp", fish->name);
+                snprintf(key->objection, CONVERGENCE_BYTES, "the tail of %.60s ends in a cusp", fish->name);
                 continue;
             }
             const double bending = warnings_bending_length(fish);
             if (!(2 * fish->edge_length > bending)) continue;
-            snprintf(key->objection, ERROR_BUDGET_BYTES,
+            snprintf(key->objection, CONVERGENCE_BYTES,
                      "two edges of %.60s are longer than its tail bends over, %.2g m", fish->name, bending);
         }
     }
 }
 
-// ---- quantities
+// ---- the plan
 
+/* Set the requested quantities of a point. */
 static enum status choose_quantities(struct error_study *study) {
-    const struct sweep_error *const error = study->study.error;
+    const struct sweep_error *const error = study->study->error;
     for (int i = 0; i < error->n_of; i++) {
         const int q = member_file_quantity_number(error->of[i]);
         const struct member_file_quantity *const quantity = q < 0 ? NULL : member_file_quantity(q);
@@ -495,13 +442,16 @@ static enum status choose_quantities(struct error_study *study) {
         study->quantity[study->n_asked++] = q;
     }
 
+    const int n = study->n_asked * study->n_fish;
+    NEW(study->sweep->arena, study->value, n);
+    NEW(study->sweep->arena, study->error, n);
+    NEW(study->sweep->arena, study->together, n);
+    NEW(study->sweep->arena, study->shared, n);
     return STATUS_OK;
 }
 
-// ---- the plan
-
-enum status error_plan_members(struct error_study *study, int *n_new) {
-    *n_new = 0;
+int error_plan_members(struct error_study *study) {
+    int n_new = 0;
     for (int distance = 0; distance < ERROR_STUDY_LEVELS; distance++) {
         for (int k = 0; k < study->n_keys; k++) {
             struct error_study_key *const key = &study->key[k];
@@ -511,85 +461,109 @@ enum status error_plan_members(struct error_study *study, int *n_new) {
                 if (level < 0 || level >= key->n_levels || key->member[level] >= 0) continue;
 
                 // the search starts from the neighbour towards the stated level, which already has a member
-                const int before = distance == 0 ? 0 : key->member[level + (level < key->stated ? 1 : -1)];
-                int is_new;
-                TRY(error_plan_member(study, 1, &(struct error_plan_change){k, key->value[level]}, before,
-                                      &key->member[level], &is_new));
-                *n_new += is_new;
+                const int before = distance == 0 ? study->base : key->member[level + (level < key->stated ? 1 : -1)];
+                bool is_new;
+                key->member[level] =
+                    error_plan_member(study, 1, &(struct error_plan_change){k, key->value[level]}, before, &is_new);
+                n_new += is_new;
             }
         }
     }
 
-    return STATUS_OK;
+    return n_new;
 }
 
-/* Set the levels of each key: given in the case, or of the table. */
-static enum status choose_levels(struct error_study *study) {
-    const struct sweep_error *const error = study->study.error;
-    for (int k = 0; k < study->n_keys; k++) {
-        const struct sweep_error_levels *given = NULL;
-        for (int i = 0; i < error->n_keys; i++) {
-            if (error->levels[i].key == study->key[k].row && error->levels[i].n > 0) given = &error->levels[i];
-        }
-
-        if (!given) TRY(add_default_levels(study, k));
-        for (int i = 0; given && i < given->n; i++) {
-            int is_valid;
-            TRY(test_level(study, k, given->value[i], &is_valid));
-            if (!is_valid) {
-                return status_fail(STATUS_CASE, "error.keys: level %g: %s", given->value[i], status_message());
-            }
-            error_plan_insert(&study->key[k], given->value[i]);
-        }
-        if (study->key[k].n_levels > 1) continue;
-        snprintf(study->key[k].objection, ERROR_BUDGET_BYTES, "no other level is a valid case");
+/* Create the points of the sweep, and the axis of the members in place of the axes of the sweep. *swept: the values of
+ * the swept keys (n_points, n_swept) */
+static enum status create_points(struct error_sweep *sweep, char ***swept) {
+    struct arena *const arena = sweep->arena;
+    struct case_values *const study = &sweep->study;
+    const int n_axes = study->n_axes;
+    const struct sweep_axis *const from = study->sweep;
+    sweep->n_points = sweep_n_members(study);
+    NEW(arena, sweep->point, sweep->n_points);
+    for (int a = 0; a < n_axes; a++) sweep->n_swept += from[a].n_keys;
+    NEW(arena, *swept, sweep->n_points * sweep->n_swept);
+    struct sweep_axis *axis;
+    NEW(arena, axis, 1);
+    NEW(arena, axis->key, sweep->n_swept + 1);
+    for (int a = 0; a < n_axes; a++) {
+        for (int k = 0; k < from[a].n_keys; k++) axis->key[axis->n_keys++] = from[a].key[k];
     }
 
-    return STATUS_OK;
-}
+    for (int p = 0; p < sweep->n_points; p++) {
+        struct error_study *const point = &sweep->point[p];
+        struct case_values *values;
+        TRY(study_folder_case(arena, &values, study, p));
+        *point = (struct error_study){
+            .sweep = sweep, .study = study, .values = values, .is_full = true, .n_fish = values->school.n_fish};
+        char **value = *swept + p * sweep->n_swept;
+        for (int a = 0; a < n_axes; a++) {
+            const int i = sweep_member_value(study, p, a), last = from[a].n_values - 1;
+            point->is_full &= i == 0 || i == last / 2 || i == last;
+            for (int k = 0; k < from[a].n_keys; k++) *value++ = from[a].value[i * from[a].n_keys + k];
+        }
+    }
 
-static enum status make_plan(struct error_study *study) {
-    TRY(choose_quantities(study));
-    study->is_static &= study->is_steady;
-    const int n = study->n_asked * study->n_fish;
-    TRY(MEMORY_NEW(study->value, n, what));
-    TRY(MEMORY_NEW(study->error, n, what));
-    TRY(MEMORY_NEW(study->together, n, what));
-    TRY(choose_keys(study));
-
-    // an axis without keys and with one value, which is the case
-    TRY(MEMORY_NEW(study->study.sweep, 1, what));
-    study->study.n_axes = 1;
-    struct sweep_axis *const axis = axis_of(study);
     axis->order = axis->within = NAN;
-    axis->steady = study->is_steady;
-    TRY(MEMORY_NEW(axis->before, 1, what));
-    axis->before[0] = -1;
-    axis->n_values = 1;
-
-    int n_new;
-    TRY(add_all_columns(study));
-    TRY(choose_levels(study));
-    return error_plan_members(study, &n_new);
+    study->sweep = axis;
+    study->n_axes = 1;
+    return STATUS_OK;
 }
 
-enum status error_plan_create(struct error_study *study, const struct case_values *values) {
-    *study = (struct error_study){0};
-    TRY(case_parse(&study->study, values->merged, strlen(values->merged), values->name, NULL, 0, NULL));
-    free(study->study.text);
-    TRY(memory_copy_string(&study->study.text, values->text, what));
-    study->n_fish = values->school.n_fish;
-    struct school *school;
-    TRY(fish_school_create(&school, &study->study.school));
-
-    for (int f = study->n_fish - 1; f >= 0; f--) {
-        if (school->fish[f].period > 0) study->beat = school->fish[f].period;
+/* Plan all points. */
+static enum status plan_points(struct error_sweep *sweep) {
+    char **swept = NULL, **value;
+    TRY(create_points(sweep, &swept));
+    for (int p = 0; p < sweep->n_points; p++) {
+        struct error_study *const point = &sweep->point[p];
+        struct school *school;
+        TRY(fish_school_create(&school, &point->values->school));
+        for (int f = point->n_fish - 1; f >= 0; f--) {
+            if (school->fish[f].period > 0) point->beat = school->fish[f].period;
+        }
+        point->is_static = steady_static_applies(school);
+        enum status status = choose_quantities(point);
+        point->is_static &= point->is_steady;
+        if (status == STATUS_OK) status = choose_keys(point);
+        if (status == STATUS_OK) list_objections(point, school);
+        fish_school_free(school);
+        TRY(status);
+        add_all_columns(point);
     }
 
-    study->is_static = steady_static_applies(school);
-    const enum status status = make_plan(study);
-    if (status == STATUS_OK) list_objections(study, school);
-    fish_school_free(school);
+    // the case of each point; the search of a point starts from the state of the point before
+    struct sweep_axis *const axis = &sweep->study.sweep[0];
+    axis->steady = sweep->point[0].is_steady;
+    NEW(sweep->arena, value, axis->n_keys);
+    for (int p = 0; p < sweep->n_points; p++) {
+        struct error_study *const point = &sweep->point[p];
+        for (int c = 0; c < axis->n_keys; c++) {
+            const char *const path = axis->key[c].row;
+            const int f = strncmp(axis->key[c].path, "fish[", 5) == 0 ? atoi(axis->key[c].path + 5) : 0;
+            value[c] = c < sweep->n_swept
+                           ? swept[p * sweep->n_swept + c]
+                           : text_of(point, case_table_row(path), plan_number_of(point->values, path, f));
+        }
+        point->base = point->stated = row_append(sweep, value, p - 1);
+    }
 
-    return status;
+    for (int p = 0; p < sweep->n_points; p++) {
+        TRY(choose_levels(&sweep->point[p]));
+        error_plan_members(&sweep->point[p]);
+    }
+    return STATUS_OK;
+}
+
+enum status error_plan_create(struct arena *arena, struct error_sweep **sweep, const struct case_values *values) {
+    struct error_sweep *plan;
+    struct case_values *parsed;
+    NEW(arena, plan, 1);
+    plan->arena = arena;
+    TRY(study_folder_parse(arena, &parsed, values->merged, values->name, 0, NULL));
+    plan->study = *parsed;
+    plan->study.text = arena_text(arena, "%s", values->text);
+    TRY(plan_points(plan));
+    *sweep = plan;
+    return STATUS_OK;
 }

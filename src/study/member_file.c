@@ -3,10 +3,8 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "case/sweep.h"
 #include "result/netcdf.h"
 #include "result/result_table.h"
@@ -27,10 +25,10 @@ const struct member_file_quantity *member_file_quantity(int i) {
             // (time), (time, fish), (time, fish, xy), and the same without time for real numbers of a steady state;
             // the counts of a steady search have the names of keys
             const struct result_variable *const from = &result_table[v];
-            const int is_row = from->dimension[0] == TIME && from->type != RESULT_TEXT;
-            const int is_steady = from->of_steady && from->type == RESULT_REAL && from->dimension[0] != TIME;
+            const bool is_row = from->dimension[0] == TIME && from->type != RESULT_TEXT;
+            const bool is_steady = from->of_steady && from->type == RESULT_REAL && from->dimension[0] != TIME;
             const enum result_dimension *const d = from->dimension + is_row;
-            const int is_number = d[0] == NONE || (d[0] == FISH && (d[1] == NONE || d[1] == XY));
+            const bool is_number = d[0] == NONE || (d[0] == FISH && (d[1] == NONE || d[1] == XY));
             if (!(is_row || is_steady) || !is_number) continue;
             all[n++] = (struct member_file_quantity){.name = from->name,
                                                      .unit = from->unit,
@@ -47,7 +45,7 @@ const struct member_file_quantity *member_file_quantity(int i) {
                                                      .long_name = from->meaning,
                                                      .of_fish = from->of_fish,
                                                      .of_xy = from->of_xy,
-                                                     .is_computed = 1,
+                                                     .is_computed = true,
                                                      .of_comparison = c >= NOSE_ERROR && c <= POWER_ERROR,
                                                      .of_steady = c == BEAT_TIME};
         }
@@ -76,7 +74,7 @@ double *member_file_place(const struct member_file *member, int quantity, int fi
 }
 
 double member_file_value(const struct member_file *member, int quantity, int fish, int xy) {
-    const int is_known = member->value && quantity >= 0 && fish < member->n_fish;
+    const bool is_known = member->value && quantity >= 0 && fish < member->n_fish;
     return is_known ? *member_file_place(member, quantity, fish, xy) : NAN;
 }
 
@@ -84,16 +82,15 @@ double member_file_number(const struct member_file *member, const char *name, in
     return member_file_value(member, member_file_quantity_number(name), fish, 0);
 }
 
-int member_file_is_complete(const struct member_file *member) {
+bool member_file_is_complete(const struct member_file *member) {
     return strcmp(member->status, "complete") == 0;
 }
 
-enum status member_file_create_values(struct member_file *member, int n_fish) {
+void member_file_create_values(struct arena *arena, struct member_file *member, int n_fish) {
     const int n = member_file_n_quantities() * n_fish * 2;
     member->n_fish = n_fish;
-    TRY(MEMORY_NEW(member->value, n, "a member of a study"));
+    NEW(arena, member->value, n);
     for (int i = 0; i < n; i++) member->value[i] = NAN;
-    return STATUS_OK;
 }
 
 // ---- reading
@@ -106,23 +103,6 @@ struct reading {
     double *values;                /* one row of a variable                          (n_fish, xy) */
     struct member_file *member;
 };
-
-/* Read the last row of the variable of a quantity, or the value of a steady state. */
-static enum status member_read_quantity(const struct reading *reading, int q) {
-    const struct member_file_quantity *const quantity = member_file_quantity(q);
-    if (!netcdf_has(&reading->reader, quantity->name)) return STATUS_OK;
-    const struct netcdf_slice slice[] = {{"time", reading->n_rows - 1, 1},
-                                         {quantity->of_fish ? "fish" : NULL, 0, reading->n_fish},
-                                         {quantity->of_xy ? "xy" : NULL, 0, 2},
-                                         {NULL}};
-    TRY(netcdf_read_doubles(&reading->reader, quantity->name, slice + quantity->of_steady, reading->values));
-    const double *from = reading->values;
-    for (int f = 0; f < (quantity->of_fish ? reading->member->n_fish : 1); f++) {
-        for (int k = 0; k < 1 + quantity->of_xy; k++) *member_file_place(reading->member, q, f, k) = *from++;
-    }
-
-    return STATUS_OK;
-}
 
 /* Read a time-independent value of a fish. */
 static enum status read_constant(const struct reading *reading, const char *name, size_t f, double *value) {
@@ -196,68 +176,69 @@ static enum status compute_beat_time(const struct reading *reading) {
     return STATUS_OK;
 }
 
-static enum status read_attributes(struct reading *reading) {
+/* Read attributes and values of an open file. scratch: memory until the file is closed. */
+static enum status read_member(struct arena *arena, struct arena *scratch, struct reading *reading) {
     struct member_file *const member = reading->member;
     const struct netcdf_reader *const reader = &reading->reader;
-    int schema;
 
+    // attributes
+    int schema;
     TRY(netcdf_read_integer(reader, "shoal_schema", -1, &schema));
     if (schema != RESULT_SCHEMA) {
         return status_fail(STATUS_FILE, "%s: not a result of this version of shoal", reader->path);
     }
-
     TRY(netcdf_read_integer(reader, "study_member", -1, &member->number));
-    TRY(netcdf_read_string(reader, "run_status", &member->status));
-    TRY(netcdf_read_string(reader, "warnings", &member->warnings));
-    TRY(netcdf_read_string(reader, "study_case", &member->study));
+    static const char *const names[] = {"run_status", "warnings", "study_case", "case_effective"};
+    const char **const texts[] = {&member->status, &member->warnings, &member->study, &member->effective};
+    for (int i = 0; i < 4; i++) {
+        char *text;
+        TRY(netcdf_attribute(reader, names[i], &text));
+        *texts[i] = arena_text(arena, "%s", text);
+    }
 
-    return netcdf_read_string(reader, "case_effective", &member->effective);
-}
-
-static enum status member_read_values(struct reading *reading) {
-    const struct netcdf_reader *const reader = &reading->reader;
+    // dimensions
     TRY(netcdf_read_length(reader, "time", 0, SIZE_MAX / sizeof(double), &reading->n_rows));
     TRY(netcdf_read_length(reader, "fish", 1, MAX_FISH, &reading->n_fish));
     TRY(netcdf_read_length(reader, "node", 1, SIZE_MAX, &reading->n_node));
-    TRY(member_file_create_values(reading->member, (int)reading->n_fish));
+    member_file_create_values(arena, member, (int)reading->n_fish);
     if (reading->n_rows == 0) return STATUS_OK;
-    TRY(MEMORY_NEW(reading->time, reading->n_rows, reader->path));
-    TRY(MEMORY_NEW(reading->heading, reading->n_rows, reader->path));
-    TRY(MEMORY_NEW(reading->values, reading->n_fish * 2, reader->path));
+    NEW(scratch, reading->time, reading->n_rows);
+    NEW(scratch, reading->heading, reading->n_rows);
+    NEW(scratch, reading->values, reading->n_fish * 2);
+    TRY(netcdf_read_doubles(reader, "time", (struct netcdf_slice[]){{"time", 0, reading->n_rows}, {NULL}},
+                            reading->time));
 
-    const struct netcdf_slice all_rows[] = {{"time", 0, reading->n_rows}, {NULL}};
-    TRY(netcdf_read_doubles(reader, "time", all_rows, reading->time));
-    for (int q = 0; q < member_file_n_quantities() - N_COMPUTED; q++) TRY(member_read_quantity(reading, q));
-    for (int f = 0; f < reading->member->n_fish; f++) TRY(compute_fish(reading, f));
+    // the last row of each variable, or the value of a steady state
+    for (int q = 0; q < member_file_n_quantities() - N_COMPUTED; q++) {
+        const struct member_file_quantity *const quantity = member_file_quantity(q);
+        if (!netcdf_has(reader, quantity->name)) continue;
+        const struct netcdf_slice slice[] = {{"time", reading->n_rows - 1, 1},
+                                             {quantity->of_fish ? "fish" : NULL, 0, reading->n_fish},
+                                             {quantity->of_xy ? "xy" : NULL, 0, 2},
+                                             {NULL}};
+        TRY(netcdf_read_doubles(reader, quantity->name, slice + quantity->of_steady, reading->values));
+        const double *from = reading->values;
+        for (int f = 0; f < (quantity->of_fish ? member->n_fish : 1); f++) {
+            for (int k = 0; k < 1 + quantity->of_xy; k++) *member_file_place(member, q, f, k) = *from++;
+        }
+    }
 
+    for (int f = 0; f < member->n_fish; f++) TRY(compute_fish(reading, f));
     return compute_beat_time(reading);
 }
 
-enum status member_file_read(struct member_file *member, const char *path) {
+enum status member_file_read(struct arena *arena, struct member_file *member, const char *path) {
+    struct arena *const scratch = arena_create(arena, path);
+    struct reading *reading;
     *member = (struct member_file){0};
-    struct reading reading = {.member = member};
-    TRY(netcdf_open(&reading.reader, path));
-    enum status status = STATUS_OK;
-    if (reading.reader.n_missing > 0) {
+    NEW(scratch, reading, 1);
+    reading->member = member;
+    enum status status = netcdf_open_in(scratch, &reading->reader, path);
+    if (status == STATUS_OK && reading->reader.n_missing > 0) {
         status = status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
     }
-
-    if (status == STATUS_OK) status = read_attributes(&reading);
-    if (status == STATUS_OK) status = member_read_values(&reading);
-    netcdf_close(&reading.reader);
-    free(reading.time);
-    free(reading.heading);
-    free(reading.values);
-    if (status != STATUS_OK) member_file_free(member);
-
+    if (status == STATUS_OK) status = read_member(arena, scratch, reading);
+    arena_free(scratch);
+    if (status != STATUS_OK) *member = (struct member_file){0};
     return status;
-}
-
-void member_file_free(struct member_file *member) {
-    free(member->status);
-    free(member->warnings);
-    free(member->study);
-    free(member->effective);
-    free(member->value);
-    *member = (struct member_file){0};
 }

@@ -6,14 +6,17 @@
 #ifndef MEMBER_FILE_H
 #define MEMBER_FILE_H
 
+#include <stdbool.h>
+
+#include "base/arena.h"
 #include "base/status.h"
 
 struct member_file_quantity {
     const char *name, *unit, *long_name;
-    int of_fish, of_xy; /* one value for every fish; for every direction */
-    int is_computed;    /* not the last row of a variable of a result */
-    int of_comparison;  /* NaN except for members of a comparison: study_comparison.h */
-    int of_steady;      /* value of a steady state, not of a row; NaN for runs */
+    bool of_fish, of_xy; /* one value for every fish; for every direction */
+    bool is_computed;    /* not the last row of a variable of a result */
+    bool of_comparison;  /* NaN except for members of a comparison: compare.h */
+    bool of_steady;      /* value of a steady state, not of a row; NaN for runs */
 };
 
 /* Quantity number i, from 0; NULL beyond the last. */
@@ -24,24 +27,21 @@ int member_file_quantity_number(const char *name);
 
 /* Status and final values of one member. */
 struct member_file {
-    int number;      /* of the member; -1: the file belongs to no study */
-    char *status;    /* "complete", "failed: reason", "stopped", "running", "missing"; never NULL */
-    char *warnings;  /* warnings about the result, one per line, may be ""; NULL only without a result */
-    char *study;     /* merged text of the study, "" without a study */
-    char *effective; /* effective case of the member */
+    int number;            /* of the member; -1: the file belongs to no study */
+    const char *status;    /* "complete", "failed: reason", "stopped", "running", "missing"; never NULL */
+    const char *warnings;  /* warnings about the result, one per line, may be ""; NULL only without a result */
+    const char *study;     /* merged text of the study, "" without a study */
+    const char *effective; /* effective case of the member */
     int n_fish;
     double *value; /* see member_file_value; NaN: unknown                       (n quantities, n_fish, xy) */
 };
 
-/* Read a member file. A run lacks the variables of steady states. Fails with STATUS_FILE (missing or truncated file,
- * variables not written by shoal) or STATUS_MEMORY; *member then owns nothing. */
-enum status member_file_read(struct member_file *member, const char *path);
+/* Read a member file into the arena. A run lacks the variables of steady states. Fails with STATUS_FILE (missing or
+ * truncated file, variables not written by shoal). */
+enum status member_file_read(struct arena *arena, struct member_file *member, const char *path);
 
-/* Allocate the values of a member with n_fish fish, initially NaN. Fails with STATUS_MEMORY. */
-enum status member_file_create_values(struct member_file *member, int n_fish);
-
-/* Release the memory of a member and zero *member. */
-void member_file_free(struct member_file *member);
+/* Allocate the values of a member with n_fish fish, initially NaN. */
+void member_file_create_values(struct arena *arena, struct member_file *member, int n_fish);
 
 /* One value; NaN: unknown. fish and xy are 0 if the quantity does not depend on fish or direction. The second function
  * takes the name of a quantity without directions. */
@@ -49,7 +49,7 @@ double member_file_value(const struct member_file *member, int quantity, int fis
 double member_file_number(const struct member_file *member, const char *name, int fish);
 
 /* Whether the run of the member is complete. */
-int member_file_is_complete(const struct member_file *member);
+bool member_file_is_complete(const struct member_file *member);
 
 /* The address of an existing value. */
 double *member_file_place(const struct member_file *member, int quantity, int fish, int xy);

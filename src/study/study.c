@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <omp.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +18,6 @@
 #include <unistd.h>
 
 #include "base/arena.h"
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "case/case.h"
 #include "case/sweep.h"
@@ -42,7 +42,7 @@ struct job {
     pid_t process; /* 0: none */
     int member;
     double started; /* by CLOCK_MONOTONIC, s */
-    int is_late;    /* stopped after study_options.limit */
+    bool is_late;   /* stopped after study_options.limit */
     struct report *report;
 };
 
@@ -59,11 +59,13 @@ struct study {
     int n_next; /* index in the plan of the next member to start */
     struct study_progress progress;
     double started; /* by CLOCK_MONOTONIC, s */
-    int is_stopping;
+    bool is_stopping;
+    bool is_masked;             /* SIGCHLD is blocked */
+    sigset_t mask;              /* before */
     const struct job *required; /* failed required member; NULL: none */
 };
 
-static int is_stopped(const struct study *study) {
+static bool is_stopped(const struct study *study) {
     return study->options->stop && *study->options->stop;
 }
 
@@ -75,94 +77,58 @@ static void member_report_progress(const struct simulate_progress *now, void *da
     report->t = now->t;
 }
 
-/* Run a member, or resume the member from a checkpoint. */
-static enum status run_or_resume(struct arena *arena, const struct case_values *values,
-                                 const struct simulate_options *options) {
-    char *effective;
-    double t;
-    TRY(case_show(values, &effective));
-    arena_defer(arena, free, effective);
-    const char *const checkpoint = checkpoints_path(arena, options->path);
-    if (!simulate_can_resume(arena, options->path, checkpoint, effective, &t)) return simulate_run(values, options);
-    return simulate_resume(checkpoint, &(struct simulate_changes){0}, options);
-}
-
 static void member_report_beats(const struct steady_progress *now, void *data) {
     struct report *const report = data;
     report->part = (double)now->n_beats / now->max_beats;
     report->t = now->t;
 }
 
-/* Find the steady state of a member; start from the steady state of the preceding member, if any. */
-static enum status find_steady(const struct study *study, const struct job *job, const struct case_values *values,
-                               const struct simulate_options *options) {
-    const int before = sweep_member_before(study->values, job->member);
-    char *const from = before < 0 ? NULL : study_folder_member(study->options->folder, before, ".nc");
-    if (before >= 0 && !from) return STATUS_MEMORY;
-    struct steady_options search = {.path = options->path,
-                                    .from = from,
-                                    .overwrite = options->overwrite,
-                                    .command = options->command,
-                                    .progress = member_report_beats,
-                                    .data = options->data,
-                                    .stop = options->stop};
-    enum status status = steady_run(values, &search);
-    if (status == STATUS_FILE && from) {
-        // the preceding member failed or has not run: start from the initial values of the case
-        search.from = NULL;
-        status = steady_run(values, &search);
-    }
-
-    free(from);
-    return status;
-}
-
+/* Run a member, resume the member from a checkpoint, or find the steady state of the member. */
 static enum status run_member(const struct study *study, const struct job *job) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
-    struct case_values values;
-    TRY(case_member(&values, study->values, job->member));
-    enum status status = parallel_try_threads(values.school.threads);
-    char *const path = study_folder_member(study->options->folder, job->member, ".nc");
+    struct arena *const arena = study->arena;
+    const char *const folder = study->options->folder, *const command = study->options->command;
+    const char *const path = study_folder_member(arena, folder, job->member, ".nc");
+    struct case_values *values;
+    TRY(study_folder_case(arena, &values, study->values, job->member));
+    TRY(parallel_try_threads(values->school.threads));
+
+    // a steady state starts from the steady state of the preceding member, if any
+    if (sweep_is_steady(study->values)) {
+        const int before = sweep_member_before(study->values, job->member);
+        struct steady_options search = {.path = path,
+                                        .from = before < 0 ? NULL : study_folder_member(arena, folder, before, ".nc"),
+                                        .overwrite = 1,
+                                        .command = command,
+                                        .progress = member_report_beats,
+                                        .data = job->report,
+                                        .stop = study->options->stop};
+        const enum status status = steady_run(values, &search);
+        if (status != STATUS_FILE || !search.from) return status;
+
+        // the preceding member failed or has not run: start from the initial values of the case
+        search.from = NULL;
+        return steady_run(values, &search);
+    }
+
     const struct simulate_options options = {.path = path,
                                              .overwrite = 1,
-                                             .command = study->options->command,
+                                             .command = command,
                                              .progress = member_report_progress,
                                              .data = job->report,
                                              .stop = study->options->stop};
-    if (!path) status = STATUS_MEMORY;
-    if (status == STATUS_OK) {
-        const int is_steady = sweep_is_steady(study->values);
-        status =
-            is_steady ? find_steady(study, job, &values, &options) : run_or_resume(study->arena, &values, &options);
-    }
-
-    free(path);
-    case_free(&values);
-    return status;
+    char *effective;
+    double t;
+    TRY(case_show(values, &effective));
+    arena_defer(arena, free, effective);
+    const char *const checkpoint = checkpoints_path(arena, path);
+    if (!simulate_can_resume(arena, path, checkpoint, effective, &t)) return simulate_run(values, &options);
+    return simulate_resume(checkpoint, &(struct simulate_changes){0}, &options);
 }
 
-/* Never returns. mask: the signals that a member blocks. */
-static void be_member(const struct study *study, const struct job *job, pid_t parent, const sigset_t *mask) {
-    // the members stop if the study is killed
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-
-    // a study that is stopping has no signal handlers any more
-    if (is_stopped(study) || getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
-
-    // keep the SIGINT handler after the first signal: a second SIGINT to the process group is meant for the study
-    struct sigaction action;
-    sigaction(SIGINT, NULL, &action);
-    action.sa_flags &= ~(int)SA_RESETHAND;
-    sigaction(SIGINT, &action, NULL);
-    sigprocmask(SIG_SETMASK, mask, NULL);
-    const enum status status = run_member(study, job);
-    if (status != STATUS_OK) snprintf(job->report->reason, REASON_BYTES, "%s", status_message());
-    _exit(status_exit_code(status));
-}
-
-static enum status member_start(struct study *study, struct job *job, const sigset_t *mask) {
+static enum status member_start(struct study *study, struct job *job) {
     job->member = study->plan.member[study->n_next++];
-    job->is_late = 0;
+    job->is_late = false;
     job->started = clock_seconds(CLOCK_MONOTONIC);
     *job->report = (struct report){0};
     const pid_t parent = getpid();
@@ -173,24 +139,41 @@ static enum status member_start(struct study *study, struct job *job, const sigs
     sigfillset(&all);
     sigprocmask(SIG_BLOCK, &all, &before);
     const pid_t process = fork();
-    if (process == 0) be_member(study, job, parent, mask);
+    if (process == 0) {
+        // the members stop if the study is killed
+        prctl(PR_SET_PDEATHSIG, SIGTERM);
+
+        // a study that is stopping has no signal handlers any more
+        if (is_stopped(study) || getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
+
+        // keep the SIGINT handler after the first signal: a second SIGINT to the process group is meant for the study
+        struct sigaction action;
+        sigaction(SIGINT, NULL, &action);
+        action.sa_flags &= ~(int)SA_RESETHAND;
+        sigaction(SIGINT, &action, NULL);
+        sigprocmask(SIG_SETMASK, &study->mask, NULL);
+        const enum status status = run_member(study, job);
+        if (status != STATUS_OK) snprintf(job->report->reason, REASON_BYTES, "%s", status_message());
+        _exit(status_exit_code(status));
+    }
+
     sigprocmask(SIG_SETMASK, &before, NULL);
     if (process < 0) return status_fail(STATUS_FILE, "cannot start a process: %s: use fewer with -j", strerror(errno));
     job->process = process;
-
     return STATUS_OK;
 }
 
 // ---- all members
 
 /* Record the outcome of a member. */
-static enum status member_finish(struct study *study, struct job *job, int outcome) {
+static void member_finish(struct study *study, struct job *job, int outcome) {
     job->process = 0;
     const int code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : -1;
-    if (code == status_exit_code(STATUS_STOPPED) && !job->is_late) return STATUS_OK;
+    if (code == status_exit_code(STATUS_STOPPED) && !job->is_late) return;
     if (code == 0) {
         study->progress.n_done++;
-        return study_folder_set_reason(study->options->folder, job->member, NULL);
+        study_folder_set_reason(study->arena, study->options->folder, job->member, NULL);
+        return;
     }
 
     study->progress.n_failed++;
@@ -208,7 +191,7 @@ static enum status member_finish(struct study *study, struct job *job, int outco
                  "a library ended the process with exit code %d: use more memory or fewer threads", code);
     }
 
-    return study_folder_set_reason(study->options->folder, job->member, job->report->reason);
+    study_folder_set_reason(study->arena, study->options->folder, job->member, job->report->reason);
 }
 
 static int n_running(const struct study *study) {
@@ -229,17 +212,8 @@ static void show_progress(struct study *study) {
     study->options->progress(progress, study->options->data);
 }
 
-/* Whether the next member starts from the result of a running member. */
-static int has_to_wait(const struct study *study) {
-    const int before = sweep_member_before(study->values, study->plan.member[study->n_next]);
-    for (int j = 0; j < study->n_jobs; j++) {
-        if (study->job[j].process && study->job[j].member == before) return 1;
-    }
-    return 0;
-}
-
-/* Start members until all members have ended. mask: the signals that a member blocks. */
-static enum status run_until_all_end(struct study *study, const sigset_t *mask) {
+/* Start members until all members have ended. */
+static enum status run_until_all_end(struct study *study) {
     sigset_t ended;
     sigemptyset(&ended);
     sigaddset(&ended, SIGCHLD);
@@ -249,35 +223,38 @@ static enum status run_until_all_end(struct study *study, const sigset_t *mask) 
 
     for (;;) {
         // ask processes to stop, once: all at the end of the study, and those beyond the time limit
-        const int is_end = !study->is_stopping && (is_stopped(study) || study->required || status != STATUS_OK);
+        const bool is_end = !study->is_stopping && (is_stopped(study) || study->required || status != STATUS_OK);
         for (int j = 0; j < study->n_jobs; j++) {
             struct job *const job = &study->job[j];
-            const int is_late = limit > 0 && !job->is_late && clock_seconds(CLOCK_MONOTONIC) - job->started > limit;
+            const bool is_late = limit > 0 && !job->is_late && clock_seconds(CLOCK_MONOTONIC) - job->started > limit;
             if (!job->process || !(is_end || is_late)) continue;
-            if (is_late) job->is_late = 1;
+            if (is_late) job->is_late = true;
             kill(job->process, SIGTERM);
         }
         study->is_stopping |= is_end;
 
+        // a member that starts from the result of a running member waits
         for (int j = 0; j < study->n_jobs && !study->is_stopping && status == STATUS_OK; j++) {
-            if (study->job[j].process == 0 && study->n_next < study->plan.n && !has_to_wait(study)) {
-                status = member_start(study, &study->job[j], mask);
+            if (study->job[j].process || study->n_next == study->plan.n) continue;
+            const int before = sweep_member_before(study->values, study->plan.member[study->n_next]);
+            bool waits = false;
+            for (int k = 0; k < study->n_jobs; k++) {
+                waits |= study->job[k].process && study->job[k].member == before;
             }
+            if (!waits) status = member_start(study, &study->job[j]);
         }
         show_progress(study);
         if (n_running(study) == 0) return status;
 
         // collect ended processes
         sigtimedwait(&ended, NULL, &patience);
-        enum status collected = STATUS_OK;
-        for (int j = 0; j < study->n_jobs && collected == STATUS_OK; j++) {
+        for (int j = 0; j < study->n_jobs; j++) {
             int outcome;
             const pid_t process = study->job[j].process;
             if (process && waitpid(process, &outcome, WNOHANG) == process) {
-                collected = member_finish(study, &study->job[j], outcome);
+                member_finish(study, &study->job[j], outcome);
             }
         }
-        if (status == STATUS_OK) status = collected;
     }
 }
 
@@ -290,13 +267,12 @@ static enum status run_jobs(struct study *study) {
     for (int j = 0; j < study->n_jobs; j++) study->job[j].report = &study->report[j];
 
     // a blocked signal stays pending, so the end of a process is never missed
-    sigset_t ended, before;
+    sigset_t ended;
     sigemptyset(&ended);
     sigaddset(&ended, SIGCHLD);
-    sigprocmask(SIG_BLOCK, &ended, &before);
-    const enum status status = run_until_all_end(study, &before);
-    sigprocmask(SIG_SETMASK, &before, NULL);
-    TRY(status);
+    sigprocmask(SIG_BLOCK, &ended, &study->mask);
+    study->is_masked = true;
+    TRY(run_until_all_end(study));
     if (study->required) {
         return status_fail(STATUS_SOLVER, "member %d failed: %s", study->required->member,
                            study->required->report->reason);
@@ -346,7 +322,7 @@ static enum status plan_and_run(struct study *study) {
     const struct study_options *const options = study->options;
 
     // a refused plan creates no folder
-    const int exists = access(options->folder, F_OK) == 0;
+    const bool exists = access(options->folder, F_OK) == 0;
     if (exists) TRY(lock_members(study));
     TRY(study_plan_create(study->arena, &study->plan, study->values, options->folder, options->first, options->last,
                           options->force));
@@ -366,6 +342,14 @@ enum status study_run(const struct case_values *values, const struct study_optio
     struct study study = {.arena = arena, .values = values, .options = options, .lock = -1};
     study.started = clock_seconds(CLOCK_MONOTONIC);
     const enum status status = plan_and_run(&study);
+
+    // after a lack of memory, members may still run
+    for (int j = 0; j < study.n_jobs && study.job; j++) {
+        if (!study.job[j].process) continue;
+        kill(study.job[j].process, SIGTERM);
+        waitpid(study.job[j].process, NULL, 0);
+    }
+    if (study.is_masked) sigprocmask(SIG_SETMASK, &study.mask, NULL);
     *n_failed = study.progress.n_failed;
     if (study.report) munmap(study.report, (size_t)study.n_jobs * sizeof *study.report);
     unlock_members(&study);

@@ -7,8 +7,10 @@
 #define STUDY_H
 
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case_values.h"
 
@@ -28,7 +30,7 @@ struct study_options {
     int first, last;     /* members to run; last -1: all */
     int n_required;      /* the first n_required members must succeed: a failure stops the study */
     double limit;        /* wall time after which a member counts as failed, s; 0: none */
-    int force;           /* remove the results of another study from the folder */
+    bool force;          /* remove the results of another study from the folder */
     void (*progress)(const struct study_progress *progress, void *data); /* may be NULL */
     void *data;
     const volatile sig_atomic_t *stop; /* may be NULL */
@@ -42,6 +44,7 @@ enum status study_run(const struct case_values *values, const struct study_optio
 /* study_slurm.c: write the files of an array job of Slurm into the folder: study.yaml (the whole study in one file),
  * array.sbatch (the members, bundle members per task; bundle 0: the fewest members per task with at most 1000 tasks),
  * gather.sbatch, and submit.sh, which submits both jobs. Fails with STATUS_CASE or STATUS_FILE. */
-enum status study_slurm(const struct case_values *study, const char *folder, int bundle, FILE *stream);
+enum status study_slurm(struct arena *arena, const struct case_values *study, const char *folder, int bundle,
+                        FILE *stream);
 
 #endif

@@ -1,266 +1,564 @@
-/* study_file.c: writing and reading study.nc. */
+/* study_file.c: writing and reading study.nc, and reports. */
+#define _DEFAULT_SOURCE  // mkdtemp
 #include "study/study_file.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <math.h>
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "base/memory.h"
 #include "base/text.h"
 #include "case/sweep.h"
 #include "result/netcdf.h"
 #include "result/target.h"
-#include "study/study_comparison.h"
+#include "study/study_folder.h"
+#include "study/study_print.h"
 
-enum { NAME_BYTES = 256 };
+static const char owner[] = "the report of a study"; /* of the arenas */
 
-/* The variables of study.nc that precede the swept keys and the quantities. */
-enum { MEMBER, STATUS, WARNINGS, FISH_NAME, N_OWN };
-static const struct own {
-    const char *name, *dimension, *meaning;
-} own[N_OWN] = {
-    {"member", "member", "number of the member"},
-    {"status", "member", "status of the member at the end"},
-    {"warnings", "member", "warnings about the result of the member, one per line"},
-    {"fish_name", "fish", "name of the fish"},
+// ---- the variables
+
+/* Dimensions; the dimension point exists in a sweep of errors only. */
+enum dimension {
+    NO_DIMENSION,
+    BY_MEMBER,
+    BY_FISH,
+    BY_XY,
+    BY_GROUP,
+    BY_LEVEL,
+    BY_POINT,
+    BY_KEY,
+    BY_KEY_LEVEL,
+    BY_TEXT,
+    N_DIMENSIONS
+};
+enum { MOST_DIMENSIONS = 4 /* of a variable */ };
+static const char *const dimension_names[N_DIMENSIONS] = {"",      "member", "fish", "xy",        "group",
+                                                          "level", "point",  "key",  "key_level", "text"};
+
+/* The rows of the table. */
+enum row_number {
+    MEMBER,
+    STATUS,
+    WARNINGS,
+    FISH_NAME,
+    SWEPT_KEY,
+    QUANTITY,
+    LEVEL_VALUE,
+    LEVEL_SIZE,
+    GROUP_MEMBER,
+    DESIGN_ORDER,
+    DIFFERENCE,
+    COARSE_ORDER,
+    ORDER,
+    LIMIT,
+    ERROR,
+    FLAG,
+    POINT_MEMBER,
+    KEY_NAME,
+    KEY_REASON,
+    KEY_LEVELS,
+    KEY_STATED,
+    KEY_IS_CHOICE,
+    KEY_DESIGN_ORDER,
+    KEY_VALUE,
+    KEY_MEMBER,
+    STATED,
+    BAR,
+    PART,
+    KEY_ORDER,
+    KEY_FLAG,
+    N_ROWS
 };
 
-/* An open study.nc. */
-struct writing {
-    struct netcdf_writer writer;
+/* Existence of the variables of a row: once, for each swept key, for each quantity of members; with a refined axis, and
+ * for each quantity with orders; in an error study, in a sweep of errors, and for each quantity with errors. */
+enum existence { ALWAYS, BY_SWEPT_KEY, BY_QUANTITY, IN_ORDERS, BY_ORDER, IN_ERRORS, IN_POINTS, BY_ERROR };
+
+/* A row: %s in name and meaning is the name of a quantity; unit NULL: unit of the quantity. */
+static const struct row {
+    const char *name, *unit, *meaning;
+    enum netcdf_type type;
+    enum existence existence;
+    enum dimension dimension[MOST_DIMENSIONS];
+} rows[N_ROWS] = {
+    [MEMBER] = {"member", "1", "number of the member", NETCDF_INT, ALWAYS, {BY_MEMBER}},
+    [STATUS] = {"status", "", "status of the member at the end", NETCDF_TEXT, ALWAYS, {BY_MEMBER, BY_TEXT}},
+    [WARNINGS] = {"warnings",
+                  "",
+                  "warnings about the result of the member, one per line",
+                  NETCDF_TEXT,
+                  ALWAYS,
+                  {BY_MEMBER, BY_TEXT}},
+    [FISH_NAME] = {"fish_name", "", "name of the fish", NETCDF_TEXT, ALWAYS, {BY_FISH, BY_TEXT}},
+    [SWEPT_KEY] = {"%s", NULL, "%s", NETCDF_DOUBLE, BY_SWEPT_KEY, {BY_MEMBER}},
+    [QUANTITY] = {"%s", NULL, "%s", NETCDF_DOUBLE, BY_QUANTITY, {BY_MEMBER, BY_FISH, BY_XY}},
+    [LEVEL_VALUE] = {"level_value",
+                     "of the key",
+                     "value of the refined key, from coarse to fine",
+                     NETCDF_DOUBLE,
+                     IN_ORDERS,
+                     {BY_LEVEL}},
+    [LEVEL_SIZE] = {"level_size",
+                    "of the key",
+                    "grid spacing: the value, or 1/(n - 1) of n points",
+                    NETCDF_DOUBLE,
+                    IN_ORDERS,
+                    {BY_LEVEL}},
+    [GROUP_MEMBER] = {"group_member", "1", "first member of each group", NETCDF_INT, IN_ORDERS, {BY_GROUP}},
+    [DESIGN_ORDER] = {"group_design_order",
+                      "1",
+                      "order that the refined key has by design; NaN: none",
+                      NETCDF_DOUBLE,
+                      IN_ORDERS,
+                      {BY_GROUP}},
+    [DIFFERENCE] = {"difference_%s",
+                    NULL,
+                    "distance of %s from the finest level, or from the reference of the case",
+                    NETCDF_DOUBLE,
+                    BY_ORDER,
+                    {BY_GROUP, BY_FISH, BY_LEVEL}},
+    [COARSE_ORDER] = {"order_before_%s",
+                      "1",
+                      "observed order of %s of the next coarser levels",
+                      NETCDF_DOUBLE,
+                      BY_ORDER,
+                      {BY_GROUP, BY_FISH}},
+    [ORDER] =
+        {"order_%s", "1", "observed order of %s of the finest levels", NETCDF_DOUBLE, BY_ORDER, {BY_GROUP, BY_FISH}},
+    [LIMIT] = {"limit_%s",
+               NULL,
+               "%s extrapolated to zero spacing by Richardson's method (xy: positions only)",
+               NETCDF_DOUBLE,
+               BY_ORDER,
+               {BY_GROUP, BY_FISH, BY_XY}},
+    [ERROR] = {"error_%s",
+               NULL,
+               "error of %s at the finest level (doc/studies.md)",
+               NETCDF_DOUBLE,
+               BY_ORDER,
+               {BY_GROUP, BY_FISH}},
+    [FLAG] = {"objection_%s",
+              "",
+              "reason why the levels of %s have no order, and the error is a largest difference",
+              NETCDF_TEXT,
+              BY_ORDER,
+              {BY_GROUP, BY_FISH, BY_TEXT}},
+    [POINT_MEMBER] = {"point_member",
+                      "1",
+                      "member of the stated values of each point of a sweep with errors",
+                      NETCDF_INT,
+                      IN_POINTS,
+                      {BY_POINT}},
+    [KEY_NAME] = {"key_name", "", "numerical key that is varied alone", NETCDF_TEXT, IN_ERRORS, {BY_KEY, BY_TEXT}},
+    [KEY_REASON] = {"key_reason",
+                    "",
+                    "reason why the key is not varied, or empty",
+                    NETCDF_TEXT,
+                    IN_ERRORS,
+                    {BY_POINT, BY_KEY, BY_TEXT}},
+    [KEY_LEVELS] = {"key_levels", "1", "levels of the key", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY}},
+    [KEY_STATED] =
+        {"key_stated", "1", "level of the stated value, from 0, the finest", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY}},
+    [KEY_IS_CHOICE] = {"key_is_choice", "1", "1: choice of the model, not in the sum", NETCDF_INT, IN_ERRORS, {BY_KEY}},
+    [KEY_DESIGN_ORDER] =
+        {"key_design_order", "1", "order that the key has by design; NaN: none", NETCDF_DOUBLE, IN_ERRORS, {BY_KEY}},
+    [KEY_VALUE] = {"key_value",
+                   "of the key",
+                   "value of the key at each level, from fine to coarse",
+                   NETCDF_DOUBLE,
+                   IN_ERRORS,
+                   {BY_POINT, BY_KEY, BY_KEY_LEVEL}},
+    [KEY_MEMBER] =
+        {"key_member", "1", "member of each level; -1: none", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY, BY_KEY_LEVEL}},
+    [STATED] = {"stated_%s", NULL, "stated value of %s", NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_FISH}},
+    [BAR] = {"bar_%s",
+             NULL,
+             "error of the stated value of %s: the sum over the keys",
+             NETCDF_DOUBLE,
+             BY_ERROR,
+             {BY_POINT, BY_FISH}},
+    [PART] = {"part_%s",
+              NULL,
+              "error of %s by each key, or change by a choice of the model",
+              NETCDF_DOUBLE,
+              BY_ERROR,
+              {BY_POINT, BY_KEY, BY_FISH}},
+    [KEY_ORDER] =
+        {"key_order_%s", "1", "observed order of %s in each key", NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_KEY, BY_FISH}},
+    [KEY_FLAG] = {"key_flag_%s",
+                  "",
+                  "reason why the levels of each key give no order of %s, or empty",
+                  NETCDF_TEXT,
+                  BY_ERROR,
+                  {BY_POINT, BY_KEY, BY_FISH, BY_TEXT}},
+};
+
+/* A variable of a file. */
+struct variable {
+    enum row_number row;
+    int number;    /* of the quantity: in sweep_quantities for orders, requested for errors, else in member_file.h */
+    int axis, key; /* of a swept key */
+    const struct member_file_quantity *quantity; /* NULL: none */
+    const char *name, *unit, *meaning;
+    enum netcdf_type type;
+    int n_dimensions; /* but for the dimension text */
+    enum dimension dimension[MOST_DIMENSIONS];
+};
+
+/* The contents of a study.nc. */
+struct contents {
+    struct arena *arena;
     const struct case_values *study;
     const struct member_file *member;
-    const struct study_orders *orders;
-    const struct error_study *errors; /* NULL: none */
-    int n_members, n_fish;
-    size_t n_text; /* length of the dimension text */
-    int member_dimension, fish_dimension, xy_dimension, text_dimension;
-    double *buffer; /* one quantity of all members */
-    char *text;     /* one string, of n_text bytes */
+    const struct convergence_orders *orders;
+    const struct error_sweep *errors;                            /* NULL: none */
+    const struct sweep_error_key *error_key[SWEEP_N_ERROR_KEYS]; /* varied at some point            (dimension key) */
+    size_t length[N_DIMENSIONS];                                 /* 0: the dimension does not exist */
+    int n_variables;
+    struct variable *variable; /* (n_variables) */
 };
 
-/* The name of the variable of a swept key: "fish[*].body.modulus" becomes fish_body_modulus. */
-static void variable_name(const char *path, char name[NAME_BYTES]) {
-    int n = 0;
-    for (; *path && n < NAME_BYTES - 1; path++) {
-        if (*path == '[' || *path == ']' || *path == '*') continue;
-        name[n++] = *path;
-        if (*path == '.') name[n - 1] = '_';
+/* Insert the name of a quantity for the %s of a text of the table. */
+static char *fill_name(struct arena *arena, const char *format, const char *quantity) {
+    const char *const place = strstr(format, "%s");
+    if (!place) return arena_text(arena, "%s", format);
+    return arena_text(arena, "%.*s%s%s", (int)(place - format), format, quantity, place + 2);
+}
+
+/* Append a variable to the list. */
+static void add_variable(struct contents *contents, struct variable v) {
+    const struct row *const row = &rows[v.row];
+    const char *name = v.quantity ? v.quantity->name : "", *meaning = v.row == QUANTITY ? v.quantity->long_name : name;
+    const char *unit = v.quantity ? v.quantity->unit : "1";
+    v.type = row->type;
+    if (v.row == SWEPT_KEY) {
+        // the variable of "fish[*].body.modulus" is fish_body_modulus
+        const struct sweep_key *const key = &contents->study->sweep[v.axis].key[v.key];
+        char *const text = arena_text(contents->arena, "%s", key->path);
+        int n = 0;
+        for (const char *c = key->path; *c; c++) {
+            if (*c != '[' && *c != ']' && *c != '*') text[n++] = *c == '.' ? '_' : *c;
+        }
+        text[n] = '\0';
+        name = text;
+        meaning = key->path;
+        unit = key->unit;
+        v.type = key->is_number ? NETCDF_DOUBLE : NETCDF_TEXT;
     }
-    name[n] = '\0';
+    if (row->existence == IN_ORDERS) unit = contents->study->sweep[contents->orders->axis].key[0].unit;
+
+    v.name = fill_name(contents->arena, row->name, name);
+    v.meaning = fill_name(contents->arena, row->meaning, meaning);
+    v.unit = v.type == NETCDF_TEXT ? "1" : row->unit && strcmp(row->unit, "of the key") != 0 ? row->unit : unit;
+    for (int i = 0; i < MOST_DIMENSIONS; i++) {
+        // a quantity without fish or directions lacks these dimensions, a case without a sweep the dimension of points
+        const enum dimension d = row->dimension[i];
+        const bool is_of_quantity = v.row == QUANTITY || v.row == LIMIT;
+        const bool is_missing = (d == BY_FISH && v.row == QUANTITY && !v.quantity->of_fish) ||
+                                (d == BY_XY && is_of_quantity && !v.quantity->of_xy);
+        if (d == NO_DIMENSION || d == BY_TEXT || is_missing || contents->length[d] == 0) continue;
+        v.dimension[v.n_dimensions++] = d;
+    }
+    GROW(contents->arena, contents->variable, contents->n_variables + 1);
+    contents->variable[contents->n_variables++] = v;
 }
 
-/* The value of a key in member m. */
-static const char *set_text(const struct writing *writing, int m, int axis, int key) {
-    const struct sweep_axis *const swept = &writing->study->sweep[axis];
-    return swept->value[sweep_member_value(writing->study, m, axis) * swept->n_keys + key];
-}
-
-/* The length of the longest string in the file. */
-static size_t longest_text(const struct writing *writing) {
-    const struct case_values *const study = writing->study;
-    size_t max = ERROR_BUDGET_BYTES;  // the reason of a flag
-
-    for (int m = 0; m < writing->n_members; m++) {
-        const struct member_file *const member = &writing->member[m];
-        const size_t of_status = strlen(member->status), of_warnings = member->warnings ? strlen(member->warnings) : 0;
-        if (of_status > max) max = of_status;
-        if (of_warnings > max) max = of_warnings;
-        for (int a = 0; a < study->n_axes; a++) {
+/* List all variables, row by row. */
+static void list_variables(struct contents *contents) {
+    const struct case_values *const study = contents->study;
+    const bool has_orders = contents->orders->n_groups > 0;
+    for (enum row_number r = 0; r < N_ROWS; r++) {
+        const enum existence existence = rows[r].existence;
+        const bool is_one = existence == ALWAYS || (existence == IN_ORDERS && has_orders) ||
+                            (existence == IN_ERRORS && contents->errors) ||
+                            (existence == IN_POINTS && contents->length[BY_POINT] > 0);
+        if (is_one) add_variable(contents, (struct variable){.row = r});
+        for (int a = 0; a < study->n_axes && existence == BY_SWEPT_KEY; a++) {
             for (int k = 0; k < study->sweep[a].n_keys; k++) {
-                const size_t of_key = strlen(set_text(writing, m, a, k));
-                if (of_key > max) max = of_key;
+                add_variable(contents, (struct variable){.row = r, .axis = a, .key = k});
             }
         }
-    }
-
-    for (int f = 0; f < writing->n_fish; f++) {
-        if (strlen(study->school.fish[f].name) > max) max = strlen(study->school.fish[f].name);
-    }
-
-    return max;
-}
-
-// ---- definition
-
-/* Define a variable of strings (n, text) or of numbers (n); returns the number of the variable. */
-static int study_file_define_variable(struct writing *writing, const char *name, enum netcdf_type type,
-                                      int first_dimension, const char *long_name, const char *units) {
-    const struct netcdf_variable variable = {.name = name,
-                                             .long_name = long_name,
-                                             .units = units,
-                                             .type = type,
-                                             .n_dimensions = type == NETCDF_TEXT ? 2 : 1,
-                                             .dimension = {first_dimension, writing->text_dimension}};
-    return netcdf_define_variable(&writing->writer, &variable);
-}
-
-/* Whether study.nc contains a quantity. */
-static bool has_quantity(const struct case_values *study, const struct member_file_quantity *quantity) {
-    if (quantity->of_steady) return sweep_is_steady(study);
-    return !quantity->of_comparison || study_comparison_is(study);
-}
-
-static void study_file_define_all(struct writing *writing) {
-    struct netcdf_writer *const writer = &writing->writer;
-    const struct case_values *const study = writing->study;
-    writing->member_dimension = netcdf_define_dimension(writer, "member", (size_t)writing->n_members);
-    writing->fish_dimension = netcdf_define_dimension(writer, "fish", (size_t)writing->n_fish);
-    writing->xy_dimension = netcdf_define_dimension(writer, "xy", 2);
-    writing->text_dimension = netcdf_define_dimension(writer, "text", writing->n_text);
-    netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_study", STUDY_FILE_SCHEMA);
-    netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", study->merged);
-
-    for (int i = 0; i < N_OWN; i++) {
-        study_file_define_variable(writing, own[i].name, i == MEMBER ? NETCDF_INT : NETCDF_TEXT,
-                                   i == FISH_NAME ? writing->fish_dimension : writing->member_dimension, own[i].meaning,
-                                   "1");
-    }
-
-    for (int a = 0; a < study->n_axes; a++) {
-        for (int k = 0; k < study->sweep[a].n_keys; k++) {
-            const struct sweep_key *const key = &study->sweep[a].key[k];
-            char name[NAME_BYTES];
-            variable_name(key->path, name);
-            const int number = study_file_define_variable(writing, name, key->is_number ? NETCDF_DOUBLE : NETCDF_TEXT,
-                                                          writing->member_dimension, key->path, key->unit);
-            netcdf_write_integer(writer, number, "axis", a);
-            if (k == 0 && study->sweep[a].refine) netcdf_write_integer(writer, number, "refine", 1);
+        for (int q = 0; member_file_quantity(q) && existence == BY_QUANTITY; q++) {
+            const struct member_file_quantity *const quantity = member_file_quantity(q);
+            const bool is_here =
+                quantity->of_steady ? sweep_is_steady(study) : !quantity->of_comparison || compare_is(study);
+            if (is_here) add_variable(contents, (struct variable){.row = r, .number = q, .quantity = quantity});
+        }
+        for (int q = 0; q < SWEEP_N_ORDERS && existence == BY_ORDER && has_orders; q++) {
+            const int number = member_file_quantity_number(sweep_quantities[q].name);
+            if (!(sweep_refine_orders(study) >> q & 1)) continue;
+            add_variable(contents, (struct variable){.row = r, .number = q, .quantity = member_file_quantity(number)});
+        }
+        for (int q = 0; contents->errors && existence == BY_ERROR && q < contents->errors->point[0].n_asked; q++) {
+            const int number = contents->errors->point[0].quantity[q];
+            add_variable(contents, (struct variable){.row = r, .number = q, .quantity = member_file_quantity(number)});
         }
     }
+}
 
-    for (int q = 0; member_file_quantity(q); q++) {
-        const struct member_file_quantity *const quantity = member_file_quantity(q);
-        if (!has_quantity(study, quantity)) continue;
-        struct netcdf_variable variable = {.name = quantity->name,
-                                           .long_name = quantity->long_name,
-                                           .units = quantity->unit,
-                                           .type = NETCDF_DOUBLE,
-                                           .n_dimensions = 1,
-                                           .dimension = {writing->member_dimension},
-                                           .has_gaps = true};
-        if (quantity->of_fish) variable.dimension[variable.n_dimensions++] = writing->fish_dimension;
-        if (quantity->of_xy) variable.dimension[variable.n_dimensions++] = writing->xy_dimension;
-        netcdf_define_variable(writer, &variable);
+// ---- the values of the variables
+
+/* A number, or a text. */
+struct value {
+    double number;
+    const char *text;
+};
+
+/* A value of a row of members, fish or swept keys. */
+static struct value member_value(const struct contents *contents, const struct variable *v, const int *i) {
+    const struct case_values *const study = contents->study;
+    const struct member_file *const member = v->row == FISH_NAME ? NULL : &contents->member[i[0]];
+    struct value value = {.number = NAN, .text = ""};
+    switch (v->row) {
+        case MEMBER: value.number = i[0]; break;
+        case STATUS: value.text = member->status; break;
+        case WARNINGS: value.text = member->warnings ? member->warnings : ""; break;
+        case FISH_NAME: value.text = study->school.fish[i[0]].name; break;
+        case SWEPT_KEY: {
+            const struct sweep_axis *const axis = &study->sweep[v->axis];
+            value.text = axis->value[sweep_member_value(study, i[0], v->axis) * axis->n_keys + v->key];
+            if (!text_number(value.text, &value.number)) value.number = NAN;
+            break;
+        }
+        default: {
+            const bool of_fish = v->quantity->of_fish, of_xy = v->quantity->of_xy;
+            value.number = member_file_value(member, v->number, of_fish ? i[1] : 0, of_xy ? i[1 + of_fish] : 0);
+        }
+    }
+    return value;
+}
+
+/* A value of a row of a refined axis. */
+static struct value order_value(const struct contents *contents, const struct variable *v, const int *i) {
+    const struct convergence_orders *const orders = contents->orders;
+    const struct sweep_axis *const axis = &contents->study->sweep[orders->axis];
+    switch (v->row) {
+        case LEVEL_VALUE: return (struct value){.number = orders->value[i[0]]};
+        case LEVEL_SIZE: return (struct value){.number = orders->grid_spacing[i[0]]};
+        case GROUP_MEMBER: return (struct value){.number = orders->first[i[0]]};
+        case DESIGN_ORDER:
+            return (struct value){.number = sweep_error_order(contents->study, sweep_error_find(axis->key[0].row))};
+        default: break;
     }
 
-    const int of_orders[] = {writing->fish_dimension, writing->xy_dimension, writing->text_dimension};
-    study_orders_define(writer, study, writing->orders, of_orders);
-    const int of_errors[] = {writing->fish_dimension, writing->text_dimension};
-    if (writing->errors) error_report_define(writer, writing->errors, of_errors);
-    netcdf_end_definitions(writer);
+    const int place = convergence_place(orders, i[0], v->number, i[1]);
+    const struct convergence_row *const row = &orders->row[place];
+    switch (v->row) {
+        case DIFFERENCE: return (struct value){.number = orders->error[place * orders->n_levels + i[2]]};
+        case COARSE_ORDER: return (struct value){.number = row->result.coarse_order};
+        case ORDER: return (struct value){.number = row->result.order};
+        case LIMIT: return (struct value){.number = row->limit[v->n_dimensions > 2 ? i[2] : 0]};
+        case ERROR: return (struct value){.number = row->result.error};
+        default: return (struct value){.text = row->flag};
+    }
+}
+
+/* A value of a row of an error study. text: for the reason of a flag */
+static struct value error_value(const struct contents *contents, const struct variable *v, const int *i,
+                                char text[CONVERGENCE_BYTES]) {
+    const struct error_study *const point = &contents->errors->point[contents->length[BY_POINT] > 0 ? *i : 0];
+    if (v->row == POINT_MEMBER) return (struct value){.number = point->stated};
+    if (v->n_dimensions > 0 && v->dimension[0] == BY_POINT) i++;
+    const bool is_sum = v->row == STATED || v->row == BAR;
+    const int place = error_plan_place(point, v->number, is_sum ? i[0] : i[1]);
+    if (is_sum) return (struct value){.number = v->row == STATED ? point->value[place] : point->error[place]};
+
+    // the key does not have to be varied at this point
+    const struct sweep_error_key *const row = contents->error_key[i[0]];
+    const struct error_study_key *key = NULL;
+    for (int k = 0; k < point->n_keys; k++) {
+        if (point->key[k].row == row) key = &point->key[k];
+    }
+    const int n_levels = key ? key->n_levels : 0;
+    switch (v->row) {
+        case KEY_NAME: return (struct value){.text = row->path};
+        case KEY_IS_CHOICE: return (struct value){.number = row->kind == SWEEP_MODEL};
+        case KEY_DESIGN_ORDER: return (struct value){.number = sweep_error_order(contents->study, row)};
+        case KEY_REASON: return (struct value){.text = n_levels == 1 ? key->objection : ""};
+        case KEY_LEVELS: return (struct value){.number = n_levels};
+        case KEY_STATED: return (struct value){.number = key ? key->stated : 0};
+        case KEY_VALUE: return (struct value){.number = i[1] < n_levels ? key->value[i[1]] : NAN};
+        case KEY_MEMBER: return (struct value){.number = i[1] < n_levels ? key->member[i[1]] : -1};
+        case PART: return (struct value){.number = key ? key->part[place].error : NAN};
+        case KEY_ORDER: return (struct value){.number = key ? key->part[place].order : NAN};
+        default:
+            *text = '\0';
+            if (n_levels > 1) study_print_reason(point, key, place, text);
+    }
+    return (struct value){.text = text};
+}
+
+/* Value number e of a variable, the last index fastest. index: of the value in each dimension; text: scratch */
+static struct value value_at(const struct contents *contents, const struct variable *v, size_t e,
+                             int index[MOST_DIMENSIONS], char text[CONVERGENCE_BYTES]) {
+    for (int d = v->n_dimensions - 1; d >= 0; d--) {
+        const size_t length = contents->length[v->dimension[d]];
+        index[d] = (int)(e % length);
+        e /= length;
+    }
+    const enum existence existence = rows[v->row].existence;
+    if (existence == IN_ORDERS || existence == BY_ORDER) return order_value(contents, v, index);
+    if (existence >= IN_ERRORS) return error_value(contents, v, index, text);
+    return member_value(contents, v, index);
+}
+
+static size_t n_values(const struct contents *contents, const struct variable *v) {
+    size_t n = 1;
+    for (int d = 0; d < v->n_dimensions; d++) n *= contents->length[v->dimension[d]];
+    return n;
 }
 
 // ---- writing
 
-static void write_text(struct writing *writing, const char *name, int row, const char *text) {
-    memset(writing->text, 0, writing->n_text);
-    memcpy(writing->text, text, strlen(text));
-    netcdf_write_text(&writing->writer, netcdf_number(&writing->writer, name), (size_t[]){(size_t)row, 0},
-                      (size_t[]){1, writing->n_text}, writing->text);
-}
-
-/* Write the buffer to a whole variable. */
-static void write_buffer(struct writing *writing, const char *name) {
-    netcdf_write_doubles(&writing->writer, netcdf_number(&writing->writer, name), NULL, NULL, writing->buffer);
-}
-
-static void write_quantity(struct writing *writing, int q) {
-    const struct member_file_quantity *const quantity = member_file_quantity(q);
-    double *to = writing->buffer;
-    for (int m = 0; m < writing->n_members; m++) {
-        for (int f = 0; f < (quantity->of_fish ? writing->n_fish : 1); f++) {
-            for (int k = 0; k < 1 + quantity->of_xy; k++) *to++ = member_file_value(&writing->member[m], q, f, k);
+/* Define and write the variables of an open file without memory of the arena. number: (most numbers of a variable);
+ * text: (dimension text) */
+static void write_variables(struct netcdf_writer *writer, const struct contents *contents, double *number, char *text) {
+    char scratch[CONVERGENCE_BYTES];
+    int dimension[N_DIMENSIONS] = {0}, index[MOST_DIMENSIONS];
+    for (enum dimension d = BY_MEMBER; d < N_DIMENSIONS; d++) {
+        if (contents->length[d] > 0) {
+            dimension[d] = netcdf_define_dimension(writer, dimension_names[d], contents->length[d]);
         }
     }
-    write_buffer(writing, quantity->name);
-}
+    netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_study", STUDY_FILE_SCHEMA);
+    netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", contents->study->merged);
 
-static void study_file_write_key(struct writing *writing, int a, int k) {
-    const struct sweep_key *const key = &writing->study->sweep[a].key[k];
-    char name[NAME_BYTES];
-    variable_name(key->path, name);
-    for (int m = 0; m < writing->n_members; m++) {
-        if (!key->is_number) write_text(writing, name, m, set_text(writing, m, a, k));
-        if (!text_number(set_text(writing, m, a, k), &writing->buffer[m])) writing->buffer[m] = NAN;
+    for (int i = 0; i < contents->n_variables; i++) {
+        const struct variable *const v = &contents->variable[i];
+        struct netcdf_variable defined = {.name = v->name,
+                                          .long_name = v->meaning,
+                                          .units = v->unit,
+                                          .type = v->type,
+                                          .n_dimensions = v->n_dimensions,
+                                          .has_gaps = v->type == NETCDF_DOUBLE && v->row != SWEPT_KEY};
+        for (int d = 0; d < v->n_dimensions; d++) defined.dimension[d] = dimension[v->dimension[d]];
+        if (v->type == NETCDF_TEXT) defined.dimension[defined.n_dimensions++] = dimension[BY_TEXT];
+        const int variable = netcdf_define_variable(writer, &defined);
+        if (v->row != SWEPT_KEY) continue;
+        netcdf_write_integer(writer, variable, "axis", v->axis);
+        const bool is_refined = v->key == 0 && contents->study->sweep[v->axis].refine;
+        if (is_refined) netcdf_write_integer(writer, variable, "refine", 1);
     }
-    if (key->is_number) write_buffer(writing, name);
-}
+    netcdf_end_definitions(writer);
 
-static void study_file_write_all(struct writing *writing) {
-    const struct case_values *const study = writing->study;
-    for (int m = 0; m < writing->n_members; m++) {
-        netcdf_write_ints(&writing->writer, netcdf_number(&writing->writer, own[MEMBER].name), (size_t[]){(size_t)m},
-                          (size_t[]){1}, &m);
-        write_text(writing, own[STATUS].name, m, writing->member[m].status);
-        write_text(writing, own[WARNINGS].name, m, writing->member[m].warnings ? writing->member[m].warnings : "");
+    // numbers at once, texts one by one
+    for (int i = 0; i < contents->n_variables; i++) {
+        const struct variable *const v = &contents->variable[i];
+        const int variable = netcdf_number(writer, v->name);
+        for (size_t e = 0; e < n_values(contents, v); e++) {
+            const struct value value = value_at(contents, v, e, index, scratch);
+            number[e] = value.number;
+            if (v->type != NETCDF_TEXT) continue;
+            size_t start[MOST_DIMENSIONS] = {0}, count[MOST_DIMENSIONS] = {1, 1, 1, 1};
+            for (int d = 0; d < v->n_dimensions; d++) start[d] = (size_t)index[d];
+            count[v->n_dimensions] = contents->length[BY_TEXT];
+            memset(text, 0, contents->length[BY_TEXT]);
+            memcpy(text, value.text, strlen(value.text));
+            netcdf_write_text(writer, variable, start, count, text);
+        }
+        if (v->type != NETCDF_TEXT) netcdf_write_doubles(writer, variable, NULL, NULL, number);
     }
-
-    for (int f = 0; f < writing->n_fish; f++) write_text(writing, own[FISH_NAME].name, f, study->school.fish[f].name);
-    for (int a = 0; a < study->n_axes; a++) {
-        for (int k = 0; k < study->sweep[a].n_keys; k++) study_file_write_key(writing, a, k);
-    }
-
-    for (int q = 0; member_file_quantity(q); q++) {
-        if (has_quantity(study, member_file_quantity(q))) write_quantity(writing, q);
-    }
-
-    study_orders_write(&writing->writer, study, writing->orders, writing->n_text, writing->text);
-    if (writing->errors) error_report_write(&writing->writer, writing->errors, writing->n_text, writing->text);
 }
 
 enum status study_file_write(struct arena *arena, const char *path, const struct case_values *study,
-                             const struct member_file *member, const struct study_orders *orders,
-                             const struct error_study *errors, const char *command) {
-    struct writing writing = {.study = study,
-                              .member = member,
-                              .orders = orders,
-                              .errors = errors,
-                              .n_members = sweep_n_members(study),
-                              .n_fish = study->school.n_fish};
+                             const struct member_file *member, const struct convergence_orders *orders,
+                             const struct error_sweep *errors, const char *command) {
+    struct contents contents = {.arena = arena, .study = study, .member = member, .orders = orders, .errors = errors};
+    size_t *const length = contents.length;
+    length[BY_MEMBER] = (size_t)sweep_n_members(study);
+    length[BY_FISH] = (size_t)study->school.n_fish;
+    length[BY_XY] = 2;
+    length[BY_GROUP] = (size_t)orders->n_groups;
+    length[BY_LEVEL] = (size_t)orders->n_levels;
+    if (errors) {
+        if (errors->n_swept > 0) length[BY_POINT] = (size_t)errors->n_points;
+        length[BY_KEY_LEVEL] = ERROR_STUDY_LEVELS;
+        for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
+            bool is_varied = false;
+            for (int p = 0; p < errors->n_points; p++) {
+                const struct error_study *const point = &errors->point[p];
+                for (int k = 0; k < point->n_keys; k++) is_varied |= point->key[k].row == &sweep_error_keys[i];
+            }
+            if (is_varied) contents.error_key[length[BY_KEY]++] = &sweep_error_keys[i];
+        }
+    }
 
-    writing.n_text = longest_text(&writing);
-    NEW(arena, writing.buffer, writing.n_members * writing.n_fish * 2);
-    NEW(arena, writing.text, writing.n_text);
+    // the longest text and the most numbers of a variable
+    list_variables(&contents);
+    size_t n_text = CONVERGENCE_BYTES, n_numbers = 0;
+    for (int i = 0; i < contents.n_variables; i++) {
+        const struct variable *const v = &contents.variable[i];
+        char scratch[CONVERGENCE_BYTES];
+        int index[MOST_DIMENSIONS];
+        n_numbers = n_values(&contents, v) > n_numbers ? n_values(&contents, v) : n_numbers;
+        for (size_t e = 0; e < n_values(&contents, v) && v->type == NETCDF_TEXT; e++) {
+            const size_t n = strlen(value_at(&contents, v, e, index, scratch).text);
+            n_text = n > n_text ? n : n_text;
+        }
+    }
+    length[BY_TEXT] = n_text;
+    double *number;
+    char *text;
+    NEW(arena, number, n_numbers);
+    NEW(arena, text, n_text);
 
-    // write a temporary file, then rename the file to path; no memory of the arena is requested while the file is open
+    // write a temporary file, then rename the file to path
+    struct netcdf_writer writer;
     TRY(target_check(path, TARGET_NETCDF, true));
-    TRY(netcdf_create(&writing.writer, path, study->name, command));
-    study_file_define_all(&writing);
-    study_file_write_all(&writing);
-    const enum status published = netcdf_publish(&writing.writer, true);
-    const enum status finished = netcdf_finish(&writing.writer);
+    TRY(netcdf_create(&writer, path, study->name, command));
+    write_variables(&writer, &contents, number, text);
+    const enum status published = netcdf_publish(&writer, true);
+    const enum status finished = netcdf_finish(&writer);
     return published == STATUS_OK ? finished : published;
 }
 
 // ---- the list of variables
 
 int study_file_listed(int i, struct result_listed *listed) {
-    *listed = (struct result_listed){.unit = "1", .type = "int"};
-    if (i < N_OWN) {
-        listed->name = own[i].name;
-        if (i != MEMBER) listed->type = "char", listed->unit = "";
-        listed->meaning = own[i].meaning;
-        snprintf(listed->dimensions, sizeof listed->dimensions, "%s%s", own[i].dimension, i == MEMBER ? "" : ", text");
-        return 1;
+    // of the quantities of members, the list has those that are computed; Q stands for any other quantity
+    static char name[N_ROWS][64], meaning[N_ROWS][160];
+    const struct member_file_quantity *quantity = NULL;
+    enum row_number r = MEMBER;
+    for (int n = 0, q = 0; r < N_ROWS; r++) {
+        if (r == SWEPT_KEY) continue;
+        for (; r == QUANTITY && member_file_quantity(q); q++) {
+            quantity = member_file_quantity(q);
+            if (quantity->is_computed && n++ == i) break;
+        }
+        if (r == QUANTITY && !member_file_quantity(q)) continue;
+        if (r == QUANTITY || n++ == i) break;
     }
+    if (r == N_ROWS) return 0;
 
-    int k = i - N_OWN;
-    for (int q = 0; member_file_quantity(q); q++) {
-        const struct member_file_quantity *const quantity = member_file_quantity(q);
-        if (!quantity->is_computed || k-- > 0) continue;
-        *listed = (struct result_listed){
-            .name = quantity->name, .unit = quantity->unit, .type = "double", .meaning = quantity->long_name};
-        snprintf(listed->dimensions, sizeof listed->dimensions, "member%s%s", quantity->of_fish ? ", fish" : "",
-                 quantity->of_xy ? ", xy" : "");
-        return 1;
+    const struct row *const row = &rows[r];
+    const char *const place = strstr(row->name, "%s"), *const word = strstr(row->meaning, "%s");
+    snprintf(name[r], sizeof name[r], "%.*s%s", place ? (int)(place - row->name) : (int)strlen(row->name), row->name,
+             place ? "Q" : "");
+    snprintf(meaning[r], sizeof meaning[r], "%.*s%s%s", word ? (int)(word - row->meaning) : (int)strlen(row->meaning),
+             row->meaning, word ? "Q" : "", word ? word + 2 : "");
+    *listed = (struct result_listed){.name = r == QUANTITY ? quantity->name : name[r],
+                                     .unit = r == QUANTITY ? quantity->unit
+                                             : row->unit   ? row->unit
+                                                           : "of Q",
+                                     .type = row->type == NETCDF_TEXT  ? "char"
+                                             : row->type == NETCDF_INT ? "int"
+                                                                       : "double",
+                                     .meaning = r == QUANTITY ? quantity->long_name : meaning[r]};
+    int length = 0;
+    for (int d = 0; d < MOST_DIMENSIONS; d++) {
+        const enum dimension by = row->dimension[d];
+        const bool is_missing =
+            r == QUANTITY && ((by == BY_FISH && !quantity->of_fish) || (by == BY_XY && !quantity->of_xy));
+        if (by == NO_DIMENSION || is_missing || (by == BY_POINT && r != POINT_MEMBER)) continue;
+        length += snprintf(listed->dimensions + length, sizeof listed->dimensions - (size_t)length, "%s%s",
+                           length > 0 ? ", " : "", dimension_names[by]);
     }
-
-    int n_orders = 0;
-    for (struct result_listed other; study_orders_listed(n_orders, &other);) n_orders++;
-    return k < n_orders ? study_orders_listed(k, listed) : error_report_listed(k - n_orders, listed);
+    return 1;
 }
 
 // ---- reading
@@ -270,27 +568,55 @@ enum { MAX_MEMBERS = 100000 };
 /* An open study.nc. */
 struct reading {
     struct netcdf_reader reader;
-    const struct case_values *study;
+    struct case_values *study;
     struct member_file *member;
     size_t n_members, n_text; /* lengths of dimensions */
-    double *buffer;           /* one quantity of all members */
 };
 
-/* Read one quantity of all members; quantities of comparisons exist in comparisons only. */
-static enum status study_file_read_quantity(const struct reading *reading, int q) {
-    const struct member_file_quantity *const quantity = member_file_quantity(q);
-    if (!netcdf_has(&reading->reader, quantity->name)) return STATUS_OK;
+static enum status study_file_read_members(struct arena *arena, struct reading *reading) {
     const int n_fish = reading->study->school.n_fish;
-    const struct netcdf_slice slice[] = {{"member", 0, reading->n_members},
-                                         {quantity->of_fish ? "fish" : NULL, 0, (size_t)n_fish},
-                                         {quantity->of_xy ? "xy" : NULL, 0, 2},
-                                         {NULL}};
-    TRY(netcdf_read_doubles(&reading->reader, quantity->name, slice, reading->buffer));
-    const double *from = reading->buffer;
+    const struct netcdf_reader *const reader = &reading->reader;
+    size_t length;
+
+    // an error study with refinement has a variable number of members
+    const size_t n = (size_t)sweep_n_members(reading->study);
+    const bool is_open = reading->study->error != NULL;
+    TRY(netcdf_read_length(reader, "member", is_open ? 1 : n, is_open ? MAX_MEMBERS : n, &reading->n_members));
+    TRY(netcdf_read_length(reader, "fish", (size_t)n_fish, (size_t)n_fish, &length));
+    TRY(netcdf_read_length(reader, "text", 1, INT_MAX, &reading->n_text));
+    NEW(arena, reading->member, reading->n_members);
+
+    // status and warnings of each member
     for (size_t m = 0; m < reading->n_members; m++) {
-        for (int f = 0; f < (quantity->of_fish ? n_fish : 1); f++) {
-            for (int k = 0; k < 1 + quantity->of_xy; k++) {
-                *member_file_place(&reading->member[m], q, f, k) = *from++;
+        struct member_file *const member = &reading->member[m];
+        const struct netcdf_slice slice[] = {{"member", m, 1}, {"text", 0, reading->n_text}, {NULL}};
+        char *status, *warnings;
+        member->number = (int)m;
+        member_file_create_values(arena, member, n_fish);
+        NEW(arena, status, reading->n_text + 1);
+        NEW(arena, warnings, reading->n_text + 1);
+        TRY(netcdf_read_text(reader, "status", slice, status));
+        TRY(netcdf_read_text(reader, "warnings", slice, warnings));
+        member->status = status;
+        member->warnings = warnings;
+    }
+
+    // quantities; those of comparisons exist in comparisons only
+    double *buffer;
+    NEW(arena, buffer, reading->n_members * (size_t)n_fish * 2);
+    for (int q = 0; member_file_quantity(q); q++) {
+        const struct member_file_quantity *const quantity = member_file_quantity(q);
+        if (!netcdf_has(reader, quantity->name)) continue;
+        const struct netcdf_slice slice[] = {{"member", 0, reading->n_members},
+                                             {quantity->of_fish ? "fish" : NULL, 0, (size_t)n_fish},
+                                             {quantity->of_xy ? "xy" : NULL, 0, 2},
+                                             {NULL}};
+        TRY(netcdf_read_doubles(reader, quantity->name, slice, buffer));
+        const double *from = buffer;
+        for (size_t m = 0; m < reading->n_members; m++) {
+            for (int f = 0; f < (quantity->of_fish ? n_fish : 1); f++) {
+                for (int k = 0; k < 1 + quantity->of_xy; k++)
+                    *member_file_place(&reading->member[m], q, f, k) = *from++;
             }
         }
     }
@@ -298,66 +624,295 @@ static enum status study_file_read_quantity(const struct reading *reading, int q
     return STATUS_OK;
 }
 
-/* Read a string of a member; the caller frees the string. */
-static enum status study_file_read_string(const struct reading *reading, const char *name, size_t m, char **string) {
-    TRY(MEMORY_NEW(*string, reading->n_text + 1, "study.nc"));
-    const struct netcdf_slice slice[] = {{"member", m, 1}, {"text", 0, reading->n_text}, {NULL}};
-    return netcdf_read_text(&reading->reader, name, slice, *string);
+static enum status study_file_read_open(struct arena *arena, struct reading *reading, const char *path) {
+    char *text;
+    TRY(netcdf_open_in(arena, &reading->reader, path));
+    TRY(netcdf_attribute(&reading->reader, "study_case", &text));
+    TRY(study_folder_parse(arena, &reading->study, text, path, 0, NULL));
+    return study_file_read_members(arena, reading);
 }
 
-static enum status read_members(struct reading *reading) {
-    const size_t n_fish = (size_t)reading->study->school.n_fish;
-    const struct netcdf_reader *const reader = &reading->reader;
-    size_t length;
+enum status study_file_read(struct arena *arena, const char *path, struct case_values **study,
+                            struct member_file **members, int *n_members) {
+    struct reading *reading;
+    NEW(arena, reading, 1);
+    const enum status status = study_file_read_open(arena, reading, path);
+    *study = reading->study;
+    *members = reading->member;
+    *n_members = (int)reading->n_members;
+    if (status == STATUS_OK || status == STATUS_MEMORY) return status;
+    return status_fail(STATUS_FILE, "%s; write study.nc again with `shoal gather`", status_message());
+}
 
-    if (reading->study->error) {
-        // an error study with refinement has a variable number of members
-        TRY(netcdf_read_length(reader, "member", 1, MAX_MEMBERS, &reading->n_members));
+// ---- the report of a study
+
+static void print_members(struct arena *arena, const struct case_values *study, const struct member_file *members,
+                          FILE *stream) {
+    if (compare_is(study)) {
+        compare_print(arena, study, members, stream);
     } else {
-        TRY(netcdf_read_length(reader, "member", reading->n_members, reading->n_members, &length));
+        study_print(arena, study, members, stream);
+    }
+}
+
+/* Print orders and expectations; the first failure counts. */
+static enum status print_expected(struct arena *arena, const struct case_values *study,
+                                  const struct member_file *members, const struct convergence_orders *orders,
+                                  FILE *stream) {
+    const enum status of_orders = study_print_orders(arena, study, orders, stream);
+    if (of_orders != STATUS_OK && of_orders != STATUS_MISSED) return of_orders;
+    const enum status of_members = study_expect(study, members, stream);
+    return of_orders == STATUS_OK ? of_members : of_orders;
+}
+
+/* Fail if a member is incomplete and the case does not expect the failure. */
+static enum status test_completeness(const struct case_values *study, const struct member_file *members,
+                                     const char *folder) {
+    const int n = sweep_n_members(study);
+    int n_failed = 0;
+    for (int m = 0; m < n; m++) {
+        n_failed += !member_file_is_complete(&members[m]) && !study_expects_failure(study, members, m);
+    }
+    if (n_failed == 0) return STATUS_OK;
+    return status_fail(STATUS_SOLVER,
+                       "%d of %d members in %s are not complete; repeat `shoal %s` with the same options", n_failed, n,
+                       folder, study->error ? "error" : "study");
+}
+
+/* study_report with the memory of an arena. */
+static enum status report_folder(struct arena *arena, const struct case_values *study, const char *folder,
+                                 const char *path, const char *command, bool strict, FILE *stream, FILE *warnings) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct member_file *members;
+    TRY(study_folder_read_members(arena, &members, study, folder));
+    compare_fill_errors(study, members);
+
+    // print all tables and write study.nc before a missed expectation ends the report
+    struct convergence_orders orders;
+    convergence_orders_create(arena, &orders, study, members);
+    print_members(arena, study, members, stream);
+    enum status status = study_file_write(arena, path ? path : study_folder_path(arena, folder, "study.nc"), study,
+                                          members, &orders, NULL, command);
+    if (status == STATUS_OK) {
+        status = print_expected(arena, study, members, &orders, stream);
+
+        // the warnings of short runs in a comparison of methods concern the case
+        const int n = compare_is(study) ? 0 : study_print_warnings(arena, members, sweep_n_members(study), warnings);
+        if (strict && status == STATUS_OK && n > 0) {
+            status = status_fail(STATUS_MISSED, "%d warning%s about the members, with --strict", n, n > 1 ? "s" : "");
+        }
     }
 
-    TRY(netcdf_read_length(reader, "fish", n_fish, n_fish, &length));
-    TRY(netcdf_read_length(reader, "text", 1, INT_MAX, &reading->n_text));
-    TRY(MEMORY_NEW(reading->member, reading->n_members, "the members of study.nc"));
-    TRY(MEMORY_NEW(reading->buffer, reading->n_members * n_fish * 2, "the members of study.nc"));
+    // the table of an error study that the folder contained before
+    const char *const csv = study_folder_path(arena, folder, "error.csv");
+    if (target_is(csv, TARGET_TABLE)) unlink(csv);
+    return status == STATUS_OK ? test_completeness(study, members, folder) : status;
+}
 
-    for (size_t m = 0; m < reading->n_members; m++) {
-        struct member_file *const member = &reading->member[m];
-        member->number = (int)m;
-        TRY(member_file_create_values(member, reading->study->school.n_fish));
-        TRY(study_file_read_string(reading, "status", m, &member->status));
-        TRY(study_file_read_string(reading, "warnings", m, &member->warnings));
+enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
+                         bool strict, FILE *stream, FILE *warnings) {
+    struct arena *const arena = arena_create(NULL, owner);
+    const enum status status = report_folder(arena, study, folder, path, command, strict, stream, warnings);
+    arena_free(arena);
+    return status;
+}
+
+// ---- the run and the report of a comparison
+
+/* Run all members in a temporary folder, then report. */
+static enum status run_in_folder(struct arena *arena, const char *folder, const struct case_values *values,
+                                 const struct compare_options *options, const struct study_options *run, FILE *stream) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct case_values *study;
+    TRY(compare_create(arena, &study, values, options));
+    const struct study_options all = {.folder = folder,
+                                      .command = run->command,
+                                      .n_processes = 1,
+                                      .last = -1,
+                                      .n_required = COMPARE_N_REFERENCES,
+                                      .limit = run->limit,
+                                      .progress = run->progress,
+                                      .data = run->data,
+                                      .stop = run->stop};
+    int n_failed;
+    const enum status status = study_run(study, &all, &n_failed);
+    if (status == STATUS_SOLVER) {
+        return status_fail(STATUS_SOLVER, "the reference, %s; see --reference-rtol and --limit", status_message());
     }
-    for (int q = 0; member_file_quantity(q); q++) TRY(study_file_read_quantity(reading, q));
 
+    if (status == STATUS_STOPPED) return status_fail(STATUS_STOPPED, "stopped by a signal");
+    TRY(status);
+    const enum status reported = study_report(study, folder, options->path, run->command, false, stream, stream);
+
+    // a method that fails on a case is a valid result
+    return reported == STATUS_SOLVER ? STATUS_OK : reported;
+}
+
+enum status study_compare(const struct case_values *values, const struct compare_options *options,
+                          const struct study_options *run, FILE *stream) {
+    const char *const place = getenv("TMPDIR");
+    char folder[PATH_MAX];
+    snprintf(folder, sizeof folder, "%s/shoal-compare-XXXXXX", place && *place ? place : "/tmp");
+    struct arena *const arena = arena_create(NULL, "a comparison");
+    if (!mkdtemp(folder)) {
+        arena_free(arena);
+        return status_fail(STATUS_FILE, "%s: cannot create this folder (%s): set TMPDIR to another folder", folder,
+                           strerror(errno));
+    }
+    const enum status status = run_in_folder(arena, folder, values, options, run, stream);
+    study_folder_remove(folder);
+    arena_free(arena);
+    return status;
+}
+
+// ---- the report of errors
+
+/* Print the budget, or the points of a sweep. */
+static enum status print_errors(struct error_sweep *sweep, const struct member_file *members, FILE *stream) {
+    if (sweep->n_swept == 0) return study_print_errors(&sweep->point[0], members, stream);
+    study_print_points(sweep, members, stream);
     return STATUS_OK;
 }
 
-enum status study_file_read(const char *path, struct case_values *study, struct member_file **members, int *n_members) {
-    struct reading reading = {.study = study};
-    char *text = NULL;
-    TRY(netcdf_open(&reading.reader, path));
-    enum status status = netcdf_read_string(&reading.reader, "study_case", &text);
-    if (status == STATUS_OK) status = case_parse(study, text, strlen(text), path, NULL, 0, NULL);
-    free(text);
+/* Read and judge the members in a folder, add the members required by the error bound, and repeat; then report. Unless
+ * options is NULL, run new members first. */
+static enum status refine_and_report(struct arena *arena, struct error_sweep *sweep, const char *folder,
+                                     const struct study_options *options, const char *command, bool strict,
+                                     FILE *stream, FILE *warnings) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    const struct case_values *const study = &sweep->study;
+    struct error_study *const first = &sweep->point[0];
+    struct member_file *members;
+    int most_members = INT_MAX, n_failed;
 
-    if (status == STATUS_OK) {
-        reading.n_members = (size_t)sweep_n_members(study);
-        status = read_members(&reading);
-        free(reading.buffer);
-        for (size_t m = 0; status != STATUS_OK && reading.member && m < reading.n_members; m++) {
-            member_file_free(&reading.member[m]);
-        }
-        if (status != STATUS_OK) free(reading.member);
-        if (status != STATUS_OK) case_free(study);
+    // without runs, the members before the first missing member
+    for (int m = 0; !options && most_members == INT_MAX; m++) {
+        if (access(study_folder_member(arena, folder, m, ".nc"), F_OK) != 0) most_members = m;
+    }
+    for (;;) {
+        struct arena *const round = arena_create(arena, owner);
+        if (options) TRY(study_run(study, options, &n_failed));
+        TRY(study_folder_read_members(round, &members, study, folder));
+        convergence_sweep_judge(sweep, members);
+        if (convergence_study_refine(first, members, most_members) == 0) break;
+        arena_free(round);
     }
 
-    netcdf_close(&reading.reader);
-    if (status == STATUS_OK) {
-        *members = reading.member;
-        *n_members = (int)reading.n_members;
+    // print the budget and write study.nc and error.csv before a missed bound ends the report
+    const struct convergence_orders none = {0};
+    TRY(study_file_write(arena, study_folder_path(arena, folder, "study.nc"), study, members, &none, sweep, command));
+    TRY(study_print_csv(sweep, study_folder_path(arena, folder, "error.csv")));
+    const enum status status = print_errors(sweep, members, stream);
+
+    // deliberately coarse levels have separate warnings, which are not printed
+    const bool is_one = sweep->n_swept == 0;
+    const int n =
+        study_print_warnings(arena, &members[is_one ? first->stated : 0], is_one ? 1 : sweep->n_points, warnings);
+    TRY(status);
+    if (strict && n > 0) {
+        return status_fail(STATUS_MISSED, "%d warning%s about the stated value%s, with --strict", n, n > 1 ? "s" : "",
+                           is_one ? "" : "s");
     }
-    if (status == STATUS_OK || status == STATUS_MEMORY) return status;
-    return status_fail(STATUS_FILE, "%s; write study.nc again with `shoal gather`", status_message());
+    return test_completeness(study, members, folder);
+}
+
+static enum status run_errors(struct arena *arena, const struct case_values *values,
+                              const struct study_options *options, int plan, bool strict, FILE *stream,
+                              FILE *warnings) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct error_sweep *sweep;
+    TRY(error_plan_create(arena, &sweep, values));
+    if (plan > 0) {
+        const int n = options->n_processes > 0 ? options->n_processes : omp_get_num_procs() / values->school.threads;
+        TRY(study_print_plan(sweep, n < 1 ? 1 : n, stream));
+    }
+    if (plan == 2) return STATUS_OK;
+    fflush(stream);
+    return refine_and_report(arena, sweep, options->folder, options, options->command, strict, stream, warnings);
+}
+
+enum status study_errors(const struct case_values *values, const struct study_options *options, int plan, bool strict,
+                         FILE *stream, FILE *warnings) {
+    struct arena *const arena = arena_create(NULL, owner);
+    const enum status status = run_errors(arena, values, options, plan, strict, stream, warnings);
+    arena_free(arena);
+    return status;
+}
+
+// ---- gather and info
+
+static enum status gather(struct arena *arena, const char *folder, const char *command, bool strict, FILE *stream,
+                          FILE *warnings) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    const char *text;
+    struct case_values *study;
+    TRY(study_folder_find_study(arena, folder, &text));
+    TRY(study_folder_parse(arena, &study, text, folder, 0, NULL));
+    if (!study->error) return report_folder(arena, study, folder, NULL, command, strict, stream, warnings);
+    struct error_sweep *sweep;
+    TRY(error_plan_create(arena, &sweep, study));
+    return refine_and_report(arena, sweep, folder, NULL, command, strict, stream, warnings);
+}
+
+enum status study_gather(const char *folder, const char *command, bool strict, FILE *stream, FILE *warnings) {
+    struct arena *const arena = arena_create(NULL, owner);
+    const enum status status = gather(arena, folder, command, strict, stream, warnings);
+    arena_free(arena);
+    return status;
+}
+
+/* Print the errors of a study.nc: refine up to the members of the file. */
+static enum status info_errors(struct arena *arena, const struct case_values *study, const struct member_file *members,
+                               int n, FILE *stream) {
+    struct error_sweep *sweep;
+    TRY(error_plan_create(arena, &sweep, study));
+    if (sweep_n_members(&sweep->study) > n) {
+        return status_fail(STATUS_FILE,
+                           "the file has %d members, expected %d: write study.nc again with `shoal gather`", n,
+                           sweep_n_members(&sweep->study));
+    }
+    do {
+        convergence_sweep_judge(sweep, members);
+    } while (convergence_study_refine(&sweep->point[0], members, n) > 0);
+    return print_errors(sweep, members, stream);
+}
+
+static enum status info(struct arena *arena, const char *path, FILE *stream) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct case_values *study;
+    struct member_file *members;
+    int n, n_complete = 0;
+    TRY(study_file_read(arena, path, &study, &members, &n));
+
+    // the number of members, the number of complete members and the axes
+    for (int m = 0; m < n; m++) n_complete += member_file_is_complete(&members[m]);
+    fprintf(stream, "  %-10s  %d, %d of them complete\n", "members", n, n_complete);
+    for (int a = 0; a < study->n_axes; a++) {
+        const struct sweep_axis *const axis = &study->sweep[a];
+        fprintf(stream, "  axis %-5d  %d values of ", a, axis->n_values);
+        for (int k = 0; k < axis->n_keys; k++) fprintf(stream, "%s%s", k > 0 ? ", " : "", axis->key[k].path);
+        fprintf(stream, "%s\n", axis->refine ? ", refined" : "");
+    }
+    fprintf(stream, "\n");
+
+    // a missed expectation belongs to the contents of the file
+    enum status status;
+    if (study->error) {
+        status = info_errors(arena, study, members, n, stream);
+    } else {
+        struct convergence_orders orders;
+        convergence_orders_create(arena, &orders, study, members);
+        print_members(arena, study, members, stream);
+        status = print_expected(arena, study, members, &orders, stream);
+    }
+    if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());
+    if (!study->error && !compare_is(study)) study_print_warnings(arena, members, n, stream);
+    return status == STATUS_MISSED ? STATUS_OK : status;
+}
+
+enum status study_info(struct arena *parent, const char *path, FILE *stream) {
+    struct arena *const arena = arena_create(parent, owner);
+    const enum status status = info(arena, path, stream);
+    arena_free(arena);
+    return status;
 }

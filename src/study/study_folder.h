@@ -7,7 +7,7 @@
 #ifndef STUDY_FOLDER_H
 #define STUDY_FOLDER_H
 
-#include <stdio.h>
+#include <stdbool.h>
 
 #include "base/arena.h"
 #include "base/status.h"
@@ -20,25 +20,27 @@ enum status study_folder_create(const char *folder);
 /* Remove the folder and all files in the folder. */
 void study_folder_remove(const char *folder);
 
-/* The path of a file in the folder, or of a member file with an ending such as ".nc"; NULL: out of memory. The caller
- * frees the path. */
-char *study_folder_path(const char *folder, const char *name);
-char *study_folder_member(const char *folder, int member, const char *ending);
+/* The path of a file in the folder, or of a member file with an ending such as ".nc". */
+char *study_folder_path(struct arena *arena, const char *folder, const char *name);
+char *study_folder_member(struct arena *arena, const char *folder, int member, const char *ending);
 
-/* Write the reason of a failure to the .failed file of a member; NULL: remove the file of an earlier run. Fails with
- * STATUS_MEMORY. */
-enum status study_folder_set_reason(const char *folder, int member, const char *reason);
+/* Parse the case of a study; the case of a member. Both are released with the arena. They fail as case_parse and
+ * case_member. */
+enum status study_folder_parse(struct arena *arena, struct case_values **study, const char *text, const char *origin,
+                               int n_assignments, const char *const *assignments);
+enum status study_folder_case(struct arena *arena, struct case_values **values, const struct case_values *study,
+                              int member);
 
-/* Read the final values of all members in the folder. An unreadable file counts as a failed member. The caller frees
- * *members with study_folder_free_members. Fails with STATUS_FILE (a file belongs to another study) or
- * STATUS_MEMORY. */
-enum status study_folder_read_members(struct member_file **members, const struct case_values *study,
-                                      const char *folder);
-void study_folder_free_members(struct member_file *members, int n);
+/* Write the reason of a failure to the .failed file of a member; NULL: remove the file of an earlier run. */
+void study_folder_set_reason(struct arena *arena, const char *folder, int member, const char *reason);
 
-/* Read the merged case of the study from the first readable member file of the folder. The caller frees *text. Fails
- * with STATUS_FILE or STATUS_MEMORY. */
-enum status study_folder_find_study(const char *folder, char **text);
+/* Read the final values of all members in the folder into the arena. An unreadable file counts as a failed member.
+ * Fails with STATUS_FILE (a file belongs to another study). */
+enum status study_folder_read_members(struct arena *arena, struct member_file **members,
+                                      const struct case_values *study, const char *folder);
+
+/* Read the merged case of the study from the first readable member file of the folder. Fails with STATUS_FILE. */
+enum status study_folder_find_study(struct arena *arena, const char *folder, const char **text);
 
 // ---- the plan: selection of the unfinished members
 //
@@ -52,8 +54,8 @@ struct study_plan {
 
 /* Check all members from first to last (last -1: all) and list the unfinished members. force: accept results of another
  * study in the folder, and remove such results beyond the last member. Fails with STATUS_CASE (no such members, or a
- * member is not a valid case), STATUS_FILE (the folder contains results of another study) or STATUS_MEMORY. */
+ * member is not a valid case) or STATUS_FILE (the folder contains results of another study). */
 enum status study_plan_create(struct arena *arena, struct study_plan *plan, const struct case_values *study,
-                              const char *folder, int first, int last, int force);
+                              const char *folder, int first, int last, bool force);
 
 #endif

@@ -1,17 +1,18 @@
-/* study_print.c: the members of a study, and the expectations. */
+/* study_print.c: see study_print.h. */
 #include "study/study_print.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/table.h"
 #include "base/text.h"
+#include "case/case.h"
 #include "case/sweep.h"
-
-void study_fill_name(char *text, size_t size, const char *format, const char *quantity) {
-    const int before = (int)(strstr(format, "%s") - format);
-    snprintf(text, size, "%.*s%s%s", before, format, quantity, format + before + 2);
-}
+#include "result/durable.h"
+#include "result/target.h"
+#include "run/estimate.h"
+#include "study/study_folder.h"
 
 // ---- members
 
@@ -41,99 +42,83 @@ static const struct shown {
 };
 enum { N_SHOWN = sizeof shown / sizeof *shown };
 
-/* Whether a quantity is printed. */
-static int print_is_shown(const struct shown *one, const struct case_values *study, const struct member_file *members) {
-    int has_held = !one->of_held;
+/* Add the column of a swept key: "modulus" for fish[*].body.modulus, "[1]phase" for fish[1].wave.phase. */
+static void add_key_column(struct table *table, const struct sweep_key *key) {
+    const char *const dot = strrchr(key->path, '.');
+    const bool is_one = strncmp(key->path, "fish[", 5) == 0 && key->path[5] != '*';
+    char head[128];
+    snprintf(head, sizeof head, "%.*s%s", is_one ? (int)strcspn(key->path + 4, ".") : 0, is_one ? key->path + 4 : "",
+             dot ? dot + 1 : key->path);
+    table_column(table, head, key->unit);
+}
+
+void study_print(struct arena *arena, const struct case_values *study, const struct member_file *members,
+                 FILE *stream) {
+    const int n = sweep_n_members(study),
+              n_fish = study->school.n_fish < MAX_FISH_SHOWN ? study->school.n_fish : MAX_FISH_SHOWN;
+    struct table *const table = table_create(arena, 0);
+    table_column(table, "member", "");
+    for (int a = 0; a < study->n_axes; a++) {
+        for (int k = 0; k < study->sweep[a].n_keys; k++) add_key_column(table, &study->sweep[a].key[k]);
+    }
+    if (n_fish > 1) table_column(table, "fish", NULL);
+
+    // the printed quantities: thrust and power only beside a held body, values of steady states if a member has one
+    bool has_held = false;
     for (int f = 0; f < study->school.n_fish; f++) {
         const struct motion_parameters *const motion = &study->school.fish[f].motion;
         has_held |= motion->prescribed != PRESCRIBED_NONE && motion->surge == SURGE_GIVEN;
     }
-
-    int is_known = !member_file_quantity(member_file_quantity_number(one->quantity))->of_steady;
-    for (int m = 0; m < sweep_n_members(study) && !is_known; m++) {
-        is_known = !isnan(member_file_number(&members[m], one->quantity, 0));
-    }
-    return has_held && is_known;
-}
-
-enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
-    const int n = sweep_n_members(study),
-              n_fish = study->school.n_fish < MAX_FISH_SHOWN ? study->school.n_fish : MAX_FISH_SHOWN;
-    struct text_table table;
-    int n_columns = 2 + (n_fish > 1), c = 0;
-    for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;
-    for (int s = 0; s < N_SHOWN; s++) n_columns += print_is_shown(&shown[s], study, members);
-    TRY(text_table_create(&table, 2 + n * n_fish, n_columns));
-
-    // one column after the other: head, unit and values
-    text_table_set(&table, 0, c, "member");
-    for (int row = 0; row < n * n_fish; row++) text_table_set(&table, 2 + row, c, "%d", row / n_fish);
-    c++;
-
-    for (int a = 0; a < study->n_axes; a++) {
-        const struct sweep_axis *const axis = &study->sweep[a];
-        for (int k = 0; k < axis->n_keys; k++, c++) {
-            // "modulus" for fish[*].body.modulus, "[1]phase" for fish[1].wave.phase
-            const char *const path = axis->key[k].path, *const dot = strrchr(path, '.');
-            const int is_one = strncmp(path, "fish[", 5) == 0 && path[5] != '*';
-            text_table_set(&table, 0, c, "%.*s%s", is_one ? (int)strcspn(path + 4, ".") : 0, is_one ? path + 4 : "",
-                           dot ? dot + 1 : path);
-            text_table_set(&table, 1, c, "%s", axis->key[k].unit);
-            for (int row = 0; row < n * n_fish; row++) {
-                const int value = sweep_member_value(study, row / n_fish, a);
-                text_table_set(&table, 2 + row, c, "%s", axis->value[value * axis->n_keys + k]);
-            }
-        }
-    }
-
-    if (n_fish > 1) {
-        text_table_set(&table, 0, c, "fish");
-        for (int row = 0; row < n * n_fish; row++) {
-            text_table_set(&table, 2 + row, c, "%s", study->school.fish[row % n_fish].name);
-        }
-        c++;
-    }
-
+    int quantity[N_SHOWN];
     for (int s = 0; s < N_SHOWN; s++) {
-        if (!print_is_shown(&shown[s], study, members)) continue;
-        const struct member_file_quantity *const quantity =
-            member_file_quantity(member_file_quantity_number(shown[s].quantity));
-        text_table_set(&table, 0, c, "%s", shown[s].head);
-        text_table_set(&table, 1, c, "%s", strcmp(quantity->unit, "1") == 0 ? "" : quantity->unit);
-        for (int row = 0; row < n * n_fish; row++) {
-            const int f = quantity->of_fish ? row % n_fish : 0;
-            text_table_number(&table, 2 + row, c, shown[s].format,
-                              member_file_number(&members[row / n_fish], quantity->name, f));
+        quantity[s] = member_file_quantity_number(shown[s].quantity);
+        const struct member_file_quantity *const row = member_file_quantity(quantity[s]);
+        bool is_known = !row->of_steady;
+        for (int m = 0; m < n && !is_known; m++) is_known = !isnan(member_file_value(&members[m], quantity[s], 0, 0));
+        if (!is_known || (shown[s].of_held && !has_held)) quantity[s] = -1;
+        if (quantity[s] >= 0) table_column(table, shown[s].head, strcmp(row->unit, "1") == 0 ? "" : row->unit);
+    }
+
+    // a row for each fish of each member
+    table_column(table, "status", NULL);
+    for (int m = 0; m < n; m++) {
+        for (int f = 0; f < n_fish; f++) {
+            table_cell(table, "%d", m);
+            for (int a = 0; a < study->n_axes; a++) {
+                const struct sweep_axis *const axis = &study->sweep[a];
+                const int value = sweep_member_value(study, m, a);
+                for (int k = 0; k < axis->n_keys; k++) table_cell(table, "%s", axis->value[value * axis->n_keys + k]);
+            }
+            if (n_fish > 1) table_cell(table, "%s", study->school.fish[f].name);
+            for (int s = 0; s < N_SHOWN; s++) {
+                if (quantity[s] < 0) continue;
+                const int of = member_file_quantity(quantity[s])->of_fish ? f : 0;
+                table_number(table, shown[s].format, member_file_value(&members[m], quantity[s], of, 0));
+            }
+            // "failed: reason": the reasons follow the table
+            table_cell(table, "%.*s", (int)strcspn(members[m].status, ":"), members[m].status);
+            table_row(table);
         }
-        c++;
     }
 
-    // "failed: reason": the reasons follow the table
-    text_table_set(&table, 0, c, "status");
-    for (int row = 0; row < n * n_fish; row++) {
-        const char *const status = members[row / n_fish].status;
-        text_table_set(&table, 2 + row, c, "%.*s", (int)strcspn(status, ":"), status);
-    }
-
-    text_table_print(&table, stream);
-    text_table_free(&table);
+    table_print(table, stream);
     if (n_fish < study->school.n_fish) {
         fprintf(stream, "The first %d of %d fish; study.nc has all.\n", n_fish, study->school.n_fish);
     }
     for (int m = 0; m < n; m++) {
         if (strchr(members[m].status, ':')) fprintf(stream, "member %d %s\n", m, members[m].status);
     }
-
-    return STATUS_OK;
 }
 
+// ---- warnings
+
 /* Whether two warnings differ at most in numbers: kind of the warning and fish agree. */
-static int warnings_agree(const char *a, int n, const char *b, int m) {
+static bool warnings_agree(const char *a, int n, const char *b, int m) {
     static const char digits[] = "0123456789.";
     const char *const end_a = a + n, *const end_b = b + m;
     while (a < end_a && b < end_b) {
-        const int is_number = *a >= '0' && *a <= '9' && *b >= '0' && *b <= '9';
-        if (!is_number && *a != *b) return 0;
+        const bool is_number = *a >= '0' && *a <= '9' && *b >= '0' && *b <= '9';
+        if (!is_number && *a != *b) return false;
         a += is_number ? (long)strspn(a, digits) : 1;
         b += is_number ? (long)strspn(b, digits) : 1;
         // exponents: 4e+03 and 27
@@ -148,7 +133,7 @@ struct warning_group {
     const char *line;  /* of the first member, without the line break */
     int length, shown; /* and its number */
     int first, last, n;
-    int differs;   /* the numbers of another member are others */
+    bool differs;  /* the numbers of another member are others */
     char *members; /* "0-2, 5" up to the last range, which is first to last; NULL: no earlier range */
     int members_length;
 };
@@ -164,37 +149,32 @@ static void group_add_range(struct arena *arena, struct warning_group *group) {
     group->members_length += length;
 }
 
-/* Add a warning of a member to the group of its kind, or to a new group. */
-static void groups_add(struct arena *arena, struct warning_group **groups, int *n_groups, const char *line, int length,
-                       int member) {
-    for (int g = 0; g < *n_groups; g++) {
-        struct warning_group *const group = &(*groups)[g];
-        if (!warnings_agree(group->line, group->length, line, length)) continue;
-        group->differs |= length != group->length || memcmp(group->line, line, (size_t)length) != 0;
-        if (member > group->last + 1) {
-            group_add_range(arena, group);
-            group->first = member;
-        }
-        group->last = member;
-        group->n++;
-        return;
-    }
-
-    GROW(arena, *groups, *n_groups + 1);
-    (*groups)[(*n_groups)++] = (struct warning_group){
-        .line = line, .length = length, .shown = member, .first = member, .last = member, .n = 1};
-}
-
 int study_print_warnings(struct arena *arena, const struct member_file *members, int n, FILE *stream) {
     struct warning_group *groups = NULL;
     int n_warnings = 0, n_groups = 0;
 
+    // add each warning of each member to the group of its kind, or to a new group
     for (int m = 0; m < n; m++) {
-        for (const char *line = members[m].warnings; line && *line; line += *line == '\n') {
-            const int length = (int)strcspn(line, "\n");
+        int length;
+        for (const char *line = members[m].warnings; line && *line; line += length + (line[length] == '\n')) {
+            length = (int)strcspn(line, "\n");
             n_warnings++;
-            groups_add(arena, &groups, &n_groups, line, length, m);
-            line += length;
+            int g = 0;
+            while (g < n_groups && !warnings_agree(groups[g].line, groups[g].length, line, length)) g++;
+            if (g == n_groups) {
+                GROW(arena, groups, ++n_groups);
+                groups[g] =
+                    (struct warning_group){.line = line, .length = length, .shown = m, .first = m, .last = m, .n = 1};
+                continue;
+            }
+            struct warning_group *const group = &groups[g];
+            group->differs |= length != group->length || memcmp(group->line, line, (size_t)length) != 0;
+            if (m > group->last + 1) {
+                group_add_range(arena, group);
+                group->first = m;
+            }
+            group->last = m;
+            group->n++;
         }
     }
 
@@ -214,93 +194,74 @@ int study_print_warnings(struct arena *arena, const struct member_file *members,
 
 // ---- expectations
 
-/* Smallest and largest value of a quantity over the members and fish of an expectation. */
-struct extrema {
-    int n;
-    double min[2], max[2]; /* x and y of points */
-    int missing;           /* a member without a value; -1: none */
-};
-
-static struct extrema extrema_of(const struct case_values *study, const struct member_file *members,
-                                 const struct sweep_expectation *one, int q) {
-    const struct sweep_quantity *const what = &sweep_quantities[q];
-    const int quantity = member_file_quantity_number(what->name);
-    struct extrema extrema = {.min = {INFINITY, INFINITY}, .max = {-INFINITY, -INFINITY}, .missing = -1};
-
-    for (int m = 0; m < sweep_n_members(study); m++) {
-        if (!sweep_expects_of(study, one, m)) continue;
-        for (int f = 0; f < (what->of_fish ? study->school.n_fish : 1); f++) {
-            if (one->fish >= 0 && one->fish != f) continue;
-            extrema.n++;
-            for (int k = 0; k < 1 + what->of_xy; k++) {
-                const double value = member_file_value(&members[m], quantity, f, k);
-                if (isnan(value) || !member_file_is_complete(&members[m])) extrema.missing = m;
-                extrema.min[k] = fmin(extrema.min[k], value);
-                extrema.max[k] = fmax(extrema.max[k], value);
-            }
-        }
-    }
-
-    return extrema;
-}
-
-/* Print a value and the bound; 1 if the bound is met or NaN (no bound). */
-static int test_bound(const char *what, double value, const char *word, double bound, FILE *stream) {
-    if (isnan(bound)) return 1;
-    const int is_lower = strcmp(word, "least") == 0;
-    const int is_met = is_lower ? value >= bound : value <= bound;
+/* Print a value and the bound; true if the bound is met or NaN (no bound). */
+static bool test_bound(const char *what, double value, const char *word, double bound, FILE *stream) {
+    if (isnan(bound)) return true;
+    const bool is_lower = strcmp(word, "least") == 0;
+    const bool is_met = is_lower ? value >= bound : value <= bound;
     fprintf(stream, "  %-8s %s %.9g, expected at %s %.9g\n", is_met ? "met" : "MISSED", what, value, word, bound);
     return is_met;
 }
 
 /* Test the bounds of an expectation on one quantity. */
-static int test_quantity(const struct case_values *study, const struct member_file *members, int number, int q,
-                         FILE *stream) {
+static bool test_quantity(const struct case_values *study, const struct member_file *members, int number, int q,
+                          FILE *stream) {
     const struct sweep_expectation *const one = &study->expect[number];
-    const struct extrema extrema = extrema_of(study, members, one, q);
-    const char *const name = sweep_quantities[q].name;
+    const struct sweep_quantity *const what = &sweep_quantities[q];
+    const int quantity = member_file_quantity_number(what->name);
 
-    fprintf(stream, "%s%s%s, %d value%s\n", name, one->fish >= 0 ? " of " : "",
-            one->fish >= 0 ? study->school.fish[one->fish].name : "", extrema.n, extrema.n == 1 ? "" : "s");
-    if (extrema.missing >= 0) {
-        const int is_complete = member_file_is_complete(&members[extrema.missing]);
-        fprintf(stream, "  MISSED   member %d %s\n", extrema.missing,
-                is_complete ? "has no such value" : "is not complete");
-        return 0;
+    // smallest and largest value over the members and fish of the expectation
+    double min[2] = {INFINITY, INFINITY}, max[2] = {-INFINITY, -INFINITY};
+    int n = 0, missing = -1;
+    for (int m = 0; m < sweep_n_members(study); m++) {
+        if (!sweep_expects_of(study, one, m)) continue;
+        for (int f = 0; f < (what->of_fish ? study->school.n_fish : 1); f++) {
+            if (one->fish >= 0 && one->fish != f) continue;
+            n++;
+            for (int k = 0; k < 1 + what->of_xy; k++) {
+                const double value = member_file_value(&members[m], quantity, f, k);
+                if (isnan(value) || !member_file_is_complete(&members[m])) missing = m;
+                min[k] = fmin(min[k], value);
+                max[k] = fmax(max[k], value);
+            }
+        }
     }
 
-    // a scalar has no second direction
-    const double width = extrema.max[0] - extrema.min[0];
-    const double height = sweep_quantities[q].of_xy ? extrema.max[1] - extrema.min[1] : 0;
+    fprintf(stream, "%s%s%s, %d value%s\n", what->name, one->fish >= 0 ? " of " : "",
+            one->fish >= 0 ? study->school.fish[one->fish].name : "", n, n == 1 ? "" : "s");
+    if (missing >= 0) {
+        fprintf(stream, "  MISSED   member %d %s\n", missing,
+                member_file_is_complete(&members[missing]) ? "has no such value" : "is not complete");
+        return false;
+    }
 
-    // infinite if the signs differ or a value is 0
-    const double low = extrema.min[0], high = extrema.max[0];
-    const double ratio = low > 0 ? high / low : high < 0 ? low / high : INFINITY;
+    // a scalar has no second direction; the ratio is infinite if the signs differ or a value is 0
+    const double width = max[0] - min[0], height = what->of_xy ? max[1] - min[1] : 0;
+    const double ratio = min[0] > 0 ? max[0] / min[0] : max[0] < 0 ? min[0] / max[0] : INFINITY;
 
     // no short circuit: print every bound
-    const int n_met = test_bound("the smallest is", extrema.min[0], "least", one->min, stream) +
-                      test_bound("the largest is", extrema.max[0], "most", one->max, stream) +
+    const int n_met = test_bound("the smallest is", min[0], "least", one->min, stream) +
+                      test_bound("the largest is", max[0], "most", one->max, stream) +
                       test_bound("the spread is", hypot(width, height), "most", one->spread, stream) +
                       test_bound("the ratio is", ratio, "most", one->ratio, stream);
-
     return n_met == 4;
 }
 
-static int has_failed(const struct member_file *member, const char *words) {
+static bool has_failed(const struct member_file *member, const char *words) {
     return strncmp(member->status, "failed", strlen("failed")) == 0 && strstr(member->status, words) != NULL;
 }
 
-int study_expects_failure(const struct case_values *study, const struct member_file *members, int member) {
+bool study_expects_failure(const struct case_values *study, const struct member_file *members, int member) {
     for (int i = 0; i < study->n_expectations; i++) {
         const struct sweep_expectation *const one = &study->expect[i];
-        if (one->fails && sweep_expects_of(study, one, member) && has_failed(&members[member], one->fails)) return 1;
+        if (one->fails && sweep_expects_of(study, one, member) && has_failed(&members[member], one->fails)) return true;
     }
-    return 0;
+    return false;
 }
 
 /* Whether all members of an expectation have failed with the expected message. */
-static int test_failures(const struct case_values *study, const struct member_file *members,
-                         const struct sweep_expectation *one, FILE *stream) {
+static bool test_failures(const struct case_values *study, const struct member_file *members,
+                          const struct sweep_expectation *one, FILE *stream) {
     int n = 0, wrong = -1;
     for (int m = 0; m < sweep_n_members(study); m++) {
         if (!sweep_expects_of(study, one, m)) continue;
@@ -340,4 +301,553 @@ enum status study_expect(const struct case_values *study, const struct member_fi
     if (n_missed == 0) return STATUS_OK;
     return status_fail(STATUS_MISSED, "expect[%d]: %s: expectation not met%s: see the output", first, first_what,
                        n_missed > 1 ? ", and others" : "");
+}
+
+// ---- orders along a refined axis
+
+/* Print errors and orders of one group: members that differ in the refined axis only. */
+static void print_group(struct arena *arena, const struct case_values *study, const struct convergence_orders *orders,
+                        int group, FILE *stream) {
+    static const char *const heads[] = {"coarse order", "order", "extrapolated", "", "error", "by"};
+    const struct sweep_axis *const axis = &study->sweep[orders->axis];
+    const int n = orders->n_levels;
+
+    // the values of the axis over the columns of errors
+    struct table *const table = table_create(arena, 0);
+    table_column(table, "difference of", NULL);
+    table_column(table, "fish", NULL);
+    table_column(table, "unit", NULL);
+    for (int i = 0; i < n; i++) table_column(table, axis->value[orders->level[i] * axis->n_keys], NULL);
+    for (int i = 0; i < 6; i++) table_column(table, heads[i], NULL);
+
+    // a row for each quantity of each fish
+    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+        for (int f = 0; f < orders->n_fish; f++) {
+            const int place = convergence_place(orders, group, q, f);
+            const struct convergence_row *const row = &orders->row[place];
+            const struct sweep_quantity *const quantity = &sweep_quantities[q];
+            const bool is_given = !isnan(sweep_reference(study, orders->axis, q, f, 0));
+            if (!row->is_known) continue;
+            table_cell(table, "%s%s", quantity->name, is_given ? "*" : "");
+            table_cell(table, "%s", study->school.fish[f].name);
+            table_cell(table, "%s", member_file_quantity(member_file_quantity_number(quantity->name))->unit);
+            for (int i = 0; i < n; i++) table_number(table, "%.2e", orders->error[place * n + i]);
+            table_number(table, "%.2f", row->result.coarse_order);
+            table_number(table, "%.2f", row->result.order);
+            table_number(table, "%.9g", row->limit[0]);
+            if (quantity->of_xy) table_number(table, "%.9g", row->limit[1]);
+            if (!quantity->of_xy) table_cell(table, "%s", "");
+            table_number(table, "%.1e", row->result.error);
+            table_cell(table, "%s",
+                       is_given                                      ? "reference"
+                       : row->result.verdict == CONVERGENCE_NONE     ? "noise"
+                       : convergence_is_flagged(row->result.verdict) ? "flagged"
+                       : orders->n_judged < CONVERGENCE_LEVELS       ? "3 levels"
+                                                                     : "4 levels");
+            table_row(table);
+        }
+    }
+    table_print(table, stream);
+
+    // one line for each kind of flag with the flagged quantities; the table states their orders
+    for (int verdict = CONVERGENCE_OBJECTION; verdict <= CONVERGENCE_UNKNOWN; verdict++) {
+        int n_flagged = 0;
+        for (int i = 0; i < SWEEP_N_ORDERS * orders->n_fish; i++) {
+            const struct convergence_row *const row =
+                &orders->row[convergence_place(orders, group, i / orders->n_fish, i % orders->n_fish)];
+            if (!row->is_known || (int)row->result.verdict != verdict || !*row->flag) continue;
+            if (n_flagged == 0) {
+                fprintf(stream, "warning: %s: ", convergence_words((enum convergence_verdict)verdict));
+            }
+            fprintf(stream, "%s%s of %s", n_flagged++ > 0 ? ", " : "", sweep_quantities[i / orders->n_fish].name,
+                    study->school.fish[i % orders->n_fish].name);
+        }
+        if (n_flagged > 0) fprintf(stream, "\n");
+    }
+}
+
+/* Test the expected order of all quantities of a group; STATUS_MISSED for another order. */
+static enum status test_orders(const struct case_values *study, const struct convergence_orders *orders, int group,
+                               FILE *stream) {
+    const struct sweep_axis *const axis = &study->sweep[orders->axis];
+    enum status status = STATUS_OK;
+    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+        if (!(axis->order_of >> q & 1) || !(axis->order > 0)) continue;
+        for (int f = 0; f < orders->n_fish; f++) {
+            const double order = orders->row[convergence_place(orders, group, q, f)].result.order;
+            const char *const fish = study->school.fish[f].name, *const quantity = sweep_quantities[q].name;
+            const bool is_met = fabs(order - axis->order) <= axis->within;
+            fprintf(stream, "%s: order of %s of %s is %.2f, expected %g +- %g\n", is_met ? "met" : "MISSED", quantity,
+                    fish, order, axis->order, axis->within);
+            if (is_met || status != STATUS_OK) continue;
+            status = status_fail(STATUS_MISSED, "%s of %s: observed order %.2f in %s, expected %g +- %g", quantity,
+                                 fish, order, axis->key[0].path, axis->order, axis->within);
+        }
+    }
+
+    return status;
+}
+
+enum status study_print_orders(struct arena *arena, const struct case_values *study,
+                               const struct convergence_orders *orders, FILE *stream) {
+    enum status status = STATUS_OK;
+    for (int g = 0; g < orders->n_groups; g++) {
+        const struct sweep_axis *const axis = &study->sweep[orders->axis];
+        char *text;
+        TRY(sweep_member_text(study, orders->first[g], &text));
+        arena_defer(arena, free, text);
+        fprintf(stream, "\nRefinement of ");
+        for (int k = 0; k < axis->n_keys; k++) fprintf(stream, "%s%s", k > 0 ? " with " : "", axis->key[k].path);
+        if (study->n_axes > 1) fprintf(stream, ", from member %d (%s) on", orders->first[g], text);
+        fprintf(stream,
+                ": differences from the finest level%s; observed order of the next coarser and of the\n"
+                "finest levels, Richardson's extrapolation, and the error of the finest level (doc/studies.md)\n",
+                axis->reference ? " (*: from the reference of the case)" : "");
+        print_group(arena, study, orders, g, stream);
+        const enum status tested = test_orders(study, orders, g, stream);
+        if (status == STATUS_OK) status = tested;
+    }
+
+    return status;
+}
+
+// ---- the plan of an error study
+
+enum { OF_QUANTITY = 4 /* columns */, LEVEL_BYTES = 160 };
+
+/* Beats of a search from the initial state of a case, from the state of a neighbour, and for the multipliers of a fish;
+ * wall time of the events simulated for an estimate, s. */
+static const double beats_from_start = 14, beats_from_neighbour = 11, beats_of_multipliers = 32, patience = 2;
+
+static const char *name_of(const struct error_study *study, int q) {
+    return member_file_quantity(study->quantity[q])->name;
+}
+
+/* Without "steady_". */
+static const char *short_name_of(const struct error_study *study, int q) {
+    return name_of(study, q) + (strncmp(name_of(study, q), "steady_", 7) == 0 ? 7 : 0);
+}
+
+static bool report_of_fish(const struct error_study *study, int q) {
+    return member_file_quantity(study->quantity[q])->of_fish;
+}
+
+static bool report_is_error(const struct error_study_key *key) {
+    return key->row->kind != SWEEP_MODEL;
+}
+
+/* "13 17 [25] 35", from coarse to fine; the stated value in brackets. */
+static void write_levels(const struct error_study_key *key, char text[LEVEL_BYTES]) {
+    int length = 0;
+    *text = '\0';
+    for (int i = key->n_levels - 1; i >= 0 && length < LEVEL_BYTES - 1; i--) {
+        const bool is_stated = i == key->stated;
+        length += snprintf(text + length, (size_t)(LEVEL_BYTES - length), "%s%s%.4g%s", length > 0 ? " " : "",
+                           is_stated ? "[" : "", key->value[i], is_stated ? "]" : "");
+    }
+    if (length < LEVEL_BYTES) snprintf(text + length, (size_t)(LEVEL_BYTES - length), "%s", key->unit);
+}
+
+/* The estimated CPU time of a member, s; NaN if the estimate fails. */
+static enum status estimate_member(const struct error_sweep *sweep, int m, double seconds, double *duration) {
+    struct arena *const scratch = arena_create(sweep->arena, "the estimate of a member");
+    const struct error_study *const first = &sweep->point[0];
+    struct case_values *values;
+    struct simulation *simulation;
+    struct estimate estimate;
+    TRY(study_folder_case(scratch, &values, &sweep->study, m));
+    if (first->is_steady && first->beat > 0) {
+        const bool has_before = sweep_member_before(&sweep->study, m) >= 0;
+        double beats = has_before ? beats_from_neighbour : beats_from_start;
+        if (m < sweep->n_points && values->steady.multipliers != NO) beats += beats_of_multipliers * first->n_fish;
+        values->time.end = beats * first->beat;
+    }
+
+    enum status status = simulate_create(scratch, &simulation, values);
+    if (status == STATUS_OK) status = estimate_run(simulation, seconds, &estimate);
+    *duration = status == STATUS_OK ? estimate.seconds : NAN;
+    arena_free(scratch);
+    return status == STATUS_SOLVER ? STATUS_OK : status;
+}
+
+enum status study_print_plan(const struct error_sweep *sweep, int n_processes, FILE *stream) {
+    const int n = sweep_n_members(&sweep->study);
+    double sum = 0, longest = 0, *duration;
+    NEW(sweep->arena, duration, n);
+    for (int m = 0; m < n; m++) {
+        // the time of an equilibrium is negligible
+        if (!sweep->point[0].is_static) TRY(estimate_member(sweep, m, patience / n, &duration[m]));
+        sum += duration[m];
+        longest = fmax(longest, duration[m]);
+    }
+
+    struct table *const table = table_create(sweep->arena, 3);
+    if (sweep->n_points > 1) table_column(table, "point", NULL);
+    table_column(table, "key", NULL);
+    table_column(table, "levels", NULL);
+    table_column(table, "members", NULL);
+    table_column(table, "time of each, s", NULL);
+    for (int p = 0; p < sweep->n_points; p++) {
+        for (int k = 0; k < sweep->point[p].n_keys; k++) {
+            const struct error_study_key *const key = &sweep->point[p].key[k];
+            char levels[LEVEL_BYTES];
+            struct text members = {0}, times = {0};
+            write_levels(key, levels);
+            for (int i = key->n_levels - 1; i >= 0 && key->n_levels > 1; i--) {
+                text_add(&members, "%s%d", members.length > 0 ? " " : "", key->member[i]);
+                text_add(&times, "%s%.2g", times.length > 0 ? " " : "", duration[key->member[i]]);
+            }
+            if (sweep->n_points > 1) table_cell(table, "%d", p);
+            table_cell(table, "%s", key->row->path);
+            table_cell(table, "%s", levels);
+            table_cell(table, "%s", members.text ? members.text : "not varied");
+            table_cell(table, "%s", times.text ? times.text : "");
+            table_row(table);
+            text_free(&members);
+            text_free(&times);
+        }
+    }
+    table_print(table, stream);
+
+    const double least = 0.05, shown_least = 0.1, wall = fmax(longest, sum / n_processes);
+    char all[TEXT_DURATION_BYTES], simultaneous[TEXT_DURATION_BYTES];
+    text_duration(all, sum > least ? sum : shown_least);
+    text_duration(simultaneous, wall > least ? wall : shown_least);
+    fprintf(stream,
+            "%d members, [the case] among them; about %s of CPU time, %s with %d at once: estimated from a few events, "
+            "often within a factor of two\n",
+            n, all, simultaneous, n_processes);
+    const struct sweep_error *const error = sweep->study.error;
+    if (!isnan(error->within)) {
+        fprintf(stream,
+                "then refined until the errors are below %.3g %% of the values, up to %g times the time of the "
+                "case\n",
+                100 * error->within, error->most);
+    }
+
+    return STATUS_OK;
+}
+
+// ---- values and errors
+
+/* The number of decimals for two significant digits. */
+static int decimals_for(double number) {
+    if (!(fabs(number) > 0) || !isfinite(number)) return 5;
+    const int decimals = 1 - (int)floor(log10(fabs(number)));
+    return decimals < 0 ? 0 : decimals > 12 ? 12 : decimals;
+}
+
+/* "0.9364 +- 0.0019 m s-1 (0.2 %)" */
+static void print_value(const struct error_study *study, int q, int f, FILE *stream) {
+    const int place = error_plan_place(study, q, f);
+    const double value = study->value[place], error = study->error[place];
+    const char *const own_unit = member_file_quantity(study->quantity[q])->unit;
+    const char *const unit = strcmp(own_unit, "1") == 0 ? "" : own_unit, *const blank = *unit ? " " : "";
+
+    fprintf(stream, "%s", name_of(study, q));
+    if (report_of_fish(study, q)) fprintf(stream, " of %s", study->study->school.fish[f].name);
+    if (isnan(value)) {
+        fprintf(stream, ": unknown\n");
+    } else if (isnan(error)) {
+        fprintf(stream, ": %.5g%s%s, error unknown\n", value, blank, unit);
+    } else {
+        const int decimals = decimals_for(error);
+        fprintf(stream, ": %.*f +- %.*f%s%s", decimals, value, decimals, error, blank, unit);
+        if (fabs(value) > 0) fprintf(stream, " (%.2g %%)", 100 * error / fabs(value));
+        fprintf(stream, "\n");
+    }
+}
+
+void study_print_reason(const struct error_study *study, const struct error_study_key *key, int place,
+                        char text[CONVERGENCE_BYTES]) {
+    double size[ERROR_STUDY_LEVELS];
+    const struct convergence_levels levels = convergence_study_levels(study, key, size);
+    convergence_reason(&levels, &key->part[place], key->value, text);
+}
+
+/* The effect of the next level of the key with the largest share of the largest relative error: cost and predicted
+ * error, where known. */
+static char *next_words(const struct error_study *study, const struct error_study_next *next) {
+    struct arena *const arena = study->sweep->arena;
+    if (isnan(next->value)) return arena_text(arena, "<- spend here");
+
+    // times of short runs do not tell a smaller factor from 1
+    const double least = 1.05;
+    char cost[32] = "", error[64];
+    if (next->cost > least) snprintf(cost, sizeof cost, ", CPU x %.2g", next->cost);
+    const char *const quantity = short_name_of(study, next->place / study->n_fish);
+    snprintf(error, sizeof error, isnan(next->sum) ? ", to find an order of %.40s" : ", %.40s +-%.2g %%", quantity,
+             100 * next->sum);
+    return arena_text(arena, "<- spend here: %s %.4g%s%s", strrchr(study->key[next->key].row->path, '.') + 1,
+                      next->value, cost, error);
+}
+
+/* Print two digits of a part of the sum, at most one decimal more than the sum and at most five decimals. */
+static void part_cell(struct table *table, double part, double sum) {
+    const int most = decimals_for(sum) < 4 ? 5 : decimals_for(sum) + 1, own = decimals_for(part);
+    table_cell(table, isnan(part) ? "unknown" : "%.*f", own < most ? own : most, part);
+}
+
+/* Print the row of the sum, or of a part of the sum; f: fish */
+static void sum_row(struct table *table, const struct error_study *study, const char *head, const double *value,
+                    int f) {
+    table_cell(table, "%s", head);
+    table_cell(table, "%s", "");
+    for (int q = 0; q < study->n_asked; q++) {
+        const int place = error_plan_place(study, q, f);
+        const bool is_shown = f == 0 || report_of_fish(study, q);
+        for (int c = 0; c < OF_QUANTITY; c++) {
+            if (is_shown && c == 0) {
+                part_cell(table, value[place], study->error[place]);
+            } else if (is_shown && c == 2) {
+                table_number(table, "%.2f", 100 * value[place] / fabs(study->value[place]));
+            } else {
+                table_cell(table, "%s", "");
+            }
+        }
+    }
+    table_row(table);
+}
+
+/* Print the share of each key for one fish. */
+static void print_shares(const struct error_study *study, const struct error_study_next *next, int f, FILE *stream) {
+    int n_moved = 0;
+    struct table *const table = table_create(study->sweep->arena, 2);
+    table_column(table, "key", NULL);
+    table_column(table, "levels", NULL);
+    for (int q = 0; q < study->n_asked; q++) {
+        const char *const heads[OF_QUANTITY] = {short_name_of(study, q), "order", "%", "share"};
+        for (int c = 0; c < OF_QUANTITY; c++) table_column(table, heads[c], NULL);
+    }
+    table_column(table, "by", NULL);
+    table_column(table, "next", NULL);
+
+    for (int k = 0; k < study->n_keys; k++) {
+        const struct error_study_key *const key = &study->key[k];
+        n_moved += key->stated != key->first_stated;
+        if (!report_is_error(key)) continue;
+        char levels[LEVEL_BYTES];
+        write_levels(key, levels);
+        table_cell(table, "%s", key->row->path);
+        table_cell(table, "%s", levels);
+        for (int q = 0; q < study->n_asked; q++) {
+            const int place = error_plan_place(study, q, f);
+            const struct convergence_result *const part = &key->part[place];
+            if (key->n_levels == 1 || (f > 0 && !report_of_fish(study, q))) {
+                const bool is_said = f == 0 || report_of_fish(study, q);
+                for (int c = 0; c < OF_QUANTITY; c++) table_cell(table, "%s", is_said && c == 1 ? "not varied" : "");
+                continue;
+            }
+            part_cell(table, part->error, study->error[place]);
+            if (part->verdict == CONVERGENCE_ACCEPTED) {
+                table_cell(table, "%.1f", part->order);
+            } else {
+                table_cell(table, "%s",
+                           part->verdict == CONVERGENCE_NONE      ? "none"
+                           : part->verdict == CONVERGENCE_UNKNOWN ? "unknown"
+                                                                  : "flagged");
+            }
+            table_number(table, "%.2f", 100 * part->error / fabs(study->value[place]));
+            table_number(table, "%.0f", study->error[place] > 0 ? 100 * part->error / study->error[place] : 0);
+        }
+        table_cell(table, key->n_levels > 1 ? "%d levels" : "", key->n_levels < 4 ? key->n_levels : 4);
+        table_cell(table, "%s", k == next->key ? next_words(study, next) : "");
+        table_row(table);
+    }
+
+    if (n_moved > 1) sum_row(table, study, "together", study->together, f);
+    sum_row(table, study, "sum", study->error, f);
+    table_print(table, stream);
+}
+
+/* Print the largest change of a requested quantity by each choice of the model. */
+static void print_choices(const struct error_study *study, FILE *stream) {
+    int n = 0;
+    for (int k = 0; k < study->n_keys; k++) {
+        const struct error_study_key *const key = &study->key[k];
+        if (report_is_error(key) || key->n_levels == 1) continue;
+        double most = 0;
+        bool is_none = true;
+        for (int place = 0; place < study->n_asked * study->n_fish; place++) {
+            most = fmax(most, key->part[place].error / fabs(study->value[place]));
+            is_none &= key->part[place].verdict == CONVERGENCE_NONE;
+        }
+        char levels[LEVEL_BYTES];
+        write_levels(key, levels);
+        fprintf(stream, "%s%s (%s) ", n++ > 0 ? "; " : "choices, not in the sum: ", key->row->path, levels);
+        if (is_none) {
+            fprintf(stream, "none");
+        } else {
+            fprintf(stream, "%.2g %%", 100 * most);
+        }
+    }
+
+    if (n > 0) fprintf(stream, "\n");
+}
+
+/* Print the reasons of flags, each with its quantity, of fixed keys, and of failed members. */
+static void print_reasons(const struct error_study *study, const struct member_file *members, FILE *stream) {
+    for (int k = 0; k < study->n_keys; k++) {
+        const struct error_study_key *const key = &study->key[k];
+        if (key->n_levels == 1) fprintf(stream, "not varied: %s: %s\n", key->row->path, key->objection);
+        if (key->n_levels == 1 || !report_is_error(key)) continue;
+        for (int place = 0; place < study->n_asked * study->n_fish; place++) {
+            const int q = place / study->n_fish, f = place % study->n_fish;
+            const struct convergence_result *const part = &key->part[place];
+            const bool is_objection = part->verdict == CONVERGENCE_OBJECTION;
+
+            // at least 1 % of the error of the quantity, or an unknown error
+            if (!convergence_is_flagged(part->verdict) || part->error < 0.01 * study->error[place]) continue;
+            char reason[CONVERGENCE_BYTES];
+            study_print_reason(study, key, place, reason);
+            fprintf(stream, "flagged: %s: ", key->row->path);
+            if (!is_objection) fprintf(stream, "%s", short_name_of(study, q));
+            if (!is_objection && report_of_fish(study, q)) fprintf(stream, " of %s", study->study->school.fish[f].name);
+            fprintf(stream, "%s%s\n", is_objection ? "" : ": ", reason);
+            if (is_objection) break;
+        }
+    }
+    for (int m = 0; m < sweep_n_members(study->study); m++) {
+        if (!member_file_is_complete(&members[m])) fprintf(stream, "member %d: %s\n", m, members[m].status);
+    }
+}
+
+enum status study_print_errors(struct error_study *study, const struct member_file *members, FILE *stream) {
+    const struct error_study_next next = convergence_study_next(study, members);
+    const int n_shown = study->n_fish < MAX_FISH_SHOWN ? study->n_fish : MAX_FISH_SHOWN;
+    for (int f = 0; f < n_shown; f++) {
+        for (int q = 0; q < study->n_asked; q++) {
+            if (f == 0 || report_of_fish(study, q)) print_value(study, q, f, stream);
+        }
+        print_shares(study, &next, f, stream);
+        if (f + 1 < n_shown) fprintf(stream, "\n");
+    }
+
+    if (n_shown < study->n_fish) {
+        fprintf(stream, "The first %d of %d fish; error.csv and study.nc have all.\n", n_shown, study->n_fish);
+    }
+
+    fprintf(stream, "noise of a value, of integrator and search: %.1e\n", study->noise);
+    print_choices(study, stream);
+    print_reasons(study, members, stream);
+    if (study->stated > 0) fprintf(stream, "the stated value takes %.2g times the time of the case\n", study->cost);
+    if (study->is_reached) return STATUS_OK;
+    char words[CONVERGENCE_BYTES];
+    convergence_study_say_cost(study, words);
+
+    return status_fail(STATUS_MISSED, "the errors are not within %.3g %% of the values; %s",
+                       100 * study->study->error->within, words);
+}
+
+// ---- points of a sweep
+
+void study_print_points(const struct error_sweep *sweep, const struct member_file *members, FILE *stream) {
+    const struct error_study *const first = &sweep->point[0];
+    const struct sweep_axis *const axis = &sweep->study.sweep[0];
+    const int n_shown = first->n_fish < MAX_FISH_SHOWN ? first->n_fish : MAX_FISH_SHOWN;
+    struct table *const table = table_create(sweep->arena, 0);
+    table_column(table, "point", "");
+    for (int c = 0; c < sweep->n_swept; c++) add_key_column(table, &axis->key[c]);
+    if (n_shown > 1) table_column(table, "fish", NULL);
+    for (int q = 0; q < first->n_asked; q++) {
+        const char *const unit = member_file_quantity(first->quantity[q])->unit;
+        table_column(table, short_name_of(first, q), strcmp(unit, "1") == 0 ? "" : unit);
+        table_column(table, "error", NULL);
+        table_column(table, "%", NULL);
+    }
+    table_column(table, "flagged", NULL);
+
+    for (int p = 0; p < sweep->n_points; p++) {
+        const struct error_study *const point = &sweep->point[p];
+        for (int f = 0; f < n_shown; f++) {
+            table_cell(table, "%d%s", p, point->is_full ? "" : "*");
+            for (int c = 0; c < sweep->n_swept; c++) {
+                table_cell(table, "%s", axis->value[point->base * axis->n_keys + c]);
+            }
+            if (n_shown > 1) table_cell(table, "%s", point->values->school.fish[f].name);
+            for (int q = 0; q < point->n_asked; q++) {
+                const int place = error_plan_place(point, q, report_of_fish(point, q) ? f : 0);
+                const double value = point->value[place], error = point->error[place];
+                const int decimals = decimals_for(error);
+                if (isnan(value) || isnan(error)) {
+                    table_number(table, "%.5g", value);
+                } else {
+                    table_cell(table, "%.*f", decimals, value);
+                }
+                table_cell(table, isnan(error) ? "unknown" : "%.*f", decimals, error);
+                table_number(table, "%.2g", 100 * error / fabs(value));
+            }
+
+            // the keys with a flag that has a hundredth of the error
+            struct text flags = {0};
+            for (int k = 0; k < point->n_keys; k++) {
+                bool is_flagged = false;
+                for (int q = 0; q < point->n_asked; q++) {
+                    const int place = error_plan_place(point, q, report_of_fish(point, q) ? f : 0);
+                    const struct convergence_result *const part = &point->key[k].part[place];
+                    is_flagged |= point->key[k].n_levels > 1 && report_is_error(&point->key[k]) &&
+                                  convergence_is_flagged(part->verdict) && !(part->error < 0.01 * point->error[place]);
+                }
+                const char *const name = strrchr(point->key[k].row->path, '.') + 1;
+                if (is_flagged) text_add(&flags, "%s%s", flags.length > 0 ? ", " : "", name);
+            }
+            table_cell(table, "%s", flags.text ? flags.text : "");
+            text_free(&flags);
+            table_row(table);
+        }
+    }
+    table_print(table, stream);
+
+    bool are_shared = false;
+    for (int p = 0; p < sweep->n_points; p++) are_shared |= !sweep->point[p].is_full;
+    if (are_shared) {
+        fprintf(stream,
+                "*: nodes and shedding_interval varied here; of every other key the largest relative error of the "
+                "other points\n");
+    }
+    fprintf(stream, "error.csv has the shares of the keys and the reasons of flags\n");
+    for (int m = 0; m < sweep_n_members(&sweep->study); m++) {
+        if (!member_file_is_complete(&members[m])) fprintf(stream, "member %d: %s\n", m, members[m].status);
+    }
+}
+
+// ---- error.csv
+
+enum status study_print_csv(const struct error_sweep *sweep, const char *path) {
+    const struct sweep_axis *const axis = &sweep->study.sweep[0];
+    struct plain_file table;
+    TRY(plain_file_open(&table, path, TARGET_TABLE, true, 0666));
+    FILE *const file = table.stream;
+    fputs(TARGET_TABLE_MARK, file);
+    for (int c = 0; c < sweep->n_swept; c++) fprintf(file, ",%s", axis->key[c].path);
+    fputs("\n", file);
+
+    for (int p = 0; p < sweep->n_points; p++) {
+        const struct error_study *const study = &sweep->point[p];
+        for (int i = 0; i < study->n_fish * study->n_asked * (study->n_keys + 1); i++) {
+            const int k = i % (study->n_keys + 1) - 1, q = i / (study->n_keys + 1) % study->n_asked;
+            const int f = i / (study->n_keys + 1) / study->n_asked, place = error_plan_place(study, q, f);
+            const struct member_file_quantity *const quantity = member_file_quantity(study->quantity[q]);
+            const struct error_study_key *const key = k < 0 ? NULL : &study->key[k];
+            if ((f > 0 && !quantity->of_fish) || (key && key->n_levels == 1)) continue;
+            char levels[LEVEL_BYTES] = "", reason[CONVERGENCE_BYTES] = "";
+            if (key) write_levels(key, levels);
+            if (key) study_print_reason(study, key, place, reason);
+            const double error = key ? key->part[place].error : study->error[place];
+            const char *const verdict = !key                    ? ""
+                                        : !report_is_error(key) ? "a choice of the model, not in the sum"
+                                        : *reason               ? reason
+                                                                : convergence_words(key->part[place].verdict);
+            fprintf(file, "\"%s\",%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,\"%s\"",
+                    quantity->of_fish ? study->values->school.fish[f].name : "", quantity->name, quantity->unit,
+                    study->value[place], key ? key->row->path : "sum", levels, key ? key->part[place].order : NAN,
+                    error, 100 * error / fabs(study->value[place]), verdict);
+            for (int c = 0; c < sweep->n_swept; c++) {
+                fprintf(file, ",%s", axis->value[study->base * axis->n_keys + c]);
+            }
+            fputs("\n", file);
+        }
+    }
+
+    return plain_file_close(&table, STATUS_OK);
 }

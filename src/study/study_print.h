@@ -1,22 +1,20 @@
-/* study_print.h: the table of the members of a study, the warnings, and the expectations of the case. Tested by
- * tests/study/test_study.sh, test_study_file.c and test_study_print.c. */
+/* study_print.h: everything printed about a study: members, warnings, expectations, orders, and errors. Tested by
+ * tests/study/test_study.sh, test_error.sh, test_study_file.c, test_study_print.c and test_error_plan.c. */
 #ifndef STUDY_PRINT_H
 #define STUDY_PRINT_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 #include "base/arena.h"
 #include "base/status.h"
 #include "case/case_values.h"
+#include "study/convergence.h"
+#include "study/error_plan.h"
 #include "study/member_file.h"
 
-/* Insert the name of a quantity for the %s of a format. */
-void study_fill_name(char *text, size_t size, const char *format, const char *quantity);
-
-// ---- members
-
-/* Print swept values, final values and status of the members, in columns. Fails with STATUS_MEMORY. */
-enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream);
+/* Print swept values, final values and status of the members, in columns. */
+void study_print(struct arena *arena, const struct case_values *study, const struct member_file *members, FILE *stream);
 
 /* Print the warnings about the results of n members, one line per kind of warning with its members: warnings that
  * differ only in numbers are of one kind. Returns the number of all warnings. */
@@ -26,6 +24,31 @@ int study_print_warnings(struct arena *arena, const struct member_file *members,
 enum status study_expect(const struct case_values *study, const struct member_file *members, FILE *stream);
 
 /* Whether the failure of a member is expected. */
-int study_expects_failure(const struct case_values *study, const struct member_file *members, int member);
+bool study_expects_failure(const struct case_values *study, const struct member_file *members, int member);
+
+/* Print errors and orders along a refined axis. Fails with STATUS_MISSED if the order of a quantity differs from the
+ * order that the axis expects. */
+enum status study_print_orders(struct arena *arena, const struct case_values *study,
+                               const struct convergence_orders *orders, FILE *stream);
+
+// ---- an error study: doc/studies.md, "Error bars"
+
+/* Print keys, levels and number of members; estimate the time of n_processes simultaneous members from a few events of
+ * each member. Fails as simulate_create. */
+enum status study_print_plan(const struct error_sweep *sweep, int n_processes, FILE *stream);
+
+/* Print the values with the errors of one point and, for each fish, the share of each key. Fails with STATUS_MISSED and
+ * an estimate of the required refinement if the errors exceed the bound of the case. */
+enum status study_print_errors(struct error_study *study, const struct member_file *members, FILE *stream);
+
+/* Print a row of values and errors for each point. */
+void study_print_points(const struct error_sweep *sweep, const struct member_file *members, FILE *stream);
+
+/* Write values, errors and shares of all points as a table of comma-separated values. Fails with STATUS_FILE. */
+enum status study_print_csv(const struct error_sweep *sweep, const char *path);
+
+/* The reason of a flag of a quantity of a fish with its levels, or "". */
+void study_print_reason(const struct error_study *study, const struct error_study_key *key, int place,
+                        char text[CONVERGENCE_BYTES]);
 
 #endif

@@ -20,7 +20,7 @@ struct script {
 };
 
 /* Open a file of the folder for writing and write the mark of the program. */
-static enum status script_open(struct script *script, const char *folder, const char *name, int is_script) {
+static enum status script_open(struct script *script, const char *folder, const char *name, bool is_script) {
     if (snprintf(script->path, sizeof script->path, "%s/%s", folder, name) >= (int)sizeof script->path) {
         return status_fail(STATUS_FILE, "%s: name too long", folder);
     }
@@ -40,7 +40,7 @@ static enum status script_open(struct script *script, const char *folder, const 
 static enum status study_slurm_write_array(const struct case_values *study, const char *folder, const char *program,
                                            int n_tasks, int bundle) {
     struct script script;
-    TRY(script_open(&script, folder, "array.sbatch", 1));
+    TRY(script_open(&script, folder, "array.sbatch", true));
     fprintf(
         script.file.stream,
         "#SBATCH --job-name='%s'\n"
@@ -71,37 +71,16 @@ static enum status study_slurm_write_array(const struct case_values *study, cons
     return plain_file_close(&script.file, STATUS_OK);
 }
 
-static enum status write_gather(const struct case_values *study, const char *folder, const char *program) {
-    struct script script;
-    TRY(script_open(&script, folder, "gather.sbatch", 1));
-    fprintf(script.file.stream,
-            "#SBATCH --job-name='%s-gather'\n"
-            "#SBATCH --ntasks=1\n"
-            "#SBATCH --output='%s/study.txt'\n"
-            "exec '%s' gather '%s'\n",
-            study->name, folder, program, folder);
-    TRY(plain_file_close(&script.file, STATUS_OK));
-    TRY(script_open(&script, folder, "submit.sh", 1));
-    fprintf(script.file.stream,
-            "# Submit the members as an array job, then the job that gathers the results after the last member.\n"
-            "set -eu\n"
-            "folder='%s'\n"
-            "array=$(sbatch --parsable \"$@\" \"$folder/array.sbatch\")\n"
-            "gather=$(sbatch --parsable --dependency=\"afterany:$array\" \"$folder/gather.sbatch\")\n"
-            "printf '%%s\\n' \"members: job $array; results: job $gather, $folder/study.txt and study.nc\"\n",
-            folder);
-
-    return plain_file_close(&script.file, STATUS_OK);
-}
-
-enum status study_slurm(const struct case_values *study, const char *folder, int bundle, FILE *stream) {
+enum status study_slurm(struct arena *arena, const struct case_values *study, const char *folder, int bundle,
+                        FILE *stream) {
     const int n = sweep_n_members(study);
     if (bundle < 1) bundle = (n + MAX_TASKS - 1) / MAX_TASKS;
     const int n_tasks = (n + bundle - 1) / bundle;
     for (int m = 0; m < n; m++) {
-        struct case_values member;
-        TRY(case_member(&member, study, m));
-        case_free(&member);
+        struct arena *const scratch = arena_create(arena, "a member of a study");
+        struct case_values *member;
+        TRY(study_folder_case(scratch, &member, study, m));
+        arena_free(scratch);
     }
 
     char place[PATH_MAX], program[PATH_MAX];
@@ -119,11 +98,30 @@ enum status study_slurm(const struct case_values *study, const char *folder, int
     }
 
     struct script script;
-    TRY(script_open(&script, place, "study.yaml", 0));
+    TRY(script_open(&script, place, "study.yaml", false));
     fputs(study->merged, script.file.stream);
     TRY(plain_file_close(&script.file, STATUS_OK));
     TRY(study_slurm_write_array(study, place, program, n_tasks, bundle));
-    TRY(write_gather(study, place, program));
+
+    // the job that gathers the results, and the script that submits both jobs
+    TRY(script_open(&script, place, "gather.sbatch", true));
+    fprintf(script.file.stream,
+            "#SBATCH --job-name='%s-gather'\n"
+            "#SBATCH --ntasks=1\n"
+            "#SBATCH --output='%s/study.txt'\n"
+            "exec '%s' gather '%s'\n",
+            study->name, place, program, place);
+    TRY(plain_file_close(&script.file, STATUS_OK));
+    TRY(script_open(&script, place, "submit.sh", true));
+    fprintf(script.file.stream,
+            "# Submit the members as an array job, then the job that gathers the results after the last member.\n"
+            "set -eu\n"
+            "folder='%s'\n"
+            "array=$(sbatch --parsable \"$@\" \"$folder/array.sbatch\")\n"
+            "gather=$(sbatch --parsable --dependency=\"afterany:$array\" \"$folder/gather.sbatch\")\n"
+            "printf '%%s\\n' \"members: job $array; results: job $gather, $folder/study.txt and study.nc\"\n",
+            place);
+    TRY(plain_file_close(&script.file, STATUS_OK));
     fprintf(stream, "%d members in %d tasks; start them with %s/submit.sh\n", n, n_tasks, folder);
 
     return STATUS_OK;

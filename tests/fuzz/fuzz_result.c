@@ -10,7 +10,7 @@
 #include "result/result_kind.h"
 #include "result/result_reader.h"
 #include "study/member_file.h"
-#include "study/study_gather.h"
+#include "study/study_file.h"
 #include "view/field_file.h"
 
 static char path[64];
@@ -57,11 +57,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n) {
     demand_file(result_info(arena, path, nowhere));
     demand_file(study_info(arena, path, nowhere));
     demand_file(field_file_info(arena, path, nowhere));
-    arena_free(arena);
     struct member_file member;
-    const enum status status = member_file_read(&member, path);
-    demand_file(status);
-    if (status == STATUS_OK) member_file_free(&member);
+    demand_file(member_file_read(arena, &member, path));
+    arena_free(arena);
     read_rows();
     return 0;
 }

@@ -140,8 +140,10 @@ refused an_unknown_quantity 2 "error.of: 'lift' is no number of a result" error 
 refused two_kinds 2 'speed is of a run and steady_lift of a steady state' error foil.yaml --of steady_lift --of speed
 refused a_bound_of_words 2 '--within few: expects a number above 0' error foil.yaml --of steady_lift --within few
 refused a_plan_of_a_sweep 2 '--plan: the case has no `error`' study foil.yaml --plan --set 'sweep=[]'
-refused a_sweep_with_errors 2 'error: replaces a sweep' study foil.yaml \
-    --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5]}]' --set 'error={of: steady_lift}'
+refused a_bound_with_a_sweep 2 'error.within: refines one case' study foil.yaml \
+    --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5]}]' --set 'error={of: steady_lift, within: 0.1}'
+refused a_refined_axis_with_errors 2 'error: replaces the refined axis sweep[0]' study foil.yaml \
+    --set 'sweep=[{key: solver.rtol, values: [1e-3, 1e-4, 1e-5], refine: true}]' --set 'error={of: steady_lift}'
 run check swimmer.yaml
 check check_takes_it test "$code" = 0
 

@@ -3,6 +3,13 @@
 #include "result_fixture.h"
 #include "study/member_file.h"
 
+/* Memory of the tests of this file. */
+static struct arena *test_arena(void) {
+    static struct arena *arena;
+    if (!arena) arena = arena_create(NULL, "a test");
+    return arena;
+}
+
 /* Rows at uneven times. Fish 0 has a period of 0.5 s, which ends in the last four rows, fish 1 one of 1 s, longer than
  * the run. */
 enum { N_ROWS = 5 };
@@ -20,7 +27,7 @@ static void read_member(struct fixture *f, struct member_file *member) {
         assert_int_equal(append(f, file, row_time[i], 0), STATUS_OK);
     }
     assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
-    assert_int_equal(member_file_read(member, f->path), STATUS_OK);
+    assert_int_equal(member_file_read(test_arena(), member, f->path), STATUS_OK);
 }
 
 static double value(const struct member_file *member, const char *quantity, int fish, int xy) {
@@ -39,7 +46,6 @@ TEST_WITH(quantities_of_the_table_are_those_of_the_last_row, set_up, tear_down) 
     NEAR(value(&member, "speed", 1, 0), f->of_fish[1].speed, 0, 0);
     NEAR(value(&member, "steps", 0, 0), 21, 0, 0);
     assert_true(isnan(value(&member, "speed", N_FISH, 0)));  // no such fish
-    member_file_free(&member);
 }
 
 /* A member whose header counts rows that are not there, or that has no rows to count, is not finished. */
@@ -50,7 +56,6 @@ TEST_WITH(a_member_that_lacks_rows_is_refused, set_up, tear_down) {
         struct member_file member;
         if (has_rows) {
             read_member(f, &member);
-            member_file_free(&member);
         } else {
             int file, number;
             assert_int_equal(nc_create(f->path, NC_CLOBBER | NC_64BIT_DATA, &file), NC_NOERR);
@@ -64,7 +69,7 @@ TEST_WITH(a_member_that_lacks_rows_is_refused, set_up, tear_down) {
         fseek(file, 4, SEEK_SET);
         assert_int_equal(fwrite(count, 1, 8, file), 8);
         fclose(file);
-        assert_int_equal(member_file_read(&member, f->path), STATUS_FILE);
+        assert_int_equal(member_file_read(test_arena(), &member, f->path), STATUS_FILE);
         assert_message("the end of the file is missing");
         unlink(f->path);
     }
@@ -81,16 +86,14 @@ TEST_WITH(a_steady_state_has_its_own_values, set_up, tear_down) {
     result_file_steady(file, f->school, &values);
     assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);
     assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
-    assert_int_equal(member_file_read(&member, f->path), STATUS_OK);
+    assert_int_equal(member_file_read(test_arena(), &member, f->path), STATUS_OK);
     NEAR(value(&member, "steady_drag", 1, 0), 6, 0, 0);
     NEAR(value(&member, "steady_force", 0, 1), 5, 0, 0);
     NEAR(value(&member, "steady_stiffness", 0, 0), 0.5, 0, 0);
     NEAR(value(&member, "speed", 1, 0), f->of_fish[1].speed, 0, 0);
-    member_file_free(&member);
     unlink(f->path);
     read_member(f, &member);
     assert_true(isnan(value(&member, "steady_drag", 1, 0)));
-    member_file_free(&member);
 }
 
 TEST_WITH(beats_of_a_search_are_those_of_search_multipliers_and_rows, set_up, tear_down) {
@@ -104,10 +107,9 @@ TEST_WITH(beats_of_a_search_are_those_of_search_multipliers_and_rows, set_up, te
     result_file_steady(file, f->school, &values);
     assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);
     assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
-    assert_int_equal(member_file_read(&member, f->path), STATUS_OK);
+    assert_int_equal(member_file_read(test_arena(), &member, f->path), STATUS_OK);
     // rows of 0.75 s at 2 Hz; 28 s
     NEAR(value(&member, "beat_time", 0, 0), 28 / (5 + 7 + 1.5), 0, 1e-14);
-    member_file_free(&member);
 }
 
 TEST_WITH(nose_and_tail_are_the_ends_of_each_body, set_up, tear_down) {
@@ -122,7 +124,6 @@ TEST_WITH(nose_and_tail_are_the_ends_of_each_body, set_up, tear_down) {
         NEAR(value(&member, "tail", fish, 0), y[of->at.x + of->n_nodes - 1], 0, 0);
         NEAR(value(&member, "tail", fish, 1), y[of->at.y + of->n_nodes - 1], 0, 0);
     }
-    member_file_free(&member);
 }
 
 TEST_WITH(lateral_drift_is_to_the_left_of_the_first_heading, set_up, tear_down) {
@@ -132,7 +133,6 @@ TEST_WITH(lateral_drift_is_to_the_left_of_the_first_heading, set_up, tear_down) 
     // left of 150 degrees is (-sin 150, cos 150); the fish go 3 and 6 m/s along x and 5 along y
     NEAR(value(&member, "lateral_drift", 0, 0), (-0.5 * 3 - sqrt(0.75) * 5) * 0.8, 0, 1e-14);
     NEAR(value(&member, "lateral_drift", 1, 0), (-0.5 * 6 - sqrt(0.75) * 5) * 0.8, 0, 1e-14);
-    member_file_free(&member);
 }
 
 TEST_WITH(mean_heading_is_that_of_trapezoids_over_the_last_period, set_up, tear_down) {
@@ -143,17 +143,15 @@ TEST_WITH(mean_heading_is_that_of_trapezoids_over_the_last_period, set_up, tear_
     NEAR(value(&member, "mean_heading", 0, 0), last_three / 0.5, 0, 1e-14);
     // the whole run
     NEAR(value(&member, "mean_heading", 1, 0), (0.3 * 80 + last_three) / 0.8, 0, 1e-14);
-    member_file_free(&member);
 }
 
 TEST_WITH(a_member_without_rows_has_no_values, set_up, tear_down) {
     struct fixture *const f = *state;
     write_file(f, 0);
     struct member_file member;
-    assert_int_equal(member_file_read(&member, f->path), STATUS_OK);
+    assert_int_equal(member_file_read(test_arena(), &member, f->path), STATUS_OK);
     assert_true(isnan(value(&member, "speed", 0, 0)));
     assert_true(isnan(value(&member, "mean_heading", 1, 0)));
-    member_file_free(&member);
 }
 
 // ---- files that are not whole, or not ours
@@ -162,14 +160,14 @@ TEST_WITH(a_member_that_was_cut_is_refused, set_up, tear_down) {
     struct fixture *const f = *state;
     struct member_file member;
     read_member(f, &member);
-    member_file_free(&member);
     size_t n;
     char *const bytes = read_bytes(f->path, &n);
     while (n > 0 && bytes[n - 1] == 0) n--;  // the last value, 28, ends with zeros
     // the header with its status is whole in most of them
     for (size_t length = n - 1; length > 0; length -= length < 97 ? length : 97) {
         write_bytes(f->path, length, bytes);
-        if (member_file_read(&member, f->path) != STATUS_FILE) fail_msg("%zu of %zu bytes are a member", length, n);
+        if (member_file_read(test_arena(), &member, f->path) != STATUS_FILE)
+            fail_msg("%zu of %zu bytes are a member", length, n);
         assert_message(f->path);
         assert_null(member.status);
     }
@@ -194,14 +192,13 @@ TEST_WITH(a_variable_that_does_not_fit_is_refused, set_up, tear_down) {
     struct fixture *const f = *state;
     struct member_file member;
     read_member(f, &member);
-    member_file_free(&member);
     size_t n;
     char *const bytes = read_bytes(f->path, &n), name[NC_MAX_NAME + 1];
     int n_refused = 0;
     for (int i = 0; name_of_variable(f->path, i, name); i++) {
         for (enum craft how = 0; how < N_CRAFTS; how++) {
             craft_variable(f->path, name, how);
-            const enum status status = member_file_read(&member, f->path);
+            const enum status status = member_file_read(test_arena(), &member, f->path);
             const bool must_fail = is_needed(name) || (is_quantity(name) && how != MISSING);
             if (status != STATUS_FILE && must_fail) fail_msg("%s, %d: not refused", name, how);
             if (status == STATUS_FILE) {
@@ -210,7 +207,6 @@ TEST_WITH(a_variable_that_does_not_fit_is_refused, set_up, tear_down) {
             } else {
                 assert_int_equal(status, STATUS_OK);
                 if (is_quantity(name)) assert_true(isnan(value(&member, name, 0, 0)));
-                member_file_free(&member);
             }
             write_bytes(f->path, n, bytes);
         }
@@ -229,7 +225,7 @@ TEST_WITH(a_body_cannot_have_more_nodes_than_there_are_places, set_up, tear_down
         assert_int_equal(nc_put_var1_int(file, number_of(file, "n_nodes"), (size_t[]){1}, &wrong[i]), NC_NOERR);
         nc_close(file);
         struct member_file member;
-        assert_int_equal(member_file_read(&member, f->path), STATUS_FILE);
+        assert_int_equal(member_file_read(test_arena(), &member, f->path), STATUS_FILE);
         assert_message("nodes");
         unlink(f->path);
     }

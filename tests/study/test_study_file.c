@@ -11,11 +11,10 @@
 #include "crafted_file.h"
 #include "failing_malloc.h"
 #include "near.h"
+#include "study/convergence.h"
 #include "study/study.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
-#include "study/study_gather.h"
-#include "study/study_orders.h"
 #include "study/study_print.h"
 
 TEST(a_given_value_gives_the_order_with_two_levels_each) {
@@ -27,17 +26,24 @@ TEST(a_given_value_gives_the_order_with_two_levels_each) {
         values[i][0] = 3 + 0.6 * errors[i];
         values[i][1] = -1 + 0.8 * errors[i];
     }
-    const struct error_budget_result order = study_order_of_errors(3, sizes, (const double(*)[2])values, exact);
+    const struct convergence_result order = convergence_judge_exact(3, sizes, (const double(*)[2])values, exact);
     NEAR(order.coarse_order, 2, 0, 1e-12);
     NEAR(order.order, 1, 0, 1e-12);
     NEAR(order.error, 0.02, 0, 1e-12);
-    assert_int_equal(order.verdict, ERROR_BUDGET_ACCEPTED);
+    assert_int_equal(order.verdict, CONVERGENCE_ACCEPTED);
     // without the given value the same levels look otherwise: a ratio of differences of 6
-    NEAR(error_budget_order(sizes, (const double(*)[2])values), log2(6), 0, 1e-9);
+    NEAR(convergence_order(sizes, (const double(*)[2])values), log2(6), 0, 1e-9);
     const double same[][2] = {{1, 0}, {1.1, 0}, {1.4, 0}}, one[] = {1, 0};
-    assert_true(isnan(study_order_of_errors(3, sizes, same, one).order));
+    assert_true(isnan(convergence_judge_exact(3, sizes, same, one).order));
     const double missing[][2] = {{1.01, 0}, {1.1, 0}, {NAN, 0}};
-    assert_int_equal(study_order_of_errors(3, sizes, missing, one).verdict, ERROR_BUDGET_UNKNOWN);
+    assert_int_equal(convergence_judge_exact(3, sizes, missing, one).verdict, CONVERGENCE_UNKNOWN);
+}
+
+/* Memory of the tests of this file. */
+static struct arena *test_arena(void) {
+    static struct arena *arena;
+    if (!arena) arena = arena_create(NULL, "a test");
+    return arena;
 }
 
 static const char refined[] =
@@ -53,8 +59,8 @@ static void make_member(struct member_file *member, const struct case_values *st
     int n = 0;
     while (member_file_quantity(n)) n++;
     n *= 2 * study->school.n_fish;
-    *member = (struct member_file){.number = m, .n_fish = study->school.n_fish, .status = strdup("complete")};
-    member->value = calloc((size_t)n, sizeof *member->value);
+    *member = (struct member_file){.number = m, .n_fish = study->school.n_fish, .status = "complete"};
+    NEW(test_arena(), member->value, n);
     for (int i = 0; i < n; i++) member->value[i] = 5 + 0.3 * pow(h, 1 + 0.25 * sweep_member_value(study, m, 0));
 }
 
@@ -68,13 +74,13 @@ static double value_of(int file, const char *name, size_t i, size_t j, size_t k)
 }
 
 TEST(orders_are_kept_in_study_nc) {
-    struct case_values study, again;
+    struct case_values study, *again;
     assert_int_equal(case_parse(&study, refined, strlen(refined), "refined.yaml", NULL, 0, NULL), STATUS_OK);
     struct member_file member[6], *read;
     for (int m = 0; m < 6; m++) make_member(&member[m], &study, m);
-    struct study_orders orders;
+    struct convergence_orders orders;
     struct arena *const arena = arena_create(NULL, "a test");
-    study_orders_create(arena, &orders, &study, member);
+    convergence_orders_create(arena, &orders, &study, member);
     char path[] = "/tmp/shoal-study-XXXXXX";
     close(mkstemp(path));
     assert_int_equal(study_file_write(arena, path, &study, member, &orders, NULL, "test"), STATUS_OK);
@@ -107,29 +113,26 @@ TEST(orders_are_kept_in_study_nc) {
     assert_string_equal(unit, "W");
     nc_close(file);
 
-    assert_int_equal(study_file_read(path, &again, &read, &(int){0}), STATUS_OK);
-    assert_string_equal(again.merged, study.merged);
+    assert_int_equal(study_file_read(test_arena(), path, &again, &read, &(int){0}), STATUS_OK);
+    assert_string_equal(again->merged, study.merged);
     for (int m = 0; m < 6; m++) {
         assert_string_equal(read[m].status, "complete");
         const int tail = member_file_quantity_number("tail"), steps = member_file_quantity_number("steps");
         NEAR(member_file_value(&read[m], tail, 1, 1), member_file_value(&member[m], tail, 1, 1), 0, 0);
         NEAR(member_file_value(&read[m], steps, 0, 0), member_file_value(&member[m], steps, 0, 0), 0, 0);
-        member_file_free(&member[m]);
     }
     // what is not whole is refused
     assert_int_equal(nc_open(path, NC_WRITE, &file), NC_NOERR);
     assert_int_equal(nc_redef(file), NC_NOERR);
     assert_int_equal(nc_rename_var(file, 1, "state"), NC_NOERR);
     nc_close(file);
-    struct case_values none;
+    struct case_values *none;
     struct member_file *nobody;
-    assert_int_equal(study_file_read(path, &none, &nobody, &(int){0}), STATUS_FILE);
+    assert_int_equal(study_file_read(test_arena(), path, &none, &nobody, &(int){0}), STATUS_FILE);
     assert_non_null(strstr(status_message(), "write study.nc again"));
     unlink(path);
-    study_folder_free_members(read, 6);
     arena_free(arena);
     case_free(&study);
-    case_free(&again);
 }
 
 TEST(a_study_nc_that_does_not_fit_is_refused) {
@@ -137,9 +140,9 @@ TEST(a_study_nc_that_does_not_fit_is_refused) {
     assert_int_equal(case_parse(&study, refined, strlen(refined), "refined.yaml", NULL, 0, NULL), STATUS_OK);
     struct member_file member[6];
     for (int m = 0; m < 6; m++) make_member(&member[m], &study, m);
-    struct study_orders orders;
+    struct convergence_orders orders;
     struct arena *const arena = arena_create(NULL, "a test");
-    study_orders_create(arena, &orders, &study, member);
+    convergence_orders_create(arena, &orders, &study, member);
     char path[] = "/tmp/shoal-study-XXXXXX";
     close(mkstemp(path));
     assert_int_equal(study_file_write(arena, path, &study, member, &orders, NULL, "test"), STATUS_OK);
@@ -149,27 +152,24 @@ TEST(a_study_nc_that_does_not_fit_is_refused) {
     for (int i = 0; name_of_variable(path, i, name); i++) {
         for (enum craft how = 0; how < N_CRAFTS; how++) {
             craft_variable(path, name, how);
-            struct case_values again;
+            struct case_values *again;
             struct member_file *read;
             int is_read = strcmp(name, "status") == 0 && how != LONG_DIMENSION;
             for (int q = 0; member_file_quantity(q) && how != MISSING; q++) {
                 is_read = is_read || strcmp(member_file_quantity(q)->name, name) == 0;
             }
-            const enum status status = study_file_read(path, &again, &read, &(int){0});
+            const enum status status = study_file_read(test_arena(), path, &again, &read, &(int){0});
             if (is_read && status != STATUS_FILE) fail_msg("%s, %d: not refused", name, how);
             if (status == STATUS_FILE) {
                 assert_non_null(strstr(status_message(), path));
             } else {
                 assert_int_equal(status, STATUS_OK);
-                study_folder_free_members(read, 6);
-                case_free(&again);
             }
             write_bytes(path, n, bytes);
         }
     }
     free(bytes);
     unlink(path);
-    for (int m = 0; m < 6; m++) member_file_free(&member[m]);
     arena_free(arena);
     case_free(&study);
 }
@@ -205,25 +205,24 @@ TEST(an_order_is_met_within_its_bounds_on_both_sides) {
                  cases[i].order);
         struct case_values study;
         struct member_file member[3];
-        struct study_orders orders;
+        struct convergence_orders orders;
         assert_int_equal(case_parse(&study, text, strlen(text), "order.yaml", NULL, 0, NULL), STATUS_OK);
         for (int m = 0; m < 3; m++) {
             static const double h[] = {0.05, 0.1, 0.025};
-            member[m] = (struct member_file){.number = m, .status = strdup("complete")};
-            assert_int_equal(member_file_create_values(&member[m], 1), STATUS_OK);
+            member[m] = (struct member_file){.number = m, .status = "complete"};
+            member_file_create_values(test_arena(), &member[m], 1);
             const int nose = member_file_quantity_number("nose");
             for (int k = 0; k < 2; k++) *member_file_place(&member[m], nose, 0, k) = 5 + 0.3 * h[m];
         }
         struct arena *const arena = arena_create(NULL, "a test");
-        study_orders_create(arena, &orders, &study, member);
+        convergence_orders_create(arena, &orders, &study, member);
         char *printed;
         size_t size;
         FILE *const stream = open_memstream(&printed, &size);
-        assert_int_equal(study_orders_print(&study, &orders, stream), cases[i].want);
+        assert_int_equal(study_print_orders(arena, &study, &orders, stream), cases[i].want);
         fclose(stream);
         is_table(printed, cases[i].order, cases[i].want == STATUS_OK ? "met" : "MISSED");
         free(printed);
-        for (int m = 0; m < 3; m++) member_file_free(&member[m]);
         arena_free(arena);
         case_free(&study);
     }
@@ -238,7 +237,7 @@ TEST(differences_below_the_error_of_a_search_are_noise) {
             "sweep: [{key: time.shedding_interval, values: [0.1, 0.05, 0.025], refine: true, steady: true}]\n";
         struct case_values study;
         struct member_file member[3];
-        struct study_orders orders;
+        struct convergence_orders orders;
         char *printed;
         size_t size;
         assert_int_equal(case_parse(&study, text, strlen(text), "noise.yaml", NULL, 0, NULL), STATUS_OK);
@@ -246,20 +245,19 @@ TEST(differences_below_the_error_of_a_search_are_noise) {
             static const double speeds[] = {1.002, 1.001, 1};
             static const char *const names[] = {"steady_speed", "steady_error", "steady_residual"};
             const double values[] = {speeds[m], errors[i][0], errors[i][1]};
-            member[m] = (struct member_file){.number = m, .status = strdup("complete")};
-            assert_int_equal(member_file_create_values(&member[m], 1), STATUS_OK);
+            member[m] = (struct member_file){.number = m, .status = "complete"};
+            member_file_create_values(test_arena(), &member[m], 1);
             for (int k = 0; k < 3; k++) {
                 *member_file_place(&member[m], member_file_quantity_number(names[k]), 0, 0) = values[k];
             }
         }
         struct arena *const arena = arena_create(NULL, "a test");
-        study_orders_create(arena, &orders, &study, member);
+        convergence_orders_create(arena, &orders, &study, member);
         FILE *const stream = open_memstream(&printed, &size);
-        assert_int_equal(study_orders_print(&study, &orders, stream), STATUS_OK);
+        assert_int_equal(study_print_orders(arena, &study, &orders, stream), STATUS_OK);
         fclose(stream);
         if (!strstr(printed, "steady_speed") || (strstr(printed, "noise") != NULL) != (i < 2)) fail_msg("%s", printed);
         free(printed);
-        for (int m = 0; m < 3; m++) member_file_free(&member[m]);
         arena_free(arena);
         case_free(&study);
     }
@@ -272,9 +270,9 @@ TEST(levels_of_points_are_their_distances_from_coarse_to_fine) {
     struct case_values study;
     assert_int_equal(case_parse(&study, text, strlen(text), "points.yaml", NULL, 0, NULL), STATUS_OK);
     const struct member_file missing[3] = {{.status = ""}, {.status = ""}, {.status = ""}};
-    struct study_orders orders;
+    struct convergence_orders orders;
     struct arena *const arena = arena_create(NULL, "a test");
-    study_orders_create(arena, &orders, &study, missing);
+    convergence_orders_create(arena, &orders, &study, missing);
     assert_int_equal(orders.n_levels, 3);
     const double sizes[] = {1.0 / 4, 1.0 / 8, 1.0 / 16};
     const int levels[] = {1, 0, 2};
@@ -296,6 +294,7 @@ struct attempt {
     struct case_values study;
     char folder[64];
     FILE *nowhere;
+    struct arena *arena; /* of one attempt */
 };
 typedef enum status attempt_function(const struct attempt *attempt);
 
@@ -310,23 +309,14 @@ static enum status gather_small(const struct attempt *attempt) {
     return study_gather(attempt->folder, "test", 0, attempt->nowhere, attempt->nowhere);
 }
 
-static enum status inform_in_bounds(struct arena **arena, const char *path, FILE *stream) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    *arena = arena_create(NULL, "a test");
-    return study_info(*arena, path, stream);
-}
-
 static enum status inform_of_small(const struct attempt *attempt) {
     char path[80];
     snprintf(path, sizeof path, "%s/study.nc", attempt->folder);
-    struct arena *arena = NULL;
-    const enum status status = inform_in_bounds(&arena, path, attempt->nowhere);
-    arena_free(arena);
-    return status;
+    return study_info(attempt->arena, path, attempt->nowhere);
 }
 
 static enum status write_jobs_of_small(const struct attempt *attempt) {
-    return study_slurm(&attempt->study, attempt->folder, 0, attempt->nowhere);
+    return study_slurm(attempt->arena, &attempt->study, attempt->folder, 0, attempt->nowhere);
 }
 
 static enum status attempt_in_bounds(const struct attempt *attempt, attempt_function *function) {
@@ -336,14 +326,16 @@ static enum status attempt_in_bounds(const struct attempt *attempt, attempt_func
 
 /* Let ever later allocations fail until all succeed. In the processes of members as many succeed again: a member may
  * fail where the study does not. */
-static void fail_one_by_one(const struct attempt *attempt, attempt_function *function, const char *name, int min) {
+static void fail_one_by_one(struct attempt *attempt, attempt_function *function, const char *name, int min) {
     int n_failed = 0;
     for (int n = 0;; n += 1 + n / 30) {
         const int n_before = n_live;
+        attempt->arena = arena_create(NULL, "a test");
         n_until_failure = n;
         const enum status status = attempt_in_bounds(attempt, function);
         const int ran_out = n_until_failure == -1;
         n_until_failure = -1;
+        arena_free(attempt->arena);
         if (n_live != n_before) fail_msg("%s: with allocation %d failing %d are left", name, n, n_live - n_before);
         if (status == STATUS_OK && !ran_out) break;
         n_failed++;

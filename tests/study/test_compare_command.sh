@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Comparing methods: content of a row, early ends, and wrong input.
 #
-#   tests/study/test_compare.sh PROGRAM
+#   tests/study/test_compare_command.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

@@ -11,23 +11,28 @@
 #include "failing_malloc.h"
 #include "near.h"
 #include "study/error_plan.h"
-#include "study/error_report.h"
+#include "study/study_print.h"
 
 /* A fish without a cusp at the tail, and long waves: no key is flagged in advance. */
 #define UNIFORM                                                           \
     "format: 1\nname: uniform\ntime: {end: 4, shedding_interval: 0.01}\n" \
     "fish: [{force: reactive, nodes: 25, sheet_points: 49, body: {profile: uniform, modulus: 1e8}}]\n"
 
+/* The first point of the plan, which is the only one without a sweep. */
 static struct error_study open_study(const char *text, const char *error) {
     char all[2048];
     struct case_values values;
-    struct error_study study;
+    struct error_sweep *sweep;
     snprintf(all, sizeof all, "%serror: %s\n", text, error);
     if (case_parse(&values, all, strlen(all), "test.yaml", NULL, 0, NULL) != STATUS_OK)
         fail_msg("%s", status_message());
-    if (error_plan_create(&study, &values) != STATUS_OK) fail_msg("%s", status_message());
+    if (error_plan_create(arena_create(NULL, "a test"), &sweep, &values) != STATUS_OK) fail_msg("%s", status_message());
     case_free(&values);
-    return study;
+    return sweep->point[0];
+}
+
+static void close_study(const struct error_study *study) {
+    arena_free(study->sweep->arena);
 }
 
 static const struct error_study_key *key_of(const struct error_study *study, const char *path) {
@@ -39,10 +44,10 @@ static const struct error_study_key *key_of(const struct error_study *study, con
 
 /* The value of a key of the first fish in a member, a duration without unit. */
 static double setting(const struct error_study *study, int m, const char *path) {
-    const struct sweep_axis *const axis = &study->study.sweep[0];
-    double number = strcmp(path, "time.shedding_interval") == 0 ? study->study.school.shedding_interval
-                    : strcmp(path, "fish.nodes") == 0           ? study->study.school.fish[0].nodes
-                                                                : study->study.school.fish[0].sheet_points;
+    const struct sweep_axis *const axis = &study->study->sweep[0];
+    double number = strcmp(path, "time.shedding_interval") == 0 ? study->values->school.shedding_interval
+                    : strcmp(path, "fish.nodes") == 0           ? study->values->school.fish[0].nodes
+                                                                : study->values->school.fish[0].sheet_points;
     for (int c = axis->n_keys - 1; c >= 0; c--) {
         if (strcmp(axis->key[c].row, path) == 0) number = strtod(axis->value[m * axis->n_keys + c], NULL);
     }
@@ -81,29 +86,29 @@ TEST(the_keys_of_the_table_have_the_levels_of_the_table) {
     NEAR(setting(&study, key_of(&study, "solver.rtol")->member[2], "wake.tolerance"), 1e-7, 0, 1e-12);
 
     // every member is a valid case, and the search starts from a neighbour; the case alone has multipliers
-    const int n = sweep_n_members(&study.study);
+    const int n = sweep_n_members(study.study);
     assert_int_equal(n, 20);
     for (int m = 0; m < n; m++) {
         struct case_values member;
-        assert_int_equal(case_member(&member, &study.study, m), STATUS_OK);
+        assert_int_equal(case_member(&member, study.study, m), STATUS_OK);
         assert_int_equal(member.steady.multipliers, m == 0 ? YES : NO);
         assert_int_equal(member.n_axes, 0);
         assert_null(member.error);
-        BELOW(sweep_member_before(&study.study, m), m);
+        BELOW(sweep_member_before(study.study, m), m);
         case_free(&member);
     }
     const struct error_study_key *const interval = key_of(&study, "time.shedding_interval");
-    assert_int_equal(sweep_member_before(&study.study, 0), -1);
-    assert_int_equal(sweep_member_before(&study.study, interval->member[2]), 0);
-    assert_int_equal(sweep_member_before(&study.study, interval->member[3]), interval->member[2]);
-    error_plan_free(&study);
+    assert_int_equal(sweep_member_before(study.study, 0), -1);
+    assert_int_equal(sweep_member_before(study.study, interval->member[2]), 0);
+    assert_int_equal(sweep_member_before(study.study, interval->member[3]), interval->member[2]);
+    close_study(&study);
 }
 
 TEST(without_confirm_there_is_no_finer_level) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, confirm: false}");
     levels_are(&study, "fish.nodes", 3, (double[]){25, 17, 13}, 25);
     levels_are(&study, "solver.rtol", 2, (double[]){1e-5, 1e-4}, 1e-5);
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 TEST(levels_that_are_no_valid_cases_are_replaced) {
@@ -114,12 +119,12 @@ TEST(levels_that_are_no_valid_cases_are_replaced) {
         "{of: steady_speed}");
     levels_are(&study, "fish.sheet_points", 4, (double[]){136, 97, 69, 49}, 49);
     levels_are(&study, "fish.nodes", 4, (double[]){35, 25, 17, 13}, 25);
-    error_plan_free(&study);
+    close_study(&study);
     // fewer points do not resolve the momentum of the nodes
     study = open_study("format: 1\ntime: {end: 4}\nfish: [{force: reactive, nodes: 25, sheet_points: 48}]\n",
                        "{of: steady_speed}");
     assert_non_null(strstr(key_of(&study, "fish.sheet_points")->objection, "fewer sheet_points than 2 nodes - 1"));
-    error_plan_free(&study);
+    close_study(&study);
     // a table has a value for each edge
     study = open_study(
         "format: 1\ntime: {end: 4}\nfish: [{force: reactive, nodes: 5, sheet_points: 11, body: {profile: table, "
@@ -130,7 +135,7 @@ TEST(levels_that_are_no_valid_cases_are_replaced) {
         "{of: speed}");
     assert_int_equal(key_of(&study, "fish.nodes")->n_levels, 1);
     assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "no other level"));
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 TEST(an_interval_divides_the_beat_or_the_run) {
@@ -138,15 +143,15 @@ TEST(an_interval_divides_the_beat_or_the_run) {
     struct error_study study = open_study(text, "{of: steady_speed, keys: [shedding_interval]}");
     // 50 events in a beat; 12.5 are none
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 1 / 13.0}, 0.02);
-    error_plan_free(&study);
+    close_study(&study);
     // a search ends after whole beats, no earlier than the case
     study = open_study("format: 1\ntime: {end: 4.5, shedding_interval: 0.02, output_interval: 0.1}\nfish: [{}]\n",
                        "{of: steady_speed, keys: [shedding_interval]}");
     NEAR(setting(&study, key_of(&study, "time.shedding_interval")->member[3], "time.end"), 5, 0, 1e-12);
-    error_plan_free(&study);
+    close_study(&study);
     study = open_study(text, "{of: speed, keys: [shedding_interval]}");
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 0.08}, 0.02);
-    error_plan_free(&study);
+    close_study(&study);
     // fixed steps divide the interval
     study = open_study(
         "format: 1\ntime: {end: 1, shedding_interval: 0.02}\nsolver: {method: rk4, step: 0.005}\nfish: [{}]\n",
@@ -154,7 +159,7 @@ TEST(an_interval_divides_the_beat_or_the_run) {
     levels_are(&study, "solver.step", 4, (double[]){0.0025, 0.005, 0.01, 0.02}, 0.005);
     assert_null(key_of(&study, "solver.rtol"));
     NEAR(setting(&study, key_of(&study, "time.shedding_interval")->member[2], "solver.step"), 0.005, 0, 1e-12);
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 TEST(a_duration_keeps_the_unit_of_the_case) {
@@ -173,21 +178,21 @@ TEST(a_duration_keeps_the_unit_of_the_case) {
         const struct error_study_key *const key = key_of(&study, "wake.lifetime");
         levels_are(&study, "wake.lifetime", 4, examples[i].level, examples[i].level[2]);
         assert_string_equal(key->unit, examples[i].unit);
-        const struct sweep_axis *const axis = &study.study.sweep[0];
+        const struct sweep_axis *const axis = &study.study->sweep[0];
         char **const row = axis->value + key->member[0] * axis->n_keys;
         assert_string_equal(row[error_plan_column(&study, "wake.lifetime")], examples[i].longest);
         assert_string_equal(row[error_plan_column(&study, "wake.decay")], examples[i].fade);
         struct case_values member;
-        assert_int_equal(case_member(&member, &study.study, key->member[0]), STATUS_OK);
+        assert_int_equal(case_member(&member, study.study, key->member[0]), STATUS_OK);
         NEAR(member.school.wake.lifetime.seconds, i == 0 ? 6 : i == 1 ? 8 : 6, 0, 1e-12);
         case_free(&member);
-        error_plan_free(&study);
+        close_study(&study);
     }
     // a run with an earlier end keeps the whole wake
     struct error_study study =
         open_study("format: 1\ntime: {end: 1}\nfish: [{}]\n", "{of: speed, keys: [lifetime, rtol]}");
     assert_null(key_of(&study, "wake.lifetime"));
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 TEST(levels_can_be_given) {
@@ -195,7 +200,7 @@ TEST(levels_can_be_given) {
         open_study(UNIFORM, "{of: steady_speed, keys: {nodes: [17, 33, 65], \"fish[*].sheet_points\": default}}");
     assert_int_equal(study.n_keys, 2);
     levels_are(&study, "fish.nodes", 4, (double[]){65, 33, 25, 17}, 25);
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 TEST(fish_of_different_resolution_change_in_proportion) {
@@ -203,14 +208,14 @@ TEST(fish_of_different_resolution_change_in_proportion) {
         "format: 1\ntime: {end: 4}\nfish: [{nodes: 13, sheet_points: 33}, {nodes: 25, sheet_points: 49, start: "
         "{position: [3, 0]}}]\n",
         "{of: steady_speed}");
-    const struct sweep_axis *const axis = &study.study.sweep[0];
+    const struct sweep_axis *const axis = &study.study->sweep[0];
     const struct error_study_key *const nodes = key_of(&study, "fish.nodes");
     int c = 0;
     while (strcmp(axis->key[c].path, "fish[1].nodes") != 0) c++;
     NEAR(nodes->value[2], 9, 0, 0);
     assert_string_equal(axis->value[nodes->member[2] * axis->n_keys + c], "17");
     assert_string_equal(axis->value[nodes->member[2] * axis->n_keys + c - 1], "9");
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 TEST(an_equilibrium_has_points_only) {
@@ -221,7 +226,7 @@ TEST(an_equilibrium_has_points_only) {
         "{of: steady_lift}");
     assert_true(study.is_static);
     assert_int_equal(study.n_keys, 2);
-    error_plan_free(&study);
+    close_study(&study);
     // the modes shed wakes, and are computed for every member
     study = open_study(
         "format: 1\ntime: {end: 4, shedding_interval: 0.02}\nfluid: {velocity: [1, 0]}\n"
@@ -231,14 +236,14 @@ TEST(an_equilibrium_has_points_only) {
         "{of: steady_growth}");
     assert_int_equal(study.n_keys, 3);
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 0.08}, 0.02);
-    for (int m = 0; m < sweep_n_members(&study.study); m++) {
+    for (int m = 0; m < sweep_n_members(study.study); m++) {
         struct case_values member;
-        assert_int_equal(case_member(&member, &study.study, m), STATUS_OK);
+        assert_int_equal(case_member(&member, study.study, m), STATUS_OK);
         assert_int_equal(member.steady.multipliers, YES);
         NEAR(member.time.end, 4, 0, 1e-12);
         case_free(&member);
     }
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 TEST(quantities_that_are_not_known_are_refused) {
@@ -255,12 +260,13 @@ TEST(quantities_that_are_not_known_are_refused) {
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
         char text[512];
         struct case_values values;
-        struct error_study study;
+        struct error_sweep *sweep;
+        struct arena *const arena = arena_create(NULL, "a test");
         snprintf(text, sizeof text, UNIFORM "error: %s\n", examples[i].error);
         assert_int_equal(case_parse(&values, text, strlen(text), "test.yaml", NULL, 0, NULL), STATUS_OK);
-        assert_int_equal(error_plan_create(&study, &values), STATUS_CASE);
+        assert_int_equal(error_plan_create(arena, &sweep, &values), STATUS_CASE);
         if (!strstr(status_message(), examples[i].message)) fail_msg("%s", status_message());
-        error_plan_free(&study);
+        arena_free(arena);
         case_free(&values);
     }
 }
@@ -276,12 +282,12 @@ static void set_value(struct member_file *member, const char *name, double value
 }
 
 static struct member_file *make_members(const struct error_study *study) {
-    const int n = sweep_n_members(&study->study);
-    struct member_file *const members = calloc((size_t)n, sizeof *members);
-    assert_non_null(members);
+    const int n = sweep_n_members(study->study);
+    struct member_file *members;
+    NEW(study->sweep->arena, members, n);
     for (int m = 0; m < n; m++) {
-        assert_int_equal(member_file_create_values(&members[m], 1), STATUS_OK);
-        members[m].status = strdup("complete");
+        member_file_create_values(study->sweep->arena, &members[m], 1);
+        members[m].status = "complete";
         const double nodes = setting(study, m, "fish.nodes"), sheet = setting(study, m, "fish.sheet_points"),
                      interval = setting(study, m, "time.shedding_interval");
         const double error = nodes_error / pow(nodes - 1, 2) + sheet_error / (sheet - 1) + interval_error * interval;
@@ -295,15 +301,10 @@ static struct member_file *make_members(const struct error_study *study) {
     return members;
 }
 
-static void free_members(struct member_file *members, int n) {
-    for (int m = 0; m < n; m++) member_file_free(&members[m]);
-    free(members);
-}
-
 TEST(the_error_is_the_sum_over_the_keys_and_covers_the_true_one) {
     struct error_study study = open_study(UNIFORM, "{of: [steady_speed, steady_cost_of_transport]}");
     struct member_file *const members = make_members(&study);
-    error_study_judge(&study, members);
+    convergence_study_judge(&study, members);
     assert_true(study.is_reached);
     // with Roache's factor of 1.25 on the finest level, which is known for each key
     const double of_nodes = nodes_error * (1.25 / (34.0 * 34) + 1 / (24.0 * 24) - 1 / (34.0 * 34));
@@ -313,7 +314,7 @@ TEST(the_error_is_the_sum_over_the_keys_and_covers_the_true_one) {
     NEAR(key_of(&study, "fish.nodes")->part[0].order, 2, 1e-6, 0);
     NEAR(key_of(&study, "fish.sheet_points")->part[0].error, of_sheet, 0, 1e-6);
     NEAR(key_of(&study, "time.shedding_interval")->part[0].error, of_interval, 0, 1e-6);
-    assert_int_equal(key_of(&study, "solver.rtol")->part[0].verdict, ERROR_BUDGET_NONE);
+    assert_int_equal(key_of(&study, "solver.rtol")->part[0].verdict, CONVERGENCE_NONE);
     NEAR(study.error[0], of_nodes + of_sheet + of_interval, 0, 1e-6);
     NEAR(study.error[1], 2 * cost * study.error[0], 0, 1e-6);
     ABOVE(study.error[0], study.value[0] - speed);
@@ -321,15 +322,13 @@ TEST(the_error_is_the_sum_over_the_keys_and_covers_the_true_one) {
     // the distance of every search is 5 times the residual
     NEAR(study.noise, 1e-5 + 1e-7, 0, 1e-9);
 
-    struct error_study_next next;
-    assert_int_equal(error_study_find_next(&study, members, &next), STATUS_OK);
+    const struct error_study_next next = convergence_study_next(&study, members);
     assert_string_equal(study.key[next.key].row->path, "time.shedding_interval");
     assert_true(next.is_member);
     NEAR(next.value, 0.005, 0, 1e-12);
     NEAR(next.cost, 2, 0, 1e-3);  // but for the millisecond that every beat counts
     NEAR(next.part, 1.25 * interval_error * 0.005 * 2 * cost / study.value[1], 0, 1e-6);
-    free_members(members, sweep_n_members(&study.study));
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 /* Five tolerances, the stated one the coarsest: four of them are judged. */
@@ -340,19 +339,18 @@ TEST(a_stated_level_beyond_the_judged_ones_has_its_own_value) {
     assert_int_equal(key->n_levels, 5);
     assert_int_equal(key->stated, 4);
     for (int i = 0; i < 5; i++) set_value(&members[key->member[i]], "speed", speed + 40 * key->value[i]);
-    error_study_judge(&study, members);
-    assert_int_equal(key->part[0].verdict, ERROR_BUDGET_ACCEPTED);
+    convergence_study_judge(&study, members);
+    assert_int_equal(key->part[0].verdict, CONVERGENCE_ACCEPTED);
     NEAR(study.value[0], speed + 40e-5, 1e-12, 0);
     NEAR(study.error[0], 40 * (1e-5 - 1e-9) + 1.25 * 40 * 1e-9, 1e-10, 0);
-    free_members(members, sweep_n_members(&study.study));
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 /* Print the report of a judged study; the caller frees *text. */
 static void print_report(struct error_study *study, const struct member_file *members, char **text) {
     size_t size;
     FILE *const stream = open_memstream(text, &size);
-    assert_int_equal(error_report_print(study, members, stream), STATUS_OK);
+    assert_int_equal(study_print_errors(study, members, stream), STATUS_OK);
     fclose(stream);
 }
 
@@ -366,9 +364,9 @@ TEST(a_flag_belongs_to_one_quantity_and_names_its_levels) {
     struct member_file *const members = make_members(&study);
     const struct error_study_key *const key = key_of(&study, "fish.nodes");
     set_value(&members[key->member[2]], "steady_cost_of_transport", 0.09);
-    error_study_judge(&study, members);
-    assert_int_equal(key->part[0].verdict, ERROR_BUDGET_ACCEPTED);
-    assert_int_equal(key->part[1].verdict, ERROR_BUDGET_TURNS);
+    convergence_study_judge(&study, members);
+    assert_int_equal(key->part[0].verdict, CONVERGENCE_ACCEPTED);
+    assert_int_equal(key->part[1].verdict, CONVERGENCE_TURNS);
     NEAR(key->part[0].error, nodes_error * (0.25 / (34.0 * 34) + 1 / (24.0 * 24)), 0, 1e-6);
 
     char *text = NULL;
@@ -380,8 +378,7 @@ TEST(a_flag_belongs_to_one_quantity_and_names_its_levels) {
     // the largest error is of the cost
     contains(text, "<- spend here: nodes 49, CPU x 3.7, to find an order of cost_of_transport\n");
     free(text);
-    free_members(members, sweep_n_members(&study.study));
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 /* A finer level cannot take less time: times of short runs are noisy. */
@@ -391,17 +388,15 @@ TEST(a_finer_level_is_never_cheaper) {
     const struct error_study_key *const key = key_of(&study, "time.shedding_interval");
     set_value(&members[key->member[0]], "beat_time",
               0.5 * members[0].value[2 * member_file_quantity_number("beat_time")]);
-    error_study_judge(&study, members);
-    struct error_study_next next;
-    assert_int_equal(error_study_find_next(&study, members, &next), STATUS_OK);
+    convergence_study_judge(&study, members);
+    const struct error_study_next next = convergence_study_next(&study, members);
     NEAR(next.cost, 1, 0, 0);
     char *text = NULL;
     print_report(&study, members, &text);
     contains(text, "<- spend here: shedding_interval 0.005, speed +-");
     assert_null(strstr(text, "CPU x"));
     free(text);
-    free_members(members, sweep_n_members(&study.study));
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 /* Follow a study to the end, as a run does; and again, with the members at that time. */
@@ -411,10 +406,8 @@ static struct member_file *follow(struct error_study *study, int *n_rounds) {
     *n_rounds = 0;
     while (n_new > 0) {
         members = make_members(study);
-        const int n = sweep_n_members(&study->study);
-        error_study_judge(study, members);
-        assert_int_equal(error_study_refine(study, members, INT_MAX, &n_new), STATUS_OK);
-        if (n_new > 0) free_members(members, n);
+        convergence_study_judge(study, members);
+        n_new = convergence_study_refine(study, members, INT_MAX);
         ++*n_rounds;
         assert_in_range(*n_rounds, 1, 30);
     }
@@ -424,10 +417,10 @@ static struct member_file *follow(struct error_study *study, int *n_rounds) {
 TEST(refinement_ends_where_the_error_is_within_the_bound) {
     static const char error[] = "{of: steady_speed, within: 2e-3, most: 1e4}";
     struct error_study study = open_study(UNIFORM, error), again = open_study(UNIFORM, error);
-    const int n_planned = sweep_n_members(&study.study);
+    const int n_planned = sweep_n_members(study.study);
     int n_rounds, n_new = 1;
     struct member_file *const members = follow(&study, &n_rounds);
-    const int n = sweep_n_members(&study.study);
+    const int n = sweep_n_members(study.study);
     assert_true(study.is_reached);
     ABOVE(n, n_planned);
     ABOVE(n_rounds, 1);
@@ -440,62 +433,57 @@ TEST(refinement_ends_where_the_error_is_within_the_bound) {
 
     // the same members lead to the same study
     while (n_new > 0) {
-        error_study_judge(&again, members);
-        assert_int_equal(error_study_refine(&again, members, n, &n_new), STATUS_OK);
+        convergence_study_judge(&again, members);
+        n_new = convergence_study_refine(&again, members, n);
     }
-    assert_int_equal(sweep_n_members(&again.study), n);
+    assert_int_equal(sweep_n_members(again.study), n);
     assert_int_equal(again.stated, study.stated);
     NEAR(again.error[0], study.error[0], 0, 0);
-    free_members(members, n);
-    error_plan_free(&study);
-    error_plan_free(&again);
+    close_study(&study);
+    close_study(&again);
 }
 
 TEST(without_the_members_of_a_step_it_is_not_taken) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, within: 2e-3}");
     struct member_file *const members = make_members(&study);
-    const int n = sweep_n_members(&study.study);
+    const int n = sweep_n_members(study.study);
     int n_new = 1;
     while (n_new > 0) {
-        error_study_judge(&study, members);
-        assert_int_equal(error_study_refine(&study, members, n, &n_new), STATUS_OK);
+        convergence_study_judge(&study, members);
+        n_new = convergence_study_refine(&study, members, n);
     }
-    assert_int_equal(sweep_n_members(&study.study), n);
+    assert_int_equal(sweep_n_members(study.study), n);
     assert_false(study.is_reached);
     // the levels that are known are taken: half of the interval
     NEAR(key_of(&study, "time.shedding_interval")->value[key_of(&study, "time.shedding_interval")->stated], 0.005, 0,
          1e-12);
-    free_members(members, n);
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 TEST(what_is_too_dear_is_not_run_and_its_cost_is_said) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, within: 2e-4, most: 3}");
     int n_rounds;
-    struct member_file *const members = follow(&study, &n_rounds);
-    char words[ERROR_BUDGET_BYTES];
+    follow(&study, &n_rounds);
+    char words[CONVERGENCE_BYTES];
     assert_false(study.is_reached);
     AT_MOST(study.cost, 3);
-    error_study_say_cost(&study, words);
+    convergence_study_say_cost(&study, words);
     assert_non_null(strstr(words, "time.shedding_interval"));
     assert_non_null(strstr(words, "times the CPU time"));
-    free_members(members, sweep_n_members(&study.study));
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 TEST(a_member_that_failed_leaves_the_error_unknown) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, within: 0.5}");
     struct member_file *const members = make_members(&study);
-    const int n = sweep_n_members(&study.study);
     int n_new;
-    memcpy(members[key_of(&study, "fish.nodes")->member[3]].status, "no match", strlen("no match"));
-    error_study_judge(&study, members);
-    assert_int_equal(key_of(&study, "fish.nodes")->part[0].verdict, ERROR_BUDGET_UNKNOWN);
+    members[key_of(&study, "fish.nodes")->member[3]].status = "no match";
+    convergence_study_judge(&study, members);
+    assert_int_equal(key_of(&study, "fish.nodes")->part[0].verdict, CONVERGENCE_UNKNOWN);
     assert_true(isnan(study.error[0]) && !study.is_reached);
-    assert_int_equal(error_study_refine(&study, members, INT_MAX, &n_new), STATUS_OK);
+    n_new = convergence_study_refine(&study, members, INT_MAX);
     assert_int_equal(n_new, 0);
-    free_members(members, n);
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 TEST(a_cusp_an_edge_and_a_sheet_are_objected_to) {
@@ -504,7 +492,7 @@ TEST(a_cusp_an_edge_and_a_sheet_are_objected_to) {
         "{of: speed}");
     assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "cusp"));
     assert_non_null(strstr(key_of(&study, "fish.sheet_points")->objection, "2 nodes - 1"));
-    error_plan_free(&study);
+    close_study(&study);
     study = open_study(
         "format: 1\ntime: {end: 4, shedding_interval: 1e-3}\n"
         "fish: [{force: reactive, nodes: 25, sheet_points: 49, body: {profile: uniform, modulus: 5e2}}]\n",
@@ -512,22 +500,21 @@ TEST(a_cusp_an_edge_and_a_sheet_are_objected_to) {
     assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "longer than its tail bends over"));
     // 49 points are too few for steps of 1.5e-3 lengths
     struct member_file *const members = make_members(&study);
-    error_study_judge(&study, members);
-    assert_int_equal(key_of(&study, "time.shedding_interval")->part[0].verdict, ERROR_BUDGET_OBJECTION);
+    convergence_study_judge(&study, members);
+    assert_int_equal(key_of(&study, "time.shedding_interval")->part[0].verdict, CONVERGENCE_OBJECTION);
     assert_non_null(strstr(key_of(&study, "time.shedding_interval")->objection, "needs 84 sheet_points"));
-    free_members(members, sweep_n_members(&study.study));
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 // the report of a study whose shedding interval has this share of the error and a reason for a flag
 static int is_flagged_with_share(double share) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [nodes, shedding_interval]}");
     struct member_file *const members = make_members(&study);
-    error_study_judge(&study, members);
+    convergence_study_judge(&study, members);
     ABOVE(study.error[0], 0);
     for (int k = 0; k < study.n_keys; k++) {
         if (strcmp(study.key[k].row->path, "time.shedding_interval") != 0) continue;
-        study.key[k].part[0].verdict = ERROR_BUDGET_OBJECTION;
+        study.key[k].part[0].verdict = CONVERGENCE_OBJECTION;
         snprintf(study.key[k].objection, sizeof study.key[k].objection, "too long");
         study.key[k].part[0].error = share * study.error[0];
     }
@@ -535,8 +522,7 @@ static int is_flagged_with_share(double share) {
     print_report(&study, members, &text);
     const int is_flagged = strstr(text, "flagged: time.shedding_interval: too long\n") != NULL;
     free(text);
-    free_members(members, sweep_n_members(&study.study));
-    error_plan_free(&study);
+    close_study(&study);
     return is_flagged;
 }
 
@@ -550,15 +536,14 @@ TEST(choices_of_the_model_are_not_in_the_sum) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [rtol, smoothing]}");
     struct member_file *const members = make_members(&study);
     set_value(&members[key_of(&study, "wake.smoothing")->member[0]], "steady_speed", 2.5);
-    error_study_judge(&study, members);
+    convergence_study_judge(&study, members);
     NEAR(key_of(&study, "wake.smoothing")->part[0].error, 2.5 - study.value[0], 0, 1e-12);
     NEAR(study.error[0], 0, 1e-12, 0);
     char *text = NULL;
     print_report(&study, members, &text);
     assert_non_null(strstr(text, "choices, not in the sum: wake.smoothing ([0.1] 0.05) "));
     free(text);
-    free_members(members, sweep_n_members(&study.study));
-    error_plan_free(&study);
+    close_study(&study);
 }
 
 static void is_printed(const char *got, const char *want) {
@@ -575,7 +560,7 @@ TEST(a_report_is_printed_whole) {
     struct member_file *const members = make_members(&study);
     set_value(&members[key_of(&study, "wake.smoothing")->member[0]], "steady_speed", 1.6);
     set_value(&members[key_of(&study, "wake.taper")->member[0]], "steady_cost_of_transport", 0.0825);
-    error_study_judge(&study, members);
+    convergence_study_judge(&study, members);
     char *text = NULL;
     print_report(&study, members, &text);
     is_printed(text,
@@ -598,7 +583,7 @@ TEST(a_report_is_printed_whole) {
     char path[] = "/tmp/test_error_XXXXXX", csv[4096] = "";
     close(mkstemp(path));
     unlink(path);
-    assert_int_equal(error_report_write_csv(&study, path), STATUS_OK);
+    assert_int_equal(study_print_csv(study.sweep, path), STATUS_OK);
     FILE *const file = fopen(path, "r");
     ABOVE(fread(csv, 1, sizeof csv - 1, file), 0);
     fclose(file);
@@ -615,34 +600,38 @@ TEST(a_report_is_printed_whole) {
         "in the sum\"\n";
     csv[sizeof rows - 1] = '\0';
     is_printed(csv, rows);
-    free_members(members, sweep_n_members(&study.study));
-    error_plan_free(&study);
+    close_study(&study);
+}
+
+static enum status plan_and_refine(struct arena *arena, const struct case_values *values,
+                                   const struct member_file *members, int n_members, FILE *nowhere) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    struct error_sweep *sweep;
+    TRY(error_plan_create(arena, &sweep, values));
+    do {
+        convergence_sweep_judge(sweep, members);
+    } while (convergence_study_refine(&sweep->point[0], members, n_members) > 0);
+    return study_print_errors(&sweep->point[0], members, nowhere);
 }
 
 TEST(every_failing_allocation_is_reported_and_leaves_nothing) {
     static const char text[] = UNIFORM "error: {of: steady_speed, within: 2e-3, keys: [nodes, shedding_interval]}\n";
     struct case_values values;
     assert_int_equal(case_parse(&values, text, strlen(text), "test.yaml", NULL, 0, NULL), STATUS_OK);
-    struct error_study whole;
+    struct error_study whole =
+        open_study(UNIFORM, "{of: steady_speed, within: 2e-3, keys: [nodes, shedding_interval]}");
     int n_rounds, n_failures = 0;
-    assert_int_equal(error_plan_create(&whole, &values), STATUS_OK);
     struct member_file *const members = follow(&whole, &n_rounds);
-    const int n_members = sweep_n_members(&whole.study);
+    const int n_members = sweep_n_members(whole.study);
     FILE *const nowhere = fopen("/dev/null", "w");
     for (int n = 0;; n += 1 + n / 20) {
         const int n_before = n_live;
-        struct error_study study;
-        int n_new = 1;
+        struct arena *const arena = arena_create(NULL, "a test");
         n_until_failure = n;
-        enum status status = error_plan_create(&study, &values);
-        while (status == STATUS_OK && n_new > 0) {
-            error_study_judge(&study, members);
-            status = error_study_refine(&study, members, n_members, &n_new);
-        }
-        if (status == STATUS_OK) status = error_report_print(&study, members, nowhere);
+        const enum status status = plan_and_refine(arena, &values, members, n_members, nowhere);
         const int ran_out = n_until_failure == -1;
         n_until_failure = -1;
-        error_plan_free(&study);
+        arena_free(arena);
         if (n_live != n_before) fail_msg("with allocation %d failing %d are left", n, n_live - n_before);
         if (!ran_out) break;
         if (status != STATUS_MEMORY) fail_msg("with allocation %d failing: %d %s", n, (int)status, status_message());
@@ -650,7 +639,6 @@ TEST(every_failing_allocation_is_reported_and_leaves_nothing) {
     }
     ABOVE(n_failures, 40);
     fclose(nowhere);
-    free_members(members, n_members);
-    error_plan_free(&whole);
+    close_study(&whole);
     case_free(&values);
 }

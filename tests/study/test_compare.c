@@ -1,5 +1,5 @@
-/* test_study_comparison.c: the table of a comparison, and comparisons without memory. What processes do:
- * test_compare.sh. */
+/* test_compare.c: the table of a comparison, and comparisons without memory. What processes do:
+ * test_compare_command.sh. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,10 +10,9 @@
 #include "case/sweep.h"
 #include "failing_malloc.h"
 #include "near.h"
-#include "study/study_comparison.h"
+#include "study/compare.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
-#include "study/study_gather.h"
 
 #define CASE "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\n"
 #define ROW_A "[rk4, 4, 1e-5, 0.01]"
@@ -28,6 +27,13 @@ static const char repeated[] = CASE
 static const double wall_times[] = {100, 90, 2, 3, 10, 1, 1, 20, 3};
 enum { N_MEMBERS = sizeof wall_times / sizeof *wall_times };
 
+/* Memory of the tests of this file. */
+static struct arena *test_arena(void) {
+    static struct arena *arena;
+    if (!arena) arena = arena_create(NULL, "a test");
+    return arena;
+}
+
 static struct case_values parse(const char *text) {
     struct case_values values;
     assert_int_equal(case_parse(&values, text, strlen(text), "small.yaml", NULL, 0, NULL), STATUS_OK);
@@ -41,11 +47,11 @@ static double *at(const struct member_file *member, const char *quantity, int fi
 /* Complete members with these wall times, and noses that are off by their numbers. */
 static struct member_file *members_of(const struct case_values *study) {
     assert_int_equal(sweep_n_members(study), N_MEMBERS);
-    struct member_file *const members = calloc(N_MEMBERS, sizeof *members);
-    assert_non_null(members);
+    struct member_file *members;
+    NEW(test_arena(), members, N_MEMBERS);
     for (int m = 0; m < N_MEMBERS; m++) {
-        members[m].status = strdup("complete");
-        assert_int_equal(member_file_create_values(&members[m], 2), STATUS_OK);
+        members[m].status = "complete";
+        member_file_create_values(test_arena(), &members[m], 2);
         *at(&members[m], "wall_time", 0, 0) = wall_times[m];
         for (int f = 0; f < 2; f++) {
             *at(&members[m], "nose", f, 0) = 7 + 3 * m;
@@ -61,7 +67,7 @@ static const char *print(const struct case_values *study, const struct member_fi
     memset(text, 0, sizeof text);
     FILE *const stream = fmemopen(text, sizeof text - 1, "w");
     struct arena *const arena = arena_create(NULL, "a test");
-    assert_int_equal(study_comparison_print(arena, study, members, stream), STATUS_OK);
+    compare_print(arena, study, members, stream);
     arena_free(arena);
     fclose(stream);
     return text;
@@ -74,7 +80,7 @@ static void assert_has(const char *text, const char *part) {
 TEST(errors_are_distances_from_the_first_member_in_lengths) {
     struct case_values study = parse(repeated);
     struct member_file *const members = members_of(&study);
-    study_comparison_fill_errors(&study, members);
+    compare_fill_errors(&study, members);
     NEAR(*at(&members[0], "nose_error", 1, 0), 0, 0, 0);
     NEAR(*at(&members[4], "nose_error", 0, 0), 5 * 4 / 2.0, 0, 1e-15);
     NEAR(*at(&members[4], "nose_error", 1, 0), 5 * 4 / 0.5, 0, 1e-15);
@@ -82,7 +88,6 @@ TEST(errors_are_distances_from_the_first_member_in_lengths) {
     NEAR(*at(&members[4], "tail_error", 1, 0), 0, 0, 0);
     // the table shows the fish with the larger error
     assert_has(print(&study, members), "difference of ida5, rtol 1e-8: 1.0e+01 (nose) and 7.1e-01 (tail) lengths");
-    study_folder_free_members(members, N_MEMBERS);
     case_free(&study);
 }
 
@@ -94,15 +99,13 @@ TEST(the_wall_time_is_the_median_of_the_repeats) {
     assert_has(text, "\n  ida2  1e-3     -        -        -      -  3.000  9.500 ");  // 1, 3, 20
     // what has failed has no time, and is said once
     for (int m = 2; m < N_MEMBERS; m += 2) {
-        free(members[m].status);
-        members[m].status = strdup("failed: too slow");
+        members[m].status = "failed: too slow";
     }
     text = print(&study, members);
     assert_has(text, "\n   rk4     -  0.01        -        -      -      -      - ");
     assert_has(text, "failed\n  ida2");
     assert_has(text, "complete\nrk4, step 0.01 failed: too slow\n");
     assert_null(strstr(strstr(text, "too slow") + 1, "too slow"));
-    study_folder_free_members(members, N_MEMBERS);
     case_free(&study);
 }
 
@@ -118,11 +121,11 @@ TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
                         evaluations[] = {9e4, 8e4, 1000, 100, 800, 80, 70};
     struct case_values study = parse(text);
     enum { N = 7 };
-    struct member_file *const members = calloc(N, sizeof *members);
-    assert_non_null(members);
+    struct member_file *members;
+    NEW(test_arena(), members, N);
     for (int m = 0; m < N; m++) {
-        members[m].status = strdup("complete");
-        assert_int_equal(member_file_create_values(&members[m], 1), STATUS_OK);
+        members[m].status = "complete";
+        member_file_create_values(test_arena(), &members[m], 1);
         for (int k = 0; k < 2; k++) *at(&members[m], "tail", 0, k) = *at(&members[m], "nose", 0, k) = 3;
         // the nose is right where the power is wrong
         if (m % 2 == 0) *at(&members[m], "nose", 0, 0) += error[m];
@@ -130,7 +133,7 @@ TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
         *at(&members[m], "wall_time", 0, 0) = evaluations[m] / 100;
         *at(&members[m], "residual_evaluations", 0, 0) = evaluations[m];
     }
-    study_comparison_fill_errors(&study, members);
+    compare_fill_errors(&study, members);
     NEAR(*at(&members[3], "power_error", 0, 0), 4e-3, 0, 1e-9);
     NEAR(*at(&members[2], "power_error", 0, 0), 0, 0, 0);
     const char *const printed = print(&study, members);
@@ -143,11 +146,10 @@ TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
     assert_has(printed, " 10000.0  complete\n");
     // at ten times the error of the reference; where all settings are below, the cheapest is the bound
     *at(&members[1], "actuation_work", 0, 0) = 5 * (1 - 3e-4);
-    study_comparison_fill_errors(&study, members);
+    compare_fill_errors(&study, members);
     const char *const rough = print(&study, members);
     assert_has(rough, "Cost at an error of 1e-02 in nose, tail (lengths) and power (part), known to 3.0e-04:");
     assert_has(rough, "\n  ida2       100   0    1.000      -  at most: error 4.0e-03 with rtol 1e-3\n");
-    study_folder_free_members(members, N);
     case_free(&study);
 }
 
@@ -162,17 +164,17 @@ TEST(steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar) {
     static const double error[] = {0, 1e-9, 4e-3, 4e-5, 2e-4, 4e-3, 4e-5}, wall_time[] = {90, 80, 2, 10, 5, 2.4, 11};
     struct case_values study = parse(text);
     enum { N = 7 };
-    struct member_file *const members = calloc(N, sizeof *members);
-    assert_non_null(members);
+    struct member_file *members;
+    NEW(test_arena(), members, N);
     for (int m = 0; m < N; m++) {
-        members[m].status = strdup("complete");
-        assert_int_equal(member_file_create_values(&members[m], 1), STATUS_OK);
+        members[m].status = "complete";
+        member_file_create_values(test_arena(), &members[m], 1);
         for (int k = 0; k < 2; k++) *at(&members[m], "tail", 0, k) = *at(&members[m], "nose", 0, k) = 3;
         *at(&members[m], "tail", 0, 1) += error[m];
         *at(&members[m], "wall_time", 0, 0) = wall_time[m];
         *at(&members[m], "residual_evaluations", 0, 0) = 100 * wall_time[m];
     }
-    study_comparison_fill_errors(&study, members);
+    compare_fill_errors(&study, members);
     const char *const printed = print(&study, members);
     // at 1e-3 a power law between 10.5 s for 4e-5 and 2.2 s for 4e-3
     char row[128];
@@ -180,7 +182,6 @@ TEST(steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar) {
              10.5 * pow(2.2 / 10.5, log(25) / log(100)));
     assert_has(printed, row);
     assert_has(printed, "\n   rk4       500   0    5.000      -  at most: error 2.0e-04 with rtol 1e-4\n");
-    study_folder_free_members(members, N);
     case_free(&study);
 }
 
@@ -198,38 +199,49 @@ TEST(only_a_sweep_of_these_keys_is_a_comparison) {
         char text[1024];
         snprintf(text, sizeof text, CASE "fish: [{}]\n%s", sweeps[i]);
         struct case_values study = parse(text);
-        assert_false(study_comparison_is(&study));
+        assert_false(compare_is(&study));
         case_free(&study);
     }
     struct case_values study = parse(repeated);
-    assert_true(study_comparison_is(&study));
+    assert_true(compare_is(&study));
     case_free(&study);
 }
 
 static enum status print_in_bounds(struct arena *arena, const struct case_values *study,
                                    const struct member_file *members, FILE *stream) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
-    return study_comparison_print(arena, study, members, stream);
+    compare_print(arena, study, members, stream);
+    return STATUS_OK;
+}
+
+static enum status read_in_bounds(struct arena *arena, const char *path, struct case_values **study,
+                                  struct member_file **members) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    return study_file_read(arena, path, study, members, &(int){0});
+}
+
+static enum status compare_in_bounds(const struct case_values *values, const struct compare_options *options,
+                                     const struct study_options *run, FILE *nowhere) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    return study_compare(values, options, run, nowhere);
 }
 
 /* Compare, and read the file that this leaves. */
 static enum status compare(struct arena *arena, const struct case_values *values, const char *path, FILE *nowhere) {
-    const struct study_compare_options options = {
+    const struct compare_options options = {
         .methods = "ida2,rk4", .rtols = "1e-3", .repeats = 1, .reference_rtol = 1e-6, .path = path};
     const struct study_options run = {.command = "test"};
-    TRY(study_compare(values, &options, &run, nowhere));
-    struct case_values study;
+    TRY(compare_in_bounds(values, &options, &run, nowhere));
+    struct case_values *study;
     struct member_file *members;
-    TRY(study_file_read(path, &study, &members, &(int){0}));
-    const int n = sweep_n_members(&study);
+    TRY(read_in_bounds(arena, path, &study, &members));
+    const int n = sweep_n_members(study);
     const double error = *at(&members[n - 1], "tail_error", 0, 0);
-    const enum status printed = print_in_bounds(arena, &study, members, nowhere);
+    const enum status printed = print_in_bounds(arena, study, members, nowhere);
     if (printed == STATUS_OK && strcmp(members[n - 1].status, "complete") == 0) {
         ABOVE(error, 0);
         BELOW(error, 1e-3);
     }
-    study_folder_free_members(members, n);
-    case_free(&study);
     return printed;
 }
 

@@ -1,9 +1,9 @@
-/* test_error_budget.c: errors of a value by levels of refinement. The sequences are steady speeds [m s-1] and costs of
+/* test_convergence.c: errors of a value by levels of refinement. The sequences are steady speeds [m s-1] and costs of
  * transport [m s-2] of the default fish, measured with several forms of the tail. */
 #include <string.h>
 
 #include "near.h"
-#include "study/error_budget.h"
+#include "study/convergence.h"
 
 enum { MOST = 6 };
 
@@ -15,30 +15,30 @@ struct key {
     const char *objection;
 };
 
-/* Judge one quantity at the levels of a key; reason: (ERROR_BUDGET_BYTES) or NULL. */
-static struct error_budget_result judge_with(const struct key *key, const double *values, double noise, char *reason) {
+/* Judge one quantity at the levels of a key; reason: (CONVERGENCE_BYTES) or NULL. */
+static struct convergence_result judge_with(const struct key *key, const double *values, double noise, char *reason) {
     double size[MOST], value[MOST][2] = {{0}};
     for (int i = 0; i < key->n; i++) {
         size[i] = key->level[i] < 1 ? key->level[i] : 1 / (key->level[i] - 1);
         value[i][0] = values[i];
     }
-    const struct error_budget_levels levels = {.n = key->n,
-                                               .n_judged = ERROR_BUDGET_LEVELS,
-                                               .base = key->base,
-                                               .size = size,
-                                               .design_order = key->design,
-                                               .objection = key->objection};
-    const struct error_budget_result result = error_budget_judge(&levels, (const double(*)[2])value, noise);
-    if (reason) error_budget_reason(&levels, &result, key->level, reason);
+    const struct convergence_levels levels = {.n = key->n,
+                                              .n_judged = CONVERGENCE_LEVELS,
+                                              .base = key->base,
+                                              .size = size,
+                                              .design_order = key->design,
+                                              .objection = key->objection};
+    const struct convergence_result result = convergence_judge(&levels, (const double(*)[2])value, noise);
+    if (reason) convergence_reason(&levels, &result, key->level, reason);
     return result;
 }
 
-static struct error_budget_result judge(const struct key *key, const double *values, double noise) {
+static struct convergence_result judge(const struct key *key, const double *values, double noise) {
     return judge_with(key, values, noise, NULL);
 }
 
-static void verdict_is(enum error_budget_verdict got, enum error_budget_verdict want) {
-    if (got != want) fail_msg("got '%s', want '%s'", error_budget_words(got), error_budget_words(want));
+static void verdict_is(enum convergence_verdict got, enum convergence_verdict want) {
+    if (got != want) fail_msg("got '%s', want '%s'", convergence_words(got), convergence_words(want));
 }
 
 TEST(orders_of_powers_are_found) {
@@ -52,14 +52,14 @@ TEST(orders_of_powers_are_found) {
             }
         }
         // differences of 1e-6 of the values, at order 4, lose ten digits of sixteen
-        NEAR(error_budget_order(halved, (const double(*)[2])one), orders[i], 0, 1e-8);
-        NEAR(error_budget_order(uneven, (const double(*)[2])other), orders[i], 0, 1e-8);
+        NEAR(convergence_order(halved, (const double(*)[2])one), orders[i], 0, 1e-8);
+        NEAR(convergence_order(uneven, (const double(*)[2])other), orders[i], 0, 1e-8);
     }
     // Celik et al., Journal of Fluids Engineering 130 (2008) 078001, table 1, first column: 1.53
     const double sizes[] = {1, 1.5, 1.5 * 4 / 3}, values[][2] = {{6.063, 0}, {5.972, 0}, {5.863, 0}};
-    NEAR(error_budget_order(sizes, values), 1.53, 0.01, 0);
+    NEAR(convergence_order(sizes, values), 1.53, 0.01, 0);
     const double same[][2] = {{6.063, 0}, {6.063, 0}, {5.863, 0}};
-    assert_true(isnan(error_budget_order(sizes, same)));
+    assert_true(isnan(convergence_order(sizes, same)));
 }
 
 /* f = 2 + 0.3 h^2: the finest error is 1.25 times the true error, and the base adds the distance from the finest
@@ -68,8 +68,8 @@ TEST(a_power_is_accepted_and_its_error_is_that_of_richardson) {
     const struct key key = {4, 1, {0.05, 0.1, 0.2, 0.4}, 2, NULL};
     double value[4];
     for (int i = 0; i < 4; i++) value[i] = 2 + 0.3 * key.level[i] * key.level[i];
-    const struct error_budget_result result = judge(&key, value, 1e-9);
-    verdict_is(result.verdict, ERROR_BUDGET_ACCEPTED);
+    const struct convergence_result result = judge(&key, value, 1e-9);
+    verdict_is(result.verdict, CONVERGENCE_ACCEPTED);
     NEAR(result.order, 2, 1e-9, 0);
     NEAR(result.coarse_order, 2, 1e-9, 0);
     NEAR(result.finest_error, 1.25 * 0.3 * 0.0025, 0, 1e-9);
@@ -81,31 +81,31 @@ TEST(a_stated_value_beyond_the_judged_levels_counts_with_its_distance) {
     const struct key key = {6, 5, {0.1, 0.2, 0.4, 0.8, 1.6, 3.2}, 2, NULL};
     double value[6], turning[6];
     for (int i = 0; i < 6; i++) value[i] = turning[i] = 2 + 0.3 * key.level[i] * key.level[i];
-    const struct error_budget_result result = judge(&key, value, 1e-9);
-    verdict_is(result.verdict, ERROR_BUDGET_ACCEPTED);
+    const struct convergence_result result = judge(&key, value, 1e-9);
+    verdict_is(result.verdict, CONVERGENCE_ACCEPTED);
     NEAR(result.error, 1.25 * 0.3 * 0.01 + 0.3 * (10.24 - 0.01), 0, 1e-9);
 
     // flagged levels: the largest difference from the stated value
     turning[1] = 1.9;
-    verdict_is(judge(&key, turning, 1e-9).verdict, ERROR_BUDGET_TURNS);
+    verdict_is(judge(&key, turning, 1e-9).verdict, CONVERGENCE_TURNS);
     NEAR(judge(&key, turning, 1e-9).error, 2 + 0.3 * 10.24 - 1.9, 0, 1e-12);
 }
 
 /* Half an order above the design order is accepted, with the design order; more is an accident of the finest
  * difference: the larger of the two finest differences is the error. */
 TEST(an_order_far_above_the_design_order_is_flagged) {
-    char reason[ERROR_BUDGET_BYTES];
+    char reason[CONVERGENCE_BYTES];
     const struct key near = {4, 1, {0.05, 0.1, 0.2, 0.4}, 2, NULL};
     const double accepted[] = {2, 2.01, 2.065, 2.35};  // orders 2.46 and 2.37
     NEAR(judge(&near, accepted, 1e-9).order, log2(5.5), 1e-9, 0);
-    verdict_is(judge(&near, accepted, 1e-9).verdict, ERROR_BUDGET_ACCEPTED);
+    verdict_is(judge(&near, accepted, 1e-9).verdict, CONVERGENCE_ACCEPTED);
     NEAR(judge(&near, accepted, 1e-9).error, 1.25 * 0.01 / 3 + 0.01, 1e-12, 0);
 
     // 7, 13, 25 and 49 nodes of a run of 3 s: 193 nodes have 0.842587, 1.27e-4 from 49 nodes
     const struct key key = {4, 0, {49, 25, 13, 7}, 2, NULL}, coarse = {4, 3, {49, 25, 13, 7}, 2, NULL};
     const double speed[] = {0.842714, 0.842639, 0.835444, 0.794489};
-    const struct error_budget_result result = judge_with(&key, speed, 1e-7, reason);
-    verdict_is(result.verdict, ERROR_BUDGET_HIGH);
+    const struct convergence_result result = judge_with(&key, speed, 1e-7, reason);
+    verdict_is(result.verdict, CONVERGENCE_HIGH);
     NEAR(result.order, 6.6, 0.05, 0);
     NEAR(result.error, 0.842639 - 0.835444, 1e-12, 0);
     assert_string_equal(reason, "the order is more than 0.5 above the design order, 2: 6.6 from 13 to 49");
@@ -115,17 +115,17 @@ TEST(an_order_far_above_the_design_order_is_flagged) {
 
     // equal finest levels have an infinite order
     const double equal[] = {1, 1, 1.1, 1.5};
-    verdict_is(judge(&key, equal, 1e-7).verdict, ERROR_BUDGET_HIGH);
+    verdict_is(judge(&key, equal, 1e-7).verdict, CONVERGENCE_HIGH);
     NEAR(judge(&key, equal, 1e-7).error, 0.1, 1e-12, 0);
 }
 
 /* A Strouhal number whose finest levels differ by 0.0016: Richardson with order 0.09 gave an error of 0.032. */
 TEST(an_order_below_half_of_the_design_order_is_flagged) {
-    char reason[ERROR_BUDGET_BYTES];
+    char reason[CONVERGENCE_BYTES];
     const struct key key = {4, 0, {0.01, 0.02, 0.04, 0.08}, 1, NULL};
     const double strouhal[] = {0.2856, 0.2872, 0.2889, 0.2908};
-    const struct error_budget_result result = judge_with(&key, strouhal, 1e-7, reason);
-    verdict_is(result.verdict, ERROR_BUDGET_LOW);
+    const struct convergence_result result = judge_with(&key, strouhal, 1e-7, reason);
+    verdict_is(result.verdict, CONVERGENCE_LOW);
     NEAR(result.error, 0.2908 - 0.2856, 1e-12, 0);
     assert_string_equal(reason, "the order is below half of the design order, 1: 0.087 from 0.04 to 0.01");
 }
@@ -133,34 +133,34 @@ TEST(an_order_below_half_of_the_design_order_is_flagged) {
 TEST(three_levels_without_a_finer_one_have_wider_bounds) {
     const struct key key = {3, 0, {25, 17, 13}, 2, NULL};
     const double accepted[] = {0.9364, 0.9297, 0.9205}, low[] = {0.9364, 0.9297, 0.9240};
-    const struct error_budget_result result = judge(&key, accepted, 3e-5);
-    verdict_is(result.verdict, ERROR_BUDGET_ACCEPTED);
+    const struct convergence_result result = judge(&key, accepted, 3e-5);
+    verdict_is(result.verdict, CONVERGENCE_ACCEPTED);
     assert_true(isnan(result.coarse_order));
     NEAR(result.error, 1.25 * 0.0067 / (pow(1.5, fmin(2, result.order)) - 1), 1e-9, 0);
-    verdict_is(judge(&key, low, 3e-5).verdict, ERROR_BUDGET_LOW);
+    verdict_is(judge(&key, low, 3e-5).verdict, CONVERGENCE_LOW);
     NEAR(judge(&key, low, 3e-5).error, 1.5 * (0.9364 - 0.9240), 1e-12, 0);
 }
 
 /* A tail that ends in a cusp: no limit. The grid convergence index of 9, 17 and 33 nodes was 0.005 m/s. */
 TEST(a_sequence_that_goes_on_is_flagged) {
-    char reason[ERROR_BUDGET_BYTES];
+    char reason[CONVERGENCE_BYTES];
     const struct key four = {4, 0, {65, 33, 17, 9}, 2, NULL}, three = {3, 0, {33, 17, 9}, 2, NULL};
     const double from_rest[] = {0.3697, 0.7881, 0.8092, 0.9415}, cost[] = {0.152, 0.110, 0.157};
-    const struct error_budget_result result = judge_with(&four, from_rest, 3e-5, reason);
-    verdict_is(result.verdict, ERROR_BUDGET_GROWS);
+    const struct convergence_result result = judge_with(&four, from_rest, 3e-5, reason);
+    verdict_is(result.verdict, CONVERGENCE_GROWS);
     NEAR(result.error, 0.57, 0.005, 0);
     assert_true(isnan(result.finest_error));
     assert_string_equal(reason, "differences do not fall from 17 over 33 to 65");
-    verdict_is(judge_with(&three, cost, 3e-5, reason).verdict, ERROR_BUDGET_TURNS);
+    verdict_is(judge_with(&three, cost, 3e-5, reason).verdict, CONVERGENCE_TURNS);
     assert_string_equal(reason, "differences change sign at 17");
 }
 
 TEST(what_is_known_before_flags_whatever_the_levels_say) {
-    char reason[ERROR_BUDGET_BYTES];
+    char reason[CONVERGENCE_BYTES];
     const struct key key = {3, 0, {33, 17, 9}, 2, "the tail ends in a cusp"};
     const double speed[] = {0.8142, 0.8731, 1.029};
-    const struct error_budget_result result = judge_with(&key, speed, 3e-5, reason);
-    verdict_is(result.verdict, ERROR_BUDGET_OBJECTION);
+    const struct convergence_result result = judge_with(&key, speed, 3e-5, reason);
+    verdict_is(result.verdict, CONVERGENCE_OBJECTION);
     NEAR(result.error, 0.32, 0.005, 0);
     assert_string_equal(reason, key.objection);
 }
@@ -170,8 +170,8 @@ TEST(what_is_known_before_flags_whatever_the_levels_say) {
 TEST(differences_that_do_not_fall_are_flagged) {
     const struct key key = {3, 2, {97, 69, 49}, 1, NULL};
     const double speed[] = {1.0056 * (1 - 0.0024), 1.0056 * (1 - 0.0011), 1.0056};
-    const struct error_budget_result result = judge(&key, speed, 3e-5);
-    verdict_is(result.verdict, ERROR_BUDGET_GROWS);
+    const struct convergence_result result = judge(&key, speed, 3e-5);
+    verdict_is(result.verdict, CONVERGENCE_GROWS);
     NEAR(result.error, 2 * 0.0024, 0.0001, 0);
     ABOVE(result.error, 0.004 * 1.0056);
 }
@@ -179,48 +179,48 @@ TEST(differences_that_do_not_fall_are_flagged) {
 TEST(differences_below_the_noise_are_none) {
     const struct key key = {3, 1, {1e-6, 1e-5, 1e-4}, 1, NULL};
     const double speed[] = {0.93640, 0.93641, 0.93639};
-    const struct error_budget_result result = judge(&key, speed, 2.5e-5);
-    verdict_is(result.verdict, ERROR_BUDGET_NONE);
+    const struct convergence_result result = judge(&key, speed, 2.5e-5);
+    verdict_is(result.verdict, CONVERGENCE_NONE);
     NEAR(result.error, 2e-5, 0, 1e-6);
-    verdict_is(judge(&key, speed, 1e-6).verdict, ERROR_BUDGET_TURNS);
+    verdict_is(judge(&key, speed, 1e-6).verdict, CONVERGENCE_TURNS);
     // a difference of 2e-5 in 0.94 against three times the noise
-    verdict_is(judge(&key, speed, 0.75e-5).verdict, ERROR_BUDGET_NONE);
-    verdict_is(judge(&key, speed, 0.69e-5).verdict, ERROR_BUDGET_TURNS);
+    verdict_is(judge(&key, speed, 0.75e-5).verdict, CONVERGENCE_NONE);
+    verdict_is(judge(&key, speed, 0.69e-5).verdict, CONVERGENCE_TURNS);
 }
 
 TEST(orders_decide) {
     // differences 1, 2, 4 and so on at halved spacings: orders p, p' by log2 of the ratios
     const struct {
         double differences[3], design;
-        enum error_budget_verdict verdict;
+        enum convergence_verdict verdict;
     } examples[] = {
-        {{1, 4, 16}, 2, ERROR_BUDGET_ACCEPTED},       // 2, 2
-        {{1, 2.01, 4.05}, 2, ERROR_BUDGET_ACCEPTED},  // 1.01, 1.01: at least half
-        {{1, 1.9, 3.8}, 2, ERROR_BUDGET_LOW},         // 0.93, 1
-        {{1, 4, 7.5}, 2, ERROR_BUDGET_LOW},           // 2, 0.91
-        {{1, 1.42, 2.02}, 1, ERROR_BUDGET_ACCEPTED},  // 0.51, 0.51
-        {{1, 1.41, 2.02}, 1, ERROR_BUDGET_LOW},       // 0.496, 0.52
-        {{1, 4, 28}, 2, ERROR_BUDGET_CHANGES},        // 2, 2.81
-        {{1, 4, 27}, 2, ERROR_BUDGET_ACCEPTED},       // 2, 2.75
-        {{1, 5.65, 24}, 2, ERROR_BUDGET_ACCEPTED},    // 2.498, 2.09: at most 0.5 above
-        {{1, 5.66, 24}, 2, ERROR_BUDGET_HIGH},        // 2.501
-        {{1, 2.84, 6}, 1, ERROR_BUDGET_HIGH},         // 1.506
-        {{0, 4, 16}, 2, ERROR_BUDGET_HIGH},           // equal to rounding
-        {{1, 4, 16}, NAN, ERROR_BUDGET_NO_ORDER},    {{1, 1, 4}, 2, ERROR_BUDGET_GROWS},
-        {{1, 4, 3}, 2, ERROR_BUDGET_GROWS},          {{1, 0, 3}, 2, ERROR_BUDGET_GROWS},
-        {{1, -4, 16}, 2, ERROR_BUDGET_TURNS},        {{1, 4, -16}, 2, ERROR_BUDGET_TURNS},
-        {{1, 4, NAN}, 2, ERROR_BUDGET_UNKNOWN},
+        {{1, 4, 16}, 2, CONVERGENCE_ACCEPTED},       // 2, 2
+        {{1, 2.01, 4.05}, 2, CONVERGENCE_ACCEPTED},  // 1.01, 1.01: at least half
+        {{1, 1.9, 3.8}, 2, CONVERGENCE_LOW},         // 0.93, 1
+        {{1, 4, 7.5}, 2, CONVERGENCE_LOW},           // 2, 0.91
+        {{1, 1.42, 2.02}, 1, CONVERGENCE_ACCEPTED},  // 0.51, 0.51
+        {{1, 1.41, 2.02}, 1, CONVERGENCE_LOW},       // 0.496, 0.52
+        {{1, 4, 28}, 2, CONVERGENCE_CHANGES},        // 2, 2.81
+        {{1, 4, 27}, 2, CONVERGENCE_ACCEPTED},       // 2, 2.75
+        {{1, 5.65, 24}, 2, CONVERGENCE_ACCEPTED},    // 2.498, 2.09: at most 0.5 above
+        {{1, 5.66, 24}, 2, CONVERGENCE_HIGH},        // 2.501
+        {{1, 2.84, 6}, 1, CONVERGENCE_HIGH},         // 1.506
+        {{0, 4, 16}, 2, CONVERGENCE_HIGH},           // equal to rounding
+        {{1, 4, 16}, NAN, CONVERGENCE_NO_ORDER},    {{1, 1, 4}, 2, CONVERGENCE_GROWS},
+        {{1, 4, 3}, 2, CONVERGENCE_GROWS},          {{1, 0, 3}, 2, CONVERGENCE_GROWS},
+        {{1, -4, 16}, 2, CONVERGENCE_TURNS},        {{1, 4, -16}, 2, CONVERGENCE_TURNS},
+        {{1, 4, NAN}, 2, CONVERGENCE_UNKNOWN},
     };
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
         const struct key key = {4, 0, {0.1, 0.2, 0.4, 0.8}, examples[i].design, NULL};
         double value[4] = {100};
         for (int k = 0; k < 3; k++) value[k + 1] = value[k] + examples[i].differences[k];
-        char reason[ERROR_BUDGET_BYTES];
-        const struct error_budget_result result = judge_with(&key, value, 1e-9, reason);
-        if (result.verdict != examples[i].verdict) fail_msg("example %zu: %s", i, error_budget_words(result.verdict));
-        assert_int_equal(*reason != '\0', error_budget_is_flagged(result.verdict));
+        char reason[CONVERGENCE_BYTES];
+        const struct convergence_result result = judge_with(&key, value, 1e-9, reason);
+        if (result.verdict != examples[i].verdict) fail_msg("example %zu: %s", i, convergence_words(result.verdict));
+        assert_int_equal(*reason != '\0', convergence_is_flagged(result.verdict));
         // the largest difference counts once with four levels
-        if (error_budget_is_flagged(result.verdict) && result.verdict < ERROR_BUDGET_HIGH) {
+        if (convergence_is_flagged(result.verdict) && result.verdict < CONVERGENCE_HIGH) {
             NEAR(result.error, fabs(value[3] - value[0]), 0, 1e-12);
         }
     }
@@ -232,23 +232,23 @@ TEST(uneven_levels_are_judged_by_their_spacings) {
     double value[4];
     for (int i = 0; i < 4; i++) value[i] = 2 + 0.3 / pow(key.level[i] - 1, 2);
     ABOVE(value[2] - value[1], value[3] - value[2]);
-    const struct error_budget_result result = judge(&key, value, 1e-9);
-    verdict_is(result.verdict, ERROR_BUDGET_ACCEPTED);
+    const struct convergence_result result = judge(&key, value, 1e-9);
+    verdict_is(result.verdict, CONVERGENCE_ACCEPTED);
     NEAR(result.coarse_order, 2, 1e-9, 0);
 }
 
 TEST(a_missing_level_leaves_the_error_unknown) {
     const struct key key = {4, 1, {35, 25, 17, 13}, 2, "even where it is flagged before"};
     const double cost[] = {NAN, 0.0728, 0.0720, 0.0708};
-    const struct error_budget_result result = judge(&key, cost, 3e-5);
-    verdict_is(result.verdict, ERROR_BUDGET_UNKNOWN);
+    const struct convergence_result result = judge(&key, cost, 3e-5);
+    verdict_is(result.verdict, CONVERGENCE_UNKNOWN);
     assert_true(isnan(result.error));
 }
 
 TEST(two_levels_give_the_difference_with_a_wide_bound) {
     const struct key base = {2, 0, {1e-5, 1e-4}, 1, NULL}, confirmed = {2, 1, {1e-6, 1e-5}, 1, NULL};
     const double speed[] = {1, 1.01};
-    verdict_is(judge(&base, speed, 1e-5).verdict, ERROR_BUDGET_FEW);
+    verdict_is(judge(&base, speed, 1e-5).verdict, CONVERGENCE_FEW);
     NEAR(judge(&base, speed, 1e-5).error, 0.015, 1e-12, 0);
     NEAR(judge(&confirmed, speed, 1e-5).error, 0.02, 1e-12, 0);
 }
@@ -256,8 +256,8 @@ TEST(two_levels_give_the_difference_with_a_wide_bound) {
 TEST(of_many_levels_the_finest_four_count) {
     const struct key key = {6, 0, {0.1, 0.2, 0.4, 0.8, 1.6, 3.2}, 2, NULL};
     const double value[] = {1.01, 1.04, 1.16, 1.64, 0.2, 70};
-    const struct error_budget_result result = judge(&key, value, 1e-9);
-    verdict_is(result.verdict, ERROR_BUDGET_ACCEPTED);
+    const struct convergence_result result = judge(&key, value, 1e-9);
+    verdict_is(result.verdict, CONVERGENCE_ACCEPTED);
     NEAR(result.error, 1.25 * 0.01, 0, 1e-9);
 }
 
@@ -265,12 +265,12 @@ TEST(of_many_levels_the_finest_four_count) {
 TEST(points_are_judged_by_the_angle_between_differences) {
     const double size[] = {0.1, 0.2, 0.4};
     const double straight[][2] = {{1, 1}, {1, 1.3}, {0.5, 2.1}}, back[][2] = {{1, 1}, {1, 1.3}, {1.9, 1}};
-    const struct error_budget_levels levels = {
-        .n = 3, .n_judged = ERROR_BUDGET_LEVELS, .size = size, .design_order = 1.5};
-    const struct error_budget_result result = error_budget_judge(&levels, straight, 1e-9);
-    verdict_is(result.verdict, ERROR_BUDGET_ACCEPTED);
+    const struct convergence_levels levels = {
+        .n = 3, .n_judged = CONVERGENCE_LEVELS, .size = size, .design_order = 1.5};
+    const struct convergence_result result = convergence_judge(&levels, straight, 1e-9);
+    verdict_is(result.verdict, CONVERGENCE_ACCEPTED);
     NEAR(result.order, log2(hypot(0.5, 0.8) / 0.3), 1e-9, 0);
-    verdict_is(error_budget_judge(&levels, back, 1e-9).verdict, ERROR_BUDGET_TURNS);
+    verdict_is(convergence_judge(&levels, back, 1e-9).verdict, CONVERGENCE_TURNS);
 }
 
 /* Steady speed and cost over the nodes, of fish with other moduli and tails; the limits come from 49 nodes and from

@@ -1,0 +1,53 @@
+/* compare.h: comparison of integration methods and tolerances or steps: error, wall time and counts. Tested by
+ * tests/study/test_compare.c and test_compare_command.sh.
+ *
+ * The comparison is a study with a reference in a temporary folder. The members run one at a time, and each round of
+ * repeats runs all settings, so that the noise of the machine affects all settings alike.
+ *
+ * The single axis sets solver.method, solver.order, solver.rtol and solver.step, in this order. Member 0 is the
+ * reference; member 1 gives the error of the reference; further members with equal values are repeats. */
+#ifndef COMPARE_H
+#define COMPARE_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "base/arena.h"
+#include "base/status.h"
+#include "base/text.h"
+#include "case/case_values.h"
+#include "study/member_file.h"
+
+enum { COMPARE_N_REFERENCES = 2 };
+
+struct compare_options {
+    const char
+        *methods;      /* "ida2,ida5,rk4": ida with the highest order, or words of solver.method; NULL: all adaptive */
+    const char *rtols; /* "1e-3,1e-5"; NULL: 1e-3 to 1e-7 */
+    const char *steps; /* fixed steps of all methods but ida, instead of tolerances; NULL: none */
+    int repeats;
+    double reference_rtol; /* of the reference, ida of order 5 */
+    const char *path;      /* file to write, in the format of study.nc; NULL: none */
+};
+
+/* Create the study of a comparison, the case with a sweep of the references and all rounds of repeats; only the last
+ * row is written. Fails with STATUS_CASE. study_compare runs the study. */
+enum status compare_create(struct arena *arena, struct case_values **study, const struct case_values *values,
+                           const struct compare_options *options);
+
+/* Add the words accepted in methods. */
+void compare_words(struct text *text);
+
+/* Whether a study is a comparison. */
+bool compare_is(const struct case_values *study);
+
+/* Set nose_error, tail_error and power_error of each member of a comparison: final distance of nose and tail from the
+ * reference, in body lengths, and relative error of the muscle work. Other studies are unchanged. */
+void compare_fill_errors(const struct case_values *study, const struct member_file *members);
+
+/* Print a row for each setting: largest errors over the fish, median and half range of the wall times of the repeats,
+ * solver counts. Print the cost of each method at a common error, and the reasons of failed members. */
+void compare_print(struct arena *arena, const struct case_values *study, const struct member_file *members,
+                   FILE *stream);
+
+#endif
