@@ -49,7 +49,7 @@ static inline int set_up(void **state) {
     f->arena = arena_create(NULL, "a test");
     assert_int_equal(case_parse(&f->values, CASE_TEXT, strlen(CASE_TEXT), "case", ".", 0, NULL), STATUS_OK);
     assert_int_equal(fish_school_create(&f->school, &f->values.school), STATUS_OK);
-    assert_int_equal(state_create(&f->state, f->school), STATUS_OK);
+    f->state = state_create(NULL, f->school);
     number_consecutively(f->state->y, (size_t)f->school->n_unknowns, 1000);
     for (int i = 0; i < N_FISH; i++) {
         f->joints[i] = (struct range){i == 0 ? 0 : 3, f->school->fish[i].n_joints};
@@ -83,7 +83,7 @@ static inline int tear_down(void **state) {
     unlink(f->path);
     arena_free(f->arena);
     assert_int_equal(rmdir(f->folder), 0);  // nothing else is left in it
-    state_free(f->state, f->school);
+    state_free(f->state);
     fish_school_free(f->school);
     case_free(&f->values);
     free(f);

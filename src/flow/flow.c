@@ -2,10 +2,8 @@
 #include "flow/flow.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 
@@ -41,7 +39,7 @@ double flow_square(const struct flow *flow, enum flow_pair pair, const struct fl
 // ---- creation
 
 // one class per length, in the order of the first fish of each length; consecutive points for each class
-static enum status flow_find_classes(struct flow *flow) {
+static void flow_find_classes(struct flow *flow) {
     const struct school *const school = flow->school;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
@@ -70,7 +68,7 @@ static enum status flow_find_classes(struct flow *flow) {
         class->points.n = flow->n_points - class->points.first;
     }
 
-    TRY(MEMORY_NEW(flow->chunk, n_chunks, "chunks of the flow"));
+    NEW(flow->arena, flow->chunk, n_chunks);
     for (int f = 0; f < school->n_fish; f++) {
         const struct range points = flow->points[f];
         for (int i = 0; i < parallel_n_chunks(points.n); i++) {
@@ -78,120 +76,52 @@ static enum status flow_find_classes(struct flow *flow) {
             flow->chunk[flow->n_chunks++] = (struct chunk){f, {points.first + part.first, part.n}};
         }
     }
-    return STATUS_OK;
 }
 
-static enum status flow_fill_fish(struct flow *flow, int f) {
-    const struct fish *const fish = &flow->school->fish[f];
-    struct flow_fish *const of = &flow->fish[f];
-    const int has_legs = flow->kernel->has_legs;
-    TRY(sources_append(&of->own, fish->n_sheet + (has_legs ? fish->n_control : 0)));
-    TRY(sources_append(&of->body, fish->integrals ? fish->n_control : fish->n_sheet));
-    for (int i = 0; i < 2 && has_legs; i++) TRY(MEMORY_NEW(of->line[i], fish->n_control, "the sources of a fish"));
-    if (!has_legs) return STATUS_OK;
-
-    memcpy(of->own.half, fish->sheet_half, (size_t)fish->n_sheet * sizeof *of->own.half);
-    memcpy(of->own.half + fish->n_sheet, fish->point_half, (size_t)fish->n_control * sizeof *of->own.half);
-    memcpy(of->body.half, fish->point_half, (size_t)fish->n_control * sizeof *of->own.half);
-    return STATUS_OK;
-}
-
-static enum status flow_fill(struct flow *flow) {
-    const struct school *const school = flow->school;
-    const size_t n_fish = (size_t)school->n_fish;
+struct flow *flow_create(struct arena *arena, const struct school *school) {
+    struct flow *flow;
+    NEW(arena, flow, 1);
+    flow->arena = flow->many.arena = flow->places.arena = arena;
+    flow->school = school;
     flow->kernel = school->finite ? &kernel_finite : &kernel_infinite;
-    TRY(MEMORY_NEW(flow->points, n_fish, "the flow"));
-    TRY(MEMORY_NEW(flow->wake_range, n_fish, "the flow"));
-    TRY(MEMORY_NEW(flow->fish, n_fish, "the flow"));
-    TRY(MEMORY_NEW(flow->class_of, n_fish, "classes of fish"));
-    TRY(MEMORY_NEW(flow->class, n_fish, "classes of fish"));
-    TRY(flow_find_classes(flow));
-    TRY(MEMORY_NEW(flow->by_tree, 4 * flow->n_classes * flow->n_classes, "classes of fish"));
+    NEW(arena, flow->points, school->n_fish);
+    NEW(arena, flow->wake_range, school->n_fish);
+    NEW(arena, flow->fish, school->n_fish);
+    NEW(arena, flow->class_of, school->n_fish);
+    NEW(arena, flow->class, school->n_fish);
+    flow_find_classes(flow);
+    NEW(arena, flow->by_tree, 4 * flow->n_classes * flow->n_classes);
 
     double **const at_points[] = {&flow->x,       &flow->y,       &flow->u,        &flow->v,     &flow->u_x,
                                   &flow->u_y,     &flow->v_x,     &flow->div,      &flow->div_x, &flow->div_y,
                                   &flow->image_u, &flow->image_v, &flow->image_div};
-    TRY(MEMORY_ARRAYS(at_points, flow->n_points, "the points of the flow"));
-    TRY(MEMORY_NEW(flow->edge, 2 * flow->n_points, "the points of the flow"));
-    TRY(MEMORY_NEW(flow->edge_gradient, 4 * flow->n_points, "the points of the flow"));
-    TRY(MEMORY_NEW(flow->legs[0], N_LEG_SUMS * flow->n_points, "the points of the flow"));
+    for (size_t i = 0; i < sizeof at_points / sizeof *at_points; i++) NEW(arena, *at_points[i], flow->n_points);
+    NEW(arena, flow->edge, 2 * flow->n_points);
+    NEW(arena, flow->edge_gradient, 4 * flow->n_points);
+    NEW(arena, flow->legs[0], N_LEG_SUMS * flow->n_points);
     for (int i = 1; i < N_LEG_SUMS; i++) flow->legs[i] = flow->legs[0] + (long)i * flow->n_points;
 
     double depth = 0;
     for (int f = 0; f < school->n_fish; f++) {
-        depth = fmax(depth, school->fish[f].strip_depth);
-        TRY(flow_fill_fish(flow, f));
-    }
-    TRY(images_find(&school->walls, depth, &flow->image, &flow->n_images));
-    return tree_create(&flow->tree);
-}
-
-enum status flow_create(struct flow **flow, const struct school *school) {
-    *flow = NULL;
-    struct flow *new;
-    TRY(MEMORY_NEW(new, 1, "a flow"));
-    new->school = school;
-
-    const enum status status = flow_fill(new);
-    if (status != STATUS_OK) {
-        flow_free(new);
-        return status;
-    }
-
-    *flow = new;
-    return STATUS_OK;
-}
-
-void flow_free(struct flow *flow) {
-    if (!flow) return;
-    for (int f = 0; flow->fish && f < flow->school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
         struct flow_fish *const of = &flow->fish[f];
+        const int has_legs = flow->kernel->has_legs;
         struct sources *const all[] = {&of->own,        &of->body,       &of->markers,
                                        &of->body_image, &of->wake_image, &of->markers_image};
-        for (size_t i = 0; i < sizeof all / sizeof *all; i++) sources_free(all[i]);
-        sheet_free(&of->wake);
-        for (int i = 0; i < 2; i++) free(of->line[i]);
-    }
+        for (size_t i = 0; i < sizeof all / sizeof *all; i++) all[i]->arena = arena;
+        sources_append(&of->own, fish->n_sheet + (has_legs ? fish->n_control : 0));
+        sources_append(&of->body, fish->integrals ? fish->n_control : fish->n_sheet);
+        depth = fmax(depth, fish->strip_depth);
+        if (!has_legs) continue;
 
-    void *const owned[] = {flow->points,
-                           flow->class,
-                           flow->class_of,
-                           flow->chunk,
-                           flow->x,
-                           flow->y,
-                           flow->u,
-                           flow->v,
-                           flow->u_x,
-                           flow->u_y,
-                           flow->v_x,
-                           flow->div,
-                           flow->div_x,
-                           flow->div_y,
-                           flow->edge,
-                           flow->edge_gradient,
-                           flow->image_u,
-                           flow->image_v,
-                           flow->image_div,
-                           flow->legs[0],
-                           flow->fish,
-                           flow->image,
-                           flow->wake_range,
-                           flow->wake_u,
-                           flow->wake_v,
-                           flow->wake_div,
-                           flow->wake_image_u,
-                           flow->wake_image_v,
-                           flow->wake_leg_u,
-                           flow->wake_leg_v,
-                           flow->wake_leg_div,
-                           flow->wake_rate,
-                           flow->by_tree,
-                           flow->wake_image_div};
-    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
-    tree_free(flow->tree);
-    sources_free(&flow->many);
-    sources_free(&flow->places);
-    free(flow);
+        for (int i = 0; i < 2; i++) NEW(arena, of->line[i], fish->n_control);
+        memcpy(of->own.half, fish->sheet_half, (size_t)fish->n_sheet * sizeof *of->own.half);
+        memcpy(of->own.half + fish->n_sheet, fish->point_half, (size_t)fish->n_control * sizeof *of->own.half);
+        memcpy(of->body.half, fish->point_half, (size_t)fish->n_control * sizeof *of->own.half);
+    }
+    flow->n_images = images_find(arena, &school->walls, depth, &flow->image);
+    flow->tree = tree_create(arena);
+    return flow;
 }
 
 // ---- placing
@@ -205,25 +135,22 @@ void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, dou
 }
 
 // released points of the wakes at the time of the flow; select the points again if the wakes have changed
-static enum status flow_place_wakes(struct flow *flow, const struct state *state, int is_new) {
+static void flow_place_wakes(struct flow *flow, const struct state *state, bool is_new) {
     const struct school *const school = flow->school;
-    int n_placed = 0, n_failed = 0;
-    for (int f = 0; f < school->n_fish; f++) n_placed += (is_new ? 4 : 2) * state->wake[f].n_vortex;
+    int n_placed = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        n_placed += (is_new ? 4 : 2) * state->wake[f].n_vortex;
+        if (is_new) sheet_reserve(flow->arena, &flow->fish[f].wake, state->wake[f].n_vortex);
+    }
+
     const int threads = parallel_threads(school->threads, school->n_fish, n_placed, PARALLEL_VORTICES);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         const struct wake *const wake = &state->wake[f];
         struct sheet *const sheet = &flow->fish[f].wake;
-        if (!is_new || sheet_build(sheet, &school->fish[f], school, wake) == STATUS_OK) {
-            sheet_place(sheet, school, wake, state->t, flow->t - state->t);
-        } else {
-#pragma omp atomic
-            n_failed++;
-        }
+        if (is_new) sheet_build(sheet, &school->fish[f], school, wake);
+        sheet_place(sheet, school, wake, state->t, flow->t - state->t);
     }
-
-    // messages are per thread: write the message on the calling thread
-    return n_failed == 0 ? STATUS_OK : memory_check(NULL, "the free sheets");
 }
 
 // points and bound vortices of a fish; legs and circulations of the control points
@@ -287,8 +214,22 @@ static double flow_steady_reach(const struct school *school, const struct fish *
     return reach;
 }
 
-// nascent points and images of a fish. Fails with STATUS_MEMORY
-static enum status flow_place_nascent(struct flow *flow, const struct state *state, int f, const double *y) {
+enum status flow_check_steady(const struct school *school) {
+    const double most = 1e5;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const double reach = flow_steady_reach(school, fish), depth = fish->strip_depth;
+        if (!(depth > 0) || reach <= most * depth) continue;
+        return status_fail(STATUS_CASE,
+                           "%s: fish are up to %.3g m apart, %.3g depths; a steady wake has at most %g: move the fish "
+                           "closer together, or increase body.depth",
+                           fish->name, reach, reach / depth, most);
+    }
+    return STATUS_OK;
+}
+
+// nascent points and images of a fish
+static void flow_place_nascent(struct flow *flow, const struct state *state, int f, const double *y) {
     const struct fish *const fish = &flow->school->fish[f];
     const struct wake *const wake = &state->wake[f];
     struct flow_fish *const of = &flow->fish[f];
@@ -299,8 +240,8 @@ static enum status flow_place_nascent(struct flow *flow, const struct state *sta
     if (flow->is_steady) {
         flow_find_downstream(flow, fish, of->downstream);
         const double reach = flow_steady_reach(flow->school, fish);
-        TRY(sheet_place_steady(&sheet->graded, fish, tail, of->downstream, shed, 0));
-        TRY(sheet_place_steady(&sheet->middles, fish, tail, of->downstream, shed, reach));
+        sheet_place_steady(sheet, &sheet->graded, fish, tail, of->downstream, shed, 0);
+        sheet_place_steady(sheet, &sheet->middles, fish, tail, of->downstream, shed, reach);
         of->nascent = 0;
     } else {
         const struct direction tangent = fish_direction(fish, &fish->tail_tangent, y);
@@ -310,21 +251,21 @@ static enum status flow_place_nascent(struct flow *flow, const struct state *sta
         of->nascent = sheet_place_nascent(&sheet->middles, flow->school, wake, state->t, tau, tail, NULL, shed);
     }
     of->newest = shed - of->nascent;
-    TRY(images_write(&of->body, flow->n_images, flow->image, &of->body_image));
-    return images_write(&sheet->middles.sources, flow->n_images, flow->image, &of->wake_image);
+    images_write(&of->body, flow->n_images, flow->image, &of->body_image);
+    images_write(&sheet->middles.sources, flow->n_images, flow->image, &of->wake_image);
 }
 
-enum status flow_place(struct flow *flow, const struct state *state, double t, const double *y) {
+void flow_place(struct flow *flow, const struct state *state, double t, const double *y) {
     const struct school *const school = flow->school;
     const unsigned long version = state_wake_version(state, school);
-    const int is_new = !flow->has_sources || flow->version != version;
+    const bool is_new = !flow->has_sources || flow->version != version;
 
     // released points move on known paths: their positions at one time are independent of y
     if (is_new || flow->t != t) {
         flow->has_sources = false;
         flow->version = version;
         flow->t = t;
-        TRY(flow_place_wakes(flow, state, is_new));
+        flow_place_wakes(flow, state, is_new);
         flow->has_sources = !flow->is_steady;
     }
 
@@ -335,6 +276,5 @@ enum status flow_place(struct flow *flow, const struct state *state, double t, c
 #pragma omp parallel for num_threads(threads) schedule(static)
         for (int f = 0; f < school->n_fish; f++) flow_place_body(flow, f, y);
     }
-    for (int f = 0; f < school->n_fish; f++) TRY(flow_place_nascent(flow, state, f, y));
-    return STATUS_OK;
+    for (int f = 0; f < school->n_fish; f++) flow_place_nascent(flow, state, f, y);
 }

@@ -58,6 +58,7 @@ struct flow_class {
 };
 
 struct flow {
+    struct arena *arena;
     const struct school *school;
     const struct kernel *kernel;
     /* whether all circulation was shed infinitely long ago, in an equilibrium: legs from the tail to infinity; set from
@@ -110,9 +111,10 @@ struct influence_block {
     double *edge;  /* with varying depth: derivative of a; else NULL (2, n_columns, n_points) */
 };
 
-/* Fails with STATUS_MEMORY. flow_free accepts NULL. */
-enum status flow_create(struct flow **flow, const struct school *school);
-void flow_free(struct flow *flow);
+struct flow *flow_create(struct arena *arena, const struct school *school);
+
+/* Fail with STATUS_CASE if a steady wake (is_steady) does not reach all fish: above 1e5 depths. */
+enum status flow_check_steady(const struct school *school);
 
 /* Number of points of a fish. */
 int flow_n_points(const struct fish *fish);
@@ -121,9 +123,8 @@ int flow_n_points(const struct fish *fish);
 int flow_midpoint(const struct fish *fish, int edge);
 int flow_tail(const struct fish *fish);
 
-/* Place all sources and the points of all fish at time t (at or after the event of the state) for the unknowns y. Fails
- * with STATUS_MEMORY. */
-enum status flow_place(struct flow *flow, const struct state *state, double t, const double *y);
+/* Place all sources and the points of all fish at time t (at or after the event of the state) for the unknowns y. */
+void flow_place(struct flow *flow, const struct state *state, double t, const double *y);
 
 /* Whether the wakes are free sheets (shedding: sheet). */
 bool flow_has_free_sheets(const struct flow *flow);

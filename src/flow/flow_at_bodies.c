@@ -83,9 +83,9 @@ void flow_select_by_tree(struct flow *flow, bool at_wakes, const struct range *t
 }
 
 // append sources with their span in the strengths
-static enum status append_with_span(struct sources *many, const struct sources *sources, double span) {
+static void append_with_span(struct sources *many, const struct sources *sources, double span) {
     const int first = many->n;
-    TRY(sources_append(many, sources->n));
+    sources_append(many, sources->n);
     for (int i = 0; i < sources->n; i++) {
         many->x[first + i] = sources->x[i];
         many->y[first + i] = sources->y[i];
@@ -95,12 +95,10 @@ static enum status append_with_span(struct sources *many, const struct sources *
         many->half[first + i] = sources->half[i];
         many->leg[first + i] = sources->leg[i];
     }
-
-    return STATUS_OK;
 }
 
-enum status flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads,
-                             const struct targets *at) {
+void flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads,
+                      const struct targets *at) {
     const struct school *const school = flow->school;
     int f = 0; /* the first fish of the targets: all have one length */
     while (flow->class_of[f] != c) f++;
@@ -110,14 +108,14 @@ enum status flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_
     for (int g = 0; g < school->n_fish; g++) {
         if (flow->class_of[g] != k) continue;
         pair = flow_pair_of(flow, f, g, sum);
-        TRY(append_with_span(&flow->many, flow_sources(flow, g, sum), pair.span));
+        append_with_span(&flow->many, flow_sources(flow, g, sum), pair.span);
     }
 
     // half of wake.tolerance, in lengths per beat, shared by bodies, wakes and images
     pair.span = 1;
     const int n_sums = school->walls.n > 0 ? 4 : 2;
     const double tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish) / (2 * n_sums);
-    return tree_induce(flow->tree, &pair, &flow->many, fish->length, tolerance, threads, at);
+    tree_induce(flow->tree, &pair, &flow->many, fish->length, tolerance, threads, at);
 }
 
 void flow_induce_other(const struct flow *flow, int f, int g, const struct flow_sum *sum, bool is_excluded,
@@ -234,14 +232,14 @@ static void flow_zero(const struct flow *flow, int with_gradient) {
 }
 
 // select the sums by the tree, and evaluate these sums
-static enum status sum_many(struct flow *flow, int threads, int with_gradient) {
+static void sum_many(struct flow *flow, int threads, int with_gradient) {
     flow_select_by_tree(flow, false, flow->points);
     const struct targets all = flow_targets(flow, with_gradient);
     for (int c = 0; c < flow->n_classes; c++) {
         struct targets at = kernel_targets_part(&all, flow->class[c].points);
         struct sources *const places = &flow->places;
         places->n = 0;
-        TRY(sources_append(places, at.n));
+        sources_append(places, at.n);
         for (int f = 0; f < flow->school->n_fish && flow->kernel->has_legs; f++) {
             if (flow->class_of[f] != c) continue;
             memcpy(places->half + flow->points[f].first - flow->class[c].points.first, flow->school->fish[f].point_half,
@@ -252,16 +250,14 @@ static enum status sum_many(struct flow *flow, int threads, int with_gradient) {
         for (int k = 0; k < flow->n_classes; k++) {
             for (int i = 0; i < 4; i++) {
                 const struct flow_sum sum = {i < 2 ? BODY_AT_BODY : WAKE_AT_BODY, i % 2};
-                if (*by_tree(flow, &sum, c, k)) TRY(flow_sum_by_tree(flow, c, k, &sum, threads, &at));
+                if (*by_tree(flow, &sum, c, k)) flow_sum_by_tree(flow, c, k, &sum, threads, &at);
             }
         }
     }
-    return STATUS_OK;
 }
 
-static enum status flow_sum(struct flow *flow, const struct state *state, double t, const double *y,
-                            int with_gradient) {
-    TRY(flow_place(flow, state, t, y));
+static void flow_sum(struct flow *flow, const struct state *state, double t, const double *y, int with_gradient) {
+    flow_place(flow, state, t, y);
     double n_sources = 0;
     for (int f = 0; f < flow->school->n_fish; f++)
         n_sources += flow->fish[f].body.n + flow->fish[f].wake.middles.sources.n;
@@ -269,11 +265,7 @@ static enum status flow_sum(struct flow *flow, const struct state *state, double
     const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work, PARALLEL_INTERACTIONS);
 
     flow_zero(flow, with_gradient);
-    if (sum_many(flow, threads, with_gradient) != STATUS_OK) {
-        // out of memory for a tree: use the direct sum
-        memset(flow->by_tree, 0, 4 * (size_t)flow->n_classes * (size_t)flow->n_classes * sizeof *flow->by_tree);
-        flow_zero(flow, with_gradient);
-    }
+    sum_many(flow, threads, with_gradient);
 
     if (threads == 1) {
         for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], with_gradient);
@@ -281,20 +273,19 @@ static enum status flow_sum(struct flow *flow, const struct state *state, double
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
         for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], with_gradient);
     }
-    return STATUS_OK;
 }
 
-enum status flow_velocity(struct flow *flow, const struct state *state, double t, const double *y) {
-    return flow_sum(flow, state, t, y, 0);
+void flow_velocity(struct flow *flow, const struct state *state, double t, const double *y) {
+    flow_sum(flow, state, t, y, 0);
 }
 
-enum status flow_gradient(struct flow *flow, const struct state *state, double t, const double *y) {
-    return flow_sum(flow, state, t, y, 1);
+void flow_gradient(struct flow *flow, const struct state *state, double t, const double *y) {
+    flow_sum(flow, state, t, y, 1);
 }
 
 // ---- images alone; any points
 
-enum status flow_images(struct flow *flow, const struct state *state) {
+void flow_images(struct flow *flow, const struct state *state) {
     const int n_fish = flow->school->n_fish;
     const size_t size = (size_t)flow->n_points * sizeof(double);
     const struct targets all = {.n = flow->n_points,
@@ -303,7 +294,7 @@ enum status flow_images(struct flow *flow, const struct state *state) {
                                 .u = flow->image_u,
                                 .v = flow->image_v,
                                 .div = flow->image_div};
-    TRY(flow_place(flow, state, state->t, state->y));
+    flow_place(flow, state, state->t, state->y);
     memset(flow->image_u, 0, size);
     memset(flow->image_v, 0, size);
     memset(flow->image_div, 0, size);
@@ -317,13 +308,12 @@ enum status flow_images(struct flow *flow, const struct state *state) {
             kernel_induce(&pair, sources, (struct range){0, sources->n}, &at);
         }
     }
-    return STATUS_OK;
 }
 
-enum status flow_field(struct flow *flow, const struct state *state, const struct targets *all) {
+void flow_field(struct flow *flow, const struct state *state, const struct targets *all) {
     const struct school *const school = flow->school;
     const int n_chunks = parallel_n_chunks(all->n);
-    TRY(flow_place(flow, state, state->t, state->y));
+    flow_place(flow, state, state->t, state->y);
 #pragma omp parallel for num_threads(school->threads) schedule(static)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
         const struct targets at = kernel_targets_part(all, parallel_chunk(chunk, all->n));
@@ -352,5 +342,4 @@ enum status flow_field(struct flow *flow, const struct state *state, const struc
             for (size_t k = 0; k < sizeof values / sizeof *values; k++) values[k][i] = NAN;
         }
     }
-    return STATUS_OK;
 }

@@ -7,13 +7,13 @@
 #include "flow/flow.h"
 
 /* Place all sources at time t (at or after the event of the state) for the unknowns y, and sum the velocity
- * (flow_gradient: velocity and gradient) at all points of all fish. Fail with STATUS_MEMORY. */
-enum status flow_velocity(struct flow *flow, const struct state *state, double t, const double *y);
-enum status flow_gradient(struct flow *flow, const struct state *state, double t, const double *y);
+ * (flow_gradient: velocity and gradient) at all points of all fish. */
+void flow_velocity(struct flow *flow, const struct state *state, double t, const double *y);
+void flow_gradient(struct flow *flow, const struct state *state, double t, const double *y);
 
 /* Set image_u, image_v, image_div to the velocity and div u of all images in walls at the points of all bodies, at the
- * event of the state. Fails with STATUS_MEMORY. */
-enum status flow_images(struct flow *flow, const struct state *state);
+ * event of the state. */
+void flow_images(struct flow *flow, const struct state *state);
 
 /* The flow at one body, from the last sum. */
 struct flow_at_body {
@@ -34,8 +34,8 @@ void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]);
 
 /* Set velocity and velocity gradient of the targets, any points, at the event of the state: external flow, and every
  * wake and every body with the full smoothing, as for another body; NaN beyond the walls. No result of the run depends
- * on this function. Fails with STATUS_MEMORY. */
-enum status flow_field(struct flow *flow, const struct state *state, const struct targets *at);
+ * on this function. */
+void flow_field(struct flow *flow, const struct state *state, const struct targets *at);
 
 // ---- sums of one kind of sources of many fish, for flow_at_wake.c too
 
@@ -56,9 +56,9 @@ void flow_select_by_tree(struct flow *flow, bool at_wakes, const struct range *t
 /* Whether the sources of the class of fish g at the class of fish f are in a sum by the tree. */
 bool flow_is_by_tree(const struct flow *flow, int f, int g, const struct flow_sum *sum);
 
-/* Add the sum of the sources of class k at targets of class c by the tree. Fails with STATUS_MEMORY. */
-enum status flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads,
-                             const struct targets *at);
+/* Add the sum of the sources of class k at targets of class c by the tree. */
+void flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads,
+                      const struct targets *at);
 
 /* Add the sources of fish g at targets of fish f, if they are not in a sum by the tree; if the sum by the tree contains
  * sources that do not act on the targets (is_excluded), subtract them. */

@@ -2,48 +2,40 @@
 #include "flow/flow_at_wake.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "flow/flow_at_bodies.h"
 
 static const double two_pi = 6.28318530717958647692;
 
 enum { MARKERS = 64 };  // markers of one fish that a thread evaluates at once
 
-static enum status wakes_place(struct flow *flow, const struct state *state) {
+static void wakes_place(struct flow *flow, const struct state *state) {
     const struct school *const school = flow->school;
     flow->n_markers = 0;
     for (int f = 0; f < school->n_fish; f++) {
         struct flow_fish *const of = &flow->fish[f];
         of->markers.n = 0;
         if (flow_has_free_sheets(flow)) {
-            TRY(sheet_markers(&of->markers, &school->fish[f], school, &state->wake[f], state->t, of->nascent));
+            sheet_markers(&of->markers, &school->fish[f], school, &state->wake[f], state->t, of->nascent);
         } else {
             const struct sources *const queue = &of->wake.middles.sources;
-            TRY(sources_append(&of->markers, queue->n));
+            sources_append(&of->markers, queue->n);
             memcpy(of->markers.x, queue->x, (size_t)queue->n * sizeof *queue->x);
             memcpy(of->markers.y, queue->y, (size_t)queue->n * sizeof *queue->y);
             memcpy(of->markers.q, queue->q, (size_t)queue->n * sizeof *queue->q);
         }
         flow->wake_range[f] = (struct range){flow->n_markers, of->markers.n};
         flow->n_markers += of->markers.n;
-        TRY(images_write(&of->markers, flow->n_images, flow->image, &of->markers_image));
+        images_write(&of->markers, flow->n_images, flow->image, &of->markers_image);
     }
 
-    if (flow->n_markers <= flow->wake_capacity) return STATUS_OK;
-    const int capacity = flow->n_markers + flow->n_markers / 2;
+    if (flow->n_markers <= flow->wake_capacity) return;
+    flow->wake_capacity = flow->n_markers + flow->n_markers / 2;
     double **const all[] = {&flow->wake_u,         &flow->wake_v,     &flow->wake_div,   &flow->wake_image_u,
                             &flow->wake_image_v,   &flow->wake_leg_u, &flow->wake_leg_v, &flow->wake_leg_div,
                             &flow->wake_image_div, &flow->wake_rate};
-    flow->wake_capacity = 0;
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        free(*all[i]);
-        TRY(MEMORY_NEW(*all[i], capacity, "velocities of markers"));
-    }
-    flow->wake_capacity = capacity;
-    return STATUS_OK;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(flow->arena, *all[i], flow->wake_capacity);
 }
 
 // the markers of a fish from first on as targets, with the velocities of all sources
@@ -161,7 +153,7 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
 }
 
 // add one sum by the tree at the markers of class c, which are not consecutive
-static enum status add_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads) {
+static void add_by_tree(struct flow *flow, int c, int k, const struct flow_sum *sum, int threads) {
     struct sources *const places = &flow->places;
     const int n_fish = flow->school->n_fish;
     places->n = 0;
@@ -169,7 +161,7 @@ static enum status add_by_tree(struct flow *flow, int c, int k, const struct flo
         if (flow->class_of[f] != c) continue;
         const struct sources *const markers = &flow->fish[f].markers;
         const int first = places->n;
-        TRY(sources_append(places, markers->n));
+        sources_append(places, markers->n);
         const double *const from[] = {markers->x, markers->y, markers->half, markers->leg};
         double *const to[] = {places->x, places->y, places->half, places->leg};
         for (int i = 0; i < 4 && markers->n > 0; i++) {
@@ -186,7 +178,7 @@ static enum status add_by_tree(struct flow *flow, int c, int k, const struct flo
                                .u = places->q,
                                .v = places->dx,
                                .div = places->dy};
-    TRY(flow_sum_by_tree(flow, c, k, sum, threads, &at));
+    flow_sum_by_tree(flow, c, k, sum, threads, &at);
     for (int f = 0, p = 0; f < n_fish; f++) {
         if (flow->class_of[f] != c) continue;
         for (int i = flow->wake_range[f].first; i < flow->wake_range[f].first + flow->wake_range[f].n; i++, p++) {
@@ -199,12 +191,11 @@ static enum status add_by_tree(struct flow *flow, int c, int k, const struct flo
             flow->wake_image_div[i] += at.div[p];
         }
     }
-    return STATUS_OK;
 }
 
-enum status flow_at_wake(struct flow *flow, const struct state *state) {
-    TRY(flow_place(flow, state, state->t, state->y));
-    TRY(wakes_place(flow, state));
+void flow_at_wake(struct flow *flow, const struct state *state) {
+    flow_place(flow, state, state->t, state->y);
+    wakes_place(flow, state);
     const struct school *const school = flow->school;
     int n_chunks = 0;
     for (int f = 0; f < school->n_fish; f++) n_chunks += (flow->wake_range[f].n + MARKERS - 1) / MARKERS;
@@ -236,7 +227,7 @@ enum status flow_at_wake(struct flow *flow, const struct state *state) {
             while (flow->class_of[g] != k) g++;
             for (int i = 0; i < 4; i++) {
                 const struct flow_sum sum = {i < 2 ? BODY_AT_WAKE : WAKE_AT_WAKE, i % 2};
-                if (flow_is_by_tree(flow, f, g, &sum)) TRY(add_by_tree(flow, c, k, &sum, threads));
+                if (flow_is_by_tree(flow, f, g, &sum)) add_by_tree(flow, c, k, &sum, threads);
             }
         }
     }
@@ -249,7 +240,6 @@ enum status flow_at_wake(struct flow *flow, const struct state *state) {
             flow->wake_rate[first + i] = -label[i] * flow->wake_div[first + i];
         }
     }
-    return STATUS_OK;
 }
 
 // ---- momentum

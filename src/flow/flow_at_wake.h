@@ -9,8 +9,8 @@
 
 #include "flow/flow.h"
 
-/* Set wake_range, wake_u, wake_v and all arrays at markers for the event of the state. Fails with STATUS_MEMORY. */
-enum status flow_at_wake(struct flow *flow, const struct state *state);
+/* Set wake_range, wake_u, wake_v and all arrays at markers for the event of the state. */
+void flow_at_wake(struct flow *flow, const struct state *state);
 
 /* Rate of momentum from the interaction of the legs of a fish at different lengths s, over density and depth: x, y,
  * about the origin; at the event of the state, after flow_at_wake. 0 without legs. */

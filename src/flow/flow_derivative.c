@@ -314,7 +314,7 @@ static void derive_steady_legs(const struct pass *pass, const struct sheet_point
                                           .has_edge = has_edge};
             struct unit_values values;
             unit_of(pass, &source, first, n, &values);
-            const double by_shed = -sheet_steady_length(sheet, i);
+            const double by_shed = -sheet->part[i];
             add_leg(&to, n, &values, sign * by_shed * of->downstream[0], by_shed * of->downstream[1], has_edge);
             if (pass->with_places) add_places(pass->block, fish, &source, first, n, &values);
         }
@@ -370,7 +370,7 @@ static void derive_nascent(const struct pass *pass, const struct sheet_points *s
         for (int k = 0; k < sheet->n_nascent; k++) {
             const struct sources *const sources = &sheet->sources;
             const int i = n_released + k;
-            const double xi = flow_has_free_sheets(flow) ? sheet_xi(sheet, k) : 0, part = sheet_part(sheet, k);
+            const double xi = sheet->xi[i], part = sheet->part[i];
             // C part; the circulation of the stretch is q/part
             const double along = -(shed - xi * sources->q[i] / part) * part;
 

@@ -1,11 +1,9 @@
 /* images.c: the images of a wall, and Gauss rules in place of the infinite sums of a channel. */
 #include "flow/images.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 
 // ---- sums over k = 1, 2, .. of a function that is analytic for Re k > 0 and decays like 1/k^2
 
@@ -21,26 +19,34 @@ struct rule {
     double node[(RULE_PANELS + 2) * RULE_NODES], weight[(RULE_PANELS + 2) * RULE_NODES];
 };
 
-// the terms first < k <= last, by the Gauss rule of the sum
-static void rule_add_panel(struct rule *rule, int first, int last, double *scratch) {
-    const int n = last - first;
-    double *const k = scratch, *const weight = scratch + n;
-    for (int i = 0; i < n; i++) {
-        k[i] = first + 1 + i;
-        weight[i] = 1;
+// depth: in channel widths. Between the distances H and w an image acts like a point vortex, beyond w like a ring
+static struct rule rule_of_channel(struct arena *arena, double depth) {
+    int n_panels = 0, first = 1;
+    for (; n_panels < RULE_PANELS && first < depth / 8; n_panels++) first *= 4;
+    const int last = first < 256 ? 1000 : 4 * first;
+    struct rule rule = {.n = 1, .node = {1}, .weight = {1}};
+    double *scratch;
+    NEW(arena, scratch, 4 * (last + RULE_REST));
+
+    // panels of the terms from < k <= 4 from: the terms, or the Gauss rule of the sum
+    for (int i = 0, from = 1; i < n_panels; i++, from *= 4) {
+        const int n = 3 * from;
+        double *const k = scratch, *const weight = scratch + n;
+        for (int j = 0; j < n; j++) {
+            k[j] = from + 1 + j;
+            weight[j] = 1;
+        }
+
+        if (n > RULE_NODES) {
+            quadrature_of_sum(n, k, weight, scratch + 2 * n, RULE_NODES, rule.node + rule.n, rule.weight + rule.n);
+        } else {
+            memcpy(rule.node + rule.n, k, (size_t)n * sizeof *k);
+            memcpy(rule.weight + rule.n, weight, (size_t)n * sizeof *k);
+        }
+        rule.n += n > RULE_NODES ? RULE_NODES : n;
     }
 
-    if (n > RULE_NODES) {
-        quadrature_of_sum(n, k, weight, scratch + 2 * n, RULE_NODES, rule->node + rule->n, rule->weight + rule->n);
-    } else {
-        memcpy(rule->node + rule->n, k, (size_t)n * sizeof *k);
-        memcpy(rule->weight + rule->n, weight, (size_t)n * sizeof *k);
-    }
-    rule->n += n > RULE_NODES ? RULE_NODES : n;
-}
-
-// all terms k > first, by the Gauss rule of sum (first/k)^2 f(first/k); the terms beyond last by an integral
-static void rule_add_rest(struct rule *rule, int first, int last, double *scratch) {
+    // all terms k > first, by the Gauss rule of sum (first/k)^2 f(first/k); the terms beyond last by an integral
     const int n = last - first + RULE_REST;
     double *const t = scratch, *const weight = scratch + n, top = first / (last + 0.5);
     quadrature_legendre(RULE_REST, t, weight);
@@ -54,38 +60,28 @@ static void rule_add_rest(struct rule *rule, int first, int last, double *scratc
         weight[i] = t[i] * t[i];
     }
 
-    double *const node = rule->node + rule->n, *const of_node = rule->weight + rule->n;
+    double *const node = rule.node + rule.n, *const of_node = rule.weight + rule.n;
     quadrature_of_sum(n, t, weight, scratch + 2 * n, RULE_NODES, node, of_node);
     for (int i = 0; i < RULE_NODES; i++) {
         of_node[i] /= node[i] * node[i];
         node[i] = first / node[i];
     }
-    rule->n += RULE_NODES;
+    rule.n += RULE_NODES;
+    return rule;
 }
 
-// depth: in channel widths. Between the distances H and w an image acts like a point vortex, beyond w like a ring
-static enum status rule_find(struct rule *rule, double depth) {
-    int n_panels = 0, first = 1;
-    for (; n_panels < RULE_PANELS && first < depth / 8; n_panels++) first *= 4;
-    const int last = first < 256 ? 1000 : 4 * first;
-    double *scratch;
-    TRY(MEMORY_NEW(scratch, 4 * (last + RULE_REST), "the images of a channel"));
-    *rule = (struct rule){.n = 1, .node = {1}, .weight = {1}};
-    for (int i = 0, from = 1; i < n_panels; i++, from *= 4) rule_add_panel(rule, from, 4 * from, scratch);
-    rule_add_rest(rule, first, last, scratch);
-    free(scratch);
-    return STATUS_OK;
-}
-
-enum status images_find(const struct walls *walls, double depth, struct image **image, int *n_images) {
+int images_find(struct arena *arena, const struct walls *walls, double depth, struct image **image) {
     *image = NULL;
-    *n_images = 0;
-    if (walls->n == 0) return STATUS_OK;
+    if (walls->n == 0) return 0;
     struct rule rule = {.n = 0};
     const double width = walls->n == 2 ? walls->y[1] - walls->y[0] : 0;
-    if (walls->n == 2) TRY(rule_find(&rule, depth / width));
-    *n_images = walls->n == 2 ? 4 * rule.n : walls->n;
-    TRY(MEMORY_NEW(*image, *n_images, "the images in walls"));
+    if (walls->n == 2) {
+        struct arena *const scratch = arena_create(arena, "the images of a channel");
+        rule = rule_of_channel(scratch, depth / width);
+        arena_free(scratch);
+    }
+    const int n_images = walls->n == 2 ? 4 * rule.n : walls->n;
+    NEW(arena, *image, n_images);
 
     if (walls->n == 1) **image = (struct image){-1, 2 * walls->y[0], 1};
     for (int i = 0; i < rule.n; i++) {
@@ -97,13 +93,12 @@ enum status images_find(const struct walls *walls, double depth, struct image **
         to[2] = (struct image){1, shift, weight};
         to[3] = (struct image){1, -shift, weight};
     }
-    return STATUS_OK;
+    return n_images;
 }
 
-enum status images_write(const struct sources *sources, int n_images, const struct image *image,
-                         struct sources *images) {
+void images_write(const struct sources *sources, int n_images, const struct image *image, struct sources *images) {
     images->n = 0;
-    TRY(sources_append(images, n_images * sources->n));
+    sources_append(images, n_images * sources->n);
     for (int k = 0; k < n_images; k++) {
         const double weight = image[k].weight, reversed = image[k].sign * weight;
         const int first = k * sources->n;
@@ -121,6 +116,4 @@ enum status images_write(const struct sources *sources, int n_images, const stru
         memcpy(images->leg + first, sources->leg, size);
         memcpy(images->square + first, sources->square, size);
     }
-
-    return STATUS_OK;
 }

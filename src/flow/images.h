@@ -16,15 +16,14 @@ struct image {
     double sign, shift, weight;
 };
 
-/* The images of sources of at most this depth [m] (infinite span: 0), in a new list that the caller frees; NULL without
- * walls. In a channel a Gauss rule replaces the infinite sums: the images k = 1, and all further images as weighted
- * images at nodes between the places of the images. There are 36 images for depths up to 8 H, 32 more for each factor
- * of 4, and at most 272; the error is at most 1e-8 of the velocity of a vortex at the distance H if source and target
- * are less than 6 H apart. Fails with STATUS_MEMORY. */
-enum status images_find(const struct walls *walls, double depth, struct image **image, int *n_images);
+/* Set *image to the images of sources of at most this depth [m] (infinite span: 0), and return the number of images, 0
+ * without walls. In a channel a Gauss rule replaces the infinite sums: the images k = 1, and all further images as
+ * weighted images at nodes between the places of the images. There are 36 images for depths up to 8 H, 32 more for each
+ * factor of 4, and at most 272; the error is at most 1e-8 of the velocity of a vortex at the distance H if source and
+ * target are less than 6 H apart. */
+int images_find(struct arena *arena, const struct walls *walls, double depth, struct image **image);
 
-/* Write all images of the sources, image after image, to *images, which is overwritten. Fails with STATUS_MEMORY. */
-enum status images_write(const struct sources *sources, int n_images, const struct image *image,
-                         struct sources *images);
+/* Write all images of the sources, image after image, to *images, which is overwritten. */
+void images_write(const struct sources *sources, int n_images, const struct image *image, struct sources *images);
 
 #endif

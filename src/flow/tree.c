@@ -1,11 +1,10 @@
-/* ring_tree.c: polynomials at Chebyshev nodes between distant boxes. */
+/* tree.c: polynomials at Chebyshev nodes between distant boxes. */
 #include "flow/tree.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <stdbool.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/wide.h"
 #include "flow/tree_boxes.h"
@@ -27,8 +26,6 @@ static const double bound_per_tolerance = 0.04;
 
 /* The smallest half of a box of targets of gradients, in lengths: bounds the error of a derivative. */
 static const double smallest_box = 0.02;
-
-static const double pi = 3.14159265358979323846;
 
 /* The smallest box in place and h around the points; nodes per axis; largest sums of strengths. */
 struct node_box {
@@ -59,6 +56,7 @@ struct chebyshev {
 };
 
 struct tree {
+    struct arena *arena;
     struct chebyshev chebyshev;
     struct node_tree from, to;
     struct sources rings; /* sorted; leg holds h */
@@ -72,40 +70,20 @@ struct tree {
     double interactions;
 };
 
-// ---- memory
-
-enum status tree_create(struct tree **tree) {
-    TRY(MEMORY_NEW(*tree, 1, "the tree of rings"));
-    struct chebyshev *const chebyshev = &(*tree)->chebyshev;
+struct tree *tree_create(struct arena *arena) {
+    struct tree *tree;
+    NEW(arena, tree, 1);
+    tree->arena = tree->from.boxes.arena = tree->to.boxes.arena = tree->rings.arena = arena;
+    struct chebyshev *const chebyshev = &tree->chebyshev;
     for (int n = 1; n <= NODES; n++) {
         for (int i = 0; i < n; i++) {
-            const double angle = pi * (2 * i + 1) / (2 * n);
+            const double angle = M_PI * (2 * i + 1) / (2 * n);
             chebyshev->node[n][i] = cos(angle);
             for (int k = 0; k < n; k++) chebyshev->factor[n][k][i] = (k == 0 ? 1 : 2) * cos(k * angle) / n;
         }
     }
 
-    return STATUS_OK;
-}
-
-static void node_tree_clear(struct node_tree *nodes) {
-    tree_boxes_clear(&nodes->boxes);
-    free(nodes->box);
-    free(nodes->value);
-}
-
-void tree_free(struct tree *tree) {
-    if (!tree) return;
-    node_tree_clear(&tree->from);
-    node_tree_clear(&tree->to);
-    sources_free(&tree->rings);
-    double *const owned[] = {tree->x, tree->y, tree->h};
-    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
-    for (size_t i = 0; i < sizeof tree->sum / sizeof *tree->sum; i++) free(tree->sum[i]);
-    free(tree->pair);
-    free(tree->sorted);
-    free(tree->first);
-    free(tree);
+    return tree;
 }
 
 double tree_interactions(const struct tree *tree) {
@@ -114,17 +92,6 @@ double tree_interactions(const struct tree *tree) {
 
 int tree_is_faster(const struct kernel *kernel, int n_rings, double n_interactions, double tolerance) {
     return tolerance > 0 && n_rings >= kernel->tree_sources && n_interactions >= kernel->tree_interactions;
-}
-
-static enum status targets_reserve(struct tree *tree, int n) {
-    if (n <= tree->target_capacity) return STATUS_OK;
-    const int capacity = n + n / 2;
-    tree->target_capacity = 0;
-    double **const all[] = {&tree->x,      &tree->y,      &tree->h,      &tree->sum[0], &tree->sum[1], &tree->sum[2],
-                            &tree->sum[3], &tree->sum[4], &tree->sum[5], &tree->sum[6], &tree->sum[7]};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) TRY(MEMORY_RESIZE(*all[i], capacity, "the tree of rings"));
-    tree->target_capacity = capacity;
-    return STATUS_OK;
 }
 
 // ---- polynomials
@@ -240,14 +207,12 @@ static WIDE(void, add_to_fine, (const struct node_matrix *matrix, int n_values, 
 
 // ---- boxes
 
-static enum status node_tree_fill(struct node_tree *nodes, int n, const double *x, const double *y, const double *h,
-                                  int threads) {
-    TRY(tree_boxes_fill(&nodes->boxes, n, x, y, h, LEAF, threads));
-    if (nodes->boxes.n_boxes <= nodes->capacity) return STATUS_OK;
-    nodes->capacity = 0;
-    TRY(MEMORY_RESIZE(nodes->box, nodes->boxes.n_boxes, "the tree of rings"));
+static void node_tree_fill(struct node_tree *nodes, int n, const double *x, const double *y, const double *h,
+                           int threads) {
+    tree_boxes_fill(&nodes->boxes, n, x, y, h, LEAF, threads);
+    if (nodes->boxes.n_boxes <= nodes->capacity) return;
     nodes->capacity = nodes->boxes.n_boxes;
-    return STATUS_OK;
+    GROW(nodes->boxes.arena, nodes->box, nodes->capacity);
 }
 
 // the smallest boxes, from the leaves up, in x and y at least 2 least wide; rings: sorted, for the sums of strengths;
@@ -288,7 +253,7 @@ static void node_tree_enclose(struct node_tree *nodes, double least, const struc
 }
 
 // raise the numbers of nodes of halves to those of the parent, and assign the values of used boxes
-static enum status node_tree_allocate(struct node_tree *nodes) {
+static void node_tree_allocate(struct node_tree *nodes) {
     size_t n_used = 0;
     for (int b = 0; b < nodes->boxes.n_boxes; b++) {
         struct node_box *const box = &nodes->box[b];
@@ -302,10 +267,8 @@ static enum status node_tree_allocate(struct node_tree *nodes) {
 
     const size_t size = VALUES * ALL_NODES;
     if (n_used * size > nodes->value_capacity) {
-        const size_t capacity = (n_used + n_used / 4) * size;
-        nodes->value_capacity = 0;
-        TRY(MEMORY_RESIZE(nodes->value, capacity, "the tree of rings"));
-        nodes->value_capacity = capacity;
+        nodes->value_capacity = (n_used + n_used / 4) * size;
+        GROW(nodes->boxes.arena, nodes->value, nodes->value_capacity);
     }
 
     double *next = nodes->value;
@@ -315,7 +278,6 @@ static enum status node_tree_allocate(struct node_tree *nodes) {
         box->value = next;
         next += size;
     }
-    return STATUS_OK;
 }
 
 // ---- pairs of boxes
@@ -364,10 +326,6 @@ static int box_nodes(const struct node_box *box, const struct node_box *other, c
     return n[2] > 0;
 }
 
-static int product(const int n[AXES]) {
-    return n[0] * n[1] * n[2];
-}
-
 // the nodes of a pair; returns 0 for a pair that is too near
 static int pair_nodes(const struct search *search, struct node_pair *pair) {
     const struct node_box *const to = &search->tree->to.box[pair->target];
@@ -389,13 +347,11 @@ static int pair_nodes(const struct search *search, struct node_pair *pair) {
            box_nodes(from, to, gap, least, low, bound, pair->from);
 }
 
-static enum status pair_add(struct tree *tree, const struct node_pair *pair) {
+static void pair_add(struct tree *tree, const struct node_pair *pair) {
     if (tree->n_pairs == tree->pair_capacity) {
-        const int capacity = 2 * tree->n_pairs + 256;
-        tree->pair_capacity = 0;
-        TRY(MEMORY_RESIZE(tree->pair, capacity, "the tree of rings"));
-        TRY(MEMORY_RESIZE(tree->sorted, capacity, "the tree of rings"));
-        tree->pair_capacity = capacity;
+        tree->pair_capacity = 2 * tree->n_pairs + 256;
+        GROW(tree->arena, tree->pair, tree->pair_capacity);
+        GROW(tree->arena, tree->sorted, tree->pair_capacity);
     }
 
     for (int axis = 0; axis < AXES; axis++) {
@@ -404,10 +360,9 @@ static enum status pair_add(struct tree *tree, const struct node_pair *pair) {
         *from = pair->from[axis] > *from ? pair->from[axis] : *from;
     }
     tree->pair[tree->n_pairs++] = *pair;
-    return STATUS_OK;
 }
 
-static enum status boxes_pair_up(const struct search *search, int target, int source) {
+static void boxes_pair_up(const struct search *search, int target, int source) {
     struct tree *const tree = search->tree;
     const struct node_tree *const to = &tree->to, *const from = &tree->from;
     const int target_is_leaf = target >= tree_boxes_level(to->boxes.depth);
@@ -417,7 +372,8 @@ static enum status boxes_pair_up(const struct search *search, int target, int so
 
     if (pair_nodes(search, &pair)) {
         // points where the nodes are not fewer
-        double cost = 0, n_to = product(pair.to), n_from = product(pair.from);
+        double cost = 0, n_to = pair.to[0] * pair.to[1] * pair.to[2];
+        double n_from = pair.from[0] * pair.from[1] * pair.from[2];
         if (target_is_leaf && search->cost * n_targets * fmin(n_sources, n_from) <= CONVERSION + n_to * n_from) {
             n_to = search->cost * n_targets;
             memset(pair.to, 0, sizeof pair.to);
@@ -434,7 +390,8 @@ static enum status boxes_pair_up(const struct search *search, int target, int so
         const int both_leaves = target_is_leaf && source_is_leaf;
         if (both_leaves || cost < search->cost * n_targets * n_sources) {
             tree->interactions += cost;
-            return pair_add(tree, &pair);
+            pair_add(tree, &pair);
+            return;
         }
     }
 
@@ -442,33 +399,16 @@ static enum status boxes_pair_up(const struct search *search, int target, int so
         memset(pair.to, 0, sizeof pair.to);
         memset(pair.from, 0, sizeof pair.from);
         tree->interactions += search->cost * n_targets * n_sources;
-        return pair_add(tree, &pair);
+        pair_add(tree, &pair);
+        return;
     }
 
+    // halve the larger box
     const double size_to = to->boxes.box[target].radius, size_from = from->boxes.box[source].radius;
-    if (source_is_leaf || (!target_is_leaf && size_to > size_from)) {
-        TRY(boxes_pair_up(search, 2 * target + 1, source));
-        return boxes_pair_up(search, 2 * target + 2, source);
+    const bool halve_target = source_is_leaf || (!target_is_leaf && size_to > size_from);
+    for (int half = 1; half <= 2; half++) {
+        boxes_pair_up(search, halve_target ? 2 * target + half : target, halve_target ? source : 2 * source + half);
     }
-
-    TRY(boxes_pair_up(search, target, 2 * source + 1));
-    return boxes_pair_up(search, target, 2 * source + 2);
-}
-
-// sort the pairs by target, in the order of the search
-static enum status pairs_sort(struct tree *tree) {
-    const int n_boxes = tree->to.boxes.n_boxes;
-    if (n_boxes + 1 > tree->first_capacity) {
-        tree->first_capacity = 0;
-        TRY(MEMORY_RESIZE(tree->first, n_boxes + 1, "the tree of rings"));
-        tree->first_capacity = n_boxes + 1;
-    }
-
-    memset(tree->first, 0, ((size_t)n_boxes + 1) * sizeof *tree->first);
-    for (int i = 0; i < tree->n_pairs; i++) tree->first[tree->pair[i].target]++;
-    for (int b = 1; b <= n_boxes; b++) tree->first[b] += tree->first[b - 1];
-    for (int i = tree->n_pairs - 1; i >= 0; i--) tree->sorted[--tree->first[tree->pair[i].target]] = tree->pair[i];
-    return STATUS_OK;
 }
 
 // ---- passes
@@ -556,23 +496,6 @@ static void grid_exchange(const int n[AXES], int n_values, int is_padding, doubl
     }
 }
 
-static struct targets sorted_targets(const struct tree *tree, int with_gradient, int first, int n) {
-    double *sum[8];
-    for (int i = 0; i < 8; i++) sum[i] = i < 3 || with_gradient ? tree->sum[i] + first : NULL;
-    return (struct targets){.n = n,
-                            .x = tree->x + first,
-                            .y = tree->y + first,
-                            .leg = tree->h + first,
-                            .u = sum[0],
-                            .v = sum[1],
-                            .div = sum[2],
-                            .u_x = sum[3],
-                            .u_y = sum[4],
-                            .v_x = sum[5],
-                            .div_x = sum[6],
-                            .div_y = sum[7]};
-}
-
 // velocity of the sources of a pair at its targets
 static void pair_induce(const struct tree *tree, const struct kernel_pair *with, int with_gradient,
                         const struct node_pair *pair) {
@@ -603,8 +526,23 @@ static void pair_induce(const struct tree *tree, const struct kernel_pair *with,
                                  .square = source.zero};
     }
 
+    // points of a leaf
     if (pair->to[0] == 0) {
-        const struct targets at = sorted_targets(tree, with_gradient, to_points->first, to_points->n);
+        const int first = to_points->first;
+        double *sum[8];
+        for (int i = 0; i < 8; i++) sum[i] = i < 3 || with_gradient ? tree->sum[i] + first : NULL;
+        const struct targets at = {.n = to_points->n,
+                                   .x = tree->x + first,
+                                   .y = tree->y + first,
+                                   .leg = tree->h + first,
+                                   .u = sum[0],
+                                   .v = sum[1],
+                                   .div = sum[2],
+                                   .u_x = sum[3],
+                                   .u_y = sum[4],
+                                   .v_x = sum[5],
+                                   .div_x = sum[6],
+                                   .div_y = sum[7]};
         kernel_induce(with, &rings, which, &at);
         return;
     }
@@ -623,13 +561,6 @@ static void pair_induce(const struct tree *tree, const struct kernel_pair *with,
     grid_exchange(pair->to, n_sums, 1, padded, &target);
     matrix_fill(&tree->chebyshev, to, pair->to, to, to->n, &matrix);
     add_to_fine(&matrix, n_sums, padded, to->value);
-}
-
-static void box_induce(const struct tree *tree, const struct kernel_pair *with, int with_gradient, int b) {
-    if (tree->to.box[b].value) memset(tree->to.box[b].value, 0, VALUES * ALL_NODES * sizeof(double));
-    for (int i = tree->first[b]; i < tree->first[b + 1]; i++) {
-        pair_induce(tree, with, with_gradient, &tree->sorted[i]);
-    }
 }
 
 // a polynomial at a point; by_x, by_y, by_h: values, or derivatives, of the polynomials of the nodes at the point
@@ -685,23 +616,6 @@ static void box_scatter(const struct tree *tree, int has_legs, int with_gradient
     }
 }
 
-static void passes(const struct tree *tree, const struct kernel_pair *with, int with_gradient, int threads) {
-    for (int level = tree->from.boxes.depth; level >= 0; level--) {
-        const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
-#pragma omp parallel for num_threads(threads) schedule(static)
-        for (int b = first; b < end; b++) box_gather(tree, with->kernel->has_legs, b);
-    }
-
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
-    for (int b = 0; b < tree->to.boxes.n_boxes; b++) box_induce(tree, with, with_gradient, b);
-
-    for (int level = 0; level <= tree->to.boxes.depth; level++) {
-        const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
-#pragma omp parallel for num_threads(threads) schedule(static)
-        for (int b = first; b < end; b++) box_scatter(tree, with->kernel->has_legs, with_gradient, b);
-    }
-}
-
 // ---- the sum
 
 // h of n points
@@ -709,14 +623,13 @@ static void lengths(double factor, int n, const double *half, const double *leg,
     for (int i = 0; i < n; i++) h[i] = (half ? factor * half[i] : 0) + (leg ? leg[i] : 0);
 }
 
-static enum status sources_sort(struct tree *tree, const struct kernel_pair *pair, const struct sources *rings,
-                                int threads) {
+static void sources_sort(struct tree *tree, const struct kernel_pair *pair, const struct sources *rings, int threads) {
     const int n = rings->n;
     struct sources *const sorted = &tree->rings;
     sorted->n = 0;
-    TRY(sources_append(sorted, n));
+    sources_append(sorted, n);
     lengths(pair->factor, n, rings->half, rings->leg, sorted->leg);
-    TRY(node_tree_fill(&tree->from, n, rings->x, rings->y, sorted->leg, threads));
+    node_tree_fill(&tree->from, n, rings->x, rings->y, sorted->leg, threads);
     const struct tree_boxes *const boxes = &tree->from.boxes;
     memcpy(sorted->leg, boxes->weight, (size_t)n * sizeof *sorted->leg);
     for (int i = 0; i < n; i++) {
@@ -728,42 +641,75 @@ static enum status sources_sort(struct tree *tree, const struct kernel_pair *pai
         sorted->dy[i] = rings->dy[from];
     }
     node_tree_enclose(&tree->from, 0, sorted);
-    return STATUS_OK;
 }
 
-static enum status targets_sort(struct tree *tree, const struct kernel_pair *pair, const struct targets *at,
-                                double length, int threads) {
+static void targets_sort(struct tree *tree, const struct kernel_pair *pair, const struct targets *at, double length,
+                         int threads) {
     const size_t size = (size_t)at->n * sizeof(double);
-    TRY(targets_reserve(tree, at->n));
+    if (at->n > tree->target_capacity) {
+        tree->target_capacity = at->n + at->n / 2;
+        double **const all[] = {&tree->x,      &tree->y,      &tree->h,      &tree->sum[0],
+                                &tree->sum[1], &tree->sum[2], &tree->sum[3], &tree->sum[4],
+                                &tree->sum[5], &tree->sum[6], &tree->sum[7]};
+        for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(tree->arena, *all[i], tree->target_capacity);
+    }
     lengths(pair->factor, at->n, at->half, at->leg, tree->h);
-    TRY(node_tree_fill(&tree->to, at->n, at->x, at->y, tree->h, threads));
+    node_tree_fill(&tree->to, at->n, at->x, at->y, tree->h, threads);
     memcpy(tree->x, tree->to.boxes.x, size);
     memcpy(tree->y, tree->to.boxes.y, size);
     memcpy(tree->h, tree->to.boxes.weight, size);
     for (int i = 0; i < 8; i++) memset(tree->sum[i], 0, size);
     node_tree_enclose(&tree->to, at->u_x ? smallest_box * length : 0, NULL);
-    return STATUS_OK;
 }
 
-enum status tree_induce(struct tree *tree, const struct kernel_pair *pair, const struct sources *rings, double length,
-                        double tolerance, int threads, const struct targets *at) {
+void tree_induce(struct tree *tree, const struct kernel_pair *pair, const struct sources *rings, double length,
+                 double tolerance, int threads, const struct targets *at) {
+    const int has_legs = pair->kernel->has_legs, with_gradient = at->u_x != NULL;
     tree->interactions = 0;
     tree->n_pairs = 0;
-    if (rings->n == 0 || at->n == 0) return STATUS_OK;
-    TRY(sources_sort(tree, pair, rings, threads));
-    TRY(targets_sort(tree, pair, at, length, threads));
-    const int with_gradient = at->u_x != NULL;
+    if (rings->n == 0 || at->n == 0) return;
+    sources_sort(tree, pair, rings, threads);
+    targets_sort(tree, pair, at, length, threads);
     const struct search search = {
         .tree = tree, .pair = pair, .length = length, .tolerance = tolerance, .cost = with_gradient ? 2 : 1};
-    TRY(boxes_pair_up(&search, 0, 0));
-    TRY(pairs_sort(tree));
-    TRY(node_tree_allocate(&tree->from));
-    TRY(node_tree_allocate(&tree->to));
-    passes(tree, pair, with_gradient, threads);
+    boxes_pair_up(&search, 0, 0);
+
+    // sort the pairs by target, in the order of the search
+    const int n_boxes = tree->to.boxes.n_boxes;
+    if (n_boxes + 1 > tree->first_capacity) {
+        tree->first_capacity = n_boxes + 1;
+        GROW(tree->arena, tree->first, n_boxes + 1);
+    }
+    memset(tree->first, 0, ((size_t)n_boxes + 1) * sizeof *tree->first);
+    for (int i = 0; i < tree->n_pairs; i++) tree->first[tree->pair[i].target]++;
+    for (int b = 1; b <= n_boxes; b++) tree->first[b] += tree->first[b - 1];
+    for (int i = tree->n_pairs - 1; i >= 0; i--) tree->sorted[--tree->first[tree->pair[i].target]] = tree->pair[i];
+
+    // upward pass, far and near field, downward pass
+    node_tree_allocate(&tree->from);
+    node_tree_allocate(&tree->to);
+    for (int level = tree->from.boxes.depth; level >= 0; level--) {
+        const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int b = first; b < end; b++) box_gather(tree, has_legs, b);
+    }
+
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
+    for (int b = 0; b < n_boxes; b++) {
+        if (tree->to.box[b].value) memset(tree->to.box[b].value, 0, VALUES * ALL_NODES * sizeof(double));
+        for (int i = tree->first[b]; i < tree->first[b + 1]; i++) {
+            pair_induce(tree, pair, with_gradient, &tree->sorted[i]);
+        }
+    }
+
+    for (int level = 0; level <= tree->to.boxes.depth; level++) {
+        const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int b = first; b < end; b++) box_scatter(tree, has_legs, with_gradient, b);
+    }
 
     double *const to[] = {at->u, at->v, at->div, at->u_x, at->u_y, at->v_x, at->div_x, at->div_y};
     for (int k = 0; k < (with_gradient ? 8 : 3); k++) {
         for (int i = 0; i < at->n && to[k]; i++) to[k][tree->to.boxes.index[i]] += tree->sum[k][i];
     }
-    return STATUS_OK;
 }

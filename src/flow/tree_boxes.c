@@ -2,37 +2,14 @@
 #include "flow/tree_boxes.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include <stdbool.h>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 
 struct tree_point {
     double at[2], weight;
     int index;
 };
-
-static enum status boxes_reserve(struct tree_boxes *boxes, int n, int n_boxes) {
-    if (n > boxes->capacity) {
-        const size_t capacity = (size_t)n + (size_t)n / 2;
-        boxes->capacity = 0;
-        TRY(MEMORY_RESIZE(boxes->index, capacity, "the tree of vortices"));
-        TRY(MEMORY_RESIZE(boxes->x, capacity, "the tree of vortices"));
-        TRY(MEMORY_RESIZE(boxes->y, capacity, "the tree of vortices"));
-        TRY(MEMORY_RESIZE(boxes->weight, capacity, "the tree of vortices"));
-        TRY(MEMORY_RESIZE(boxes->work, capacity, "the tree of vortices"));
-        boxes->capacity = (int)capacity;
-    }
-
-    if (n_boxes > boxes->box_capacity) {
-        boxes->box_capacity = 0;
-        TRY(MEMORY_RESIZE(boxes->box, n_boxes, "the tree of vortices"));
-        boxes->box_capacity = n_boxes;
-    }
-
-    return STATUS_OK;
-}
 
 // Reorder the points around the middle (quickselect): along one axis, points before the middle are not greater, points
 // after the middle not less.
@@ -60,12 +37,15 @@ static void points_halve(struct tree_point *point, int n, int middle, int axis) 
     }
 }
 
-// the circle around the smallest rectangle of the points; returns the axis along which the rectangle is longer
-static int box_enclose(struct tree_box *box, const struct tree_point *point) {
+// Find the circle around the smallest rectangle of the points of box i, and halve the box across the longer side of the
+// rectangle unless is_leaf. Only the points and the halves of box i change.
+static void box_divide(struct tree_boxes *boxes, int i, bool is_leaf) {
+    struct tree_box *const box = &boxes->box[i];
+    struct tree_point *const point = boxes->work + box->first;
     double low[2] = {point->at[0], point->at[1]}, high[2] = {point->at[0], point->at[1]};
-    for (int i = 1; i < box->n; i++) {
+    for (int p = 1; p < box->n; p++) {
         for (int axis = 0; axis < 2; axis++) {
-            const double at = point[i].at[axis];
+            const double at = point[p].at[axis];
             low[axis] = at < low[axis] ? at : low[axis];
             high[axis] = at > high[axis] ? at : high[axis];
         }
@@ -74,43 +54,46 @@ static int box_enclose(struct tree_box *box, const struct tree_point *point) {
     box->x = low[0] + (high[0] - low[0]) / 2;
     box->y = low[1] + (high[1] - low[1]) / 2;
     double square = 0;
-
-    for (int i = 0; i < box->n; i++) {
-        const double rx = point[i].at[0] - box->x, ry = point[i].at[1] - box->y;
+    for (int p = 0; p < box->n; p++) {
+        const double rx = point[p].at[0] - box->x, ry = point[p].at[1] - box->y;
         const double distance = rx * rx + ry * ry;
         square = distance > square ? distance : square;
     }
 
     // expansions divide by the radius even if all points coincide
     box->radius = fmax(sqrt(square), 1e-100);
-    return high[1] - low[1] > high[0] - low[0];
-}
-
-// Find the circle around box i, and halve the box unless is_leaf. Only the points and the halves of box i change.
-static void box_divide(struct tree_boxes *boxes, int i, int is_leaf) {
-    struct tree_box *const box = &boxes->box[i];
-    struct tree_point *const point = boxes->work + box->first;
-    const int axis = box_enclose(box, point), middle = box->n / 2;
     if (is_leaf) return;
+
+    const int axis = high[1] - low[1] > high[0] - low[0], middle = box->n / 2;
     points_halve(point, box->n, middle, axis);
     boxes->box[2 * i + 1] = (struct tree_box){.first = box->first, .n = middle};
     boxes->box[2 * i + 2] = (struct tree_box){.first = box->first + middle, .n = box->n - middle};
 }
 
-// number of halvings of n points
-static int depth_for(int n, int leaf) {
+void tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight, int leaf,
+                     int threads) {
+    // halve until a leaf has at most `leaf` points
     int depth = 0;
     while ((n + (1 << depth) - 1) >> depth > leaf) depth++;
-    return depth;
-}
+    const int n_boxes = n > 0 ? tree_boxes_level(depth + 1) : 0;
+    boxes->n = n;
+    boxes->depth = depth;
+    boxes->n_boxes = n_boxes;
+    if (n == 0) return;
 
-enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight,
-                            int leaf, int threads) {
-    boxes->n = boxes->n_boxes = boxes->depth = 0;
-    if (n == 0) return STATUS_OK;
-    const int depth = depth_for(n, leaf);
-    const int n_boxes = tree_boxes_level(depth + 1);
-    TRY(boxes_reserve(boxes, n, n_boxes));
+    if (n > boxes->capacity) {
+        const int capacity = n + n / 2;
+        GROW(boxes->arena, boxes->index, capacity);
+        GROW(boxes->arena, boxes->x, capacity);
+        GROW(boxes->arena, boxes->y, capacity);
+        GROW(boxes->arena, boxes->weight, capacity);
+        GROW(boxes->arena, boxes->work, capacity);
+        boxes->capacity = capacity;
+    }
+    if (n_boxes > boxes->box_capacity) {
+        GROW(boxes->arena, boxes->box, n_boxes);
+        boxes->box_capacity = n_boxes;
+    }
     struct tree_point *const point = boxes->work;
     const int sharing = parallel_threads(threads, n, n, PARALLEL_SORTED);
 
@@ -134,20 +117,4 @@ enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, co
         boxes->weight[i] = point[i].weight;
         boxes->index[i] = point[i].index;
     }
-
-    boxes->n = n;
-    boxes->depth = depth;
-    boxes->n_boxes = n_boxes;
-
-    return STATUS_OK;
-}
-
-void tree_boxes_clear(struct tree_boxes *boxes) {
-    free(boxes->box);
-    free(boxes->index);
-    free(boxes->x);
-    free(boxes->y);
-    free(boxes->weight);
-    free(boxes->work);
-    *boxes = (struct tree_boxes){0};
 }

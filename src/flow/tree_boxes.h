@@ -11,7 +11,7 @@
 #ifndef TREE_BOXES_H
 #define TREE_BOXES_H
 
-#include "base/status.h"
+#include "base/arena.h"
 
 /* A circle around n sorted points, from first on. */
 struct tree_box {
@@ -20,6 +20,7 @@ struct tree_box {
 };
 
 struct tree_boxes {
+    struct arena *arena;
     int n, depth, n_boxes;   /* n_boxes = 2^(depth + 1) - 1; 0 if n = 0 */
     struct tree_box *box;    /*                                          (n_boxes) */
     int *index;              /* of each sorted point in the caller's arrays    (n) */
@@ -34,11 +35,8 @@ static inline int tree_boxes_level(int level) {
 }
 
 /* Sort n points with weights (NULL: all 0) into boxes; leaves hold at most leaf points. The memory is kept for the next
- * call. The boxes do not depend on the number of threads. Fails with STATUS_MEMORY; boxes is then empty. */
-enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight,
-                            int leaf, int threads);
-
-/* Release the arrays of boxes, not boxes itself. */
-void tree_boxes_clear(struct tree_boxes *boxes);
+ * call. The boxes do not depend on the number of threads. */
+void tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight, int leaf,
+                     int threads);
 
 #endif

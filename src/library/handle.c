@@ -123,12 +123,12 @@ enum status handle_take_up(struct shoal *run,
     MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct case_values *const values = &run->shared->values;
     struct school *school;
-    struct state *state = NULL;
     TRY(fish_school_create(&school, &values->school));
-    enum status status = state_create(&state, school);
-    if (status == STATUS_OK) status = fill(state, school, from);
+    run->arena = arena_create(NULL, "a run");
+    struct state *const state = state_create(run->arena, school);
+    const enum status status = fill(state, school, from);
     if (status != STATUS_OK) {
-        state_free(state, school);
+        state_free(state);
         fish_school_free(school);
         return status;
     }

@@ -165,33 +165,25 @@ static enum status change_make(struct shoal *run, const struct change *change) {
 
 static enum status change_run(struct shoal *run, const struct change *change) {
     struct simulation *const simulation = run->simulation;
-    struct state *kept = NULL;
 
     // keep a copy of the state
     TRY(handle_renew(run));
     const struct integrator_counts when_reached = run->when_reached;
-    TRY(state_create(&kept, simulation->school));
-    enum status status = state_table_copy(kept, simulation->state, simulation->school);
-    if (status != STATUS_OK) {
-        // an incomplete copy restores nothing
-        state_free(kept, simulation->school);
-        return status;
-    }
-
-    status = change_make(run, change);
+    struct state *const kept = state_create(run->arena, simulation->school);
+    state_table_copy(kept, simulation->state, simulation->school, true);
+    const enum status status = change_make(run, change);
     if (status != STATUS_OK) {
         // restore the state before the change, and keep the message of the failure
         char reason[sizeof run->failure];
         snprintf(reason, sizeof reason, "%s", status_message());
         handle_forget_row(run);
-        enum status back = state_table_copy(simulation->state, kept, simulation->school);
-        if (back == STATUS_OK) back = handle_renew(run);
-        if (back != STATUS_OK) handle_fail(run);
+        state_table_copy(simulation->state, kept, simulation->school, true);
+        if (handle_renew(run) != STATUS_OK) handle_fail(run);
         status_fail(status, "%s", reason);
     }
 
     run->when_reached = when_reached;
-    state_free(kept, simulation->school);
+    state_free(kept);
     return status;
 }
 

@@ -11,7 +11,8 @@
 #include "state/state.h"
 
 static enum status copy_state(struct state *state, const struct school *school, const void *from) {
-    return state_table_copy(state, from, school);
+    state_table_copy(state, from, school, true);
+    return STATUS_OK;
 }
 
 int shoal_clone(struct shoal **copy, struct shoal *run) {
@@ -54,8 +55,8 @@ int shoal_restore(struct shoal *run, struct shoal *from) {
 
     handle_forget_row(run);
     run->simulation->totals = from->simulation->totals;
-    enum status status = state_table_copy(run->simulation->state, from->simulation->state, run->simulation->school);
-    if (status == STATUS_OK) status = handle_renew(run);
+    state_table_copy(run->simulation->state, from->simulation->state, run->simulation->school, true);
+    const enum status status = handle_renew(run);
     run->when_reached = from->when_reached;
     run->has_failed = 0;
     if (status != STATUS_OK) handle_fail(run);

@@ -168,7 +168,7 @@ enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct sta
             if (n_vortices < 0 || (size_t)n_vortices > checkpoint->n / sizeof(double)) return unfit("wake.n_vortex");
             if (n_slots < 0 || (size_t)n_slots > checkpoint->n / sizeof(struct sample)) return unfit("history.n_slots");
         }
-        TRY(state_table_make_room(state, school));
+        state_table_make_room(state, school);
     }
 
     return state_table_check(state, school);

@@ -39,7 +39,7 @@ static double bytes_so_far(void) {
 }
 
 // replace the wake of a fish by a synthetic wake of n vortices, the newest vortex at the tail
-static enum status synthetic_wake(const struct school *school, struct state *state, int f, int n) {
+static void synthetic_wake(const struct school *school, struct state *state, int f, int n) {
     const struct fish *const fish = &school->fish[f];
     struct wake *const wake = &state->wake[f];
     const int last = fish->n_nodes - 1;
@@ -47,7 +47,7 @@ static enum status synthetic_wake(const struct school *school, struct state *sta
     const double along[2] = {(x[last] - x[0]) / fish->length, (y[last] - y[0]) / fish->length};
     const double rate = fish_rate(school, fish), spacing = drift * fish->length * rate * school->interval;
 
-    TRY(wake_resize(wake, n));
+    wake_resize(wake, n);
     wake->version++;
     for (int i = 0; i < n; i++) {
         const double age = (n - 1 - i) * school->interval, phase = 2 * M_PI * rate * age;
@@ -59,8 +59,6 @@ static enum status synthetic_wake(const struct school *school, struct state *sta
         wake->circulation[i] = 0.01 * fish->length * fish->length * rate * cos(phase);
         wake->birth[i] = state->t - age;
     }
-
-    return STATUS_OK;
 }
 
 // cost of one event and of a number of residual evaluations with the present wakes
@@ -133,7 +131,7 @@ static enum status measure_synthetic_wakes(struct simulation *simulation, double
         const double left = simulation->stop && *simulation->stop ? 0 : end - clock_seconds(CLOCK_THREAD_CPUTIME_ID);
         if (!(left > 4 * costs->seconds[costs->n - 1])) break;
         n = (int)fmin(most, fmax(FIRST_WAKE, 2.0 * n));
-        for (int f = 0; f < school->n_fish; f++) TRY(synthetic_wake(school, state, f, n));
+        for (int f = 0; f < school->n_fish; f++) synthetic_wake(school, state, f, n);
         costs->vortices[costs->n] = n;
         TRY(event_cost(simulation, evaluations, &costs->seconds[costs->n]));
         costs->bytes[costs->n] = bytes_so_far();

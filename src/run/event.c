@@ -28,23 +28,21 @@ static void tail_position(const struct state *state, const struct fish *fish, do
 }
 
 // release a vortex with the circulation shed since the last release
-static enum status event_release(struct state *state, const struct school *school, int f, const double place[2]) {
+static void event_release(struct state *state, const struct school *school, int f, const double place[2]) {
     struct wake *const wake = &state->wake[f];
     const double circulation = state->y[school->fish[f].at.circulation];
-    TRY(wake_release(wake, place[0], place[1], circulation - wake->shed_before, state->t));
+    wake_release(wake, place[0], place[1], circulation - wake->shed_before, state->t);
     wake->shed_before = circulation;
-    return STATUS_OK;
 }
 
 // continuous shedding: release the nascent vortex with its position and circulation
-static enum status event_release_nascent(struct state *state, const struct school *school) {
+static void event_release_nascent(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         double tail[2], position[2];
         tail_position(state, &school->fish[f], tail);
         wake_nascent(&state->wake[f], school->interval, tail, position);
-        TRY(event_release(state, school, f, position));
+        event_release(state, school, f, position);
     }
-    return STATUS_OK;
 }
 
 // impulsive shedding: a vortex appears at the tail
@@ -69,22 +67,21 @@ static enum status event_release_impulse(struct state *state, struct residual *r
     for (int f = 0; f < school->n_fish; f++) {
         double tail[2];
         tail_position(state, &school->fish[f], tail);
-        TRY(event_release(state, school, f, tail));
+        event_release(state, school, f, tail);
     }
 
     return STATUS_OK;
 }
 
 // a free sheet: a marker is born at the tail
-static enum status event_release_markers(struct state *state, const struct school *school) {
+static void event_release_markers(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         struct wake *const wake = &state->wake[f];
         double tail[2];
         tail_position(state, &school->fish[f], tail);
         wake->shed_before = state->y[school->fish[f].at.circulation];
-        TRY(wake_release(wake, tail[0], tail[1], wake->shed_before, state->t));
+        wake_release(wake, tail[0], tail[1], wake->shed_before, state->t);
     }
-    return STATUS_OK;
 }
 
 // A new marker starts with the velocity of the fluid at the tail, without the forward component of the slip along the
@@ -107,10 +104,10 @@ enum { ALL = -1 };
 
 // evaluate the velocities of all free vortices at the present state; n_new: number of vortices per fish without a
 // previous velocity, or ALL
-static enum status event_wake_velocities(struct state *state, struct residual *residual, int n_new) {
+static void event_wake_velocities(struct state *state, struct residual *residual, int n_new) {
     const struct school *school = residual->school;
     struct flow *const flow = residual->flow;
-    TRY(flow_at_wake(flow, state));
+    flow_at_wake(flow, state);
     const int threads = fish_threads(school);
 
 #pragma omp parallel for num_threads(threads) schedule(static)
@@ -125,8 +122,6 @@ static enum status event_wake_velocities(struct state *state, struct residual *r
             wake_set_velocity(&state->wake[f], flow->wake_u + first, flow->wake_v + first, rate, n);
         }
     }
-
-    return STATUS_OK;
 }
 
 // evaluate the slip at every tail
@@ -210,12 +205,14 @@ static enum status event_start_sheets(struct state *state, struct residual *resi
                                       struct initial_conditions *initial) {
     residual->shed_now = SHED_IS_GIVEN;
     enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
-    if (status == STATUS_OK) status = event_release_markers(state, residual->school);
-    if (status == STATUS_OK) status = event_add_vortices(state, residual->school);
+    if (status == STATUS_OK) {
+        event_release_markers(state, residual->school);
+        status = event_add_vortices(state, residual->school);
+    }
     if (status == STATUS_OK && residual->school->n_vortices > 0) {
         status = initial_conditions_solve(initial, state->t, state->y, state->yp);
     }
-    if (status == STATUS_OK) status = event_wake_velocities(state, residual, ALL);
+    if (status == STATUS_OK) event_wake_velocities(state, residual, ALL);
     residual->shed_now = SHED_BY_LAW;
     return status;
 }
@@ -229,7 +226,8 @@ static enum status event_start_bodies(struct state *state, struct residual *resi
     }
     TRY(event_add_vortices(state, residual->school));
     TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-    return residual->school->n_vortices > 0 ? event_wake_velocities(state, residual, ALL) : STATUS_OK;
+    if (residual->school->n_vortices > 0) event_wake_velocities(state, residual, ALL);
+    return STATUS_OK;
 }
 
 enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
@@ -242,7 +240,7 @@ enum status event_start(struct state *state, struct residual *residual, struct i
     if (residual->school->shedding == SHEDDING_IMPULSIVE) {
         TRY(event_release_impulse(state, residual, initial));
         TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-        TRY(event_wake_velocities(state, residual, ALL));
+        event_wake_velocities(state, residual, ALL);
     }
 
     TRY(event_finish(state, residual, initial, 1, &jumped));
@@ -272,9 +270,9 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     if (jumps) {
         TRY(event_release_impulse(state, residual, initial));
     } else if (school->shedding == SHEDDING_SHEET) {
-        TRY(event_release_markers(state, school));
+        event_release_markers(state, school);
     } else {
-        TRY(event_release_nascent(state, school));
+        event_release_nascent(state, school);
     }
 
 #pragma omp parallel for num_threads(threads) schedule(static)
@@ -283,10 +281,10 @@ enum status event_next(struct state *state, struct residual *residual, struct in
         wake_remove_old(&state->wake[f], school, state->t);
     }
 
-    TRY(wake_merge(school, state));
+    wake_merge(school, state);
 
     if (jumps) TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-    TRY(event_wake_velocities(state, residual, 1));
+    event_wake_velocities(state, residual, 1);
     return event_finish(state, residual, initial, jumps, jumped);
 }
 
@@ -296,7 +294,7 @@ enum status event_change(struct state *state, struct residual *residual, struct 
     const enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
     residual->at_start = 0;
     TRY(status);
-    TRY(event_wake_velocities(state, residual, ALL));
+    event_wake_velocities(state, residual, ALL);
     TRY(event_flow(state, residual));
     residual_couple(&residual->couplings, state->y);
     return STATUS_OK;

@@ -39,7 +39,6 @@ static void simulation_set_order(struct simulation *simulation, const struct cas
 
 static void simulation_release(void *object) {
     struct simulation *const simulation = object;
-    state_free(simulation->state, simulation->school);
     fish_school_free(simulation->school);
 }
 
@@ -90,7 +89,7 @@ static enum status simulation_start(struct simulation *simulation, const struct 
     parameters.stop = stop;
     TRY(fish_school_create(&simulation->school, &parameters));
     simulation_set_order(simulation, values);
-    TRY(state_create(&simulation->state, simulation->school));
+    simulation->state = state_create(simulation->arena, simulation->school);
     TRY(status_ask(stop));
     TRY(simulation_create_equations(simulation));
     simulation->diagnostics = diagnostics_create(simulation->arena, simulation->school);
@@ -126,6 +125,7 @@ enum status simulate_take_up(struct arena *parent, struct simulation **simulatio
     struct simulation *const new = *simulation = simulation_begin(parent, values);
     new->school = school;
     new->state = state;
+    arena_move(state->arena, new->arena);
     new->totals = *totals;
     simulation_set_order(new, values);
     new->diagnostics = diagnostics_create(new->arena, school);

@@ -62,15 +62,15 @@ static enum status run_loop(struct run *run) {
     const struct simulate_options *const options = run->options;
     struct simulation *const simulation = run->simulation;
     simulation->stop = options->stop;
-    if (simulation->stop) TRY(state_create(&run->before, simulation->school));
+    if (simulation->stop) run->before = state_create(simulation->arena, simulation->school);
 
     while (simulation->state->event < simulation->n_events) {
         // advance to the next event, or restore the state at the last event and stop
         if (options->stop && *options->stop) return run_stop(run);
-        if (run->before) TRY(state_table_keep(run->before, simulation->state, simulation->school));
+        if (run->before) state_table_copy(run->before, simulation->state, simulation->school, false);
         const enum status status = simulate_step(simulation);
         if (status == STATUS_STOPPED) {
-            TRY(state_table_keep(simulation->state, run->before, simulation->school));
+            state_table_copy(simulation->state, run->before, simulation->school, false);
             return run_stop(run);
         }
         TRY(status);
@@ -107,7 +107,6 @@ static enum status run_finish(struct run *run, enum status status) {
 }
 
 static void run_release(struct run *run) {
-    if (run->simulation) state_free(run->before, run->simulation->school);
     arena_free(run->arena);
 }
 
@@ -272,18 +271,12 @@ static enum status resume_case(struct resume *resume, const struct simulate_chan
 static enum status resume_take_up(struct resume *resume) {
     struct run *const run = &resume->run;
     struct school *school = NULL;
-    struct state *state = NULL;
     TRY(fish_school_create(&school, &run->values->school));
-    enum status status = state_create(&state, school);
-    if (status == STATUS_OK) {
-        status = checkpoint_set_state(&resume->checkpoint, state, school);
-        if (status != STATUS_OK) {
-            status_fail(status, "the checkpoint of %s cannot be used: %s", resume->result, status_message());
-        }
-    }
-
+    struct state *const state = state_create(run->arena, school);
+    const enum status status = checkpoint_set_state(&resume->checkpoint, state, school);
     if (status != STATUS_OK) {
-        state_free(state, school);
+        status_fail(status, "the checkpoint of %s cannot be used: %s", resume->result, status_message());
+        state_free(state);
         fish_school_free(school);
         return status;
     }

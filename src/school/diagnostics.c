@@ -28,7 +28,7 @@ static void way_through_water(const struct sample *new, const struct sample *old
 enum status diagnostics_remember(struct residual *residual, struct state *state) {
     const double interval = residual->school->interval;
     const int threads = fish_threads(residual->school);
-    TRY(state_reserve(state, residual->school));
+    state_reserve(state, residual->school);
 
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) {

@@ -286,7 +286,7 @@ enum status diagnostics_momentum_event(struct residual *residual, struct state *
     // walls or a travelling gust, never both
     const bool has_walls = school->walls.n > 0, has_gust = school->gust_profile != GUST_UNIFORM;
     if (!has_reaction || !(school->density > 0) || (!has_walls && !has_gust)) return STATUS_OK;
-    if (has_walls) TRY(flow_images(flow, state));
+    if (has_walls) flow_images(flow, state);
     for (int f = 0; f < school->n_fish; f++) {
         if (!diagnostics_has_reaction(school, &school->fish[f])) continue;
 

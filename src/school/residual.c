@@ -175,10 +175,6 @@ int residual_couple_contacts(struct residual_couplings *couplings, const struct 
     return n_contacts > 0;
 }
 
-static void residual_free_flow(void *flow) {
-    flow_free(flow);
-}
-
 enum status residual_create(struct arena *arena, struct residual **residual, const struct school *school,
                             const struct state *state) {
     struct residual *new;
@@ -209,8 +205,7 @@ enum status residual_create(struct arena *arena, struct residual **residual, con
     NEW(arena, new->muscle.curvature_by_phi0, n_joints);
     NEW(arena, new->muscle.rate_by_phi0, n_joints);
 
-    TRY(flow_create(&new->flow, school));
-    arena_defer(arena, residual_free_flow, new->flow);
+    new->flow = flow_create(arena, school);
 
     // for every thread a block that fits any pair of fish
     NEW(arena, new->jacobian_scratch, school->threads);
@@ -354,7 +349,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
 
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
     TRY(residual_contact(residual, t, y));
-    TRY(flow_velocity(residual->flow, residual->state, t, y));
+    flow_velocity(residual->flow, residual->state, t, y);
 
     const struct school *school = residual->school;
     const int threads = fish_threads(school);

@@ -5,6 +5,7 @@
 
 #include <stddef.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "control/control.h"
 #include "fish/fish.h"
@@ -74,6 +75,7 @@ enum divergence { DIVERGENCE_SIZE, DIVERGENCE_T, DIVERGENCE_SPEED, DIVERGENCE_CI
 enum { STATE_PAST = 4 };
 
 struct state {
+    struct arena *arena;               /* of all arrays and of the state itself */
     double t;                          /* time of the last event, s */
     long event;                        /* number of the last event, 0 at the start */
     double *y, *yp;                    /* unknowns and rates of the unknowns               (n_unknowns) */
@@ -91,11 +93,10 @@ struct state {
     double divergence[N_DIVERGENCE];
 };
 
-/* Create the state before the start: bodies at the start positions, all other values zero. Fails with STATUS_MEMORY. */
-enum status state_create(struct state **state, const struct school *school);
-
-/* Release the state with all arrays. Accepts NULL. */
-void state_free(struct state *state, const struct school *school);
+/* Create the state before the start, in an arena of its own: bodies at the start positions, all other values zero. The
+ * state is released with the parent arena, or by state_free, which accepts NULL. */
+struct state *state_create(struct arena *parent, const struct school *school);
+void state_free(struct state *state);
 
 /* Rates of algebraic unknowns at an event, before the event changes an unknown: the slope of the quartic through the
  * unknowns at this event and the last STATE_PAST events, of fewer after state_begin_rates. Sets yp of velocities and
@@ -109,8 +110,8 @@ void state_begin_rates(struct state *state, const struct school *school);
 /* A number that changes with every change of any wake. */
 unsigned long state_wake_version(const struct state *state, const struct school *school);
 
-/* Make room for the next sample of every fish. Fails with STATUS_MEMORY. */
-enum status state_reserve(struct state *state, const struct school *school);
+/* Make room for the next sample of every fish. */
+void state_reserve(struct state *state, const struct school *school);
 
 /* Remove the newest sample of a history. */
 void state_forget_newest(struct history *history);
@@ -143,14 +144,16 @@ enum state_type {
     STATE_UNKEPT   /* property of the memory, not of the state: neither copied nor written */
 };
 
+/* The length of an array: unknowns, unknowns of STATE_PAST events, vortices of a wake, samples, strains of a rod. */
+enum state_length { STATE_NO_ARRAY, STATE_UNKNOWNS, STATE_PASTS, STATE_VORTICES, STATE_SAMPLES, STATE_STRAINS };
+
 struct state_row {
     const char *name; /* "y", "wake.x" */
     enum state_owner owner;
     enum state_type type;
-    size_t offset; /* offset of the field in the owner, bytes */
-    size_t bytes;  /* size of the field: the values, or, with length, the address of an array */
-    size_t (*length)(const struct state *state, const struct school *school,
-                     int f); /* length of the array; NULL: no array */
+    size_t offset;            /* offset of the field in the owner, bytes */
+    size_t bytes;             /* size of the field: the values, or, with length, the address of an array */
+    enum state_length length; /* of the array */
 };
 
 /* The row of an array follows the row with the length of the array. */
@@ -168,16 +171,13 @@ const void *state_table_values(const struct state_row *row, const struct state *
 void *state_table_place(const struct state_row *row, struct state *state, int f);
 
 /* Resize the arrays of all wakes to n_vortex, and the samples to n_slots. Code that reads a state calls this function
- * between the numbers and the arrays. Fails with STATUS_MEMORY. */
-enum status state_table_make_room(struct state *state, const struct school *school);
+ * between the numbers and the arrays. */
+void state_table_make_room(struct state *state, const struct school *school);
 
 /* Copy a state into another state of the same school. The wake versions increase, so that struct flow evaluates wakes
- * again. Fails with STATUS_MEMORY; the target can then only be freed. */
-enum status state_table_copy(struct state *to, const struct state *from, const struct school *school);
-
-/* The same without the samples, which stay where they are: keep a state before an event, and return to this state after
- * at most one further sample of each fish. */
-enum status state_table_keep(struct state *to, const struct state *from, const struct school *school);
+ * again. Without samples, these stay where they are: keep a state before an event, and return to this state after at
+ * most one further sample of each fish. After a lack of memory the target can only be freed. */
+void state_table_copy(struct state *to, const struct state *from, const struct school *school, bool with_samples);
 
 /* Fail with STATUS_FILE if a number that serves as an index is out of range for the school, if the time differs from
  * the time of the event, or if a value that is always defined is not finite. */

@@ -3,9 +3,8 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "state/impulse.h"
 
@@ -34,31 +33,10 @@ struct merged {
     double span;          /* largest d, m */
 };
 
-static struct body body_of(const struct school *school, const struct state *state, int f) {
-    const struct fish *const fish = &school->fish[f];
-    const double *const y = state->y;
-    struct body body = {.nearest = nearest * fish->length};
-    for (int k = 0; k < fish->n_nodes; k++) {
-        const double part = 1.0 / fish->n_nodes;
-        body.at[0] += part * y[fish->at.x + k];
-        body.at[1] += part * y[fish->at.y + k];
-        body.velocity[0] += part * y[fish->at.vx + k];
-        body.velocity[1] += part * y[fish->at.vy + k];
-    }
-
-    for (int k = 0; k < fish->n_nodes; k++) {
-        body.radius = fmax(body.radius, hypot(y[fish->at.x + k] - body.at[0], y[fish->at.y + k] - body.at[1]));
-    }
-
-    const double change = school->wake_merge * fish->length * fish_rate(school, fish) / wake_most(school, LONG_MAX - 1);
-    body.per_moment = sqrt(2) / (two_pi * change);
-    return body;
-}
-
 // whether all bodies are far enough from a pair with a remaining lifetime of life, s
-static int is_far(const struct body *body, int n, const struct merged *pair, double life) {
+static bool is_far(const struct body *body, int n, const struct merged *pair, double life) {
     const double moment = pair->second_moment;
-    if (!isfinite(moment)) return 0;
+    if (!isfinite(moment)) return false;
 
     for (int f = 0; f < n; f++) {
         const double r[2] = {pair->x[0] - body[f].at[0], pair->x[1] - body[f].at[1]};
@@ -68,9 +46,9 @@ static int is_far(const struct body *body, int n, const struct merged *pair, dou
         // time of the closest approach, for constant velocities
         const double t = approach <= 0 ? 0 : approach < life * square ? approach / square : life;
         const double gap = hypot(r[0] + t * w[0], r[1] + t * w[1]) - body[f].radius - pair->span;
-        if (gap < body[f].nearest || gap * gap * gap < moment * body[f].per_moment) return 0;
+        if (gap < body[f].nearest || gap * gap * gap < moment * body[f].per_moment) return false;
     }
-    return 1;
+    return true;
 }
 
 // add one vortex, before or after the merge, to the second moment of a pair
@@ -94,16 +72,16 @@ static struct merged mean_of(const struct wake *wake, int n, const int *at, cons
     return mean;
 }
 
-static struct merged merge_vortices(const struct wake *wake, const int at[2]) {
-    const double g[2] = {wake->circulation[at[0]], wake->circulation[at[1]]}, sum = g[0] + g[1];
-    struct merged pair = mean_of(wake, 2, at, (const double[]){g[0] / sum, g[1] / sum});
-    pair.circulation = sum;
-    for (int k = 0; k < 2; k++) add_moment(&pair, g[k], wake->x[at[k]], wake->y[at[k]]);
-    return pair;
-}
+// merge the two middle ones of the vortices or markers with these numbers; two vortices may be the only ones
+static struct merged merge_pair(const struct wake *wake, const int at[4]) {
+    if (!wake->has_markers) {
+        const double g[2] = {wake->circulation[at[1]], wake->circulation[at[2]]}, sum = g[0] + g[1];
+        struct merged pair = mean_of(wake, 2, at + 1, (const double[]){g[0] / sum, g[1] / sum});
+        pair.circulation = sum;
+        for (int k = 0; k < 2; k++) add_moment(&pair, g[k], wake->x[at[k + 1]], wake->y[at[k + 1]]);
+        return pair;
+    }
 
-// merge the two middle markers of four
-static struct merged merge_markers(const struct wake *wake, const int at[4]) {
     double g[3], sum = 0;
     for (int k = 0; k < 3; k++) {
         g[k] = wake->circulation[at[k + 1]] - wake->circulation[at[k]];
@@ -128,47 +106,37 @@ static struct merged merge_markers(const struct wake *wake, const int at[4]) {
     return pair;
 }
 
-// move vortex `from` of a wake to index `to`
-static void move_vortex(struct wake *wake, int from, int to) {
-    double *const values[] = {wake->x,        wake->y,           wake->u,     wake->v,    wake->u_before,
-                              wake->v_before, wake->circulation, wake->birth, wake->rate, wake->rate_before};
-    for (size_t k = 0; k < sizeof values / sizeof *values; k++) values[k][to] = values[k][from];
-}
-
-// store a merged pair at index `to` of the queue; newer: the newer vortex of the pair
-static void store_pair(struct wake *wake, const struct merged *pair, int newer, int to) {
-    wake->x[to] = pair->x[0];
-    wake->y[to] = pair->x[1];
-    wake->u[to] = pair->u[0];
-    wake->v[to] = pair->u[1];
-    wake->u_before[to] = pair->u_before[0];
-    wake->v_before[to] = pair->u_before[1];
-    wake->circulation[to] = pair->circulation;
-    wake->rate[to] = pair->rate[0];
-    wake->rate_before[to] = pair->rate[1];
-    wake->birth[to] = wake->birth[newer];
-}
-
 // merge from the oldest vortex; a merged vortex and the next vortex are not merged again in this pass
 static void merge_wake(const struct school *school, const struct body *body, struct state *state, int f) {
     struct wake *const wake = &state->wake[f];
     const double t = state->t;
     const struct impulse_moments before = impulse_of_wake(wake, school, t, 0);
     const int n = wake->n_vortex, last = n - NEWEST - 1;
+    double *const values[] = {wake->x,        wake->y,           wake->u,     wake->v,    wake->u_before,
+                              wake->v_before, wake->circulation, wake->birth, wake->rate, wake->rate_before};
+    enum { N_VALUES = sizeof values / sizeof *values };
 
     // a pair of markers needs a marker on both sides
     int from = wake->has_markers, to = from;
     while (from < n) {
         if (from < last) {
             const int at[4] = {to - 1, from, from + 1, from + 2};
-            const struct merged pair = wake->has_markers ? merge_markers(wake, at) : merge_vortices(wake, at + 1);
-            if (is_far(body, school->n_fish, &pair, school->lifetime - (t - wake->birth[from + 1]))) {
-                store_pair(wake, &pair, from + 1, to++);
+            const struct merged pair = merge_pair(wake, at);
+            const double birth = wake->birth[from + 1];
+            if (is_far(body, school->n_fish, &pair, school->lifetime - (t - birth))) {
+                const double merged[N_VALUES] = {pair.x[0],        pair.x[1],        pair.u[0],        pair.u[1],
+                                                 pair.u_before[0], pair.u_before[1], pair.circulation, birth,
+                                                 pair.rate[0],     pair.rate[1]};
+                for (int k = 0; k < N_VALUES; k++) values[k][to] = merged[k];
+                to++;
                 wake->n_merged++;
                 from += 2;
             }
         }
-        move_vortex(wake, from++, to++);
+
+        for (int k = 0; k < N_VALUES; k++) values[k][to] = values[k][from];
+        to++;
+        from++;
     }
     if (to == from) return;
 
@@ -179,14 +147,33 @@ static void merge_wake(const struct school *school, const struct body *body, str
     impulse_book(&state->momentum[f], &before, &after);
 }
 
-enum status wake_merge(const struct school *school, struct state *state) {
-    if (school->wake_merge <= 0) return STATUS_OK;
+void wake_merge(const struct school *school, struct state *state) {
+    if (school->wake_merge <= 0) return;
+    struct arena *const scratch = arena_create(state->arena, "circles around bodies");
     struct body *body;
-    TRY(MEMORY_NEW(body, school->n_fish, "the positions of bodies"));
+    NEW(scratch, body, school->n_fish);
 
+    // a circle around the nodes of every body, with the mean velocity
     int n_vortices = 0;
     for (int f = 0; f < school->n_fish; f++) {
-        body[f] = body_of(school, state, f);
+        const struct fish *const fish = &school->fish[f];
+        const double *const y = state->y, part = 1.0 / fish->n_nodes;
+        struct body *const of = &body[f];
+        of->nearest = nearest * fish->length;
+        for (int k = 0; k < fish->n_nodes; k++) {
+            of->at[0] += part * y[fish->at.x + k];
+            of->at[1] += part * y[fish->at.y + k];
+            of->velocity[0] += part * y[fish->at.vx + k];
+            of->velocity[1] += part * y[fish->at.vy + k];
+        }
+
+        for (int k = 0; k < fish->n_nodes; k++) {
+            of->radius = fmax(of->radius, hypot(y[fish->at.x + k] - of->at[0], y[fish->at.y + k] - of->at[1]));
+        }
+
+        const double change =
+            school->wake_merge * fish->length * fish_rate(school, fish) / wake_most(school, LONG_MAX - 1);
+        of->per_moment = sqrt(2) / (two_pi * change);
         n_vortices += state->wake[f].n_vortex / WAKE_MERGE_EVENTS;
     }
 
@@ -196,7 +183,5 @@ enum status wake_merge(const struct school *school, struct state *state) {
     for (int f = 0; f < school->n_fish; f++) {
         if ((state->event + f) % WAKE_MERGE_EVENTS == 0) merge_wake(school, body, state, f);
     }
-
-    free(body);
-    return STATUS_OK;
+    arena_free(scratch);
 }

@@ -18,14 +18,13 @@
 #ifndef WAKE_MERGE_H
 #define WAKE_MERGE_H
 
-#include "base/status.h"
 #include "state/state.h"
 
 /* Every wake is searched for pairs once in WAKE_MERGE_EVENTS events, the wakes in turn. */
 enum { WAKE_MERGE_EVENTS = 8 };
 
 /* Merge pairs in the wakes of this turn, at the event of the state: after the removal of old vortices, before the
- * evaluation of new velocities. No-op without wake.merge. Fails with STATUS_MEMORY; no pair is then merged. */
-enum status wake_merge(const struct school *school, struct state *state);
+ * evaluation of new velocities. No-op without wake.merge. */
+void wake_merge(const struct school *school, struct state *state);
 
 #endif

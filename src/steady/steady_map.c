@@ -294,29 +294,13 @@ enum status steady_map_add(struct steady_map *map, int n, const struct steady_un
     return STATUS_OK;
 }
 
-struct saved {
-    struct state *state;
-    const struct school *school;
-};
-
-static void saved_release(void *object) {
-    const struct saved *const saved = object;
-    state_free(saved->state, saved->school);
-}
-
 enum status steady_map_save(struct arena *arena, const struct simulation *simulation, struct state **state) {
-    if (!*state) {
-        struct saved *saved;
-        NEW(arena, saved, 1);
-        saved->school = simulation->school;
-        TRY(state_create(&saved->state, saved->school));
-        arena_defer(arena, saved_release, saved);
-        *state = saved->state;
-    }
-    return state_table_copy(*state, simulation->state, simulation->school);
+    if (!*state) *state = state_create(arena, simulation->school);
+    state_table_copy(*state, simulation->state, simulation->school, true);
+    return STATUS_OK;
 }
 
 enum status steady_map_return(struct simulation *simulation, const struct state *state) {
-    TRY(state_table_copy(simulation->state, state, simulation->school));
+    state_table_copy(simulation->state, state, simulation->school, true);
     return renew_simulation(simulation);
 }

@@ -106,6 +106,7 @@ static const double least_step = 1e-4;
 static enum status growth_create(struct growth *growth) {
     const struct school *const school = growth->simulation->school;
     struct state *const state = growth->simulation->state;
+    TRY(flow_check_steady(school));
     struct arena *const arena = growth->arena =
         arena_create(growth->simulation->arena, "the equilibrium of the bodies");
     NEW(arena, growth->last, school->n_unknowns);

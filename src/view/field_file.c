@@ -129,20 +129,15 @@ static void make_points(struct arena *arena, struct field *field, const struct f
     }
 }
 
-static void field_release_flow(void *flow) {
-    flow_free(flow);
-}
-
 static enum status sum_field(struct arena *arena, struct field *field) {
-    struct flow *flow;
-    TRY(flow_create(&flow, field->row->school));
-    arena_defer(arena, field_release_flow, flow);
+    struct flow *const flow = flow_create(arena, field->row->school);
 
     // without markers all circulation was shed infinitely long ago
     int n_markers = 0;
     for (int f = 0; f < field->row->school->n_fish; f++) n_markers += field->row->state->wake[f].n_vortex;
     flow->is_steady = n_markers == 0;
-    TRY(flow_field(flow, field->row->state, &field->at));
+    if (flow->is_steady) TRY(flow_check_steady(field->row->school));
+    flow_field(flow, field->row->state, &field->at);
     for (int i = 0; i < field->at.n; i++) field->vorticity[i] = field->at.v_x[i] - field->at.u_y[i];
     return STATUS_OK;
 }

@@ -164,7 +164,7 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
         return status_fail(STATUS_FILE, "%s: fish %d has %g vortices", reading->file.path, f, count);
     }
     const int n = (int)count;
-    TRY(wake_resize(wake, n));
+    wake_resize(wake, n);
     TRY(field_read_values(reading, "wake_x", row, f, "vortex", n, true));
     separate(n, reading->buffer, wake->x, wake->y);
     TRY(field_read_values(reading, "wake_circulation", row, f, "vortex", n, false));
@@ -188,8 +188,8 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
 
 // ---- the whole
 
-static enum status field_read_case(const struct reading *reading, int n_assignments, const char *const *assignments,
-                                   struct field_row *row) {
+static enum status field_read_case(struct arena *arena, const struct reading *reading, int n_assignments,
+                                   const char *const *assignments, struct field_row *row) {
     int schema;
     TRY(netcdf_read_integer(&reading->file, "shoal_schema", 0, &schema));
     if (schema != RESULT_SCHEMA) {
@@ -199,7 +199,8 @@ static enum status field_read_case(const struct reading *reading, int n_assignme
     TRY(case_parse(&row->values, row->effective, strlen(row->effective), reading->file.path, NULL, n_assignments,
                    assignments));
     TRY(fish_school_create(&row->school, &row->values.school));
-    return state_create(&row->state, row->school);
+    row->state = state_create(arena, row->school);
+    return STATUS_OK;
 }
 
 static enum status field_read_row(struct arena *arena, struct reading *reading, double t, struct field_row *to) {
@@ -234,7 +235,6 @@ static enum status field_read_row(struct arena *arena, struct reading *reading, 
 
 static void field_row_release(void *object) {
     struct field_row *const row = object;
-    if (row->state) state_free(row->state, row->school);
     fish_school_free(row->school);
     case_free(&row->values);
     free(row->effective);
@@ -248,7 +248,7 @@ enum status field_row_read(struct arena *arena, struct field_row **row, const ch
     arena_defer(arena, field_row_release, *row);
     NEW(scratch, reading, 1);
     TRY(netcdf_open_in(scratch, &reading->file, path));
-    TRY(field_read_case(reading, n_assignments, assignments, *row));
+    TRY(field_read_case(arena, reading, n_assignments, assignments, *row));
     TRY(field_read_row(scratch, reading, t, *row));
     arena_free(scratch);
     return STATUS_OK;

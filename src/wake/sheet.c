@@ -2,11 +2,9 @@
 #include "wake/sheet.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 #include "body/rod.h"
 
 /* Gauss-Legendre on [0, 1]: eta = 0.0694318, 0.3300095, 0.6699905, 0.9305682 with weights w; xi = eta^2, part = 2 eta
@@ -36,52 +34,12 @@ double sheet_taper(const struct fish *fish, const double from_tail[2], const dou
     return fish->smoothing * (ratio > 1 ? 1 - exp(-ratio) : -expm1(-ratio));
 }
 
-// whether the smoothing is untapered for any tangent: the taper differs from 1 by exp(-ratio^2), 3e-14 for a ratio of
-// 5.6
-static int sheet_is_far(const struct fish *fish, const double from_tail[2]) {
-    static const double far = 5.5677643628300219;
-    const double length = fmax(fish->taper, fish->taper_beside);
-    return from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1] > far * length * length;
-}
-
-/* Beside the tail is x - s t with s = (x - x_tail) . t < 0. This point moves with the tail along t and, as the tangent
- * turns, dt = n (n.dX')/|X'|, by -((r.n) t + s n)/|X'| per n.dX'. */
-static struct nascent_end sheet_nascent_end(const double marker[2], const double tail[2],
-                                            const struct direction *tangent) {
-    struct nascent_end end;
-    const double r[2] = {marker[0] - tail[0], marker[1] - tail[1]};
-    const double s = fmin(0, edge_dot(r, tangent->t)), across = edge_dot(r, tangent->n);
-    end.is_overtaken = s < 0;
-    for (int k = 0; k < 2; k++) {
-        end.x[k] = marker[k] - s * tangent->t[k];
-        end.by_turn[k] = -(across * tangent->t[k] + s * tangent->n[k]) / tangent->length;
-        end.tangent[k] = tangent->t[k];
-        end.normal[k] = tangent->n[k];
-    }
-
-    return end;
-}
-
 void sheet_newest(const struct wake *wake, double interval, double tau, const double tail[2], double point[2]) {
     memcpy(point, tail, 2 * sizeof *point);
     if (wake->n_vortex > 0) wake_marker(wake, wake->n_vortex - 1, interval, tau, point);
 }
 
 // ---- points of stretches
-
-// both ends of a stretch at one time
-struct ends {
-    double newer[2], older[2];
-};
-
-static struct ends stretch_ends(const double *x, const double *y, int stretch) {
-    return (struct ends){.newer = {x[stretch + 1], y[stretch + 1]}, .older = {x[stretch], y[stretch]}};
-}
-
-// point at the fraction xi of the way from the newer to the older end
-static void stretch_point(const struct ends *ends, double xi, double point[2]) {
-    for (int i = 0; i < 2; i++) point[i] = (1 - xi) * ends->newer[i] + xi * ends->older[i];
-}
 
 // s of a point of the wake at this distance from the own tail along the sheet, m2
 static double sheet_leg(double depth, double distance) {
@@ -92,76 +50,27 @@ static double sheet_leg(double depth, double distance) {
     return depth * depth / 8 * (fourth < 40 ? -expm1(-fourth) : 1);
 }
 
-static void points_free(struct sheet_points *points) {
-    double *const owned[] = {points->xi,           points->part,   points->smoothing[0],
-                             points->smoothing[1], points->leg[0], points->leg[1]};
-    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
-    free(points->stretch);
-    sources_free(&points->sources);
-    *points = (struct sheet_points){0};
-}
-
-void sheet_free(struct sheet *sheet) {
-    points_free(&sheet->graded);
-    points_free(&sheet->middles);
-    for (int end = 0; end < 2; end++) {
-        double *const owned[] = {sheet->x[end], sheet->y[end], sheet->length[end]};
-        for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
-    }
-    free(sheet->label);
-    *sheet = (struct sheet){0};
-}
-
-static enum status points_reserve(struct sheet_points *points, int n) {
-    if (n <= points->capacity) return STATUS_OK;
-    const int capacity = n + n / 2;
-    points_free(points);
+static void points_reserve(struct arena *arena, struct sheet_points *points, int n) {
+    if (n <= points->capacity) return;
     double **const all[] = {&points->xi,           &points->part,   &points->smoothing[0],
                             &points->smoothing[1], &points->leg[0], &points->leg[1]};
-
-    TRY(MEMORY_NEW(points->stretch, capacity, "points of a free sheet"));
-    TRY(MEMORY_ARRAYS(all, capacity, "the points of a free sheet"));
-    points->capacity = capacity;
-    return STATUS_OK;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(arena, *all[i], n);
+    GROW(arena, points->stretch, n);
+    points->sources.arena = arena;
+    points->sources.n = 0;
+    sources_append(&points->sources, n);
+    points->capacity = n;
 }
 
-static enum status sheet_reserve(struct sheet *sheet, int n) {
-    if (n > sheet->capacity) {
-        const int capacity = n + n / 2;
-        sheet_free(sheet);
-        double **const all[] = {&sheet->x[0],  &sheet->x[1],      &sheet->y[0],     &sheet->y[1],
-                                &sheet->label, &sheet->length[0], &sheet->length[1]};
-        TRY(MEMORY_ARRAYS(all, capacity, "the markers of a free sheet"));
-        sheet->capacity = capacity;
-    }
-    TRY(points_reserve(&sheet->graded, n + 2 * SHEET_PAIRED + 4 * SHEET_PANEL));
-    return points_reserve(&sheet->middles, n + 2 * SHEET_PAIRED + 4 * SHEET_PANEL);
-}
-
-static void points_add(const struct sheet *from, struct sheet_points *points, int is_graded, const struct fish *fish,
-                       const struct wake *wake, double interval, int stretch, const double distance[2], double xi,
-                       double part) {
-    const int i = points->n_released++, newest = wake->n_vortex - 1;
-    points->stretch[i] = stretch;
-    points->xi[i] = xi;
-    points->part[i] = part;
-
-    for (int end = 0; end < 2; end++) {
-        const double tau = end * interval;
-        const struct ends at = stretch_ends(from->x[end], from->y[end], stretch);
-        double point[2];
-        stretch_point(&at, xi, point);
-        const double from_tail[2] = {point[0] - wake->x[newest] - tau * wake->tail_velocity[0],
-                                     point[1] - wake->y[newest] - tau * wake->tail_velocity[1]};
-
-        // middles are sources for other targets, with the full smoothing of the pair
-        points->smoothing[end][i] = 0;
-        if (is_graded) {
-            points->smoothing[end][i] =
-                sheet_is_far(fish, from_tail) ? fish->smoothing : sheet_taper(fish, from_tail, wake->tail_tangent);
-        }
-        points->leg[end][i] = sheet_leg(fish->strip_depth, distance[end] + xi * from->length[end][stretch]);
-    }
+void sheet_reserve(struct arena *arena, struct sheet *sheet, int n) {
+    if (sheet->arena && n <= sheet->capacity) return;
+    sheet->arena = arena;
+    sheet->capacity = n + n / 2;
+    double **const all[] = {&sheet->x[0],  &sheet->x[1],      &sheet->y[0],     &sheet->y[1],
+                            &sheet->label, &sheet->length[0], &sheet->length[1]};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(arena, *all[i], sheet->capacity);
+    points_reserve(arena, &sheet->graded, sheet->capacity + 2 * SHEET_PAIRED + 4 * SHEET_PANEL);
+    points_reserve(arena, &sheet->middles, sheet->capacity + 2 * SHEET_PAIRED + 4 * SHEET_PANEL);
 }
 
 // lengths of the stretches; returns the length of the sheet from the tail to the oldest marker
@@ -182,38 +91,50 @@ static double stretch_lengths(const struct wake *wake, double tau, const double 
     return sum;
 }
 
-static enum status points_finish(struct sheet_points *points, const struct fish *fish) {
-    points->sources.n = 0;
-    TRY(sources_append(&points->sources, points->n_released + points->n_nascent));
-    for (int i = 0; i < points->sources.n; i++) {
-        points->sources.half[i] = fish->strip_depth * fish->strip_depth / 32;
+static void points_add(const struct sheet *from, struct sheet_points *points, bool is_graded, const struct fish *fish,
+                       const struct wake *wake, double interval, int stretch, const double distance[2], double xi,
+                       double part) {
+    const int i = points->n_released++, newest = wake->n_vortex - 1;
+    points->stretch[i] = stretch;
+    points->xi[i] = xi;
+    points->part[i] = part;
+
+    for (int end = 0; end < 2; end++) {
+        const double tau = end * interval, *const x = from->x[end] + stretch, *const y = from->y[end] + stretch;
+        const double from_tail[2] = {(1 - xi) * x[1] + xi * x[0] - wake->x[newest] - tau * wake->tail_velocity[0],
+                                     (1 - xi) * y[1] + xi * y[0] - wake->y[newest] - tau * wake->tail_velocity[1]};
+
+        // beyond this square of the distance the taper differs from 1 by exp(-ratio^2) = 3e-14, for any tangent
+        const double taper = fmax(fish->taper, fish->taper_beside), far = 5.5677643628300219 * taper * taper;
+        const bool is_far = from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1] > far;
+
+        // middles are sources for other targets, with the full smoothing of the pair
+        points->smoothing[end][i] = 0;
+        if (is_graded) {
+            points->smoothing[end][i] = is_far ? fish->smoothing : sheet_taper(fish, from_tail, wake->tail_tangent);
+        }
+        points->leg[end][i] = sheet_leg(fish->strip_depth, distance[end] + xi * from->length[end][stretch]);
     }
-    return STATUS_OK;
 }
 
-enum status sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school,
-                        const struct wake *wake) {
-    const int n_stretches = wake->n_vortex > 0 ? wake->n_vortex - 1 : 0;
+void sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake) {
+    const bool is_sheet = school->shedding == SHEDDING_SHEET;
+    const int n_stretches = is_sheet && wake->n_vortex > 0 ? wake->n_vortex - 1 : 0;
     struct sheet_points *const graded = &sheet->graded, *const middles = &sheet->middles;
-    TRY(sheet_reserve(sheet, wake->n_vortex));
-    graded->n_released = middles->n_released = 0;
-    graded->n_nascent = SHEET_PANEL;
+    graded->n_released = 0;
+    middles->n_released = is_sheet ? 0 : wake->n_vortex;
+    graded->n_nascent = is_sheet ? SHEET_PANEL : 0;
     middles->n_nascent = 1;
 
-    if (school->shedding != SHEDDING_SHEET) {
-        graded->n_nascent = 0;
-        middles->n_released = wake->n_vortex;
-        return points_finish(middles, fish);
-    }
-
     // markers and stretches at both ends of the interval; distances from the tail along the sheet
-    double distance[2];
-    for (int end = 0; end < 2; end++) {
+    double distance[2] = {0, 0};
+    for (int end = 0; end < 2 && is_sheet; end++) {
         const double tau = end * school->interval;
         wake_places(wake, school->interval, tau, sheet->x[end], sheet->y[end]);
         distance[end] = stretch_lengths(wake, tau, sheet->x[end], sheet->y[end], sheet->length[end]);
     }
 
+    // more points for newer stretches
     sheet->n_single = n_stretches > SHEET_PAIRED ? n_stretches - SHEET_PAIRED : 0;
     for (int i = 0; i < n_stretches; i++) {
         const int age = n_stretches - i;
@@ -223,44 +144,56 @@ enum status sheet_build(struct sheet *sheet, const struct fish *fish, const stru
         for (int k = 0; k < n; k++) {
             const double xi = n == 1 ? 0.5 : n == 2 ? pair_xi[k] : panel_xi[k];
             const double part = n <= 2 ? 1.0 / n : panel_part[k];
-            points_add(sheet, graded, 1, fish, wake, school->interval, i, distance, xi, part);
+            points_add(sheet, graded, true, fish, wake, school->interval, i, distance, xi, part);
         }
 
         // the middles of old stretches are the points of both views: sheet_place copies the points
         if (i < sheet->n_single) {
             middles->n_released++;
         } else {
-            points_add(sheet, middles, 0, fish, wake, school->interval, i, distance, 0.5, 1);
+            points_add(sheet, middles, false, fish, wake, school->interval, i, distance, 0.5, 1);
         }
     }
 
-    TRY(points_finish(graded, fish));
-    return points_finish(middles, fish);
+    // the nascent stretch or vortex
+    for (int k = 0; k < graded->n_nascent; k++) {
+        graded->xi[graded->n_released + k] = panel_xi[k];
+        graded->part[graded->n_released + k] = panel_part[k];
+    }
+    middles->xi[middles->n_released] = is_sheet ? 0.5 : 0;
+    middles->part[middles->n_released] = 1;
+
+    struct sheet_points *const both[2] = {graded, middles};
+    for (int view = 0; view < 2; view++) {
+        struct sources *const sources = &both[view]->sources;
+        sources->n = 0;
+        sources_append(sources, both[view]->n_released + both[view]->n_nascent);
+        for (int i = 0; i < sources->n; i++) sources->half[i] = fish->strip_depth * fish->strip_depth / 32;
+    }
 }
 
-// set source i at the fraction xi of a stretch with the labels newer and older at its ends
-static void point_set(const struct sources *sources, int i, const struct ends *ends, double xi, double part,
+// set source i of a stretch with the labels newer and older at these ends
+static void point_set(const struct sheet_points *points, int i, const double newer_end[2], const double older_end[2],
                       double newer, double older) {
-    const double along = -(newer + xi * (older - newer)) * part;
-    double point[2];
-    stretch_point(ends, xi, point);
-
-    sources->x[i] = point[0];
-    sources->y[i] = point[1];
+    const struct sources *const sources = &points->sources;
+    const double xi = points->xi[i], part = points->part[i], along = -(newer + xi * (older - newer)) * part;
+    sources->x[i] = (1 - xi) * newer_end[0] + xi * older_end[0];
+    sources->y[i] = (1 - xi) * newer_end[1] + xi * older_end[1];
     sources->q[i] = part * (newer - older);
-    sources->dx[i] = along * (ends->older[0] - ends->newer[0]);
-    sources->dy[i] = along * (ends->older[1] - ends->newer[1]);
+    sources->dx[i] = along * (older_end[0] - newer_end[0]);
+    sources->dy[i] = along * (older_end[1] - newer_end[1]);
 }
 
-// points of the stretches from point first on
+// set the points of the stretches from point first on
 static void points_place(const struct sheet *sheet, const struct sheet_points *points, int first, double q) {
-    const struct sources *const sources = &points->sources;
+    const double *const x = sheet->x[0], *const y = sheet->y[0], *const label = sheet->label;
     for (int i = first; i < points->n_released; i++) {
-        const int stretch = points->stretch[i];
-        const struct ends ends = stretch_ends(sheet->x[0], sheet->y[0], stretch);
-        point_set(sources, i, &ends, points->xi[i], points->part[i], sheet->label[stretch + 1], sheet->label[stretch]);
+        const int k = points->stretch[i];
+        const double newer[2] = {x[k + 1], y[k + 1]}, older[2] = {x[k], y[k]};
+        point_set(points, i, newer, older, label[k + 1], label[k]);
     }
 
+    const struct sources *const sources = &points->sources;
     for (int i = first; i < points->n_released; i++) {
         const double smoothing = (1 - q) * points->smoothing[0][i] + q * points->smoothing[1][i];
         sources->square[i] = smoothing * smoothing;
@@ -313,38 +246,40 @@ void sheet_place(struct sheet *sheet, const struct school *school, const struct 
     points_place(sheet, &sheet->middles, sheet->n_single, q);
 }
 
-double sheet_xi(const struct sheet_points *points, int i) {
-    return points->n_nascent == 1 ? 0.5 : panel_xi[i];
-}
-
-double sheet_part(const struct sheet_points *points, int i) {
-    return points->n_nascent == 1 ? 1 : panel_part[i];
-}
-
 double sheet_place_nascent(struct sheet_points *points, const struct school *school, const struct wake *wake, double t,
                            double tau, const double tail[2], const struct direction *tangent, double shed) {
-    const int newest = wake->n_vortex - 1;
+    const int newest = wake->n_vortex - 1, first = points->n_released;
     if (school->shedding != SHEDDING_SHEET) {
         double at[2];
         wake_nascent(wake, tau, tail, at);
-        points->sources.x[points->n_released] = at[0];
-        points->sources.y[points->n_released] = at[1];
-        points->sources.q[points->n_released] = shed - wake->shed_before;
+        points->sources.x[first] = at[0];
+        points->sources.y[first] = at[1];
+        points->sources.q[first] = shed - wake->shed_before;
         return shed - wake->shed_before;
     }
 
-    const double older = newest >= 0 ? wake_newest(wake, school, t, tau) : wake->shed_before;
-    double marker[2];
-    sheet_newest(wake, school->interval, tau, tail, marker);
-    points->end =
-        tangent ? sheet_nascent_end(marker, tail, tangent) : (struct nascent_end){.x = {marker[0], marker[1]}};
-    const struct ends ends = {.newer = {tail[0], tail[1]}, .older = {points->end.x[0], points->end.x[1]}};
-    for (int i = 0; i < 2; i++) points->way[i] = ends.older[i] - tail[i];
+    struct wake_decay decay = {.wake = wake, .school = school, .t = t, .tau = tau, .q = tau / school->interval};
+    const double older = newest >= 0 ? wake_next_strength(&decay, newest) : wake->shed_before;
+    struct nascent_end *const end = &points->end;
+    *end = (struct nascent_end){.is_overtaken = 0};
+    sheet_newest(wake, school->interval, tau, tail, end->x);
 
-    for (int k = 0; k < points->n_nascent; k++) {
-        point_set(&points->sources, points->n_released + k, &ends, sheet_xi(points, k), sheet_part(points, k), shed,
-                  older);
+    // beside the tail is x - s t with s = (x - x_tail) . t < 0; this point moves with the tail along t and, as the
+    // tangent turns, dt = n (n.dX')/|X'|, by -((r.n) t + s n)/|X'| per n.dX'
+    if (tangent) {
+        const double r[2] = {end->x[0] - tail[0], end->x[1] - tail[1]};
+        const double s = fmin(0, edge_dot(r, tangent->t)), across = edge_dot(r, tangent->n);
+        end->is_overtaken = s < 0;
+        for (int k = 0; k < 2; k++) {
+            end->x[k] -= s * tangent->t[k];
+            end->by_turn[k] = -(across * tangent->t[k] + s * tangent->n[k]) / tangent->length;
+            end->tangent[k] = tangent->t[k];
+            end->normal[k] = tangent->n[k];
+        }
     }
+
+    for (int k = 0; k < 2; k++) points->way[k] = end->x[k] - tail[k];
+    for (int i = first; i < first + points->n_nascent; i++) point_set(points, i, tail, end->x, shed, older);
     return shed - older;
 }
 
@@ -353,26 +288,20 @@ static double steady_end(int panel) {
     return panel < 3 ? panel / 4.0 : panel - 2;
 }
 
-enum status sheet_place_steady(struct sheet_points *points, const struct fish *fish, const double tail[2],
-                               const double along[2], double shed, double reach) {
+void sheet_place_steady(struct sheet *sheet, struct sheet_points *points, const struct fish *fish, const double tail[2],
+                        const double along[2], double shed, double reach) {
     enum { NODES = 8, LEAST = 30 };
-    const double depth = fish->strip_depth, most = 1e5;
-    if (depth > 0 && !(reach <= most * depth)) {
-        return status_fail(STATUS_CASE,
-                           "%s: fish are up to %.3g m apart, %.3g depths; a steady wake has at most %g: move the fish "
-                           "closer together, or increase body.depth",
-                           fish->name, reach, reach / depth, most);
-    }
+    const double depth = fish->strip_depth;
     const int n_panels = depth > 0 ? (int)fmax(LEAST, ceil(reach / depth)) + 2 : 0;
     const int n = depth > 0 ? (n_panels + 1) * NODES : 0;
     struct sources *const sources = &points->sources;
     double node[NODES], weight[NODES];
     quadrature_legendre(NODES, node, weight);
-    TRY(points_reserve(points, n));
+    points_reserve(sheet->arena, points, n);
     points->n_released = 0;
     points->n_nascent = n;
     sources->n = 0;
-    TRY(sources_append(sources, n));
+    sources_append(sources, n);
 
     // behind the last end, where the legs act like 1/d^3, quadrature in 1/d
     for (int i = 0; i < n; i++) {
@@ -389,19 +318,14 @@ enum status sheet_place_steady(struct sheet_points *points, const struct fish *f
         sources->half[i] = depth * depth / 32;
         sources->leg[i] = sheet_leg(depth, distance);
     }
-    return STATUS_OK;
 }
 
-double sheet_steady_length(const struct sheet_points *points, int i) {
-    return points->part[i];
-}
-
-enum status sheet_markers(struct sources *sources, const struct fish *fish, const struct school *school,
-                          const struct wake *wake, double t, double nascent) {
+void sheet_markers(struct sources *sources, const struct fish *fish, const struct school *school,
+                   const struct wake *wake, double t, double nascent) {
     const int n = wake->n_vortex, first = sources->n;
-    TRY(sources_append(sources, n));
+    sources_append(sources, n);
     const struct sources *const to = sources;
-    if (n == 0) return STATUS_OK;
+    if (n == 0) return;
     memcpy(to->x + first, wake->x, (size_t)n * sizeof *to->x);
     memcpy(to->y + first, wake->y, (size_t)n * sizeof *to->y);
 
@@ -424,5 +348,4 @@ enum status sheet_markers(struct sources *sources, const struct fish *fish, cons
 
     // the nascent stretch has length 0 at the event: both halves act at the newest marker
     to->q[first + n - 1] += nascent;
-    return STATUS_OK;
 }

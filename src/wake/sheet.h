@@ -43,11 +43,12 @@ struct nascent_end {
 /* Points of all stretches, oldest stretch first, then the points of the nascent stretch. */
 struct sheet_points {
     int n_released, n_nascent, capacity;
-    /* fixed for an interval; source i lies at the fraction xi of the way from the newer to the older end of its stretch
-     * (n_released) */
-    int *stretch;
+    /* fixed for an interval: source i lies at the fraction xi of the way from the newer to the older end of its stretch
+     * (nascent point vortex: 0), with the fraction `part` of the circulation (legs of a steady wake: length of the
+     * legs of the point, m)                                                             (n_released + n_nascent) */
     double *xi, *part;
-    double *smoothing[2], *leg[2]; /* delta(d) and s at the start and at the end of the interval, m, m2 */
+    int *stretch;                  /*                                                              (n_released) */
+    double *smoothing[2], *leg[2]; /* delta(d) and s at the start and at the end of the interval, m, m2 (n_released) */
     struct sources sources;        /* at one time */
     struct nascent_end end;        /* of the nascent stretch */
     double way[2];                 /* from the tail to this end, m */
@@ -56,16 +57,18 @@ struct sheet_points {
 /* Two views of the wake of a fish. The oldest n_single stretches have the middle in both views; the points differ in
  * the smoothing. Point vortices are in middles only. */
 struct sheet {
+    struct arena *arena;
     struct sheet_points graded, middles;
     int n_single, capacity;
     /* workspace: markers at both ends of the interval or at one time, labels, lengths of stretches */
     double *x[2], *y[2], *label, *length[2];
 };
-void sheet_free(struct sheet *sheet);
 
-/* Select the points of the interval that starts at the event. Fails with STATUS_MEMORY. */
-enum status sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school,
-                        const struct wake *wake);
+/* Make room for a wake of n vortices or markers. */
+void sheet_reserve(struct arena *arena, struct sheet *sheet, int n);
+
+/* Select the points of the interval that starts at the event, after sheet_reserve. */
+void sheet_build(struct sheet *sheet, const struct fish *fish, const struct school *school, const struct wake *wake);
 
 /* Set the released points to the time tau after the event at time t. */
 void sheet_place(struct sheet *sheet, const struct school *school, const struct wake *wake, double t, double tau);
@@ -77,23 +80,16 @@ void sheet_place(struct sheet *sheet, const struct school *school, const struct 
 double sheet_place_nascent(struct sheet_points *points, const struct school *school, const struct wake *wake, double t,
                            double tau, const double tail[2], const struct direction *tangent, double shed);
 
-/* Nascent point i: fraction of the way from the tail to the newest marker (point vortex: 0), fraction of the
- * circulation. */
-double sheet_xi(const struct sheet_points *points, int i);
-double sheet_part(const struct sheet_points *points, int i);
-
 /* The wake of an equilibrium (doc/steady.md): two legs of circulation `shed` from the tail to infinity along the unit
  * vector `along`, as nascent points in place of all points; targets beside the legs are valid up to the distance reach
- * from the tail, m. Infinite span: no point. Fails with STATUS_MEMORY, or with STATUS_CASE for a reach above 1e5
- * depths. sheet_steady_length: length of the legs of point i, m. */
-enum status sheet_place_steady(struct sheet_points *points, const struct fish *fish, const double tail[2],
-                               const double along[2], double shed, double reach);
-double sheet_steady_length(const struct sheet_points *points, int i);
+ * from the tail, m. Infinite span: no point. */
+void sheet_place_steady(struct sheet *sheet, struct sheet_points *points, const struct fish *fish, const double tail[2],
+                        const double along[2], double shed, double reach);
 
 /* Append the markers as sources at markers, at the event at time t; nascent: circulation of the nascent stretch, which
- * has length 0. Fails with STATUS_MEMORY. */
-enum status sheet_markers(struct sources *sources, const struct fish *fish, const struct school *school,
-                          const struct wake *wake, double t, double nascent);
+ * has length 0. */
+void sheet_markers(struct sources *sources, const struct fish *fish, const struct school *school,
+                   const struct wake *wake, double t, double nascent);
 
 /* The newest marker tau after the event; the tail if there are no markers. */
 void sheet_newest(const struct wake *wake, double interval, double tau, const double tail[2], double point[2]);

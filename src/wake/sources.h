@@ -5,10 +5,11 @@
 #ifndef SOURCES_H
 #define SOURCES_H
 
-#include "base/status.h"
+#include "base/arena.h"
 
-/* All arrays (n), owned. */
+/* All arrays (n), of the arena of the owner. */
 struct sources {
+    struct arena *arena;
     int n, capacity;
     double *x, *y;   /* m */
     double *q;       /* m2 s-1 */
@@ -18,10 +19,7 @@ struct sources {
     double *square;  /* contribution of the source to e^2, m2 */
 };
 
-/* Append n sources, all values 0. On STATUS_MEMORY nothing is changed. */
-enum status sources_append(struct sources *sources, int n);
-
-/* Release the arrays. Accepts a zeroed list. */
-void sources_free(struct sources *sources);
+/* Append n sources, all values 0. */
+void sources_append(struct sources *sources, int n);
 
 #endif

@@ -2,11 +2,9 @@
 #include "wake/wake.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 
 enum { N_ARRAYS = 10 };
 
@@ -16,29 +14,16 @@ static void wake_list_arrays(struct wake *wake, double **array[N_ARRAYS]) {
     memcpy(array, all, sizeof all);
 }
 
-static enum status wake_reserve(struct wake *wake, int capacity) {
+static void wake_reserve(struct wake *wake, int capacity) {
     double **array[N_ARRAYS];
     wake_list_arrays(wake, array);
-    for (int i = 0; i < N_ARRAYS; i++) {
-        TRY(MEMORY_RESIZE(*array[i], capacity, "the vortices of a wake"));
-    }
-
+    for (int i = 0; i < N_ARRAYS; i++) GROW(wake->arena, *array[i], capacity);
     wake->capacity = capacity;
-    return STATUS_OK;
 }
 
-enum status wake_create(struct wake *wake, int capacity) {
-    *wake = (struct wake){0};
-    const enum status status = wake_reserve(wake, capacity > 0 ? capacity : 1);
-    if (status != STATUS_OK) wake_free(wake);
-    return status;
-}
-
-void wake_free(struct wake *wake) {
-    double **array[N_ARRAYS];
-    wake_list_arrays(wake, array);
-    for (int i = 0; i < N_ARRAYS; i++) free(*array[i]);
-    *wake = (struct wake){0};
+void wake_create(struct arena *arena, struct wake *wake, int capacity) {
+    *wake = (struct wake){.arena = arena};
+    wake_reserve(wake, capacity);
 }
 
 int wake_most(const struct school *school, long n_events) {
@@ -49,14 +34,13 @@ int wake_most(const struct school *school, long n_events) {
     return (int)fmin(fmin(in_a_lifetime, ever) + school->wake_spare, 2e9);
 }
 
-enum status wake_resize(struct wake *wake, int n) {
-    if (n > wake->capacity) TRY(wake_reserve(wake, n + n / 2));
+void wake_resize(struct wake *wake, int n) {
+    if (n > wake->capacity) wake_reserve(wake, n + n / 2);
     wake->n_vortex = n;
-    return STATUS_OK;
 }
 
-enum status wake_release(struct wake *wake, double x, double y, double circulation, double birth) {
-    if (wake->n_vortex == wake->capacity) TRY(wake_reserve(wake, 2 * wake->capacity));
+void wake_release(struct wake *wake, double x, double y, double circulation, double birth) {
+    if (wake->n_vortex == wake->capacity) wake_reserve(wake, 2 * wake->capacity);
     const int i = wake->n_vortex++;
     wake->version++;
 
@@ -66,7 +50,6 @@ enum status wake_release(struct wake *wake, double x, double y, double circulati
     wake->circulation[i] = circulation;
     wake->rate[i] = wake->rate_before[i] = 0;
     wake->birth[i] = birth;
-    return STATUS_OK;
 }
 
 // without a decay time a vortex of continuous shedding vanishes within the last interval of its lifetime
@@ -124,12 +107,6 @@ double wake_strength_within(const struct school *school, double age, double q) {
     if (age + school->interval <= age_of_decay(school)) return 1;
     const double now = wake_strength(school, age), next = wake_strength(school, age + school->interval);
     return now + q * (next - now);
-}
-
-double wake_newest(const struct wake *wake, const struct school *school, double t, double tau) {
-    const int i = wake->n_vortex - 1;
-    struct wake_decay decay = {.wake = wake, .school = school, .t = t, .tau = tau, .q = tau / school->interval};
-    return wake_next_strength(&decay, i);
 }
 
 void wake_places(const struct wake *wake, double interval, double tau, double *restrict x, double *restrict y) {
@@ -240,7 +217,7 @@ static enum status wake_make_spare(struct wake *wake, const struct school *schoo
                            school->wake_spare, wake->n_added, n);
     }
 
-    if (wake->n_vortex + n > wake->capacity) TRY(wake_reserve(wake, 2 * (wake->n_vortex + n)));
+    if (wake->n_vortex + n > wake->capacity) wake_reserve(wake, 2 * (wake->n_vortex + n));
     wake->n_added += n;
     wake->version++;
     return STATUS_OK;
@@ -263,7 +240,10 @@ enum status wake_add_vortex(struct wake *wake, const struct school *school, doub
 
     TRY(wake_make_spare(wake, school, wake->has_markers ? N_MARKERS : 1));
     wake->removed -= circulation;
-    if (!wake->has_markers || wake->n_vortex == 0) return wake_release(wake, x, y, circulation, t);
+    if (!wake->has_markers || wake->n_vortex == 0) {
+        wake_release(wake, x, y, circulation, t);
+        return STATUS_OK;
+    }
 
     // insert N_MARKERS markers behind marker i
     const int i = wake->n_vortex > BEHIND ? wake->n_vortex - 1 - BEHIND : 0;
@@ -292,7 +272,8 @@ enum status wake_break(struct wake *wake, const struct school *school, double t,
     if (!wake->has_markers || newest < 0) return STATUS_OK;
     if (!(hypot(tail[0] - wake->x[newest], tail[1] - wake->y[newest]) > 0)) return STATUS_OK;
     TRY(wake_make_spare(wake, school, 1));
-    return wake_release(wake, tail[0], tail[1], wake->circulation[newest], t);
+    wake_release(wake, tail[0], tail[1], wake->circulation[newest], t);
+    return STATUS_OK;
 }
 
 void wake_leave_behind(struct wake *wake, double shed) {

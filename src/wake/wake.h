@@ -14,10 +14,12 @@
 
 #include <stdbool.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "fish/fish.h"
 
 struct wake {
+    struct arena *arena;   /* of the owner: the state */
     unsigned long version; /* counter of changes of the vortices below; identifies derived data */
     int n_vortex, capacity;
     double *x, *y;               /* position at the last event, m                     (n_vortex) */
@@ -35,11 +37,8 @@ struct wake {
     double slip[2];                           /* velocity of the fluid relative to the tail at the last event, m s-1 */
 };
 
-/* Create an empty wake. Fails with STATUS_MEMORY. */
-enum status wake_create(struct wake *wake, int capacity);
-
-/* Free all memory of the wake. Accepts a zeroed wake. */
-void wake_free(struct wake *wake);
+/* Set to an empty wake. */
+void wake_create(struct arena *arena, struct wake *wake, int capacity);
 
 /* Maximum number of vortices of one fish during n_events events. */
 int wake_most(const struct school *school, long n_events);
@@ -48,8 +47,8 @@ int wake_most(const struct school *school, long n_events);
  * sheet. */
 void wake_set_tail(struct wake *wake, const double velocity[2], const double tangent[2]);
 
-/* Add a vortex at the end of the queue. A full wake grows. On STATUS_MEMORY the wake is unchanged. */
-enum status wake_release(struct wake *wake, double x, double y, double circulation, double birth);
+/* Add a vortex at the end of the queue. A full wake grows. */
+void wake_release(struct wake *wake, double x, double y, double circulation, double birth);
 
 /* Positions of all vortices or markers at the time tau after the last event (n_vortex). */
 void wake_places(const struct wake *wake, double interval, double tau, double *restrict x, double *restrict y);
@@ -80,14 +79,11 @@ double wake_lost(const struct wake *wake, const struct school *school, double t,
 /* Advance all vortices to the next event. */
 void wake_advance(struct wake *wake, double interval);
 
-/* Resize to n vortices with undefined values. Fails with STATUS_MEMORY. */
-enum status wake_resize(struct wake *wake, int n);
+/* Resize to n vortices; new ones have undefined values. */
+void wake_resize(struct wake *wake, int n);
 
 /* Position of vortex or marker i at the time tau after the last event. */
 void wake_marker(const struct wake *wake, int i, double interval, double tau, double position[2]);
-
-/* Label of the newest marker at the time tau after the last event at time t, less the decay, m2 s-1. */
-double wake_newest(const struct wake *wake, const struct school *school, double t, double tau);
 
 /* Circulation of vortex i; for a marker: half of both adjacent stretches. */
 double wake_circulation(const struct wake *wake, int i);
@@ -114,7 +110,7 @@ void wake_add_shed(struct wake *wake, double circulation);
  *     before:  ... i ---- i+1 ... n        after:  ... i - - - A=B - - - i' ---- i+1 ... n     i' = i
  *
  * Fails with STATUS_CASE if wake.spare_vortices is exhausted, or if removed circulation returns to the body
- * (wake.removed_circulation: dropped), and with STATUS_MEMORY; after a failure the wake is unchanged. */
+ * (wake.removed_circulation: dropped); after a failure the wake is unchanged. */
 enum status wake_add_vortex(struct wake *wake, const struct school *school, double t, double x, double y,
                             double circulation);
 

@@ -21,9 +21,9 @@ static double cpu_time(void) {
 }
 
 // wakes of 300 markers, 3 lengths long, side by side
-static struct sources wakes(int n) {
-    struct sources all = {0};
-    if (sources_append(&all, n) != STATUS_OK) abort();
+static struct sources wakes(struct arena *arena, int n) {
+    struct sources all = {.arena = arena};
+    sources_append(&all, n);
     for (int i = 0; i < n; i++) {
         all.x[i] = 0.01 * (i % 300);
         all.y[i] = i / 300 + 0.2 * sin(0.03 * i);
@@ -45,7 +45,7 @@ static double seconds_of(const struct kernel_pair *pair, const struct sources *a
         const double since = cpu_time();
         if (how == MUTUAL) kernel_induce_mutual(pair, all, &at);
         if (how == DIRECT || how == GRADIENT) kernel_induce(pair, all, (struct range){0, all->n}, &at);
-        if (how == BY_TREE && tree_induce(tree, pair, all, 1, 2.5e-8, 1, &at) != STATUS_OK) abort();
+        if (how == BY_TREE) tree_induce(tree, pair, all, 1, 2.5e-8, 1, &at);
         best = fmin(best, cpu_time() - since);
     }
     return best;
@@ -54,21 +54,20 @@ static double seconds_of(const struct kernel_pair *pair, const struct sources *a
 int main(void) {
     const struct kernel_pair pairs[] = {kernel_infinite.other(0, 0.01), kernel_finite.other(0.25, 0.01)};
     const char *const names[] = {"infinite", "finite"};
-    struct tree *tree;
-    if (tree_create(&tree) != STATUS_OK) return 1;
+    struct arena *const arena = arena_create(NULL, "the sums");
+    struct tree *const tree = tree_create(arena);
     printf("%-10s %9s %12s %12s %12s %12s   millions of interactions a second\n", "", "sources", "direct", "gradient",
            "mutual", "by tree");
     for (int k = 0; k < 2; k++) {
         for (int n = 300; n <= MOST; n = n < 1500 ? 1500 : 2 * n) {
-            struct sources all = wakes(n);
+            struct sources all = wakes(arena, n);
             printf("%-10s %9d", names[k], n);
             for (enum how how = DIRECT; how <= BY_TREE; how++) {
                 printf(" %12.0f", 1e-6 * n * n / seconds_of(&pairs[k], &all, how, tree));
             }
             puts("");
-            sources_free(&all);
         }
     }
-    tree_free(tree);
+    arena_free(arena);
     return 0;
 }

@@ -84,16 +84,15 @@ static double n_bound(const struct school *school) {
     return n;
 }
 
-enum status __real_flow_at_wake(struct flow *flow, const struct state *state);
-enum status __wrap_flow_at_wake(struct flow *flow, const struct state *state);
-enum status __wrap_flow_at_wake(struct flow *flow, const struct state *state) {
+void __real_flow_at_wake(struct flow *flow, const struct state *state);
+void __wrap_flow_at_wake(struct flow *flow, const struct state *state);
+void __wrap_flow_at_wake(struct flow *flow, const struct state *state) {
     const double since = cpu_time();
-    const enum status status = __real_flow_at_wake(flow, state);
+    __real_flow_at_wake(flow, state);
     add_time(WAKE, since);
     double n = 0;
     for (int f = 0; f < flow->school->n_fish; f++) n += state->wake[f].n_vortex;
     seen.interactions += n * (n + n_bound(flow->school) + flow->n_points);
-    return status;
 }
 
 enum status __real_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
@@ -136,9 +135,10 @@ static void must(enum status status) {
 // interactions per second of wakes on themselves, with the size of the wakes of the diamond, on one core
 static double best_rate(void) {
     enum { N = 1600, RUNS = 20 };
-    struct sources vortices = {0};
+    struct arena *const arena = arena_create(NULL, "vortices");
+    struct sources vortices = {.arena = arena};
     static double u[N], v[N];
-    must(sources_append(&vortices, N));
+    sources_append(&vortices, N);
     const struct kernel_pair pair = kernel_infinite.own(0, 0.04);
     const struct targets at = {.n = N, .x = vortices.x, .y = vortices.y, .u = u, .v = v};
     for (int i = 0; i < N; i++) {
@@ -152,7 +152,7 @@ static double best_rate(void) {
         kernel_induce_mutual(&pair, &vortices, &at);
         best = fmax(best, (double)N * N / (now() - since));
     }
-    sources_free(&vortices);
+    arena_free(arena);
     return best;
 }
 

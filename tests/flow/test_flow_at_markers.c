@@ -37,7 +37,7 @@ static void make_wakes(struct setup *setup) {
         const int last = fish->n_nodes - 1;
         const double tail[2] = {y[fish->at.x + last], y[fish->at.y + last]};
         const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
-        school_ok(wake_resize(wake, N_MARKERS));
+        wake_resize(wake, N_MARKERS);
         double label = 0;
         for (int i = 0; i < N_PAIRS; i++) {
             const double along = fish->length * random_in(setup, -0.6, 1.2);
@@ -88,7 +88,7 @@ static void feel(struct setup *setup, int body, int wake, struct felt *felt) {
         state->wake[f].version++;
     }
 
-    school_ok(flow_velocity(flow, state, state->t, state->y));
+    flow_velocity(flow, state, state->t, state->y);
     for (int f = 0; f < N_FISH; f++) {
         for (int c = 0; c < school->fish[f].n_control; c++) {
             felt->body_u[f][c] = flow->u[flow->points[f].first + c];
@@ -96,7 +96,7 @@ static void feel(struct setup *setup, int body, int wake, struct felt *felt) {
         }
     }
 
-    school_ok(flow_at_wake(flow, state));
+    flow_at_wake(flow, state);
     for (int f = 0; f < N_FISH; f++) {
         for (int i = 0; i < N_MARKERS; i++) {
             const int at = flow->wake_range[f].first + i;

@@ -4,7 +4,7 @@
 
 #include "flow/images.h"
 #include "flow/kernel.h"
-#include "near.h"
+#include "school.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -21,7 +21,7 @@ struct ring_field {
 };
 static void ring_field_of(const struct sources *rings, double span, int n_images, const struct image *image,
                           struct ring_field *field) {
-    struct sources images = {0};
+    struct sources images = {.arena = test_arena()};
     memset(field, 0, sizeof *field);
     for (int i = 0; i < N_RING_TARGETS; i++) {
         field->x[i] = 0.7 * (i / 2 - 4);
@@ -36,16 +36,15 @@ static void ring_field_of(const struct sources *rings, double span, int n_images
                                .u = field->u,
                                .v = field->v,
                                .div = field->div};
-    assert_int_equal(images_write(rings, n_images, image, &images), STATUS_OK);
+    images_write(rings, n_images, image, &images);
     kernel_induce(&pair, rings, (struct range){0, 1}, &at);
     kernel_induce(&pair, &images, (struct range){0, images.n}, &at);
-    sources_free(&images);
 }
 
 // a ring with half = span^2/8: all of T; leg: 0 for all targets
 static void ring_make(struct sources *rings, double span) {
-    *rings = (struct sources){0};
-    assert_int_equal(sources_append(rings, N_RING_TARGETS), STATUS_OK);
+    *rings = (struct sources){.arena = test_arena()};
+    sources_append(rings, N_RING_TARGETS);
     rings->n = 1;
     rings->x[0] = 0.1;
     rings->y[0] = 0.8;
@@ -65,9 +64,8 @@ TEST(rings_and_images_cause_no_flow_through_a_channel) {
         struct image *image;
         struct sources rings;
         struct ring_field field;
-        int n;
         ring_make(&rings, cases[i].depth / 2);
-        assert_int_equal(images_find(&channel, cases[i].depth, &image, &n), STATUS_OK);
+        const int n = images_find(test_arena(), &channel, cases[i].depth, &image);
         assert_int_equal(n, cases[i].n);
         ring_field_of(&rings, cases[i].depth / 2, n, image, &field);
         double through = 0, along = 0;
@@ -77,8 +75,6 @@ TEST(rings_and_images_cause_no_flow_through_a_channel) {
         }
         print_message("depth %g: %d images, flow through the walls %.2g of %.2g\n", cases[i].depth, n, through, along);
         BELOW(through, cases[i].bound * along);
-        free(image);
-        sources_free(&rings);
     }
 }
 
@@ -98,9 +94,8 @@ TEST(few_images_of_rings_are_the_sum_over_all) {
     for (size_t i = 0; i < sizeof depths / sizeof *depths; i++) {
         struct sources rings;
         struct ring_field sum, few;
-        int n;
         ring_make(&rings, depths[i] / 2);
-        assert_int_equal(images_find(&channel, depths[i], &image, &n), STATUS_OK);
+        const int n = images_find(test_arena(), &channel, depths[i], &image);
         ring_field_of(&rings, depths[i] / 2, 4 * MANY, all, &sum);
         ring_field_of(&rings, depths[i] / 2, n, image, &few);
 
@@ -111,8 +106,6 @@ TEST(few_images_of_rings_are_the_sum_over_all) {
             NEAR(few.v[k], sum.v[k], bound, 0);
             NEAR(few.div[k], sum.div[k], bound, 0);
         }
-        free(image);
-        sources_free(&rings);
     }
     free(all);
 }
@@ -123,24 +116,21 @@ TEST(few_images_of_rings_are_the_sum_over_all) {
  * and of the images. */
 static void induce(const struct walls *walls, const struct sources *vortices, double square, double of_themselves,
                    const struct targets *at) {
-    struct sources images = {0};
+    struct sources images = {.arena = test_arena()};
     struct image *image;
-    int n;
-    assert_int_equal(images_find(walls, 0, &image, &n), STATUS_OK);
-    assert_int_equal(images_write(vortices, n, image, &images), STATUS_OK);
+    const int n = images_find(test_arena(), walls, 0, &image);
+    images_write(vortices, n, image, &images);
     memset(at->u, 0, (size_t)at->n * sizeof *at->u);
     memset(at->v, 0, (size_t)at->n * sizeof *at->v);
     struct kernel_pair pair = kernel_infinite.other(0, square);
     kernel_induce(&pair, &images, (struct range){0, images.n}, at);
     pair.span = of_themselves;
     if (of_themselves > 0) kernel_induce(&pair, vortices, (struct range){0, vortices->n}, at);
-    sources_free(&images);
-    free(image);
 }
 
 static void make_vortex(struct sources *vortex, double x, double y) {
-    *vortex = (struct sources){0};
-    assert_int_equal(sources_append(vortex, 1), STATUS_OK);
+    *vortex = (struct sources){.arena = test_arena()};
+    sources_append(vortex, 1);
     vortex->x[0] = x;
     vortex->y[0] = y;
     vortex->q[0] = 1;
@@ -173,7 +163,6 @@ TEST(images_of_a_vortex_in_a_channel_are_the_closed_sum) {
             NEAR(v, want[1], cases[i].error, 1e-12);
         }
     }
-    sources_free(&vortex);
 }
 
 TEST(distances_are_those_from_the_nearest_wall) {
@@ -192,7 +181,6 @@ static double speed_of_one(const struct walls *walls, double y) {
     double u, v;
     make_vortex(&vortex, 0, y);
     induce(walls, &vortex, 1e-14, 0, &(struct targets){.n = 1, .x = vortex.x, .y = vortex.y, .u = &u, .v = &v});
-    sources_free(&vortex);
     NEAR(v, 0, 1e-15, 0);
     return u;
 }
@@ -208,8 +196,8 @@ TEST(a_vortex_goes_along_the_wall_at_the_classical_speed) {
 
 TEST(a_pair_that_meets_a_wall_parts_along_it) {
     // Lamb, 155: the path of each vortex is 1/x^2 + 1/d^2 = constant, d from the wall
-    struct sources pair = {0};
-    assert_int_equal(sources_append(&pair, 2), STATUS_OK);
+    struct sources pair = {.arena = test_arena()};
+    sources_append(&pair, 2);
     for (int i = 0; i < 2; i++) {
         pair.x[i] = i == 0 ? 0.1 : -0.1;
         pair.y[i] = 0.6 + below.y[0];
@@ -241,5 +229,4 @@ TEST(a_pair_that_meets_a_wall_parts_along_it) {
     }
     ABOVE(pair.x[0], 0.3);
     BELOW(pair.x[1], -0.3);
-    sources_free(&pair);
 }

@@ -2,10 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "failing_malloc.h"
 #include "flow/images.h"
 #include "flow/kernel.h"
-#include "near.h"
+#include "school.h"
 
 static const double two_pi = 6.28318530717958647692;
 
@@ -15,8 +14,8 @@ struct sum {
 };
 static struct sum induce(const struct kernel_pair *pair, const struct source *source, double x, double y, double half,
                          double leg, double square) {
-    struct sources rings = {0};
-    assert_int_equal(sources_append(&rings, 1), STATUS_OK);
+    struct sources rings = {.arena = test_arena()};
+    sources_append(&rings, 1);
     rings.x[0] = source->x;
     rings.y[0] = source->y;
     rings.q[0] = source->q;
@@ -50,7 +49,6 @@ static struct sum induce(const struct kernel_pair *pair, const struct source *so
     at.edge_gradient = sum.edge_gradient;
     at.edge_stride = 1;
     kernel_induce(pair, &rings, (struct range){0, 1}, &at);
-    sources_free(&rings);
     NEAR(plain.u, sum.u, 0, 1e-14);
     NEAR(plain.v, sum.v, 0, 1e-14);
     NEAR(plain.div, sum.div, 0, 1e-14);
@@ -193,15 +191,15 @@ TEST(a_source_has_no_spanwise_part_at_its_own_place) {
 
 // the wall is half way between a source and its image, and no fluid goes through
 TEST(a_ring_and_its_image_cause_no_flow_through_the_wall) {
-    struct sources rings = {0}, image = {0};
-    assert_int_equal(sources_append(&rings, 1), STATUS_OK);
+    struct sources rings = {.arena = test_arena()}, image = {.arena = test_arena()};
+    sources_append(&rings, 1);
     rings.x[0] = 0.1;
     rings.y[0] = 0.4;
     rings.q[0] = 0.7;
     rings.dx[0] = 0.2;
     rings.dy[0] = -0.3;
     rings.half[0] = 0.002;
-    assert_int_equal(images_write(&rings, 1, &(struct image){-1, -0.5, 1}, &image), STATUS_OK);
+    images_write(&rings, 1, &(struct image){-1, -0.5, 1}, &image);
     enum { N = 20 };
     double x[N], y[N], u[N] = {0}, v[N] = {0};
     for (int i = 0; i < N; i++) {
@@ -212,8 +210,6 @@ TEST(a_ring_and_its_image_cause_no_flow_through_the_wall) {
     kernel_induce(&own, &rings, (struct range){0, 1}, &at);
     kernel_induce(&own, &image, (struct range){0, 1}, &at);
     for (int i = 0; i < N; i++) NEAR(v[i], 0, 1e-17, 0);
-    sources_free(&rings);
-    sources_free(&image);
 }
 
 // the value number i of a sequence without a pattern, from -1 to 1
@@ -294,8 +290,8 @@ TEST(fused_variants_round_identically) {
 TEST(sources_cause_the_same_velocity_one_by_one_and_mutually) {
     // several tiles, and a last tile and block that are not full
     enum { N = 137 };
-    struct sources rings = {0};
-    assert_int_equal(sources_append(&rings, N), STATUS_OK);
+    struct sources rings = {.arena = test_arena()};
+    sources_append(&rings, N);
     double *const values[] = {rings.x, rings.y, rings.q, rings.dx, rings.dy, rings.half, rings.leg};
     for (int k = 0; k < 7; k++) {
         for (int i = 0; i < N; i++) values[k][i] = k < 5 ? number(k * N + i) : 0.01 + 0.01 * fabs(number(k * N + i));
@@ -315,17 +311,4 @@ TEST(sources_cause_the_same_velocity_one_by_one_and_mutually) {
             ABOVE(most, 0.1);
         }
     }
-    sources_free(&rings);
-}
-
-TEST(a_lack_of_memory_is_reported) {
-    struct sources rings = {0};
-    assert_int_equal(sources_append(&rings, 2), STATUS_OK);
-    rings.x[1] = 3;
-    n_until_failure = 0;
-    assert_int_equal(sources_append(&rings, 100), STATUS_MEMORY);
-    n_until_failure = -1;
-    assert_int_equal(rings.n, 2);
-    NEAR(rings.x[1], 3, 0, 0);
-    sources_free(&rings);
 }

@@ -2,9 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "failing_malloc.h"
 #include "flow/tree.h"
-#include "near.h"
+#include "school.h"
 #include "third_kernel.h"
 
 enum { PER_WAKE = 300, MOST_FISH = 256, MOST = PER_WAKE * MOST_FISH, SUMS = 8 };
@@ -65,9 +64,9 @@ static void one_place(const struct sources *rings, int i, int n, double depth) {
 typedef void distribution(const struct sources *rings, int i, int n, double depth);
 
 static struct sources fill(distribution *place, int n, double depth) {
-    struct sources rings = {0};
+    struct sources rings = {.arena = test_arena()};
     seed = 1;
-    assert_int_equal(sources_append(&rings, n), STATUS_OK);
+    sources_append(&rings, n);
     for (int i = 0; i < n; i++) place(&rings, i, n, depth);
     return rings;
 }
@@ -99,11 +98,11 @@ static struct targets targets_of(const struct sources *rings, int with_gradient,
 
 static double induce(const struct sources *rings, const struct kernel_pair *pair, double tolerance, int threads,
                      const struct targets *at) {
-    struct tree *tree;
-    assert_int_equal(tree_create(&tree), STATUS_OK);
-    assert_int_equal(tree_induce(tree, pair, rings, 1, tolerance, threads, at), STATUS_OK);
+    struct arena *const arena = arena_create(NULL, "the tree");
+    struct tree *const tree = tree_create(arena);
+    tree_induce(tree, pair, rings, 1, tolerance, threads, at);
     const double interactions = tree_interactions(tree);
-    tree_free(tree);
+    arena_free(arena);
     return interactions;
 }
 
@@ -172,7 +171,6 @@ TEST(errors_are_below_the_tolerance_and_not_far_below) {
                 if (smoothing > 0) keep_worse(&worst_gradient, gradient);
                 keep_worse(&largest[t], error);
             }
-            sources_free(&rings);
         }
         print_message("%-9s errors in tolerances: velocity and divergence %.3f, gradients %.2f\n", clouds[c].name,
                       worst, worst_gradient);
@@ -194,7 +192,6 @@ TEST(interactions_grow_almost_as_the_number_of_rings) {
         if (fish == MOST_FISH) NEAR(log(now / before) / log(4), 1, 0.25, 0);
         if (fish == MOST_FISH) BELOW(now, 0.1 * rings.n * rings.n);
         before = now;
-        sources_free(&rings);
     }
 }
 
@@ -205,15 +202,11 @@ TEST(the_bits_do_not_depend_on_threads_or_earlier_sums) {
     const struct targets at = targets_of(&rings, 1, &one), again = targets_of(&rings, 1, &three);
     induce(&rings, &pair, 1e-7, 1, &at);
 
-    struct tree *tree;
-    assert_int_equal(tree_create(&tree), STATUS_OK);
-    assert_int_equal(tree_induce(tree, &pair, &others, 1, 1e-4, 3, &again), STATUS_OK);
+    struct tree *const tree = tree_create(test_arena());
+    tree_induce(tree, &pair, &others, 1, 1e-4, 3, &again);
     memset(&three, 0, sizeof three);
-    assert_int_equal(tree_induce(tree, &pair, &rings, 1, 1e-7, 3, &again), STATUS_OK);
-    tree_free(tree);
+    tree_induce(tree, &pair, &rings, 1, 1e-7, 3, &again);
     assert_memory_equal(&three, &one, sizeof one);
-    sources_free(&rings);
-    sources_free(&others);
 }
 
 TEST(few_rings_and_few_targets_are_summed_too) {
@@ -229,7 +222,6 @@ TEST(few_rings_and_few_targets_are_summed_too) {
             kernel_induce(&pair, &rings, (struct range){0, rings.n}, &by_sum);
             for (int s = 0; s < 3; s++) NEAR_ARRAY(n, got.value[s], direct.value[s], 1e-6, 1e-13);
         }
-        sources_free(&rings);
     }
 }
 
@@ -241,33 +233,13 @@ TEST(the_tree_is_for_many_rings_and_a_tolerance) {
     assert_false(tree_is_faster(&kernel_infinite, 4800, 2e7, 1e-7));
 }
 
-TEST(a_lack_of_memory_adds_nothing) {
-    static struct sums got, zero;
-    const struct kernel_pair pair = kernel_finite.other(0.25, 0.0025);
-    struct sources rings = fill(wakes, 16 * PER_WAKE, 0.25);
-    const struct targets at = targets_of(&rings, 0, &got);
-    const int before = n_live;
-    enum status status = STATUS_MEMORY;
-    int n = 0;
-    for (; status != STATUS_OK; n++) {
-        struct tree *tree;
-        assert_int_equal(tree_create(&tree), STATUS_OK);
-        n_until_failure = n;
-        status = tree_induce(tree, &pair, &rings, 1, 1e-7, 1, &at);
-        n_until_failure = -1;
-        if (status != STATUS_OK) {
-            assert_int_equal(status, STATUS_MEMORY);
-            assert_memory_equal(&got, &zero, sizeof got);
-        }
-        tree_free(tree);
-        assert_int_equal(n_live, before);
-        BELOW(n, 200);
-    }
-
-    struct tree *tree;
-    n_until_failure = 0;
-    assert_int_equal(tree_create(&tree), STATUS_MEMORY);
-    n_until_failure = -1;
-    tree_free(tree);
-    sources_free(&rings);
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_are_below_the_tolerance_and_not_far_below),
+        cmocka_unit_test(interactions_grow_almost_as_the_number_of_rings),
+        cmocka_unit_test(the_bits_do_not_depend_on_threads_or_earlier_sums),
+        cmocka_unit_test(few_rings_and_few_targets_are_summed_too),
+        cmocka_unit_test(the_tree_is_for_many_rings_and_a_tolerance),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,9 @@
-/* test_tree_boxes.c: circles of boxes, threads, lack of memory. */
+/* test_tree_boxes.c: circles of boxes, threads. */
 #include <stdlib.h>
 #include <string.h>
 
-#include "failing_malloc.h"
 #include "flow/tree_boxes.h"
-#include "near.h"
+#include "school.h"
 
 enum { N = 3000, LEAF = 50 };
 
@@ -19,8 +18,8 @@ static void scatter(void) {
 }
 
 static struct tree_boxes filled(int leaf, int threads) {
-    struct tree_boxes boxes = {0};
-    assert_int_equal(tree_boxes_fill(&boxes, N, x, y, weight, leaf, threads), STATUS_OK);
+    struct tree_boxes boxes = {.arena = test_arena()};
+    tree_boxes_fill(&boxes, N, x, y, weight, leaf, threads);
     return boxes;
 }
 
@@ -47,21 +46,9 @@ static void assert_encloses(const struct tree_boxes *boxes) {
     }
 }
 
-TEST(a_lack_of_memory_leaves_no_box) {
-    scatter();
-    struct tree_boxes boxes = {0};
-    n_until_failure = 1;
-    assert_int_equal(tree_boxes_fill(&boxes, N, x, y, weight, LEAF, 1), STATUS_MEMORY);
-    n_until_failure = -1;
-    assert_int_equal(boxes.n, 0);
-    tree_boxes_clear(&boxes);
-}
-
 TEST(threads_make_the_same_boxes) {
     scatter();
     struct tree_boxes one = filled(LEAF, 1), more = filled(LEAF, 3);
     assert_encloses(&one);
     assert_same(&more, &one);
-    tree_boxes_clear(&one);
-    tree_boxes_clear(&more);
 }

@@ -83,11 +83,12 @@ static void read_state(const struct checkpoint *checkpoint) {
     if (status != STATUS_OK) return;
     struct school *school = NULL;
     struct state *state = NULL;
-    if (is_small(&values.school) && (status = fish_school_create(&school, &values.school)) == STATUS_OK &&
-        (status = state_create(&state, school)) == STATUS_OK)
+    if (is_small(&values.school) && (status = fish_school_create(&school, &values.school)) == STATUS_OK) {
+        state = state_create(NULL, school);
         status = checkpoint_set_state(checkpoint, state, school);
+    }
     demand_refusal(status);
-    state_free(state, school);
+    state_free(state);
     fish_school_free(school);
     case_free(&values);
 }

@@ -37,10 +37,10 @@ static int set_up(void **state) {
     snprintf(previous, sizeof previous, "%s/run.ckpt.previous", folder);
     school_build(&setup, SCHOOL);
     arena = arena_create(NULL, "a test");
-    for (int i = 0; i < 30; i++) school_ok(wake_release(&setup.state->wake[1], i, i + 0.5, 1, 2));
+    for (int i = 0; i < 30; i++) wake_release(&setup.state->wake[1], i, i + 0.5, 1, 2);
     setup.state->t = 0.6;
     setup.state->event = 30;
-    school_ok(state_reserve(setup.state, setup.school));
+    state_reserve(setup.state, setup.school);
     for (int f = 0; f < 2; f++) state_remember(&setup.state->history[f], &(struct sample){.speed = NAN, .heading = f});
     for (int i = 0; i < setup.school->n_unknowns; i++) setup.state->y[i] = 1.0 / (i + 1);
     school_ok(checkpoint_write(arena, path, previous, &written, setup.state, setup.school));
@@ -61,7 +61,6 @@ TEST_GROUP(set_up, tear_down)
 
 TEST(all_that_is_written_is_read) {
     struct checkpoint read;
-    struct state *fresh;
     school_ok(checkpoint_read(arena, &read, path));
     school_ok(checkpoint_check_program(&read));
     assert_string_equal(read.effective, written.effective);
@@ -75,7 +74,7 @@ TEST(all_that_is_written_is_read) {
     assert_memory_equal(&read.totals, &written.totals, sizeof read.totals);
     NEAR(read.wall_time, 1e5, 0, 0);
     NEAR(read.t, 0.6, 0, 0);
-    school_ok(state_create(&fresh, setup.school));
+    struct state *const fresh = state_create(NULL, setup.school);
     school_ok(checkpoint_set_state(&read, fresh, setup.school));
     for (int i = 0; i < state_table_n; i++) {
         const struct state_row *const row = &state_table[i];
@@ -88,7 +87,7 @@ TEST(all_that_is_written_is_read) {
                                 n * state_table_size(row));
         }
     }
-    state_free(fresh, setup.school);
+    state_free(fresh);
 }
 
 TEST(every_bit_that_flips_is_noticed) {
@@ -154,11 +153,10 @@ static void crafted(const char *section, const void *bytes, size_t n, const char
     school_ok(durable_replace(path, previous, writer.bytes, writer.n));
     enum status status = checkpoint_read(arena, &read, path);
     if (status == STATUS_OK) {
-        struct state *fresh;
-        school_ok(state_create(&fresh, setup.school));
+        struct state *const fresh = state_create(NULL, setup.school);
         status = checkpoint_check_program(&read);
         if (status == STATUS_OK) status = checkpoint_set_state(&read, fresh, setup.school);
-        state_free(fresh, setup.school);
+        state_free(fresh);
     }
     assert_int_equal(status, STATUS_FILE);
     if (!strstr(status_message(), reason)) fail_msg("%s instead of %s", status_message(), reason);

@@ -171,7 +171,7 @@ static void extend_and_compare(struct fixture *f, bool drop) {
 
 TEST_WITH(a_longer_run_begins_with_the_rows, set_up, tear_down) {
     struct fixture *const f = *state;
-    for (int g = 0; g < 2; g++) assert_int_equal(wake_release(&f->state->wake[g], 1, 2, 3 + g, 0), STATUS_OK);
+    for (int g = 0; g < 2; g++) wake_release(&f->state->wake[g], 1, 2, 3 + g, 0);
     extend_and_compare(f, true);
     unlink(f->path);
     extend_and_compare(f, false);

@@ -61,12 +61,11 @@ static void steps(struct simulation *simulation, int n) {
 static struct simulation *taken_up(const struct simulation *from, const char *text) {
     struct case_values values;
     struct school *school;
-    struct state *state;
     struct simulation *simulation;
     school_settings(&values, text);
     school_ok(fish_school_create(&school, &values.school));
-    school_ok(state_create(&state, school));
-    school_ok(state_table_copy(state, from->state, school));
+    struct state *const state = state_create(NULL, school);
+    state_table_copy(state, from->state, school, true);
     school_ok(simulate_take_up(NULL, &simulation, &values, school, state, &from->totals));
     case_free(&values);
     return simulation;

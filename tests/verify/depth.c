@@ -209,7 +209,7 @@ static void check_channel_fish(void) {
         y[i] = i % 2 == 0 ? -0.5 : 0.5;
     }
     const struct targets points = {.n = N, .x = x, .y = y, .u = u, .v = v, .u_x = u_x, .u_y = u_y, .v_x = v_x};
-    verify_ok(flow_field(one->residual->flow, one->state, &points));
+    flow_field(one->residual->flow, one->state, &points);
     for (int i = 0; i < N; i++) {
         through = fmax(through, fabs(v[i]));
         along = fmax(along, fabs(u[i]));
