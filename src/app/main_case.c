@@ -39,18 +39,15 @@ void main_print_notes(const struct request *request, const struct case_values *v
 enum status main_show(const struct request *request) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    char *text = NULL;
-    const enum status status = case_show(&values, &text);
-    if (status == STATUS_OK) fputs(text, stdout);
-    free(text);
+    fputs(case_show(request->arena, &values), stdout);
     case_free(&values);
-    return status;
+    return STATUS_OK;
 }
 
 enum status main_keys(const struct request *request) {
     const char *const word = request->positional;
     const int n = request->of_output ? result_kind_variables(N_LISTS, kinds, request->json, word, stdout)
-                                     : case_keys(stdout, request->json, word);
+                                     : case_keys(request->arena, stdout, request->json, word);
     if (n > 0 || request->json) return STATUS_OK;
     return status_fail(STATUS_CASE, "no %s has '%.60s' in name or meaning%s", request->of_output ? "variable" : "key",
                        word, request->of_output ? "" : "; see shoal keys, or shoal keys --output for results");

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/memory.h"
 
 /* Reserve more bytes and a zero. */
@@ -17,7 +18,8 @@ static bool text_reserve(struct text *text, size_t more) {
     if (text->failed) return false;
     if (text->length + more < text->capacity) return true;
     const size_t capacity = 2 * (text->length + more) + 64;
-    char *const grown = realloc(text->text, capacity);
+    if (text->arena) GROW(text->arena, text->text, capacity);
+    char *const grown = text->arena ? text->text : realloc(text->text, capacity);
 
     if (!grown) {
         text->failed = true;
@@ -89,7 +91,7 @@ enum status text_take(struct text *text, char **string, const char *what) {
 }
 
 void text_free(struct text *text) {
-    free(text->text);
+    if (!text->arena) free(text->text);
     *text = (struct text){0};
 }
 

@@ -10,11 +10,15 @@
 
 #include "base/status.h"
 
-/* Initialise to zero. After a failed allocation nothing more is added and failed is true. */
+struct arena;
+
+/* Initialise to zero, or to {.arena = arena}: the string then belongs to the arena, no addition fails, and text_free is
+ * not needed. Without an arena nothing more is added after a failed allocation, and failed is true. */
 struct text {
     char *text; /* ends with a zero; NULL before the first addition */
     size_t length, capacity;
     bool failed;
+    struct arena *arena;
 };
 
 /* Append (printf format). */

@@ -6,15 +6,18 @@
 #ifndef CASE_H
 #define CASE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "case/case_values.h"
 
 /* Read the case file at path, apply the n_assignments strings "path=value" in order, check everything and fill *values.
  * Fails with STATUS_FILE (cannot be read) or STATUS_CASE; the message then lists up to 20 errors in the form of a
- * compiler, each with a caret under the place. *values then owns nothing. Free with case_free. */
+ * compiler, each with a caret under the place. A case owns an arena and is a boundary of memory: fails with
+ * STATUS_MEMORY. After a failure *values owns nothing. Free with case_free. */
 enum status case_read(struct case_values *values, const char *path, int n_assignments, const char *const *assignments);
 
 /* Read a case from a string. origin: the name of the string in messages; folder: the folder of includes (NULL or "":
@@ -29,15 +32,15 @@ void case_free(struct case_values *values);
  * by --set, without a sweep. Fails with STATUS_CASE, naming the member, or with STATUS_MEMORY. Free with case_free. */
 enum status case_member(struct case_values *values, const struct case_values *study, int member);
 
-/* case_show.c: the complete case with the values of all keys, as a case file from which case_read reads the same bits.
- * The caller frees *text. Fails with STATUS_MEMORY. */
-enum status case_show(const struct case_values *values, char **text);
+/* case_show.c: the complete case with the values of all keys, in an arena, as a case file from which case_read reads
+ * the same bits. */
+char *case_show(struct arena *arena, const struct case_values *values);
 
 /* case_keys.c: print path, type, default, range, unit and meaning of every key, as text or as JSON (the source of
  * doc/cases.md and doc/case.schema.json). Tested by tests/app/test_command.sh and tests/app/test_manual.sh. With a
  * word, print only the keys with the word in path, synonyms, words or meaning (NULL: all keys). Returns the number of
  * printed keys. */
-int case_keys(FILE *stream, int as_json, const char *word);
+int case_keys(struct arena *arena, FILE *stream, bool as_json, const char *word);
 
 /* case_show.c: a commented case to start from, complete and valid. */
 extern const char case_template[];

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/text.h"
 #include "case/case.h"
 #include "case/case_merge.h"
@@ -13,7 +12,6 @@
 #include "case/sweep.h"
 #include "fish/fish_school.h"
 
-static const double pi = 3.14159265358979323846;
 static const double max_events = 1e9, max_vortices = 1e7 /* of one fish */;
 
 /* Within these bounds a double resolves positions to 1e-9 lengths and phases to 1e-6 cycles. */
@@ -43,11 +41,14 @@ __attribute__((format(printf, 4, 5))) static void complain_if(bool condition, co
     for (int i = 0; check->is_of_notes && i < check->errors->n && i < YAML_ERRORS_KEPT; i++) {
         const struct yaml_mark other = check->errors->kept[i].mark;
         const bool is_same = other.source == mark.source && other.line == mark.line && other.column == mark.column;
-        const char *const text = check->errors->kept[i].text;  // NULL without memory
-        const char *const name = text ? strstr(text, strchr(path, '.')) : NULL;
+        const char *const name = strstr(check->errors->kept[i].text, strchr(path, '.'));
         if (is_same && name && strstr(name, reason)) return;
     }
-    case_merge_complain(check->tree, path, check->index, reason, check->errors);
+    if (strncmp(path, "fish.", 5) == 0) {
+        yaml_errors_add(check->errors, mark, "fish[%d].%s: %s", check->index, path + 5, reason);
+    } else {
+        yaml_errors_add(check->errors, mark, "%s: %s", path, reason);
+    }
 }
 
 // ---- time and solver
@@ -68,12 +69,27 @@ static void check_time(const struct check *check) {
 
     complain_if(time->end / shedding > max_events, check, "time.end",
                 "%g events; the maximum is %g: increase time.shedding_interval", time->end / shedding, max_events);
-    if (time->end / shedding > max_events) return;
-    check_multiple(check, "time.end", time->end, interval, shedding);
-    check_multiple(check, "time.output_interval", time->output_interval, interval, shedding);
-    check_multiple(check, "time.checkpoint_interval", time->checkpoint_interval, interval, shedding);
-    check_multiple(check, "output.wake_interval", check->values->output.wake_interval, "time.output_interval",
-                   time->output_interval);
+    if (!(time->end / shedding > max_events)) {
+        check_multiple(check, "time.end", time->end, interval, shedding);
+        check_multiple(check, "time.output_interval", time->output_interval, interval, shedding);
+        check_multiple(check, "time.checkpoint_interval", time->checkpoint_interval, interval, shedding);
+        check_multiple(check, "output.wake_interval", check->values->output.wake_interval, "time.output_interval",
+                       time->output_interval);
+    }
+
+    // the steps of the method
+    const struct case_solver *const solver = &check->values->solver;
+    if ((int)solver->method < 0) return;  // not read: reported already
+    const struct method_properties *const method = &methods_table[solver->method];
+    complain_if(!method->has_adaptive_steps && solver->step == 0, check, "solver.method",
+                "needs a fixed step: set solver.step, such as %.9g (s)", shedding);
+    if (!(solver->step > 0)) return;
+    const double n = round(shedding / solver->step);
+    complain_if(!method->has_fixed_steps, check, "solver.step",
+                "%s has adaptive steps only: remove solver.step, or choose another solver.method", method->word);
+    complain_if(method->has_fixed_steps && (n < 1 || fabs(shedding - n * solver->step) > 1e-9 * shedding), check,
+                "solver.step", "%.9g s does not divide time.shedding_interval, %.9g s; the nearest divisor is %.9g",
+                solver->step, shedding, shedding / (n < 1 ? 1 : n));
 }
 
 /* Require every swept shedding interval to divide a time that the case gives and does not sweep. */
@@ -107,24 +123,6 @@ static void check_swept_interval(const struct check *check, const char *path, do
     }
 }
 
-static void check_solver(const struct check *check) {
-    const struct case_solver *const solver = &check->values->solver;
-    const double interval = check->values->school.shedding_interval;
-    if ((int)solver->method < 0) return;  // not read: reported already
-    const struct method_properties *const method = &methods_table[solver->method];
-
-    complain_if(!method->has_adaptive_steps && solver->step == 0, check, "solver.method",
-                "needs a fixed step: set solver.step, such as %.9g (s)", interval);
-    if (!(solver->step > 0)) return;
-
-    const double n = round(interval / solver->step);
-    complain_if(!method->has_fixed_steps, check, "solver.step",
-                "%s has adaptive steps only: remove solver.step, or choose another solver.method", method->word);
-    complain_if(method->has_fixed_steps && (n < 1 || fabs(interval - n * solver->step) > 1e-9 * interval), check,
-                "solver.step", "%.9g s does not divide time.shedding_interval, %.9g s; the nearest divisor is %.9g",
-                solver->step, interval, interval / (n < 1 ? 1 : n));
-}
-
 /* Refuse parts of the model that verlet cannot integrate: velocity-dependent forces, and unknowns besides positions. */
 static void check_verlet(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
@@ -148,31 +146,15 @@ static void check_verlet(const struct check *check) {
 
 // ---- wake and fluid
 
+/* Check lifetime and decay, and refuse keys without effect for wake.shedding. */
 static void check_wake(const struct check *check) {
     const struct wake_parameters *const wake = &check->values->school.wake;
+    const struct sheet_parameters *const sheet = &check->values->school.sheet;
     const double interval = check->values->school.shedding_interval;
     const double lifetime = wake->lifetime.seconds, decay = wake->decay.seconds;
     const double n_vortices = fmin(lifetime, check->values->time.end) / interval;
-    static const char no_beat[] = "is in beats, but no fish beats: give seconds";
-    const bool lacks_beat = wake->lifetime.beats > 0 && !(lifetime > 0);
-    complain_if(lacks_beat, check, "wake.lifetime", no_beat);
-    if (lacks_beat) return;
-
-    complain_if(wake->decay.beats > 0 && !(decay > 0), check, "wake.decay", no_beat);
-    complain_if(decay > lifetime, check, "wake.decay", "%g s is longer than wake.lifetime, %g s", decay, lifetime);
-    complain_if(lifetime < interval, check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", lifetime,
-                interval);
-    complain_if(n_vortices > max_vortices, check, "wake.lifetime",
-                "%g vortices in the wake of a fish; the maximum is %g", n_vortices, max_vortices);
-}
-
-/* Refuse keys without effect for wake.shedding, and inconsistent combinations. */
-static void check_shedding(const struct check *check) {
-    const struct wake_parameters *const wake = &check->values->school.wake;
-    const struct sheet_parameters *const sheet = &check->values->school.sheet;
     static const char only_sheet[] = "has an effect only with 'wake.shedding: sheet': remove the key";
     const bool is_sheet = wake->shedding == SHEDDING_SHEET, is_other = (int)wake->shedding >= 0 && !is_sheet;
-
     complain_if(is_sheet && sheet->kutta == KUTTA_RATE, check, "sheet.kutta",
                 "'wake.shedding: sheet' requires a sheet strength that vanishes at the tail: use 'edge', or another "
                 "wake.shedding");
@@ -181,6 +163,17 @@ static void check_shedding(const struct check *check) {
                 "wake.shedding");
     complain_if(is_other && wake->taper > 0, check, "wake.taper", only_sheet);
     complain_if(is_other && wake->taper_beside > 0, check, "wake.taper_beside", only_sheet);
+
+    static const char no_beat[] = "is in beats, but no fish beats: give seconds";
+    const bool lacks_beat = wake->lifetime.beats > 0 && !(lifetime > 0);
+    complain_if(lacks_beat, check, "wake.lifetime", no_beat);
+    if (lacks_beat) return;
+    complain_if(wake->decay.beats > 0 && !(decay > 0), check, "wake.decay", no_beat);
+    complain_if(decay > lifetime, check, "wake.decay", "%g s is longer than wake.lifetime, %g s", decay, lifetime);
+    complain_if(lifetime < interval, check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", lifetime,
+                interval);
+    complain_if(n_vortices > max_vortices, check, "wake.lifetime",
+                "%g vortices in the wake of a fish; the maximum is %g", n_vortices, max_vortices);
 }
 
 /* Limit the number of cycles, so that a double resolves the phase until time.end. */
@@ -195,26 +188,6 @@ static void check_place(const struct check *check, const char *path, double plac
     complain_if(fabs(place) > max_lengths * length, check, path,
                 "%g m is %g body lengths; the maximum is %g: beyond, rounding destroys the shape of the body", place,
                 fabs(place) / length, max_lengths);
-}
-
-/* Check the order and the number of walls; refuse a flow through the walls. */
-static void check_walls(const struct check *check) {
-    const struct school_parameters *const school = &check->values->school;
-    const struct fluid_parameters *const fluid = &school->fluid;
-    const struct number_list *const walls = &fluid->walls;
-    if (walls->n == 0) return;
-
-    double length = 0;
-    for (int f = 0; f < school->n_fish; f++) length = fmax(length, school->fish[f].length);
-    for (int i = 0; i < walls->n; i++) check_place(check, "fluid.walls", walls->value[i], length);
-    complain_if(walls->n > 2, check, "fluid.walls", "expects y of one or two walls; got %d numbers", walls->n);
-    complain_if(walls->n == 2 && walls->value[0] >= walls->value[1], check, "fluid.walls",
-                "the second wall must be above the first; %g is not above %g", walls->value[walls->n - 1],
-                walls->value[0]);
-    complain_if(fabs(fluid->velocity[1]) > 0, check, "fluid.velocity",
-                "flows through fluid.walls, which are along x: set the y component to 0");
-    complain_if(fabs(fluid->gust_amplitude) > 0, check, "fluid.gust.amplitude",
-                "the gust flows through fluid.walls: remove the gust or the walls");
 }
 
 /* Check the keys of a gust against the profile. */
@@ -261,16 +234,28 @@ static void check_gust(const struct check *check) {
     }
 }
 
-/* Refuse a gust and a viscosity without effect. */
+/* Check the order and the number of walls; refuse a flow through the walls, and a viscosity without effect. */
 static void check_fluid(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
-    check_gust(check);
-    check_walls(check);
+    const struct fluid_parameters *const fluid = &school->fluid;
+    const struct number_list *const walls = &fluid->walls;
+    const bool has_walls = walls->n > 0;
+    double length = 0, initial;
+    for (int f = 0; f < school->n_fish; f++) length = fmax(length, school->fish[f].length);
+    for (int i = 0; i < walls->n; i++) check_place(check, "fluid.walls", walls->value[i], length);
+    complain_if(walls->n > 2, check, "fluid.walls", "expects y of one or two walls; got %d numbers", walls->n);
+    if (walls->n == 2) {
+        complain_if(walls->value[0] >= walls->value[1], check, "fluid.walls",
+                    "the second wall must be above the first; %g is not above %g", walls->value[1], walls->value[0]);
+    }
+    complain_if(has_walls && fabs(fluid->velocity[1]) > 0, check, "fluid.velocity",
+                "flows through fluid.walls, which are along x: set the y component to 0");
+    complain_if(has_walls && fabs(fluid->gust_amplitude) > 0, check, "fluid.gust.amplitude",
+                "the gust flows through fluid.walls: remove the gust or the walls");
 
-    double initial;
     bool is_viscous = !text_number(case_table_row("fluid.viscosity")->initial, &initial);
     for (int f = 0; f < school->n_fish; f++) is_viscous |= school->fish[f].drag.friction != FRICTION_QUADRATIC;
-    complain_if(!is_viscous && fabs(school->fluid.viscosity - initial) > 0, check, "fluid.viscosity",
+    complain_if(!is_viscous && fabs(fluid->viscosity - initial) > 0, check, "fluid.viscosity",
                 "has no effect: all fish have 'drag.skin: quadratic' with the coefficient drag.tangential");
 }
 
@@ -295,51 +280,47 @@ static bool check_is_written(const struct check *check, const char *path) {
     return case_merge_value(check->tree, path, check->index, &is_default) != NULL;
 }
 
-/* Require a list of a table profile to have one value per edge; refuse the list for other profiles. */
-static void check_edge_list(const struct check *check, const char *path, const struct number_list *list) {
-    const int profile = (int)check->fish->body.profile, nodes = check->fish->nodes;
-    const bool is_read = list->n > 0 || !check_is_written(check, path);
-    complain_if(profile == PROFILE_TABLE && nodes > 0 && is_read && list->n != nodes - 1, check, path,
-                "'profile: table' needs one value per edge, %d for %d nodes; got %d", nodes - 1, nodes, list->n);
-    complain_if(profile >= 0 && profile != PROFILE_TABLE && list->n > 0, check, path,
-                "has an effect only with 'profile: table': remove the key");
-}
-
+/* Check the lists of the profile and the wave against each other, and the turn of the joints by the muscle. */
 static void check_body(const struct check *check) {
-    const struct body_parameters *const body = &check->fish->body;
+    const struct fish_parameters *const fish = check->fish;
+    const struct body_parameters *const body = &fish->body;
+    const struct wave_parameters *const wave = &fish->wave;
     const int profile = (int)body->profile;
-    check_edge_list(check, "fish.body.thickness_table", &body->thickness_table);
-    check_edge_list(check, "fish.body.depth_table", &body->depth_table);
+
+    // one value per edge with a table profile, no list for other profiles
+    const struct {
+        const char *path;
+        int n;
+    } lists[] = {{"fish.body.thickness_table", body->thickness_table.n},
+                 {"fish.body.depth_table", body->depth_table.n}};
+    for (int i = 0; i < 2; i++) {
+        const bool is_read = lists[i].n > 0 || !check_is_written(check, lists[i].path);
+        complain_if(profile == PROFILE_TABLE && fish->nodes > 0 && is_read && lists[i].n != fish->nodes - 1, check,
+                    lists[i].path, "'profile: table' needs one value per edge, %d for %d nodes; got %d",
+                    fish->nodes - 1, fish->nodes, lists[i].n);
+        complain_if(profile >= 0 && profile != PROFILE_TABLE && lists[i].n > 0, check, lists[i].path,
+                    "has an effect only with 'profile: table': remove the key");
+    }
     complain_if(profile >= 0 && profile != PROFILE_JOUKOWSKI && body->tail_thickness > 0, check,
                 "fish.body.tail_thickness", "has an effect only with 'profile: joukowski': remove the key");
-}
 
-/* Refuse wave.number and wave.wavelength together, and both with a table, which replaces the wave. */
-static void check_wave_form(const struct check *check) {
-    const struct number_list *const table = &check->fish->wave.table;
+    // a number, a wavelength or a table
     static const char number[] = "fish.wave.number", wavelength[] = "fish.wave.wavelength";
     const bool has_length = check_is_written(check, wavelength);
     complain_if(has_length && check_is_written(check, number), check, wavelength,
                 "sets wave.number too: remove wavelength or number");
-    complain_if(table->n == 1, check, "fish.wave.table", "needs at least two rows, from nose to tail");
-    complain_if(table->n > 0 && is_given(check, number), check, has_length ? wavelength : number,
+    complain_if(wave->table.n == 1, check, "fish.wave.table", "needs at least two rows, from nose to tail");
+    complain_if(wave->table.n > 0 && is_given(check, number), check, has_length ? wavelength : number,
                 "has no effect with wave.table: remove the key");
-}
 
-/* Limit the turning angle that the muscle prescribes for a joint: the curvature of a joint, 2 tan(angle/2), is singular
- * at pi. */
-static void check_turn(const struct check *check) {
-    const struct fish_parameters *const fish = check->fish;
-    const struct wave_parameters *const wave = &fish->wave;
+    // the curvature of a joint, 2 tan(angle/2), is singular at an angle of pi
     if (fish->nodes == 0 || fish->reference_nodes == 0) return;
-
     double envelope = 0, curvature = 0;
     for (int k = 1; k < fish->nodes - 1; k++) {
         const double q = (double)k / (fish->nodes - 1);
         envelope = fmax(envelope, fabs(wave->constant + wave->linear * q + wave->quadratic * q * q));
     }
     for (int i = 0; i < wave->table.n * wave->table.width; i++) curvature = fmax(curvature, fabs(wave->table.value[i]));
-
     const double bias = (int)fish->control.law > CONTROL_NONE ? fish->control.limit : fabs(fish->control.bias);
     const double of_wave = envelope * fabs(wave->amplitude) * (fish->reference_nodes - 1) / (fish->nodes - 1);
     const double turn = wave->table.n > 0 ? curvature / (fish->nodes - 1) + of_wave * bias : of_wave * (1 + bias);
@@ -428,37 +409,31 @@ static bool is_beyond_wall(const struct school_parameters *school, double y) {
     return false;
 }
 
-static void check_street(const struct check *check) {
-    const struct street_parameters *const street = &check->values->school.wake.street;
-    static const char path[] = "wake.street.vortices", spacing[] = "wake.street.spacing",
-                      circulation[] = "wake.street.circulation";
-    complain_if(street->n > 0 && street->spacing == 0, check, path, "needs a wake.street.spacing above 0");
-    complain_if(street->n > 0 && street->circulation == 0, check, path, "needs a wake.street.circulation");
-    complain_if(street->n == 0 && street->spacing > 0, check, spacing, "has no effect with wake.street.vortices 0");
-    complain_if(street->n == 0 && fabs(street->circulation) > 0, check, circulation,
-                "has no effect with wake.street.vortices 0");
-    complain_if(street->n == 0 && street->row_distance >= 0, check, "wake.street.row_distance",
-                "has no effect with wake.street.vortices 0");
-}
-
-/* Check the vortices in the fluid at the start. */
+/* Check the vortices and the street in the fluid at the start. */
 static void check_vortices(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
     const struct number_list *const vortices = &school->wake.vortices;
-    const char *const path = school->wake.street.n > 0 ? "wake.street.vortices" : "wake.vortices";
+    const struct street_parameters *const street = &school->wake.street;
+    static const char of_street[] = "wake.street.vortices", no_street[] = "has no effect with wake.street.vortices 0";
+    complain_if(street->n > 0 && street->spacing == 0, check, of_street, "needs a wake.street.spacing above 0");
+    complain_if(street->n > 0 && street->circulation == 0, check, of_street, "needs a wake.street.circulation");
+    complain_if(street->n == 0 && street->spacing > 0, check, "wake.street.spacing", no_street);
+    complain_if(street->n == 0 && fabs(street->circulation) > 0, check, "wake.street.circulation", no_street);
+    complain_if(street->n == 0 && street->row_distance >= 0, check, "wake.street.row_distance", no_street);
+    if (vortices->n == 0 && street->n == 0) return;
+
     complain_if(vortices->n > 0 && vortices->width != 3, check, "wake.vortices",
                 "needs rows of 3 numbers, x, y and circulation, not of %d", vortices->width);
-    check_street(check);
-    if (vortices->n == 0 && school->wake.street.n == 0) return;
     for (int i = 0; vortices->width == 3 && i < vortices->n; i++) {
         complain_if(is_beyond_wall(school, vortices->value[3 * i + 1]), check, "wake.vortices",
                     "vortex %d is beyond a wall of fluid.walls", i + 1);
     }
-
-    const struct street_parameters *const street = &school->wake.street;
     const double half = street->row_distance / 2, middle = street->position[1];
     complain_if(street->n > 0 && (is_beyond_wall(school, middle - half) || is_beyond_wall(school, middle + half)),
                 check, "wake.street.position", "a row of the street is beyond a wall of fluid.walls");
+
+    // the wake of the first fish
+    const char *const path = street->n > 0 ? of_street : "wake.vortices";
     complain_if(school->wake.removed_circulation == REMOVED_DROPPED, check, path,
                 "the removal of a vortex would add its circulation to the body: use "
                 "'wake.removed_circulation: retained'");
@@ -466,56 +441,24 @@ static void check_vortices(const struct check *check) {
         school->fish[0].force == FORCE_REACTIVE, check, path,
         "belongs to the wake of the first fish, and with 'force: reactive' that fish is not affected by its own "
         "wake: use 'force: pressure' and 'pressure.span: infinite'");
+    bool has_rings = false;
     for (int f = 0; f < school->n_fish; f++) {
-        if (school->fish[f].force != FORCE_PRESSURE || school->fish[f].span != SPAN_FINITE) continue;
-        complain_if(true, check, path, "a single vortex is not a ring: use 'pressure.span: infinite'");
-        return;
+        has_rings |= school->fish[f].force == FORCE_PRESSURE && school->fish[f].span == SPAN_FINITE;
     }
-}
-
-/* Check that the control points resolve a travelling gust: with fewer points the lift oscillates by 6 per cent while a
- * step passes (doc/verification.md, "Encounters"). */
-static void check_gust_points(const struct check *check) {
-    const struct fluid_parameters *const fluid = &check->values->school.fluid;
-    const int is_step = fluid->gust_profile == GUST_STEP, is_sine = fluid->gust_profile == GUST_SINE;
-    const double rise = is_step ? fluid->gust_gradient_distance : is_sine ? fluid->gust_wavelength / 2 : NAN;
-    const double least = 1 + ceil(6 * check->fish->length / rise - 1e-9);
-    complain_if(rise > 0 && fabs(fluid->gust_amplitude) > 0 && check->fish->sheet_points > 0 &&
-                    check->fish->sheet_points < least,
-                check, "fish.sheet_points", "a gust that changes within %g m needs at least %g points, not %d", rise,
-                least, check->fish->sheet_points);
-}
-
-/* Check the requirements of a finite span. */
-static void check_span(const struct check *check) {
-    const struct school_parameters *const school = &check->values->school;
-    const struct fish_parameters *const fish = check->fish;
-    static const char path[] = "fish.pressure.span";
-    int first = 0;
-    while (school->fish[first].force != FORCE_PRESSURE) first++;
-    const bool differs = school->fish[first].span != fish->span;
-    complain_if(differs, check, path, "fish[%d] has another span: use one span for all fish with 'force: pressure'",
-                first);
-    if (differs) return;
-
-    if (fish->span != SPAN_FINITE) return;
-    const int least = fish_sheet_least(fish);
-    complain_if(school->wake.removed_circulation == REMOVED_DROPPED, check, path,
-                "vortex rings must stay closed: use 'wake.removed_circulation: retained'");
-    complain_if(fish->sheet_points < least, check, "fish.sheet_points",
-                "a span of %.3g lengths needs at least %d points (1 + 5 L/w), not %d", 5.0 / (least - 1), least,
-                fish->sheet_points);
+    complain_if(has_rings, check, path, "a single vortex is not a ring: use 'pressure.span: infinite'");
 }
 
 /* Check the requirements of 'force: pressure', and refuse keys of the terms that the pressure replaces. */
 static void check_pressure(const struct check *check) {
     const struct fish_parameters *const fish = check->fish;
     const struct school_parameters *const school = &check->values->school;
+    const struct fluid_parameters *const fluid = &school->fluid;
+    static const char of_span[] = "fish.pressure.span", of_points[] = "fish.sheet_points";
 
     if (fish->force != FORCE_PRESSURE) {
         static const char only_pressure[] = "has an effect only with 'force: pressure': remove the key";
         static const char suction[] = "fish.pressure.suction", limit[] = "fish.pressure.suction_limit";
-        complain_if(fish->span == SPAN_FINITE, check, "fish.pressure.span", only_pressure);
+        complain_if(fish->span == SPAN_FINITE, check, of_span, only_pressure);
         complain_if(is_given(check, suction), check, suction, only_pressure);
         complain_if(is_given(check, limit), check, limit, only_pressure);
         complain_if(fish->sensors.n > 0, check, "fish.sensors",
@@ -525,18 +468,39 @@ static void check_pressure(const struct check *check) {
 
     complain_if(school->wake.shedding != SHEDDING_SHEET, check, "fish.force", "pressure needs 'wake.shedding: sheet'");
     complain_if(school->sheet.curve != BODY_LINE_SMOOTH, check, "fish.force", "pressure needs 'sheet.curve: smooth'");
-    complain_if(fish->nodes > 0 && fish->sheet_points < 2 * fish->nodes - 1, check, "fish.sheet_points",
+    complain_if(fish->nodes > 0 && fish->sheet_points < 2 * fish->nodes - 1, check, of_points,
                 "with 'force: pressure' the added mass of %d nodes needs at least %d points, not %d", fish->nodes,
                 2 * fish->nodes - 1, fish->sheet_points);
     complain_if(is_given(check, "fish.added_mass.coefficient"), check, "fish.added_mass.coefficient",
                 "has no effect with 'force: pressure': remove the key");
-    check_span(check);
-    check_gust_points(check);
-    complain_if(fish->sensors.n > 0 && (fabs(school->fluid.shear) > 0 || school->fluid.gust_profile != GUST_UNIFORM),
-                check, "fish.sensors",
+    complain_if(fish->sensors.n > 0 && (fabs(fluid->shear) > 0 || fluid->gust_profile != GUST_UNIFORM), check,
+                "fish.sensors",
                 "the pressure on a side needs a stream with a potential: remove fluid.shear and fluid.gust.profile");
     complain_if(has_moment(&fish->control), check, "fish.control.feedforward",
                 "is the moment of the drag, which differs from the moment of the pressure: use 0");
+
+    // one span; a finite span needs closed rings and enough points
+    int first = 0;
+    while (school->fish[first].force != FORCE_PRESSURE) first++;
+    const bool differs = school->fish[first].span != fish->span;
+    complain_if(differs, check, of_span, "fish[%d] has another span: use one span for all fish with 'force: pressure'",
+                first);
+    if (!differs && fish->span == SPAN_FINITE) {
+        const int least = fish_sheet_least(fish);
+        complain_if(school->wake.removed_circulation == REMOVED_DROPPED, check, of_span,
+                    "vortex rings must stay closed: use 'wake.removed_circulation: retained'");
+        complain_if(fish->sheet_points < least, check, of_points,
+                    "a span of %.3g lengths needs at least %d points (1 + 5 L/w), not %d", 5.0 / (least - 1), least,
+                    fish->sheet_points);
+    }
+
+    // with fewer points the lift oscillates by 6 per cent while a gust passes (doc/verification.md, "Encounters")
+    const bool is_step = fluid->gust_profile == GUST_STEP, is_sine = fluid->gust_profile == GUST_SINE;
+    const double rise = is_step ? fluid->gust_gradient_distance : is_sine ? fluid->gust_wavelength / 2 : NAN;
+    const double least = 1 + ceil(6 * fish->length / rise - 1e-9);
+    complain_if(rise > 0 && fabs(fluid->gust_amplitude) > 0 && fish->sheet_points > 0 && fish->sheet_points < least,
+                check, of_points, "a gust that changes within %g m needs at least %g points, not %d", rise, least,
+                fish->sheet_points);
 }
 
 // ---- control
@@ -559,10 +523,8 @@ static void check_control(const struct check *check) {
 
     // the times of the desired heading
     static const char path[] = "fish.control.desired_heading";
-    complain_if(heading->n > 0 &&
-                        heading->value[0]<0, check, path, "the first time must be at least 0 s, not %g s", heading->n> 0
-                    ? heading->value[0]
-                    : 0);
+    const double begin = heading->n > 0 ? heading->value[0] : 0;
+    complain_if(begin < 0, check, path, "the first time must be at least 0 s, not %g s", begin);
     for (int i = 1; i < heading->n; i++) {
         const double before = heading->value[2 * i - 2], time = heading->value[2 * i];
         complain_if(time <= before, check, path, "the times must increase; %g follows %g", time, before);
@@ -605,62 +567,37 @@ static void check_control(const struct check *check) {
 
 // ---- derived defaults
 
-/* The key that decides the frequency of the beat of the fish being checked. */
-static const char *beat_path(const struct check *check) {
-    const struct motion_parameters *const motion = &check->fish->motion;
-    const bool is_prescribed = (int)motion->prescribed > PRESCRIBED_NONE && motion->frequency > 0;
-    return is_prescribed ? "fish.motion.frequency" : "fish.wave.frequency";
-}
-
-/* The key that puts a derived number out of its range. */
-static const char *cause_of(const struct check *check, const struct key *key) {
-    const struct fish_parameters *const fish = check->fish;
-    if (strcmp(key->path, "fish.sheet_points") == 0) {
-        if (2 * fish->nodes - 1 > key->bounds.max) return "fish.nodes";
-        return fish->body.profile == PROFILE_TABLE ? "fish.body.depth_table" : key->cause;
-    }
-    return strcmp(key->cause, "fish.wave.frequency") == 0 ? beat_path(check) : key->cause;
-}
-
 /* Refuse a derived default out of the range of its key, at the place of its cause. */
 static void check_derived(const struct check *check, bool is_of_fish) {
+    const struct fish_parameters *const fish = check->fish;
+    const bool is_prescribed = (int)fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
         if (!key->cause || case_table_is_of_fish(key) != is_of_fish || check_is_written(check, key->path)) continue;
+
+        // the key that puts the number out of its range
+        const char *cause = key->cause;
+        if (strcmp(cause, "fish.wave.frequency") == 0 && is_prescribed) cause = "fish.motion.frequency";
+        if (strcmp(key->path, "fish.sheet_points") == 0) {
+            if (fish->body.profile == PROFILE_TABLE) cause = "fish.body.depth_table";
+            if (2 * fish->nodes - 1 > key->bounds.max) cause = "fish.nodes";
+        }
+
         const void *const field =
-            (const char *)(is_of_fish ? (const void *)check->fish : (const void *)check->values) + key->offset;
+            (const char *)(is_of_fish ? (const void *)fish : (const void *)check->values) + key->offset;
         const double value = key->type == INTEGER    ? *(const int *)field
                              : key->type == DURATION ? ((const struct duration *)field)->seconds
                                                      : *(const double *)field;
         const struct bounds *const bounds = &key->bounds;
         const bool is_low = value < bounds->min || (bounds->is_min_open && value <= bounds->min);
-        // NaN: not derived
-        if (isnan(value) || !check_is_written(check, cause_of(check, key)) ||
-            (!is_low && value <= bounds->max && !isinf(value)))
-            continue;
+        const bool is_out = is_low || value > bounds->max || isinf(value);  // false for a value that was not derived
+        if (!is_out || !check_is_written(check, cause)) continue;
 
-        struct text range = {0};
+        struct text range = {.arena = check->errors->arena};
         case_table_range(key, &range);
-        complain_if(true, check, cause_of(check, key),
-                    "the default of %s would be %.9g, and must be %s: change this value, or set %s", key->path, value,
-                    isinf(value) || !range.text ? "finite" : range.text, key->path);
-        text_free(&range);
+        complain_if(true, check, cause, "the default of %s would be %.9g, and must be %s: change this value, or set %s",
+                    key->path, value, isinf(value) || !range.text ? "finite" : range.text, key->path);
     }
-}
-
-/* The fish with the extreme beat, which decides the derived times of the school. */
-static int extreme_beat(const struct school_parameters *school) {
-    int extreme = 0;
-    double size = 0;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish_parameters *const fish = &school->fish[f];
-        const bool is_prescribed = (int)fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
-        const double frequency = is_prescribed ? fish->motion.frequency : fish->wave.frequency;
-        if (!(frequency > 0) || fabs(log(frequency)) <= size) continue;
-        size = fabs(log(frequency));
-        extreme = f;
-    }
-    return extreme;
 }
 
 static int by_name(const void *a, const void *b) {
@@ -670,15 +607,22 @@ static int by_name(const void *a, const void *b) {
     return order != 0 ? order : (one > other) - (one < other);
 }
 
-/* Refuse a name that an earlier fish has; in the order of the names, fish of one name are neighbours. */
-static void check_names(struct check *check) {
-    const struct school_parameters *const school = &check->values->school;
+void case_check(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors) {
+    const struct school_parameters *const school = &values->school;
+    struct check check = {.values = values, .tree = tree, .errors = errors};
+    check_time(&check);
+    check_swept_interval(&check, "time.end", values->time.end);
+    check_swept_interval(&check, "time.output_interval", values->time.output_interval);
+    check_vortices(&check);
+    check_wake(&check);
+    check_gust(&check);
+    check_fluid(&check);
+    complain_if(values->name && strchr(values->name, '/'), &check, "name", "cannot contain a '/'");
+
+    // refuse a name that an earlier fish has; in the order of the names, fish of one name are neighbours
     const struct fish_parameters **sorted;
-    if (MEMORY_NEW(sorted, school->n_fish, "the names of the fish") != STATUS_OK) {
-        check->errors->out_of_memory = true;
-        return;
-    }
     int n = 0, first = 0;
+    NEW(tree->arena, sorted, school->n_fish);
     for (int f = 0; f < school->n_fish; f++) {
         if (school->fish[f].name) sorted[n++] = &school->fish[f];
     }
@@ -686,33 +630,28 @@ static void check_names(struct check *check) {
     for (int i = 1; i < n; i++) {
         const bool is_same = strcmp(sorted[first]->name, sorted[i]->name) == 0;
         if (!is_same) first = i;
-        check->index = (int)(sorted[i] - school->fish);
-        complain_if(is_same, check, "fish.name", "fish[%d] has the same name, '%.60s'; names must be unique",
+        check.index = (int)(sorted[i] - school->fish);
+        complain_if(is_same, &check, "fish.name", "fish[%d] has the same name, '%.60s'; names must be unique",
                     (int)(sorted[first] - school->fish), sorted[i]->name);
     }
-    free(sorted);
-}
 
-void case_check(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors) {
-    struct check check = {.values = values, .tree = tree, .errors = errors};
-    check_time(&check);
-    check_swept_interval(&check, "time.end", values->time.end);
-    check_swept_interval(&check, "time.output_interval", values->time.output_interval);
-    check_solver(&check);
-    check_vortices(&check);
-    check_wake(&check);
-    check_shedding(&check);
-    check_fluid(&check);
-    complain_if(values->name && strchr(values->name, '/'), &check, "name", "cannot contain a '/'");
-
-    check_names(&check);
-    check.index = extreme_beat(&values->school);
-    check.fish = &values->school.fish[check.index];
-    if (values->school.n_fish > 0) check_derived(&check, false);
-    for (int f = 0; f < values->school.n_fish; f++) {
-        const struct fish_parameters *const fish = check.fish = &values->school.fish[f];
+    // the fish with the extreme beat decides the derived times of the school
+    double size = 0;
+    check.index = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct motion_parameters *const motion = &school->fish[f].motion;
+        const bool is_prescribed = (int)motion->prescribed > PRESCRIBED_NONE && motion->frequency > 0;
+        const double frequency = is_prescribed ? motion->frequency : school->fish[f].wave.frequency;
+        if (!(frequency > 0) || fabs(log(frequency)) <= size) continue;
+        size = fabs(log(frequency));
         check.index = f;
+    }
+    check.fish = &school->fish[check.index];
+    if (school->n_fish > 0) check_derived(&check, false);
 
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish_parameters *const fish = check.fish = &school->fish[f];
+        check.index = f;
         for (int i = 0; i < 2; i++) check_place(&check, "fish.start.position", fish->start_position[i], fish->length);
         check_place(&check, "fish.motion.heave", fish->motion.heave, fish->length);
         check_cycles(&check, "fish.wave.frequency", fish->wave.frequency);
@@ -720,8 +659,6 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
         check_derived(&check, true);
         check_verlet(&check);
         check_body(&check);
-        check_wave_form(&check);
-        check_turn(&check);
         check_drag(&check);
         check_pressure(&check);
         check_motion(&check);
@@ -735,8 +672,8 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
 static void note_radians(const struct check *check, const char *path, double degrees) {
     static const int parts[] = {12, 6, 4, 3, 2, 1};  // of half a turn
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-        const double part = pi / parts[i], n = round(degrees / part);
-        if (n == 0 || fabs(degrees) > 2.001 * pi || fabs(degrees - n * part) > 5e-4 * fabs(degrees)) continue;
+        const double part = M_PI / parts[i], n = round(degrees / part);
+        if (n == 0 || fabs(degrees) > 2.001 * M_PI || fabs(degrees - n * part) > 5e-4 * fabs(degrees)) continue;
         complain_if(true, check, path, "%.6g is in degrees; if radians are meant, write %.6g", degrees,
                     n * 180 / parts[i]);
         return;
@@ -762,12 +699,9 @@ static void note_fish(const struct check *check) {
                  stiffest = 1e12 /* diamond */;
     const int enough = 17;
 
-    complain_if(fish->length > longest ||
-                        fish->length<shortest, check, "fish.length", "%g m is %s than any swimmer; the unit is metres",
-                                     fish->length, fish->length>
-                            longest
-                    ? "longer"
-                    : "shorter");
+    const bool is_long = fish->length > longest, is_short = fish->length < shortest;
+    complain_if(is_long || is_short, check, "fish.length", "%g m is %s than any swimmer; the unit is metres",
+                fish->length, is_long ? "longer" : "shorter");
     complain_if(fish->body.modulus < softest, check, "fish.body.modulus",
                 "%g Pa is softer than jelly (1e3 Pa): the body follows the flow, not the muscle", fish->body.modulus);
     complain_if(fish->body.modulus > stiffest, check, "fish.body.modulus", "%g Pa is stiffer than diamond (1e12 Pa)",
@@ -793,22 +727,18 @@ static void note_fish(const struct check *check) {
 
 // ---- switched models
 
-/* True if a value selects another model than the initial value: another word, a term that vanishes or appears, or a
- * list that is empty or not. */
-static bool is_switched(const struct key *key, const struct case_values *values, const struct fish_parameters *fish,
-                        const struct case_values *initial) {
-    const bool is_of_fish = case_table_is_of_fish(key);
-    const void *const field = (const char *)(is_of_fish ? (const void *)fish : values) + key->offset;
-    const void *const other = (const char *)(is_of_fish ? (const void *)initial->school.fish : initial) + key->offset;
-    if (key->type == CHOICE) return *(const int *)field != *(const int *)other;
-    if (key->type != REAL) return ((const struct number_list *)field)->n > 0;
-    return (fabs(*(const double *)field) > 0) != (fabs(*(const double *)other) > 0);
-}
-
-/* The written key that switches the derived default of a key of the fish being checked; NULL: none. */
+/* The written key that switches the derived default of a key of the fish being checked to another model than the
+ * initial value: another word, a term that vanishes or appears, or a list that is empty or not; NULL: none. */
 static const struct key *switching_key(const struct check *check, const struct key *key,
                                        const struct case_values *initial) {
-    if (!is_switched(key, check->values, check->fish, initial)) return NULL;
+    const bool is_of_fish = case_table_is_of_fish(key);
+    const void *const field = (const char *)(is_of_fish ? (const void *)check->fish : check->values) + key->offset;
+    const void *const other = (const char *)(is_of_fish ? (const void *)initial->school.fish : initial) + key->offset;
+    const bool is_switched = key->type == CHOICE ? *(const int *)field != *(const int *)other
+                             : key->type == REAL
+                                 ? (fabs(*(const double *)field) > 0) != (fabs(*(const double *)other) > 0)
+                                 : ((const struct number_list *)field)->n > 0;
+    if (!is_switched) return NULL;
     if (check_is_written(check, key->path)) return key;
     const struct key *cause = NULL;
     for (int i = 0; key->follows && key->follows[i] && !cause; i++) {
@@ -825,7 +755,7 @@ static void note_switched(const struct check *check, const struct case_values *i
         if (!cause || cause == &case_table[first]) continue;
 
         // list all keys with this cause; the same list of a later key is skipped
-        struct text list = {0};
+        struct text list = {.arena = check->errors->arena};
         for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
             if (!key->follows || key == cause || switching_key(check, key, initial) != cause) continue;
             const bool is_of_fish = case_table_is_of_fish(key);
@@ -833,9 +763,7 @@ static void note_switched(const struct check *check, const struct case_values *i
             text_add(&list, "%s%s ", list.text ? ", " : "", key->path);
             case_value_write(&list, key, (const char *)base + key->offset);
         }
-        check->errors->out_of_memory |= list.failed;
         complain_if(list.text != NULL, check, cause->path, "changes the defaults of other keys: %s", list.text);
-        text_free(&list);
     }
 }
 

@@ -1,5 +1,4 @@
 /* case_keys.c: the table of keys as text and as JSON. */
-#include <math.h>
 #include <string.h>
 
 #include "base/methods.h"
@@ -19,84 +18,69 @@ static void describe_method(const struct method_properties *method, char *text, 
              method == &methods_table[METHOD_IDA] ? "1 to " : "", method->order, steps, method->help);
 }
 
-/* Whether a word is in path, synonyms, words or meaning of a key. */
-static bool is_about(const struct key *key, const char *word) {
-    if (!word || text_contains(key->path, word) || text_contains(key->meaning, word)) return true;
-    if (key->synonyms && text_contains(key->synonyms, word)) return true;
-    for (int i = 0; (key->words || key->type == METHOD) && case_table_word(key, i); i++) {
-        if (text_contains(case_table_word(key, i), word)) return true;
+static void print_text(FILE *stream, const struct key *key, const char *range) {
+    const bool is_of_fish = case_table_is_of_fish(key);
+    fprintf(stream, "%s%s: %s\n    %s%s%s%s%s; default: %s", is_of_fish ? "fish[i]" : "",
+            is_of_fish ? key->path + strlen("fish") : key->path, key->meaning, case_table_type(key),
+            *key->unit ? " in " : "", key->unit, *range ? ", " : "", range,
+            key->derived   ? key->derived
+            : key->initial ? key->initial
+                           : "required");
+    if (key->published) fprintf(stream, " (preset published: %s)", key->published);
+    fprintf(stream, "\n");
+
+    for (int i = 0; i < methods_n && key->type == METHOD; i++) {
+        char text[METHOD_BYTES];
+        describe_method(&methods_table[i], text, sizeof text);
+        fprintf(stream, "    %s: %s\n", methods_table[i].word, text);
     }
-    return false;
 }
 
-static int keys_print_text(FILE *stream, const char *about) {
+static void print_json(FILE *stream, const struct key *key, const char *range) {
+    fprintf(stream, "{\"path\": \"%s\"", key->path);
+    text_print_member(stream, ", ", "type", case_table_type(key));
+    text_print_member(stream, ", ", "default", key->initial);
+    text_print_member(stream, ", ", "derived", key->derived);
+    text_print_member(stream, ", ", "published", key->published);
+    text_print_member(stream, ", ", "range", range);
+    text_print_member(stream, ", ", "unit", key->unit);
+    text_print_member(stream, ", ", "meaning", key->meaning);
+
+    // "words": the meaning of each method
+    for (int i = 0; i < methods_n && key->type == METHOD; i++) {
+        char text[METHOD_BYTES];
+        describe_method(&methods_table[i], text, sizeof text);
+        text_print_member(stream, i > 0 ? ", " : ", \"words\": {", methods_table[i].word, text);
+    }
+    if (key->type == METHOD) fprintf(stream, "}");
+
+    // "orders" and "quantities": the names of quantities with and without orders of convergence
+    for (int q = 0; q < SWEEP_N_QUANTITIES && key->type == EXPECTATIONS; q++) {
+        const char *const before = q == 0 ? ", \"orders\": [" : q == SWEEP_N_ORDERS ? "], \"quantities\": [" : ", ";
+        fprintf(stream, "%s\"%s\"", before, sweep_quantities[q].name);
+    }
+    if (key->type == EXPECTATIONS) fprintf(stream, "]");
+    fprintf(stream, "}");
+}
+
+int case_keys(struct arena *arena, FILE *stream, bool as_json, const char *word) {
     int n = 0;
-    for (int k = 0; k < case_table_n; k++) {
-        const struct key *const key = &case_table[k];
-        if (!is_about(key, about)) continue;
+    for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
+        // the word may be in path, synonyms, words or meaning
+        bool is_about = !word || text_contains(key->path, word) || text_contains(key->meaning, word) ||
+                        (key->synonyms && text_contains(key->synonyms, word));
+        for (int i = 0; !is_about && (key->words || key->type == METHOD) && case_table_word(key, i); i++) {
+            is_about = text_contains(case_table_word(key, i), word);
+        }
+        if (!is_about) continue;
+
+        struct text range = {.arena = arena};
+        text_add(&range, "%s", "");
+        case_table_range(key, &range);
+        if (as_json) fprintf(stream, n > 0 ? ",\n " : "[");
+        (as_json ? print_json : print_text)(stream, key, range.text);
         n++;
-        const bool is_of_fish = case_table_is_of_fish(key);
-        struct text range = {0};
-        case_table_range(key, &range);
-        const bool has_range = range.length > 0;
-        fprintf(stream, "%s%s: %s\n    %s%s%s%s%s; default: %s", is_of_fish ? "fish[i]" : "",
-                is_of_fish ? key->path + strlen("fish") : key->path, key->meaning, case_table_type(key),
-                *key->unit ? " in " : "", key->unit, has_range ? ", " : "", has_range ? range.text : "",
-                key->derived   ? key->derived
-                : key->initial ? key->initial
-                               : "required");
-        if (key->published) fprintf(stream, " (preset published: %s)", key->published);
-        fprintf(stream, "\n");
-
-        for (int i = 0; i < methods_n && key->type == METHOD; i++) {
-            char text[METHOD_BYTES];
-            describe_method(&methods_table[i], text, sizeof text);
-            fprintf(stream, "    %s: %s\n", methods_table[i].word, text);
-        }
-        text_free(&range);
     }
+    if (as_json) fprintf(stream, n > 0 ? "]\n" : "[]\n");
     return n;
-}
-
-static int keys_print_json(FILE *stream, const char *about) {
-    int n = 0;
-    for (int k = 0; k < case_table_n; k++) {
-        const struct key *const key = &case_table[k];
-        if (!is_about(key, about)) continue;
-        struct text range = {0};
-        case_table_range(key, &range);
-        fprintf(stream, "%s{\"path\": \"%s\"", n++ > 0 ? ",\n " : "[", key->path);
-        text_print_member(stream, ", ", "type", case_table_type(key));
-        text_print_member(stream, ", ", "default", key->initial);
-        text_print_member(stream, ", ", "derived", key->derived);
-        text_print_member(stream, ", ", "published", key->published);
-        text_print_member(stream, ", ", "range", range.text ? range.text : "");
-        text_print_member(stream, ", ", "unit", key->unit);
-        text_print_member(stream, ", ", "meaning", key->meaning);
-
-        // "words": the meaning of each method
-        for (int i = 0; i < methods_n && key->type == METHOD; i++) {
-            char text[METHOD_BYTES];
-            describe_method(&methods_table[i], text, sizeof text);
-            text_print_member(stream, i > 0 ? ", " : ", \"words\": {", methods_table[i].word, text);
-        }
-        if (key->type == METHOD) fprintf(stream, "}");
-
-        // "orders" and "quantities": the names of quantities with and without orders of convergence
-        for (int q = 0; q < SWEEP_N_QUANTITIES && key->type == EXPECTATIONS; q++) {
-            const char *const before = q == 0 ? ", \"orders\": [" : q == SWEEP_N_ORDERS ? "], \"quantities\": [" : ", ";
-            fprintf(stream, "%s\"%s\"", before, sweep_quantities[q].name);
-        }
-        if (key->type == EXPECTATIONS) fprintf(stream, "]");
-
-        fprintf(stream, "}");
-        text_free(&range);
-    }
-
-    fprintf(stream, n > 0 ? "]\n" : "[]\n");
-    return n;
-}
-
-int case_keys(FILE *stream, int as_json, const char *word) {
-    return as_json ? keys_print_json(stream, word) : keys_print_text(stream, word);
 }

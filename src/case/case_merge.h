@@ -12,23 +12,21 @@
 #include "case/yaml_tree.h"
 
 struct case_tree {
+    struct arena *arena;    /* of nodes and sources */
     struct yaml_node *root; /* a map; NULL if something could not be read */
     int n_sources;
     struct yaml_source **source; /* the case file first */
 };
 
-/* Read a case from a file, or from a string. origin: the name of the string in messages; folder: the folder of the
- * includes (NULL or "": the working directory). Zero the tree before. Defects of the case are added to errors, and
- * tree->root is then NULL. Fails with STATUS_FILE (the case file cannot be read) or STATUS_MEMORY only. */
+/* Read a case from a file, or from a string, into a tree that has an arena only. origin: the name of the string in
+ * messages; folder: the folder of the includes (NULL or "": the working directory). Defects of the case are added to
+ * errors, and tree->root is then NULL. Fails with STATUS_FILE if the case file cannot be read. */
 enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors);
-enum status case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
-                                 const char *folder, struct yaml_errors *errors);
+void case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
+                          const char *folder, struct yaml_errors *errors);
 
-/* Apply an assignment "fish[0].nodes=9" to the tree. Fails with STATUS_MEMORY only. */
-enum status case_merge_assign(struct case_tree *tree, const char *assignment, struct yaml_errors *errors);
-
-/* Release the tree and zero *tree. */
-void case_merge_free(struct case_tree *tree);
+/* Apply an assignment "fish[0].nodes=9" to the tree. */
+void case_merge_assign(struct case_tree *tree, const char *assignment, struct yaml_errors *errors);
 
 /* The number of fish, and the node at a path ("time.end", "fish.nodes") for one fish (ignored for other paths): among
  * the keys of the fish or, with *is_default, under defaults.fish; NULL if absent. */
@@ -37,9 +35,5 @@ const struct yaml_node *case_merge_value(const struct case_tree *tree, const cha
 
 /* The place of a path for messages: the value, or the innermost section present in the case. */
 struct yaml_mark case_merge_mark(const struct case_tree *tree, const char *path, int fish);
-
-/* Add "fish[2].nodes: REASON" at that place to a list of errors. */
-void case_merge_complain(const struct case_tree *tree, const char *path, int fish, const char *reason,
-                         struct yaml_errors *errors);
 
 #endif

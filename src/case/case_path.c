@@ -30,16 +30,13 @@ static const struct {
      "'laminar'"},
 };
 
-static int case_path_smaller(int a, int b) {
-    return a < b ? a : b;
-}
-
 /* The smallest distance of a word to any of some words separated by blanks. */
 static int distance_to_any(const char *word, const char *words) {
     int distance = INT_MAX;
     while (words && *words) {
         const size_t length = strcspn(words, " ");
-        distance = case_path_smaller(distance, text_distance(word, strlen(word), words, length));
+        const int one = text_distance(word, strlen(word), words, length);
+        if (one < distance) distance = one;
         words += length + strspn(words + length, " ");
     }
     return distance;
@@ -58,22 +55,29 @@ static int remoteness_of(const char *section, const char *from) {
     return is_in_fish(section) && is_in_fish(from) ? 2 : 3;
 }
 
-/* Compare the word of a path that ends at end with the best candidate; keep the nearer one. */
-static void keep_nearer(struct candidate *best, const struct key *key, size_t end, const char *section,
-                        const char *word) {
-    size_t begin = end;
-    while (begin > 0 && key->path[begin - 1] != '.') begin--;
-    struct candidate one = {{0}, {0}, INT_MAX, 0};
-    if (end - begin > WORD || begin > sizeof one.section) return;
-    memcpy(one.word, key->path + begin, end - begin);
-    if (begin > 0) memcpy(one.section, key->path, begin - 1);
-
-    one.distance = text_distance(word, strlen(word), one.word, strlen(one.word));
-    const bool is_leaf = key->path[end] == '\0';
-    if (is_leaf) one.distance = case_path_smaller(one.distance, distance_to_any(word, key->synonyms));
-    one.remoteness = remoteness_of(one.section, section);
-    const bool is_nearer = one.distance < best->distance;
-    if (is_nearer || (one.distance == best->distance && one.remoteness < best->remoteness)) *best = one;
+/* The word of the table nearest to a word of the user; of equally near ones the least remote. */
+static struct candidate find_nearest(const char *section, const char *word) {
+    struct candidate best = {{0}, {0}, INT_MAX, INT_MAX};
+    for (int i = 0; i < case_table_n; i++) {
+        const char *const path = case_table[i].path;
+        size_t begin = 0;
+        for (size_t end = 1; end <= strlen(path); end++) {
+            if (path[end] != '.' && path[end] != '\0') continue;
+            struct candidate one = {{0}, {0}, INT_MAX, 0};
+            if (end - begin <= WORD && begin <= sizeof one.section) {
+                memcpy(one.word, path + begin, end - begin);
+                if (begin > 0) memcpy(one.section, path, begin - 1);
+                one.distance = text_distance(word, strlen(word), one.word, strlen(one.word));
+                const int of_synonym = path[end] == '\0' ? distance_to_any(word, case_table[i].synonyms) : INT_MAX;
+                if (of_synonym < one.distance) one.distance = of_synonym;
+                one.remoteness = remoteness_of(one.section, section);
+                const bool is_nearer = one.distance < best.distance;
+                if (is_nearer || (one.distance == best.distance && one.remoteness < best.remoteness)) best = one;
+            }
+            begin = end + 1;
+        }
+    }
+    return best;
 }
 
 /* Add a section as users write it: "fish[2].body" or "time". */
@@ -92,96 +96,68 @@ static void add_section(struct text *hint, const char *section, const char *owne
     }
 }
 
-/* List the words of a section. */
-static void add_words(struct text *hint, const char *section) {
-    const size_t here = section[0] ? strlen(section) + 1 : 0;
-    size_t last_length = 0;
-    const char *last = "";
-    text_add(hint, "; known keys:");
-
-    for (int i = 0; i < case_table_n; i++) {
-        const char *const path = case_table[i].path;
-        if (here > 0 && (strncmp(path, section, here - 1) != 0 || path[here - 1] != '.')) continue;
-        const size_t length = strcspn(path + here, ".");
-        const bool is_same = length == last_length && strncmp(path + here, last, length) == 0;
-        if (!is_same) text_add(hint, "%s %.*s", last_length ? "," : "", (int)length, path + here);
-        last = path + here;
-        last_length = length;
-    }
-}
-
-/* Copy the section of row i of the table if the row has the word and the section this remoteness; returns the length,
- * else 0. */
-static size_t section_with(char *section, size_t size, int i, const char *word, const char *from, int remoteness) {
-    const char *const dot = strrchr(case_table[i].path, '.');
-    if (!dot || strcmp(dot + 1, word) != 0) return 0;
-    snprintf(section, size, "%.*s", (int)(dot - case_table[i].path), case_table[i].path);
-    return remoteness_of(section, from) == remoteness ? strlen(section) : 0;
-}
-
 /* Add all sections with the word and the remoteness of the best candidate: "fish[0].wave or fish[0].motion". */
 static void add_sections(struct text *hint, const struct candidate *best, const char *from, const char *owner) {
-    char section[sizeof best->section];
+    struct text all = {.arena = hint->arena};
     int n = 0;
     for (int i = 0; i < case_table_n; i++) {
-        n += section_with(section, sizeof section, i, best->word, from, best->remoteness) > 0;
-    }
-    if (n < 2) {
-        add_section(hint, best->section, owner);
-        return;
-    }
-
-    for (int i = 0, k = 0; i < case_table_n; i++) {
-        if (section_with(section, sizeof section, i, best->word, from, best->remoteness) == 0) continue;
-        if (k++ > 0) text_add(hint, " or ");
-        add_section(hint, section, owner ? owner : "fish[0]");
-    }
-}
-
-/* Add a suggestion such as "; did you mean 'modulus'?". Arguments as of case_path_unknown. */
-static void suggest_key(struct text *hint, const char *section, const char *word, const char *owner) {
-    for (size_t i = 0; i < sizeof missing / sizeof *missing; i++) {
-        if (distance_to_any(word, missing[i].words) > 0) continue;
-        text_add(hint, "%s", missing[i].instead);
-        return;
+        char section[sizeof best->section];
+        const char *const dot = strrchr(case_table[i].path, '.');
+        if (!dot || strcmp(dot + 1, best->word) != 0) continue;
+        snprintf(section, sizeof section, "%.*s", (int)(dot - case_table[i].path), case_table[i].path);
+        if (remoteness_of(section, from) != best->remoteness) continue;
+        if (n++ > 0) text_add(&all, " or ");
+        add_section(&all, section, owner ? owner : "fish[0]");
     }
 
-    struct candidate best = {{0}, {0}, INT_MAX, INT_MAX};
-
-    for (int i = 0; i < case_table_n; i++) {
-        const char *const path = case_table[i].path;
-        for (size_t end = 1; end <= strlen(path); end++) {
-            if (path[end] == '.' || path[end] == '\0') keep_nearer(&best, &case_table[i], end, section, word);
-        }
-    }
-
-    const int length = (int)strnlen(word, WORD);
-    const int allowed = length < 4 ? length / 2 : case_path_smaller(3, length / 3);
-
-    if (best.distance > allowed) {
-        add_words(hint, section);
-        return;
-    }
-
-    const bool is_known = strcmp(best.word, word) == 0, is_elsewhere = best.remoteness > 0;
-    if (is_known) {
-        text_add(hint, " here; the key belongs to ");
+    if (n > 1) {
+        text_add(hint, "%s", all.text);
     } else {
-        text_add(hint, "; did you mean '%s'?%s", best.word, is_elsewhere ? " The key belongs to " : "");
+        add_section(hint, best->section, owner);
     }
-    if (is_elsewhere) add_sections(hint, &best, section, owner);
 }
-
-// ---- paths
 
 void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const char *path, const char *section,
                        const char *word, const char *owner) {
-    struct text hint = {0};
-    if (errors->n < YAML_ERRORS_KEPT) suggest_key(&hint, section, word, owner);
+    struct text hint = {.arena = errors->arena};
+    for (size_t i = 0; i < sizeof missing / sizeof *missing; i++) {
+        if (distance_to_any(word, missing[i].words) == 0) text_add(&hint, "%s", missing[i].instead);
+    }
+
+    // "; did you mean 'modulus'?"
+    const bool is_searched = errors->n < YAML_ERRORS_KEPT && !hint.text;
+    const int length = (int)strnlen(word, WORD), third = length / 3 < 3 ? length / 3 : 3;
+    const struct candidate best = is_searched ? find_nearest(section, word) : (struct candidate){.distance = INT_MAX};
+    const bool is_near = best.distance <= (length < 4 ? length / 2 : third);
+    if (is_near) {
+        const bool is_known = strcmp(best.word, word) == 0, is_elsewhere = best.remoteness > 0;
+        if (is_known) {
+            text_add(&hint, " here; the key belongs to ");
+        } else {
+            text_add(&hint, "; did you mean '%s'?%s", best.word, is_elsewhere ? " The key belongs to " : "");
+        }
+        if (is_elsewhere) add_sections(&hint, &best, section, owner);
+    }
+
+    // or the words of the section
+    const size_t here = section[0] ? strlen(section) + 1 : 0;
+    size_t last_length = 0;
+    const char *last = "";
+    if (is_searched && !is_near) text_add(&hint, "; known keys:");
+    for (int i = 0; i < case_table_n && is_searched && !is_near; i++) {
+        const char *const key = case_table[i].path;
+        if (here > 0 && (strncmp(key, section, here - 1) != 0 || key[here - 1] != '.')) continue;
+        const size_t n = strcspn(key + here, ".");
+        const bool is_same = n == last_length && strncmp(key + here, last, n) == 0;
+        if (!is_same) text_add(&hint, "%s %.*s", last_length ? "," : "", (int)n, key + here);
+        last = key + here;
+        last_length = n;
+    }
+
     yaml_errors_add(errors, mark, "%.150s: unknown key%s", path, hint.text ? hint.text : "");
-    if (hint.failed) errors->out_of_memory = true;
-    text_free(&hint);
 }
+
+// ---- paths
 
 /* Read "[2]" or "[*]" at text; returns the end of the index, or NULL after an error. */
 static const char *parse_index(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,

@@ -10,61 +10,6 @@
 
 enum { COMMENT_COLUMN = 40 };
 
-/* The number of characters in the last line. */
-static size_t column(const struct text *text) {
-    size_t n = 0;
-    while (n < text->length && text->text[text->length - 1 - n] != '\n') n++;
-    return n;
-}
-
-/* Add the headings of the sections that contain a path but not the previous path. below: start of both paths. */
-static void show_headings(struct text *text, const char *path, const char *before, const char *below) {
-    bool is_same = true;
-    int depth = 0;
-
-    for (const char *c = below; strchr(c, '.'); c = strchr(c, '.') + 1, depth++) {
-        const size_t length = (size_t)(strchr(c, '.') + 1 - path);
-        is_same = is_same && before && strncmp(path, before, length) == 0;
-        if (is_same) continue;
-        const bool is_fish = below != path;
-        if (!is_fish && depth == 0) text_add(text, "\n");
-        text_add(text, "%*s%.*s:\n", 2 * depth + (is_fish ? 4 : 0), "", (int)(strchr(c, '.') - c), c);
-    }
-}
-
-/* Add one line: indentation, key, value, unit. */
-static void show_key(struct text *text, const struct key *key, const void *field, bool is_first_of_fish) {
-    int depth = 0;
-    for (const char *c = key->path; *c; c++) depth += *c == '.';
-    const bool is_fish = case_table_is_of_fish(key);
-    const char *const name = strrchr(key->path, '.') ? strrchr(key->path, '.') + 1 : key->path;
-    const int indent = 2 * depth + (is_fish ? 2 : 0);
-    if (is_first_of_fish) {
-        text_add(text, "%*s- %s: ", indent - 2, "", name);
-    } else {
-        text_add(text, "%*s%s: ", indent, "", name);
-    }
-    if (text->failed) return;
-    case_value_write(text, key, field);
-
-    if (*key->unit && !text->failed) {
-        const size_t used = column(text);
-        text_add(text, "%*s# %s", used < COMMENT_COLUMN ? (int)(COMMENT_COLUMN - used) : 2, "", key->unit);
-    }
-
-    text_add(text, "\n");
-}
-
-/* True if a key is omitted: already applied, or without a value. */
-static bool is_hidden(const struct key *key, const void *field) {
-    if (!case_table_is_value(key)) return true;
-    if (strcmp(key->path, "preset") == 0) return true;
-    if (key->type == STRING) return !*(char *const *)field;
-    if (key->type == REAL) return isnan(*(const double *)field);
-    if (key->type == INTEGER) return *(const int *)field < key->bounds.min;
-    return (key->type == NUMBERS || key->type == ROWS) && ((const struct number_list *)field)->n == 0;
-}
-
 /* Add every row of the table that belongs to a fish, or with fish NULL every row that belongs to none. */
 static void show_rows(struct text *text, struct case_values *values, struct fish_parameters *fish) {
     const char *before = NULL;
@@ -72,9 +17,34 @@ static void show_rows(struct text *text, struct case_values *values, struct fish
         const struct key *const key = &case_table[k];
         if (case_table_is_of_fish(key) != (fish != NULL)) continue;
         const void *const field = case_table_field(key, values, fish);
-        if (is_hidden(key, field)) continue;
-        show_headings(text, key->path, before, key->path + (fish ? strlen("fish.") : 0));
-        show_key(text, key, field, fish && !before);
+
+        // skip keys that are applied already, and keys without a value
+        if (!case_table_is_value(key) || strcmp(key->path, "preset") == 0) continue;
+        if (key->type == STRING && !*(char *const *)field) continue;
+        if (key->type == REAL && isnan(*(const double *)field)) continue;
+        if (key->type == INTEGER && *(const int *)field < key->bounds.min) continue;
+        if ((key->type == NUMBERS || key->type == ROWS) && ((const struct number_list *)field)->n == 0) continue;
+
+        // the headings of the sections that do not contain the previous key
+        const char *const below = key->path + (fish ? strlen("fish.") : 0), *name = below;
+        int depth = 0;
+        for (const char *dot; (dot = strchr(name, '.')); name = dot + 1, depth++) {
+            if (before && strncmp(key->path, before, (size_t)(dot + 1 - key->path)) == 0) continue;
+            if (!fish && depth == 0) text_add(text, "\n");
+            text_add(text, "%*s%.*s:\n", 2 * depth + (fish ? 4 : 0), "", (int)(dot - name), name);
+        }
+
+        // indentation, key, value, unit
+        const size_t begin = text->length;
+        const bool is_first_of_fish = fish && !before;
+        const int indent = 2 * depth + (fish ? 4 : 0);
+        text_add(text, "%*s%s%s: ", is_first_of_fish ? indent - 2 : indent, "", is_first_of_fish ? "- " : "", name);
+        case_value_write(text, key, field);
+        if (*key->unit) {
+            const size_t used = text->length - begin;
+            text_add(text, "%*s# %s", used < COMMENT_COLUMN ? (int)(COMMENT_COLUMN - used) : 2, "", key->unit);
+        }
+        text_add(text, "\n");
         before = key->path;
     }
 }
@@ -82,7 +52,7 @@ static void show_rows(struct text *text, struct case_values *values, struct fish
 /* Add "[a, b]", or "a" without brackets if there is only one. */
 static void show_group(struct text *text, const struct sweep_axis *axis, int value) {
     if (axis->n_keys > 1) text_add(text, "[");
-    for (int k = 0; k < axis->n_keys && !text->failed; k++) {
+    for (int k = 0; k < axis->n_keys; k++) {
         if (k > 0) text_add(text, ", ");
         if (value < 0) {
             yaml_write_scalar(text, axis->key[k].path);
@@ -105,33 +75,11 @@ static void show_quantities(struct text *text, uint64_t all) {
     text_add(text, "]");
 }
 
-/* Add the reference values of an axis, one for each fish: {speed: [1, 1.1], nose: [[0, 1], [0, 2]]}. */
-static void show_reference(struct text *text, const struct case_values *values, int axis) {
-    const char *before = "    reference: {";
-    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-        const int of_xy = sweep_quantities[q].of_xy;
-        if (isnan(sweep_reference(values, axis, q, 0, 0))) continue;
-        text_add(text, "%s%s: [", before, sweep_quantities[q].name);
-        before = ", ";
-        for (int f = 0; f < values->school.n_fish; f++) {
-            text_add(text, "%s%s", f > 0 ? ", " : "", of_xy ? "[" : "");
-            text_add_number(text, sweep_reference(values, axis, q, f, 0));
-            if (of_xy) text_add(text, ", ");
-            if (of_xy) text_add_number(text, sweep_reference(values, axis, q, f, 1));
-            if (of_xy) text_add(text, "]");
-        }
-        text_add(text, "]");
-    }
-
-    text_add(text, "}\n");
-}
-
 static void show_axis(struct text *text, const struct case_values *values, int a) {
     const struct sweep_axis *const axis = &values->sweep[a];
     text_add(text, "  - %s: ", axis->n_keys > 1 ? "keys" : "key");
     show_group(text, axis, -1);
     text_add(text, "\n    values: [");
-
     for (int i = 0; i < axis->n_values; i++) {
         if (i > 0) text_add(text, ", ");
         show_group(text, axis, i);
@@ -141,7 +89,25 @@ static void show_axis(struct text *text, const struct case_values *values, int a
     if (axis->steady) text_add(text, "    steady: true\n");
     if (!axis->refine) return;
     text_add(text, "    refine: true\n");
-    if (axis->reference) show_reference(text, values, a);
+
+    // the reference values, one for each fish: {speed: [1, 1.1], nose: [[0, 1], [0, 2]]}
+    const char *before = "    reference: {";
+    for (int q = 0; q < SWEEP_N_ORDERS && axis->reference; q++) {
+        const bool of_xy = sweep_quantities[q].of_xy;
+        if (isnan(sweep_reference(values, a, q, 0, 0))) continue;
+        text_add(text, "%s%s: [", before, sweep_quantities[q].name);
+        before = ", ";
+        for (int f = 0; f < values->school.n_fish; f++) {
+            text_add(text, "%s%s", f > 0 ? ", " : "", of_xy ? "[" : "");
+            text_add_number(text, sweep_reference(values, a, q, f, 0));
+            if (of_xy) text_add(text, ", ");
+            if (of_xy) text_add_number(text, sweep_reference(values, a, q, f, 1));
+            if (of_xy) text_add(text, "]");
+        }
+        text_add(text, "]");
+    }
+    if (axis->reference) text_add(text, "}\n");
+
     if (!(axis->order > 0)) return;
     text_add(text, "    expect: {order: ");
     text_add_number(text, axis->order);
@@ -173,12 +139,9 @@ static void show_expectation(struct text *text, const struct case_values *values
 
     for (int c = 0; c < one->n_where; c++) {
         const struct sweep_condition *const condition = &one->where[c];
-        struct text assignment = {0};
-        text_add(&assignment, "%s=%s", values->sweep[condition->axis].key[condition->key].path, condition->value);
         text_add(text, "%s", c == 0 ? ", where: [" : ", ");
-        if (assignment.failed) text->failed = true;
-        if (!assignment.failed) yaml_write_scalar(text, assignment.text);
-        text_free(&assignment);
+        yaml_write_scalar(text, arena_text(text->arena, "%s=%s",
+                                           values->sweep[condition->axis].key[condition->key].path, condition->value));
     }
 
     if (one->n_where > 0) text_add(text, "]");
@@ -192,28 +155,23 @@ static void show_expectation(struct text *text, const struct case_values *values
     text_add(text, "}\n");
 }
 
-static void show_sweep(struct text *text, const struct case_values *values) {
-    if (values->n_axes > 0) text_add(text, "\nsweep:\n");
-    for (int i = 0; i < values->n_axes; i++) show_axis(text, values, i);
-
-    if (values->error) {
-        text_add(text, "\nerror: ");
-        sweep_error_write(text, values->error);
-        text_add(text, "\n");
-    }
-
-    if (values->n_expectations > 0) text_add(text, "\nexpect:\n");
-    for (int i = 0; i < values->n_expectations; i++) show_expectation(text, values, &values->expect[i]);
-}
-
-enum status case_show(const struct case_values *values, char **text) {
+char *case_show(struct arena *arena, const struct case_values *values) {
     struct case_values all = *values;  // shallow copy for the offsets of the table
-    struct text list = {0};
+    struct text list = {.arena = arena};
     show_rows(&list, &all, NULL);
     text_add(&list, "\nfish:\n");
     for (int i = 0; i < all.school.n_fish; i++) show_rows(&list, &all, &all.school.fish[i]);
-    show_sweep(&list, &all);
-    return text_take(&list, text, "the text of the case");
+
+    if (values->n_axes > 0) text_add(&list, "\nsweep:\n");
+    for (int i = 0; i < values->n_axes; i++) show_axis(&list, values, i);
+    if (values->error) {
+        text_add(&list, "\nerror: ");
+        sweep_error_write(&list, values->error);
+        text_add(&list, "\n");
+    }
+    if (values->n_expectations > 0) text_add(&list, "\nexpect:\n");
+    for (int i = 0; i < values->n_expectations; i++) show_expectation(&list, values, &values->expect[i]);
+    return list.text;
 }
 
 // ---- a case to start from

@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/text.h"
 #include "fish/fish_school.h"
 
@@ -35,9 +34,8 @@ enum { NAME_BYTES = 200, FILE_BYTES = 4000, MAX_NODES = 10000, MAX_THREADS = 102
 // ---- derived defaults, in the order of the table
 
 // a product or quotient of decimals is the decimal, without the rounding of the operation: 0.3, not 3 * 0.1
-static enum status set_default(double *value, double standard) {
+static void set_default(double *value, double standard) {
     if (isnan(*value)) *value = text_round(standard);
-    return STATUS_OK;
 }
 
 /* The frequency of the beat of a fish, or of the prescribed motion [Hz]; 0 without a beat. */
@@ -46,28 +44,17 @@ static double beat_frequency(const struct fish_parameters *fish) {
     return is_prescribed ? fish->motion.frequency : fish->wave.frequency;
 }
 
-/* The period of the slowest beat of the school [s]; 0 without a beat. */
-static double longest_period(const struct school_parameters *school) {
-    double longest = 0;
-    for (int i = 0; i < school->n_fish; i++) {
-        const double frequency = beat_frequency(&school->fish[i]);
-        if (frequency > 0) longest = fmax(longest, 1 / frequency);
-    }
-    return longest;
-}
-
 /* The period of the wave [s]; 0 without a wave. */
 static double wave_period(const struct fish_parameters *fish) {
     return fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
 }
 
-static enum status derive_case_name(const struct key_place *at) {
-    if (at->values->name) return STATUS_OK;
+static void derive_case_name(const struct key_place *at) {
+    if (at->values->name) return;
     const char *const slash = strrchr(at->origin, '/'), *const from = slash ? slash + 1 : at->origin;
     const char *const dot = strrchr(from, '.');
     const size_t length = dot && dot > from ? (size_t)(dot - from) : strlen(from);
-    at->values->name = length > 0 ? strndup(from, length) : strdup("case");
-    return memory_check(at->values->name, "the name of the case");
+    at->values->name = arena_text(at->values->arena, "%.*s", (int)length, length > 0 ? from : "case");
 }
 
 /* Round a time to a multiple of a unit, up or to the nearest; false if the time is a multiple already. */
@@ -80,11 +67,11 @@ static bool round_to_multiple(double *time, double unit, bool up) {
 
 /* Round also the end of the run up to an event, and the output and checkpoint intervals to the nearest multiples of the
  * shedding interval; times that were not read are left unset. doc/model.md, section 7. */
-static enum status derive_shedding_interval(const struct key_place *at) {
+static void derive_shedding_interval(const struct key_place *at) {
     struct case_values *const values = at->values;
     double *const interval = &values->school.shedding_interval, *const rows = &values->time.output_interval,
                   fastest = 0;
-    if (!isnan(*interval)) return STATUS_OK;
+    if (!isnan(*interval)) return;
 
     for (int i = 0; i < values->school.n_fish; i++) fastest = fmax(fastest, beat_frequency(&values->school.fish[i]));
     *interval = fastest > 0 ? 1 / (100 * fastest) : 0.01;
@@ -94,160 +81,86 @@ static enum status derive_shedding_interval(const struct key_place *at) {
     // round the wake interval too if the output interval is rounded or not read
     const bool are_free = isnan(*rows) || round_to_multiple(rows, *interval, false);
     if (are_free) round_to_multiple(&values->output.wake_interval, isnan(*rows) ? 10 * *interval : *rows, false);
-    return STATUS_OK;
 }
 
-static enum status derive_output_interval(const struct key_place *at) {
-    return set_default(&at->values->time.output_interval, 10 * at->values->school.shedding_interval);
-}
-
-static enum status derive_gust_speed(const struct key_place *at) {
+static void derive_gust(const struct key_place *at) {
     struct fluid_parameters *const fluid = &at->values->school.fluid;
-    if ((int)fluid->gust_profile <= GUST_UNIFORM) return STATUS_OK;
-    return set_default(&fluid->gust_speed, hypot(fluid->velocity[0], fluid->velocity[1]));
-}
-
-static enum status derive_gradient_distance(const struct key_place *at) {
-    const struct school_parameters *const school = &at->values->school;
     double length = 0;
-    for (int f = 0; f < school->n_fish; f++) length = fmax(length, school->fish[f].length);
-    if (school->fluid.gust_profile != GUST_STEP) return STATUS_OK;
-    return set_default(&at->values->school.fluid.gust_gradient_distance, length / 5);
+    for (int f = 0; f < at->values->school.n_fish; f++) length = fmax(length, at->values->school.fish[f].length);
+    if ((int)fluid->gust_profile > GUST_UNIFORM) {
+        set_default(&fluid->gust_speed, hypot(fluid->velocity[0], fluid->velocity[1]));
+    }
+    if (fluid->gust_profile == GUST_STEP) set_default(&fluid->gust_gradient_distance, length / 5);
 }
 
 // the ratio of a street without linear growth of disturbances: cosh^2(pi h/a) = 2
-static enum status derive_row_distance(const struct key_place *at) {
+static void derive_row_distance(const struct key_place *at) {
     struct street_parameters *const street = &at->values->school.wake.street;
-    if (street->n == 0) return STATUS_OK;
-    return set_default(&street->row_distance, acosh(sqrt(2)) / 3.14159265358979323846 * street->spacing);
+    if (street->n > 0) set_default(&street->row_distance, acosh(sqrt(2)) / M_PI * street->spacing);
 }
 
-static enum status derive_taper(const struct key_place *at) {
+/* Set lifetime and decay, in seconds and in beats of the slowest fish. */
+static void derive_lifetime(const struct key_place *at) {
     struct wake_parameters *const wake = &at->values->school.wake;
-    return set_default(&wake->taper, wake->shedding == SHEDDING_SHEET ? 0.6 : 0);
+    double period = 0;
+    for (int f = 0; f < at->values->school.n_fish; f++) {
+        const double frequency = beat_frequency(&at->values->school.fish[f]);
+        if (frequency > 0) period = fmax(period, 1 / frequency);
+    }
+
+    if (isnan(wake->lifetime.seconds) && period > 0) set_default(&wake->lifetime.beats, 3);
+    set_default(&wake->lifetime.seconds, wake->lifetime.beats * period);
+    set_default(&wake->lifetime.seconds, 2);
+    if (isnan(wake->decay.seconds) && period > 0) set_default(&wake->decay.beats, 0.75 * wake->lifetime.beats);
+    set_default(&wake->decay.seconds, wake->decay.beats * period);
+    set_default(&wake->decay.seconds, 0.75 * wake->lifetime.seconds);
 }
 
-static enum status derive_taper_beside(const struct key_place *at) {
-    struct wake_parameters *const wake = &at->values->school.wake;
-    return set_default(&wake->taper_beside, wake->shedding == SHEDDING_SHEET ? 0.07 : 0);
+static void derive_fish_name(const struct key_place *at) {
+    if (at->fish->name) return;
+    at->fish->name = arena_text(at->values->arena, "fish%d", (int)(at->fish - at->values->school.fish) + 1);
 }
 
-static enum status derive_lifetime(const struct key_place *at) {
-    struct duration *const lifetime = &at->values->school.wake.lifetime;
-    const double period = longest_period(&at->values->school);
-    if (isnan(lifetime->seconds) && period > 0) set_default(&lifetime->beats, 3);
-    set_default(&lifetime->seconds, lifetime->beats * period);
-    return set_default(&lifetime->seconds, 2);
-}
-
-static enum status derive_decay(const struct key_place *at) {
-    struct duration *const decay = &at->values->school.wake.decay;
-    const struct duration lifetime = at->values->school.wake.lifetime;
-    const double period = longest_period(&at->values->school);
-    if (isnan(decay->seconds) && period > 0) set_default(&decay->beats, 0.75 * lifetime.beats);
-    set_default(&decay->seconds, decay->beats * period);
-    return set_default(&decay->seconds, 0.75 * lifetime.seconds);
-}
-
-static enum status derive_wake_tolerance(const struct key_place *at) {
-    return set_default(&at->values->school.wake.tolerance, at->values->solver.rtol / 100);
-}
-
-static enum status derive_wake_interval(const struct key_place *at) {
-    return set_default(&at->values->output.wake_interval, at->values->time.output_interval);
-}
-
-static enum status derive_fish_name(const struct key_place *at) {
-    if (at->fish->name) return STATUS_OK;
-    char name[32];
-    snprintf(name, sizeof name, "fish%d", (int)(at->fish - at->values->school.fish) + 1);
-    return memory_copy_string(&at->fish->name, name, "the name of a fish");
-}
-
-static enum status derive_sheet_points(const struct key_place *at) {
-    if (at->fish->sheet_points > 0) return STATUS_OK;
-    const int usual = at->fish->nodes > 17 ? 2 * at->fish->nodes - 1 : 33, of_depth = fish_sheet_least(at->fish);
-    at->fish->sheet_points = usual > of_depth ? usual : of_depth;
-    return STATUS_OK;
-}
-
-static enum status derive_tail_thickness(const struct key_place *at) {
-    return set_default(&at->fish->body.tail_thickness, at->fish->body.profile == PROFILE_JOUKOWSKI ? 0.04 : 0);
-}
-
-static enum status derive_relaxation_time(const struct key_place *at) {
-    const double beat = beat_frequency(at->fish);
-    return set_default(&at->fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
-}
-
-/* The wavelength is another form of wave.number; the table has the default of wave.number. */
-static enum status derive_wavelength(const struct key_place *at) {
-    struct wave_parameters *const wave = &at->fish->wave;
-    if (!isnan(wave->wavelength)) wave->number = -2 * 3.14159265358979323846 / wave->wavelength;
-    wave->wavelength = NAN;
-    return STATUS_OK;
-}
-
-static enum status derive_wave_ramp(const struct key_place *at) {
-    return set_default(&at->fish->wave.ramp, wave_period(at->fish));
-}
-
-static enum status derive_force(const struct key_place *at) {
+static void derive_force(const struct key_place *at) {
     const struct school_parameters *const school = &at->values->school;
     const bool is_possible = school->wake.shedding == SHEDDING_SHEET && school->sheet.curve == BODY_LINE_SMOOTH;
     if ((int)at->fish->force < 0) at->fish->force = is_possible ? FORCE_PRESSURE : FORCE_REACTIVE;
-    return STATUS_OK;
 }
 
-static enum status derive_span(const struct key_place *at) {
-    if ((int)at->fish->span < 0) at->fish->span = at->fish->force == FORCE_PRESSURE ? SPAN_FINITE : SPAN_INFINITE;
-    return STATUS_OK;
+static void derive_sheet_points(const struct key_place *at) {
+    if (at->fish->sheet_points > 0) return;
+    const int usual = at->fish->nodes > 17 ? 2 * at->fish->nodes - 1 : 33, of_depth = fish_sheet_least(at->fish);
+    at->fish->sheet_points = usual > of_depth ? usual : of_depth;
 }
 
-static enum status derive_friction(const struct key_place *at) {
-    const bool has_pressure = at->fish->force == FORCE_PRESSURE;
-    if ((int)at->fish->drag.friction < 0)
-        at->fish->drag.friction = has_pressure ? FRICTION_BOUNDARY_LAYER : FRICTION_QUADRATIC;
-    return STATUS_OK;
+/* Set the times in beats: relaxation of the body, ramp of the wave, filter and ramp of the control. */
+static void derive_periods(const struct key_place *at) {
+    const double beat = beat_frequency(at->fish), period = wave_period(at->fish);
+    set_default(&at->fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
+    set_default(&at->fish->wave.ramp, period);
+    set_default(&at->fish->control.filter, period);
+    set_default(&at->fish->control.ramp, period > 0 ? period / 2 : 1);
 }
 
-static enum status derive_normal_drag(const struct key_place *at) {
-    return set_default(&at->fish->drag.normal, at->fish->force == FORCE_PRESSURE ? 0 : 1);
+/* The wavelength is another form of wave.number; the table has the default of wave.number. */
+static void derive_wavelength(const struct key_place *at) {
+    struct wave_parameters *const wave = &at->fish->wave;
+    if (!isnan(wave->wavelength)) wave->number = -2 * M_PI / wave->wavelength;
+    wave->wavelength = NAN;
 }
 
-static enum status derive_motion_speed(const struct key_place *at) {
-    return set_default(&at->fish->motion.speed, at->fish->start_speed);
-}
-
-static enum status derive_control_law(const struct key_place *at) {
+/* The law, and the gain of the law: doc/model.md, section 11, cases/studies/step_response.yaml. */
+static void derive_control_law(const struct key_place *at) {
     struct control_parameters *const control = &at->fish->control;
     if ((int)control->law < 0) control->law = control->waypoints.n > 0 ? CONTROL_COURSE : CONTROL_NONE;
-    return STATUS_OK;
 }
 
-// doc/model.md, section 11: cases/studies/step_response.yaml
-static enum status derive_control_gain(const struct key_place *at) {
-    struct control_parameters *const control = &at->fish->control;
-    if (isnan(control->gain)) control->gain = control->law == CONTROL_COURSE ? 1 : 2;
-    return STATUS_OK;
-}
-
-static enum status derive_desired_heading(const struct key_place *at) {
+static void derive_desired_heading(const struct key_place *at) {
     struct number_list *const heading = &at->fish->control.desired_heading;
-    if (heading->n > 0) return STATUS_OK;
-    TRY(MEMORY_NEW(heading->value, 2, "the desired heading"));
+    if (heading->n > 0) return;
+    NEW(at->values->arena, heading->value, 2);
     heading->value[1] = at->fish->start_heading;
     heading->n = 1;
-    return STATUS_OK;
-}
-
-static enum status derive_control_filter(const struct key_place *at) {
-    return set_default(&at->fish->control.filter, wave_period(at->fish));
-}
-
-static enum status derive_control_ramp(const struct key_place *at) {
-    const double period = wave_period(at->fish);
-    return set_default(&at->fish->control.ramp, period > 0 ? period / 2 : 1);
 }
 
 // ---- the table
@@ -271,7 +184,7 @@ const struct key case_table[] = {
      .published = "0.01"},
     {"time.output_interval", REAL, AT(time.output_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two rows of output, an integer multiple of shedding_interval",
-     .derived = "ten shedding intervals", .derive = derive_output_interval, .cause = "time.shedding_interval",
+     .derived = "ten shedding intervals", .multiple = {10, "time.shedding_interval"}, .cause = "time.shedding_interval",
      .synonyms = "output_every save_interval dt_out"},
     {"time.checkpoint_interval", REAL, AT(time.checkpoint_interval), "0", FROM(0), "s",
      .meaning = "time between two checkpoints for `shoal resume`, an integer multiple of shedding_interval; 0: only "
@@ -297,13 +210,12 @@ const struct key case_table[] = {
      .meaning = "profile sine: wavelength of the gust"},
     {"fluid.gust.speed", REAL, AT(school.fluid.gust_speed), NULL, ANY, "m s-1",
      .meaning = "profile sine, step: speed of the gust along the stream", .derived = "the speed of the stream",
-     .derive = derive_gust_speed},
+     .derive = derive_gust},
     {"fluid.gust.position", REAL, AT(school.fluid.gust_position), "0", ANY, "m",
      .meaning = "profile sine, step: place along the stream of a zero, or of the middle of the step, at the start"},
     {"fluid.gust.gradient_distance", REAL, AT(school.fluid.gust_gradient_distance), NULL, ABOVE(0), "m",
      .meaning = "profile step: distance over which the gust rises to the amplitude",
-     .derived = "a fifth of the length of the longest fish", .derive = derive_gradient_distance,
-     .cause = "fish.length"},
+     .derived = "a fifth of the length of the longest fish", .derive = derive_gust, .cause = "fish.length"},
     {"fluid.walls", NUMBERS, AT(school.fluid.walls), "[]", ANY, "m",
      .meaning = "straight walls along x: y of one wall, or of both walls of a channel",
      .synonyms = "wall channel boundary tank ground bottom"},
@@ -314,17 +226,18 @@ const struct key case_table[] = {
     {"wake.taper", REAL, AT(school.wake.taper), NULL, FROM(0), "",
      .meaning = "shedding sheet: distance from the tail, in body lengths, over which the smoothing of the wake at the "
                 "body grows from 0; 0: no taper",
-     .derived = "0.6 with shedding sheet, else 0", .derive = derive_taper, .follows = WORDS("wake.shedding")},
+     .derived = "0.6 with shedding sheet, else 0", .choice = {"wake.shedding", "sheet", 0.6, 0},
+     .follows = WORDS("wake.shedding")},
     {"wake.taper_beside", REAL, AT(school.wake.taper_beside), NULL, FROM(0), "",
      .meaning = "shedding sheet: the same for vortices beside the body", .derived = "0.07 with shedding sheet, else 0",
-     .derive = derive_taper_beside, .follows = WORDS("wake.shedding")},
+     .choice = {"wake.shedding", "sheet", 0.07, 0}, .follows = WORDS("wake.shedding")},
     {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
      .meaning = "age at which a vortex is removed, in s or in beats of the slowest fish, such as '3 beats'",
      .derived = "3 beats; 2 s if no fish beats", .derive = derive_lifetime, .cause = "fish.wave.frequency",
      .published = "2", .synonyms = "life max_age age"},
     {"wake.decay", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
      .meaning = "last part of the lifetime, in which the circulation decays to 0", .derived = "3/4 of the lifetime",
-     .derive = derive_decay, .cause = "wake.lifetime", .published = "0"},
+     .derive = derive_lifetime, .cause = "wake.lifetime", .published = "0"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "sheet", ANY, "",
      .meaning = "sheet: a vortex sheet grows from the tail; continuous: a vortex grows between events; impulsive: a "
                 "vortex appears at each event",
@@ -335,7 +248,7 @@ const struct key case_table[] = {
     {"wake.tolerance", REAL, AT(school.wake.tolerance), NULL, FROM_TO(0, 0.01), "",
      .meaning = "estimated error allowed in the velocity that far vortices induce at the bodies, in body lengths per "
                 "beat; 0: direct summation",
-     .derived = "solver.rtol/100", .derive = derive_wake_tolerance, .cause = "solver.rtol",
+     .derived = "solver.rtol/100", .multiple = {0.01, "solver.rtol"}, .cause = "solver.rtol",
      .synonyms = "accuracy theta"},
     {"wake.merge", REAL, AT(school.wake.merge), "0", FROM_TO(0, 0.1), "",
      .meaning = "error allowed in the velocity at the bodies due to merging of distant vortices, in body lengths per "
@@ -415,7 +328,7 @@ const struct key case_table[] = {
      .words = WORDS("totals", "edges", "sides")},
     {"output.wake_interval", REAL, AT(output.wake_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two records of the wake, an integer multiple of output_interval",
-     .derived = "time.output_interval", .derive = derive_wake_interval, .cause = "time.output_interval"},
+     .derived = "time.output_interval", .multiple = {1, "time.output_interval"}, .cause = "time.output_interval"},
 
     {"steady.tolerance", REAL, AT(steady.tolerance), "1e-5", FROM_TO(1e-12, 0.1), "",
      .meaning = "maximum change per beat of a steady state: of the speed in body lengths per beat, and of other "
@@ -449,8 +362,8 @@ const struct key case_table[] = {
     {"fish.pressure.span", CHOICE, IN_FISH(span), NULL, ANY, "",
      .meaning = "force pressure: span of the sheets; finite: the depth of the body, with vortex rings; infinite: "
                 "two-dimensional flow",
-     .words = WORDS("finite", "infinite"), .derived = "finite with force pressure", .derive = derive_span,
-     .follows = WORDS("fish.force")},
+     .words = WORDS("finite", "infinite"), .derived = "finite with force pressure",
+     .choice = {"fish.force", "pressure", SPAN_FINITE, SPAN_INFINITE}, .follows = WORDS("fish.force")},
     {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
      .meaning = "force pressure: fraction of the leading-edge suction that acts on the body"},
     {"fish.pressure.suction_limit", REAL, IN_FISH(suction_limit), "0.18", FROM(0), "",
@@ -479,7 +392,8 @@ const struct key case_table[] = {
      .meaning = "joukowski: parameter d of the foil; uniform: thickness over length"},
     {"fish.body.tail_thickness", REAL, IN_FISH(body.tail_thickness), NULL, FROM_BELOW(0, 1), "",
      .meaning = "joukowski: thickness at the tail over length; 0: a cusp, without convergence in the nodes",
-     .derived = "0.04 with profile joukowski, else 0", .derive = derive_tail_thickness, .published = "0"},
+     .derived = "0.04 with profile joukowski, else 0", .choice = {"fish.body.profile", "joukowski", 0.04, 0},
+     .published = "0"},
     {"fish.body.depth", REAL, IN_FISH(body.depth), "0.25", ABOVE(0), "",
      .meaning = "depth of the body (its span, out of the plane of motion) over length"},
     {"fish.body.thickness_table", NUMBERS, IN_FISH(body.thickness_table), "[]", ABOVE(0), "m",
@@ -505,7 +419,7 @@ const struct key case_table[] = {
     {"fish.body.relaxation_time", REAL, IN_FISH(body.relaxation_time), NULL, FROM(0), "s",
      .meaning = "Kelvin-Voigt damping: ratio of damping to stiffness", .published = "0",
      .derived = "1/50 of the period of the beat or of the prescribed motion (0 without a beat)",
-     .derive = derive_relaxation_time, .cause = "fish.wave.frequency",
+     .derive = derive_periods, .cause = "fish.wave.frequency",
      .follows = WORDS("fish.wave.frequency", "fish.motion.frequency")},
     {"fish.body.damping", CHOICE, IN_FISH(body.damping), "strain", ANY, "",
      .meaning = "internal damping of bending; strain: of the curvature minus the natural curvature; curvature: of the "
@@ -536,7 +450,7 @@ const struct key case_table[] = {
     {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANGLE, "degree", .meaning = "phase at time 0"},
     {"fish.wave.ramp", REAL, IN_FISH(wave.ramp), NULL, FROM(0), "s",
      .meaning = "time over which the amplitude is ramped up", .derived = "one period, 1/frequency (0 for frequency 0)",
-     .derive = derive_wave_ramp, .cause = "fish.wave.frequency", .published = "0"},
+     .derive = derive_periods, .cause = "fish.wave.frequency", .published = "0"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},
@@ -544,8 +458,8 @@ const struct key case_table[] = {
      .meaning = "law of the tangential drag; quadratic: drag.law with drag.tangential; laminar: laminar boundary layer "
                 "of a plate; boundary_layer: the same with transition, and factors for waving and thickness",
      .words = WORDS("quadratic", "laminar", "boundary_layer"),
-     .derived = "boundary_layer with force pressure, else quadratic", .derive = derive_friction,
-     .follows = WORDS("fish.force")},
+     .derived = "boundary_layer with force pressure, else quadratic",
+     .choice = {"fish.force", "pressure", FRICTION_BOUNDARY_LAYER, FRICTION_QUADRATIC}, .follows = WORDS("fish.force")},
     {"fish.drag.transition", REAL, IN_FISH(drag.transition), "2e5", FROM(0), "",
      .meaning = "skin boundary_layer: transition Reynolds number, based on the distance from the nose; 0: turbulent "
                 "from the nose",
@@ -558,7 +472,7 @@ const struct key case_table[] = {
      .derived = "1 + 2 h/L + 60 (h/L)^4 with the largest thickness h of an edge", .synonyms = "form_factor"},
     {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "", .meaning = "normal drag coefficient",
      .synonyms = "c_d cd lateral", .published = "0.5", .derived = "1, or 0 with force pressure",
-     .derive = derive_normal_drag, .follows = WORDS("fish.force")},
+     .choice = {"fish.force", "pressure", 0, 1}, .follows = WORDS("fish.force")},
     {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "",
      .meaning = "dependence of both drag forces on the velocity v: v |v|, or v (V1 + |v|)", .published = "quadratic",
      .words = WORDS("quadratic", "linear_quadratic")},
@@ -590,7 +504,7 @@ const struct key case_table[] = {
      .words = WORDS("given", "free")},
     {"fish.motion.speed", REAL, IN_FISH(motion.speed), NULL, ANY, "m s-1",
      .meaning = "prescribed speed along start.heading; surge free: at the start", .derived = "start.speed",
-     .derive = derive_motion_speed},
+     .multiple = {1, "fish.start.speed"}},
     {"fish.motion.heave", REAL, IN_FISH(motion.heave), "0", ANY, "m",
      .meaning = "amplitude of heave, the displacement to the left heave sin(2 pi frequency t + phase)",
      .synonyms = "plunge"},
@@ -622,7 +536,8 @@ const struct key case_table[] = {
      .meaning = "acceptance radius of a waypoint, in body lengths", .synonyms = "radius"},
     {"fish.control.gain", REAL, IN_FISH(control.gain), NULL, ANY, "",
      .meaning = "proportional gain: weight of the error of the heading or course",
-     .derived = "1 with law course, else 2", .derive = derive_control_gain, .synonyms = "k_p kp proportional"},
+     .derived = "1 with law course, else 2", .choice = {"fish.control.law", "course", 1, 2},
+     .synonyms = "k_p kp proportional"},
     {"fish.control.damping", REAL, IN_FISH(control.damping), "1", ANY, "",
      .meaning = "course: weight of the rate of change of the course, in rad per period",
      .synonyms = "k_d kd derivative"},
@@ -632,13 +547,13 @@ const struct key case_table[] = {
      .meaning = "weight of the feedforward: the filtered moment of the flow; 0 with force: pressure", .published = "1"},
     {"fish.control.filter", REAL, IN_FISH(control.filter), NULL, FROM(0), "s",
      .meaning = "time constant of the filter of feedforward; 0: the moment at the last event",
-     .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_control_filter,
+     .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_periods,
      .cause = "fish.wave.frequency"},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading, course: maximum rate of change of the steering bias"},
     {"fish.control.ramp", REAL, IN_FISH(control.ramp), NULL, ABOVE(0), "s",
      .meaning = "duration of a change by a program (doc/python.md)",
-     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_control_ramp,
+     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_periods,
      .cause = "fish.wave.frequency"},
 
     {"sweep", AXES, 0, "[]", ANY, "",
@@ -676,6 +591,11 @@ bool case_table_is_of_fish(const struct key *key) {
 
 bool case_table_is_value(const struct key *key) {
     return key->type < FILES;
+}
+
+int case_table_n_fields(const struct key *key, const struct case_values *values) {
+    if (!case_table_is_value(key)) return 0;
+    return case_table_is_of_fish(key) ? values->school.n_fish : 1;
 }
 
 void *case_table_field(const struct key *key, struct case_values *values, struct fish_parameters *fish) {
@@ -732,4 +652,33 @@ void case_table_range(const struct key *key, struct text *range) {
     text_add_number(range, bounds->min);
     text_add(range, bounds->is_min_open ? " and " : bounds->is_max_open ? " to below " : " to ");
     text_add_number(range, bounds->max);
+}
+
+void case_table_derive(struct case_values *values, const char *origin) {
+    for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
+        const char *const of = key->choice.of ? key->choice.of : key->multiple.of;
+        const struct key *const other = of ? case_table_row(of) : NULL;
+        for (int i = 0; i < case_table_n_fields(key, values); i++) {
+            struct fish_parameters *const fish = &values->school.fish[i];
+            if (key->derive) key->derive(&(struct key_place){values, fish, origin});
+            if (!other) continue;
+
+            // from another number or from a word
+            void *const field = case_table_field(key, values, fish);
+            const void *const from = case_table_field(other, values, fish);
+            double standard;
+            if (key->choice.of) {
+                const int word = *(const int *)from;
+                const bool is_word = word >= 0 && strcmp(case_table_word(other, word), key->choice.word) == 0;
+                standard = is_word ? key->choice.with : key->choice.without;
+            } else {
+                standard = key->multiple.factor * *(const double *)from;
+            }
+            if (key->type != CHOICE) {
+                set_default(field, standard);
+            } else if (*(const int *)field < 0) {
+                *(int *)field = (int)standard;
+            }
+        }
+    }
 }

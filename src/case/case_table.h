@@ -18,7 +18,7 @@ enum key_type {
     INTEGER,      /* int */
     CHOICE,       /* an enum: the index of the word in .words */
     METHOD,       /* enum method: the index of the word in the table of methods (base/methods.h) */
-    STRING,       /* char *, owned */
+    STRING,       /* char * */
     PAIR,         /* double[2] */
     NUMBERS,      /* struct number_list of numbers */
     PAIRS,        /* struct number_list of pairs */
@@ -37,6 +37,16 @@ struct bounds {
     bool is_min_open, is_max_open; /* the bound itself is excluded */
 };
 
+/* A number that is a multiple of another number, or the number (also the index of a word) that follows from a word. */
+struct key_multiple {
+    double factor;
+    const char *of; /* path of the other key */
+};
+struct key_choice {
+    const char *of, *word; /* path of the other key, and one of the words of this key */
+    double with, without;
+};
+
 /* The place of a default: a case with all values read, a fish of the case for a key of a fish, and the name of the file
  * with the case. */
 struct key_place {
@@ -53,8 +63,10 @@ struct key {
     struct bounds bounds;
     const char *unit; /* "": none */
     const char *meaning;
-    const char *derived;                               /* how the program computes the default, in words */
-    enum status (*derive)(const struct key_place *at); /* set the default in a field that was not read; rows in order */
+    const char *derived; /* the default of a field that was not read, in words; rows in order; one of: */
+    struct key_multiple multiple;
+    struct key_choice choice;
+    void (*derive)(const struct key_place *at); /* set the default */
     const char *const *follows; /* paths of the keys that switch the model by the derived default, NULL at the end */
     const char *cause;          /* path of the key that can put the derived number out of its range; NULL: none */
     const char *published;      /* the default under preset: published; NULL: as without the preset */
@@ -77,6 +89,12 @@ bool case_table_is_of_fish(const struct key *key);
 /* True if the key has one value and a field in struct case_values; false from FILES on. */
 bool case_table_is_value(const struct key *key);
 
+/* The number of fields of a key in a case: one for each fish, or one; 0 for a key without a field. */
+int case_table_n_fields(const struct key *key, const struct case_values *values);
+
+/* Set the derived defaults, row by row. origin: the name of the file with the case. */
+void case_table_derive(struct case_values *values, const char *origin);
+
 /* The field of a key; fish is ignored unless the key is of a fish. */
 void *case_table_field(const struct key *key, struct case_values *values, struct fish_parameters *fish);
 
@@ -93,13 +111,10 @@ void case_table_range(const struct key *key, struct text *range);
 /* Mark a field as not read. */
 void case_value_clear(const struct key *key, void *field);
 
-/* Read a node into a cleared field. An error is added to errors with path as the name of the key; the field then stays
- * cleared. Fails with STATUS_MEMORY only. */
-enum status case_value_read(const struct key *key, void *field, const struct yaml_node *node, const char *path,
-                            struct yaml_errors *errors);
-
-/* Release and clear a field. */
-void case_value_free(const struct key *key, void *field);
+/* Read a node into a cleared field; strings and lists belong to the arena. An error is added to errors with path as the
+ * name of the key; the field then stays cleared. */
+void case_value_read(struct arena *arena, const struct key *key, void *field, const struct yaml_node *node,
+                     const char *path, struct yaml_errors *errors);
 
 /* Add the value as YAML. */
 void case_value_write(struct text *text, const struct key *key, const void *field);

@@ -48,6 +48,7 @@ struct sweep_error;
 struct sweep_expectation;
 
 struct case_values {
+    struct arena *arena; /* of all pointers below */
     int format;
     char *name; /* default: the file's name without folder and ending */
     enum preset preset;

@@ -11,10 +11,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "case/case_path.h"
 #include "case/case_table.h"
 #include "case/sweep_error.h"
@@ -33,22 +31,6 @@ struct axis {
     const struct key *key[MAX_KEYS];
     struct yaml_errors *errors;
 };
-
-void sweep_free(struct case_values *values) {
-    for (int i = 0; i < values->n_axes; i++) {
-        struct sweep_axis *const axis = &values->sweep[i];
-        for (int j = 0; j < axis->n_values * axis->n_keys; j++) free(axis->value[j]);
-        for (int j = 0; j < axis->n_keys; j++) free(axis->key[j].path);
-        free(axis->value);
-        free(axis->key);
-        free(axis->reference);
-        free(axis->before);
-    }
-
-    free(values->sweep);
-    values->sweep = NULL;
-    values->n_axes = 0;
-}
 
 // ---- members: counting through the axes, the last one fastest
 
@@ -71,8 +53,8 @@ int sweep_member_value(const struct case_values *study, int member, int axis) {
     return member % study->sweep[axis].n_values;
 }
 
-int sweep_is_steady(const struct case_values *study) {
-    int is_steady = 0;
+bool sweep_is_steady(const struct case_values *study) {
+    bool is_steady = false;
     for (int a = 0; a < study->n_axes; a++) is_steady |= study->sweep[a].steady;
     return is_steady;
 }
@@ -92,8 +74,9 @@ void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int 
     text_add(text, "%s=%s", axis->key[k].path, axis->value[value * axis->n_keys + k]);
 }
 
-enum status sweep_member_text(const struct case_values *study, int member, char **text) {
-    struct text list = {0};
+char *sweep_member_text(struct arena *arena, const struct case_values *study, int member) {
+    struct text list = {.arena = arena};
+    text_add(&list, "%s", "");
     for (int a = 0; a < study->n_axes; a++) {
         const int value = sweep_member_value(study, member, a);
         for (int k = 0; k < study->sweep[a].n_keys; k++) {
@@ -101,15 +84,13 @@ enum status sweep_member_text(const struct case_values *study, int member, char 
             sweep_add_assignment(&list, &study->sweep[a], value, k);
         }
     }
-
-    return text_take(&list, text, "the values of a member");
+    return list.text;
 }
 
 uint64_t sweep_refine_orders(const struct case_values *study) {
     uint64_t all = 0;
     for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-        const int of_steady = sweep_quantities[q].of_steady;
-        if (of_steady == sweep_is_steady(study)) all |= UINT64_C(1) << q;
+        if (sweep_quantities[q].of_steady == sweep_is_steady(study)) all |= UINT64_C(1) << q;
     }
     return all;
 }
@@ -121,113 +102,99 @@ double sweep_reference(const struct case_values *study, int axis, int quantity, 
 
 // ---- keys and values of an axis
 
-/* Read the path of a key; the row in axis->key is NULL after an error. */
-static enum status axis_read_key(struct axis *axis, const struct yaml_node *node) {
-    struct sweep_key *const swept = &axis->into->key[axis->n_keys];
-    const struct key **const row = &axis->key[axis->n_keys++];
-    axis->into->n_keys++;
-
-    if (!node || node->kind != YAML_SCALAR) {
-        yaml_errors_add(axis->errors, node ? node->mark : axis->node->mark,
-                        "%s.key: expects the path of a key, as in \"fish[*].body.modulus\"", axis->name);
-        return STATUS_OK;
-    }
-
-    struct case_path path;
-    if (!case_path_parse(&path, node->text, axis->values->school.n_fish, node->mark, axis->errors)) return STATUS_OK;
-    const struct key *const key = case_table_row(path.pattern);
-    if (!key || !case_table_is_value(key) || strcmp(key->path, "format") == 0) {
-        yaml_errors_add(axis->errors, node->mark, "%s.key: '%.60s' cannot be swept", axis->name, node->text);
-        return STATUS_OK;
-    }
-
-    // refuse a key that another axis, or this one, has too
-    for (int i = 0; i <= axis->values->n_axes; i++) {
-        const struct sweep_axis *const other = &axis->values->sweep[i];
-        for (int k = 0; k < other->n_keys; k++) {
-            if (!other->key[k].path || strcmp(other->key[k].path, node->text) != 0) continue;
-            yaml_errors_add(axis->errors, node->mark, "%s.key: sweep[%d] has this key too", axis->name, i);
-        }
-    }
-
-    *row = key;
-    swept->row = key->path;
-    swept->unit = key->unit;
-    swept->is_number = key->type == REAL || key->type == INTEGER || key->type == DURATION;
-    return memory_copy_string(&swept->path, node->text, "the sweep");
-}
-
-/* Read "key", or "keys". */
-static enum status axis_read_keys(struct axis *axis) {
+/* Read "key", or "keys"; the row of a wrong key in axis->key is NULL. */
+static void axis_read_keys(struct axis *axis) {
     const struct yaml_node *const list = yaml_tree_find(axis->node, "keys"), *const single =
                                                                                  yaml_tree_find(axis->node, "key");
+    struct yaml_errors *const errors = axis->errors;
     axis->is_zipped = list != NULL;
-
     if (list && (list->kind != YAML_LIST || list->n == 0 || list->n > MAX_KEYS)) {
-        yaml_errors_add(axis->errors, list->mark, "%s.keys: expects a list of 1 to %d paths", axis->name, MAX_KEYS);
-        return STATUS_OK;
+        yaml_errors_add(errors, list->mark, "%s.keys: expects a list of 1 to %d paths", axis->name, MAX_KEYS);
+        return;
     }
+    if (list && single) yaml_errors_add(errors, single->mark, "%s: takes key or keys, not both", axis->name);
 
-    if (list && single) {
-        yaml_errors_add(axis->errors, single->mark, "%s: takes key or keys, not both", axis->name);
+    axis->n_keys = list ? list->n : 1;
+    NEW(axis->values->arena, axis->into->key, axis->n_keys);
+    for (int n = 0; n < axis->n_keys; n++) {
+        const struct yaml_node *const node = list ? list->entry[n].value : single;
+        axis->into->n_keys++;
+        if (!node || node->kind != YAML_SCALAR) {
+            yaml_errors_add(errors, node ? node->mark : axis->node->mark,
+                            "%s.key: expects the path of a key, as in \"fish[*].body.modulus\"", axis->name);
+            continue;
+        }
+
+        struct case_path path;
+        if (!case_path_parse(&path, node->text, axis->values->school.n_fish, node->mark, errors)) continue;
+        const struct key *const key = case_table_row(path.pattern);
+        if (!key || !case_table_is_value(key) || strcmp(key->path, "format") == 0) {
+            yaml_errors_add(errors, node->mark, "%s.key: '%.60s' cannot be swept", axis->name, node->text);
+            continue;
+        }
+
+        // refuse a key that another axis, or this one, has too
+        for (int i = 0; i <= axis->values->n_axes; i++) {
+            const struct sweep_axis *const other = &axis->values->sweep[i];
+            for (int k = 0; k < other->n_keys; k++) {
+                if (!other->key[k].path || strcmp(other->key[k].path, node->text) != 0) continue;
+                yaml_errors_add(errors, node->mark, "%s.key: sweep[%d] has this key too", axis->name, i);
+            }
+        }
+
+        axis->key[n] = key;
+        axis->into->key[n] =
+            (struct sweep_key){.path = arena_text(axis->values->arena, "%s", node->text),
+                               .row = key->path,
+                               .unit = key->unit,
+                               .is_number = key->type == REAL || key->type == INTEGER || key->type == DURATION};
     }
-    TRY(MEMORY_NEW(axis->into->key, MAX_KEYS, "the sweep"));
-    if (!list) return axis_read_key(axis, single);
-    for (int k = 0; k < list->n; k++) TRY(axis_read_key(axis, list->entry[k].value));
-    return STATUS_OK;
 }
 
-/* Check one value as a value of the key, and store the text. */
-static enum status axis_read_value(struct axis *axis, int index, int k, const struct yaml_node *value) {
-    if (axis->key[k]) {
-        union {
-            double number[2];
-            struct duration duration;
-            int integer;
-            char *text;
-            struct number_list list;
-        } field;
-        char path[256];
-        snprintf(path, sizeof path, "%s.values[%d] (%s)", axis->name, index, axis->key[k]->path);
-        case_value_clear(axis->key[k], &field);
-        const enum status status = case_value_read(axis->key[k], &field, value, path, axis->errors);
-        // beats are kept as a text
-        if (axis->key[k]->type == DURATION && !isnan(field.duration.beats)) axis->into->key[k].is_number = 0;
-        case_value_free(axis->key[k], &field);
-        TRY(status);
-    }
-
-    struct text text = {0};
-    yaml_write_node(&text, value);
-    return text_take(&text, &axis->into->value[index * axis->n_keys + k], "the sweep");
-}
-
-static enum status axis_read_values(struct axis *axis) {
+/* Read the values: check each value as a value of the key, and store the text. */
+static void axis_read_values(struct axis *axis) {
+    struct arena *const arena = axis->values->arena;
     const struct yaml_node *const list = yaml_tree_find(axis->node, "values");
     if (!list || list->kind != YAML_LIST || list->n == 0) {
         yaml_errors_add(axis->errors, list ? list->mark : axis->node->mark,
                         "%s.values: expects a list of at least one value, as in [1, 2]", axis->name);
-        return STATUS_OK;
+        return;
     }
 
-    TRY(MEMORY_NEW(axis->into->value, list->n * axis->n_keys, "the sweep"));
+    NEW(arena, axis->into->value, list->n * axis->n_keys);
     axis->into->n_values = list->n;
+    for (int i = 0; i < list->n * axis->n_keys; i++) {
+        const int row = i / axis->n_keys, k = i % axis->n_keys;
+        const struct yaml_node *const all = list->entry[row].value;
+        if (axis->is_zipped && (all->kind != YAML_LIST || all->n != axis->n_keys)) {
+            if (k > 0) continue;
+            yaml_errors_add(axis->errors, all->mark, "%s.values[%d]: expects a list of %d, one value for each key",
+                            axis->name, row, axis->n_keys);
+            continue;
+        }
 
-    for (int i = 0; i < list->n; i++) {
-        const struct yaml_node *const value = list->entry[i].value;
-        if (!axis->is_zipped) {
-            TRY(axis_read_value(axis, i, 0, value));
-            continue;
+        const struct yaml_node *const value = axis->is_zipped ? all->entry[k].value : all;
+        const struct key *const key = axis->key[k];
+        if (key) {
+            union {
+                double number[2];
+                struct duration duration;
+                int integer;
+                char *text;
+                struct number_list list;
+            } field;
+            char path[256];
+            snprintf(path, sizeof path, "%s.values[%d] (%s)", axis->name, row, key->path);
+            case_value_clear(key, &field);
+            case_value_read(axis->errors->arena, key, &field, value, path, axis->errors);
+            // beats are kept as a text
+            if (key->type == DURATION && !isnan(field.duration.beats)) axis->into->key[k].is_number = false;
         }
-        if (value->kind != YAML_LIST || value->n != axis->n_keys) {
-            yaml_errors_add(axis->errors, value->mark, "%s.values[%d]: expects a list of %d, one value for each key",
-                            axis->name, i, axis->n_keys);
-            continue;
-        }
-        for (int k = 0; k < axis->n_keys; k++) TRY(axis_read_value(axis, i, k, value->entry[k].value));
+
+        struct text text = {.arena = arena};
+        yaml_write_node(&text, value);
+        axis->into->value[i] = text.text;
     }
-
-    return STATUS_OK;
 }
 
 // ---- an axis of resolutions
@@ -238,16 +205,14 @@ static void axis_check_levels(const struct axis *axis, const struct yaml_node *n
     if (!axis->key[0]) return;
 
     if (!sweep_error_find(axis->key[0]->path)) {
-        struct text known = {0};
+        struct text known = {.arena = axis->errors->arena};
         for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
             const char *const path = sweep_error_keys[i].path;
-            const int is_of_fish = strncmp(path, "fish.", 5) == 0;
+            const bool is_of_fish = strncmp(path, "fish.", 5) == 0;
             text_add(&known, "%s%s%s", i > 0 ? ", " : "", is_of_fish ? "fish[*]" : "", is_of_fish ? path + 4 : path);
         }
         yaml_errors_add(axis->errors, node->mark, "%s.refine: '%.60s' is not a resolution; these are: %s", axis->name,
-                        into->key[0].path, known.text ? known.text : "");
-        if (known.failed) axis->errors->out_of_memory = true;
-        text_free(&known);
+                        into->key[0].path, known.text);
         return;
     }
 
@@ -266,40 +231,8 @@ static void axis_check_levels(const struct axis *axis, const struct yaml_node *n
     }
 }
 
-/* Read the boolean "steady" or "refine", which one axis of the sweep can have. */
-static bool axis_read_trait(const struct axis *axis, const char *trait, const struct yaml_node *node) {
-    const bool is_steady = strcmp(trait, "steady") == 0;
-    char path[64];
-    snprintf(path, sizeof path, "%s.%s", axis->name, trait);
-    if (!yaml_tree_boolean(node, path, axis->errors)) return false;
-
-    if (!is_steady) axis_check_levels(axis, node);
-    for (int i = 0; i < axis->values->n_axes; i++) {
-        const struct sweep_axis *const other = &axis->values->sweep[i];
-        if (!(is_steady ? other->steady : other->refine)) continue;
-        yaml_errors_add(axis->errors, node->mark, "%s: sweep[%d] is %s already; one axis can be", path, i,
-                        is_steady ? "steady" : "refined");
-    }
-    return true;
-}
-
-static void axis_read_expect(const struct axis *axis, const struct yaml_node *expect) {
-    char path[64];
-    snprintf(path, sizeof path, "%s.expect", axis->name);
-    if (expect->kind != YAML_MAP) {
-        yaml_errors_add(axis->errors, expect->mark, "%s: expects {order: 2, within: 0.2}", path);
-        return;
-    }
-
-    yaml_tree_check_keys(expect, path, "order, within, of", axis->errors);
-    axis->into->order = yaml_tree_positive(expect, path, "order", 0, axis->errors);
-    axis->into->within = yaml_tree_positive(expect, path, "within", 0, axis->errors);
-    const struct yaml_node *const of = yaml_tree_find(expect, "of");
-    if (of) axis->into->order_of = sweep_quantities_read(of, path, SWEEP_N_ORDERS, axis->errors);
-}
-
 /* Read the reference of a quantity for one fish: a number, or a point [x, y]; false for anything else. */
-static bool axis_read_point(const struct yaml_node *node, int of_xy, double value[2]) {
+static bool axis_read_point(const struct yaml_node *node, bool of_xy, double value[2]) {
     if (of_xy && (node->kind != YAML_LIST || node->n != 2)) return false;
     for (int k = 0; k < 1 + of_xy; k++) {
         const struct yaml_node *const number = of_xy ? node->entry[k].value : node;
@@ -308,17 +241,17 @@ static bool axis_read_point(const struct yaml_node *node, int of_xy, double valu
     return true;
 }
 
-static enum status axis_read_reference(const struct axis *axis, const struct yaml_node *node) {
+static void axis_read_reference(const struct axis *axis, const struct yaml_node *node) {
     char path[64];
     snprintf(path, sizeof path, "%s.reference", axis->name);
 
     if (node->kind != YAML_MAP || node->n == 0) {
         yaml_errors_add(axis->errors, node->mark, "%s: expects the values of quantities, as in {speed: 1.01}", path);
-        return STATUS_OK;
+        return;
     }
 
     const int n_fish = axis->values->school.n_fish, n = SWEEP_N_ORDERS * n_fish * 2;
-    TRY(MEMORY_NEW(axis->into->reference, n, "the sweep"));
+    NEW(axis->values->arena, axis->into->reference, n);
     for (int i = 0; i < n; i++) axis->into->reference[i] = NAN;
 
     for (int i = 0; i < node->n; i++) {
@@ -328,7 +261,7 @@ static enum status axis_read_reference(const struct axis *axis, const struct yam
         if (q < 0) continue;
 
         // one value for all fish, or a list of one for each
-        const int of_xy = sweep_quantities[q].of_xy;
+        const bool of_xy = sweep_quantities[q].of_xy;
         double *const to = axis->into->reference + (long)q * n_fish * 2, one[2];
         const bool is_one = axis_read_point(list, of_xy, one);
         bool is_good = is_one || (list->kind == YAML_LIST && list->n == n_fish);
@@ -339,88 +272,105 @@ static enum status axis_read_reference(const struct axis *axis, const struct yam
         yaml_errors_add(axis->errors, list->mark, "%s.%s: expects %s%s", path, entry->key,
                         of_xy ? "[x, y]" : "a number", n_fish > 1 ? ", or a list of one for each fish" : "");
     }
-
-    return STATUS_OK;
 }
 
 // ---- the sweep
 
 /* Read one axis into an entry that is zero. */
-static enum status axis_read(struct axis *axis) {
+static void axis_read(struct axis *axis) {
+    struct yaml_errors *const errors = axis->errors;
+    struct sweep_axis *const into = axis->into;
     if (axis->node->kind != YAML_MAP) {
-        yaml_errors_add(axis->errors, axis->node->mark, "%s: expects {key: PATH, values: [...]}", axis->name);
-        return STATUS_OK;
+        yaml_errors_add(errors, axis->node->mark, "%s: expects {key: PATH, values: [...]}", axis->name);
+        return;
     }
 
-    yaml_tree_check_keys(axis->node, axis->name, "key, keys, values, refine, expect, reference, steady", axis->errors);
-    TRY(axis_read_keys(axis));
-    if (axis->n_keys == 0) return STATUS_OK;
-    TRY(axis_read_values(axis));
+    yaml_tree_check_keys(axis->node, axis->name, "key, keys, values, refine, expect, reference, steady", errors);
+    axis_read_keys(axis);
+    if (axis->n_keys == 0) return;
+    axis_read_values(axis);
 
-    const struct yaml_node *const steady = yaml_tree_find(axis->node, "steady"),
-                                  *const refine = yaml_tree_find(axis->node, "refine"),
-                                  *const expect = yaml_tree_find(axis->node, "expect"),
-                                  *const reference = yaml_tree_find(axis->node, "reference");
-    axis->into->order = axis->into->within = NAN;
-    if (steady) axis->into->steady = axis_read_trait(axis, "steady", steady);
-    if (refine) axis->into->refine = axis_read_trait(axis, "refine", refine);
-    if (expect && !axis->into->refine) {
-        yaml_errors_add(axis->errors, expect->mark, "%s.expect: has no effect without refine: true", axis->name);
-    }
-    if (reference && !axis->into->refine) {
-        yaml_errors_add(axis->errors, reference->mark, "%s.reference: has no effect without refine: true", axis->name);
-    }
-    if (expect) axis_read_expect(axis, expect);
-    return reference ? axis_read_reference(axis, reference) : STATUS_OK;
-}
-
-/* Set the default of expected orders without `of`. Refuse quantities of runs if members are steady states, and
- * quantities of steady states if members are runs. */
-static void sweep_check_orders(struct case_values *values, const struct yaml_node *sweep, struct yaml_errors *errors) {
-    const uint64_t known = sweep_refine_orders(values);
-    const bool is_steady = sweep_is_steady(values);
-    const uint64_t standard =
-        is_steady ? UINT64_C(1) << SWEEP_STEADY_SPEED : UINT64_C(1) << SWEEP_NOSE | UINT64_C(1) << SWEEP_TAIL;
-
-    for (int a = 0; a < values->n_axes; a++) {
-        struct sweep_axis *const axis = &values->sweep[a];
-        if (axis->order_of == 0 && axis->order > 0) axis->order_of = standard;
-        for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-            if (!(axis->order_of & ~known & UINT64_C(1) << q)) continue;
-            yaml_errors_add(errors, sweep->entry[a].value->mark, "sweep[%d].expect.of: %s is a quantity of %s", a,
-                            sweep_quantities[q].name, is_steady ? "runs" : "steady states");
+    // "steady" and "refine", each of one axis of the sweep
+    for (int t = 0; t < 2; t++) {
+        const bool is_steady = t == 0;
+        const char *const trait = is_steady ? "steady" : "refine";
+        const struct yaml_node *const node = yaml_tree_find(axis->node, trait);
+        char path[64];
+        snprintf(path, sizeof path, "%s.%s", axis->name, trait);
+        if (!node || !yaml_tree_boolean(node, path, errors)) continue;
+        *(is_steady ? &into->steady : &into->refine) = true;
+        if (!is_steady) axis_check_levels(axis, node);
+        for (int i = 0; i < axis->values->n_axes; i++) {
+            const struct sweep_axis *const other = &axis->values->sweep[i];
+            if (!(is_steady ? other->steady : other->refine)) continue;
+            yaml_errors_add(errors, node->mark, "%s: sweep[%d] is %s already; one axis can be", path, i,
+                            is_steady ? "steady" : "refined");
         }
     }
+
+    // the expected order
+    const struct yaml_node *const expect = yaml_tree_find(axis->node, "expect"), *const reference = yaml_tree_find(
+                                                                                     axis->node, "reference");
+    char path[64];
+    snprintf(path, sizeof path, "%s.expect", axis->name);
+    into->order = into->within = NAN;
+    if (expect && !into->refine) yaml_errors_add(errors, expect->mark, "%s: has no effect without refine: true", path);
+    if (expect && expect->kind != YAML_MAP) {
+        yaml_errors_add(errors, expect->mark, "%s: expects {order: 2, within: 0.2}", path);
+    } else if (expect) {
+        yaml_tree_check_keys(expect, path, "order, within, of", errors);
+        into->order = yaml_tree_positive(expect, path, "order", 0, errors);
+        into->within = yaml_tree_positive(expect, path, "within", 0, errors);
+        const struct yaml_node *const of = yaml_tree_find(expect, "of");
+        if (of) into->order_of = sweep_quantities_read(of, path, SWEEP_N_ORDERS, errors);
+    }
+
+    if (reference && !into->refine) {
+        yaml_errors_add(errors, reference->mark, "%s.reference: has no effect without refine: true", axis->name);
+    }
+    if (reference) axis_read_reference(axis, reference);
 }
 
-enum status sweep_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
+void sweep_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
     const struct yaml_node *const list = yaml_tree_find(root, "sweep");
     if (list && list->kind != YAML_LIST) {
         yaml_errors_add(errors, list->mark, "sweep: expects a list of axes, each {key: PATH, values: [...]}");
-        return STATUS_OK;
+        return;
     }
 
-    if (!list || list->n == 0) return STATUS_OK;
-    TRY(MEMORY_NEW(values->sweep, list->n, "the sweep"));
+    if (!list || list->n == 0) return;
+    NEW(values->arena, values->sweep, list->n);
     const int n_before = errors->n;
     double n_members = 1;
-
     for (int i = 0; i < list->n && n_members <= max_members; i++) {
         struct axis axis = {
             .values = values, .node = list->entry[i].value, .into = &values->sweep[i], .errors = errors};
         snprintf(axis.name, sizeof axis.name, "sweep[%d]", i);
-        const enum status status = axis_read(&axis);
+        axis_read(&axis);
         n_members *= values->sweep[i].n_values;
         values->n_axes++;
-        TRY(status);
     }
 
     if (n_members > max_members) {
         yaml_errors_add(errors, list->mark, "sweep: %.0f members or more; the maximum is %.0f", n_members, max_members);
     }
-    if (errors->n == n_before) sweep_check_orders(values, list, errors);
+
+    // the default of expected orders; refuse quantities of runs for steady states, and of steady states for runs
+    const uint64_t known = sweep_refine_orders(values);
+    const bool is_steady = sweep_is_steady(values);
+    const uint64_t standard =
+        is_steady ? UINT64_C(1) << SWEEP_STEADY_SPEED : UINT64_C(1) << SWEEP_NOSE | UINT64_C(1) << SWEEP_TAIL;
+    const int n_after = errors->n;
+    for (int a = 0; a < values->n_axes && n_after == n_before; a++) {
+        struct sweep_axis *const axis = &values->sweep[a];
+        if (axis->order_of == 0 && axis->order > 0) axis->order_of = standard;
+        for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+            if (!(axis->order_of & ~known & UINT64_C(1) << q)) continue;
+            yaml_errors_add(errors, list->entry[a].value->mark, "sweep[%d].expect.of: %s is a quantity of %s", a,
+                            sweep_quantities[q].name, is_steady ? "runs" : "steady states");
+        }
+    }
 
     // do not count the members of axes with missing or too many values
-    if (errors->n > n_before) sweep_free(values);
-    return STATUS_OK;
+    if (errors->n > n_before) values->n_axes = 0;
 }

@@ -14,7 +14,7 @@ struct sweep_key {
     char *path;       /* as --set takes it */
     const char *row;  /* path of the row in the table of keys: fish.nodes */
     const char *unit; /* of the table of keys */
-    int is_number;    /* each value is one number */
+    bool is_number;   /* each value is one number */
 };
 
 /* One axis of a sweep: changes one key, or several keys together. */
@@ -23,18 +23,16 @@ struct sweep_axis {
     struct sweep_key *key; /* (n_keys) */
     int n_values;
     char **value;         /* value i of key k is value[i * n_keys + k], as --set takes it     (n_values * n_keys) */
-    int refine;           /* the values are resolutions of the first key: a study of convergence */
-    int steady;           /* members are steady states; each search starts from the state of the previous value */
+    bool refine;          /* the values are resolutions of the first key: a study of convergence */
+    bool steady;          /* members are steady states; each search starts from the state of the previous value */
     int *before;          /* start from the state of this value instead, -1: start of the case; NULL     (n_values) */
     double order, within; /* the expected order of convergence: order +- within; NaN: none */
     uint64_t order_of;    /* bit q: of quantity q */
     double *reference;    /* see sweep_reference; NULL: none */
 };
 
-/* Read the axes of the sweep, and check each value as a value of the key. After an error the case has no axes. Fails
- * with STATUS_MEMORY only. */
-enum status sweep_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
-void sweep_free(struct case_values *values);
+/* Read the axes of the sweep, and check each value as a value of the key. After an error the case has no axes. */
+void sweep_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
 
 /* Fail with STATUS_CASE if the case is a study; the message says how to run the study. */
 enum status sweep_refuse(const struct case_values *values);
@@ -47,15 +45,14 @@ int sweep_member_value(const struct case_values *study, int member, int axis);
 
 /* True if the members are steady states: an axis has `steady`. The search of a member starts from the result of the
  * member with the previous value of that axis; -1 for the first value. */
-int sweep_is_steady(const struct case_values *study);
+bool sweep_is_steady(const struct case_values *study);
 int sweep_member_before(const struct case_values *study, int member);
 
 /* Add "solver.rtol=1e-5": the assignment of this value to key k of an axis. */
 void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int value, int k);
 
-/* "solver.rtol=1e-5, fish[*].nodes=7": the assignments of one member. Empty without a sweep. The caller frees *text.
- * Fails with STATUS_MEMORY. */
-enum status sweep_member_text(const struct case_values *study, int member, char **text);
+/* "solver.rtol=1e-5, fish[*].nodes=7": the assignments of one member, in an arena. Empty without a sweep. */
+char *sweep_member_text(struct arena *arena, const struct case_values *study, int member);
 
 /* The quantities with observed orders in a study, as a set: bit q is set for quantity q. */
 uint64_t sweep_refine_orders(const struct case_values *study);
@@ -84,23 +81,20 @@ struct sweep_expectation {
     double ratio; /* of the largest to the smallest absolute value; values of both signs, or 0, have none */
 };
 
-/* Read the expectations of a case, after the sweep. Fails with STATUS_MEMORY only. */
-enum status sweep_expect_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
-
-/* Release the expectations. */
-void sweep_expect_free(struct case_values *values);
+/* Read the expectations of a case, after the sweep. */
+void sweep_expect_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
 
 /* Whether an expectation is about a member. */
-int sweep_expects_of(const struct case_values *study, const struct sweep_expectation *one, int member);
+bool sweep_expects_of(const struct case_values *study, const struct sweep_expectation *one, int member);
 
 // ---- sweep_quantity.c: the quantities of studies, for expectations and references. Tested by tests/case/test_sweep.c
 // and tests/study/test_study_file.c.
 
 struct sweep_quantity {
     const char *name;
-    int of_fish, of_xy;         /* one value for every fish; a point in the plane */
+    bool of_fish, of_xy;        /* one value for every fish; a point in the plane */
     const char *unit, *meaning; /* NULL: as of the variable of a result file with this name */
-    int of_steady;              /* of a steady state, or of an equilibrium */
+    bool of_steady;             /* of a steady state, or of an equilibrium */
 };
 
 enum {

@@ -2,10 +2,8 @@
 #include "case/sweep_error.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "case/sweep.h"
 
 /* The table that studies of convergence, error bars and doc/studies.md share. */
@@ -34,67 +32,19 @@ double sweep_error_order(const struct case_values *values, const struct sweep_er
     if (strcmp(key->path, "solver.step") == 0) return methods_table[values->solver.method].order;
 
     // continuous shedding is of second order, towards a wake that is wrong next to the edge (doc/numerics.md, 5)
-    const int is_interval = strcmp(key->path, "time.shedding_interval") == 0;
+    const bool is_interval = strcmp(key->path, "time.shedding_interval") == 0;
     if (is_interval && values->school.wake.shedding == SHEDDING_CONTINUOUS) return 2;
     return key->order;
 }
 
 // ---- reading
 
-void sweep_error_free(struct case_values *values) {
-    struct sweep_error *const error = values->error;
-    if (!error) return;
-    for (int i = 0; i < error->n_of; i++) free(error->of[i]);
-    for (int i = 0; i < error->n_keys; i++) free(error->levels[i].value);
-    free(error->of);
-    free(error->levels);
-    free(error);
-    values->error = NULL;
-}
-
-static enum status read_of(struct sweep_error *error, const struct yaml_node *of, struct yaml_errors *errors) {
-    const int n = of->kind == YAML_LIST ? of->n : 1;
-    TRY(MEMORY_NEW(error->of, n, "the errors of a study"));
-
-    for (int i = 0; i < n; i++) {
-        const struct yaml_node *const name = of->kind == YAML_LIST ? of->entry[i].value : of;
-        if (name->kind != YAML_SCALAR || !*name->text) {
-            yaml_errors_add(errors, name->mark, "error.of: expects the name of a quantity, or a list of names");
-            continue;
-        }
-        TRY(memory_copy_string(&error->of[error->n_of++], name->text, "the errors of a study"));
-    }
-
-    if (n == 0) yaml_errors_add(errors, of->mark, "error.of: expects the name of a quantity, or a list of names");
-    return STATUS_OK;
-}
-
-/* The row of a key: "nodes", "fish.nodes" or "fish[*].nodes"; NULL after an error. */
-static const struct sweep_error_key *error_find_key(const char *name, struct yaml_mark mark,
-                                                    struct yaml_errors *errors) {
-    for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
-        const char *const path = sweep_error_keys[i].path, *const last = strrchr(path, '.') + 1;
-        const int is_of_every = strncmp(path, "fish.", 5) == 0 && strncmp(name, "fish[*].", 8) == 0;
-        if (strcmp(name, path) == 0 || strcmp(is_of_every ? name + 8 : name, last) == 0) return &sweep_error_keys[i];
-    }
-
-    struct text known = {0};
-    for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
-        text_add(&known, "%s%s", i > 0 ? ", " : "", strrchr(sweep_error_keys[i].path, '.') + 1);
-    }
-    yaml_errors_add(errors, mark, "error.keys: '%.60s' is not a numerical key; these are: %s", name,
-                    known.text ? known.text : "");
-    if (known.failed) errors->out_of_memory = true;
-    text_free(&known);
-    return NULL;
-}
-
 /* Read the levels of one key: a list of numbers, or default. */
-static enum status read_levels(struct sweep_error_levels *levels, const struct yaml_node *node,
-                               struct yaml_errors *errors) {
-    if (node->kind == YAML_SCALAR && strcmp(node->text, "default") == 0) return STATUS_OK;
-    int is_wrong = node->kind != YAML_LIST || node->n < 2, are_wrong_points = 0;
-    TRY(MEMORY_NEW(levels->value, node->n, "the errors of a study"));
+static void read_levels(struct arena *arena, struct sweep_error_levels *levels, const struct yaml_node *node,
+                        struct yaml_errors *errors) {
+    if (node->kind == YAML_SCALAR && strcmp(node->text, "default") == 0) return;
+    bool is_wrong = node->kind != YAML_LIST || node->n < 2, are_wrong_points = false;
+    NEW(arena, levels->value, node->n);
 
     for (int i = 0; i < node->n && !is_wrong; i++) {
         const struct yaml_node *const number = node->entry[i].value;
@@ -114,57 +64,66 @@ static enum status read_levels(struct sweep_error_levels *levels, const struct y
         yaml_errors_add(errors, node->mark, "error.keys: more than %d levels of '%s'", SWEEP_ERROR_LEVELS,
                         levels->key->path);
     }
-    return STATUS_OK;
 }
 
-/* Read "keys": default, a list of keys, or a map of levels. */
-static enum status read_keys(struct sweep_error *error, const struct yaml_node *keys, struct yaml_errors *errors) {
-    if (keys->kind == YAML_SCALAR && strcmp(keys->text, "default") == 0) return STATUS_OK;
+/* Read "keys": default, a list of keys, or a map of levels. A key is "nodes", "fish.nodes" or "fish[*].nodes". */
+static void read_keys(struct arena *arena, struct sweep_error *error, const struct yaml_node *keys,
+                      struct yaml_errors *errors) {
+    if (keys->kind == YAML_SCALAR && strcmp(keys->text, "default") == 0) return;
     if (keys->kind == YAML_SCALAR || keys->n == 0) {
         yaml_errors_add(errors, keys->mark,
                         "error.keys: expects 'default', a list of keys, or levels, as in {nodes: [13, 17, 25, 35]}");
-        return STATUS_OK;
+        return;
     }
 
-    TRY(MEMORY_NEW(error->levels, keys->n, "the errors of a study"));
-
+    NEW(arena, error->levels, keys->n);
     for (int i = 0; i < keys->n; i++) {
         const struct yaml_entry *const entry = &keys->entry[i];
-        const int is_map = keys->kind == YAML_MAP;
+        const bool is_map = keys->kind == YAML_MAP;
         if (!is_map && entry->value->kind != YAML_SCALAR) {
             yaml_errors_add(errors, entry->value->mark, "error.keys: expects the name of a key");
             continue;
         }
-        const struct sweep_error_key *const key =
-            error_find_key(is_map ? entry->key : entry->value->text, is_map ? entry->mark : entry->value->mark, errors);
-        for (int j = 0; j < error->n_keys && key; j++) {
+
+        const char *const name = is_map ? entry->key : entry->value->text;
+        const struct sweep_error_key *key = NULL;
+        struct text known = {.arena = errors->arena};
+        for (int k = 0; k < SWEEP_N_ERROR_KEYS && !key; k++) {
+            const char *const path = sweep_error_keys[k].path, *const last = strrchr(path, '.') + 1;
+            const bool is_of_every = strncmp(path, "fish.", 5) == 0 && strncmp(name, "fish[*].", 8) == 0;
+            const bool is_last = strcmp(is_of_every ? name + 8 : name, last) == 0;
+            if (is_last || strcmp(name, path) == 0) key = &sweep_error_keys[k];
+            text_add(&known, "%s%s", k > 0 ? ", " : "", last);
+        }
+        if (!key) {
+            yaml_errors_add(errors, is_map ? entry->mark : entry->value->mark,
+                            "error.keys: '%.60s' is not a numerical key; these are: %s", name, known.text);
+            continue;
+        }
+
+        for (int j = 0; j < error->n_keys; j++) {
             if (error->levels[j].key != key) continue;
             yaml_errors_add(errors, entry->value->mark, "error.keys: '%s' is there twice", key->path);
         }
-        if (!key) continue;
         error->levels[error->n_keys].key = key;
-        if (is_map) TRY(read_levels(&error->levels[error->n_keys], entry->value, errors));
+        if (is_map) read_levels(arena, &error->levels[error->n_keys], entry->value, errors);
         error->n_keys++;
     }
-
-    return STATUS_OK;
 }
 
-enum status sweep_error_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
+void sweep_error_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
     const struct yaml_node *const map = yaml_tree_find(root, "error");
 
     // as for a member of such a study
-    const int is_none = map && map->kind == YAML_SCALAR && strcmp(map->text, "none") == 0;
-    if (!map || is_none || (map->kind == YAML_MAP && map->n == 0)) return STATUS_OK;
-
+    const bool is_none = map && map->kind == YAML_SCALAR && strcmp(map->text, "none") == 0;
+    if (!map || is_none || (map->kind == YAML_MAP && map->n == 0)) return;
     if (map->kind != YAML_MAP) {
         yaml_errors_add(errors, map->mark, "error: expects {of: QUANTITY}");
-        return STATUS_OK;
+        return;
     }
 
     yaml_tree_check_keys(map, "error", "of, within, keys, confirm, most", errors);
-    TRY(MEMORY_NEW(values->error, 1, "the errors of a study"));
-    struct sweep_error *const error = values->error;
+    struct sweep_error *const error = NEW(values->arena, values->error, 1);
     error->within = yaml_tree_positive(map, "error", "within", NAN, errors);
     error->most = yaml_tree_positive(map, "error", "most", SWEEP_ERROR_MOST, errors);
     if (values->n_axes > 0 && !isnan(error->within)) {
@@ -176,11 +135,26 @@ enum status sweep_error_read(struct case_values *values, const struct yaml_node 
     }
     const struct yaml_node *const of = yaml_tree_find(map, "of"), *const keys = yaml_tree_find(map, "keys"),
                                   *const confirm = yaml_tree_find(map, "confirm");
-    if (!of) yaml_errors_add(errors, map->mark, "error.of: is required: a quantity, or a list of quantities");
-    if (of) TRY(read_of(error, of, errors));
-    if (keys) TRY(read_keys(error, keys, errors));
     error->confirm = !confirm || yaml_tree_boolean(confirm, "error.confirm", errors);
-    return STATUS_OK;
+    if (keys) read_keys(values->arena, error, keys, errors);
+
+    // the quantities
+    static const char expected[] = "error.of: expects the name of a quantity, or a list of names";
+    if (!of) {
+        yaml_errors_add(errors, map->mark, "error.of: is required: a quantity, or a list of quantities");
+        return;
+    }
+    const int n = of->kind == YAML_LIST ? of->n : 1;
+    NEW(values->arena, error->of, n);
+    for (int i = 0; i < n; i++) {
+        const struct yaml_node *const name = of->kind == YAML_LIST ? of->entry[i].value : of;
+        if (name->kind == YAML_SCALAR && *name->text) {
+            error->of[error->n_of++] = arena_text(values->arena, "%s", name->text);
+        } else {
+            yaml_errors_add(errors, name->mark, expected);
+        }
+    }
+    if (n == 0) yaml_errors_add(errors, of->mark, expected);
 }
 
 void sweep_error_write(struct text *text, const struct sweep_error *error) {

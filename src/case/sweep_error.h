@@ -55,14 +55,13 @@ struct sweep_error {
     char **of;     /* names of quantities of a result or of a steady state     (n_of) */
     double within; /* refine until the error is below this part of the value; NaN: do not refine */
     double most;   /* refine to members of at most this many times the cost of the case */
-    int confirm;   /* with a finer level of each key */
+    bool confirm;  /* with a finer level of each key */
     int n_keys;
     struct sweep_error_levels *levels; /* of the keys that are varied; none: of all     (n_keys) */
 };
 
-/* Read `error` of a case. Fails with STATUS_MEMORY only. */
-enum status sweep_error_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
-void sweep_error_free(struct case_values *values);
+/* Read `error` of a case. */
+void sweep_error_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
 
 /* Add "{of: [steady_speed], within: 0.01}": all that is not a default. */
 void sweep_error_write(struct text *text, const struct sweep_error *error);

@@ -57,12 +57,9 @@ int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *pat
                         struct yaml_errors *errors) {
     const int found = sweep_quantity_find(name, n_known);
     if (found >= 0) return found;
-    struct text known = {0};
+    struct text known = {.arena = errors->arena};
     for (int q = 0; q < n_known; q++) text_add(&known, "%s%s", q > 0 ? ", " : "", sweep_quantities[q].name);
-    yaml_errors_add(errors, mark, "%s: '%.40s' is not a quantity; known quantities: %s", path, name,
-                    known.text ? known.text : "");
-    if (known.failed) errors->out_of_memory = true;
-    text_free(&known);
+    yaml_errors_add(errors, mark, "%s: '%.40s' is not a quantity; known quantities: %s", path, name, known.text);
     return -1;
 }
 

@@ -3,14 +3,9 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <yaml.h>
-
-#include "base/memory.h"
-#include "base/text.h"
 
 // ---- errors: sorted by place, each with the source line and a caret
 
@@ -25,18 +20,56 @@ void yaml_errors_add(struct yaml_errors *errors, struct yaml_mark mark, const ch
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     errors->kept[errors->n - 1].mark = mark;
-    errors->kept[errors->n - 1].text = strdup(text);
-    if (!errors->kept[errors->n - 1].text) errors->out_of_memory = true;
+    errors->kept[errors->n - 1].text = arena_text(errors->arena, "%s", text);
 }
 
-void yaml_errors_free(struct yaml_errors *errors) {
-    for (int i = 0; i < errors->n && i < YAML_ERRORS_KEPT; i++) free(errors->kept[i].text);
-    *errors = (struct yaml_errors){0};
+/* The size of a byte order mark, written by some editors and not skipped by libyaml. */
+static size_t mark_size(const struct yaml_source *source) {
+    return source->length >= 3 && memcmp(source->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
 }
 
-/* The order in which the kept errors are listed; errors at one place keep the order of detection. */
-static int sort_errors(const struct yaml_errors *errors, int order[YAML_ERRORS_KEPT]) {
-    int n = 0;
+/* The bytes of one character of UTF-8, at most up to end. */
+static size_t character_size(const char *from, const char *end) {
+    size_t size = 1;
+    while (from + size < end && ((unsigned char)from[size] & 0xC0) == 0x80) size++;
+    return size;
+}
+
+/* Add the source line of a mark and a caret under the mark; of a long line only the neighbourhood of the mark. */
+static void add_excerpt(struct text *list, struct yaml_mark mark) {
+    // find the line
+    const char *from = mark.source->text;
+    const char *end = from + mark.source->length;
+    from += mark_size(mark.source);
+    for (int line = 1; line < mark.line && from < end; from++) {
+        const bool return_only = *from == '\r' && !(from + 1 < end && from[1] == '\n');
+        if (*from == '\n' || return_only) line++;
+    }
+    const char *stop = from;
+    while (stop < end && *stop != '\n' && *stop != '\r') stop++;
+    end = stop;
+
+    // begin half an excerpt before the mark
+    int column = 1;
+    for (; column < mark.column - EXCERPT / 2; column++) {
+        if (from >= end) return;
+        from += character_size(from, end);
+    }
+    if (from >= end) return;
+
+    text_add(list, "\n");
+    for (int shown = 0; from < end && shown < EXCERPT; shown++) {
+        const size_t size = character_size(from, end);
+        const bool visible = (unsigned char)*from >= ' ' && *from != 0x7F && (size > 1 || (unsigned char)*from < 0x80);
+        text_add(list, "%.*s", visible ? (int)size : 1, visible ? from : " ");
+        from += size;
+    }
+    text_add(list, "\n%*s", mark.column - column + 1, "^");
+}
+
+char *yaml_errors_list(struct arena *arena, const struct yaml_errors *errors, const char *word) {
+    // sort the kept errors by place; errors at one place keep the order of detection
+    int order[YAML_ERRORS_KEPT], n = 0;
     for (; n < errors->n && n < YAML_ERRORS_KEPT; n++) {
         const struct yaml_mark mark = errors->kept[n].mark;
         int i = n;
@@ -48,148 +81,60 @@ static int sort_errors(const struct yaml_errors *errors, int order[YAML_ERRORS_K
         }
         order[i] = n;
     }
-    return n;
-}
 
-/* The bytes of one character of UTF-8, at most up to end. */
-static size_t character_size(const char *from, const char *end) {
-    size_t size = 1;
-    while (from + size < end && ((unsigned char)from[size] & 0xC0) == 0x80) size++;
-    return size;
-}
-
-/* Find the line of a mark: the bytes from *from up to the returned end. */
-static const char *line_of(struct yaml_mark mark, const char **from) {
-    const char *place = mark.source->text;
-    const char *const end = place + mark.source->length;
-    if (mark.source->length >= 3 && memcmp(place, "\xEF\xBB\xBF", 3) == 0) place += 3;  // the mark of UTF-8
-
-    for (int line = 1; line < mark.line && place < end; place++) {
-        const bool return_only = *place == '\r' && !(place + 1 < end && place[1] == '\n');
-        if (*place == '\n' || return_only) line++;
-    }
-
-    *from = place;
-    while (place < end && *place != '\n' && *place != '\r') place++;
-    return place;
-}
-
-/* Add the source line and a caret under the mark; of a long line only the neighbourhood of the mark. */
-static void add_excerpt(struct text *list, struct yaml_mark mark) {
-    const char *from, *const end = line_of(mark, &from);
-    int column = 1;
-
-    for (; column < mark.column - EXCERPT / 2; column++) {
-        if (from >= end) return;
-        from += character_size(from, end);
-    }
-
-    if (from >= end) return;
-    text_add(list, "\n");
-
-    for (int shown = 0; from < end && shown < EXCERPT; shown++) {
-        const size_t size = character_size(from, end);
-        const bool visible = (unsigned char)*from >= ' ' && *from != 0x7F && (size > 1 || (unsigned char)*from < 0x80);
-        text_add(list, "%.*s", visible ? (int)size : 1, visible ? from : " ");
-        from += size;
-    }
-
-    text_add(list, "\n%*s", mark.column - column + 1, "^");
-}
-
-/* Add one error with the place. */
-static void add_error(struct text *list, struct yaml_mark mark, const char *word, const char *text) {
-    if (list->length > 0) text_add(list, "\n");
-    if (mark.source->one_line) {
-        text_add(list, "%s: %s: %s", mark.source->name, word, text);
-    } else {
-        text_add(list, "%s:%d:%d: %s: %s", mark.source->name, mark.line, mark.column, word, text);
-        add_excerpt(list, mark);
-    }
-}
-
-enum status yaml_errors_list(const struct yaml_errors *errors, const char *word, char **text) {
-    int order[YAML_ERRORS_KEPT];
-    const int n = errors->out_of_memory ? 0 : sort_errors(errors, order);
-    struct text list = {.failed = errors->out_of_memory};
+    struct text list = {.arena = arena};
     for (int i = 0; i < n && i < YAML_ERRORS_SHOWN; i++) {
-        add_error(&list, errors->kept[order[i]].mark, word, errors->kept[order[i]].text);
+        const struct yaml_mark mark = errors->kept[order[i]].mark;
+        const char *const text = errors->kept[order[i]].text;
+        if (i > 0) text_add(&list, "\n");
+        if (mark.source->one_line) {
+            text_add(&list, "%s: %s: %s", mark.source->name, word, text);
+        } else {
+            text_add(&list, "%s:%d:%d: %s: %s", mark.source->name, mark.line, mark.column, word, text);
+            add_excerpt(&list, mark);
+        }
     }
     if (errors->n > YAML_ERRORS_SHOWN) text_add(&list, "\n... and %d more", errors->n - YAML_ERRORS_SHOWN);
-    return text_take(&list, text, "the list of errors of the case");
+    text_add(&list, "%s", "");
+    return list.text;
 }
 
 enum status yaml_errors_status(const struct yaml_errors *errors) {
-    if (errors->n == 0 && !errors->out_of_memory) return STATUS_OK;
-    char *list;
-    TRY(yaml_errors_list(errors, "error", &list));
-    const enum status status = status_fail(STATUS_CASE, "%s", list);
-    free(list);
-    return status;
+    if (errors->n == 0) return STATUS_OK;
+    return status_fail(STATUS_CASE, "%s", yaml_errors_list(errors->arena, errors, "error"));
 }
-
-struct reader {
-    yaml_parser_t parser;
-    const struct yaml_source *source;
-    struct yaml_errors *errors;
-};
-
-static const char what[] = "the tree of a case file"; /* in messages on memory */
 
 // ---- the tree
 
-static enum status create_node(struct yaml_node **node, enum yaml_kind kind, struct yaml_mark mark) {
-    TRY(MEMORY_NEW(*node, 1, what));
-    (*node)->kind = kind;
-    (*node)->mark = mark;
-    return STATUS_OK;
+static struct yaml_node *create_node(struct arena *arena, enum yaml_kind kind, struct yaml_mark mark) {
+    struct yaml_node *node;
+    NEW(arena, node, 1);
+    node->kind = kind;
+    node->mark = mark;
+    return node;
 }
 
-enum status yaml_tree_map(struct yaml_node **node, struct yaml_mark mark) {
-    return create_node(node, YAML_MAP, mark);
+struct yaml_node *yaml_tree_map(struct arena *arena, struct yaml_mark mark) {
+    return create_node(arena, YAML_MAP, mark);
 }
 
-void yaml_tree_free(struct yaml_node *node) {
-    if (!node) return;
+/* Append an entry with a copy of the key (NULL in a list). */
+static void append_node(struct arena *arena, struct yaml_node *node, const char *key, struct yaml_mark mark,
+                        struct yaml_node *value) {
+    if (node->n == node->capacity) {
+        node->capacity = 2 * node->capacity + 4;
+        GROW(arena, node->entry, node->capacity);
+    }
+    node->entry[node->n++] = (struct yaml_entry){key ? arena_text(arena, "%s", key) : NULL, mark, value};
+}
+
+struct yaml_node *yaml_tree_copy(struct arena *arena, const struct yaml_node *node) {
+    struct yaml_node *const copy = create_node(arena, node->kind, node->mark);
+    copy->text = node->text ? arena_text(arena, "%s", node->text) : NULL;
     for (int i = 0; i < node->n; i++) {
-        free(node->entry[i].key);
-        yaml_tree_free(node->entry[i].value);
+        append_node(arena, copy, node->entry[i].key, node->entry[i].mark, yaml_tree_copy(arena, node->entry[i].value));
     }
-    free(node->entry);
-    free(node->text);
-    free(node);
-}
-
-/* Append an entry with a copy of the key (NULL in a list). Takes ownership of the value, also on failure. */
-static enum status append_node(struct yaml_node *node, const char *key, struct yaml_mark mark,
-                               struct yaml_node *value) {
-    char *own_key = NULL;
-    enum status status = key ? memory_copy_string(&own_key, key, what) : STATUS_OK;
-    if (status == STATUS_OK && node->n == node->capacity) {
-        status = MEMORY_RESIZE(node->entry, 2 * node->capacity + 4, what);
-        if (status == STATUS_OK) node->capacity = 2 * node->capacity + 4;
-    }
-
-    if (status == STATUS_OK) {
-        node->entry[node->n++] = (struct yaml_entry){own_key, mark, value};
-    } else {
-        free(own_key);
-        yaml_tree_free(value);
-    }
-    return status;
-}
-
-enum status yaml_tree_copy(struct yaml_node **copy, const struct yaml_node *node) {
-    TRY(create_node(copy, node->kind, node->mark));
-    enum status status = node->text ? memory_copy_string(&(*copy)->text, node->text, what) : STATUS_OK;
-    for (int i = 0; i < node->n && status == STATUS_OK; i++) {
-        struct yaml_node *value;
-        status = yaml_tree_copy(&value, node->entry[i].value);
-        if (status == STATUS_OK) status = append_node(*copy, node->entry[i].key, node->entry[i].mark, value);
-    }
-
-    if (status != STATUS_OK) yaml_tree_free(*copy);
-    return status;
+    return copy;
 }
 
 struct yaml_entry *yaml_tree_entry(const struct yaml_node *map, const char *key, size_t length) {
@@ -211,30 +156,35 @@ const struct yaml_node *yaml_tree_find(const struct yaml_node *map, const char *
     return map;
 }
 
-enum status yaml_tree_put(struct yaml_node *map, const char *key, struct yaml_mark mark, struct yaml_node *value) {
+void yaml_tree_put(struct arena *arena, struct yaml_node *map, const char *key, struct yaml_mark mark,
+                   struct yaml_node *value) {
     struct yaml_entry *const entry = yaml_tree_entry(map, key, strlen(key));
-    if (!entry) return append_node(map, key, mark, value);
-    entry->mark = mark;
-    return yaml_tree_merge(&entry->value, value);
+    if (entry) {
+        entry->mark = mark;
+        yaml_tree_merge(arena, &entry->value, value);
+    } else {
+        append_node(arena, map, key, mark, value);
+    }
 }
 
-enum status yaml_tree_merge(struct yaml_node **base, struct yaml_node *over) {
+void yaml_tree_merge(struct arena *arena, struct yaml_node **base, struct yaml_node *over) {
     if (!*base || (*base)->kind != YAML_MAP || over->kind != YAML_MAP) {
-        yaml_tree_free(*base);
         *base = over;
-        return STATUS_OK;
+        return;
     }
-
-    enum status status = STATUS_OK;
-    for (int i = 0; i < over->n && status == STATUS_OK; i++) {
-        struct yaml_node *const value = over->entry[i].value;
-        over->entry[i].value = NULL;
-        status = yaml_tree_put(*base, over->entry[i].key, over->entry[i].mark, value);
+    for (int i = 0; i < over->n; i++) {
+        yaml_tree_put(arena, *base, over->entry[i].key, over->entry[i].mark, over->entry[i].value);
     }
-
     (*base)->mark = over->mark;
-    yaml_tree_free(over);
-    return status;
+}
+
+struct yaml_node *yaml_tree_take(struct yaml_node *map, const char *key) {
+    struct yaml_entry *const entry = yaml_tree_entry(map, key, strlen(key));
+    if (!entry) return NULL;
+    struct yaml_node *const value = entry->value;
+    map->n--;
+    memmove(entry, entry + 1, (size_t)(&map->entry[map->n] - entry) * sizeof *entry);
+    return value;
 }
 
 const char *yaml_tree_describe(const struct yaml_node *node, char *buffer, size_t size) {
@@ -250,14 +200,29 @@ const char *yaml_tree_describe(const struct yaml_node *node, char *buffer, size_
     return buffer;
 }
 
-// ---- errors of libyaml
+// ---- events of libyaml
+
+/* The parser holds one event at a time, and is released with an arena of its own, also on a lack of memory. */
+struct reader {
+    yaml_parser_t parser;
+    yaml_event_t event;
+    const struct yaml_source *source;
+    struct arena *arena; /* of the nodes */
+    struct yaml_errors *errors;
+};
+
+static void release_reader(void *object) {
+    struct reader *const reader = object;
+    yaml_event_delete(&reader->event);
+    yaml_parser_delete(&reader->parser);
+}
 
 static struct yaml_mark mark_at(const struct reader *reader, yaml_mark_t mark) {
     return (struct yaml_mark){reader->source, (int)mark.line + 1, (int)mark.column + 1};
 }
 
-/* Remedies for the most frequent errors of libyaml. */
-static const char *remedy(const char *problem) {
+/* Add the error of libyaml to the list, with a remedy for the most frequent ones. */
+static enum status report_parser(struct reader *reader) {
     static const char *const remedies[][2] = {
         {"did not find expected key",
          "the indentation of this line differs from the lines above, or a quote or bracket is open"},
@@ -271,20 +236,16 @@ static const char *remedy(const char *problem) {
         {"found unexpected end of stream", "the quote that begins here is not closed"},
         {"found character that cannot start any token", "quote strings that begin with this character"},
     };
-    for (size_t i = 0; i < sizeof remedies / sizeof *remedies; i++) {
-        if (strcmp(problem, remedies[i][0]) == 0) return remedies[i][1];
-    }
-    return "this is not valid YAML";
-}
-
-/* Add the error of libyaml to the list. */
-static enum status report_parser(struct reader *reader) {
     const yaml_parser_t *const parser = &reader->parser;
-    if (parser->error == YAML_MEMORY_ERROR) return memory_check(NULL, what);
+    if (parser->error == YAML_MEMORY_ERROR) arena_lack(reader->arena, 0);
     const char *const problem = parser->problem ? parser->problem : "not readable";
-    struct yaml_mark mark = mark_at(reader, parser->problem_mark);
+    const char *remedy = "this is not valid YAML";
+    for (size_t i = 0; i < sizeof remedies / sizeof *remedies; i++) {
+        if (strcmp(problem, remedies[i][0]) == 0) remedy = remedies[i][1];
+    }
 
     // a tab in the indentation of the line
+    struct yaml_mark mark = mark_at(reader, parser->problem_mark);
     const char *place = mark.source->text, *const end = place + mark.source->length;
     for (int line = 1; line < mark.line && place < end; place++) line += *place == '\n';
     while (place < end && *place == ' ') place++;
@@ -295,29 +256,28 @@ static enum status report_parser(struct reader *reader) {
     }
 
     if (!parser->context) {
-        yaml_errors_add(reader->errors, mark, "%s (%s)", remedy(problem), problem);
+        yaml_errors_add(reader->errors, mark, "%s (%s)", remedy, problem);
         return STATUS_CASE;
     }
 
     // for a bracket or quote that is not closed, report the opening, not the end of the file
     const struct yaml_mark begin = mark_at(reader, parser->context_mark);
     if (strcmp(problem, "found unexpected end of stream") == 0) mark = begin;
-    yaml_errors_add(reader->errors, mark, "%s (%s, line %d: %s)", remedy(problem), parser->context, begin.line,
-                    problem);
+    yaml_errors_add(reader->errors, mark, "%s (%s, line %d: %s)", remedy, parser->context, begin.line, problem);
     return STATUS_CASE;
 }
 
-static enum status next_event(struct reader *reader, yaml_event_t *event) {
-    return yaml_parser_parse(&reader->parser, event) ? STATUS_OK : report_parser(reader);
+/* Replace the event by the next one. */
+static enum status next_event(struct reader *reader) {
+    yaml_event_delete(&reader->event);
+    return yaml_parser_parse(&reader->parser, &reader->event) ? STATUS_OK : report_parser(reader);
 }
 
 // ---- from events to nodes
 
-static enum status read_node(struct reader *reader, const yaml_event_t *event, int depth, struct yaml_node **node);
-
 /* Refuse the anchor and the tag of a node; reading continues. */
-static void refuse_extras(struct reader *reader, struct yaml_mark mark, const unsigned char *anchor,
-                          const unsigned char *tag) {
+static void refuse_extras(struct reader *reader, const unsigned char *anchor, const unsigned char *tag) {
+    const struct yaml_mark mark = mark_at(reader, reader->event.start_mark);
     if (anchor) {
         yaml_errors_add(reader->errors, mark,
                         "anchors ('&') are not used in case files; put shared values under defaults");
@@ -325,90 +285,58 @@ static void refuse_extras(struct reader *reader, struct yaml_mark mark, const un
     if (tag) yaml_errors_add(reader->errors, mark, "tags ('!') are not used in case files; the key decides the type");
 }
 
-static enum status read_scalar(struct reader *reader, const yaml_event_t *event, struct yaml_node **node) {
-    const struct yaml_mark mark = mark_at(reader, event->start_mark);
+static struct yaml_node *read_scalar(struct reader *reader) {
+    const yaml_event_t *const event = &reader->event;
     const char *const text = (const char *)event->data.scalar.value;
-    refuse_extras(reader, mark, event->data.scalar.anchor, event->data.scalar.tag);
+    struct yaml_node *const node = create_node(reader->arena, YAML_SCALAR, mark_at(reader, event->start_mark));
+    refuse_extras(reader, event->data.scalar.anchor, event->data.scalar.tag);
     if (strlen(text) != event->data.scalar.length) {
-        yaml_errors_add(reader->errors, mark, "a string cannot contain a zero byte");
+        yaml_errors_add(reader->errors, node->mark, "a string cannot contain a zero byte");
     }
-    TRY(create_node(node, YAML_SCALAR, mark));
-    return memory_copy_string(&(*node)->text, text, what);
+    node->text = arena_text(reader->arena, "%s", text);
+    return node;
 }
 
-static enum status yaml_read_list(struct reader *reader, int depth, struct yaml_node *list) {
-    for (;;) {
-        yaml_event_t event;
-        TRY(next_event(reader, &event));
-        if (event.type == YAML_SEQUENCE_END_EVENT) {
-            yaml_event_delete(&event);
-            return STATUS_OK;
-        }
-        struct yaml_node *value = NULL;
-        enum status status = read_node(reader, &event, depth, &value);
-        yaml_event_delete(&event);
-        if (status == STATUS_OK) {
-            status = append_node(list, NULL, value->mark, value);
-        } else {
-            yaml_tree_free(value);
-        }
-        TRY(status);
+static enum status read_node(struct reader *reader, int depth, struct yaml_node **node);
+
+/* Read the next key of a map, at the present event, and the value; a refused key is left out. */
+static enum status read_entry(struct reader *reader, int depth, struct yaml_node *map) {
+    const struct yaml_mark mark = mark_at(reader, reader->event.start_mark);
+    if (reader->event.type != YAML_SCALAR_EVENT) {
+        yaml_errors_add(reader->errors, mark, "a key must be a plain word, without brackets or braces");
+        return STATUS_CASE;
     }
-}
 
-/* Read a value and append the value under the key, unless the key is refused. */
-static enum status yaml_read_value(struct reader *reader, int depth, struct yaml_node *map,
-                                   const struct yaml_node *key) {
-    yaml_event_t event;
-    TRY(next_event(reader, &event));
-    struct yaml_node *value = NULL;
-    const enum status status = read_node(reader, &event, depth, &value);
-    yaml_event_delete(&event);
+    const char *const key = read_scalar(reader)->text;
+    if (map->n == YAML_TREE_KEYS) {
+        yaml_errors_add(reader->errors, mark, "more than %d keys in one map", YAML_TREE_KEYS);
+        return STATUS_CASE;
+    }
 
-    const struct yaml_entry *const twin = yaml_tree_entry(map, key->text, strlen(key->text));
-    const bool is_merge = strcmp(key->text, "<<") == 0;
-    if (status == STATUS_OK && !is_merge && !twin) return append_node(map, key->text, key->mark, value);
-
-    // discard the value
-    yaml_tree_free(value);
-    if (status == STATUS_OK && is_merge) {
-        yaml_errors_add(reader->errors, key->mark,
+    struct yaml_node *value;
+    TRY(next_event(reader));
+    TRY(read_node(reader, depth, &value));
+    const struct yaml_entry *const twin = yaml_tree_entry(map, key, strlen(key));
+    if (strcmp(key, "<<") == 0) {
+        yaml_errors_add(reader->errors, mark,
                         "merge keys ('<<') are not used in case files; put shared values under defaults");
-    } else if (status == STATUS_OK) {
-        yaml_errors_add(reader->errors, key->mark, "the key '%.40s' is here twice; the first is on line %d: remove one",
-                        key->text, twin->mark.line);
+    } else if (twin) {
+        yaml_errors_add(reader->errors, mark, "the key '%.40s' is here twice; the first is on line %d: remove one", key,
+                        twin->mark.line);
+    } else {
+        append_node(reader->arena, map, key, mark, value);
     }
-    return status;
+    return STATUS_OK;
 }
 
-static enum status read_map(struct reader *reader, int depth, struct yaml_node *map) {
-    for (;;) {
-        yaml_event_t event;
-        TRY(next_event(reader, &event));
-        const struct yaml_mark mark = mark_at(reader, event.start_mark);
-        const yaml_event_type_t type = event.type;
-        struct yaml_node *key = NULL;
-        enum status status = type == YAML_SCALAR_EVENT ? read_scalar(reader, &event, &key) : STATUS_OK;
-        yaml_event_delete(&event);
-        if (type == YAML_MAPPING_END_EVENT) return STATUS_OK;
-        if (type != YAML_SCALAR_EVENT) {
-            yaml_errors_add(reader->errors, mark, "a key must be a plain word, without brackets or braces");
-            return STATUS_CASE;
-        }
-        if (status == STATUS_OK && map->n == YAML_TREE_KEYS) {
-            yaml_errors_add(reader->errors, mark, "more than %d keys in one map", YAML_TREE_KEYS);
-            status = STATUS_CASE;
-        }
-        if (status == STATUS_OK) status = yaml_read_value(reader, depth, map, key);
-        yaml_tree_free(key);
-        TRY(status);
-    }
-}
-
-/* Read the node that begins with an event. *node is set also on failure. */
-static enum status read_node(struct reader *reader, const yaml_event_t *event, int depth, struct yaml_node **node) {
+/* Read the node that begins with the present event. */
+static enum status read_node(struct reader *reader, int depth, struct yaml_node **node) {
+    const yaml_event_t *const event = &reader->event;
     const struct yaml_mark mark = mark_at(reader, event->start_mark);
-    if (event->type == YAML_SCALAR_EVENT) return read_scalar(reader, event, node);
+    if (event->type == YAML_SCALAR_EVENT) {
+        *node = read_scalar(reader);
+        return STATUS_OK;
+    }
 
     if (event->type == YAML_ALIAS_EVENT) {
         yaml_errors_add(reader->errors, mark, "aliases ('*') are not used in case files; write the value");
@@ -421,43 +349,27 @@ static enum status read_node(struct reader *reader, const yaml_event_t *event, i
     }
 
     const bool is_map = event->type == YAML_MAPPING_START_EVENT;
-    TRY(create_node(node, is_map ? YAML_MAP : YAML_LIST, mark));
-
+    *node = create_node(reader->arena, is_map ? YAML_MAP : YAML_LIST, mark);
     if (is_map) {
-        refuse_extras(reader, mark, event->data.mapping_start.anchor, event->data.mapping_start.tag);
-        return read_map(reader, depth + 1, *node);
+        refuse_extras(reader, event->data.mapping_start.anchor, event->data.mapping_start.tag);
+    } else {
+        refuse_extras(reader, event->data.sequence_start.anchor, event->data.sequence_start.tag);
     }
 
-    refuse_extras(reader, mark, event->data.sequence_start.anchor, event->data.sequence_start.tag);
-    return yaml_read_list(reader, depth + 1, *node);
-}
-
-/* Read the only document of a stream. */
-static enum status read_document(struct reader *reader, struct yaml_node **root) {
-    enum { BEGIN, INSIDE, AFTER } stage = BEGIN;
     for (;;) {
-        yaml_event_t event;
-        TRY(next_event(reader, &event));
-        const yaml_event_type_t type = event.type;
-        const struct yaml_mark mark = mark_at(reader, event.start_mark);
-        enum status status = STATUS_OK;
-        if (type == YAML_DOCUMENT_START_EVENT) {
-            if (stage == AFTER)
-                yaml_errors_add(reader->errors, mark, "a second document ('---') begins here; keep one");
-            if (stage == AFTER) status = STATUS_CASE;
-            stage = INSIDE;
-        } else if (type == YAML_DOCUMENT_END_EVENT) {
-            stage = AFTER;
-        } else if (stage == INSIDE) {
-            status = read_node(reader, &event, 0, root);
+        TRY(next_event(reader));
+        if (event->type == YAML_MAPPING_END_EVENT || event->type == YAML_SEQUENCE_END_EVENT) return STATUS_OK;
+        if (is_map) {
+            TRY(read_entry(reader, depth + 1, *node));
+        } else {
+            struct yaml_node *value;
+            TRY(read_node(reader, depth + 1, &value));
+            append_node(reader->arena, *node, NULL, value->mark, value);
         }
-        yaml_event_delete(&event);
-        TRY(status);
-        if (type == YAML_STREAM_END_EVENT) return STATUS_OK;
     }
 }
 
-// ---- checks before parsing
+// ---- a source
 
 /* The code point of the character at text and its size in bytes; -1 for invalid UTF-8. */
 static long code_point(const unsigned char *text, size_t left, size_t *size) {
@@ -476,15 +388,14 @@ static long code_point(const unsigned char *text, size_t left, size_t *size) {
     return overlong || (code >= 0xD800 && code <= 0xDFFF) || code > 0x10FFFF ? -1 : code;
 }
 
-/* The size of a byte order mark, written by some editors and not skipped by libyaml. */
-static size_t mark_size(const struct yaml_source *source) {
-    return source->length >= 3 && memcmp(source->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
-}
-
-/* Refuse invalid UTF-8 and control characters: one error at the first place. */
-static enum status check_characters(const struct yaml_source *source, struct yaml_errors *errors) {
+/* Refuse a long source, and invalid UTF-8 and control characters: one error at the first place. */
+static enum status check_source(const struct yaml_source *source, struct yaml_errors *errors) {
     const unsigned char *const text = (const unsigned char *)source->text;
     struct yaml_mark mark = {source, 1, 1};
+    if (source->length > YAML_TREE_BYTES) {
+        yaml_errors_add(errors, mark, "larger than %d MiB; is this a case file?", YAML_TREE_BYTES >> 20);
+        return STATUS_CASE;
+    }
 
     for (size_t i = mark_size(source), size; i < source->length; i += size) {
         const long code = code_point(text + i, source->length - i, &size);
@@ -504,39 +415,48 @@ static enum status check_characters(const struct yaml_source *source, struct yam
     return STATUS_OK;
 }
 
-/* Parse a source that has passed the checks of size and characters. */
-static enum status read_text(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors) {
-    struct reader reader = {.source = source, .errors = errors};
-    if (!yaml_parser_initialize(&reader.parser)) return memory_check(NULL, what);
-    yaml_parser_set_encoding(&reader.parser, YAML_UTF8_ENCODING);
-    const size_t skipped = mark_size(source);
-    yaml_parser_set_input_string(&reader.parser, (const unsigned char *)source->text + skipped,
-                                 source->length - skipped);
-    const enum status status = read_document(&reader, root);
-    yaml_parser_delete(&reader.parser);
-    return status;
+/* Read the only document of the source. */
+static enum status read_document(struct reader *reader, struct yaml_node **root) {
+    bool has_begun = false, has_ended = false;
+    for (;;) {
+        TRY(next_event(reader));
+        switch (reader->event.type) {
+            case YAML_STREAM_END_EVENT: return STATUS_OK;
+            case YAML_DOCUMENT_START_EVENT:
+                has_begun = true;
+                if (!has_ended) break;
+                yaml_errors_add(reader->errors, mark_at(reader, reader->event.start_mark),
+                                "a second document ('---') begins here; keep one");
+                return STATUS_CASE;
+            case YAML_DOCUMENT_END_EVENT: has_ended = true; break;
+            default:
+                if (has_begun && !has_ended) TRY(read_node(reader, 0, root));
+        }
+    }
 }
 
-enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors) {
+enum status yaml_tree_read(struct arena *arena, struct yaml_node **root, const struct yaml_source *source,
+                           struct yaml_errors *errors) {
     *root = NULL;
-    const struct yaml_mark start = {source, 1, 1};
     const int n_errors = errors->n;
+    TRY(check_source(source, errors));
 
-    if (source->length > YAML_TREE_BYTES) {
-        yaml_errors_add(errors, start, "larger than %d MiB; is this a case file?", YAML_TREE_BYTES >> 20);
-        return STATUS_CASE;
-    }
+    struct arena *const of_reader = arena_create(arena, "the reader of a case file");
+    struct reader *reader;
+    NEW(of_reader, reader, 1);
+    *reader = (struct reader){.source = source, .arena = arena, .errors = errors};
+    if (!yaml_parser_initialize(&reader->parser)) arena_lack(arena, 0);
+    arena_defer(of_reader, release_reader, reader);
+    yaml_parser_set_encoding(&reader->parser, YAML_UTF8_ENCODING);
+    const size_t skipped = mark_size(source);
+    yaml_parser_set_input_string(&reader->parser, (const unsigned char *)source->text + skipped,
+                                 source->length - skipped);
 
-    TRY(check_characters(source, errors));
-    enum status status = read_text(root, source, errors);
-    if (status == STATUS_OK && errors->n > n_errors) status = STATUS_CASE;
-
-    if (status != STATUS_OK) {
-        yaml_tree_free(*root);
-        *root = NULL;
-    }
-
-    return status;
+    read_document(reader, root);
+    arena_free(of_reader);
+    if (errors->n == n_errors) return STATUS_OK;
+    *root = NULL;
+    return STATUS_CASE;
 }
 
 void yaml_tree_check_keys(const struct yaml_node *map, const char *path, const char *known,

@@ -20,6 +20,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 #include "base/text.h"
 
@@ -27,12 +28,11 @@
 
 /* A file, or an assignment of the command line. */
 struct yaml_source {
-    const char *name;          /* in messages */
-    const char *text;          /* not terminated by a zero */
-    size_t length;             /* bytes */
-    int rank;                  /* errors are listed by rank, then by line */
-    bool one_line;             /* an assignment: messages show the name, without line and caret */
-    char *own_name, *own_text; /* name and text of a source that belongs to a case_tree */
+    const char *name; /* in messages */
+    const char *text; /* not terminated by a zero */
+    size_t length;    /* bytes */
+    int rank;         /* errors are listed by rank, then by line */
+    bool one_line;    /* an assignment: messages show the name, without line and caret */
 };
 
 /* A place in a source; line and column (in characters) count from 1. */
@@ -44,28 +44,23 @@ struct yaml_mark {
 enum { YAML_ERRORS_KEPT = 64, YAML_ERRORS_SHOWN = 20 };
 
 struct yaml_errors {
-    int n; /* all errors, including those that are not kept */
+    struct arena *arena; /* of the texts */
+    int n;               /* all errors, including those that are not kept */
     struct {
         struct yaml_mark mark;
         char *text;
     } kept[YAML_ERRORS_KEPT];
-    bool out_of_memory; /* an error could not be kept */
 };
 
-/* Add an error (printf format, one line without "error:"). A failed allocation is recorded and reported by
- * yaml_errors_status. */
+/* Add an error (printf format, one line without "error:"). */
 void yaml_errors_add(struct yaml_errors *errors, struct yaml_mark mark, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* STATUS_OK if nothing was added; else STATUS_CASE with the list as message, or STATUS_MEMORY. */
+/* STATUS_OK if nothing was added; else STATUS_CASE with the list as message. */
 enum status yaml_errors_status(const struct yaml_errors *errors);
 
-/* The list with another word than "error", such as "note"; "" for an empty list. The caller frees *text. Fails with
- * STATUS_MEMORY. */
-enum status yaml_errors_list(const struct yaml_errors *errors, const char *word, char **text);
-
-/* Release the errors and zero the list. */
-void yaml_errors_free(struct yaml_errors *errors);
+/* The list with another word than "error", such as "note", in an arena; "" for an empty list. */
+char *yaml_errors_list(struct arena *arena, const struct yaml_errors *errors, const char *word);
 
 // ---- nodes
 
@@ -87,16 +82,14 @@ struct yaml_entry {
     struct yaml_node *value;
 };
 
-/* Parse a source. Fails with STATUS_CASE after adding to errors, or with STATUS_MEMORY; *root is then
- * NULL. The nodes point at the source. Free with yaml_tree_free. */
-enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors);
+/* Parse a source. Fails with STATUS_CASE after adding to errors; *root is then NULL, as for a source without values.
+ * The nodes point at the source. */
+enum status yaml_tree_read(struct arena *arena, struct yaml_node **root, const struct yaml_source *source,
+                           struct yaml_errors *errors);
 
-/* Release a node with all nested nodes. Accepts NULL. */
-void yaml_tree_free(struct yaml_node *node);
-
-/* Create an empty map, or a copy of a tree. Both fail with STATUS_MEMORY. */
-enum status yaml_tree_map(struct yaml_node **map, struct yaml_mark mark);
-enum status yaml_tree_copy(struct yaml_node **copy, const struct yaml_node *node);
+/* An empty map, and a copy of a tree. */
+struct yaml_node *yaml_tree_map(struct arena *arena, struct yaml_mark mark);
+struct yaml_node *yaml_tree_copy(struct arena *arena, const struct yaml_node *node);
 
 /* The entry of a map under a key of length bytes; NULL if there is none or the node is NULL or no map. */
 struct yaml_entry *yaml_tree_entry(const struct yaml_node *map, const char *key, size_t length);
@@ -104,12 +97,14 @@ struct yaml_entry *yaml_tree_entry(const struct yaml_node *map, const char *key,
 /* The node at a path of keys like "time.end"; NULL if there is none. */
 const struct yaml_node *yaml_tree_find(const struct yaml_node *map, const char *path);
 
-/* Merge over onto *base: maps are merged key by key, anything else is replaced. Takes ownership of over, also on
- * STATUS_MEMORY. */
-enum status yaml_tree_merge(struct yaml_node **base, struct yaml_node *over);
+/* Merge over onto *base: maps are merged key by key, anything else is replaced. The nodes of over become part of *base.
+ * yaml_tree_put: the same for one key of a map. */
+void yaml_tree_merge(struct arena *arena, struct yaml_node **base, struct yaml_node *over);
+void yaml_tree_put(struct arena *arena, struct yaml_node *map, const char *key, struct yaml_mark mark,
+                   struct yaml_node *value);
 
-/* The same for one key of a map. */
-enum status yaml_tree_put(struct yaml_node *map, const char *key, struct yaml_mark mark, struct yaml_node *value);
+/* Remove a key of a map; returns the value, NULL without the key. */
+struct yaml_node *yaml_tree_take(struct yaml_node *map, const char *key);
 
 /* Add an error for each key of a map that is not among the known ones, "key, values"; path: path of the map. */
 void yaml_tree_check_keys(const struct yaml_node *map, const char *path, const char *known, struct yaml_errors *errors);

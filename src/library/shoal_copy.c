@@ -75,18 +75,14 @@ int shoal_save(struct shoal *run, const char *path) {
     TRY(target_check(path, TARGET_CHECKPOINT, true));
 
     TRY(handle_renew(run));
-    char *effective;
-    TRY(case_show(&run->shared->values, &effective));
-    const struct checkpoint checkpoint = {.effective = effective,
+    struct case_values *const values = &run->shared->values;
+    const struct checkpoint checkpoint = {.effective = case_show(values->arena, values),
                                           .result = no_result,
                                           .places = "",
                                           .totals = run->when_reached,
                                           .wall_time = simulate_wall_time(run->simulation)};
 
-    const enum status status =
-        checkpoint_write(run->arena, path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
-    free(effective);
-    return status;
+    return checkpoint_write(run->arena, path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
 }
 
 static enum status load_state(struct state *state, const struct school *school, const void *from) {

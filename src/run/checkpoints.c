@@ -67,10 +67,7 @@ enum status checkpoints_create(struct arena *arena, struct checkpoints *checkpoi
     TRY(checkpoint_check_target(arena, checkpoints->path, checkpoints->result));
     TRY(checkpoint_check_target(arena, checkpoints->previous, checkpoints->result));
     durable_discard(checkpoints->path);
-    char *effective = NULL;
-    TRY(case_show(values, &effective));
-    arena_defer(arena, free, effective);
-    checkpoints->effective = effective;
+    checkpoints->effective = case_show(arena, values);
     return STATUS_OK;
 }
 

@@ -23,11 +23,8 @@ static void record_begin(struct record *record, const struct result_origin *orig
 enum status record_create(struct arena *arena, struct record *record, const struct result_origin *origin) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     struct result_origin whole = *origin;
-    char *effective = NULL;
     record_begin(record, origin);
-    TRY(case_show(origin->values, &effective));
-    arena_defer(arena, free, effective);
-    whole.effective = effective;
+    whole.effective = case_show(arena, origin->values);
     return result_file_create(arena, &record->file, &whole);
 }
 

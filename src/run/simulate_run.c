@@ -252,18 +252,17 @@ static enum status resume_case(struct resume *resume, const struct simulate_chan
     // the complete case of the checkpoint contains neither text nor study
     struct netcdf_reader reader;
     TRY(netcdf_open(&reader, resume->result));
-    free(values->text);
-    values->text = NULL;
-    enum status status = netcdf_read_string(&reader, "case_text", &values->text);
-    if (status == STATUS_OK) status = netcdf_read_string(&reader, "study_case", &values->study);
+    char *of_file = NULL, *study = NULL;
+    enum status status = netcdf_read_string(&reader, "case_text", &of_file);
+    if (status == STATUS_OK) status = netcdf_read_string(&reader, "study_case", &study);
     if (status == STATUS_OK) status = netcdf_read_integer(&reader, "study_member", 0, &values->member);
     netcdf_close(&reader);
 
     // a run outside a study has an empty text
-    if (values->study && !*values->study) {
-        free(values->study);
-        values->study = NULL;
-    }
+    values->text = of_file ? arena_text(values->arena, "%s", of_file) : NULL;
+    values->study = study && *study ? arena_text(values->arena, "%s", study) : NULL;
+    free(of_file);
+    free(study);
     return status;
 }
 

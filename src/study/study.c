@@ -117,10 +117,8 @@ static enum status run_member(const struct study *study, const struct job *job) 
                                              .progress = member_report_progress,
                                              .data = job->report,
                                              .stop = study->options->stop};
-    char *effective;
+    const char *const effective = case_show(arena, values);
     double t;
-    TRY(case_show(values, &effective));
-    arena_defer(arena, free, effective);
     const char *const checkpoint = checkpoints_path(arena, path);
     if (!simulate_can_resume(arena, path, checkpoint, effective, &t)) return simulate_run(values, &options);
     return simulate_resume(checkpoint, &(struct simulate_changes){0}, &options);

@@ -163,9 +163,7 @@ static enum status plan_member(struct arena *arena, struct study_plan *plan, con
     if (read != STATUS_FILE) TRY(read);
     if (exists && read == STATUS_OK) {
         if (strcmp(member.study, study->merged) == 0 && member.number == number) {
-            char *effective;
-            TRY(case_show(values, &effective));
-            arena_defer(arena, free, effective);
+            const char *const effective = case_show(arena, values);
             is_finished = member_file_is_complete(&member) && strcmp(member.effective, effective) == 0;
         } else if (!force) {
             return status_fail(STATUS_FILE,

@@ -393,9 +393,7 @@ enum status study_print_orders(struct arena *arena, const struct case_values *st
     enum status status = STATUS_OK;
     for (int g = 0; g < orders->n_groups; g++) {
         const struct sweep_axis *const axis = &study->sweep[orders->axis];
-        char *text;
-        TRY(sweep_member_text(study, orders->first[g], &text));
-        arena_defer(arena, free, text);
+        const char *const text = sweep_member_text(arena, study, orders->first[g]);
         fprintf(stream, "\nRefinement of ");
         for (int k = 0; k < axis->n_keys; k++) fprintf(stream, "%s%s", k > 0 ? " with " : "", axis->key[k].path);
         if (study->n_axes > 1) fprintf(stream, ", from member %d (%s) on", orders->first[g], text);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/text.h"
 #include "failing_malloc.h"
 #include "near.h"
@@ -120,6 +121,18 @@ TEST(a_text_that_lacks_memory_says_so_and_stays_as_it_was) {
     text_add(&text, " two");
     assert_string_equal(text.text, "one");
     text_free(&text);
+}
+
+TEST(a_text_of_an_arena_grows_and_is_released_with_the_arena) {
+    const int n_before = n_live;
+    struct arena *const arena = arena_create(NULL, "a test");
+    struct text text = {.arena = arena};
+    for (int i = 0; i < 100; i++) text_add(&text, "%03d ", i);
+    assert_int_equal(text.length, 400);
+    assert_string_equal(text.text + 396, "099 ");
+    text_free(&text);
+    arena_free(arena);
+    assert_int_equal(n_live, n_before);
 }
 
 TEST(the_locale_does_not_matter) {
