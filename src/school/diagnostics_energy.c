@@ -37,27 +37,6 @@ static double constraint_power(struct residual *residual, int f, double t, const
     return power;
 }
 
-// powers of the forces of the fluid, and of the driving forces, in the frame of the external flow at the centre of mass
-static void powers_on_water(struct residual *residual, int f, double t, const struct pressure_forces *pressure,
-                            const double driving_force[2], const double *y, struct diagnostics_power *power) {
-    const struct fish *fish = &residual->school->fish[f];
-    const struct flow_at_body flow = flow_at_body(residual->flow, f);
-    const double com[2] = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)};
-
-    // without external flow both frames agree
-    double stream[2];
-    power->on_water = power->drag + power->added_mass + power->wake + power->pressure + power->suction;
-    power->driving_on_water = power->driving;
-    flow_external(residual->school, t, com[0], com[1], &stream[0], &stream[1]);
-    if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return;
-
-    const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
-    double force[2];
-    diagnostics_fluid_force(forces.resistive, forces.reactive, pressure, force);
-    for (int i = 0; i < 2; i++) power->on_water -= force[i] * stream[i];
-    for (int i = 0; i < 2; i++) power->driving_on_water -= driving_force[i] * stream[i];
-}
-
 // strains, strain rates for the damping, and stresses for the actuation of fish f: from the positions of the nodes, or,
 // with strain damping, from the strains and stresses integrated over the steps
 static struct rod_strains find_strains(struct residual *residual, int f, const struct actuation *muscle,
@@ -120,24 +99,31 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
                                       .suction = pressure.suction_power,
                                       .contact = contact_power(residual->contact, f, y),
                                       .driving = driving};
-    powers_on_water(residual, f, t, &pressure, driving_force, y, &power);
-    return power;
-}
 
-static double kinetic_energy(const struct fish *fish, const double *y) {
-    double energy = 0;
-    for (int k = 0; k < fish->n_nodes; k++) {
-        const double vx = y[fish->at.vx + k], vy = y[fish->at.vy + k];
-        energy += fish->mass[k] * (vx * vx + vy * vy) / 2;
-    }
-    return energy;
+    // the powers in the frame of the external flow at the centre of mass; without external flow both frames agree
+    const double com[2] = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)};
+    double stream[2], force[2];
+    power.on_water = power.drag + power.added_mass + power.wake + power.pressure + power.suction;
+    power.driving_on_water = power.driving;
+    flow_external(residual->school, t, com[0], com[1], &stream[0], &stream[1]);
+    if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return power;
+    const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
+    diagnostics_fluid_force(forces.resistive, forces.reactive, &pressure, force);
+    for (int i = 0; i < 2; i++) power.on_water -= force[i] * stream[i];
+    for (int i = 0; i < 2; i++) power.driving_on_water -= driving_force[i] * stream[i];
+    return power;
 }
 
 struct diagnostics_energies diagnostics_energies(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct actuation muscle = residual_muscle(residual, f, t, y);
     const struct rod_strains strains = find_strains(residual, f, &muscle, y);
-    return (struct diagnostics_energies){.kinetic = kinetic_energy(fish, y),
+    double kinetic = 0;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        const double vx = y[fish->at.vx + k], vy = y[fish->at.vy + k];
+        kinetic += fish->mass[k] * (vx * vx + vy * vy) / 2;
+    }
+    return (struct diagnostics_energies){.kinetic = kinetic,
                                          .bending = rod_bending_energy(fish, strains.strain) + clamp_energy(fish, t, y),
                                          .stretching = rod_stretching_energy(fish, strains.strain),
                                          .contact = contact_energy(residual->contact, f, y)};

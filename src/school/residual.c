@@ -86,29 +86,6 @@ double residual_undamped(const struct school *school, int i) {
 
 // ---- neighbours by boxes, then by the distance of outlines
 
-// couple exactly the fish within a distance of each other; returns whether any pair has changed
-static int couple_neighbours(struct residual_couplings *couplings, const double *y, double distance) {
-    const struct school *school = couplings->school;
-    const struct neighbours *const neighbours = couplings->neighbours;
-    int changed = 0;
-    for (int f = 0; f < school->n_fish; f++) {
-        unsigned char *const before = couplings->coupled + (size_t)f * (size_t)school->n_fish;
-        int i = neighbours->first[f];
-        for (int g = 0; g < school->n_fish; g++) {
-            const int overlaps = i < neighbours->first[f + 1] && neighbours->other[i] == g;
-            i += overlaps;
-
-            // ordered pair: the same bits for (f, g) and (g, f)
-            const int a = f > g ? f : g, b = f > g ? g : f;
-            const int couple =
-                f == g || (overlaps && fish_distance(&school->fish[a], &school->fish[b], y, distance) <= distance);
-            changed |= before[g] != couple;
-            before[g] = (unsigned char)couple;
-        }
-    }
-    return changed;
-}
-
 void residual_couple(struct residual_couplings *couplings, const double *y) {
     const struct school *school = couplings->school;
     for (int f = 0; f < school->n_fish; f++) {
@@ -116,38 +93,50 @@ void residual_couple(struct residual_couplings *couplings, const double *y) {
     }
 
     neighbours_find(couplings->neighbours);
-    couplings->pattern += (unsigned)couple_neighbours(couplings, y, couplings->reach);
-}
 
-// upper bound of all distances between bodies, m
-static double extent(const struct school *school, const double *y) {
-    struct box all = clearance_box(&school->fish[0], 0, y, y);
-    for (int f = 1; f < school->n_fish; f++) {
-        all = box_union(all, clearance_box(&school->fish[f], 0, y, y));
-    }
-    return hypot(all.high[0] - all.low[0], all.high[1] - all.low[1]);
-}
-
-// number of values in the blocks of all coupled pairs
-static double n_block_values(const struct residual_couplings *couplings) {
-    const struct school *school = couplings->school;
-    double n = 0;
+    // couple exactly the fish within the reach
+    const struct neighbours *const neighbours = couplings->neighbours;
+    bool has_changed = false;
     for (int f = 0; f < school->n_fish; f++) {
-        const unsigned char *const coupled = couplings->coupled + (size_t)f * (size_t)school->n_fish;
+        unsigned char *const before = couplings->coupled + (size_t)f * (size_t)school->n_fish;
+        int i = neighbours->first[f];
         for (int g = 0; g < school->n_fish; g++) {
-            if (g != f && coupled[g]) n += (double)flow_n_rows(&school->fish[f]) * flow_n_columns(&school->fish[g]);
+            const bool overlaps = i < neighbours->first[f + 1] && neighbours->other[i] == g;
+            i += overlaps;
+
+            // ordered pair: the same bits for (f, g) and (g, f)
+            const struct fish *const a = &school->fish[f > g ? f : g], *const b = &school->fish[f > g ? g : f];
+            const bool couple = f == g || (overlaps && fish_distance(a, b, y, couplings->reach) <= couplings->reach);
+            has_changed |= before[g] != couple;
+            before[g] = couple;
         }
     }
-    return n;
+    couplings->pattern += has_changed;
 }
 
 int residual_couple_more(struct residual_couplings *couplings, const double *y) {
-    const double max_values = 5e7, before = couplings->reach, all = extent(couplings->school, y);
+    const struct school *const school = couplings->school;
+    const double max_values = 5e7, before = couplings->reach;
     const unsigned pattern = couplings->pattern;
-    while (!couplings->couples_most && couplings->pattern == pattern && couplings->reach < all) {
-        couplings->reach = fmax(2 * couplings->reach, 0.5 * couplings->school->fish[0].length);
+
+    // upper bound of all distances between bodies
+    struct box all = clearance_box(&school->fish[0], 0, y, y);
+    for (int f = 1; f < school->n_fish; f++) all = box_union(all, clearance_box(&school->fish[f], 0, y, y));
+    const double extent = hypot(all.high[0] - all.low[0], all.high[1] - all.low[1]);
+
+    while (!couplings->couples_most && couplings->pattern == pattern && couplings->reach < extent) {
+        couplings->reach = fmax(2 * couplings->reach, 0.5 * school->fish[0].length);
         residual_couple(couplings, y);
-        if (n_block_values(couplings) <= max_values) continue;
+
+        // number of values in the blocks of all coupled pairs
+        double n = 0;
+        for (int f = 0; f < school->n_fish; f++) {
+            const unsigned char *const coupled = couplings->coupled + (size_t)f * (size_t)school->n_fish;
+            for (int g = 0; g < school->n_fish; g++) {
+                if (g != f && coupled[g]) n += (double)flow_n_rows(&school->fish[f]) * flow_n_columns(&school->fish[g]);
+            }
+        }
+        if (n <= max_values) continue;
 
         // back to the reach before
         couplings->reach = before;
@@ -260,10 +249,6 @@ double residual_lost(const struct residual *residual, int f, double t) {
     return school->removed == REMOVED_DROPPED ? wake_lost(&state->wake[f], school, state->t, t - state->t) : 0;
 }
 
-enum status residual_contact(struct residual *residual, double t, const double *y) {
-    return contact_find(residual->contact, residual->state, t, y);
-}
-
 struct actuation residual_muscle(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct state *const state = residual->state;
@@ -273,23 +258,7 @@ struct actuation residual_muscle(struct residual *residual, int f, double t, con
     return muscle;
 }
 
-// replace the rows of prescribed nodes: position, velocity and acceleration are given
-static void prescribe_nodes(const struct fish *fish, double t, const double *y, double *value) {
-    for (int k = 0; k < fish_n_prescribed(fish); k++) {
-        double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, k, t, position, velocity, acceleration);
-        for (int i = 0; i < 2; i++) {
-            if (!fish_is_prescribed(fish, k, i)) continue;
-            const int node = i * fish->n_nodes + k;
-            value[fish->at.x + node] = y[fish->at.x + node] - position[i];
-            value[fish->at.vx + node] = y[fish->at.vx + node] - velocity[i];
-            value[fish->at.ax + node] = y[fish->at.ax + node] - acceleration[i];
-        }
-    }
-}
-
-// rows ax, ay: m a minus all forces, N
-static void balance(const struct residual *residual, int f, const double *y, double *value) {
+void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -331,13 +300,25 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
 
     // equation of motion, divided by the node masses
     residual_muscle(residual, f, t, y);
-    balance(residual, f, y, value);
+    residual_balance(residual, f, y, value);
     for (int k = 0; k < fish->n_nodes; k++) {
         value[fish->at.ax + k] /= fish->mass[k];
         value[fish->at.ay + k] /= fish->mass[k];
     }
     if (residual->pressure[f]) pressure_momentum_residual(residual->pressure[f], residual->at_start, y, value);
-    prescribe_nodes(fish, t, y, value);
+
+    // the rows of prescribed nodes: position, velocity and acceleration are given
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        double position[2], velocity[2], acceleration[2];
+        fish_prescribed_node(fish, k, t, position, velocity, acceleration);
+        for (int i = 0; i < 2; i++) {
+            if (!fish_is_prescribed(fish, k, i)) continue;
+            const int node = i * fish->n_nodes + k;
+            value[fish->at.x + node] = y[fish->at.x + node] - position[i];
+            value[fish->at.vx + node] = y[fish->at.vx + node] - velocity[i];
+            value[fish->at.ax + node] = y[fish->at.ax + node] - acceleration[i];
+        }
+    }
 
     // impermeability, Kelvin, Kutta
     bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, y, value);
@@ -348,7 +329,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
 }
 
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
-    TRY(residual_contact(residual, t, y));
+    TRY(contact_find(residual->contact, residual->state, t, y));
     flow_velocity(residual->flow, residual->state, t, y);
 
     const struct school *school = residual->school;
@@ -369,41 +350,33 @@ enum status residual_evaluate(struct residual *residual, double t, const double 
                        place.index, school->fish[place.fish].name, t);
 }
 
-void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
-    balance(residual, f, y, value);
-}
-
 void residual_reaction(const struct residual *residual, int f, const double *y, const double *yp, double *value) {
     const struct fish *fish = &residual->school->fish[f];
     struct pressure *const pressure = residual->pressure[f];
-    balance(residual, f, y, value);
+    residual_balance(residual, f, y, value);
     if (!pressure) return;
     pressure_update_rate(pressure, y, yp);
     for (int i = 0; i < 2 * fish->n_nodes; i++) value[fish->at.ax + i] += pressure->momentum_rate[i];
-}
-
-// of a free node: positions and velocities, or positions and momenta, are differential
-static int is_differential(const struct residual *residual, const struct unknown_place *place) {
-    const int has_momentum = fish_has_momentum(&residual->school->fish[place->fish]);
-    switch (place->kind) {
-        case UNKNOWN_X:
-        case UNKNOWN_Y: return 1;
-        case UNKNOWN_VX:
-        case UNKNOWN_VY: return !has_momentum || residual->at_start;
-        case UNKNOWN_PX:
-        case UNKNOWN_PY: return !residual->at_start;
-        default: return 0;
-    }
 }
 
 void residual_kinds(const struct residual *residual, double *kind) {
     for (int i = 0; i < residual->school->n_unknowns; i++) {
         const struct unknown_place place = residual_place(residual->school, i);
         const struct fish *fish = &residual->school->fish[place.fish];
-        const int is_given = fish_is_prescribed(fish, place.index, residual_component(place.kind));
+        const bool is_given = fish_is_prescribed(fish, place.index, residual_component(place.kind));
 
-        kind[i] = 0;
-        if (!is_given && is_differential(residual, &place)) kind[i] = 1;
-        if (place.kind == UNKNOWN_CIRCULATION && !residual_shed_is_algebraic(residual)) kind[i] = 1;
+        // of a free node positions and velocities, or positions and momenta, are differential
+        bool is_differential = false;
+        switch (place.kind) {
+            case UNKNOWN_X:
+            case UNKNOWN_Y: is_differential = !is_given; break;
+            case UNKNOWN_VX:
+            case UNKNOWN_VY: is_differential = !is_given && (!fish_has_momentum(fish) || residual->at_start); break;
+            case UNKNOWN_PX:
+            case UNKNOWN_PY: is_differential = !is_given && !residual->at_start; break;
+            case UNKNOWN_CIRCULATION: is_differential = !residual_shed_is_algebraic(residual); break;
+            default: break;
+        }
+        kind[i] = is_differential;
     }
 }

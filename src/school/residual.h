@@ -113,9 +113,7 @@ enum status residual_create(struct arena *arena, struct residual **residual, con
 /* value = F(t, y, yp). Returns STATUS_RETRY if a value is not finite, or if repelling bodies touch. */
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);
 
-/* Individual stages of residual_evaluate, for segregated solvers. residual_contact: find the contacts; fails as
- * residual_evaluate. residual_muscle: evaluate and return the actuation of the joints of fish f for the phi0 in y. */
-enum status residual_contact(struct residual *residual, double t, const double *y);
+/* Evaluate and return the actuation of the joints of fish f for the phi0 in y. */
 struct actuation residual_muscle(struct residual *residual, int f, double t, const double *y);
 
 /* The rows ax, ay of fish f in N, without prescribed motion: m a minus all forces. Uses flow velocity, natural

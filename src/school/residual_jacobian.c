@@ -59,22 +59,6 @@ static void add_own_rows(const struct residual *residual, const struct fish *fis
     }
 }
 
-// with momenta, the rows of prescribed components are the rows of pressure_momentum_row
-static void kinematics_jacobian(const struct residual *residual, const struct fish *fish, double cj,
-                                struct sparse *own) {
-    const int has_momentum = fish_has_momentum(fish), n = fish->n_nodes;
-    const int second = has_momentum ? fish->at.px : fish->at.vx;
-    for (int i = 0; i < 2 * n; i++) {
-        sparse_add(own, fish->at.x + i, fish->at.x + i, cj);
-        sparse_add(own, fish->at.x + i, fish->at.vx + i, -1);
-        if (!has_momentum || pressure_momentum_row(fish, residual->at_start, i / n, i % n) != second + i) {
-            sparse_add(own, second + i, second + i, cj);
-            sparse_add(own, second + i, fish->at.ax + i, -1);
-        }
-        sparse_add(own, fish->at.ax + i, fish->at.ax + i, 1);
-    }
-}
-
 // the derivatives of the equations of one fish, in the order of evaluate_fish
 static void fish_jacobian(struct residual *residual, int f, double t, double cj, const double *y,
                           struct jacobian *jacobian) {
@@ -88,7 +72,17 @@ static void fish_jacobian(struct residual *residual, int f, double t, double cj,
 
     // own block: direct dependence on the unknowns
     sparse_begin(own);
-    kinematics_jacobian(residual, fish, cj, own);
+    const int second = fish_has_momentum(fish) ? fish->at.px : fish->at.vx, n = fish->n_nodes;
+    for (int i = 0; i < 2 * n; i++) {
+        sparse_add(own, fish->at.x + i, fish->at.x + i, cj);
+        sparse_add(own, fish->at.x + i, fish->at.vx + i, -1);
+        // with momenta, the rows of prescribed components are the rows of pressure_momentum_row
+        if (!fish_has_momentum(fish) || pressure_momentum_row(fish, residual->at_start, i / n, i % n) != second + i) {
+            sparse_add(own, second + i, second + i, cj);
+            sparse_add(own, second + i, fish->at.ax + i, -1);
+        }
+        sparse_add(own, fish->at.ax + i, fish->at.ax + i, 1);
+    }
     const struct actuation muscle = residual_muscle(residual, f, t, y);
     rod_jacobian(fish, &muscle, y, own);
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
@@ -121,7 +115,7 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
     const struct school *school = residual->school;
     int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
 
-    TRY(residual_contact(residual, t, y));
+    TRY(contact_find(residual->contact, residual->state, t, y));
     jacobian->has_contacts = residual_couple_contacts(&residual->couplings, residual->contact);
     flow_gradient(residual->flow, residual->state, t, y);
     if (jacobian->pattern != residual->couplings.pattern) {

@@ -12,7 +12,7 @@ enum { N_RIGID = 3 };
 // in all arrays x is the first half and y the second half, as in the unknowns
 struct body {
     const struct fish *fish;
-    int has_moved;         /* since corotation_set_reference */
+    bool has_moved;        /* since corotation_set_reference */
     int n_rigid;           /* number of mapped rigid motions: 0 with prescribed nodes */
     double *reference;     /* positions of the nodes in the reference configuration, m      (2 n_nodes) */
     double *rotation;      /* cosine and sine of the rotation of each node since the reference  (2 n_nodes) */
@@ -51,11 +51,6 @@ static double corotation_dot(const struct fish *fish, const double *a, const dou
     return sum;
 }
 
-static void corotation_normalise(const struct fish *fish, double *a) {
-    const double size = sqrt(corotation_dot(fish, a, a));
-    for (int i = 0; i < 2 * fish->n_nodes; i++) a[i] /= size;
-}
-
 // the orthonormal rigid motions: translation along x, along y, rotation about the centre of mass
 static void rigid_motions(const struct fish *fish, const double *position, double *const motion[N_RIGID]) {
     const int n = fish->n_nodes;
@@ -63,15 +58,16 @@ static void rigid_motions(const struct fish *fish, const double *position, doubl
         motion[0][k] = motion[1][n + k] = 1;
         motion[0][n + k] = motion[1][k] = 0;
     }
-    corotation_normalise(fish, motion[0]);
-    corotation_normalise(fish, motion[1]);
-    const double along_x = corotation_dot(fish, motion[0], position),
-                 along_y = corotation_dot(fish, motion[1], position);
-    for (int k = 0; k < n; k++) {
-        motion[2][k] = -(position[n + k] - along_y * motion[1][n + k]);
-        motion[2][n + k] = position[k] - along_x * motion[0][k];
+    for (int m = 0; m < N_RIGID; m++) {
+        const double along_x = m == 2 ? corotation_dot(fish, motion[0], position) : 0;
+        const double along_y = m == 2 ? corotation_dot(fish, motion[1], position) : 0;
+        for (int k = 0; k < n && m == 2; k++) {
+            motion[2][k] = -(position[n + k] - along_y * motion[1][n + k]);
+            motion[2][n + k] = position[k] - along_x * motion[0][k];
+        }
+        const double size = sqrt(corotation_dot(fish, motion[m], motion[m]));
+        for (int i = 0; i < 2 * n; i++) motion[m][i] /= size;
     }
-    corotation_normalise(fish, motion[2]);
 }
 
 // apply to a the rotation that maps the unit vector u to the unit vector v and keeps vectors perpendicular to both
@@ -95,7 +91,7 @@ void corotation_set_reference(struct corotation *corotation, const double *y) {
     for (int f = 0; f < corotation->school->n_fish; f++) {
         struct body *body = &corotation->body[f];
         for (int i = 0; i < 2 * body->fish->n_nodes; i++) body->reference[i] = y[body->fish->at.x + i];
-        body->has_moved = 0;
+        body->has_moved = false;
     }
 }
 
@@ -106,9 +102,14 @@ static void corotation_direction(double c, double s, double *unit) {
     unit[1] = s / size;
 }
 
-// the rotation of a node is the mean of the rotations of its two edges: the direction of the sum of their unit vectors
-static void find_rotations(struct body *body, const double *position) {
-    const int n = body->fish->n_nodes;
+static void body_set_current(struct body *body, const double *y) {
+    const struct fish *fish = body->fish;
+    const double *const position = y + fish->at.x;
+    const int n = fish->n_nodes;
+    body->has_moved = true;
+
+    // the rotation of a node is the mean of the rotations of its two edges: the direction of the sum of their unit
+    // vectors
     double before[2] = {0, 0};
     for (int k = 0; k < n; k++) {
         double after[2] = {0, 0}, mean[2];
@@ -124,13 +125,8 @@ static void find_rotations(struct body *body, const double *position) {
         before[0] = after[0];
         before[1] = after[1];
     }
-}
 
-static void body_set_current(struct body *body, const double *y) {
-    const struct fish *fish = body->fish;
-    const double *const position = y + fish->at.x;
-    body->has_moved = 1;
-    find_rotations(body, position);
+    // the rigid motions of the reference body, rotated, and of the current body
     if (body->n_rigid == 0) return;
     rigid_motions(fish, body->reference, body->from);
     rigid_motions(fish, position, body->to);
@@ -151,46 +147,30 @@ void corotation_set_current(struct corotation *corotation, const double *y) {
     }
 }
 
-static void body_to_current(const struct body *body, double *a) {
-    rotate_nodes(body, 1, a);
-    for (int i = 0; i < body->n_rigid; i++) corotation_rotate(body->fish, body->from[i], body->to[i], a);
-}
-
-static void body_to_reference(const struct body *body, double *a) {
-    for (int i = body->n_rigid - 1; i >= 0; i--) corotation_rotate(body->fish, body->to[i], body->from[i], a);
-    rotate_nodes(body, -1, a);
-}
-
-struct map {
-    const struct corotation *corotation;
-    void (*of_body)(const struct body *body, double *a);
-    double *vector;
-};
-
-static void map_fish(const struct map *map, int f) {
-    const struct body *body = &map->corotation->body[f];
-    if (!body->has_moved) return;
-    map->of_body(body, map->vector + body->fish->at.x);
-    map->of_body(body, map->vector + body->fish->at.vx);
-    if (fish_has_momentum(body->fish)) map->of_body(body, map->vector + body->fish->at.px);
-    map->of_body(body, map->vector + body->fish->at.ax);
-}
-
-static void map_all(struct map map) {
-    const struct school *const school = map.corotation->school;
-    const int threads = fish_threads(school);
-    if (threads == 1) {
-        for (int f = 0; f < school->n_fish; f++) map_fish(&map, f);
-    } else {
-#pragma omp parallel for num_threads(threads) schedule(static)
-        for (int f = 0; f < school->n_fish; f++) map_fish(&map, f);
+// map the slices of one body: to the current configuration, or, backwards, to the reference configuration
+static void map_body(const struct body *body, bool backwards, double *vector) {
+    const struct layout *const at = &body->fish->at;
+    const int slices[] = {at->x, at->vx, at->px, at->ax};
+    for (int s = 0; s < 4 && body->has_moved; s++) {
+        if (s == 2 && !fish_has_momentum(body->fish)) continue;
+        double *const a = vector + slices[s];
+        if (!backwards) rotate_nodes(body, 1, a);
+        for (int m = 0; m < body->n_rigid; m++) {
+            const int i = backwards ? body->n_rigid - 1 - m : m;
+            corotation_rotate(body->fish, (backwards ? body->to : body->from)[i],
+                              (backwards ? body->from : body->to)[i], a);
+        }
+        if (backwards) rotate_nodes(body, -1, a);
     }
 }
 
-void corotation_to_current(const struct corotation *corotation, double *vector) {
-    map_all((struct map){corotation, body_to_current, vector});
-}
-
-void corotation_to_reference(const struct corotation *corotation, double *vector) {
-    map_all((struct map){corotation, body_to_reference, vector});
+void corotation_map(const struct corotation *corotation, bool backwards, double *vector) {
+    const struct school *const school = corotation->school;
+    const int threads = fish_threads(school);
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) map_body(&corotation->body[f], backwards, vector);
+    } else {
+#pragma omp parallel for num_threads(threads) schedule(static)
+        for (int f = 0; f < school->n_fish; f++) map_body(&corotation->body[f], backwards, vector);
+    }
 }

@@ -16,6 +16,8 @@
 #ifndef COROTATION_H
 #define COROTATION_H
 
+#include <stdbool.h>
+
 #include "base/arena.h"
 #include "fish/fish.h"
 
@@ -30,8 +32,7 @@ void corotation_set_reference(struct corotation *corotation, const double *y);
 void corotation_set_current(struct corotation *corotation, const double *y);
 
 /* Map the slices x y, vx vy, px py and ax ay of all fish in a vector of unknowns or of residuals (n_unknowns) from the
- * reference to the current configuration, and back. */
-void corotation_to_current(const struct corotation *corotation, double *vector);
-void corotation_to_reference(const struct corotation *corotation, double *vector);
+ * reference to the current configuration, or backwards. */
+void corotation_map(const struct corotation *corotation, bool backwards, double *vector);
 
 #endif

@@ -66,10 +66,10 @@ static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector we
 
         // correct
         N_VScale(-1, newton->correction, newton->correction);
-        corotation_to_reference(newton->corotation, correction);
+        corotation_map(newton->corotation, true, correction);
         int code = newton->solve(newton->correction, ida);
         if (code != 0) return code;
-        corotation_to_current(newton->corotation, correction);
+        corotation_map(newton->corotation, false, correction);
         N_VLinearSum(1, total, 1, newton->correction, total);
 
         // both norms of the correction, weighted root mean squares; each sum in the order of the unknowns

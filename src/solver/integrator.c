@@ -35,20 +35,19 @@ void integrator_rates_begin(struct integrator_rates *rates, const struct state *
     rates_keep(rates, state->t, state->y);
 }
 
-// the slope at t of the parabola through three steps, or of the line through two
-static double rates_slope(const struct integrator_rates *rates, double t, double value, int i) {
-    const double newest = (value - rates->y[0][i]) / (t - rates->t[0]);
-    if (rates->n < 2) return newest;
-    const double before = (rates->y[0][i] - rates->y[1][i]) / (rates->t[0] - rates->t[1]);
-    return newest + (newest - before) * (t - rates->t[0]) / (t - rates->t[1]);
-}
-
 void integrator_rates_step(struct integrator_rates *rates, double t, struct state *state) {
     if (t <= rates->t[0]) return;
     for (int f = 0; f < rates->school->n_fish; f++) {
         const struct fish *fish = &rates->school->fish[f];
         const int end = fish_has_momentum(fish) ? fish->at.circulation : fish->at.gamma;
-        for (int i = fish->at.gamma; i < end; i++) state->yp[i] = rates_slope(rates, t, state->y[i], i);
+        for (int i = fish->at.gamma; i < end; i++) {
+            // the slope of the parabola through three steps, or of the line through two
+            const double newest = (state->y[i] - rates->y[0][i]) / (t - rates->t[0]);
+            state->yp[i] = newest;
+            if (rates->n < 2) continue;
+            const double before = (rates->y[0][i] - rates->y[1][i]) / (rates->t[0] - rates->t[1]);
+            state->yp[i] = newest + (newest - before) * (t - rates->t[0]) / (t - rates->t[1]);
+        }
     }
     rates_keep(rates, t, state->y);
 }

@@ -40,10 +40,6 @@ struct linear {
     enum status *of_callback; /* of the solver of SUNDIALS: status of the last set-up or solution */
 };
 
-static int n_unknowns(const struct linear *linear) {
-    return linear->jacobian->school->n_unknowns;
-}
-
 struct linear *linear_create(struct arena *arena, const struct jacobian *jacobian, const double *scale,
                              struct linear_tolerance tolerance) {
     const struct school *const school = jacobian->school;
@@ -98,20 +94,6 @@ static void solve_block(const struct linear *linear, int f, double *x) {
     for (int i = 0; i < n; i++) x[i] -= shed * block->update[i];
 }
 
-// the change of the column of the shed circulation, in rows of the block
-static void shed_change(const struct fish *fish, const struct sparse *own, const double *value, double *change) {
-    const int column = fish->at.circulation - fish->at.x, end = fish->at.gamma + fish->n_control - fish->at.x;
-    const int first = (fish_has_momentum(fish) ? fish->at.ax : fish->at.gamma) - fish->at.x;
-    memset(change, 0, (size_t)own->n * sizeof *change);
-    for (int i = first; i < end; i++) {
-        if (!sparse_is_masked(own, fish->at.x + i)) change[i] = value[fish->at.x + i];
-    }
-    for (int64_t i = own->column_start[column]; i < own->column_start[column + 1]; i++) {
-        const int64_t row = own->row_index[i];
-        if (row >= first && row < end) change[row] -= own->value[i];
-    }
-}
-
 /* A product or solution, fish by fish. */
 struct operation {
     struct linear *linear;
@@ -134,11 +116,25 @@ static void update_shed(const struct operation *of, int f) {
     const struct jacobian *const jacobian = of->linear->jacobian;
     const struct fish *fish = &jacobian->school->fish[f];
     struct block *const block = &of->linear->block[f];
-    shed_change(fish, jacobian->own[f], of->from, block->update);
+    const struct sparse *const own = jacobian->own[f];
+    double *const change = block->update;
+
+    // the change of the column of the shed circulation, in rows of the block
+    const int column = fish->at.circulation - fish->at.x, end = fish->at.gamma + fish->n_control - fish->at.x;
+    const int first = (fish_has_momentum(fish) ? fish->at.ax : fish->at.gamma) - fish->at.x;
+    memset(change, 0, (size_t)own->n * sizeof *change);
+    for (int i = first; i < end; i++) {
+        if (!sparse_is_masked(own, fish->at.x + i)) change[i] = of->from[fish->at.x + i];
+    }
+    for (int64_t i = own->column_start[column]; i < own->column_start[column + 1]; i++) {
+        const int64_t row = own->row_index[i];
+        if (row >= first && row < end) change[row] -= own->value[i];
+    }
+
     block->is_updated = 0;
-    solve_block(of->linear, f, block->update);
-    const double divisor = 1 + block->update[fish->at.circulation - fish->at.x];
-    for (int i = 0; i < jacobian->own[f]->n; i++) block->update[i] /= divisor;
+    solve_block(of->linear, f, change);
+    const double divisor = 1 + change[column];
+    for (int i = 0; i < own->n; i++) change[i] /= divisor;
     block->is_updated = 1;
 }
 
@@ -171,14 +167,6 @@ static int gmres_multiply(void *data, N_Vector v, N_Vector product) {
     return 0;
 }
 
-/* Whether memory for GMRES is available: after a failed allocation SUNDIALS frees a part and crashes. */
-static int gmres_has_memory(int n) {
-    enum { VECTORS = MAX_ITERATIONS + 8, SMALL = 1 << 17 };
-    void *volatile const needed = malloc((size_t)n * VECTORS * sizeof(double) + SMALL);
-    free(needed);
-    return needed != NULL;
-}
-
 static void release_gmres(void *object) {
     const struct linear *const linear = object;
     if (linear->gmres) SUNLinSolFree(linear->gmres);
@@ -190,14 +178,19 @@ static void release_gmres(void *object) {
  * within the noise. */
 static void gmres_create(struct linear *linear) {
     struct arena *const arena = linear->arena;
-    const int n = n_unknowns(linear);
+    const int n = linear->jacobian->school->n_unknowns;
     NEW(arena, linear->right, n);
     sundials_context_create(&linear->context, arena, n, 1, &linear->failure);
     linear->x = sundials_context_vector(&linear->context, linear->right);
     linear->b = sundials_context_vector(&linear->context, linear->right);
     linear->weights = sundials_context_vector(&linear->context, linear->weight);
     sundials_context_reserve(&linear->context, MAX_ITERATIONS + 8);
-    if (!gmres_has_memory(n)) arena_lack(arena, 0);
+
+    // try the memory first: after a failed allocation SUNDIALS frees a part and crashes
+    enum { VECTORS = MAX_ITERATIONS + 8, SMALL = 1 << 17 };
+    void *volatile const needed = malloc((size_t)n * VECTORS * sizeof(double) + SMALL);
+    free(needed);
+    if (!needed) arena_lack(arena, 0);
     linear->gmres =
         arena_take(arena, SUNLinSol_SPGMR(linear->x, SUN_PREC_NONE, MAX_ITERATIONS, linear->context.context));
     arena_defer(arena, release_gmres, linear);
@@ -211,31 +204,34 @@ static void gmres_create(struct linear *linear) {
     }
 }
 
-// solve the coupled system; initially x is the solution of the uncoupled system
-static enum status solve_coupled(struct linear *linear, double *x) {
-    if (!linear->gmres) gmres_create(linear);
-    N_VSetArrayPointer(x, linear->x);
-    const double start = N_VWL2Norm(linear->x, linear->weights);
-    const double limit = linear->jacobian->has_contacts
-                             ? contact_relative * start
-                             : fmax(linear->tolerance.relative * start, linear->tolerance.absolute);
-    if (!(start > limit) || !isfinite(start)) return STATUS_OK;
-
-    memcpy(linear->right, x, (size_t)n_unknowns(linear) * sizeof *x);
-    N_VConst(0, linear->x);
-    SUNLinSolSetZeroGuess(linear->gmres, SUNTRUE);
-    const int code = SUNLinSolSolve(linear->gmres, NULL, linear->x, linear->b, limit);
-    linear->iterations += SUNLinSolNumIters(linear->gmres);
-    // after too many iterations Newton's iteration judges a solution with a reduced residual
-    if (code == SUN_SUCCESS || code == SUNLS_RES_REDUCED) return STATUS_OK;
-    return status_fail(STATUS_RETRY, "GMRES has found no solution");
-}
-
 enum status linear_solve(struct linear *linear, const double *b, double *x) {
+    const struct jacobian *const jacobian = linear->jacobian;
+    const int n = jacobian->school->n_unknowns;
     linear->solves++;
     for_each_fish(uncoupled_solve, (struct operation){linear, b, x});
-    if (linear->jacobian->n_couplings > 0) TRY(solve_coupled(linear, x));
-    for (int i = 0; i < n_unknowns(linear); i++) {
+
+    // the coupled system; x is now the solution of the uncoupled system
+    if (jacobian->n_couplings > 0) {
+        if (!linear->gmres) gmres_create(linear);
+        N_VSetArrayPointer(x, linear->x);
+        const double start = N_VWL2Norm(linear->x, linear->weights);
+        const double limit = jacobian->has_contacts
+                                 ? contact_relative * start
+                                 : fmax(linear->tolerance.relative * start, linear->tolerance.absolute);
+        if (start > limit && isfinite(start)) {
+            memcpy(linear->right, x, (size_t)n * sizeof *x);
+            N_VConst(0, linear->x);
+            SUNLinSolSetZeroGuess(linear->gmres, SUNTRUE);
+            const int code = SUNLinSolSolve(linear->gmres, NULL, linear->x, linear->b, limit);
+            linear->iterations += SUNLinSolNumIters(linear->gmres);
+            // after too many iterations Newton's iteration judges a solution with a reduced residual
+            if (code != SUN_SUCCESS && code != SUNLS_RES_REDUCED) {
+                return status_fail(STATUS_RETRY, "GMRES has found no solution");
+            }
+        }
+    }
+
+    for (int i = 0; i < n; i++) {
         if (!isfinite(x[i])) return status_fail(STATUS_RETRY, "a linear system has no finite solution");
     }
     return STATUS_OK;
@@ -281,23 +277,12 @@ static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_
     return *linear->of_callback;
 }
 
-static void release_matrix(void *matrix) {
-    SUNMatFreeEmpty(matrix);
-}
-
-static void release_solver(void *solver) {
-    SUNLinSolFreeEmpty(solver);
-}
-
 struct linear_sundials linear_sundials_create(struct sundials_context *context, const struct jacobian *jacobian,
                                               const double *scale, struct linear_tolerance tolerance) {
-    struct arena *const arena = context->arena;
-    struct linear_sundials new = {.linear = linear_create(arena, jacobian, scale, tolerance)};
+    struct linear_sundials new = {.linear = linear_create(context->arena, jacobian, scale, tolerance)};
     new.linear->of_callback = context->failure;
-    new.matrix = arena_take(arena, SUNMatNewEmpty(context->context));
-    arena_defer(arena, release_matrix, new.matrix);
-    new.solver = arena_take(arena, SUNLinSolNewEmpty(context->context));
-    arena_defer(arena, release_solver, new.solver);
+    new.matrix = sundials_context_own(context, OWNED_MATRIX, SUNMatNewEmpty(context->context));
+    new.solver = sundials_context_own(context, OWNED_CUSTOM_LINEAR, SUNLinSolNewEmpty(context->context));
     new.matrix->ops->getid = matrix_id;
     new.matrix->ops->zero = matrix_zero;
     new.solver->content = new.linear;

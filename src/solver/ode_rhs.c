@@ -272,7 +272,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
         if (!rod_is_torn(&school->fish[f], y)) continue;
         return status_fail(STATUS_RETRY, "fish %s is torn at t = %g s", school->fish[f].name, t);
     }
-    TRY(residual_contact(d->residual, t, y));
+    TRY(contact_find(d->residual->contact, state, t, y));
     TRY(solve_sheets(d, t, y));
 
     // the velocity of rings has a divergence, which the influence omits

@@ -240,7 +240,7 @@ static enum status verlet_step(struct verlet *solver, double t, double h) {
         verlet_move(fish, h / 2, y + fish->at.ax, y + fish->at.vx);
         verlet_move(fish, h, y + fish->at.vx, y + fish->at.x);
     }
-    const enum status status = residual_contact(solver->residual, t, y);
+    const enum status status = contact_find(solver->residual->contact, solver->state, t, y);
     if (status > 0) return verlet_unstable(solver, t);
     TRY(status);
     double *const value = solver->residual->scratch;

@@ -97,9 +97,9 @@ static void rigid(const struct fish *fish, const double *place, int which, doubl
 TEST(each_map_is_the_inverse_of_the_other) {
     struct configurations both;
     set_up(&both, 2.5, 0.4);
-    corotation_to_current(both.corotation, both.image);
+    corotation_map(both.corotation, false, both.image);
     ABOVE(fabs(both.image[0] - both.field[0]), 1e-3);
-    corotation_to_reference(both.corotation, both.image);
+    corotation_map(both.corotation, true, both.image);
     // rounding of three rotations and the inverse rotations
     NEAR_ARRAY(both.n, both.image, both.field, 1e-14, 0);
     clear(&both);
@@ -108,7 +108,7 @@ TEST(each_map_is_the_inverse_of_the_other) {
 TEST(the_inner_product_weighted_with_masses_is_preserved) {
     struct configurations both;
     set_up(&both, -1, 0.4);
-    corotation_to_current(both.corotation, both.image);
+    corotation_map(both.corotation, false, both.image);
     for (int f = 0; f < 3; f++) {
         const struct fish *fish = &both.setup.school->fish[f];
         const int slices[] = {fish->at.x, fish->at.vx, fish->at.ax, fish->at.px};
@@ -130,7 +130,7 @@ TEST(momenta_are_mapped_as_velocities_are) {
     assert_true(fish_has_momentum(fish));
     for (int back = 0; back < 2; back++) {
         memcpy(both.image + fish->at.px, both.image + fish->at.vx, size);
-        (back ? corotation_to_reference : corotation_to_current)(both.corotation, both.image);
+        corotation_map(both.corotation, back, both.image);
         assert_memory_equal(both.image + fish->at.px, both.image + fish->at.vx, size);
         if (!back) ABOVE(fabs(both.image[fish->at.px] - both.field[fish->at.vx]), 1e-3);
     }
@@ -147,7 +147,7 @@ TEST(a_rigid_motion_is_mapped_to_a_rigid_motion) {
             double *const got = both.image + fish->at.vx;
             rigid(fish, both.reference + fish->at.x, which, got);
             const double size = product(fish, got, got);
-            corotation_to_current(both.corotation, both.image);
+            corotation_map(both.corotation, false, both.image);
             // the same motion, but for the moment of inertia, which bending has changed
             rigid(fish, both.current + fish->at.x, which, want);
             const double scale = sqrt(size / product(fish, want, want));
@@ -195,7 +195,7 @@ TEST(a_node_rotates_by_the_mean_of_its_edges) {
     double *const image = both.image + fish->at.vx;
     orthonormalise(fish, 4, basis, image);
     memcpy(want, image, 2 * (size_t)fish->n_nodes * sizeof *want);
-    corotation_to_current(both.corotation, both.image);
+    corotation_map(both.corotation, false, both.image);
     NEAR_ARRAY(2 * fish->n_nodes, image, want, 1e-13, 0);
     clear(&both);
 }
@@ -203,7 +203,7 @@ TEST(a_node_rotates_by_the_mean_of_its_edges) {
 TEST(where_nodes_are_prescribed_vectors_rotate_with_the_nodes) {
     struct configurations both;
     set_up(&both, 0.8, 0);
-    corotation_to_current(both.corotation, both.image);
+    corotation_map(both.corotation, false, both.image);
     const struct fish *fish = &both.setup.school->fish[1];
     for (int k = 0; k < fish->n_nodes; k++) {
         const double x = both.field[fish->at.vx + k], y = both.field[fish->at.vy + k];
@@ -216,7 +216,7 @@ TEST(where_nodes_are_prescribed_vectors_rotate_with_the_nodes) {
 TEST(other_unknowns_are_not_mapped) {
     struct configurations both;
     set_up(&both, 0.8, 0.3);
-    corotation_to_current(both.corotation, both.image);
+    corotation_map(both.corotation, false, both.image);
     for (int f = 0; f < 3; f++) {
         const struct layout *at = &both.setup.school->fish[f].at;
         NEAR_ARRAY(at->end - at->gamma, both.image + at->gamma, both.field + at->gamma, 0, 0);
@@ -224,7 +224,7 @@ TEST(other_unknowns_are_not_mapped) {
     // nor any fish that has not moved since the reference
     memcpy(both.image, both.field, (size_t)both.n * sizeof(double));
     corotation_set_reference(both.corotation, both.current);
-    corotation_to_current(both.corotation, both.image);
+    corotation_map(both.corotation, false, both.image);
     NEAR_ARRAY(both.n, both.image, both.field, 0, 0);
     clear(&both);
 }
@@ -257,14 +257,14 @@ static void map_stiffness(const struct configurations *both, int f, double *dens
     assert_non_null(vector);
     for (int column = 0; column < n; column++) {
         for (int i = 0; i < n; i++) vector[fish->at.x + i] = i == column;
-        corotation_to_reference(both->corotation, vector);
+        corotation_map(both->corotation, true, vector);
         for (int row = 0; row < n; row++) {
             vector[fish->at.ax + row] = 0;
             for (int i = 0; i < n; i++) {
                 vector[fish->at.ax + row] += dense[row * 2 * MAX_NODES + i] * vector[fish->at.x + i];
             }
         }
-        corotation_to_current(both->corotation, vector);
+        corotation_map(both->corotation, false, vector);
         for (int row = 0; row < n; row++) result[row * 2 * MAX_NODES + column] = vector[fish->at.ax + row];
     }
     free(vector);
