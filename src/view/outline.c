@@ -5,27 +5,11 @@
 
 #include "fish/shape.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* The cubic through values with the given slopes, between knot 0 and 1. */
 static double hermite(const double *knot, const double *value, const double *slope, double at) {
     const double length = knot[1] - knot[0], q = (at - knot[0]) / length, p = 1 - q;
     return (1 + 2 * q) * p * p * value[0] + q * p * p * length * slope[0] + q * q * (3 - 2 * q) * value[1] -
            q * q * p * length * slope[1];
-}
-
-/* The slope of the parabola through three points, in the middle one. */
-static double parabola_slope(const double *knot, const double *value) {
-    const double left = knot[0] - knot[-1], right = knot[1] - knot[0];
-    return ((value[0] - value[-1]) * right / left + (value[1] - value[0]) * left / right) / (left + right);
-}
-
-/* The thickness of an edge between two angles for a half thickness equal to the sine of the angle: a mean over the
- * edge, or the sum of the half thicknesses at both ends. */
-static double thickness_of_sine(double from, double to, bool is_mean) {
-    if (!is_mean) return sin(from) + sin(to);
-    // along the body ds = sin(angle)/2 d angle
-    return ((to - sin(2 * to) / 2) - (from - sin(2 * from) / 2)) / (cos(from) - cos(to));
 }
 
 /* Half thickness at the points. As a function of the angle whose cosine is the coordinate along the body, the half
@@ -37,19 +21,28 @@ static void interpolate_half(const struct outline *outline, const double *thickn
     for (int k = 0; k < n_edges; k++) {
         const double from = acos(1 - 2.0 * k / n_edges), to = acos(1 - 2.0 * (k + 1) / n_edges);
         knot[k + 2] = acos((cos(from) + cos(to)) / 2);
-        ratio[k + 2] = thickness[k] / thickness_of_sine(from, to, is_mean);
+
+        // the thickness of this edge for a half thickness equal to the sine; along the body ds = sin(angle)/2 d angle
+        const double mean = ((to - sin(2 * to) / 2) - (from - sin(2 * from) / 2)) / (cos(from) - cos(to));
+        ratio[k + 2] = thickness[k] / (is_mean ? mean : sin(from) + sin(to));
     }
 
     for (int k = 0; k < 2; k++) {
         knot[1 - k] = -knot[2 + k];
         ratio[1 - k] = ratio[2 + k];
-        knot[n - 2 + k] = 2 * pi - knot[n - 3 - k];
+        knot[n - 2 + k] = 2 * M_PI - knot[n - 3 - k];
         ratio[n - 2 + k] = ratio[n - 3 - k];
     }
 
-    for (int k = 1; k < n - 1; k++) slope[k] = parabola_slope(knot + k, ratio + k);
+    // slopes of the parabolas through three points
+    for (int k = 1; k < n - 1; k++) {
+        const double left = knot[k] - knot[k - 1], right = knot[k + 1] - knot[k];
+        const double before = (ratio[k] - ratio[k - 1]) * right / left, after = (ratio[k + 1] - ratio[k]) * left / right;
+        slope[k] = (before + after) / (left + right);
+    }
+
     for (int i = 0, k = 1; i < OUTLINE_POINTS; i++) {
-        const double angle = pi * i / (OUTLINE_POINTS - 1);
+        const double angle = M_PI * i / (OUTLINE_POINTS - 1);
         while (k < n - 3 && angle > knot[k + 1]) k++;
         outline->half[i] = fmax(0, sin(angle) * hermite(knot + k, ratio + k, slope + k, angle));
     }
@@ -69,7 +62,7 @@ struct outline outline_create(struct arena *arena, int n_nodes, const double *th
     if (curve_create(&curve, n, 0, 2 * OUTLINE_POINTS) != STATUS_OK) arena_lack(arena, 0);
     for (int i = 0; i < OUTLINE_POINTS; i++) {
         // the last point is the last node, however the cosine is rounded
-        const double part = (1 - cos(pi * i / (OUTLINE_POINTS - 1))) / 2;
+        const double part = (1 - cos(M_PI * i / (OUTLINE_POINTS - 1))) / 2;
         const double u = i < OUTLINE_POINTS - 1 ? part * (n - 1) : n - 1;
         const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
         for (int k = 0; k < n; k++) {

@@ -57,49 +57,7 @@ static void page_write_array(FILE *stream, const char *name, size_t bytes, const
     fputc('"', stream);
 }
 
-// ---- positions
-
-/* The smallest square box around n positions, as {left, bottom, size / POSITIONS}. */
-static void find_box(size_t n, const double *xy, double box[3]) {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (size_t i = 0; i < 2 * n; i++) {
-        low[i % 2] = fmin(low[i % 2], xy[i]);
-        high[i % 2] = fmax(high[i % 2], xy[i]);
-    }
-
-    const double size = n > 0 ? fmax(high[0] - low[0], high[1] - low[1]) : 0;
-    box[0] = n > 0 ? low[0] : 0;
-    box[1] = n > 0 ? low[1] : 0;
-    box[2] = size / POSITIONS;
-}
-
-static void place_in_box(size_t n, const double *xy, const double box[3], uint16_t *place) {
-    for (size_t i = 0; i < 2 * n; i++) {
-        const double steps = box[2] > 0 ? (xy[i] - box[i % 2]) / box[2] : 0;
-        place[i] = (uint16_t)fmin(fmax(round(steps), 0), POSITIONS);
-    }
-}
-
 // ---- how much of the run
-
-/* Find the rows with a wake, and the total number of vortices in these rows. */
-static enum status find_wakes(struct page *page, double *n_vortices) {
-    *n_vortices = 0;
-    double *count;
-    NEW(page->arena, count, page->n_fish);
-    NEW(page->arena, page->wake_row, page->n_rows);
-
-    for (size_t row = 0; row < page->n_rows; row++) {
-        bool has_wake;
-        TRY(result_reader_has_wake(page->reader, row, &has_wake));
-        if (!has_wake) continue;
-        TRY(result_reader_row(page->reader, "wake_count", row, count));
-        for (size_t f = 0; f < page->n_fish; f++) *n_vortices += count[f];
-        page->wake_row[page->n_wake_rows++] = row;
-    }
-
-    return STATUS_OK;
-}
 
 static size_t at_least_1(double stride) {
     return stride > 1 ? (size_t)stride : 1;
@@ -115,8 +73,20 @@ static enum status page_choose(struct page *page) {
     if (page->n_rows > 1 && (page->body_stride >= page->n_rows || page->series_stride >= page->n_rows))
         return status_fail(STATUS_FILE, "%s: a school of %zu fish with %zu nodes is too large for a page of 8 MB",
                            page->reader->file.path, page->n_fish, page->n_nodes);
-    double n_vortices;
-    TRY(find_wakes(page, &n_vortices));
+
+    // the rows with a wake, and the number of vortices in these rows
+    double n_vortices = 0, *count;
+    NEW(page->arena, count, page->n_fish);
+    NEW(page->arena, page->wake_row, page->n_rows);
+    for (size_t row = 0; row < page->n_rows; row++) {
+        bool has_wake;
+        TRY(result_reader_has_wake(page->reader, row, &has_wake));
+        if (!has_wake) continue;
+        TRY(result_reader_row(page->reader, "wake_count", row, count));
+        for (size_t f = 0; f < page->n_fish; f++) n_vortices += count[f];
+        page->wake_row[page->n_wake_rows++] = row;
+    }
+
     const double wakes = (n_vortices * 3 * sizeof(uint16_t) +
                           (double)page->n_wake_rows * (4 * sizeof(double) + 2 * fish * sizeof(int32_t))) *
                          per_byte;
@@ -136,16 +106,6 @@ static size_t row_of(size_t i, size_t n, size_t stride) {
 }
 
 // ---- the fish
-
-static bool has_same_shape(const struct page *page, const double *thickness, size_t f, size_t g) {
-    const size_t n = page->reader->length[EDGE];
-    if (page->reader->n_nodes[f] != page->reader->n_nodes[g] ||
-        page->reader->has_mean_section[f] != page->reader->has_mean_section[g])
-        return false;
-    for (int k = 0; k < page->reader->n_nodes[f] - 1; k++)
-        if (fabs(thickness[f * n + (size_t)k] - thickness[g * n + (size_t)k]) > 0) return false;
-    return true;
-}
 
 static void write_shape(const struct page *page, const double *thickness, size_t f) {
     const int n = page->reader->n_nodes[f];
@@ -169,35 +129,28 @@ static void write_shape(const struct page *page, const double *thickness, size_t
     fputc('}', page->stream);
 }
 
-/* Write the walls, and the side with the fluid: the side of the first fish at the start. */
-static enum status page_write_walls(const struct page *page) {
-    const struct result_reader *const reader = page->reader;
-    double *x;
-    TRY(result_reader_new(page->arena, reader, "x", 0, &x));
-    fprintf(page->stream, "\"walls\":[");
-
-    for (size_t i = 0; i < reader->length[WALL]; i++) {
-        const double y = reader->wall_y[i];
-        fprintf(page->stream, "%s{\"y\":%.9g,\"inward\":%d}", i > 0 ? "," : "", y, x[1] > y ? 1 : -1);
-    }
-
-    fprintf(page->stream, "],\n");
-    return STATUS_OK;
-}
-
 /* Write the shapes, each once, and the fish with the numbers of the shapes. */
 static enum status write_fish(const struct page *page) {
+    const struct result_reader *const reader = page->reader;
     double *thickness, *length;
     size_t *shape, *first, n_shapes = 0;
     NEW(page->arena, shape, page->n_fish);
     NEW(page->arena, first, page->n_fish);
-    TRY(result_reader_new(page->arena, page->reader, "edge_thickness", 0, &thickness));
-    TRY(result_reader_new(page->arena, page->reader, "body_length", 0, &length));
+    TRY(result_reader_new(page->arena, reader, "edge_thickness", 0, &thickness));
+    TRY(result_reader_new(page->arena, reader, "body_length", 0, &length));
     fprintf(page->stream, "\"shapes\":[");
 
     for (size_t f = 0; f < page->n_fish; f++) {
+        // the first fish of the same shape
         size_t s = 0;
-        while (s < n_shapes && !has_same_shape(page, thickness, first[s], f)) s++;
+        const double *const own = thickness + f * reader->length[EDGE];
+        for (; s < n_shapes; s++) {
+            const double *const other = thickness + first[s] * reader->length[EDGE];
+            bool is_same = reader->n_nodes[f] == reader->n_nodes[first[s]] &&
+                           reader->has_mean_section[f] == reader->has_mean_section[first[s]];
+            for (int k = 0; is_same && k < reader->n_nodes[f] - 1; k++) is_same = !(fabs(own[k] - other[k]) > 0);
+            if (is_same) break;
+        }
         shape[f] = s;
         if (s < n_shapes) continue;
         first[n_shapes++] = f;
@@ -208,7 +161,7 @@ static enum status write_fish(const struct page *page) {
     fprintf(page->stream, "],\n\"fish\":[");
     for (size_t f = 0; f < page->n_fish; f++) {
         fprintf(page->stream, "%s{", f > 0 ? ",\n" : "");
-        write_string(page->stream, "name", page->reader->name[f]);
+        write_string(page->stream, "name", reader->name[f]);
         fprintf(page->stream, ",\"length\":%.9g,\"shape\":%zu}", length[f], shape[f]);
     }
 
@@ -236,9 +189,24 @@ static struct rows rows_create(const struct page *page, size_t n, size_t n_place
 /* Add a row at number i of n positions. */
 static enum status rows_add(const struct page *page, struct rows *rows, size_t i, size_t row, size_t n,
                             const double *xy) {
+    double *const box = rows->box + 3 * i;
     TRY(result_reader_row(page->reader, "time", row, &rows->time[i]));
-    find_box(n, xy, rows->box + 3 * i);
-    place_in_box(n, xy, rows->box + 3 * i, rows->place + 2 * rows->n_places);
+
+    // the smallest square box: left, bottom, size / POSITIONS
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (size_t k = 0; k < 2 * n; k++) {
+        low[k % 2] = fmin(low[k % 2], xy[k]);
+        high[k % 2] = fmax(high[k % 2], xy[k]);
+    }
+    box[0] = n > 0 ? low[0] : 0;
+    box[1] = n > 0 ? low[1] : 0;
+    box[2] = n > 0 ? fmax(high[0] - low[0], high[1] - low[1]) / POSITIONS : 0;
+
+    uint16_t *const place = rows->place + 2 * rows->n_places;
+    for (size_t k = 0; k < 2 * n; k++) {
+        const double steps = box[2] > 0 ? (xy[k] - box[k % 2]) / box[2] : 0;
+        place[k] = (uint16_t)fmin(fmax(round(steps), 0), POSITIONS);
+    }
     rows->n_places += n;
     return STATUS_OK;
 }
@@ -312,17 +280,6 @@ static size_t keep_vortices(const struct page *page, struct wakes *wakes, size_t
     return kept;
 }
 
-/* Circulations as integers of 16 bits. */
-static void write_strength(const struct page *page, const struct wakes *wakes) {
-    const size_t n = wakes->rows.n_places;
-    float max = 0;
-    for (size_t i = 0; i < n; i++) max = fmaxf(max, fabsf(wakes->strength[i]));
-    const double unit = max > 0 ? max / INT16_MAX : 1;
-    for (size_t i = 0; i < n; i++) wakes->integer[i] = (int16_t)lround(wakes->strength[i] / unit);
-    fprintf(page->stream, ",\n\"unit\":%.9g,", unit);
-    page_write_array(page->stream, "strength", n * sizeof *wakes->integer, wakes->integer);
-}
-
 static enum status page_write_wakes(const struct page *page) {
     const struct result_reader *const reader = page->reader;
     const size_t n_rows = n_of(page->n_wake_rows, page->wake_stride);
@@ -354,7 +311,15 @@ static enum status page_write_wakes(const struct page *page) {
     page_write_array(page->stream, "first", n_rows * page->n_fish * sizeof *wakes.first, wakes.first);
     fputs(",\n", page->stream);
     page_write_array(page->stream, "count", n_rows * page->n_fish * sizeof *wakes.count, wakes.count);
-    write_strength(page, &wakes);
+
+    // circulations as integers of 16 bits
+    float max = 0;
+    const size_t n = wakes.rows.n_places;
+    for (size_t i = 0; i < n; i++) max = fmaxf(max, fabsf(wakes.strength[i]));
+    const double unit = max > 0 ? max / INT16_MAX : 1;
+    for (size_t i = 0; i < n; i++) wakes.integer[i] = (int16_t)lround(wakes.strength[i] / unit);
+    fprintf(page->stream, ",\n\"unit\":%.9g,", unit);
+    page_write_array(page->stream, "strength", n * sizeof *wakes.integer, wakes.integer);
     fprintf(page->stream, "},\n");
     return STATUS_OK;
 }
@@ -391,38 +356,43 @@ static enum status write_series(const struct page *page) {
 
 // ---- the page
 
-/* Describe the omitted rows and vortices; "" for a complete page. */
-static void write_thinned(const struct page *page) {
+static enum status write_data(const struct page *page) {
+    FILE *const stream = page->stream;
+    const struct result_reader *const reader = page->reader;
+    const char *const slash = strrchr(reader->file.path, '/');
+    fputs("{", stream);
+    write_string(stream, "title", reader->title);
+    fputc(',', stream);
+    write_string(stream, "file", slash ? slash + 1 : reader->file.path);
+    fputc(',', stream);
+    write_string(stream, "status", reader->run_status);
+    fputc(',', stream);
+    write_string(stream, "program", version_short());
+    fprintf(stream, ",\"rows\":%zu,", page->n_rows);
+
+    // the omitted rows and vortices; "" for a complete page
     const size_t strides[] = {page->body_stride, page->wake_stride, page->vortex_stride, page->series_stride};
     static const char *const what[] = {"bodies", "wakes", "vortices", "points of the traces"};
     static const char *const of[] = {"rows", "rows", "vortices", "rows"};
     char words[256] = "";
-
     for (size_t i = 0; i < sizeof strides / sizeof *strides; i++) {
         const size_t length = strlen(words);
         if (strides[i] < 2) continue;
         snprintf(words + length, sizeof words - length, "%s%s: one of %zu %s", length > 0 ? "; " : "", what[i],
                  strides[i], of[i]);
     }
+    write_string(stream, "thinned", words);
 
-    write_string(page->stream, "thinned", words);
-}
+    // the walls, and the side with the fluid: the side of the first fish at the start
+    double *x;
+    TRY(result_reader_new(page->arena, reader, "x", 0, &x));
+    fprintf(stream, ",\n\"walls\":[");
+    for (size_t i = 0; i < reader->length[WALL]; i++) {
+        const double y = reader->wall_y[i];
+        fprintf(stream, "%s{\"y\":%.9g,\"inward\":%d}", i > 0 ? "," : "", y, x[1] > y ? 1 : -1);
+    }
+    fprintf(stream, "],\n");
 
-static enum status write_data(const struct page *page) {
-    FILE *const stream = page->stream;
-    const char *const slash = strrchr(page->reader->file.path, '/');
-    fputs("{", stream);
-    write_string(stream, "title", page->reader->title);
-    fputc(',', stream);
-    write_string(stream, "file", slash ? slash + 1 : page->reader->file.path);
-    fputc(',', stream);
-    write_string(stream, "status", page->reader->run_status);
-    fputc(',', stream);
-    write_string(stream, "program", version_short());
-    fprintf(stream, ",\"rows\":%zu,", page->n_rows);
-    write_thinned(page);
-    fputs(",\n", stream);
-    TRY(page_write_walls(page));
     TRY(write_fish(page));
     TRY(page_write_bodies(page));
     TRY(page_write_wakes(page));

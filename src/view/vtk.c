@@ -62,9 +62,7 @@ static void begin_piece(FILE *stream, size_t n_points, size_t n_verts, size_t n_
             n_points, n_verts, n_lines, n_polys);
 }
 
-static void end_piece(FILE *stream) {
-    fputs("</Piece>\n</PolyData>\n</VTKFile>\n", stream);
-}
+static const char end_of_piece[] = "</Piece>\n</PolyData>\n</VTKFile>\n";
 
 /* Positions in the plane as points in space. */
 static void write_points(struct arena *arena, FILE *stream, size_t n, const double *xy) {
@@ -100,31 +98,12 @@ static void write_cells(struct arena *arena, FILE *stream, const char *kind, siz
 
 /* The bodies of a row: first the points of all lines, then the points of all outlines. */
 struct bodies {
-    double *nodes, *sheet, *strength, *speed, *heading; /* as in the file */
-    double *xy, *value;                                 /* points, and strengths there   (n_points, 2), (n_points) */
-    double *pressure, *pressure_at;                     /* as in the file; at the points (n_points) */
-    size_t *size;                                       /* of the cells                  (2 n_fish) */
-    int64_t *fish, *is_outline;                         /* of the cells                  (2 n_fish) */
-    double *cell;                                       /* a value of each cell          (2 n_fish) */
+    double *nodes, *sheet, *strength, *pressure; /* as in the file */
+    double *xy, *value, *pressure_at;            /* points, strengths and pressures there  (n_points, 2), (n_points) */
+    size_t *size;                                /* of the cells                           (2 n_fish) */
+    int64_t *fish, *is_outline;                  /* of the cells                           (2 n_fish) */
+    double *cell;                                /* a value of each cell                   (2 n_fish) */
 };
-
-static enum status bodies_read(const struct export *export, struct arena *arena, size_t row, struct bodies *bodies) {
-    const struct result_reader *const reader = export->reader;
-    const size_t n_cells = 2 * reader->length[FISH];
-    NEW(arena, bodies->xy, 2 * export->n_points);
-    NEW(arena, bodies->value, export->n_points);
-    NEW(arena, bodies->pressure_at, export->n_points);
-    NEW(arena, bodies->size, n_cells);
-    NEW(arena, bodies->fish, n_cells);
-    NEW(arena, bodies->is_outline, n_cells);
-    NEW(arena, bodies->cell, n_cells);
-    if (export->control_arc) TRY(result_reader_new(arena, reader, "pressure", row, &bodies->pressure));
-    TRY(result_reader_new(arena, reader, "x", row, &bodies->nodes));
-    TRY(result_reader_new(arena, reader, "sheet_x", row, &bodies->sheet));
-    TRY(result_reader_new(arena, reader, "sheet_strength", row, &bodies->strength));
-    TRY(result_reader_new(arena, reader, "speed", row, &bodies->speed));
-    return result_reader_new(arena, reader, "heading", row, &bodies->heading);
-}
 
 /* Interpolate a value at an arc coordinate between n points. */
 static double value_at(const double *arc, const double *value, size_t n, double s) {
@@ -134,87 +113,82 @@ static double value_at(const double *arc, const double *value, size_t n, double 
     return (1 - q) * value[k] + q * value[k + 1];
 }
 
-/* The arc coordinate of point i of the outline of a fish. */
-static double outline_arc(const struct export *export, size_t f, int i) {
-    const size_t last = f * export->reader->length[SHEET] + (size_t) export->reader->n_sheet[f] - 1;
-    return (1 - cos(M_PI * outline_point(i) / (OUTLINE_POINTS - 1))) / 2 * export->sheet_arc[last];
-}
-
-/* The pressure jump at all points, from that at the control points; NaN for fish that have none. */
-static void bodies_press(const struct export *export, struct bodies *bodies) {
+/* Put the points of all lines and outlines together, with the strength and the pressure jump there, from that at the
+ * control points; NaN for fish that have none. */
+static void bodies_place(const struct export *export, struct bodies *bodies) {
     const struct result_reader *const reader = export->reader;
-    const size_t slots = reader->length[CONTROL], n_fish = reader->length[FISH];
+    const size_t n_fish = reader->length[FISH], n_slots = reader->length[SHEET], n_control = reader->length[CONTROL];
     size_t line = 0, side = export->n_points - n_fish * OUTLINE_SIDES;
 
     for (size_t f = 0; f < n_fish; f++) {
-        const double *const arc = export->control_arc + f * slots, *const jump = bodies->pressure + f * slots;
-        size_t n = 0;
-        while (n < slots && isfinite(arc[n]) && isfinite(jump[n])) n++;
-        for (int j = 0; j < reader->n_sheet[f]; j++) {
-            const double s = export->sheet_arc[f * reader->length[SHEET] + (size_t)j];
-            bodies->pressure_at[line++] = n > 1 ? value_at(arc, jump, n, s) : NAN;
+        const size_t n_sheet = (size_t)reader->n_sheet[f];
+        const double *const sheet_arc = export->sheet_arc + f * n_slots;
+        const double *const strength = bodies->strength + f * n_slots;
+        outline_polygon(&export->outline[f], bodies->nodes + 2 * f * reader->length[NODE], bodies->xy + 2 * side);
+        memcpy(bodies->xy + 2 * line, bodies->sheet + 2 * f * n_slots, 2 * n_sheet * sizeof *bodies->xy);
+        memcpy(bodies->value + line, strength, n_sheet * sizeof *bodies->value);
+
+        // control points with a pressure jump
+        const double *const arc = export->control_arc ? export->control_arc + f * n_control : NULL;
+        const double *const jump = arc ? bodies->pressure + f * n_control : NULL;
+        size_t n_jumps = 0;
+        while (arc && n_jumps < n_control && isfinite(arc[n_jumps]) && isfinite(jump[n_jumps])) n_jumps++;
+        for (size_t j = 0; j < n_sheet; j++) {
+            bodies->pressure_at[line++] = n_jumps > 1 ? value_at(arc, jump, n_jumps, sheet_arc[j]) : NAN;
         }
-        for (int i = 0; i < OUTLINE_SIDES; i++)
-            bodies->pressure_at[side++] = n > 1 ? value_at(arc, jump, n, outline_arc(export, f, i)) : NAN;
-    }
-}
 
-/* Put the points of all lines and outlines together. */
-static void bodies_place(const struct export *export, struct bodies *bodies) {
-    const struct result_reader *const reader = export->reader;
-    const size_t n_fish = reader->length[FISH], n_slots = reader->length[SHEET];
-    size_t n = 0;
-
-    for (size_t f = 0; f < n_fish; f++) {
-        bodies->size[f] = (size_t)reader->n_sheet[f];
-        memcpy(bodies->xy + 2 * n, bodies->sheet + 2 * f * n_slots, 2 * bodies->size[f] * sizeof *bodies->xy);
-        memcpy(bodies->value + n, bodies->strength + f * n_slots, bodies->size[f] * sizeof *bodies->value);
-        n += bodies->size[f];
-    }
-
-    for (size_t f = 0; f < n_fish; f++) {
-        bodies->size[n_fish + f] = OUTLINE_SIDES;
-        outline_polygon(&export->outline[f], bodies->nodes + 2 * f * reader->length[NODE], bodies->xy + 2 * n);
+        // points of the outline, at the arc coordinate of the point of the curve
         for (int i = 0; i < OUTLINE_SIDES; i++) {
-            bodies->value[n++] = value_at(export->sheet_arc + f * n_slots, bodies->strength + f * n_slots,
-                                          (size_t)reader->n_sheet[f], outline_arc(export, f, i));
+            const double part = (1 - cos(M_PI * outline_point(i) / (OUTLINE_POINTS - 1))) / 2;
+            const double s = part * sheet_arc[n_sheet - 1];
+            bodies->value[side] = value_at(sheet_arc, strength, n_sheet, s);
+            bodies->pressure_at[side++] = n_jumps > 1 ? value_at(arc, jump, n_jumps, s) : NAN;
         }
-    }
 
-    for (size_t i = 0; i < 2 * n_fish; i++) {
-        bodies->fish[i] = (int64_t)(i % n_fish);
-        bodies->is_outline[i] = i >= n_fish;
+        bodies->size[f] = n_sheet;
+        bodies->size[n_fish + f] = OUTLINE_SIDES;
+        bodies->fish[f] = bodies->fish[n_fish + f] = (int64_t)f;
+        bodies->is_outline[n_fish + f] = 1;
     }
-}
-
-/* A value of each fish as one of each cell. */
-static void write_of_fish(const struct bodies *bodies, FILE *stream, const char *name, size_t n_fish,
-                          const double *values) {
-    for (size_t i = 0; i < 2 * n_fish; i++) bodies->cell[i] = values[i % n_fish];
-    write_doubles(stream, name, 2 * n_fish, bodies->cell);
 }
 
 static enum status vtk_write_bodies(const struct export *export, struct arena *arena, size_t row, FILE *stream) {
+    const struct result_reader *const reader = export->reader;
+    const size_t n_fish = reader->length[FISH], n_cells = 2 * n_fish;
     struct bodies bodies = {0};
-    const size_t n_fish = export->reader->length[FISH];
-    TRY(bodies_read(export, arena, row, &bodies));
+    double *of_fish[2];
+    static const char *const names[] = {"speed", "heading"};
+    NEW(arena, bodies.xy, 2 * export->n_points);
+    NEW(arena, bodies.value, export->n_points);
+    NEW(arena, bodies.pressure_at, export->n_points);
+    NEW(arena, bodies.size, n_cells);
+    NEW(arena, bodies.fish, n_cells);
+    NEW(arena, bodies.is_outline, n_cells);
+    NEW(arena, bodies.cell, n_cells);
+    if (export->control_arc) TRY(result_reader_new(arena, reader, "pressure", row, &bodies.pressure));
+    TRY(result_reader_new(arena, reader, "x", row, &bodies.nodes));
+    TRY(result_reader_new(arena, reader, "sheet_x", row, &bodies.sheet));
+    TRY(result_reader_new(arena, reader, "sheet_strength", row, &bodies.strength));
+    for (int i = 0; i < 2; i++) TRY(result_reader_new(arena, reader, names[i], row, &of_fish[i]));
     bodies_place(export, &bodies);
-    if (export->control_arc) bodies_press(export, &bodies);
 
     begin_piece(stream, export->n_points, 0, n_fish, n_fish);
     fputs("<PointData Scalars=\"sheet_strength\">\n", stream);
     write_doubles(stream, "sheet_strength", export->n_points, bodies.value);
     if (export->control_arc) write_doubles(stream, "pressure", export->n_points, bodies.pressure_at);
     fputs("</PointData>\n<CellData>\n", stream);
-    write_integers(stream, "fish", 2 * n_fish, bodies.fish);
-    write_integers(stream, "outline", 2 * n_fish, bodies.is_outline);
-    write_of_fish(&bodies, stream, "speed", n_fish, bodies.speed);
-    write_of_fish(&bodies, stream, "heading", n_fish, bodies.heading);
+    write_integers(stream, "fish", n_cells, bodies.fish);
+    write_integers(stream, "outline", n_cells, bodies.is_outline);
+    for (int i = 0; i < 2; i++) {
+        // a value of each fish as one of each cell
+        for (size_t c = 0; c < n_cells; c++) bodies.cell[c] = of_fish[i][c % n_fish];
+        write_doubles(stream, names[i], n_cells, bodies.cell);
+    }
     fputs("</CellData>\n", stream);
     write_points(arena, stream, export->n_points, bodies.xy);
     write_cells(arena, stream, "Lines", n_fish, bodies.size, 0);
     write_cells(arena, stream, "Polys", n_fish, bodies.size + n_fish, export->n_points - n_fish * OUTLINE_SIDES);
-    end_piece(stream);
+    fputs(end_of_piece, stream);
     return STATUS_OK;
 }
 
@@ -253,7 +227,7 @@ static enum status vtk_write_wakes(const struct export *export, struct arena *ar
     fputs("</PointData>\n", stream);
     write_points(arena, stream, n, x);
     write_cells(arena, stream, "Verts", n, size, 0);
-    end_piece(stream);
+    fputs(end_of_piece, stream);
     return STATUS_OK;
 }
 
@@ -286,7 +260,7 @@ static enum status vtk_write_walls(const struct export *export, struct arena *ar
     begin_piece(stream, 2 * n, 0, n, 0);
     write_points(arena, stream, 2 * n, xy);
     write_cells(arena, stream, "Lines", n, size, 0);
-    end_piece(stream);
+    fputs(end_of_piece, stream);
     return STATUS_OK;
 }
 
