@@ -188,9 +188,10 @@ static enum status read_member(struct arena *arena, struct arena *scratch, struc
         return status_fail(STATUS_FILE, "%s: not a result of this version of shoal", reader->path);
     }
     TRY(netcdf_read_integer(reader, "study_member", -1, &member->number));
-    static const char *const names[] = {"run_status", "warnings", "study_case", "case_effective"};
-    const char **const texts[] = {&member->status, &member->warnings, &member->study, &member->effective};
-    for (int i = 0; i < 4; i++) {
+    static const char *const names[] = {"run_status", "warnings", "study_case", "case_effective", "source"};
+    const char **const texts[] = {&member->status, &member->warnings, &member->study, &member->effective,
+                                  &member->source};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char *text;
         TRY(netcdf_attribute(reader, names[i], &text));
         *texts[i] = arena_text(arena, "%s", text);

@@ -32,6 +32,7 @@ struct member_file {
     const char *warnings;  /* warnings about the result, one per line, may be ""; NULL only without a result */
     const char *study;     /* merged text of the study, "" without a study */
     const char *effective; /* effective case of the member */
+    const char *source;    /* the program and libraries that wrote the file */
     int n_fish;
     double *value; /* see member_file_value; NaN: unknown                       (n quantities, n_fish, xy) */
 };

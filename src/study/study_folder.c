@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/version.h"
 #include "case/case.h"
 #include "case/sweep.h"
 #include "result/durable.h"
@@ -165,6 +166,11 @@ static enum status plan_member(struct arena *arena, struct study_plan *plan, con
         if (strcmp(member.study, study->merged) == 0 && member.number == number) {
             const char *const effective = case_show(arena, values);
             is_finished = member_file_is_complete(&member) && strcmp(member.effective, effective) == 0;
+
+            // force also replaces the result of another program
+            const size_t length = strlen(version_short());
+            const bool is_own = strncmp(member.source, version_short(), length) == 0 && member.source[length] == ',';
+            if (force && !is_own) is_finished = false;
         } else if (!force) {
             return status_fail(STATUS_FILE,
                                "%s is a result of another study, or the case has changed since: choose another folder "

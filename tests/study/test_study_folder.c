@@ -109,6 +109,18 @@ TEST_WITH(members_of_another_study_are_refused_unless_forced, set_up, tear_down)
     assert_int_equal(plan.member[0], 1);
 }
 
+TEST_WITH(force_runs_the_members_of_another_program_again, set_up, tear_down) {
+    const struct fixture *const f = *state;
+    struct study_plan plan;
+    set_attribute(f->member[1], "source", "shoal 0.0.1 (commit 0123456789ab), SUNDIALS 6.4.1");
+    for (int force = 0; force < 2; force++) {
+        assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, force), STATUS_OK);
+        assert_int_equal(plan.n, force);
+        assert_int_equal(plan.n_done, 3 - force);
+        if (force) assert_int_equal(plan.member[0], 1);
+    }
+}
+
 TEST_WITH(a_member_in_the_place_of_another_is_refused, set_up, tear_down) {
     const struct fixture *const f = *state;
     size_t n;
