@@ -248,6 +248,7 @@ int main(int argc, char **argv) {
     enum status status = main_run_command(argc, argv, &arena);
     arena_free(arena);
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
+        main_end_by_pipe();
         status = status_fail(STATUS_FILE, "cannot write to standard output");
     }
     if (status != STATUS_OK) print_message(status_message());

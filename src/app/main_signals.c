@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <math.h>
+#include <poll.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +12,7 @@
 #include <unistd.h>
 
 static volatile sig_atomic_t stop_signal;
+static bool is_catching; /* the command catches signals */
 
 static void on_signal(int number) {
     stop_signal = number;
@@ -40,6 +43,16 @@ void main_reset_signals(void) {
 
     // report a file size limit as an error of the write; the default action kills
     signal(SIGXFSZ, SIG_IGN);
+
+    // a closed pipe for messages ends no command
+    signal(SIGPIPE, SIG_IGN);
+}
+
+void main_end_by_pipe(void) {
+    struct pollfd output = {.fd = STDOUT_FILENO};
+    if (is_catching || poll(&output, 1, 0) != 1 || !(output.revents & POLLERR)) return;
+    signal(SIGPIPE, SIG_DFL);
+    raise(SIGPIPE);
 }
 
 void main_catch_signals(void) {
@@ -50,9 +63,7 @@ void main_catch_signals(void) {
         // a signal that the parent process ignores (nohup) stays ignored
         if (before.sa_handler != SIG_IGN) sigaction(asking[i].number, &action, NULL);
     }
-
-    // report a closed pipe as an error; progress ignores a closed stderr
-    signal(SIGPIPE, SIG_IGN);
+    is_catching = true;
 }
 
 enum status main_limit_wall_time(const char *text) {

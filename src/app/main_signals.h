@@ -12,8 +12,13 @@
 void main_open_standard(void);
 
 /* For all commands: restore the default action of SIGCHLD, because waiting for child processes fails if the parent
- * process ignores SIGCHLD; ignore SIGXFSZ, so that a write beyond the limit of a file size fails with a message. */
+ * process ignores SIGCHLD; ignore SIGXFSZ and SIGPIPE, so that a write beyond the limit of a file size, or to a closed
+ * pipe, is an error of the write. */
 void main_reset_signals(void);
+
+/* Let SIGPIPE end the program, as usual, if standard output is a closed pipe; not after main_catch_signals, where a
+ * closed pipe is an error. */
+void main_end_by_pipe(void);
 
 /* Let SIGINT, SIGTERM, SIGHUP, SIGUSR1 and SIGXCPU request a stop; a second SIGINT ends the program at once. Signals
  * that the parent process ignores stay ignored. */

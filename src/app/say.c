@@ -4,7 +4,6 @@
 
 #include <limits.h>
 #include <math.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -28,13 +27,8 @@ void say_line(FILE *stream, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line ? line : beginning, line ? (size_t)length + 1 : sizeof beginning, format, arguments);
     va_end(arguments);
-    // a closed pipe for messages ends no run; a closed pipe for output ends the program, as usual
-    struct sigaction before;
-    const bool is_message = stream == stderr;
-    if (is_message) sigaction(SIGPIPE, &(struct sigaction){.sa_handler = SIG_IGN}, &before);
     text_print_clean(stream, line ? line : beginning);
     if (!line && (size_t)length >= sizeof beginning) fputc('\n', stream);
-    if (is_message) sigaction(SIGPIPE, &before, NULL);
     free(line);
 }
 

@@ -30,6 +30,24 @@ check it_says_how_to_go_on has err "continue with 'shoal resume small.ckpt'"
 run info small.ckpt
 check there_is_a_checkpoint ended 0
 
+# ---- a closed pipe for messages ends no command, a closed pipe for output the usual way
+
+sed 's/nodes: 7/nodes: 5/' small.yaml >warned.yaml
+code=0
+{ "$program" check warned.yaml 2> >(exec true) >out; } || code=$?
+check warnings_to_a_closed_pipe_end_no_check ended 0
+check warnings_to_a_closed_pipe_end_no_estimate has out "warned.yaml: ok"
+for command in keys "show small.yaml"; do
+    code=0
+    # shellcheck disable=SC2086 # words
+    (sleep 0.3 && exec "$program" $command) > >(exec true) 2>err || code=$?
+    check "output to a closed pipe: SIGPIPE ($command)" ended 141
+done
+code=0
+(sleep 0.3 && exec "$program" run small.yaml --force -o piped.nc) > >(exec true) 2>err || code=$?
+check the_result_of_a_run_with_a_closed_output_is_there test -s piped.nc
+check a_run_with_a_closed_output_says_so ended 4
+
 # ---- a search for a steady state cannot be resumed, and the message says so at every stage
 
 for how in '' '--set steady.tolerance=0.001' "--set solver.rtol=1e-7"; do
