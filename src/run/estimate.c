@@ -151,32 +151,6 @@ static double event_added_cost(const struct costs *costs, double vortices) {
     return fmax(0, from + part * (costs->seconds[i + 1] - costs->seconds[i]));
 }
 
-// sum over all events: panels of many events while the wakes grow, then events with constant wakes
-static double run_seconds(const struct simulation *simulation, const struct costs *costs, double each) {
-    enum { PANELS = 2000 };
-    const double n_events = (double)simulation->n_events;
-    const double most = wake_most(simulation->school, simulation->n_events), growing = fmin(most, n_events);
-    double sum = 0;
-    for (int i = 0; i < PANELS; i++) sum += event_added_cost(costs, (i + 0.5) * growing / PANELS) * growing / PANELS;
-    return n_events * each + sum + (n_events - growing) * event_added_cost(costs, most);
-}
-
-// memory with the longest wakes: the last doubling of the wakes measures the memory per vortex
-static double run_bytes(const struct simulation *simulation, const struct costs *costs) {
-    const int last = costs->n - 1, n_fish = simulation->school->n_fish, enough = 20000;
-    const double missing = wake_most(simulation->school, simulation->n_events) - costs->vortices[last];
-    const double more = last > 0 ? (costs->vortices[last] - costs->vortices[last - 1]) * n_fish : 0;
-    const double each = more > enough ? (costs->bytes[last] - costs->bytes[last - 1]) / more : usual_bytes;
-
-    // the samples of a period
-    double samples = 0;
-    for (int f = 0; f < n_fish; f++) {
-        const struct history *const history = &simulation->state->history[f];
-        samples += fmax(0, fmin(history->capacity, (double)simulation->n_events) - history->n_slots);
-    }
-    return bytes_so_far() + bytes_of_file + fmax(0, missing) * n_fish * each + samples * sizeof(struct sample);
-}
-
 enum status estimate_run(struct simulation *simulation, double patience, struct estimate *estimate) {
     const double end = clock_seconds(CLOCK_THREAD_CPUTIME_ID) + patience;
     double each, evaluations;
@@ -192,7 +166,25 @@ enum status estimate_run(struct simulation *simulation, double patience, struct 
     const struct kernel *const kernel = simulation->residual->flow->kernel;
     costs.power = tree_is_faster(kernel, (int)n, n * n, school->wake_tolerance) ? 1.1 : 2;
 
-    estimate->seconds = run_seconds(simulation, &costs, each);
-    estimate->bytes = run_bytes(simulation, &costs);
+    // sum over all events: panels of many events while the wakes grow, then events with constant wakes
+    enum { PANELS = 2000 };
+    const double n_events = (double)simulation->n_events, most = wake_most(school, simulation->n_events);
+    const double growing = fmin(most, n_events);
+    double sum = 0;
+    for (int i = 0; i < PANELS; i++) sum += event_added_cost(&costs, (i + 0.5) * growing / PANELS) * growing / PANELS;
+    estimate->seconds = n_events * each + sum + (n_events - growing) * event_added_cost(&costs, most);
+
+    // memory with the longest wakes: the last doubling of the wakes measures the memory per vortex
+    const int last = costs.n - 1, n_fish = school->n_fish, enough = 20000;
+    const double more = last > 0 ? (costs.vortices[last] - costs.vortices[last - 1]) * n_fish : 0;
+    const double bytes_each = more > enough ? (costs.bytes[last] - costs.bytes[last - 1]) / more : usual_bytes;
+    estimate->bytes = bytes_so_far() + bytes_of_file + fmax(0, most - costs.vortices[last]) * n_fish * bytes_each;
+
+    // the samples of a period
+    for (int f = 0; f < n_fish; f++) {
+        const struct history *const history = &simulation->state->history[f];
+        const double n_samples = fmax(0, fmin(history->capacity, n_events) - history->n_slots);
+        estimate->bytes += n_samples * sizeof(struct sample);
+    }
     return STATUS_OK;
 }

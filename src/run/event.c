@@ -2,6 +2,7 @@
 #include "run/event.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "contact/clearance.h"
@@ -33,16 +34,6 @@ static void event_release(struct state *state, const struct school *school, int 
     const double circulation = state->y[school->fish[f].at.circulation];
     wake_release(wake, place[0], place[1], circulation - wake->shed_before, state->t);
     wake->shed_before = circulation;
-}
-
-// continuous shedding: release the nascent vortex with its position and circulation
-static void event_release_nascent(struct state *state, const struct school *school) {
-    for (int f = 0; f < school->n_fish; f++) {
-        double tail[2], position[2];
-        tail_position(state, &school->fish[f], tail);
-        wake_nascent(&state->wake[f], school->interval, tail, position);
-        event_release(state, school, f, position);
-    }
 }
 
 // impulsive shedding: a vortex appears at the tail
@@ -84,22 +75,6 @@ static void event_release_markers(struct state *state, const struct school *scho
     }
 }
 
-// A new marker starts with the velocity of the fluid at the tail, without the forward component of the slip along the
-// body: with this component, a tail that moves backwards would place the sheet on the body.
-static void event_start_marker(const struct fish *fish, struct state *state, int f, double *u, double *v) {
-    const int last = fish->n_nodes - 1;
-    struct wake *const wake = &state->wake[f];
-    const double *const y = state->y;
-    const double velocity[2] = {y[fish->at.vx + last], y[fish->at.vy + last]};
-    const struct direction tail = fish_direction(fish, &fish->tail_tangent, y);
-    wake->slip[0] = *u - velocity[0];
-    wake->slip[1] = *v - velocity[1];
-    const double forwards = fmax(0, -(wake->slip[0] * tail.t[0] + wake->slip[1] * tail.t[1]));
-    *u += forwards * tail.t[0];
-    *v += forwards * tail.t[1];
-    wake_set_tail(wake, velocity, tail.t);
-}
-
 enum { ALL = -1 };
 
 // evaluate the velocities of all free vortices at the present state; n_new: number of vortices per fish without a
@@ -112,14 +87,27 @@ static void event_wake_velocities(struct state *state, struct residual *residual
 
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
-        const int first = flow->wake_range[f].first, newest = first + state->wake[f].n_vortex - 1;
-        if (state->wake[f].has_markers) {
-            event_start_marker(&school->fish[f], state, f, &flow->wake_u[newest], &flow->wake_v[newest]);
+        const struct fish *const fish = &school->fish[f];
+        struct wake *const wake = &state->wake[f];
+        const int first = flow->wake_range[f].first, newest = first + wake->n_vortex - 1, last = fish->n_nodes - 1;
+
+        // A new marker starts with the velocity of the fluid at the tail, without the forward component of the slip
+        // along the body: with this component, a tail that moves backwards would place the sheet on the body.
+        if (wake->has_markers) {
+            const double velocity[2] = {state->y[fish->at.vx + last], state->y[fish->at.vy + last]};
+            const struct direction tail = fish_direction(fish, &fish->tail_tangent, state->y);
+            wake->slip[0] = flow->wake_u[newest] - velocity[0];
+            wake->slip[1] = flow->wake_v[newest] - velocity[1];
+            const double forwards = fmax(0, -(wake->slip[0] * tail.t[0] + wake->slip[1] * tail.t[1]));
+            flow->wake_u[newest] += forwards * tail.t[0];
+            flow->wake_v[newest] += forwards * tail.t[1];
+            wake_set_tail(wake, velocity, tail.t);
         }
-        if (state->wake[f].n_vortex > 0) {
-            const int n = n_new == ALL ? state->wake[f].n_vortex : n_new;
+
+        if (wake->n_vortex > 0) {
+            const int n = n_new == ALL ? wake->n_vortex : n_new;
             const double *const rate = flow->kernel->has_legs ? flow->wake_rate + first : NULL;
-            wake_set_velocity(&state->wake[f], flow->wake_u + first, flow->wake_v + first, rate, n);
+            wake_set_velocity(wake, flow->wake_u + first, flow->wake_v + first, rate, n);
         }
     }
 }
@@ -133,33 +121,28 @@ static enum status event_flow(struct state *state, struct residual *residual) {
     return STATUS_OK;
 }
 
-// observations of the control law of fish f
-static struct control_view event_control_view(const struct state *state, const struct residual *residual, int f) {
-    const struct fish *fish = &residual->school->fish[f];
-    const struct flow_at_body flow = flow_at_body(residual->flow, f);
-    struct control_view view = {.t = state->t,
-                                .interval = residual->school->interval,
-                                .mean_heading = diagnostics_mean_heading(&state->history[f])};
-    if (control_uses_moment(fish)) view.moment = drag_moment(fish, flow.u, flow.v, state->y);
-    view.has_course = diagnostics_course(&state->history[f], &view.course, &view.course_rate);
-    return view;
-}
-
 // update the control of every fish; returns whether a bias jumps
-static int event_control(struct state *state, struct residual *residual) {
+static bool event_control(struct state *state, struct residual *residual) {
     const struct school *school = residual->school;
     const int threads = fish_threads(school);
-    int jumps = 0;
+    bool jumps = false;
 
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         struct control_memory *const memory = &state->control[f];
-        const struct control_view view = event_control_view(state, residual, f);
+
+        // the observations of the control law
+        const struct flow_at_body flow = flow_at_body(residual->flow, f);
+        struct control_view view = {
+            .t = state->t, .interval = school->interval, .mean_heading = diagnostics_mean_heading(&state->history[f])};
+        if (control_uses_moment(fish)) view.moment = drag_moment(fish, flow.u, flow.v, state->y);
+        view.has_course = diagnostics_course(&state->history[f], &view.course, &view.course_rate);
+
         const double before = control_rate(fish, memory, state->t, 0, state->y);
         if (control_event(fish, memory, &view, state->y)) {
 #pragma omp atomic write
-            jumps = 1;
+            jumps = true;
         }
         const double change = control_rate(fish, memory, state->t, 0, state->y) - before;
         if (fabs(change) > 0) diagnostics_begin(residual, state, f);
@@ -178,7 +161,7 @@ static enum status event_finish(struct state *state, struct residual *residual, 
     self_crossing_remember(residual->school, state, residual->scratch);
     warnings_remember(residual->school, state);
 
-    const int steered = event_control(state, residual);
+    const bool steered = event_control(state, residual);
     if (steered) {
         if (!jumps) diagnostics_before_jump(residual, state);
         TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
@@ -190,44 +173,33 @@ static enum status event_finish(struct state *state, struct residual *residual, 
     return STATUS_OK;
 }
 
-// the vortices of the case, in the wake of the first fish
-static enum status event_add_vortices(struct state *state, const struct school *school) {
-    for (int i = 0; i < school->n_vortices; i++) {
-        const double *const vortex = school->vortices + 3 * (long)i;
-        TRY(wake_add_vortex(&state->wake[0], school, state->t, vortex[0], vortex[1], vortex[2]));
-    }
-
-    return STATUS_OK;
-}
-
-// release the first markers, in the flow without shed circulation
-static enum status event_start_sheets(struct state *state, struct residual *residual,
-                                      struct initial_conditions *initial) {
-    residual->shed_now = SHED_IS_GIVEN;
-    enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
-    if (status == STATUS_OK) {
-        event_release_markers(state, residual->school);
-        status = event_add_vortices(state, residual->school);
-    }
-    if (status == STATUS_OK && residual->school->n_vortices > 0) {
-        status = initial_conditions_solve(initial, state->t, state->y, state->yp);
-    }
-    if (status == STATUS_OK) event_wake_velocities(state, residual, ALL);
-    residual->shed_now = SHED_BY_LAW;
-    return status;
-}
-
 // solve for the state at the start, with given velocities of the bodies
 static enum status event_start_bodies(struct state *state, struct residual *residual,
                                       struct initial_conditions *initial) {
-    if (residual->school->shedding == SHEDDING_SHEET) {
-        TRY(event_start_sheets(state, residual, initial));
-        return initial_conditions_solve(initial, state->t, state->y, state->yp);
+    const struct school *const school = residual->school;
+    const bool is_sheet = school->shedding == SHEDDING_SHEET, has_vortices = school->n_vortices > 0;
+    enum status status = STATUS_OK;
+
+    // release the first markers, in the flow without shed circulation
+    if (is_sheet) {
+        residual->shed_now = SHED_IS_GIVEN;
+        status = initial_conditions_solve(initial, state->t, state->y, state->yp);
+        if (status == STATUS_OK) event_release_markers(state, school);
     }
-    TRY(event_add_vortices(state, residual->school));
-    TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-    if (residual->school->n_vortices > 0) event_wake_velocities(state, residual, ALL);
-    return STATUS_OK;
+
+    // the vortices of the case, in the wake of the first fish
+    for (int i = 0; i < school->n_vortices && status == STATUS_OK; i++) {
+        const double *const vortex = school->vortices + 3 * (long)i;
+        status = wake_add_vortex(&state->wake[0], school, state->t, vortex[0], vortex[1], vortex[2]);
+    }
+
+    if (status == STATUS_OK && (has_vortices || !is_sheet)) {
+        status = initial_conditions_solve(initial, state->t, state->y, state->yp);
+    }
+    if (status == STATUS_OK && (has_vortices || is_sheet)) event_wake_velocities(state, residual, ALL);
+    residual->shed_now = SHED_BY_LAW;
+    if (status == STATUS_OK && is_sheet) status = initial_conditions_solve(initial, state->t, state->y, state->yp);
+    return status;
 }
 
 enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
@@ -272,7 +244,13 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     } else if (school->shedding == SHEDDING_SHEET) {
         event_release_markers(state, school);
     } else {
-        event_release_nascent(state, school);
+        // continuous shedding: the nascent vortex, with its position and circulation
+        for (int f = 0; f < school->n_fish; f++) {
+            double tail[2], position[2];
+            tail_position(state, &school->fish[f], tail);
+            wake_nascent(&state->wake[f], school->interval, tail, position);
+            event_release(state, school, f, position);
+        }
     }
 
 #pragma omp parallel for num_threads(threads) schedule(static)

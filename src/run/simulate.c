@@ -59,14 +59,6 @@ static struct simulation *simulation_begin(struct arena *parent, const struct ca
     return new;
 }
 
-// discard a simulation that could not be built
-static enum status simulation_discard_failed(struct simulation **simulation, enum status status) {
-    if (status == STATUS_OK) return STATUS_OK;
-    simulate_free(*simulation);
-    *simulation = NULL;
-    return status;
-}
-
 static enum status simulation_create_equations(struct simulation *simulation) {
     arena_free(simulation->renewed);
     simulation->renewed = NULL;
@@ -77,13 +69,9 @@ static enum status simulation_create_equations(struct simulation *simulation) {
     return initial_conditions_create(simulation->renewed, &simulation->consistent, simulation->residual);
 }
 
-static enum status simulation_create_integrator(struct simulation *simulation) {
-    return simulation->integrator->create(simulation->renewed, &simulation->solver, simulation->residual,
-                                          simulation->state, &simulation->options);
-}
-
-static enum status simulation_start(struct simulation *simulation, const struct case_values *values,
-                                    const volatile sig_atomic_t *stop) {
+enum status simulate_start(struct arena *parent, struct simulation **started, const struct case_values *values,
+                           const volatile sig_atomic_t *stop) {
+    struct simulation *const simulation = *started = simulation_begin(parent, values);
     simulation->stop = stop;
     struct school_parameters parameters = values->school;
     parameters.stop = stop;
@@ -97,13 +85,8 @@ static enum status simulation_start(struct simulation *simulation, const struct 
     initial_conditions_listen(simulation->consistent, stop);
     TRY(event_start(simulation->state, simulation->residual, simulation->consistent));
     TRY(status_ask(stop));
-    return simulation_create_integrator(simulation);
-}
-
-enum status simulate_start(struct arena *parent, struct simulation **simulation, const struct case_values *values,
-                           const volatile sig_atomic_t *stop) {
-    *simulation = simulation_begin(parent, values);
-    return simulation_discard_failed(simulation, simulation_start(*simulation, values, stop));
+    return simulation->integrator->create(simulation->renewed, &simulation->solver, simulation->residual,
+                                          simulation->state, &simulation->options);
 }
 
 enum status simulate_create(struct arena *parent, struct simulation **simulation, const struct case_values *values) {
@@ -117,7 +100,8 @@ const char *simulate_stopped_by(const volatile sig_atomic_t *stop) {
 enum status simulate_renew(struct simulation *simulation) {
     simulation->options.before = simulation->totals;
     TRY(simulation_create_equations(simulation));
-    return simulation_create_integrator(simulation);
+    return simulation->integrator->create(simulation->renewed, &simulation->solver, simulation->residual,
+                                          simulation->state, &simulation->options);
 }
 
 enum status simulate_take_up(struct arena *parent, struct simulation **simulation, const struct case_values *values,
@@ -129,47 +113,30 @@ enum status simulate_take_up(struct arena *parent, struct simulation **simulatio
     new->totals = *totals;
     simulation_set_order(new, values);
     new->diagnostics = diagnostics_create(new->arena, school);
-    return simulation_discard_failed(simulation, simulate_renew(new));
+    return simulate_renew(new);
 }
 
 void simulate_free(struct simulation *simulation) {
     if (simulation) arena_free(simulation->arena);
 }
 
-// contact.action: stop takes precedence over the status of the integrator
-static enum status simulation_refuse_contact(const struct simulation *simulation) {
-    const struct school *const school = simulation->school;
-    const struct closest *const closest = simulation->state->closest;
-    if (school->contact != CONTACT_STOP || closest->distance >= school->contact_range) return STATUS_OK;
-    return status_fail(STATUS_CONTACT,
-                       "contact of %s and %s at t = %.10g s: %.4g m between their outlines, less than contact.range, "
-                       "%.4g m; contact.action is stop",
-                       school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t,
-                       closest->distance, school->contact_range);
-}
-
-// name a body that is folded at a joint at the end of the last step: the curve through the nodes does not describe a
-// folded body
-static enum status simulation_name_folded(const struct simulation *simulation, enum status status) {
-    const double right_angle = 1.57079632679489662, sharp = right_angle / 2;
-    const struct school *const school = simulation->school;
-    for (int f = 0; f < school->n_fish; f++) {
-        double turn;
-        const int joint = rod_sharpest_joint(&school->fish[f], simulation->state->closest->before, &turn);
-        if (turn < sharp) continue;
-        return status_fail(
-            status, "%s; the body of %s folds: it turns by %.0f degrees at node %d: raise body.modulus, or nodes",
-            status_message(), school->fish[f].name, turn / right_angle * 90, joint);
-    }
-
-    return status;
-}
-
-// name the two bodies, or the body and the wall, with the least gap at the end of the last step, if the gap is below
-// contact.range
-static enum status simulation_name_contact(const struct simulation *simulation, enum status status) {
+/* Complete the message of a failure: name a body that is folded at a joint at the end of the last step, which the curve
+ * through the nodes does not describe, and the two bodies, or the body and the wall, with the least gap below
+ * contact.range. */
+static enum status simulation_explain(const struct simulation *simulation, enum status status) {
+    const double sharp = M_PI / 4;
     const struct school *const school = simulation->school;
     const double *const y = simulation->state->closest->before;
+    for (int f = 0; f < school->n_fish; f++) {
+        double turn;
+        const int joint = rod_sharpest_joint(&school->fish[f], y, &turn);
+        if (turn < sharp) continue;
+        status_fail(status,
+                    "%s; the body of %s folds: it turns by %.0f degrees at node %d: raise body.modulus, or nodes",
+                    status_message(), school->fish[f].name, turn / M_PI * 180, joint);
+        break;
+    }
+
     double least = school->contact_range;
     int one = -1, other = -1, wall = -1;
     for (int f = 0; f < school->n_fish; f++) {
@@ -201,30 +168,35 @@ static enum status simulation_name_contact(const struct simulation *simulation, 
                        status_message(), name, which, school->walls.y[wall], least);
 }
 
-// integrate to the next event, and perform the event
-static enum status simulation_advance(struct simulation *simulation) {
-    struct state *const state = simulation->state;
-    const double next = fish_event_time(simulation->school, state->event + 1);
-    const enum status advanced = simulation->integrator->advance(simulation->solver, next, simulation->stop);
-    TRY(simulation_refuse_contact(simulation));
-    TRY(advanced);
-
-    int jumped = 0;
-    initial_conditions_listen(simulation->consistent, simulation->stop);
-    TRY(event_next(state, simulation->residual, simulation->consistent, &jumped));
-
-    // count before the restart, which discards the last step
-    simulation->integrator->count(simulation->solver, &simulation->totals);
-    return jumped ? simulation->integrator->restart(simulation->solver) : STATUS_OK;
-}
-
 enum status simulate_step(struct simulation *simulation) {
-    enum status status = simulation_advance(simulation);
-    if (status != STATUS_SOLVER) return status;
+    const struct school *const school = simulation->school;
+    const struct integrator *const integrator = simulation->integrator;
+    struct state *const state = simulation->state;
 
-    // what the bodies do at a failure of the integrator or of the event
-    status = simulation_name_folded(simulation, status);
-    return simulation_name_contact(simulation, status);
+    // integrate to the next event
+    const double next = fish_event_time(school, state->event + 1);
+    enum status status = integrator->advance(simulation->solver, next, simulation->stop);
+
+    // contact.action: stop takes precedence over the status of the integrator
+    const struct closest *const closest = state->closest;
+    if (school->contact == CONTACT_STOP && !(closest->distance >= school->contact_range)) {
+        return status_fail(STATUS_CONTACT,
+                           "contact of %s and %s at t = %.10g s: %.4g m between their outlines, less than "
+                           "contact.range, %.4g m; contact.action is stop",
+                           school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t,
+                           closest->distance, school->contact_range);
+    }
+
+    // perform the event; count before the restart, which discards the last step
+    if (status == STATUS_OK) {
+        int jumped = 0;
+        initial_conditions_listen(simulation->consistent, simulation->stop);
+        status = event_next(state, simulation->residual, simulation->consistent, &jumped);
+        if (status == STATUS_OK) integrator->count(simulation->solver, &simulation->totals);
+        if (status == STATUS_OK && jumped) status = integrator->restart(simulation->solver);
+    }
+
+    return status == STATUS_SOLVER ? simulation_explain(simulation, status) : status;
 }
 
 void simulate_measure(struct simulation *simulation) {

@@ -3,7 +3,7 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "flow/flow.h"
@@ -13,36 +13,10 @@
 
 // ---- the variables
 
-enum {
-    TIME_AT,
-    X_AT,
-    Y_AT,
-    U,
-    V,
-    VORTICITY,
-    BODY_X,
-    EDGE_HEIGHT,
-    MEAN_SECTION,
-    N_NODES,
-    FISH_NAME,
-    WALL_Y,
-    N_VARIABLES
-};
-enum {
-    TIME_AXIS,
-    Y_AXIS,
-    X_AXIS,
-    FISH_AXIS,
-    NODE_AXIS,
-    EDGE_AXIS,
-    XY_AXIS,
-    NAME_AXIS,
-    WALL_AXIS,
-    N_AXES,
-    NO_AXIS = -1
-};
+enum { TIME_AT, X_AT, Y_AT, U, V, VORTICITY, BODY_X, THICKNESS, MEAN_SECTION, N_NODES, FISH_NAME, WALL_Y, N_VARIABLES };
+enum { NO_AXIS, TIME_AXIS, Y_AXIS, X_AXIS, FISH_AXIS, NODE_AXIS, EDGE_AXIS, XY_AXIS, NAME_AXIS, WALL_AXIS, N_AXES };
 
-static const char *const axis_name[N_AXES] = {"time", "y", "x", "fish", "node", "edge", "xy", "name", "wall"};
+static const char *const axis_name[N_AXES] = {"", "time", "y", "x", "fish", "node", "edge", "xy", "name", "wall"};
 
 /* In the order of the file; wall_y only with walls. */
 static const struct variable {
@@ -51,30 +25,22 @@ static const struct variable {
     enum netcdf_type type;               /* NETCDF_FLOAT: or double, as output.precision says */
     const char *unit, *long_name;
 } variables[N_VARIABLES] = {
-    {"time", {TIME_AXIS, NO_AXIS}, NETCDF_DOUBLE, "s", "time"},
-    {"x", {X_AXIS, NO_AXIS}, NETCDF_DOUBLE, "m", "x coordinate of the grid"},
-    {"y", {Y_AXIS, NO_AXIS}, NETCDF_DOUBLE, "m", "y coordinate of the grid"},
-    {"u", {TIME_AXIS, Y_AXIS, X_AXIS, NO_AXIS}, NETCDF_FLOAT, "m s-1", "velocity of the fluid in direction x"},
-    {"v", {TIME_AXIS, Y_AXIS, X_AXIS, NO_AXIS}, NETCDF_FLOAT, "m s-1", "velocity of the fluid in direction y"},
-    {"vorticity", {TIME_AXIS, Y_AXIS, X_AXIS, NO_AXIS}, NETCDF_FLOAT, "s-1", "vorticity of the fluid, dv/dx - du/dy"},
-    {"body_x",
-     {TIME_AXIS, FISH_AXIS, NODE_AXIS, XY_AXIS, NO_AXIS},
-     NETCDF_DOUBLE,
-     "m",
-     "position of the nodes, nose first"},
-    {"edge_thickness",
-     {FISH_AXIS, EDGE_AXIS, NO_AXIS},
-     NETCDF_DOUBLE,
-     "m",
-     "thickness of the body in the plane of motion"},
+    {"time", {TIME_AXIS}, NETCDF_DOUBLE, "s", "time"},
+    {"x", {X_AXIS}, NETCDF_DOUBLE, "m", "x coordinate of the grid"},
+    {"y", {Y_AXIS}, NETCDF_DOUBLE, "m", "y coordinate of the grid"},
+    {"u", {TIME_AXIS, Y_AXIS, X_AXIS}, NETCDF_FLOAT, "m s-1", "velocity of the fluid in direction x"},
+    {"v", {TIME_AXIS, Y_AXIS, X_AXIS}, NETCDF_FLOAT, "m s-1", "velocity of the fluid in direction y"},
+    {"vorticity", {TIME_AXIS, Y_AXIS, X_AXIS}, NETCDF_FLOAT, "s-1", "vorticity of the fluid, dv/dx - du/dy"},
+    {"body_x", {TIME_AXIS, FISH_AXIS, NODE_AXIS, XY_AXIS}, NETCDF_DOUBLE, "m", "position of the nodes, nose first"},
+    {"edge_thickness", {FISH_AXIS, EDGE_AXIS}, NETCDF_DOUBLE, "m", "thickness of the body in the plane of motion"},
     {"mean_section",
-     {FISH_AXIS, NO_AXIS},
+     {FISH_AXIS},
      NETCDF_INT,
      "1",
      "1: edge_thickness is a mean over an edge; 0: the mean of the values at the two nodes"},
-    {"n_nodes", {FISH_AXIS, NO_AXIS}, NETCDF_INT, "1", "number of nodes"},
-    {"fish_name", {FISH_AXIS, NAME_AXIS, NO_AXIS}, NETCDF_TEXT, "", "name of the fish"},
-    {"wall_y", {WALL_AXIS, NO_AXIS}, NETCDF_DOUBLE, "m", "y of the walls; only with walls"},
+    {"n_nodes", {FISH_AXIS}, NETCDF_INT, "1", "number of nodes"},
+    {"fish_name", {FISH_AXIS, NAME_AXIS}, NETCDF_TEXT, "", "name of the fish"},
+    {"wall_y", {WALL_AXIS}, NETCDF_DOUBLE, "m", "y of the walls; only with walls"},
 };
 
 int field_file_listed(int i, struct result_listed *listed) {
@@ -104,13 +70,10 @@ struct field {
     size_t length[N_AXES]; /* of the dimensions */
 };
 
-static double coordinate(const struct field_grid *grid, int axis, int i) {
-    const int last = (axis == 0 ? grid->nx : grid->ny) - 1;
-    return grid->low[axis] + (grid->high[axis] - grid->low[axis]) * i / last;
-}
-
-static void make_points(struct arena *arena, struct field *field, const struct field_grid *grid) {
+/* Make the points of the grid, and sum the velocities there. */
+static enum status field_sum(struct arena *arena, struct field *field, const struct field_grid *grid) {
     const size_t n = (size_t)grid->nx * (size_t)grid->ny;
+    const int size[2] = {grid->nx, grid->ny};
     struct targets *const at = &field->at;
     NEW(arena, field->x, n);
     NEW(arena, field->y, n);
@@ -124,21 +87,21 @@ static void make_points(struct arena *arena, struct field *field, const struct f
     at->x = field->x;
     at->y = field->y;
     for (int i = 0; i < at->n; i++) {
-        field->x[i] = coordinate(grid, 0, i % grid->nx);
-        field->y[i] = coordinate(grid, 1, i / grid->nx);
+        for (int axis = 0; axis < 2; axis++) {
+            const int k = axis == 0 ? i % grid->nx : i / grid->nx;
+            double *const place = axis == 0 ? field->x : field->y;
+            place[i] = grid->low[axis] + (grid->high[axis] - grid->low[axis]) * k / (size[axis] - 1);
+        }
     }
-}
-
-static enum status sum_field(struct arena *arena, struct field *field) {
-    struct flow *const flow = flow_create(arena, field->row->school);
 
     // without markers all circulation was shed infinitely long ago
+    struct flow *const flow = flow_create(arena, field->row->school);
     int n_markers = 0;
     for (int f = 0; f < field->row->school->n_fish; f++) n_markers += field->row->state->wake[f].n_vortex;
     flow->is_steady = n_markers == 0;
     if (flow->is_steady) TRY(flow_check_steady(field->row->school));
-    flow_field(flow, field->row->state, &field->at);
-    for (int i = 0; i < field->at.n; i++) field->vorticity[i] = field->at.v_x[i] - field->at.u_y[i];
+    flow_field(flow, field->row->state, at);
+    for (int i = 0; i < at->n; i++) field->vorticity[i] = at->v_x[i] - at->u_y[i];
     return STATUS_OK;
 }
 
@@ -174,31 +137,12 @@ void field_file_box(const struct field_row *row, double low[2], double high[2]) 
 
 // ---- writing
 
-static void set_lengths(struct field *field, const struct field_grid *grid) {
-    const struct school *const school = field->row->school;
-    size_t *const length = field->length;
-    length[TIME_AXIS] = 1;
-    length[X_AXIS] = (size_t)grid->nx;
-    length[Y_AXIS] = (size_t)grid->ny;
-    length[FISH_AXIS] = (size_t)school->n_fish;
-    length[XY_AXIS] = 2;
-    length[WALL_AXIS] = (size_t)school->walls.n;
-
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *const fish = &school->fish[f];
-        const size_t n_nodes = (size_t)fish->n_nodes, n_name = strlen(fish->name);
-        if (n_nodes > length[NODE_AXIS]) length[NODE_AXIS] = n_nodes;
-        if (n_name > length[NAME_AXIS]) length[NAME_AXIS] = n_name;
-    }
-
-    length[EDGE_AXIS] = length[NODE_AXIS] - 1;
-}
-
 static void grid_define_all(struct netcdf_writer *writer, const struct field *field, const char *run) {
     int number[N_AXES];
     // walls come last
     const int has_walls = field->length[WALL_AXIS] > 0, n_axes = has_walls ? N_AXES : WALL_AXIS;
-    for (int a = 0; a < n_axes; a++) number[a] = netcdf_define_dimension(writer, axis_name[a], field->length[a]);
+    for (int a = TIME_AXIS; a < n_axes; a++)
+        number[a] = netcdf_define_dimension(writer, axis_name[a], field->length[a]);
     const int is_single = field->row->values.output.precision == PRECISION_SINGLE;
 
     for (int i = 0; i < (has_walls ? N_VARIABLES : WALL_Y); i++) {
@@ -206,7 +150,7 @@ static void grid_define_all(struct netcdf_writer *writer, const struct field *fi
         struct netcdf_variable to_define = {.name = variable->name, .long_name = variable->long_name};
         to_define.units = variable->unit;
         to_define.type = variable->type == NETCDF_FLOAT && !is_single ? NETCDF_DOUBLE : variable->type;
-        to_define.has_gaps = i == BODY_X || i == EDGE_HEIGHT;
+        to_define.has_gaps = i == BODY_X || i == THICKNESS;
         for (const int *axis = variable->axis; *axis != NO_AXIS; axis++) {
             to_define.dimension[to_define.n_dimensions++] = number[*axis];
         }
@@ -223,57 +167,63 @@ static void grid_define_all(struct netcdf_writer *writer, const struct field *fi
     netcdf_end_definitions(writer);
 }
 
-static void write_body(struct netcdf_writer *writer, const struct field *field, int f) {
-    const struct fish *const fish = &field->row->school->fish[f];
-    const double *const y = field->row->state->y;
-    const size_t at = (size_t)f;
-
-    for (size_t k = 0; k < field->length[NODE_AXIS]; k++) {
-        const int is_node = (int)k < fish->n_nodes;
-        const double place[2] = {is_node ? y[fish->at.x + (int)k] : NAN, is_node ? y[fish->at.y + (int)k] : NAN};
-        netcdf_write_doubles(writer, BODY_X, (const size_t[]){0, at, k, 0}, (const size_t[]){1, 1, 1, 2}, place);
-    }
-
-    for (size_t k = 0; k < field->length[EDGE_AXIS]; k++) {
-        const double thickness = (int)k < fish->n_edges ? fish->thickness[k] : NAN;
-        netcdf_write_doubles(writer, EDGE_HEIGHT, (const size_t[]){at, k}, (const size_t[]){1, 1}, &thickness);
-    }
-
-    netcdf_write_ints(writer, MEAN_SECTION, (const size_t[]){at}, (const size_t[]){1}, &fish->has_mean_section);
-    netcdf_write_ints(writer, N_NODES, (const size_t[]){at}, (const size_t[]){1}, &fish->n_nodes);
-
-    for (size_t i = 0; i < field->length[NAME_AXIS]; i++) {
-        const char letter = i < strlen(fish->name) ? fish->name[i] : '\0';
-        netcdf_write_text(writer, FISH_NAME, (const size_t[]){at, i}, (const size_t[]){1, 1}, &letter);
-    }
-}
-
 static void grid_write_all(struct netcdf_writer *writer, const struct field *field) {
+    const struct school *const school = field->row->school;
+    const size_t *const length = field->length;
     netcdf_write_doubles(writer, TIME_AT, NULL, NULL, &field->row->state->t);
     netcdf_write_doubles(writer, X_AT, NULL, NULL, field->at.x);
-
-    for (size_t i = 0; i < field->length[Y_AXIS]; i++) {
-        netcdf_write_doubles(writer, Y_AT, (const size_t[]){i}, (const size_t[]){1},
-                             field->at.y + i * field->length[X_AXIS]);
+    for (size_t i = 0; i < length[Y_AXIS]; i++) {
+        netcdf_write_doubles(writer, Y_AT, (const size_t[]){i}, (const size_t[]){1}, field->at.y + i * length[X_AXIS]);
     }
-
     netcdf_write_doubles(writer, U, NULL, NULL, field->at.u);
     netcdf_write_doubles(writer, V, NULL, NULL, field->at.v);
     netcdf_write_doubles(writer, VORTICITY, NULL, NULL, field->vorticity);
-    for (int f = 0; f < field->row->school->n_fish; f++) write_body(writer, field, f);
-    const struct walls *const walls = &field->row->school->walls;
-    if (walls->n > 0) netcdf_write_doubles(writer, WALL_Y, NULL, NULL, walls->y);
+
+    // the bodies
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const double *const y = field->row->state->y;
+        const size_t at = (size_t)f;
+        for (size_t k = 0; k < length[NODE_AXIS]; k++) {
+            const bool is_node = (int)k < fish->n_nodes;
+            const double place[2] = {is_node ? y[fish->at.x + (int)k] : NAN, is_node ? y[fish->at.y + (int)k] : NAN};
+            netcdf_write_doubles(writer, BODY_X, (const size_t[]){0, at, k, 0}, (const size_t[]){1, 1, 1, 2}, place);
+        }
+        for (size_t k = 0; k < length[EDGE_AXIS]; k++) {
+            const double thickness = (int)k < fish->n_edges ? fish->thickness[k] : NAN;
+            netcdf_write_doubles(writer, THICKNESS, (const size_t[]){at, k}, (const size_t[]){1, 1}, &thickness);
+        }
+        netcdf_write_ints(writer, MEAN_SECTION, (const size_t[]){at}, (const size_t[]){1}, &fish->has_mean_section);
+        netcdf_write_ints(writer, N_NODES, (const size_t[]){at}, (const size_t[]){1}, &fish->n_nodes);
+        for (size_t i = 0; i < length[NAME_AXIS]; i++) {
+            const char letter = i < strlen(fish->name) ? fish->name[i] : '\0';
+            netcdf_write_text(writer, FISH_NAME, (const size_t[]){at, i}, (const size_t[]){1, 1}, &letter);
+        }
+    }
+
+    if (school->walls.n > 0) netcdf_write_doubles(writer, WALL_Y, NULL, NULL, school->walls.y);
 }
 
 enum status field_file_write(struct arena *arena, const char *path, int overwrite, const char *run, const char *command,
                              const struct field_row *row, const struct field_grid *grid) {
-    struct field field = {.row = row};
+    const struct school *const school = row->school;
+    struct field field = {.row = row,
+                          .length = {[TIME_AXIS] = 1,
+                                     [X_AXIS] = (size_t)grid->nx,
+                                     [Y_AXIS] = (size_t)grid->ny,
+                                     [FISH_AXIS] = (size_t)school->n_fish,
+                                     [XY_AXIS] = 2,
+                                     [WALL_AXIS] = (size_t)school->walls.n}};
+    for (int f = 0; f < school->n_fish; f++) {
+        const size_t n_nodes = (size_t)school->fish[f].n_nodes, n_name = strlen(school->fish[f].name);
+        if (n_nodes > field.length[NODE_AXIS]) field.length[NODE_AXIS] = n_nodes;
+        if (n_name > field.length[NAME_AXIS]) field.length[NAME_AXIS] = n_name;
+    }
+    field.length[EDGE_AXIS] = field.length[NODE_AXIS] - 1;
+
     struct netcdf_writer writer;
     TRY(target_check(path, TARGET_NETCDF, overwrite));
-    set_lengths(&field, grid);
-    make_points(arena, &field, grid);
-    TRY(sum_field(arena, &field));
-
+    TRY(field_sum(arena, &field, grid));
     TRY(netcdf_create(&writer, path, row->values.name, command));
     grid_define_all(&writer, &field, run);
     grid_write_all(&writer, &field);
@@ -283,29 +233,25 @@ enum status field_file_write(struct arena *arena, const char *path, int overwrit
 
 // ---- info
 
-static enum status print_axis(const struct netcdf_reader *file, const char *name, FILE *stream) {
-    size_t n;
-    double ends[2];
-    TRY(netcdf_read_length(file, name, 2, INT_MAX, &n));
-
-    for (int i = 0; i < 2; i++) {
-        const struct netcdf_slice slice[] = {{name, i == 0 ? 0 : n - 1, 1}, {NULL, 0, 0}};
-        TRY(netcdf_read_doubles(file, name, slice, &ends[i]));
-    }
-
-    fprintf(stream, "  %-10s  %zu points from %g m to %g m\n", name, n, ends[0], ends[1]);
-    return STATUS_OK;
-}
-
 static enum status grid_print_all(const struct netcdf_reader *file, FILE *stream) {
+    static const char *const axes[] = {"x", "y"};
     double time;
     char *text;
-    const struct netcdf_slice first[] = {{"time", 0, 1}, {NULL, 0, 0}};
-    TRY(netcdf_read_doubles(file, "time", first, &time));
+    TRY(netcdf_read_doubles(file, "time", (struct netcdf_slice[]){{"time", 0, 1}, {NULL}}, &time));
     TRY(netcdf_attribute(file, "run", &text));
     fprintf(stream, "  run         %s\n  time        %g s\n", text, time);
-    TRY(print_axis(file, "x", stream));
-    TRY(print_axis(file, "y", stream));
+
+    for (int a = 0; a < 2; a++) {
+        size_t n;
+        double ends[2];
+        TRY(netcdf_read_length(file, axes[a], 2, INT_MAX, &n));
+        for (size_t i = 0; i < 2; i++) {
+            const struct netcdf_slice slice[] = {{axes[a], i * (n - 1), 1}, {NULL}};
+            TRY(netcdf_read_doubles(file, axes[a], slice, &ends[i]));
+        }
+        fprintf(stream, "  %-10s  %zu points from %g m to %g m\n", axes[a], n, ends[0], ends[1]);
+    }
+
     TRY(netcdf_attribute(file, "comment", &text));
     fprintf(stream, "  it is       %s\n", text);
     return STATUS_OK;

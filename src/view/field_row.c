@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "case/case.h"
@@ -128,33 +127,6 @@ static void separate(int n, const double *pairs, double *x, double *y) {
     }
 }
 
-static enum status read_body(const struct reading *reading, long row, int f, const struct field_row *to) {
-    const struct fish *const fish = &to->school->fish[f];
-    double *const y = to->state->y;
-    TRY(field_read_values(reading, "x", row, f, "node", fish->n_nodes, true));
-    separate(fish->n_nodes, reading->buffer, y + fish->at.x, y + fish->at.y);
-    TRY(field_read_values(reading, "sheet_strength", row, f, "sheet", fish->n_sheet, false));
-
-    for (int j = 0; j < fish->n_sheet; j++) {
-        // the file has the strength per actual length, the unknown is per natural length
-        y[fish->at.gamma + j] = 1;
-        y[fish->at.gamma + j] = reading->buffer[j] / bound_sheet_strength(fish, j, y);
-    }
-
-    return STATUS_OK;
-}
-
-/* Turn circulations of vortices into labels: each marker has half of both stretches that meet there. */
-static void label_markers(struct wake *wake) {
-    double label = 0, stretch = 0;
-    for (int i = 0; i < wake->n_vortex; i++) {
-        const double both = 2 * wake->circulation[i];
-        wake->circulation[i] = label;
-        stretch = both - stretch;
-        label += stretch;
-    }
-}
-
 static enum status read_wake(const struct reading *reading, long row, int f, const struct field_row *to) {
     struct wake *const wake = &to->state->wake[f];
     double count;
@@ -174,7 +146,15 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
     for (int i = 0; i < n; i++) {
         wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = wake->rate[i] = wake->rate_before[i] = 0;
     }
-    if (wake->has_markers) label_markers(wake);
+
+    // turn circulations of vortices into labels: each marker has half of both stretches that meet there
+    double label = 0, stretch = 0;
+    for (int i = 0; wake->has_markers && i < n; i++) {
+        const double both = 2 * wake->circulation[i];
+        wake->circulation[i] = label;
+        stretch = both - stretch;
+        label += stretch;
+    }
 
     // a row follows the release of an event: the newest label is the shed circulation
     double shed;
@@ -187,21 +167,6 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
 }
 
 // ---- the whole
-
-static enum status field_read_case(struct arena *arena, const struct reading *reading, int n_assignments,
-                                   const char *const *assignments, struct field_row *row) {
-    int schema;
-    TRY(netcdf_read_integer(&reading->file, "shoal_schema", 0, &schema));
-    if (schema != RESULT_SCHEMA) {
-        return status_fail(STATUS_FILE, "%s: not the result of a run that this program can read", reading->file.path);
-    }
-    TRY(netcdf_read_string(&reading->file, "case_effective", &row->effective));
-    TRY(case_parse(&row->values, row->effective, strlen(row->effective), reading->file.path, NULL, n_assignments,
-                   assignments));
-    TRY(fish_school_create(&row->school, &row->values.school));
-    row->state = state_create(arena, row->school);
-    return STATUS_OK;
-}
 
 static enum status field_read_row(struct arena *arena, struct reading *reading, double t, struct field_row *to) {
     const struct school *const school = to->school;
@@ -226,7 +191,16 @@ static enum status field_read_row(struct arena *arena, struct reading *reading, 
     to->state->t = reading->time[row];
 
     for (int f = 0; f < school->n_fish; f++) {
-        TRY(read_body(reading, row, f, to));
+        const struct fish *const fish = &school->fish[f];
+        double *const y = to->state->y;
+        TRY(field_read_values(reading, "x", row, f, "node", fish->n_nodes, true));
+        separate(fish->n_nodes, reading->buffer, y + fish->at.x, y + fish->at.y);
+        TRY(field_read_values(reading, "sheet_strength", row, f, "sheet", fish->n_sheet, false));
+        for (int j = 0; j < fish->n_sheet; j++) {
+            // the file has the strength per actual length, the unknown is per natural length
+            y[fish->at.gamma + j] = 1;
+            y[fish->at.gamma + j] = reading->buffer[j] / bound_sheet_strength(fish, j, y);
+        }
         TRY(read_wake(reading, row, f, to));
     }
 
@@ -237,19 +211,33 @@ static void field_row_release(void *object) {
     struct field_row *const row = object;
     fish_school_free(row->school);
     case_free(&row->values);
-    free(row->effective);
 }
 
-enum status field_row_read(struct arena *arena, struct field_row **row, const char *path, double t, int n_assignments,
+enum status field_row_read(struct arena *arena, struct field_row **new, const char *path, double t, int n_assignments,
                            const char *const *assignments) {
     struct arena *const scratch = arena_create(arena, path);
     struct reading *reading;
-    NEW(arena, *row, 1);
-    arena_defer(arena, field_row_release, *row);
+    struct field_row *row;
+    NEW(arena, row, 1);
+    arena_defer(arena, field_row_release, row);
+    *new = row;
     NEW(scratch, reading, 1);
     TRY(netcdf_open_in(scratch, &reading->file, path));
-    TRY(field_read_case(arena, reading, n_assignments, assignments, *row));
-    TRY(field_read_row(scratch, reading, t, *row));
+
+    // the case
+    int schema;
+    char *effective;
+    TRY(netcdf_read_integer(&reading->file, "shoal_schema", 0, &schema));
+    if (schema != RESULT_SCHEMA) {
+        return status_fail(STATUS_FILE, "%s: not the result of a run that this program can read", path);
+    }
+    TRY(netcdf_attribute(&reading->file, "case_effective", &effective));
+    row->effective = arena_text(arena, "%s", effective);
+    TRY(case_parse(&row->values, effective, strlen(effective), path, NULL, n_assignments, assignments));
+    TRY(fish_school_create(&row->school, &row->values.school));
+    row->state = state_create(arena, row->school);
+
+    TRY(field_read_row(scratch, reading, t, row));
     arena_free(scratch);
     return STATUS_OK;
 }

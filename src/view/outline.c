@@ -37,7 +37,8 @@ static void interpolate_half(const struct outline *outline, const double *thickn
     // slopes of the parabolas through three points
     for (int k = 1; k < n - 1; k++) {
         const double left = knot[k] - knot[k - 1], right = knot[k + 1] - knot[k];
-        const double before = (ratio[k] - ratio[k - 1]) * right / left, after = (ratio[k + 1] - ratio[k]) * left / right;
+        const double before = (ratio[k] - ratio[k - 1]) * right / left,
+                     after = (ratio[k + 1] - ratio[k]) * left / right;
         slope[k] = (before + after) / (left + right);
     }
 

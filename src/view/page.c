@@ -38,7 +38,7 @@ struct page {
 // ---- JSON
 
 /* Write a string; escape the characters with a meaning in HTML or JSON. */
-static void write_string(FILE *stream, const char *name, const char *string) {
+static void write_string(FILE *stream, const char *name, const char *string, const char *after) {
     fprintf(stream, "\"%s\":\"", name);
     for (const char *c = string; *c; c++) {
         if (strchr("\"\\<>&", *c) || (unsigned char)*c < ' ') {
@@ -48,13 +48,13 @@ static void write_string(FILE *stream, const char *name, const char *string) {
         }
     }
 
-    fputc('"', stream);
+    fprintf(stream, "\"%s", after);
 }
 
-static void page_write_array(FILE *stream, const char *name, size_t bytes, const void *values) {
+static void page_write_array(FILE *stream, const char *name, size_t bytes, const void *values, const char *after) {
     fprintf(stream, "\"%s\":\"", name);
     text_print_base64(stream, bytes, values);
-    fputc('"', stream);
+    fprintf(stream, "\"%s", after);
 }
 
 // ---- how much of the run
@@ -121,12 +121,9 @@ static void write_shape(const struct page *page, const double *thickness, size_t
     for (int i = 0; i < OUTLINE_POINTS; i++) values[2 * n_weights + (size_t)i] = (float)outline.half[i];
 
     fprintf(page->stream, "{\"nodes\":%d,\"points\":%d,", n, OUTLINE_POINTS);
-    page_write_array(page->stream, "weight", n_weights * sizeof *values, values);
-    fputc(',', page->stream);
-    page_write_array(page->stream, "slope", n_weights * sizeof *values, values + n_weights);
-    fputc(',', page->stream);
-    page_write_array(page->stream, "half", OUTLINE_POINTS * sizeof *values, values + 2 * n_weights);
-    fputc('}', page->stream);
+    page_write_array(page->stream, "weight", n_weights * sizeof *values, values, ",");
+    page_write_array(page->stream, "slope", n_weights * sizeof *values, values + n_weights, ",");
+    page_write_array(page->stream, "half", OUTLINE_POINTS * sizeof *values, values + 2 * n_weights, "}");
 }
 
 /* Write the shapes, each once, and the fish with the numbers of the shapes. */
@@ -161,8 +158,8 @@ static enum status write_fish(const struct page *page) {
     fprintf(page->stream, "],\n\"fish\":[");
     for (size_t f = 0; f < page->n_fish; f++) {
         fprintf(page->stream, "%s{", f > 0 ? ",\n" : "");
-        write_string(page->stream, "name", reader->name[f]);
-        fprintf(page->stream, ",\"length\":%.9g,\"shape\":%zu}", length[f], shape[f]);
+        write_string(page->stream, "name", reader->name[f], ",");
+        fprintf(page->stream, "\"length\":%.9g,\"shape\":%zu}", length[f], shape[f]);
     }
 
     fprintf(page->stream, "],\n");
@@ -213,11 +210,9 @@ static enum status rows_add(const struct page *page, struct rows *rows, size_t i
 
 static void rows_write(const struct page *page, const struct rows *rows) {
     fprintf(page->stream, "\"n\":%zu,", rows->n);
-    page_write_array(page->stream, "time", rows->n * sizeof *rows->time, rows->time);
-    fputs(",\n", page->stream);
-    page_write_array(page->stream, "box", 3 * rows->n * sizeof *rows->box, rows->box);
-    fputs(",\n", page->stream);
-    page_write_array(page->stream, "place", 2 * rows->n_places * sizeof *rows->place, rows->place);
+    page_write_array(page->stream, "time", rows->n * sizeof *rows->time, rows->time, ",\n");
+    page_write_array(page->stream, "box", 3 * rows->n * sizeof *rows->box, rows->box, ",\n");
+    page_write_array(page->stream, "place", 2 * rows->n_places * sizeof *rows->place, rows->place, "");
 }
 
 static enum status page_write_bodies(const struct page *page) {
@@ -308,9 +303,8 @@ static enum status page_write_wakes(const struct page *page) {
     fprintf(page->stream, "\"wakes\":{\"interval\":%.9g,", page->school.interval * (double)page->vortex_stride);
     rows_write(page, &wakes.rows);
     fputs(",\n", page->stream);
-    page_write_array(page->stream, "first", n_rows * page->n_fish * sizeof *wakes.first, wakes.first);
-    fputs(",\n", page->stream);
-    page_write_array(page->stream, "count", n_rows * page->n_fish * sizeof *wakes.count, wakes.count);
+    page_write_array(page->stream, "first", n_rows * page->n_fish * sizeof *wakes.first, wakes.first, ",\n");
+    page_write_array(page->stream, "count", n_rows * page->n_fish * sizeof *wakes.count, wakes.count, ",\n");
 
     // circulations as integers of 16 bits
     float max = 0;
@@ -318,9 +312,8 @@ static enum status page_write_wakes(const struct page *page) {
     for (size_t i = 0; i < n; i++) max = fmaxf(max, fabsf(wakes.strength[i]));
     const double unit = max > 0 ? max / INT16_MAX : 1;
     for (size_t i = 0; i < n; i++) wakes.integer[i] = (int16_t)lround(wakes.strength[i] / unit);
-    fprintf(page->stream, ",\n\"unit\":%.9g,", unit);
-    page_write_array(page->stream, "strength", n * sizeof *wakes.integer, wakes.integer);
-    fprintf(page->stream, "},\n");
+    fprintf(page->stream, "\"unit\":%.9g,", unit);
+    page_write_array(page->stream, "strength", n * sizeof *wakes.integer, wakes.integer, "},\n");
     return STATUS_OK;
 }
 
@@ -339,7 +332,7 @@ static enum status write_series(const struct page *page) {
         TRY(result_reader_row(page->reader, "time", row_of(i, page->n_rows, page->series_stride), &time[i]));
     }
     fprintf(page->stream, "\"series\":{\"n\":%zu,", n);
-    page_write_array(page->stream, "time", n * sizeof *time, time);
+    page_write_array(page->stream, "time", n * sizeof *time, time, "");
 
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         for (size_t i = 0; i < n; i++) {
@@ -347,7 +340,7 @@ static enum status write_series(const struct page *page) {
             for (size_t f = 0; f < page->n_fish; f++) values[f * n + i] = (float)row[f];
         }
         fputs(",\n", page->stream);
-        page_write_array(page->stream, names[k], n * page->n_fish * sizeof *values, values);
+        page_write_array(page->stream, names[k], n * page->n_fish * sizeof *values, values, "");
     }
 
     fprintf(page->stream, "}");
@@ -361,14 +354,11 @@ static enum status write_data(const struct page *page) {
     const struct result_reader *const reader = page->reader;
     const char *const slash = strrchr(reader->file.path, '/');
     fputs("{", stream);
-    write_string(stream, "title", reader->title);
-    fputc(',', stream);
-    write_string(stream, "file", slash ? slash + 1 : reader->file.path);
-    fputc(',', stream);
-    write_string(stream, "status", reader->run_status);
-    fputc(',', stream);
-    write_string(stream, "program", version_short());
-    fprintf(stream, ",\"rows\":%zu,", page->n_rows);
+    write_string(stream, "title", reader->title, ",");
+    write_string(stream, "file", slash ? slash + 1 : reader->file.path, ",");
+    write_string(stream, "status", reader->run_status, ",");
+    write_string(stream, "program", version_short(), ",");
+    fprintf(stream, "\"rows\":%zu,", page->n_rows);
 
     // the omitted rows and vortices; "" for a complete page
     const size_t strides[] = {page->body_stride, page->wake_stride, page->vortex_stride, page->series_stride};
@@ -381,12 +371,12 @@ static enum status write_data(const struct page *page) {
         snprintf(words + length, sizeof words - length, "%s%s: one of %zu %s", length > 0 ? "; " : "", what[i],
                  strides[i], of[i]);
     }
-    write_string(stream, "thinned", words);
+    write_string(stream, "thinned", words, ",\n");
 
     // the walls, and the side with the fluid: the side of the first fish at the start
     double *x;
     TRY(result_reader_new(page->arena, reader, "x", 0, &x));
-    fprintf(stream, ",\n\"walls\":[");
+    fprintf(stream, "\"walls\":[");
     for (size_t i = 0; i < reader->length[WALL]; i++) {
         const double y = reader->wall_y[i];
         fprintf(stream, "%s{\"y\":%.9g,\"inward\":%d}", i > 0 ? "," : "", y, x[1] > y ? 1 : -1);
