@@ -6,8 +6,14 @@
 
 enum { MAX_TESTS = 128 };
 static struct CMUnitTest tests[MAX_TESTS];
-static int lines[MAX_TESTS], n_tests;
+static int lines[MAX_TESTS], n_tests, now = -1;
 static CMFixtureFunction set_up_group, tear_down_group;
+static struct arena *arena, *of_group; /* of the test that runs; of the functions around all tests */
+
+struct arena *test_arena(void) {
+    if (!arena) arena = arena_create(NULL, "a test");
+    return arena;
+}
 
 void near_add(int line, struct CMUnitTest test) {
     if (n_tests == MAX_TESTS) abort();
@@ -25,8 +31,31 @@ void near_group(CMFixtureFunction set_up, CMFixtureFunction tear_down) {
     tear_down_group = tear_down;
 }
 
+// before and after each test
+static int begin(void **state) {
+    if (now < 0) of_group = arena;
+    arena = NULL;
+    now++;
+    return tests[now].setup_func ? tests[now].setup_func(state) : 0;
+}
+
+static int end(void **state) {
+    const int failed = tests[now].teardown_func ? tests[now].teardown_func(state) : 0;
+    arena_free(arena);
+    arena = of_group;
+    return failed;
+}
+
 int near_run(void) {
-    return _cmocka_run_group_tests("tests", tests, (size_t)n_tests, set_up_group, tear_down_group);
+    struct CMUnitTest all[MAX_TESTS];
+    for (int i = 0; i < n_tests; i++) {
+        all[i] = tests[i];
+        all[i].setup_func = begin;
+        all[i].teardown_func = end;
+    }
+    const int failed = _cmocka_run_group_tests("tests", all, (size_t)n_tests, set_up_group, tear_down_group);
+    arena_free(of_group);
+    return failed;
 }
 
 // weak: a program may have a main of its own

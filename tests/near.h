@@ -3,6 +3,7 @@
  *     TEST(a_fact) { ... }                       a test; the main of near.c runs the tests of a program in their order
  *     TEST_WITH(a_fact, set_up, tear_down)       with cmocka's functions around it; *state is what set_up leaves there
  *     TEST_GROUP(set_up, tear_down)              cmocka's functions around all tests of a program
+ *     test_arena()                               an arena that is freed at the end of the test
  *
  *     NEAR(got, want, atol, rtol)                passes when |got - want| <= atol + rtol |want|
  *     NEAR_ARRAY(n, got, want, atol, rtol)       the same for each of n values; names the worst index
@@ -27,6 +28,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 
 #define TEST(name) TEST_WITH(name, NULL, NULL)
@@ -43,6 +45,7 @@
 
 void near_add(int line, struct CMUnitTest test);
 void near_group(CMFixtureFunction set_up, CMFixtureFunction tear_down);
+struct arena *test_arena(void);
 int near_run(void); /* all tests of the program; the exit code. For a main with arguments. */
 
 #define NEAR(got, want, atol, rtol) near_check(#got, (got), (want), (atol), (rtol), __FILE__, __LINE__)

@@ -12,20 +12,6 @@
 #include "school/residual.h"
 #include "state/state.h"
 
-static struct arena *whole_test;
-
-static void test_end(void) {
-    arena_free(whole_test);
-}
-
-struct arena *test_arena(void) {
-    if (!whole_test) {
-        whole_test = arena_create(NULL, "a test");
-        atexit(test_end);
-    }
-    return whole_test;
-}
-
 void school_ok(enum status status) {
     if (status == STATUS_OK) return;
     print_error("%s\n", status_message());
@@ -42,11 +28,27 @@ void school_settings(struct case_values *values, const char *text) {
     school_ok(case_parse(values, whole, (size_t)length, "test", ".", 0, NULL));
 }
 
+// what is not in the arena of a setup
+struct owned {
+    struct case_values values;
+    struct school *school;
+};
+
+static void release(void *object) {
+    struct owned *const owned = object;
+    fish_school_free(owned->school);
+    case_free(&owned->values);
+}
+
 void school_build(struct setup *setup, const char *text) {
-    *setup = (struct setup){.arena = arena_create(NULL, "a test"), .seed = 1};
+    *setup = (struct setup){.arena = arena_create(test_arena(), "a school"), .seed = 1};
+    struct owned *owned;
+    NEW(setup->arena, owned, 1);
+    arena_defer(setup->arena, release, owned);
     school_settings(&setup->values, text);
     school_ok(fish_school_create(&setup->school, &setup->values.school));
-    setup->state = state_create(NULL, setup->school);
+    setup->state = state_create(setup->arena, setup->school);
+    *owned = (struct owned){setup->values, setup->school};
     school_ok(residual_create(setup->arena, &setup->residual, setup->school, setup->state));
     setup->jacobian = jacobian_create(setup->arena, setup->school);
     residual_mask(setup->residual, setup->jacobian);
@@ -56,9 +58,6 @@ void school_build(struct setup *setup, const char *text) {
 
 void school_clear(struct setup *setup) {
     arena_free(setup->arena);
-    state_free(setup->state);
-    fish_school_free(setup->school);
-    case_free(&setup->values);
 }
 
 double school_random(struct setup *setup) {
@@ -318,7 +317,7 @@ struct simulation *school_simulation(const char *text) {
     struct case_values values;
     school_settings(&values, text);
     struct simulation *simulation;
-    school_ok(simulate_create(NULL, &simulation, &values));
+    school_ok(simulate_create(test_arena(), &simulation, &values));
     case_free(&values);
     return simulation;
 }

@@ -11,9 +11,6 @@
 #include "school/jacobian.h"
 #include "school/residual.h"
 
-/* The arena of the test program, freed at its end. */
-struct arena *test_arena(void);
-
 struct setup {
     struct arena *arena;
     struct case_values values;
@@ -31,7 +28,8 @@ struct setup {
 #define SCHOOL_DEFAULTS "# defaults\n"
 
 /* "format: 1", a name and, without SCHOOL_DEFAULTS or a preset, the defaults of the article's model (a small fish:
- * tests/data/small.yaml) go before the text. Fails the test with the message of an error. */
+ * tests/data/small.yaml) go before the text. Fails the test with the message of an error. A school lives
+ * until the end of the test, or until school_clear. */
 void school_settings(struct case_values *values, const char *text);
 void school_build(struct setup *setup, const char *text);
 void school_clear(struct setup *setup);
@@ -63,7 +61,8 @@ void school_add_rows(struct setup *setup, int f, int g, struct sparse *term);
 double *school_dense(const struct sparse *matrix);
 double *school_dense_jacobian(const struct jacobian *jacobian);
 
-/* A simulation at the first event, and advanced to a time. Fails the test with the message of an error. */
+/* A simulation at the first event, which lives until the end of the test, and advanced to a time. Fails the test with
+ * the message of an error. */
 struct simulation *school_simulation(const char *text);
 struct simulation *school_simulation_of(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void school_run(struct simulation *simulation, double t);

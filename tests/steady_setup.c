@@ -3,15 +3,22 @@
 
 #include <string.h>
 
-void steady_setup_open(struct steady_setup *setup, const char *text) {
-    school_settings(&setup->values, text);
-    setup->simulation = school_simulation(text);
-    school_ok(steady_problem_create(&setup->problem, &setup->values.steady, setup->simulation));
+static void release(void *values) {
+    case_free(values);
 }
 
-void steady_setup_close(struct steady_setup *setup) {
-    simulate_free(setup->simulation);
-    case_free(&setup->values);
+static void pose(struct steady_setup *setup, const char *text) {
+    struct case_values *values;
+    NEW(test_arena(), values, 1);
+    arena_defer(test_arena(), release, values);
+    school_settings(values, text);
+    setup->values = *values;
+    setup->simulation = school_simulation(text);
+}
+
+void steady_setup_open(struct steady_setup *setup, const char *text) {
+    pose(setup, text);
+    school_ok(steady_problem_create(&setup->problem, &setup->values.steady, setup->simulation));
 }
 
 void steady_setup_multipliers(struct steady_setup *setup) {
@@ -31,11 +38,9 @@ void steady_setup_beats(struct steady_setup *setup, int n) {
 
 void steady_setup_fails(const char *text, enum status want, const char *words) {
     struct steady_setup setup;
-    school_settings(&setup.values, text);
-    setup.simulation = school_simulation(text);
+    pose(&setup, text);
     enum status status = steady_problem_create(&setup.problem, &setup.values.steady, setup.simulation);
     if (status == STATUS_OK) status = steady_search_run(&setup.problem);
     assert_int_equal(status, want);
     if (!strstr(status_message(), words)) fail_msg("\"%s\" is not in \"%s\"", words, status_message());
-    steady_setup_close(&setup);
 }

@@ -20,7 +20,6 @@ struct steady_setup {
 
 /* Pose the problem of a case. Fails the test with the message where there is one. */
 void steady_setup_open(struct steady_setup *setup, const char *text);
-void steady_setup_close(struct steady_setup *setup);
 
 /* The same, and find its steady state, and the multipliers. */
 void steady_setup_find(struct steady_setup *setup, const char *text);

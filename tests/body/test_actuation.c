@@ -37,7 +37,6 @@ TEST(curvature_is_the_formula_of_the_model) {
             NEAR(asked.curvature[j], 2 * tan(angle / 2), 1e-14, 0);
         }
     }
-    school_clear(&setup);
 }
 
 static void derivatives_agree(const char *text) {
@@ -59,7 +58,6 @@ static void derivatives_agree(const char *text) {
         // the same with omega^3 = 430 and the ramp's 53/0.8^3
         for (int j = 0; j < 5; j++) NEAR(at.rate[j], (high.curvature[j] - low.curvature[j]) / (2 * h), 1e-6, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(derivatives_agree_with_differences) {
@@ -74,7 +72,6 @@ TEST(a_wavelength_is_another_word_for_the_number) {
     school_build(&setup[0], TIME "fish: [{wave: {wavelength: 0.8}}]\n");
     school_build(&setup[1], TIME "fish: [{wave: {number: -7.853981633974483}}]\n");
     NEAR_ARRAY(5, setup[0].school->fish[0].wave_phase, setup[1].school->fish[0].wave_phase, 0, 1e-15);
-    for (int i = 0; i < 2; i++) school_clear(&setup[i]);
 }
 
 TEST(a_table_of_a_wave_is_that_wave) {
@@ -93,7 +90,6 @@ TEST(a_table_of_a_wave_is_that_wave) {
         NEAR_ARRAY(5, asked[1].rate, asked[0].rate, 1e-13, 1e-13);
         NEAR_ARRAY(5, asked[1].rate_by_phi0, asked[0].rate_by_phi0, 1e-13, 1e-13);
     }
-    for (int i = 0; i < 2; i++) school_clear(&setup[i]);
 }
 
 // the turn of a joint at all phases of a beat, under the bias that bends it most, comes near to the largest one
@@ -118,7 +114,6 @@ TEST(no_joint_turns_by_more_than_the_largest_turn) {
         }
         NEAR(most, largest, 0, 1e-3);
         AT_MOST(most, largest * (1 + 1e-12));
-        school_clear(&setup);
     }
 }
 
@@ -140,7 +135,6 @@ TEST(a_table_is_met_at_its_places_and_phases) {
                 NEAR(fish_natural_angle(setup.school->fish, j, &gait, 0), want[i][j][phase] / 4, 1e-14, 0);
             }
         }
-        school_clear(&setup);
     }
 }
 
@@ -156,7 +150,6 @@ TEST(wave_travels_from_head_to_tail) {
         const double a = setup.school->fish[0].wave_amplitude[j], b = setup.school->fish[0].wave_amplitude[j + 3];
         NEAR(2 * atan(later.curvature[j + 3] / 2) / b, 2 * atan(now.curvature[j] / 2) / a, 1e-12, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(ramp_starts_from_a_straight_body_and_no_ramp_does_not) {
@@ -170,7 +163,6 @@ TEST(ramp_starts_from_a_straight_body_and_no_ramp_does_not) {
             assert_true((asked.curvature[j] == 0) == (i == 0));
             assert_true((asked.rate[j] == 0) == (i == 0));
         }
-        school_clear(&setup);
     }
 }
 
@@ -184,7 +176,6 @@ TEST(turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes) {
         ask(&setup, 1.3, 1, 0, &asked);
         total[i] = 0;
         for (int j = 0; j < setup.school->fish[0].n_joints; j++) total[i] += 2 * atan(asked.curvature[j] / 2);
-        school_clear(&setup);
     }
     // the sum is a Riemann sum without its end, of the size 1/N
     NEAR(total[1], total[0], 2e-2, 0);

@@ -18,7 +18,6 @@ static double slowest_mode(const char *fish) {
     assert_non_null(scratch);
     const double frequency = bending_mode_frequency(&setup.school->fish[0], scratch);
     free(scratch);
-    school_clear(&setup);
     return frequency;
 }
 

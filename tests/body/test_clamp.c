@@ -36,7 +36,6 @@ TEST(jacobian_agrees_with_differences) {
         school_build(&setup, texts[i]);
         school_stir(&setup);
         school_compare(&setup, value_of_clamp, jacobian_of_clamp, texts[i]);
-        school_clear(&setup);
     }
 }
 
@@ -59,7 +58,6 @@ TEST(force_is_minus_the_gradient_of_the_energy) {
         NEAR(setup.value[fish->at.ax + i], (high - low) / (2 * h), 1e-5, 1e-6);
     }
     ABOVE(clamp_energy(fish, setup.t, y), 0.1);
-    school_clear(&setup);
 }
 
 TEST(powers_are_what_the_energy_and_the_nodes_do_not_take_up) {
@@ -81,7 +79,6 @@ TEST(powers_are_what_the_energy_and_the_nodes_do_not_take_up) {
     BELOW(damping, 0);
     ABOVE(fabs(driving), 1e-3);
     NEAR(rate, -power + damping + driving, 1e-5, 1e-6);
-    school_clear(&setup);
 }
 
 TEST(energy_audit_of_a_clamped_fish_closes) {
@@ -101,7 +98,6 @@ TEST(energy_audit_of_a_clamped_fish_closes) {
         print_message("imbalance %.1e J of %.1f J\n", worst, most);
         // a motion that begins at once: thirty tolerances, as in test_diagnostics.c
         BELOW(worst, 30 * 1e-5 * most);
-        simulate_free(simulation);
     }
 }
 
@@ -117,7 +113,6 @@ TEST(head_has_one_prescribed_node_and_published_sections_two) {
         assert_int_equal(fish[f].has_clamp, has_clamp[f]);
         NEAR(clamp_energy(&fish[f], 0.1, setup.state->y), 0, has_clamp[f] ? INFINITY : 0, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(clamp_is_the_joint_of_half_a_cell) {
@@ -130,7 +125,6 @@ TEST(clamp_is_the_joint_of_half_a_cell) {
     // the joints have the modulus times the second moment
     NEAR(fish->clamp_stiffness, 2 * fish->bending_stiffness[0] / fish->edge_length, 0, 1e-14);
     NEAR(fish->clamp_damping, 2 * fish->bending_damping[0], 0, 1e-14);
-    school_clear(&setup);
 }
 
 TEST(given_direction_is_that_of_the_prescribed_nodes) {
@@ -148,7 +142,6 @@ TEST(given_direction_is_that_of_the_prescribed_nodes) {
         const double across = i == 0 ? -direction[1][1] : direction[1][0];
         NEAR((direction[2][i] - direction[0][i]) / (2 * h), rate * across, 1e-7, 0);
     }
-    school_clear(&setup);
 }
 
 // solve a x = b by elimination; a is positive definite
@@ -195,7 +188,6 @@ static double lowest_mode(int nodes) {
     }
     free(matrix);
     free(dense);
-    school_clear(&setup);
     return pow(square, 0.25);
 }
 
@@ -225,5 +217,4 @@ TEST(moment_of_a_tilt_is_that_of_half_a_cell) {
     y[fish->at.x + 1] = cos(angle) / 6;
     y[fish->at.y + 1] = sin(angle) / 6;
     NEAR(clamp_energy(fish, 0, y), stiffness / 2 * pow(2 * tan(angle / 2), 2), 0, 1e-12);
-    school_clear(&setup);
 }

@@ -25,7 +25,6 @@ TEST(frame_is_orthonormal_and_points_from_node_to_node) {
         // a quarter of a turn to the left
         NEAR(edge.t[0] * edge.n[1] - edge.t[1] * edge.n[0], 1, 1e-15, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(rate_of_turn_is_that_of_a_rigid_rotation) {
@@ -42,5 +41,4 @@ TEST(rate_of_turn_is_that_of_a_rigid_rotation) {
         const struct edge edge = edge_at(fish, k, y);
         NEAR(edge_turn_rate(&edge), 2, 0, 1e-14);
     }
-    school_clear(&setup);
 }

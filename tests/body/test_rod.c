@@ -80,7 +80,6 @@ TEST(derivatives_agree_with_differences) {
         school_build(&setup, texts[i]);
         school_stir(&setup);
         school_compare(&setup, value_of_rod, jacobian_of_rod, texts[i]);
-        school_clear(&setup);
     }
 }
 
@@ -108,7 +107,6 @@ TEST(elastic_force_is_minus_the_gradient_of_the_energy) {
         // truncation h^2/6 (EA/l^2 in the third derivative, 1e6); rounding 1e-15/h
         NEAR(setup.value[fish->at.ax + i], (high - low) / (2 * h), 1e-4, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(internal_forces_have_no_sum_and_no_moment) {
@@ -130,7 +128,6 @@ TEST(internal_forces_have_no_sum_and_no_moment) {
     NEAR(sum[0] / size, 0, 1e-15, 0);
     NEAR(sum[1] / size, 0, 1e-15, 0);
     NEAR(moment / size, 0, 1e-14, 0);
-    school_clear(&setup);
 }
 
 TEST(damping_power_is_that_of_the_damping_forces_and_never_positive) {
@@ -160,7 +157,6 @@ TEST(damping_power_is_that_of_the_damping_forces_and_never_positive) {
         BELOW(damping_power(fish, &muscle, y), 0);
     }
     free(elastic);
-    school_clear(&setup);
 }
 
 TEST(rigid_motion_is_not_damped) {
@@ -174,7 +170,6 @@ TEST(rigid_motion_is_not_damped) {
         y[fish->at.vy + k] = -0.1 + 2 * y[fish->at.x + k];
     }
     NEAR(damping_power(fish, &muscle, y), 0, 1e-25, 0);
-    school_clear(&setup);
 }
 
 // nodes on a regular polygon: every joint turned by the angle, edges of natural length times stretch
@@ -203,7 +198,6 @@ TEST(energies_of_a_regular_polygon_are_exact) {
     // rounding of 1e-16 in positions a sixth apart
     NEAR(bending_energy(fish, &no_muscle, setup.state->y), 5 * EI * kappa * kappa / (2 * l), 0, 1e-13);
     NEAR(stretching_energy(fish, setup.state->y), EA * 0.05 * 0.05 / 2, 0, 1e-12);
-    school_clear(&setup);
 }
 
 TEST(energy_of_a_circular_arc_converges_to_that_of_the_continuum) {
@@ -219,7 +213,6 @@ TEST(energy_of_a_circular_arc_converges_to_that_of_the_continuum) {
         // N - 2 joints bend, a closed ring has N - 1 joints: per joint EI lbar/(2 R^2)
         const double energy = bending_energy(fish, &no_muscle, setup.state->y) * fish->n_edges / fish->n_joints;
         error[i] = energy / (EI / (2 * R * R)) - 1;
-        school_clear(&setup);
     }
     // 2 tan(phi/2)/phi = 1 + phi^2/12: second order
     NEAR(log2(error[0] / error[1]), 2, 0.01, 0);
@@ -238,7 +231,6 @@ TEST(polygon_of_the_natural_curvature_is_at_rest) {
     // EA = 4e3 N times the rounding of the length
     for (int i = fish->at.ax; i < fish->at.gamma; i++) NEAR(setup.value[i], 0, 1e-10, 0);
     NEAR(bending_energy(fish, &bent, setup.state->y) + stretching_energy(fish, setup.state->y), 0, 1e-20, 0);
-    school_clear(&setup);
 }
 
 TEST(turning_angles_keep_their_sign_in_every_direction) {
@@ -251,7 +243,6 @@ TEST(turning_angles_keep_their_sign_in_every_direction) {
         rod_curvature(setup.school->fish, setup.state->y, curvature);
         for (int j = 0; j < 5; j++) NEAR(curvature[j], sign * 2 * tan(0.6), 1e-13, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(muscle_power_is_the_change_of_energy_at_a_fixed_shape) {
@@ -271,7 +262,6 @@ TEST(muscle_power_is_the_change_of_energy_at_a_fixed_shape) {
     NEAR(actuation_power(fish, y), (bending_energy(fish, &after, y) - bending_energy(fish, &before, y)) / (2 * h),
          1e-10, 1e-10);
     ABOVE(fabs(actuation_power(fish, y)), 1e-3);
-    school_clear(&setup);
 }
 
 // the rate of the energies for moving nodes and muscle, by differences of fourth order
@@ -311,7 +301,6 @@ TEST(what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes) {
         ABOVE(fabs(power), 1);
         // truncation and rounding of the differences of an energy of 10 J
         NEAR(power, work + rate_of_energy(&setup), 1e-9 * fabs(work), 1e-9);
-        school_clear(&setup);
     }
 }
 
@@ -335,7 +324,6 @@ TEST(a_body_that_does_what_its_muscle_asks_is_not_damped) {
     for (int j = 0; j < 5; j++) rate[j] = damped[j] * (1 + rate[j] * rate[j] / 4);
     NEAR(damping_power(fish, &follows, y), 0, 1e-24, 0);
     BELOW(damping_power(fish, &muscle, y), -0.1);
-    school_clear(&setup);
 }
 
 TEST(a_body_is_torn_at_ten_times_the_length_of_an_edge) {
@@ -348,7 +336,6 @@ TEST(a_body_is_torn_at_ten_times_the_length_of_an_edge) {
     assert_false(rod_is_torn(fish, setup.state->y));
     *tail = before + 10.1 * sign * fish->edge_length;
     assert_true(rod_is_torn(fish, setup.state->y));
-    school_clear(&setup);
 }
 
 TEST(the_shortest_edge_is_the_one_compressed_most) {
@@ -361,7 +348,6 @@ TEST(the_shortest_edge_is_the_one_compressed_most) {
     x[3] += 0.7 * (x[4] - x[3]);
     assert_int_equal(rod_shortest_edge(fish, setup.state->y, &ratio), 3);
     NEAR(ratio, 0.3, 1e-14, 0);
-    school_clear(&setup);
 }
 
 TEST(the_sharpest_joint_is_the_one_that_turns_most) {
@@ -377,5 +363,4 @@ TEST(the_sharpest_joint_is_the_one_that_turns_most) {
     }
     assert_int_equal(rod_sharpest_joint(fish, setup.state->y, &turn), 3);
     NEAR(turn, 1.1, 1e-13, 0);
-    school_clear(&setup);
 }

@@ -65,7 +65,6 @@ TEST(the_balance_finds_the_stresses_that_the_accelerations_say) {
         wrong = fmax(wrong, fabs(law[i] - want[i]) / size[i >= fish->n_joints]);
     }
     ABOVE(wrong, 0.3);
-    school_clear(&setup);
 }
 
 // a body that is bent by up to 0.3 rad at a joint, on which nothing but its rod acts
@@ -89,7 +88,6 @@ TEST(the_balance_of_a_bent_body_has_the_stresses_of_its_law) {
         size[i >= fish->n_joints] = fmax(size[i >= fish->n_joints], fabs(want[i]));
     }
     for (int i = 0; i < rod_n_strains(fish); i++) NEAR(got[i], want[i], 1e-9 * size[i >= fish->n_joints], 0);
-    school_clear(&setup);
 }
 
 TEST(stresses_ahead_of_prescribed_nodes_stay) {
@@ -115,7 +113,6 @@ TEST(stresses_ahead_of_prescribed_nodes_stay) {
         for (int k = 0; k < fish->n_edges; k++) {
             assert_int_equal(after[fish->n_joints + k] != before[fish->n_joints + k], k >= cases[i].first_edge);
         }
-        school_clear(&setup);
     }
 }
 
@@ -177,7 +174,6 @@ TEST(strains_creep_as_the_law_of_the_material_says) {
             const double by_law = tau > 0 ? (now[i] / stiffness - strain[i]) / tau : 0;
             NEAR(rate[i], by_law * (edge < 0 ? 1 : fish->edge_length), 1e-12, 1e-7);
         }
-        school_clear(&setup);
     }
 }
 
@@ -198,7 +194,6 @@ TEST(without_an_older_stress_the_step_is_linear) {
     fish->bending_damping[0] = 0.02 * fish->bending_stiffness[0] / fish->edge_length;
     rod_stress_creep(fish, h, 0, nothing, before, now, strain);
     NEAR(strain[0], settled(fish->bending_stiffness[0] / fish->edge_length, 0.02, s, h), 0, 1e-12);
-    school_clear(&setup);
 }
 
 /* A default fish from rest, after two beats. */
@@ -224,7 +219,6 @@ TEST(a_soft_body_has_the_stresses_of_its_places) {
     NEAR_ARRAY(fish->n_joints, balance->stress, stress, 1e-5 * largest, 0);
     NEAR(rod_actuation_power(fish, &muscle, stress), rod_actuation_power(fish, &muscle, balance->stress), 0, 1e-5);
     NEAR(rod_bending_energy(fish, strain), simulation->diagnostics->fish[0].bending_energy, 0, 1e-4);
-    simulate_free(simulation);
 }
 
 TEST(powers_and_energies_of_a_stiff_body_have_a_limit) {
@@ -239,6 +233,4 @@ TEST(powers_and_energies_of_a_stiff_body_have_a_limit) {
     NEAR(100 * got->cost_of_transport_body, want->cost_of_transport_body, 0, 0.05);
     // energies and works are consistent
     BELOW(fabs(got->energy_balance), 1e-3 * got->actuation_work);
-    simulate_free(fine);
-    simulate_free(stiff);
 }

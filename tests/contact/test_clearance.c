@@ -22,15 +22,10 @@ struct pair {
 static struct pair place(const char *text) {
     struct pair pair;
     school_build(&pair.setup, text);
-    pair.between = calloc((size_t)pair.setup.school->n_unknowns, sizeof *pair.between);
+    NEW(test_arena(), pair.between, pair.setup.school->n_unknowns);
     assert_non_null(pair.between);
     clearance_start(pair.setup.school, pair.setup.state, pair.setup.residual->neighbours, pair.between);
     return pair;
-}
-
-static void clear(struct pair *pair) {
-    free(pair->between);
-    school_clear(&pair->setup);
 }
 
 // one step that moves fish f by dx, dy and ends at t
@@ -77,13 +72,11 @@ TEST(of_pairs_at_the_same_distance_the_first_one_counts) {
     // neighbours allocated by the residual
     pair.setup.school->threads = 1;
     free(at_start);
-    clear(&pair);
 }
 
 TEST(one_fish_is_close_to_none) {
     struct pair pair = place(TIME "fish: [{}]\n");
     NEAR(step(&pair, 0, 1, 0, 0.1)->distance, INFINITY, 0, 0);
-    clear(&pair);
 }
 
 TEST(closest_approach_is_that_of_all_steps) {
@@ -95,7 +88,6 @@ TEST(closest_approach_is_that_of_all_steps) {
     NEAR(closest->t, 0.1, 0, 0);
     assert_int_equal(closest->fish[0], 0);
     assert_int_equal(closest->fish[1], 1);
-    clear(&pair);
 }
 
 TEST(bodies_that_cross_between_two_steps_have_touched) {
@@ -105,11 +97,9 @@ TEST(bodies_that_cross_between_two_steps_have_touched) {
     NEAR(closest->distance, 0, 0, 0);
     // the gap is 4 of the 10 lengths of the step, minus two halves of the thickness
     NEAR(closest->t, 0.5 * 3.9 / 10, 1e-3, 0);
-    clear(&pair);
     // sideways
     pair = place(PAIR("0.5", "1"));
     NEAR(step(&pair, 1, 0, -2, 0.5)->distance, 0, 0, 0);
-    clear(&pair);
 }
 
 TEST(bodies_meet_within_the_step_in_which_they_touch) {
@@ -117,7 +107,6 @@ TEST(bodies_meet_within_the_step_in_which_they_touch) {
     step(&pair, 1, 0, 0, 0.5);
     // the gap is 4 of the 10 lengths of the step from 0.5 s to 0.7 s, minus two halves of the thickness
     NEAR(step(&pair, 1, -10, 0, 0.7)->t, 0.5 + 0.2 * 3.9 / 10, 1e-3, 0);
-    clear(&pair);
 }
 
 // two bodies swing about their noses at rest: their tails are 1.2 m apart at both ends of the step, and meet in between
@@ -139,7 +128,6 @@ TEST(two_bodies_that_turn_towards_each_other_have_touched) {
     }
     clearance_step(pair.setup.school, pair.setup.state, 1, y, pair.setup.residual->neighbours, pair.between);
     NEAR(pair.setup.state->closest->distance, 0, 0, 0);
-    clear(&pair);
 }
 
 // a body that turns about its nose at rest, through the nose of the other one
@@ -167,7 +155,6 @@ TEST(a_body_that_sweeps_over_another_has_touched_it) {
         ABOVE(setup.state->closest->t, 0.2);
         BELOW(setup.state->closest->t, 0.5);
         free(between);
-        school_clear(&setup);
     }
 }
 
@@ -177,13 +164,11 @@ TEST(bodies_that_pass_each_other_have_not) {
     // 0.05 m side by side at the closest approach; the advances resolve this within that distance
     AT_LEAST(closest->distance, 0.05 - 1e-12);
     BELOW(closest->distance, 0.1);
-    clear(&pair);
     // a rigid translation of the school changes no distance
     pair = place(PAIR("0", "0.5"));
     const struct fish *const other = &pair.setup.school->fish[1];
     for (int k = 0; k < other->n_nodes; k++) pair.setup.state->y[other->at.x + k] += 100;
     NEAR(step(&pair, 0, 100, 0, 0.5)->distance, 0.4, 1e-12, 0);
-    clear(&pair);
 }
 
 TEST(bodies_that_have_touched_stay_so) {
@@ -192,7 +177,6 @@ TEST(bodies_that_have_touched_stay_so) {
     const struct closest *const closest = step(&pair, 1, 0, 5, 0.2);
     NEAR(closest->distance, 0, 0, 0);
     AT_MOST(closest->t, 0.1);
-    clear(&pair);
 }
 
 // the smallest distance of all pairs on the way from the old to the new positions
@@ -243,5 +227,4 @@ TEST(the_record_of_a_school_is_that_of_all_pairs) {
     }
     ABOVE(n_records, 3);
     free(before);
-    clear(&pair);
 }

@@ -35,7 +35,6 @@ TEST(nobody_repels_what_is_farther_than_the_range) {
             for (int k = 0; k < cases[i].n; k++) assert_int_equal(other[k], 1 - f);
             assert_int_equal(contact_energy(contact, f, setup.state->y) > 0, cases[i].n);
         }
-        school_clear(&setup);
     }
 }
 
@@ -72,7 +71,6 @@ TEST(forces_are_the_gradient_of_the_energy) {
         }
     }
     ABOVE(n, 10);
-    school_clear(&setup);
 }
 
 TEST(forces_and_powers_of_all_add_up_to_nothing) {
@@ -106,7 +104,6 @@ TEST(forces_and_powers_of_all_add_up_to_nothing) {
     NEAR_ARRAY(2, sum, ((double[]){0, 0}), 1e-14 * size, 0);
     NEAR(moment, 0, 1e-13 * size, 0);
     NEAR(power, 0, 1e-13 * largest, 0);
-    school_clear(&setup);
 }
 
 TEST(walls_push_with_the_gradient_of_the_energy) {
@@ -145,7 +142,6 @@ TEST(walls_push_with_the_gradient_of_the_energy) {
         NEAR(contact_power(contact, f, y), 0, 0, 0);
     }
     ABOVE(n, 5);
-    school_clear(&setup);
 }
 
 // doc/model.md, section 16: half of phi of every end of each edge above each wall
@@ -168,7 +164,6 @@ TEST(the_energy_above_walls_is_that_of_all_ends) {
     }
     ABOVE(want, 1e-3);
     NEAR(contact_energy(setup.residual->contact, 0, y), want, 0, 1e-12);
-    school_clear(&setup);
 }
 
 TEST(two_bodies_with_given_motions_pass_through_each_other) {
@@ -188,7 +183,6 @@ TEST(two_bodies_with_given_motions_pass_through_each_other) {
         assert_int_equal(contact_find(setup.residual->contact, setup.state, 0.1, y), i == 0 ? STATUS_OK : STATUS_RETRY);
         const int *other;
         if (i == 0) assert_int_equal(contact_partners(setup.residual->contact, 0, &other), 0);
-        school_clear(&setup);
     }
 }
 
@@ -205,7 +199,6 @@ TEST(who_is_beyond_a_wall_asks_for_a_smaller_step) {
         NEAR(fish_wall_distance(setup.school, fish, y, NULL), places[i] + 0.15, 1e-15, 0);
     }
     assert_non_null(strstr(status_message(), "touches a wall"));
-    school_clear(&setup);
 }
 
 TEST(what_crosses_on_its_way_asks_for_a_smaller_step) {
@@ -223,7 +216,6 @@ TEST(what_crosses_on_its_way_asks_for_a_smaller_step) {
         assert_int_equal(contact_find(contact, setup.state, 0.1, y), steps[i].status);
         assert_int_equal(residual_evaluate(setup.residual, 0, y, setup.state->yp, setup.value), steps[i].status);
     }
-    school_clear(&setup);
 }
 
 // ---- runs
@@ -281,7 +273,6 @@ static void meet(const char *name, const char *text, double end, double audit_li
     ABOVE(hypot(after[0] - first[0], after[1] - first[1]), 1e-3 * scale);
     ABOVE(simulation->state->closest->distance, 0);
     BELOW(imbalance, audit_limit * energy);
-    simulate_free(simulation);
 }
 
 TEST(bodies_that_meet_do_not_cross) {
@@ -336,7 +327,6 @@ TEST(plates_that_swim_in_line_do_not_cross) {
     ABOVE(stored, 0.005 * energy);
     BELOW(imbalance, 5e-3 * energy);
     BELOW(simulation->diagnostics->fish[0].com[0], simulation->diagnostics->fish[1].com[0]);
-    simulate_free(simulation);
 }
 
 #define AT_A_WALL(height, speed)                                                                                 \
@@ -387,7 +377,6 @@ TEST(bodies_under_pressure_throw_each_other_back) {
     BELOW(imbalance, 1e-3 * energy);
     // the bodies have turned back, aside or into a spin
     BELOW(simulation->diagnostics->fish[0].com_velocity[0], 0.5);
-    simulate_free(simulation);
 }
 
 // A body that is thrown back moves tail first, and the tail overtakes the newest marker.
@@ -426,7 +415,6 @@ TEST(bodies_that_are_thrown_back_go_on_tail_first) {
         print_message("thrown back %zu: %.2g J stored, then %.2g m/s\n", i, stored, speed);
         ABOVE(stored, 0.1);
         BELOW(speed, 4);
-        simulate_free(simulation);
     }
 }
 
@@ -453,7 +441,6 @@ TEST(a_fixed_step_that_is_too_long_fails_and_says_so) {
     assert_int_equal(status, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "choose a smaller solver.step"));
     ABOVE(simulation->state->closest->distance, 0);
-    simulate_free(simulation);
 }
 
 // a body that is sent at an angle into a wall, which it reaches in 0.05 s
@@ -490,7 +477,6 @@ TEST(a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap) {
         } else {
             assert_null(said);
         }
-        simulate_free(simulation);
     }
 }
 
@@ -511,7 +497,6 @@ TEST(of_many_contacts_the_least_gap_is_named) {
             height[i]);
         assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
         if (!strstr(status_message(), named[i])) fail_msg("%s", status_message());
-        simulate_free(simulation);
     }
 }
 
@@ -569,7 +554,6 @@ TEST(of_256_fish_no_two_get_through_each_other) {
     ABOVE(n_contacts, 20);
     ABOVE(simulation->state->closest->distance, 0);
     NEAR_ARRAY(2, after, before, 1e-10 * scale, 0);
-    simulate_free(simulation);
 }
 
 TEST(stop_ends_the_run_at_the_time_and_with_the_names) {
@@ -582,7 +566,6 @@ TEST(stop_ends_the_run_at_the_time_and_with_the_names) {
     assert_int_equal(status_exit_code(status), 3);
     assert_non_null(strstr(status_message(), "contact of quick and lazy at t = "));
     BELOW(simulation->state->closest->distance, 0.02);
-    simulate_free(simulation);
 }
 
 TEST(stop_does_not_wait_until_bodies_touch) {
@@ -596,7 +579,6 @@ TEST(stop_does_not_wait_until_bodies_touch) {
     const double distance = simulation->state->closest->distance;
     ABOVE(distance, 0.0015);
     BELOW(distance, simulation->school->contact_range);
-    simulate_free(simulation);
 }
 
 // the distance of a point from the edge between two others
@@ -653,6 +635,5 @@ TEST(the_energy_is_that_of_all_ends_above_all_edges) {
         }
         ABOVE(want, 1e-3);
         NEAR(energy_of_school(&setup, y), want, 0, 1e-12);
-        school_clear(&setup);
     }
 }

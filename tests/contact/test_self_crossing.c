@@ -39,7 +39,6 @@ static int crosses(double thickness, double (*angle)(double s)) {
         }
     }
     assert_int_equal(self_crossing(fish, y, setup.residual->scratch), found);
-    school_clear(&setup);
     return found;
 }
 
@@ -109,7 +108,6 @@ TEST(a_tail_that_enters_the_right_side_of_the_nose_crosses_the_outline) {
         }
         assert_int_equal(self_crossing(fish, to, setup.residual->scratch), i > 0);
     }
-    school_clear(&setup);
 }
 
 TEST(a_bend_sharper_than_half_the_thickness_is_folded) {
@@ -137,5 +135,4 @@ TEST(a_run_remembers_the_first_fish_and_when) {
     const double first = now->crossed_t;
     school_run(simulation, first + 0.1);
     NEAR(now->crossed_t, first, 0, 0);
-    simulate_free(simulation);
 }

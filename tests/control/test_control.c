@@ -17,7 +17,6 @@ TEST(heading_points_from_a_third_of_the_length_to_the_nose) {
     setup.state->y[fish->at.x + 2] = setup.state->y[fish->at.x];
     setup.state->y[fish->at.y + 2] = setup.state->y[fish->at.y] + 0.3;
     NEAR(control_heading(fish, setup.state->y), -pi / 2, 1e-14, 0);
-    school_clear(&setup);
 }
 
 TEST(headings_in_time_are_linear_between_their_times) {
@@ -29,7 +28,6 @@ TEST(headings_in_time_are_linear_between_their_times) {
         NEAR(control_desired_heading(fish, &setup.state->control[0], times[i], setup.state->y), want[i] * pi / 180,
              1e-14, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(law_turns_towards_the_desired_heading_the_short_way) {
@@ -41,7 +39,6 @@ TEST(law_turns_towards_the_desired_heading_the_short_way) {
     NEAR(control_law(fish, memory, 0, -175 * pi / 180, 0, setup.state->y), 0.4 * tanh(3 * 15 * pi / 180), 1e-14, 0);
     NEAR(control_law(fish, memory, 0, 170 * pi / 180, 0.2, setup.state->y), 0.4 * tanh(0.2), 1e-14, 0);
     AT_MOST(fabs(control_law(fish, memory, 0, 0, 1e3, setup.state->y)), 0.4);
-    school_clear(&setup);
 }
 
 TEST(without_a_law_the_bias_is_the_given_one) {
@@ -51,7 +48,6 @@ TEST(without_a_law_the_bias_is_the_given_one) {
     setup.state->y[fish->at.phi0] = 0.3;
     control_residual(fish, &setup.state->control[0], 1, 0.01, setup.state->y, setup.value);
     NEAR(setup.value[fish->at.phi0], 0.05, 1e-16, 0);
-    school_clear(&setup);
 }
 
 TEST(waypoints_are_visited_in_order_and_the_last_course_is_held) {
@@ -78,7 +74,6 @@ TEST(waypoints_are_visited_in_order_and_the_last_course_is_held) {
     y[fish->at.x] = 7;
     NEAR(control_desired_heading(fish, memory, 0, y), pi / 2, 1e-14, 0);
     assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.5, .interval = 0.02}, y), 0);
-    school_clear(&setup);
 }
 
 TEST(the_course_that_is_held_is_that_of_the_last_leg) {
@@ -101,7 +96,6 @@ TEST(the_course_that_is_held_is_that_of_the_last_leg) {
         control_event(fish, memory, &(struct control_view){.t = 0.1, .interval = 0.02}, setup.state->y);
         assert_int_equal(memory->waypoint, examples[i].waypoint + 1);
         NEAR(memory->held_heading, examples[i].course, 1e-14, 0);
-        school_clear(&setup);
     }
 }
 
@@ -111,7 +105,6 @@ TEST(waypoints_close_together_are_passed_at_one_event) {
     const struct control_view view = {.t = 0.1, .interval = 0.02};
     assert_int_equal(control_event(setup.school->fish, &setup.state->control[0], &view, setup.state->y), 1);
     assert_int_equal(setup.state->control[0].waypoint, 2);
-    school_clear(&setup);
 }
 
 TEST(averaged_heading_moves_the_bias_with_bounded_rate) {
@@ -138,7 +131,6 @@ TEST(averaged_heading_moves_the_bias_with_bounded_rate) {
     // 0.498 at 2 per second: 12 intervals in full and one in part
     assert_int_equal(n_bounded, 12);
     NEAR(memory->phi0, target, 1e-15, 0);
-    school_clear(&setup);
 }
 
 // value of a law with feedforward 1 for the filtered moment alone: the fish has the desired heading
@@ -167,13 +159,10 @@ TEST(feedforward_acts_through_a_moving_mean) {
         before = after;
     }
     // the default is one period; without time constant the mean is the newest value
-    school_clear(&setup);
     school_build(&setup, TIME "fish: [{wave: {frequency: 2}, control: {law: heading, feedforward: 1}}]\n");
     NEAR(setup.school->fish[0].control.filter_share, 1 - exp(-0.04), 1e-15, 0);
-    school_clear(&setup);
     school_build(&setup, TIME "fish: [{control: {law: heading, feedforward: 1, filter: 0}}]\n");
     NEAR(setup.school->fish[0].control.filter_share, 1, 0, 0);
-    school_clear(&setup);
 }
 
 TEST(averaged_heading_takes_the_newest_mean_of_the_moment) {
@@ -186,7 +175,6 @@ TEST(averaged_heading_takes_the_newest_mean_of_the_moment) {
     control_event(fish, memory, &view, setup.state->y);
     const double mean = 0.3 * (1 - exp(-0.05));
     NEAR(memory->phi0_rate, 0.5 * tanh(0.7 * mean) / 0.02, 1e-13, 0);
-    school_clear(&setup);
 }
 
 TEST(course_is_damped_and_waits_for_a_whole_period) {
@@ -213,7 +201,6 @@ TEST(course_is_damped_and_waits_for_a_whole_period) {
     setup.school->fish[0].control.rate = 2;
     control_event(fish, memory, &(struct control_view){.interval = 0.02, .has_course = 1, .course = 2}, setup.state->y);
     NEAR(memory->phi0_rate, 2, 0, 0);
-    school_clear(&setup);
 }
 
 TEST(rate_is_that_of_the_bias_of_a_moving_fish) {
@@ -243,7 +230,6 @@ TEST(rate_is_that_of_the_bias_of_a_moving_fish) {
             phi0[side] = -setup.value[fish->at.phi0];
         }
         NEAR(rate, (phi0[1] - phi0[0]) / (2 * h), 1e-8, 1e-8);
-        school_clear(&setup);
     }
 }
 
@@ -261,7 +247,6 @@ TEST(the_rate_of_a_table_is_that_of_what_follows) {
         NEAR(control_rate(fish, &setup.state->control[0], times[i], 0, y),
              -fish->control.limit * (1 - tangent * tangent) * fish->control.gain * degrees[i] * pi / 180, 1e-13, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(a_law_falls_as_fast_as_it_rises) {
@@ -274,7 +259,6 @@ TEST(a_law_falls_as_fast_as_it_rises) {
         control_event(setup.school->fish, memory, &view, setup.state->y);
         NEAR(memory->phi0_rate, 2 * side, 0, 0);
     }
-    school_clear(&setup);
 }
 
 static void value_of_control(struct setup *setup, const double *y, const double *yp, double *value) {
@@ -301,7 +285,6 @@ TEST(derivatives_agree_with_differences) {
         // and when the last waypoint has been passed
         setup.state->control[0].waypoint = setup.school->fish[0].control.n_waypoints;
         school_compare(&setup, value_of_control, jacobian_of_control, texts[i]);
-        school_clear(&setup);
     }
 }
 
@@ -427,7 +410,6 @@ TEST(values_that_are_set_are_reached_after_the_ramp) {
     control_residual(fish, memory, 3.5, 0, setup.state->y, setup.value);
     NEAR(setup.value[fish->at.phi0], 0.1, 1e-14, 0);
     NEAR(control_largest_bias(fish, memory), 0.1, 1e-15, 0);
-    school_clear(&setup);
 }
 
 TEST(rates_of_a_gait_that_changes_are_those_of_its_values) {
@@ -445,7 +427,6 @@ TEST(rates_of_a_gait_that_changes_are_those_of_its_values) {
     BELOW(gait.amplitude_rate, -0.1);
     NEAR(gait.amplitude_rate, (right.amplitude - left.amplitude) / (2 * h), 1e-7, 0);
     NEAR(gait.omega, (right.angle - left.angle) / (2 * h), 1e-7, 0);
-    school_clear(&setup);
 }
 
 TEST(a_heading_that_is_set_is_reached_the_short_way) {
@@ -466,7 +447,6 @@ TEST(a_heading_that_is_set_is_reached_the_short_way) {
     NEAR(control_desired_heading(fish, memory, 3.25, y), 335 * degree, 1e-13, 0);
     NEAR(control_desired_heading(fish, memory, 4, y), 390 * degree, 1e-13, 0);
     NEAR(control_largest_bias(fish, memory), 0.3, 0, 0);
-    school_clear(&setup);
 }
 
 TEST(waypoints_that_are_set_begin_where_the_fish_is) {
@@ -487,5 +467,4 @@ TEST(waypoints_that_are_set_begin_where_the_fish_is) {
     assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.1, .interval = 0.02}, y), 1);
     // the course of the leg from the place of the fish at that time
     NEAR(control_desired_heading(fish, memory, 0, y), atan2(3, 4), 1e-14, 0);
-    school_clear(&setup);
 }

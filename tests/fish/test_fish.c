@@ -23,7 +23,6 @@ TEST(joukowski_body_has_the_mass_of_the_reference) {
     // an independent program's mass of the same body
     NEAR(fish->total_mass, 57.50243756590633, 1e-10, 0);
     NEAR(sum(fish->n_nodes, fish->mass), fish->total_mass, 0, 1e-14);
-    school_clear(&setup);
 }
 
 TEST(mean_sections_give_the_mass_and_the_stiffness_of_the_foil) {
@@ -40,7 +39,6 @@ TEST(mean_sections_give_the_mass_and_the_stiffness_of_the_foil) {
         for (int k = j; k <= j + 1; k++) moment += pi * 0.25 * pow(fish->thickness[k], 3) * fish->cube[k] / 64 / 2;
         NEAR(fish->bending_stiffness[j], moment, 0, 1e-14);
     }
-    school_clear(&setup);
 }
 
 TEST(added_mass_takes_the_mean_square_of_the_thickness) {
@@ -56,7 +54,6 @@ TEST(added_mass_takes_the_mean_square_of_the_thickness) {
         NEAR(thick->drag_normal[k], 1000 * 0.5 * l * h / 2, 0, 1e-14);
         NEAR(wide->added_mass[k], pi * 1000 * 1.5 * 0.25 * 0.25 * l / 4, 0, 1e-14);
     }
-    school_clear(&setup);
 }
 
 TEST(second_moments_are_the_two_formulas) {
@@ -72,7 +69,6 @@ TEST(second_moments_are_the_two_formulas) {
         for (int j = 0; j < fish->n_joints; j++) NEAR(fish->bending_stiffness[j], 3e5 * moment[i], 0, 1e-14);
         for (int k = 0; k < fish->n_edges; k++) NEAR(fish->axial_stiffness[k], 3e5 * area, 0, 1e-14);
         NEAR(fish->total_mass, 2000 * area, 0, 1e-14);
-        school_clear(&setup);
     }
 }
 
@@ -94,7 +90,6 @@ TEST(damping_and_wave_scale_with_refinement) {
         NEAR(fish->axial_damping[k], 4 + 0.01 * fish->axial_stiffness[k] / l, 0, 1e-14);
     NEAR(fish->omega, 3 * pi, 0, 1e-15);
     NEAR(fish->ramp, 1 / 1.5, 0, 1e-15);
-    school_clear(&setup);
 }
 
 TEST(table_of_heights_is_taken_as_it_is) {
@@ -109,7 +104,6 @@ TEST(table_of_heights_is_taken_as_it_is) {
     const double m = 2000 * pi / 4 / 3;
     const double mass[] = {m * 0.015, m * (0.015 + 0.02), m * (0.02 + 0.015), m * 0.015};
     NEAR_ARRAY(4, fish->mass, mass, 0, 1e-14);
-    school_clear(&setup);
 }
 
 TEST(drag_coefficients_follow_the_extent) {
@@ -123,7 +117,6 @@ TEST(drag_coefficients_follow_the_extent) {
         NEAR(fish->drag_tangential[2], 1000 * pi * 1e-3 * l * (h + w) / 8, 0, 1e-14);
         NEAR(fish->drag_normal[2], 1000 * 0.5 * l * across / 2, 0, 1e-14);
         NEAR(fish->added_mass[2], pi * 1000 * 1.5 * across * across * l / 4, 0, 1e-14);
-        school_clear(&setup);
     }
 }
 
@@ -143,7 +136,6 @@ TEST(sheet_points_are_cosine_points_and_weights_add_up_to_the_length) {
     }
     // on a smooth sheet the weights are Gauss-Lobatto weights, pi/(M-1) sin(theta) L/2, up to a factor
     NEAR(fish->sheet_weight[5] / fish->sheet_weight[3], 1 / sin(0.3 * pi), 0, 1e-13);
-    school_clear(&setup);
 }
 
 TEST(control_points_are_chebyshev_points_or_midpoints_of_chords) {
@@ -153,7 +145,6 @@ TEST(control_points_are_chebyshev_points_or_midpoints_of_chords) {
         NEAR(arc_of(setup.school->fish, &setup.school->fish[0].control_point[c]), (1 - cos(pi * (c + 0.5) / 10)) / 2,
              1e-15, 0);
     }
-    school_clear(&setup);
     school_build(&setup, TIME "sheet: {collocation: midpoint}\nfish: [{sheet_points: 11}]\n");
     const struct fish *fish = &setup.school->fish[0];
     for (int c = 0; c < 10; c++) {
@@ -163,7 +154,6 @@ TEST(control_points_are_chebyshev_points_or_midpoints_of_chords) {
         for (int i = 0; i < fish->control_point[c].n; i++) total += fish->control_point[c].weight[i];
         NEAR(total, 1, 1e-15, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature) {
@@ -183,8 +173,6 @@ TEST(smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature) {
         for (int j = 1; j < 10; j++) NEAR(a->sheet_weight[j], 0.06 * pi * sin(0.1 * pi * j), 0, 1e-14);
         NEAR(a->sheet_weight[0], b->sheet_weight[0], 0, 0);
         NEAR(a->sheet_weight[10], b->sheet_weight[10], 0, 0);
-        school_clear(&smooth);
-        school_clear(&polygon);
     }
 }
 
@@ -199,7 +187,6 @@ TEST(start_is_straight_behind_the_nose_with_one_velocity) {
         NEAR(y[fish->at.vx + k], 0.7 * cos(pi / 6), 1e-15, 0);
         NEAR(y[fish->at.vy + k], 0.7 * sin(pi / 6), 1e-15, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(start_without_ramp_has_the_natural_shape) {
@@ -213,7 +200,6 @@ TEST(start_without_ramp_has_the_natural_shape) {
         NEAR(remainder(turn, 2 * pi), fish->wave_amplitude[j] * (sin(fish->wave_phase[j]) + 0.3), 1e-14, 0);
         before = angle;
     }
-    school_clear(&setup);
 }
 
 TEST(overlapping_fish_are_refused) {
@@ -266,7 +252,6 @@ TEST(unknowns_stand_fish_after_fish_in_the_documented_order) {
     assert_int_equal(b->x, 38);
     assert_int_equal(b->end, 38 + 24 + 7);
     assert_int_equal(setup.school->n_unknowns, b->end);
-    school_clear(&setup);
 }
 
 TEST(gust_blows_across_the_stream) {
@@ -275,7 +260,6 @@ TEST(gust_blows_across_the_stream) {
     NEAR(setup.school->gust[0], -0.4, 1e-15, 0);
     NEAR(setup.school->gust[1], 0.3, 1e-15, 0);
     NEAR(setup.school->gust_omega, 4 * pi, 0, 1e-15);
-    school_clear(&setup);
 }
 
 TEST(a_wave_has_an_amplitude_a_frequency_and_a_free_body) {
@@ -297,7 +281,6 @@ TEST(a_wave_has_an_amplitude_a_frequency_and_a_free_body) {
         assert_int_equal(fish_has_wave(fish), cases[i].has_wave);
         // the friction of a body on which a wave travels
         NEAR(fish->waving, cases[i].has_wave ? 1.5 : 1, 0, 0);
-        school_clear(&setup);
     }
 }
 
@@ -324,7 +307,6 @@ TEST(distance_is_that_of_the_outlines) {
         setup.state->y[fish[1].at.y + k] = -0.5 + k / 6.0;
     }
     NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, INFINITY), 0, 0, 0);
-    school_clear(&setup);
 }
 
 // the distance between two edges is the smallest of four
@@ -400,7 +382,6 @@ TEST(distance_of_bent_bodies_is_the_least_of_their_points) {
     }
     print_message("%d of 60 pairs touch\n", n_touching);
     assert_in_range(n_touching, 10, 50);
-    school_clear(&setup);
 }
 
 TEST(distance_from_a_wall_counts_the_thicker_edge_of_a_node) {
@@ -416,7 +397,6 @@ TEST(distance_from_a_wall_counts_the_thicker_edge_of_a_node) {
         NEAR(fish_wall_distance(setup.school, fish, y, NULL), 0.5 - thickest[k] / 2, 1e-14, 0);
         y[fish->at.y + k] += 0.5;
     }
-    school_clear(&setup);
 }
 
 TEST(a_street_has_two_staggered_rows_along_the_stream) {
@@ -430,11 +410,9 @@ TEST(a_street_has_two_staggered_rows_along_the_stream) {
     static const double want[] = {7, 8, 9, 0.85, 1.6, -5, 1.15, 2, 5, 0.85, 2.4, -5};
     assert_int_equal(setup.school->n_vortices, 4);
     for (int i = 0; i < 12; i++) NEAR(setup.school->vortices[i], want[i], 1e-15, 0);
-    school_clear(&setup);
 
     // von Karman's ratio
     school_build(&setup,
                  TIME "wake: {street: {vortices: 2, spacing: 2, circulation: 1}}\nfish: [{force: published}]\n");
     NEAR(setup.school->vortices[1] - setup.school->vortices[4], 2 * 0.28055, 1e-5, 0);
-    school_clear(&setup);
 }

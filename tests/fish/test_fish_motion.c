@@ -22,7 +22,6 @@ TEST(prescribed_velocity_and_acceleration_are_derivatives) {
             NEAR(a[1][i], (v[2][i] - v[0][i]) / (2 * h), 1e-5, 0);
         }
     }
-    school_clear(&setup);
 }
 
 TEST(prescribed_body_is_straight_and_turns_about_its_pivot) {
@@ -43,7 +42,6 @@ TEST(prescribed_body_is_straight_and_turns_about_its_pivot) {
     // the body extends backwards from the pivot: the heading 205 degrees turned round
     NEAR(q[0] - p[0], 0.75 * cos(25 * pi / 180), 1e-14, 0);
     NEAR(q[1] - p[1], 0.75 * sin(25 * pi / 180), 1e-14, 0);
-    school_clear(&setup);
 }
 
 TEST(pitch_is_its_phase_before_heave) {
@@ -62,5 +60,4 @@ TEST(pitch_is_its_phase_before_heave) {
         // the pivot is the nose
         NEAR(nose[1], heave[i], 1e-15, 0);
     }
-    school_clear(&setup);
 }

@@ -78,8 +78,6 @@ TEST(every_point_feels_the_sources_that_the_model_says) {
         NEAR(slip[0], flow->u[tail] - setup.state->y[fish->at.vx + fish->n_nodes - 1], 0, 0);
         NEAR(slip[1], flow->v[tail] - setup.state->y[fish->at.vy + fish->n_nodes - 1], 0, 0);
     }
-
-    school_clear(&setup);
 }
 
 TEST(wake_vortices_feel_everything_with_smoothed_sheets) {
@@ -107,8 +105,6 @@ TEST(wake_vortices_feel_everything_with_smoothed_sheets) {
             NEAR(v[i], want_v, 1e-13, 0);
         }
     }
-
-    school_clear(&setup);
 }
 
 TEST(external_flow_is_stream_plus_shear_plus_gust) {
@@ -119,7 +115,6 @@ TEST(external_flow_is_stream_plus_shear_plus_gust) {
     flow_external(setup.school, t, 0, 2, &u, &v);
     NEAR(u, 0.1 + 0.6 - gust * 0.2 / stream, 1e-15, 0);
     NEAR(v, 0.2 + gust * 0.1 / stream, 1e-15, 0);
-    school_clear(&setup);
 }
 
 // a gust of unit amplitude across a stream along (3, 4)/5
@@ -162,7 +157,6 @@ TEST(a_travelling_gust_moves_along_the_stream) {
         flow_external(school, t, x, y - h, &from[0], &from[1]);
         NEAR(gradient[1], (to[0] - from[0]) / (2 * h), 1e-7, 0);
         NEAR(gradient[0], (from[1] - to[1]) / (2 * h), 1e-7, 0);
-        school_clear(&setup);
     }
 }
 
@@ -178,7 +172,6 @@ TEST(external_acceleration_is_that_of_a_particle_of_the_fluid) {
     // pi)^3 0.2/6
     NEAR(acceleration[0], (u[2] - u[0]) / (2 * h) + 0.3 * v[1], 1e-8, 0);
     NEAR(acceleration[1], (v[2] - v[0]) / (2 * h), 1e-8, 0);
-    school_clear(&setup);
 }
 
 // velocity at all points of fish f, u then v, with unknown i changed by step
@@ -227,8 +220,6 @@ static void compare_derivatives(const char *text) {
             }
         }
     }
-
-    school_clear(&setup);
 }
 
 TEST(derivative_by_every_unknown_agrees_with_differences) {
@@ -341,8 +332,6 @@ TEST(beside_a_wall_everything_feels_mirrored_fish) {
         flow_at_wake(one, wall.state);
         flow_at_wake(other, free.state);
         for (int f = 0; f < 2; f++) same_wake(one, other, f);
-        school_clear(&wall);
-        school_clear(&free);
     }
 }
 
@@ -357,7 +346,6 @@ TEST(changed_wakes_are_placed_again) {
     setup.state->wake[0].version++;
     school_flow(&setup, setup.state->y);
     ABOVE(fabs(flow->u[0] - before), 1e-4);
-    school_clear(&setup);
 }
 
 TEST(gradient_pass_leaves_the_velocity_as_it_is) {
@@ -372,7 +360,6 @@ TEST(gradient_pass_leaves_the_velocity_as_it_is) {
 
     // the loops differ in the order of a division and a product
     NEAR_ARRAY(flow->n_points, flow->u, with, 1e-13, 1e-13);
-    school_clear(&setup);
 }
 
 TEST(threads_change_no_bit) {
@@ -392,5 +379,4 @@ TEST(threads_change_no_bit) {
 
     // the ones that the residual has allocated
     setup.school->threads = 1;
-    school_clear(&setup);
 }

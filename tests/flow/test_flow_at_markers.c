@@ -169,8 +169,6 @@ TEST(a_body_and_a_wake_have_opposite_forces_for_each_other) {
                 vanishes(&v);
             }
         }
-
-        school_clear(&setup);
     }
 }
 
@@ -204,7 +202,5 @@ TEST(two_wakes_have_opposite_forces_for_each_other) {
                 vanishes(&v);
             }
         }
-
-        school_clear(&setup);
     }
 }

@@ -193,8 +193,6 @@ static void check_midpoints_feel_bodies_wakes_and_images(void) {
             NEAR(flow->div[p], felt.div, 1e-10, 1e-10);
         }
     }
-
-    school_clear(&setup);
 }
 
 TEST(midpoints_feel_bodies_wakes_and_images) {
@@ -252,8 +250,6 @@ static void check_control_points_feel_their_own_body_and_wake(void) {
         NEAR(flow->v[p], felt.v + nascent.v, atol, 1e-12);
         NEAR(flow->div[p], felt.div + nascent.div, 5e-6, 1e-11);
     }
-
-    school_clear(&setup);
 }
 
 TEST(control_points_feel_their_own_body_and_wake) {
@@ -299,8 +295,6 @@ static void check_a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stre
         NEAR(middles->x[middle], tail[0] + (along * at.t[0] + 0.01 * at.n[0]) / 2, 1e-15, 1e-14);
         NEAR(middles->y[middle], tail[1] + (along * at.t[1] + 0.01 * at.n[1]) / 2, 1e-15, 1e-14);
     }
-
-    school_clear(&setup);
 }
 
 TEST(a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it) {
@@ -341,7 +335,6 @@ static void check_the_newborn_marker_feels_its_body_behind_the_tail(void) {
         NEAR(flow->wake_u[newest], felt.u, 1e-13, 1e-11);
         NEAR(flow->wake_v[newest], felt.v, 1e-13, 1e-11);
     }
-    school_clear(&setup);
 }
 
 TEST(the_newborn_marker_feels_its_body_behind_the_tail) {
@@ -377,7 +370,6 @@ TEST(markers_are_stretched_and_a_wall_lets_nothing_through) {
     const struct targets at = {.n = N, .x = x, .y = y, .u = u, .v = v, .u_x = u_x, .u_y = u_y, .v_x = v_x};
     flow_field(flow, setup.state, &at);
     for (int i = 0; i < N; i++) NEAR(v[i], 0, 1e-15, 0);
-    school_clear(&setup);
 }
 
 // s of marker k, from the length of the sheet between the newest marker and marker k
@@ -471,7 +463,6 @@ static void check_markers_feel_all_bodies_all_markers_and_all_images(void) {
             NEAR(flow->wake_div[n], all.div + images.div, 1e-12, 1e-11);
         }
     }
-    school_clear(&setup);
 }
 
 TEST(markers_feel_all_bodies_all_markers_and_all_images) {
@@ -509,7 +500,6 @@ TEST(legs_of_graded_points_begin_at_the_tail) {
             }
         }
     }
-    school_clear(&setup);
 }
 
 // ---- large schools
@@ -571,8 +561,6 @@ static void check_large_schools_are_summed_by_the_tree_to_half_the_tolerance(voi
     const double *const gradients[][2] = {
         {a->u_x, b->u_x}, {a->u_y, b->u_y}, {a->v_x, b->v_x}, {a->div_x, b->div_x}, {a->div_y, b->div_y}};
     for (int i = 0; i < 5; i++) BELOW(largest_difference(a->n_points, gradients[i][0], gradients[i][1]), 1e-5);
-    school_clear(&exact);
-    school_clear(&fast);
 
     build_large(&exact, "0", 800);
     build_large(&fast, "1e-7", 800);
@@ -600,9 +588,6 @@ static void check_large_schools_are_summed_by_the_tree_to_half_the_tolerance(voi
     threads.school->threads = n_threads;
     assert_memory_equal(threads.residual->flow->wake_u, d->wake_u, (size_t)d->n_markers * sizeof(double));
     assert_memory_equal(threads.residual->flow->wake_rate, d->wake_rate, (size_t)d->n_markers * sizeof(double));
-    school_clear(&threads);
-    school_clear(&exact);
-    school_clear(&fast);
 }
 
 TEST(large_schools_are_summed_by_the_tree_to_half_the_tolerance) {
@@ -660,7 +645,6 @@ static void compare_derivatives(const char *fluid) {
             }
         }
     }
-    school_clear(&setup);
 }
 
 TEST(derivatives_agree_with_differences) {
@@ -698,6 +682,5 @@ TEST(the_field_does_not_go_through_walls) {
         for (int i = 0; i < N; i++) {
             assert_int_equal(isnan(u[i]) && isnan(v[i]) && isnan(u_x[i]) && isnan(u_y[i]) && isnan(v_x[i]), i % 3 != 2);
         }
-        school_clear(&setup);
     }
 }

@@ -73,7 +73,6 @@ TEST(derivatives_agree_with_differences) {
             school_stir(&setup);
             law = laws[l];
             school_compare(&setup, value_of_sheet, jacobian_of_sheet, texts[i]);
-            school_clear(&setup);
         }
     }
 }
@@ -95,7 +94,6 @@ static void solve_plate(const char *collocation, const char *kutta, int m, const
     school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
     const struct fish *fish = setup.school->fish;
     for (int j = 0; j < m; j++) q[j] = fish->sheet_weight[j] * setup.state->y[fish->at.gamma + j];
-    school_clear(&setup);
 }
 
 TEST(plate_without_circulation_is_exact_with_chebyshev_points) {
@@ -164,7 +162,6 @@ static double circulation_beside_a_vortex(int m) {
     school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
     school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
     const double circulation = bound_sheet_circulation(setup.school->fish, setup.state->y);
-    school_clear(&setup);
     return circulation;
 }
 
@@ -207,7 +204,6 @@ static double circulation_of_a_bent_body(line *place, const char *curve, int n_n
     school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
     school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
     const double circulation = bound_sheet_circulation(fish, setup.state->y);
-    school_clear(&setup);
     return circulation;
 }
 
@@ -287,7 +283,6 @@ TEST(strength_is_circulation_per_length_of_the_body_as_it_is) {
     y[fish->at.gamma + 8] = 0.7;
     NEAR(bound_sheet_strength(fish, 8, y), 0.7, 0, 0);
     NEAR(fish->sheet_weight[8], 0.3 * (1 - cos(h)), 1e-15, 0);
-    school_clear(&setup);
 }
 
 TEST(end_correction_makes_a_sheet_that_ends_with_a_step_exact) {
@@ -318,7 +313,6 @@ TEST(end_correction_makes_a_sheet_that_ends_with_a_step_exact) {
         }
 
         NEAR_ARRAY(m - 1, setup.value + fish->at.gamma, with, 1e-13, 0);
-        school_clear(&setup);
     }
 }
 
@@ -336,7 +330,6 @@ TEST(kelvin_counts_bound_shed_and_dissipated_circulation) {
     double sum = 0;
     for (int j = 0; j < 9; j++) sum += fish->sheet_weight[j] * setup.state->y[fish->at.gamma + j];
     NEAR(bound_sheet_circulation(fish, setup.state->y), sum, 1e-15, 0);
-    school_clear(&setup);
 }
 
 TEST(shedding_rate_is_edge_strength_times_slip) {
@@ -354,5 +347,4 @@ TEST(shedding_rate_is_edge_strength_times_slip) {
     const double e[2] = {y[fish->at.x + 6] - y[fish->at.x + 5], y[fish->at.y + 6] - y[fish->at.y + 5]};
     const double along = (slip[0] * e[0] + slip[1] * e[1]) / hypot(e[0], e[1]);
     NEAR(bound_sheet_shedding_rate(fish, 0.6, u, v, y), 0.6 * y[fish->at.gamma + 8] * along, 0, 1e-13);
-    school_clear(&setup);
 }

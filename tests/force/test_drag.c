@@ -54,7 +54,6 @@ TEST(slope_of_the_force_agrees_with_differences) {
         school_build(&setup, texts[i]);
         // the force is quadratic in w and in cosine and sine: truncation error of order h^2
         compare_slope(setup.school->fish, 2, (const double[]){-0.4, 0.3}, 1e-8);
-        school_clear(&setup);
     }
 }
 
@@ -81,7 +80,6 @@ static double friction_over_blasius(const char *text, double speed) {
         total += force[0];
     }
 
-    school_clear(&setup);
     return total / (1.328 * 3 * 0.8 * sqrt(nu * 2) * pow(speed, 1.5));
 }
 
@@ -120,8 +118,6 @@ TEST(transition_of_an_edge_is_that_of_its_middle) {
         const double half = fish->drag_tangential[k] * pow(speed, 1.5) + fish->drag_turbulent[k] * pow(speed, 1.8);
         NEAR(force[0], half / 2, 0, 1e-5);
     }
-
-    school_clear(&setup);
 }
 
 TEST(factors_multiply_the_friction) {
@@ -156,7 +152,6 @@ TEST(a_body_with_a_wave_has_the_factor_of_waving) {
         school_build(&setup, text);
         assert_int_equal(setup.school->fish->friction, FRICTION_BOUNDARY_LAYER);
         NEAR(setup.school->fish->waving, cases[i].waving, 0, 0);
-        school_clear(&setup);
     }
 }
 
@@ -188,7 +183,6 @@ TEST(boundary_layer_is_smooth_and_takes_energy) {
         drag_force(fish, 0, &edge, (const double[]){1e-12, 0}, force, friction);
         NEAR(force[0], by_velocity[0][0] * 1e-12, 0, 1e-9);
         BELOW(by_velocity[0][0], 0);
-        school_clear(&setup);
     }
 }
 
@@ -217,7 +211,6 @@ TEST(laminar_friction_of_a_plate_is_that_of_its_boundary_layer) {
     // near rest the friction is linear: (u0)^(1/2) u
     drag_force(fish, 0, &edge, slow, force, friction);
     NEAR(force[0], -blasius / pow(0.7, 1.5) * sqrt(1.0 / 6) * sqrt(0.5e-4) * 1e-9, 0, 1e-8);
-    school_clear(&setup);
 }
 
 static double moment_about(const struct fish *fish, const double *u, const double *v, const double *y,
@@ -257,5 +250,4 @@ TEST(moment_is_that_of_the_forces_that_the_flow_adds) {
     NEAR(drag_moment(fish, flow_u(&setup, 0), flow_v(&setup, 0), y), moment / scale, 1e-14, 1e-12);
     ABOVE(fabs(moment / scale), 1e-4);
     NEAR(drag_moment(fish, still, still, y), 0, 0, 0);
-    school_clear(&setup);
 }

@@ -72,7 +72,6 @@ TEST(jacobian_agrees_with_differences) {
         school_build(&setup, texts[i]);
         school_stir(&setup);
         school_compare(&setup, value_of_forces, jacobian_of_forces, texts[i]);
-        school_clear(&setup);
     }
 }
 
@@ -97,8 +96,6 @@ static void force_on_plate(const char *keys, double vx, double vy, double ay, do
         force[0] -= setup.value[fish->at.ax + k];
         force[1] -= setup.value[fish->at.ay + k];
     }
-
-    school_clear(&setup);
 }
 
 TEST(forces_on_a_plate_are_the_formulas) {
@@ -155,7 +152,6 @@ TEST(powers_are_those_of_the_forces) {
         ABOVE(fabs(got.drag), 1e-3);
         ABOVE(fabs(got.added_mass), 1e-3);
         assert_true((fabs(got.wake) > 1e-3) == (i == 1));
-        school_clear(&setup);
     }
 }
 
@@ -187,7 +183,6 @@ TEST(friction_is_the_tangential_part_of_the_drag) {
     NEAR(sum.resistive_moment, resistive_moment, 0, 1e-12);
     ABOVE(fabs(moment), 1e-3);
     ABOVE(fabs(resistive_moment - moment), 1e-3);
-    school_clear(&setup);
 }
 
 TEST(added_mass_takes_up_no_tangential_acceleration) {
@@ -201,7 +196,6 @@ TEST(added_mass_takes_up_no_tangential_acceleration) {
 
     // the normal of a body along 180 degrees is (0, 1) within rounding
     for (int i = fish->at.ax; i < fish->at.gamma; i++) NEAR(setup.value[i], 0, 1e-13, 0);
-    school_clear(&setup);
 }
 
 TEST(the_reactive_force_does_not_feel_the_own_wake) {
@@ -221,7 +215,6 @@ TEST(the_reactive_force_does_not_feel_the_own_wake) {
         const struct fish *const fish = simulation->school->fish;
         nose[i][0] = simulation->state->y[fish->at.x];
         nose[i][1] = simulation->state->y[fish->at.y];
-        simulate_free(simulation);
     }
 
     // the tolerance of a step is 1e-7 m; Newton's iteration, which includes the sheets, stops at a fraction of this

@@ -73,8 +73,6 @@ TEST(added_mass_of_a_plate_is_that_of_potential_flow) {
             for (int k = 0; k < 17; k++) mass += momentum[k] * velocity[motion][k];
             NEAR(mass, want[motion], 0, tolerance[motion]);
         }
-
-        school_clear(&setup);
     }
 }
 
@@ -99,7 +97,6 @@ static double smallest_eigenvalue(int nodes, int points) {
     added_mass(&setup, nodes, symmetric);
 
     assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', nodes, symmetric, nodes, value), 0);
-    school_clear(&setup);
     return value[0];
 }
 
@@ -142,7 +139,6 @@ TEST(added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep) {
         added_momentum(&setup, velocity, momentum);
         for (int k = 0; k < 17; k++) lift += momentum[k];
         NEAR(moment, lift, 2e-5 * mass, 0);
-        school_clear(&setup);
     }
 }
 
@@ -187,7 +183,6 @@ TEST(added_mass_of_finite_span_is_symmetric_and_positive) {
 
         assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', N, matrix, N, value), 0);
         ABOVE(value[0], 1e-4 * largest);
-        school_clear(&setup);
     }
 }
 
@@ -213,7 +208,6 @@ TEST(slow_modes_have_the_added_mass_of_the_sheet) {
 
     // after translation and rotation
     NEAR(bending_mode_frequency(fish, scratch), sqrt(value[2]) / (2 * pi), 0, 0.01);
-    school_clear(&setup);
 }
 
 // A stream of 0.1 across a stiff free plate starts impulsively: with p conserved the plate velocity becomes 0.1 mu/(m +
@@ -242,7 +236,6 @@ TEST(a_stream_that_starts_at_once_pushes_by_the_added_mass) {
 
     // the difference is the lift of the circulation shed within 0.002 s
     NEAR(velocity, 0.1 * (pi / 4) / (mass + pi / 4), 0, 1.5e-3);
-    simulate_free(simulation);
 }
 
 // the scale of the momenta: 1 + m_L L/m_k for the strip of the deeper end
@@ -264,7 +257,6 @@ TEST(momenta_scale_with_the_deeper_end) {
             const double per_length = acos(-1) / 4 * 800 * 0.3 * 2;
             NEAR(pressure_momentum_ratio(fish, k), 1 + per_length * 0.5 / fish->mass[k], 0, 1e-12);
         }
-        school_clear(&setup);
     }
 }
 
@@ -322,8 +314,6 @@ TEST(force_and_reaction_are_those_of_the_jump) {
         NEAR(sum[i], of->pressure.pressure[i], 1e-3 * fabs(of->pressure.pressure[1]), 0);
         NEAR(of->constraint_force[i], inertia[i] - of->pressure.pressure[i] - of->pressure.suction[i], 1e-9, 1e-9);
     }
-
-    simulate_free(simulation);
 }
 
 // ---- the limit of the suction
@@ -425,7 +415,6 @@ TEST(suction_of_a_plate_ends_at_its_limit) {
     }
 
     ABOVE(plate[3]->diagnostics->fish[0].pressure.separation_power, 0);
-    for (int i = 0; i < 4; i++) simulate_free(plate[i]);
 }
 
 // a free fish with nearly no suction: the energy balance is as accurate as without a limit
@@ -445,7 +434,6 @@ TEST(energy_balance_is_closed_where_the_limit_acts) {
         print_message("limit %s: imbalance over work %.2g, separated for %.2g of the period\n",
                       i == 0 ? "none" : "0.003", imbalance[i], of->separation_share);
         assert_true(i == 0 ? of->separation_share <= 0 : of->separation_share > 0.5);
-        simulate_free(simulation);
     }
 
     BELOW(imbalance[0], 1e-3);
@@ -487,8 +475,6 @@ TEST(a_strength_that_is_singular_at_the_tail_has_no_kink) {
         NEAR(pressure_jump(pressure, c, y, yp) - now, theta, 1e-12, 0);
         for (int j = 0; j < fish->n_sheet; j++) yp[fish->at.gamma + j] = 0;
     }
-
-    school_clear(&setup);
 }
 
 // g = sin(theta) (1 - cos(theta)) has the kink of a sheet that goes on behind the tail: C = (1 - cos(theta))^2/2, for
@@ -519,7 +505,6 @@ TEST(a_kink_at_the_tail_has_its_exact_circulation) {
     for (int c = 0; c < fish->n_control; c++) {
         NEAR(pressure_sheet_at(pressure, c, y, yp).rate, pow(1 - cos(h * (c + 0.5)), 2) / 2, 1e-12, 0);
     }
-    school_clear(&setup);
 }
 
 // a soft free fish starts to beat: energy balance, and momentum against forces
@@ -549,6 +534,4 @@ TEST(energy_and_momentum_of_a_free_fish_are_accounted_for) {
 
     BELOW(fabs(of->energy_balance), 1e-3 * of->actuation_work);
     ABOVE(of->actuation_work, 0.1);
-
-    simulate_free(simulation);
 }

@@ -86,8 +86,6 @@ TEST(force_follows_from_lagrange_s_equations_of_the_kinetic_energy) {
             NEAR(force[q / 2][q % 2], slope_of_energy(fish, motion, q) - rate, 1e-4, 1e-5);
         }
     }
-
-    school_clear(&setup);
 }
 
 TEST(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_surrounds) {
@@ -110,8 +108,6 @@ TEST(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_s
             }
         }
     }
-
-    school_clear(&setup);
 }
 
 // forces on the nodes of a straight plate of 7 nodes along the x axis, nose first, with prescribed motion in still
@@ -145,8 +141,6 @@ static void forces_on_plate(const char *motion, double t, double force[7][2]) {
         force[k][0] = -setup.value[fish->at.ax + k];
         force[k][1] = -setup.value[fish->at.ay + k];
     }
-
-    school_clear(&setup);
 }
 
 static const double mass_per_length = 1000 * 3.14159265358979323846 * 0.09 / 4; /* of the plate above, C_A 1 */
@@ -248,7 +242,6 @@ TEST(energy_of_body_and_fluid_is_the_work_of_the_muscle) {
 
         // the energy balance of the body alone finds the same error
         BELOW(fabs(fish->energy_balance), 2 * worst[i]);
-        simulate_free(simulation);
     }
 
     ABOVE(worst[0] / worst[1], 10);
@@ -279,7 +272,6 @@ TEST(no_fish_gains_energy_from_still_fluid) {
         print_message("number %.1f: %.1e J gained of %.1f J, at most %.2f m/s\n", number, gained,
                       measured(simulation)->actuation_work, fastest);
         AT_MOST(gained, 1e-4 * measured(simulation)->actuation_work);
-        simulate_free(simulation);
     }
 }
 
@@ -318,6 +310,4 @@ TEST(reversing_the_wave_reverses_the_path) {
 
     // error of the method: (omega step)^4 of the fastest motion
     NEAR_ARRAY(14, y + fish->at.x, start, 1e-5 * gone, 0);
-    simulate_free(there);
-    simulate_free(back);
 }

@@ -25,7 +25,6 @@ TEST(a_body_that_glides_reads_the_stagnation_pressure_at_the_nose) {
         for (int side = 0; side < 2; side++)
             NEAR(simulation->residual->pressure[0]->sensor[side][i], pressure, 1e-9, 0);
     }
-    simulate_free(simulation);
 }
 
 // ---- the rate of the potential by differences
@@ -154,7 +153,6 @@ static void compare_with_differences(const char *keys, const char *fish, int n_m
         error = fmax(error, fabs(rate[c] - difference));
     }
     NEAR(error / most, 0, bound, 0);
-    simulate_free(simulation);
 }
 
 TEST(the_rate_of_the_potential_is_its_difference_in_time) {
@@ -199,7 +197,6 @@ TEST(both_sides_differ_by_the_jump) {
         NEAR(simulation->school->fish[0].sensor[i], (1 - cos(pi * (c + 0.5) / 48)) / 2, 0, 1e-6);
         NEAR(pressure->sensor[1][i] - pressure->sensor[0][i], jump, 0, 1e-4);
     }
-    simulate_free(simulation);
 }
 
 // a school that is mirrored in x exchanges left and right
@@ -225,5 +222,4 @@ TEST(mirrored_fish_exchange_left_and_right) {
             ABOVE(fabs(one), 0.1);
         }
     }
-    for (int i = 0; i < 2; i++) simulate_free(two[i]);
 }

@@ -56,7 +56,6 @@ TEST(derivatives_agree_with_differences) {
         school_build(&setup, texts[i]);
         school_stir(&setup);
         school_compare(&setup, value_of_flux, jacobian_of_flux, texts[i]);
-        school_clear(&setup);
     }
 }
 
@@ -89,8 +88,6 @@ TEST(it_takes_from_the_body_what_it_leaves_in_the_wake) {
         // the power is never positive, for a trailing and for a leading tail
         NEAR(tail_flux_power(fish, &flow, y), -mass_per_length * wn * wn * fabs(wt) / 2, 1e-12, 1e-12);
     }
-
-    school_clear(&setup);
 }
 
 TEST(it_has_the_velocity_of_a_linear_flow_at_the_tail) {
@@ -118,7 +115,6 @@ TEST(it_has_the_velocity_of_a_linear_flow_at_the_tail) {
     tail_flux_force(fish, &none, y, want);
     ABOVE(fabs(want[0]), 1);
     NEAR_ARRAY(2, force, want, 1e-12, 1e-12);
-    school_clear(&setup);
 }
 
 TEST(its_mass_is_that_of_the_extent_at_the_tail) {
@@ -136,7 +132,6 @@ TEST(its_mass_is_that_of_the_extent_at_the_tail) {
         struct setup setup;
         school_build(&setup, text);
         NEAR(setup.school->fish[0].tail_added_mass, pi / 4 * cases[i].mass, 0, 1e-14);
-        school_clear(&setup);
     }
 }
 
@@ -155,7 +150,6 @@ TEST(a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes) {
         school_run(simulation, 4);
         simulate_measure(simulation);
         speed[i] = simulation->diagnostics->fish[0].speed;
-        simulate_free(simulation);
     }
 
     const double order = log2((speed[1] - speed[0]) / (speed[2] - speed[1]));

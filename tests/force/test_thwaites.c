@@ -110,7 +110,6 @@ TEST(a_plate_has_half_of_blasius_friction_on_each_side) {
         assert_true(isnan(sides.separation[side]));
     }
     NEAR(sides.along, sides.force[0][0] + sides.force[1][0], 0, 1e-12);
-    simulate_free(simulation);
 }
 
 /* A parabolic nose a = r/2: u = k (s/(s + a))^(1/2) in the stream 1, dx = ((s + a)/s)^(1/2) ds; the integral of u^5 is
@@ -135,7 +134,6 @@ TEST(a_thick_plate_has_the_friction_of_the_flow_round_its_nose) {
         }
         print_message("thickness %g: %.5f N, by quadrature %.5f N\n", thickness[i], sides.force[0][0], want);
         for (int side = 0; side < 2; side++) NEAR(sides.force[side][0], want, 0, 0.002);
-        simulate_free(simulation);
     }
 }
 
@@ -146,7 +144,6 @@ TEST(incidence_separates_the_layer_on_one_side) {
         struct simulation *const simulation = plate(i == 0 ? "1, 0.1" : "1, -0.1", 0.12);
         school_run(simulation, 2);
         sides[i] = friction_of(simulation);
-        simulate_free(simulation);
     }
     // the plate points to -x, so that a stream with a positive y component comes from the left
     for (int side = 0; side < 2; side++) {

@@ -28,7 +28,6 @@ static struct cost cost_per_event(const char *text, double end) {
     simulation->integrator->count(simulation->solver, &counts);
     const double n_events = (double)simulation->state->event;
     assert_int_equal(simulation->state->event, lround(end / simulation->school->interval));
-    simulate_free(simulation);
     return (struct cost){(double)counts.steps / n_events, (double)counts.newton_iterations / n_events,
                          (double)counts.jacobian_evaluations / n_events,
                          (double)counts.convergence_failures / n_events};
@@ -98,7 +97,6 @@ TEST(blocks_are_factorised_in_parts_again_after_a_failure) {
     school_run(simulation, 2);
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);
-    simulate_free(simulation);
     print_message("%d of %ld Jacobians in parts\n", n_divided, counts.jacobian_evaluations);
     NEAR(n_divided, (double)counts.jacobian_evaluations, 6, 0);
 }

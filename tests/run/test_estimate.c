@@ -61,7 +61,6 @@ static struct estimate estimate_of(const char *text, double patience) {
     struct simulation *const simulation = school_simulation(text);
     struct estimate estimate = {0};
     school_ok(estimate_run(simulation, patience, &estimate));
-    simulate_free(simulation);
     return estimate;
 }
 
@@ -117,7 +116,6 @@ TEST(every_event_is_as_costly_as_those_measured_after_the_first) {
     ABOVE(first, 1.3 * each);
     double want = 0;
     for (int i = 0; i < 400; i++) want += each * 1e-6 * (1000 + 2 * fmin(i, 300));
-    simulate_free(simulation);
     NEAR(estimate.seconds, want, 0, 0.03);
 }
 
@@ -155,7 +153,6 @@ TEST(a_first_event_that_is_stopped_is_estimated_from_its_part) {
     stop_at_once = 1;
     simulation->stop = &stop_at_once;
     school_ok(estimate_run(simulation, 0.1, &part));
-    simulate_free(simulation);
     assert_int_equal(part.n_events, 0);
     const struct estimate whole = estimate_of(text, 0.1);
     print_message("%.3g s, %.3g s\n", part.seconds, whole.seconds);
@@ -183,7 +180,6 @@ TEST(every_kind_of_wake_can_be_made_up) {
         // 1000 vortices too many would be 0.6 MB
         const double most = peak_memory() + 7e6 + 0.3e6;
         AT_MOST(estimate.bytes, most);
-        simulate_free(simulation);
     }
 }
 
@@ -193,5 +189,4 @@ TEST(a_run_that_fails_at_once_has_no_estimate) {
     struct estimate estimate;
     assert_int_equal(estimate_run(simulation, 1, &estimate), STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "solver.max_steps"));
-    simulate_free(simulation);
 }

@@ -44,7 +44,6 @@ TEST(events_are_at_the_multiples_that_a_decimal_names) {
             assert_int_equal(simulation->state->event, n);
             NEAR(simulation->state->t, fish_event_time(school, n), 0, 0);
         }
-        simulate_free(simulation);
     }
     assert_in_range(n_rounded, 1000, 60000);
 }
@@ -62,7 +61,6 @@ TEST(an_event_without_finite_velocities_is_final) {
         int jumped;
         assert_int_equal(event_next(s, simulation->residual, simulation->consistent, &jumped), STATUS_SOLVER);
         assert_non_null(strstr(status_message(), "has no finite value at t = 0.12"));
-        simulate_free(simulation);
     }
 }
 
@@ -77,7 +75,6 @@ TEST(a_start_that_fails_leaves_no_mode_behind) {
         assert_int_not_equal(event_start(setup.state, setup.residual, initial), STATUS_OK);
         assert_int_equal(setup.residual->at_start, 0);
         assert_int_equal(setup.residual->shed_now, SHED_BY_LAW);
-        school_clear(&setup);
     }
 }
 
@@ -100,7 +97,6 @@ TEST(one_vortex_is_released_at_every_event_with_what_was_shed) {
         NEAR(wake->y[n - 1], y[fish->at.y + 6] + 0.01 * slip[1], 1e-15, 0);
         shed = y[fish->at.circulation];
     }
-    simulate_free(simulation);
 }
 
 // at an event with both release and removal
@@ -130,7 +126,6 @@ static void fields_are_continuous(const char *wake) {
         const struct fish *fish = &simulation->school->fish[f];
         NEAR(after[fish->at.gamma + fish->n_control], before[fish->at.gamma + fish->n_control], 1e-13, 0);
     }
-    simulate_free(simulation);
 }
 
 TEST(fields_are_continuous_across_a_continuous_event) {
@@ -149,7 +144,6 @@ TEST(wake_holds_one_lifetime) {
         // lifetime of ten intervals: the vortex released at 0.02 is removed at 0.22
         assert_int_equal(simulation->state->wake[0].n_vortex, n <= 10 ? n : 10);
     }
-    simulate_free(simulation);
 }
 
 // the slots of a result, in which every wake has room
@@ -177,7 +171,6 @@ TEST(the_largest_wake_of_a_run_is_known_before) {
         // one slot more for a vortex that is released before the oldest is removed
         assert_in_range(wake_most(simulation->school, 1000) - spare - most, 0, i < 3 ? 0 : 1);
         assert_int_equal(wake_most(simulation->school, 3) - spare, 4);
-        simulate_free(simulation);
     }
 }
 
@@ -204,7 +197,6 @@ TEST(impulses_conserve_circulation_and_meet_kutta) {
         school_ok(simulation->integrator->restart(simulation->solver));
     }
     ABOVE(fabs(s->y[fish->at.circulation]), 1e-3);
-    simulate_free(simulation);
 }
 
 TEST(impulses_by_rate_are_the_rate_times_the_interval) {
@@ -224,7 +216,6 @@ TEST(impulses_by_rate_are_the_rate_times_the_interval) {
         NEAR(s->y[fish->at.circulation] - shed, 0.02 * rate, 1e-12, 1e-12);
         school_ok(simulation->integrator->restart(simulation->solver));
     }
-    simulate_free(simulation);
 }
 
 TEST(waypoints_advance_during_a_run) {
@@ -241,7 +232,6 @@ TEST(waypoints_advance_during_a_run) {
     // the fish swims at about 1 m s-1
     AT_LEAST(before, 1);
     BELOW(before, 3);
-    simulate_free(simulation);
 }
 
 TEST(averaged_heading_changes_the_bias_at_a_bounded_rate) {
@@ -260,7 +250,6 @@ TEST(averaged_heading_changes_the_bias_at_a_bounded_rate) {
     NEAR(largest, 1.5, 0, 1e-9);
     // heading too far left: the fish turns right
     ABOVE(before, 0.3);
-    simulate_free(simulation);
 }
 
 // the powers of a muscle have a kink where the rate of its bias jumps: their integral begins again at such an event
@@ -278,7 +267,6 @@ TEST(samples_of_the_power_begin_again_where_the_bias_kinks) {
             const struct diagnostics_power power = diagnostics_power(simulation->residual, 0, now->t, now->y);
             if (i == 1) NEAR(balance->power[0][WORK_ACTUATION], power.actuation, 0, 1e-14);
         }
-        simulate_free(simulation);
     }
 }
 
@@ -295,7 +283,6 @@ static void turn_with_feedforward(const char *modulus, const char *solver, doubl
     *phi0 = simulation->state->y[fish->at.phi0];
     // the control law observes the mean moment
     ABOVE(200 * fabs(simulation->state->control[0].moment), 0.01);
-    simulate_free(simulation);
 }
 
 TEST(feedforward_does_not_depend_on_the_integrator) {
@@ -318,7 +305,6 @@ TEST(a_fish_reaches_its_waypoints) {
     while (s->control[0].waypoint < 3 && s->t < 22) school_ok(simulate_step(simulation));
     print_message("all waypoints at t = %g s\n", s->t);
     assert_int_equal(s->control[0].waypoint, 3);
-    simulate_free(simulation);
 }
 
 // The vortices of the case are in the fluid from the start: the sheet of a fish has a stretch for each vortex, and both
@@ -357,6 +343,5 @@ TEST(vortices_of_the_case_meet_the_fish) {
         for (int k = 0; k < wake_n_sources(wake); k++) sum += wake_source(wake, k);
         sum += bound_sheet_circulation(&simulation->school->fish[0], simulation->state->y);
         NEAR(sum, -0.01, 0, 1e-12);
-        simulate_free(simulation);
     }
 }

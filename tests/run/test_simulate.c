@@ -34,7 +34,6 @@ static void outcomes_of(const char *text, int n_fish, struct outcome *outcome) {
                                       simulation->state->y[fish->at.circulation],
                                       {wake->x[wake->n_vortex - 1], wake->y[wake->n_vortex - 1]}};
     }
-    simulate_free(simulation);
 }
 
 static void same(const struct outcome *got, const struct outcome *want) {
@@ -152,7 +151,6 @@ TEST(places_are_second_order_in_the_shedding_interval) {
         const struct fish *fish = simulation->school->fish;
         at[i].shed = simulation->state->y[fish->at.circulation];
         at[i].tail[0] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
-        simulate_free(simulation);
     }
     // 2.0 to 2.1 for smaller intervals; the tolerance keeps the error of the integrator far below the differences
     const double tail = log2(fabs((at[1].tail[0] - at[0].tail[0]) / (at[2].tail[0] - at[1].tail[0])));
@@ -173,7 +171,6 @@ TEST(positive_bias_turns_right) {
         school_run(simulation, 3);
         simulate_measure(simulation);
         heading[i] = simulation->diagnostics->fish[0].heading;
-        simulate_free(simulation);
     }
     // after three beats; within a beat the heading oscillates by some degrees
     BELOW(heading[0], 170);
@@ -384,7 +381,6 @@ TEST(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one) {
         arena_free(arena);
         assert_int_equal(unlink(path), 0);
     }
-    simulate_free(undisturbed);
 }
 
 TEST(a_signal_during_the_start_leaves_nothing) {
@@ -499,7 +495,6 @@ TEST(a_limp_fish_swims_on) {
         const double speed = simulation->diagnostics->fish[0].speed;
         ABOVE(speed, 0.01);
         BELOW(speed, 1);
-        simulate_free(simulation);
     }
 }
 
@@ -513,7 +508,6 @@ TEST(a_failure_of_a_folded_body_says_so) {
         assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
         const char *const said = strstr(status_message(), "; the body of worm folds: it turns by ");
         assert_int_equal(said != NULL, i == 0);
-        simulate_free(simulation);
     }
 }
 

@@ -30,7 +30,6 @@ static struct audit_result audit_of(const char *text, double t) {
         result.worst = fmax(result.worst, fabs(fish->energy_balance));
         result.put_in = fmax(result.put_in, initial + fabs(fish->actuation_work));
     }
-    simulate_free(simulation);
     return result;
 }
 
@@ -89,7 +88,6 @@ TEST(strains_are_integrated_with_third_order) {
             rod_strains(fish, &muscle, now->y, &(struct rod_strains){strain, rate, stress});
             for (int k = 0; k < fish->n_joints; k++) worst[i] = fmax(worst[i], fabs(balance->strain[k] - strain[k]));
         }
-        simulate_free(simulation);
     }
     const double order = log2(worst[0] / worst[1]);
     print_message("differences of strains %.2e and %.2e, order %.2f\n", worst[0], worst[1], order);
@@ -152,7 +150,6 @@ TEST(after_a_jump_the_balance_goes_on_from_the_powers_of_then) {
         NEAR(balance->power[0][WORK_ALL], total, 1e-9, 1e-9);
         NEAR(balance->power[0][WORK_ACTUATION], fish->actuation_power, 1e-9, 1e-9);
     }
-    simulate_free(simulation);
 }
 
 TEST(total_circulation_vanishes_at_every_event) {
@@ -175,7 +172,6 @@ TEST(total_circulation_vanishes_at_every_event) {
         // circulation has been shed and removed
         ABOVE(fabs(simulation->state->y[simulation->school->fish[0].at.circulation]), 1e-4);
         ABOVE(fabs(simulation->state->wake[0].removed), 1e-6);
-        simulate_free(simulation);
     }
 }
 
@@ -208,7 +204,6 @@ static void change_of_momentum(const char *rtol, double change[3]) {
     // it did move
     simulate_measure(simulation);
     ABOVE(simulation->diagnostics->fish[0].bending_energy, 1e-3);
-    simulate_free(simulation);
 }
 
 TEST(momentum_is_constant_without_fluid) {
@@ -240,7 +235,6 @@ TEST(a_body_that_does_not_travel_has_no_numbers_per_speed) {
     assert_true(isnan(fish->strouhal));
     assert_true(isnan(fish->cost_of_transport));
     assert_true(isfinite(fish->mean_actuation_power));
-    simulate_free(simulation);
 }
 
 static double reversals(int n, const double *bias, double limit) {
@@ -304,7 +298,6 @@ TEST(mean_forces_are_exact_for_forces_that_grow_evenly) {
         // friction times the distance 0.4 over the work 0.4 on the water
         NEAR(of.efficiency, 2 + 2 * i, 1e-13, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(course_is_the_direction_of_the_way_in_the_last_period) {
@@ -345,7 +338,6 @@ TEST(speed_and_strouhal_number_are_those_of_a_driven_plate) {
     for (int k = 0; k < body->n_nodes; k++) behind += body->mass[k] * body->arc[k] / body->total_mass;
     NEAR(fish->com[0], (1.5 - behind) * cos(pi / 3), 1e-9, 0);
     NEAR(fish->com[1], (1.5 - behind) * sin(pi / 3), 1e-9, 0);
-    simulate_free(simulation);
 }
 
 // the mean over the last period does not depend on the frame: the same swim in still water and in a stream
@@ -361,7 +353,6 @@ TEST(means_are_those_of_the_way_through_the_water) {
         school_run(simulation, 1.6);
         simulate_measure(simulation);
         of[i] = simulation->diagnostics->fish[0];
-        simulate_free(simulation);
     }
     NEAR(of[0].ground_speed, of[0].speed, 0, 1e-15);
     // swims to the left: the stream reduces the speed by 0.6
@@ -390,7 +381,6 @@ TEST(stream_at_the_fish_is_integrated_by_trapezoids) {
     NEAR(fish->speed, hypot(1.2, across), 0, 1e-5);
     // the plate moves through the water against the stream
     NEAR(fish->heading_error, atan2(-across, -1.2) * 180 / acos(-1) + 180, 1e-3, 0);
-    simulate_free(simulation);
 }
 
 TEST(drift_is_the_change_of_the_speed_in_a_period) {
@@ -408,7 +398,6 @@ TEST(drift_is_the_change_of_the_speed_in_a_period) {
         simulate_measure(simulation);
         if (i == 1) assert_true(isnan(fish->drift));
     }
-    simulate_free(simulation);
 }
 
 TEST(cost_of_transport_is_what_fluid_and_damping_take) {
@@ -440,7 +429,6 @@ TEST(cost_of_transport_is_what_fluid_and_damping_take) {
         ABOVE(of->cost_of_transport, 0);
         ABOVE(of->cost_of_transport_fluid, 0);
         if (i != 1) ABOVE(of->cost_of_transport_body, 1e-6);
-        simulate_free(simulation);
     }
 }
 
@@ -456,7 +444,6 @@ TEST(cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream) {
         school_run(simulation, 1);
         simulate_measure(simulation);
         cost[i] = simulation->diagnostics->fish[0].cost_of_transport;
-        simulate_free(simulation);
     }
     NEAR(cost[1], cost[0], 0, 1e-6);
     ABOVE(cost[0], 0);
@@ -491,7 +478,6 @@ TEST(thrust_and_power_of_a_held_plate_are_means_over_the_last_period) {
     NEAR(of->leading_edge_most, edge, 0, 1e-4);
     ABOVE(thrust, 0);
     ABOVE(power, thrust);
-    simulate_free(simulation);
 }
 
 /* A plate with damping and a muscle: the drive pays for both, and the power is the same in a stream. */
@@ -525,7 +511,6 @@ TEST(power_of_a_held_plate_is_the_work_of_muscle_and_drive) {
         NEAR(power[i], -of[WORK_FLUID] - of[WORK_DAMPING] + fish->mean_thrust * fish->speed, 0, 0.04);
         ABOVE(-of[WORK_DAMPING], 0.02 * power[i]);
         ABOVE(of[WORK_ACTUATION], 0.02 * power[i]);
-        simulate_free(simulation);
     }
     NEAR(power[1], power[0], 0, 1e-4);
 }
@@ -569,7 +554,6 @@ TEST(forces_by_name_make_up_momentum_and_angular_momentum) {
                  1e-12, 1e-12);
             assert_int_equal(fabs(of->constraint_force[0]) > 0, i == 1);
         }
-        simulate_free(simulation);
     }
 }
 
@@ -593,7 +577,6 @@ static void record_events(const char *text, int n_events, double *value) {
         value[JUMP] = pressure_jump(simulation->residual->pressure[0], fish->n_control / 2, simulation->state->y,
                                     simulation->state->yp);
     }
-    simulate_free(simulation);
 }
 
 // largest difference of a value over the events from the tenth on, and the largest value
@@ -678,7 +661,6 @@ TEST(vortices_inside_an_outline_are_counted) {
     NEAR(diagnostics->fish[0].swept_vortices, 3, 0, 0);
     // the newest own marker lies at the tail
     NEAR(diagnostics->fish[1].swept_vortices, 0, 0, 0);
-    school_clear(&setup);
 }
 
 TEST(a_body_that_sweeps_over_a_wake_loses_no_circulation) {
@@ -697,7 +679,6 @@ TEST(a_body_that_sweeps_over_a_wake_loses_no_circulation) {
         NEAR(simulation->diagnostics->total_circulation, 0, 1e-11, 0);
     }
     AT_LEAST(most, 1);
-    simulate_free(simulation);
 }
 
 TEST(heading_is_unwrapped) {
@@ -714,7 +695,6 @@ TEST(heading_is_unwrapped) {
         diagnostics_remember(setup.residual, setup.state);
         NEAR(state_recall(&setup.state->history[0], 0)->heading, angle, 1e-12, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(the_desired_heading_is_unwrapped_next_to_the_heading) {
@@ -725,7 +705,6 @@ TEST(the_desired_heading_is_unwrapped_next_to_the_heading) {
         simulate_measure(simulation);
         NEAR(simulation->diagnostics->fish->heading, 170, 1e-10, 0);
         NEAR(simulation->diagnostics->fish->desired_heading, want[i], 1e-10, 0);
-        simulate_free(simulation);
     }
 }
 
@@ -738,12 +717,10 @@ TEST(polarisation_and_least_distance_are_those_of_the_school) {
     // headings 180, 180, 90: (2, 1)/3
     NEAR(simulation->diagnostics->polarisation, sqrt(5) / 3, 1e-12, 0);
     NEAR(simulation->diagnostics->least_distance, 0.9, 1e-12, 0);
-    simulate_free(simulation);
     simulation = school_simulation(TIME "fish: [{}]\n");
     simulate_measure(simulation);
     NEAR(simulation->diagnostics->polarisation, 1, 1e-15, 0);
     assert_true(isnan(simulation->diagnostics->least_distance));
-    simulate_free(simulation);
 }
 
 TEST(powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass) {
@@ -770,7 +747,6 @@ TEST(powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass) {
         ABOVE(fabs(force[1]), 0.1);
         const double all = power.drag + power.added_mass + power.wake + power.pressure + power.suction;
         NEAR(power.on_water, all - force[0] * stream[0] - force[1] * stream[1], 1e-9, 1e-9);
-        simulate_free(simulation);
     }
 }
 
@@ -796,5 +772,4 @@ TEST(balances_that_begin_again_are_closed) {
     }
     NEAR(simulation->diagnostics->momentum_balance[0], 0, 1e-12, 0);
     assert_int_equal(now->crossed, -1);
-    simulate_free(simulation);
 }

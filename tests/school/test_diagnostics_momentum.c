@@ -50,7 +50,6 @@ static struct balance run(const char *text, double end) {
     }
     worst.momentum /= size;
     worst.angular /= size;
-    simulate_free(simulation);
     return worst;
 }
 
@@ -162,7 +161,6 @@ TEST(legs_are_booked_by_the_trapezoidal_rule) {
     }
     ABOVE(most, 0);
     ABOVE(change, 0.01 * most);
-    simulate_free(simulation);
 }
 
 TEST(forces_without_a_reaction_have_no_balance) {
@@ -191,7 +189,6 @@ TEST(forces_without_a_reaction_have_no_balance) {
         assert_int_equal(!isnan(of->lost_impulse[2]), cases[i].has_impulse);
         assert_int_equal(!isnan(of->external_impulse[1]), cases[i].has_external);
         assert_int_equal(!isnan(simulation->diagnostics->momentum_balance[0]), cases[i].has_balance);
-        simulate_free(simulation);
     }
 }
 
@@ -207,7 +204,6 @@ static void fill(const char *fluid, const char *start, struct diagnostics_fish *
     simulate_measure(simulation);
     *of = *simulation->diagnostics->fish;
     for (int i = 0; i < 3; i++) imbalance[i] = simulation->diagnostics->momentum_balance[i];
-    simulate_free(simulation);
 }
 
 TEST(impulses_do_not_depend_on_the_origin) {
@@ -250,7 +246,6 @@ TEST(a_restart_begins_the_balance_again) {
         NEAR(simulation->diagnostics->fish->external_impulse[i], 0, 0, 0);
         NEAR(simulation->diagnostics->momentum_balance[i], 0, 0, 0);
     }
-    simulate_free(simulation);
 }
 
 // ---- the tree code
@@ -280,7 +275,6 @@ static void swim_among_many(const char *fluid, double tolerance, double balance[
     *size = simulation->diagnostics->momentum_size;
     const struct flow *const flow = simulation->residual->flow;
     *by_tree = tree_interactions(flow->tree) > 0;
-    simulate_free(simulation);
 }
 
 TEST(it_is_closed_where_the_tree_sums) {

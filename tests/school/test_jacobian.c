@@ -47,7 +47,6 @@ TEST(blocks_are_those_of_the_coupled_fish) {
     assert_int_equal(jacobian->first[4] - jacobian->first[3], 0);
     AT_LEAST(n, 4);
     AT_MOST(n, 6);
-    school_clear(&setup);
 }
 
 TEST(couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks) {
@@ -74,7 +73,6 @@ TEST(couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks) {
     ABOVE(largest, 1e-2);
     free(dense);
     free(vector);
-    school_clear(&setup);
 }
 
 TEST(masked_rows_have_no_couplings) {
@@ -91,7 +89,6 @@ TEST(masked_rows_have_no_couplings) {
         }
     }
     ABOVE(fabs(rows->value[2]), 0);
-    school_clear(&setup);
 }
 
 TEST(threads_change_no_bit) {
@@ -111,8 +108,6 @@ TEST(threads_change_no_bit) {
             free(got);
             school_ok(residual_jacobian(more.residual, more.t, 37, more.state->y, more.jacobian));
         }
-        school_clear(&more);
     }
     free(want);
-    school_clear(&one);
 }

@@ -241,7 +241,6 @@ TEST(jacobian_agrees_with_differences_for_every_option) {
             setup.residual->shed_now = SHED_BY_IMPULSE;
             school_compare(&setup, value_of_school, NULL, variants[i].name);
         }
-        school_clear(&setup);
     }
 }
 
@@ -266,7 +265,6 @@ TEST(jacobian_agrees_with_differences_where_the_suction_ends) {
             setup.school->fish[f].suction_limit = factor[i] * fabs(forces.leading_edge_a0);
         }
         school_compare(&setup, value_of_school, NULL, "limited suction");
-        school_clear(&setup);
     }
 }
 
@@ -297,8 +295,6 @@ static void compare_overtaken(const char *keys, int with_legs) {
         assert_int_equal(flow->kernel->has_legs, with_legs);
         assert_true(flow->fish[f].wake.graded.end.is_overtaken);
     }
-
-    school_clear(&setup);
 }
 
 TEST(jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake) {
@@ -337,7 +333,6 @@ TEST(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else) {
     dense = school_dense_jacobian(setup.jacobian);
     ABOVE(fabs(dense[(size_t)a->gamma * n + (size_t)b->gamma]), 1e-4);
     free(dense);
-    school_clear(&setup);
 }
 
 TEST(unknowns_have_names_kinds_and_scales) {
@@ -381,7 +376,6 @@ TEST(unknowns_have_names_kinds_and_scales) {
     NEAR(residual_scale(setup.school, a->vx) * residual_undamped(setup.school, a->vx),
          10 * residual_scale(setup.school, a->x), 0, 1e-14);
     NEAR(residual_undamped(setup.school, a->x), 1, 0, 0);
-    school_clear(&setup);
 }
 
 TEST(circulation_shed_is_differential_only_with_a_rate) {
@@ -398,7 +392,6 @@ TEST(circulation_shed_is_differential_only_with_a_rate) {
         assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic);
         setup.residual->shed_now = SHED_BY_IMPULSE;
         assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic_at_impulse);
-        school_clear(&setup);
     }
 }
 
@@ -410,7 +403,6 @@ TEST(a_value_that_is_not_finite_asks_for_a_retry_and_says_where) {
     assert_int_equal(residual_evaluate(setup.residual, setup.t, setup.state->y, setup.state->yp, setup.value),
                      STATUS_RETRY);
     assert_non_null(strstr(status_message(), "of fish fish1"));
-    school_clear(&setup);
 }
 
 TEST(rows_of_prescribed_nodes_vanish_on_their_motion_only) {
@@ -434,7 +426,6 @@ TEST(rows_of_prescribed_nodes_vanish_on_their_motion_only) {
     for (int i = fish->at.x; i < fish->at.gamma; i++) y[i] += 1e-3 * (i + 1);
     school_ok(residual_evaluate(setup.residual, setup.t, y, setup.state->yp, setup.value));
     for (int i = fish->at.x; i < fish->at.gamma; i++) NEAR(setup.value[i], 1e-3 * (i + 1), 1e-13, 0);
-    school_clear(&setup);
 }
 
 TEST(load_at_the_tip_accelerates_the_tail_only) {
@@ -450,8 +441,6 @@ TEST(load_at_the_tip_accelerates_the_tail_only) {
     without.value[fish->at.ay + 6] += 2 / fish->mass[6];
     // rounding of accelerations of 1e5
     NEAR_ARRAY(with.school->n_unknowns, with.value, without.value, 1e-10, 1e-14);
-    school_clear(&with);
-    school_clear(&without);
 }
 
 static int n_coupled(const struct residual *residual) {
@@ -481,5 +470,4 @@ TEST(more_fish_couple_when_asked_until_all_do) {
     assert_int_equal(n_coupled(residual), 9);
     assert_int_equal(residual_couple_more(&residual->couplings, y), 0);
     assert_int_equal(n_coupled(residual), 9);
-    school_clear(&setup);
 }

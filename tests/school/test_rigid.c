@@ -34,7 +34,6 @@ TEST(a_rigid_motion_is_read_exactly) {
     NEAR(rigid.turn, 2, 1e-13, 0);
     NEAR(rigid.velocity[0], 0.3 * cos(at.heading) + 0.4 * sin(at.heading), 1e-14, 0);
     NEAR(rigid.velocity[1], 0.4 * cos(at.heading) - 0.3 * sin(at.heading), 1e-14, 0);
-    school_clear(&setup);
 }
 
 TEST(a_place_is_seen_ahead_and_to_the_left) {
@@ -65,7 +64,6 @@ TEST(what_is_added_is_read_and_other_fish_stay) {
     lengths_of(fish, setup.state->y, after);
     NEAR_ARRAY(fish->n_edges, after, before, 1e-14, 0);
     assert_memory_equal(setup.state->y + other->at.x, others, (size_t)(other->at.end - other->at.x) * sizeof *others);
-    school_clear(&setup);
 }
 
 TEST(a_vortex_lies_where_the_faster_tail_would_have_left_it) {
@@ -80,7 +78,6 @@ TEST(a_vortex_lies_where_the_faster_tail_would_have_left_it) {
     NEAR(wake->x[0], x - age * 0.5 * cos(old.heading), 1e-14, 0);
     NEAR(wake->y[0], y - age * 0.5 * sin(old.heading), 1e-14, 0);
     assert_true(wake->version != version);
-    school_clear(&setup);
 }
 
 TEST(a_vortex_lies_where_the_tail_of_a_turning_fish_would_have_left_it) {
@@ -93,7 +90,6 @@ TEST(a_vortex_lies_where_the_tail_of_a_turning_fish_would_have_left_it) {
     rigid_change(setup.school, setup.state, 1, &(struct rigid){.turn = 0.7});
     NEAR(wake->x[1], old.place[0] + cos(angle) * x - sin(angle) * y, 1e-14, 0);
     NEAR(wake->y[1], old.place[1] + sin(angle) * x + cos(angle) * y, 1e-14, 0);
-    school_clear(&setup);
 }
 
 // places turn about the centre of mass and are displaced, all other vectors turn
@@ -132,7 +128,6 @@ TEST(every_vector_of_the_past_turns_with_the_fish) {
         }
         NEAR(is->heading, was->heading + 0.7, 1e-14, 0);
     }
-    simulate_free(simulation);
 }
 
 TEST(means_over_the_last_period_do_not_notice_a_displacement) {
@@ -144,7 +139,6 @@ TEST(means_over_the_last_period_do_not_notice_a_displacement) {
     simulate_measure(simulation);
     NEAR(simulation->diagnostics->fish[1].speed, speed, 1e-13, 0);
     NEAR(simulation->diagnostics->fish[1].heading, heading + 0.2 * 180 / M_PI, 1e-11, 0);
-    simulate_free(simulation);
 }
 
 TEST(means_over_the_last_period_do_not_notice_a_turn_in_a_stream) {
@@ -168,7 +162,6 @@ TEST(means_over_the_last_period_do_not_notice_a_turn_in_a_stream) {
     NEAR(now->strouhal, before.strouhal, 0, rounding);
     // the path through the water turns, the desired heading does not
     NEAR(now->heading_error, before.heading_error + 0.7 * 180 / M_PI, 1e-10, 0);
-    simulate_free(simulation);
 }
 
 TEST(the_drift_of_a_stream_goes_on_with_the_stream_that_is_there) {
@@ -180,7 +173,6 @@ TEST(the_drift_of_a_stream_goes_on_with_the_stream_that_is_there) {
     const struct sample *const newest = state_recall(&simulation->state->history[0], 0);
     NEAR(newest->stream[0], 0.4 + 0.5 * newest->com[1], 1e-14, 0);
     NEAR(newest->stream[1], 0, 1e-14, 0);
-    simulate_free(simulation);
 }
 
 TEST(the_tail_of_a_fish_that_turns_faster_goes_faster) {
@@ -201,7 +193,6 @@ TEST(the_tail_of_a_fish_that_turns_faster_goes_faster) {
         NEAR(wake->tail_velocity[i], y[at[i]], 1e-14, 0);
         NEAR(wake->slip[i], fluid[i] - y[at[i]], 1e-14, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(all_vectors_of_fish_and_wake_turn_together) {
@@ -228,5 +219,4 @@ TEST(all_vectors_of_fish_and_wake_turn_together) {
     NEAR_ARRAY(2, wake->tail_tangent, ((double[]){-0.8, 0.6}), 1e-14, 0);
     NEAR_ARRAY(2, wake->slip, ((double[]){-12, 11}), 1e-14, 0);
     NEAR(state_recall(history, 0)->heading, 1 + M_PI / 2, 1e-15, 0);
-    school_clear(&setup);
 }

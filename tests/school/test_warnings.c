@@ -34,7 +34,6 @@ static void expect_warnings(const char *text, double t, const char *expected) {
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, t);
     expect_of(simulation, expected);
-    simulate_free(simulation);
 }
 
 TEST(a_short_run_of_a_default_fish_has_none) {
@@ -118,7 +117,6 @@ TEST(the_worst_fish_is_named) {
                                   simulation->residual->scratch, line));
         assert_non_null(strstr(line, i == 0 ? "b (the worst of 2 fish)" : "a (the worst of 2 fish)"));
         assert_non_null(strstr(line, "only 5 events"));
-        simulate_free(simulation);
     }
 }
 
@@ -155,7 +153,6 @@ TEST(an_open_energy_balance_is_told_within_the_first_beat) {
     expect_of(simulation, "");
     *work = closed + 0.012 * fish->total_mass;
     expect_of(simulation, "e");
-    simulate_free(simulation);
 }
 
 // the first interval after a sudden transverse start of a plate; not in the first beat
@@ -196,7 +193,6 @@ TEST(a_run_that_diverges_in_its_first_beat_says_so) {
                               simulation->residual->scratch, line));
     assert_non_null(strstr(line, "fish2 has diverged"));
     y[at->vy + 3] = kept[1];
-    simulate_free(simulation);
 }
 
 TEST(speeds_that_the_case_gives_are_no_divergence) {
@@ -223,7 +219,6 @@ TEST(speeds_that_the_case_gives_are_no_divergence) {
         const struct layout *const at = &simulation->school->fish[0].at;
         const double *const y = simulation->state->y;
         least = fmin(least, fmax(fabs(y[at->circulation]), hypot(y[at->vx], y[at->vy])));
-        simulate_free(simulation);
     }
     ABOVE(least, 700);
 }
@@ -298,14 +293,12 @@ TEST(a_run_shorter_than_two_beats_has_no_means_of_a_cycle) {
     expect_line(simulation, WARNING_BEATS, "the run has 1.5 beats of fish2: means and powers are not those of a cycle");
     school_run(simulation, 0.2);
     expect_line(simulation, WARNING_BEATS, NULL);
-    simulate_free(simulation);
 
     // a plate that does not oscillate has no cycle
     simulation =
         school_simulation(SCHOOL_DEFAULTS TIME "fish: [{force: reactive, motion: {prescribed: all, speed: 1}}]\n");
     school_run(simulation, 0.05);
     expect_line(simulation, WARNING_BEATS, NULL);
-    simulate_free(simulation);
 }
 
 TEST(the_limits_are_those_of_the_manual) {
@@ -346,7 +339,6 @@ TEST(the_limits_are_those_of_the_manual) {
     simulation->state->t = 2.01;
     all->momentum_balance[0] = all->momentum_balance[1] = 0.0299 / sqrt(2);
     expect_line(simulation, WARNING_MOMENTUM, NULL);
-    simulate_free(simulation);
 }
 
 TEST(the_energy_balance_is_compared_with_the_largest_work) {
@@ -373,7 +365,6 @@ TEST(the_energy_balance_is_compared_with_the_largest_work) {
     // no part of nothing
     now->energy_balance = 1;
     expect_line(simulation, WARNING_ENERGY, NULL);
-    simulate_free(simulation);
 }
 
 TEST(the_advice_is_enough) {
@@ -411,7 +402,6 @@ TEST(the_advice_is_enough) {
     // 16 events in a beat of 0.16 s, of which 20 take 0.008 s each
     fish->period = 0.16;
     expect_line(simulation, WARNING_EVENTS, "only 16 events: reduce time.shedding_interval to 0.008 s for 20 events");
-    simulate_free(simulation);
 }
 
 TEST(a_mode_is_slow_below_the_frequency_of_the_beat) {
@@ -423,7 +413,6 @@ TEST(a_mode_is_slow_below_the_frequency_of_the_beat) {
     expect_line(simulation, WARNING_MODES, NULL);
     fish->frequency = 1.01 * slowest;
     expect_line(simulation, WARNING_MODES, "the slowest bending mode of fish1");
-    simulate_free(simulation);
 }
 
 TEST(a_small_gap_is_told_where_nothing_repels) {
@@ -444,7 +433,6 @@ TEST(a_small_gap_is_told_where_nothing_repels) {
         expect_line(simulation, WARNING_CONTACT,
                     warns ? "b and a touch or cross at t = 0.7 s: later results are invalid; set contact.action: repel"
                           : "b and a touch or cross at t = 0.7 s: later results are invalid");
-        simulate_free(simulation);
     }
 }
 
@@ -468,7 +456,6 @@ TEST(divergence_is_a_hundred_times_the_speeds_of_the_case) {
         expect_line(simulation, WARNING_DIVERGENCE, NULL);
         *circulation = -1.001 * 100 * (beat + more) * 2;
         expect_line(simulation, WARNING_DIVERGENCE, "fish1 has diverged");
-        simulate_free(simulation);
     }
 }
 
@@ -496,7 +483,6 @@ TEST(the_worst_divergence_of_all_events_is_kept) {
     expect_line(simulation, WARNING_DIVERGENCE, "fish2 has diverged");
     *shed = NAN;
     expect_line(simulation, WARNING_DIVERGENCE, "fish2 has diverged");
-    simulate_free(simulation);
 }
 
 TEST(a_balance_that_is_not_finite_is_open_and_no_row) {
@@ -528,7 +514,6 @@ TEST(a_balance_that_is_not_finite_is_open_and_no_row) {
     assert_int_equal(warnings_refuse(school, simulation->state, all), STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "of 'balance.work' is nan"));
     work[WORK_FLUID] = kept;
-    simulate_free(simulation);
 
     // strips of different depths have no momentum balance
     struct simulation *const unequal = school_simulation(
@@ -538,5 +523,4 @@ TEST(a_balance_that_is_not_finite_is_open_and_no_row) {
     school_ok(warnings_refuse(unequal->school, unequal->state, unequal->diagnostics));
     unequal->state->t = 5;
     expect_line(unequal, WARNING_MOMENTUM, NULL);
-    simulate_free(unequal);
 }

@@ -49,7 +49,7 @@ static void set_up(struct configurations *both, double angle, double bend) {
     both->n = both->setup.school->n_unknowns;
     double **const arrays[] = {&both->reference, &both->current, &both->field, &both->image};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        *arrays[i] = calloc((size_t)both->n, sizeof(double));
+        *arrays[i] = arena_new(test_arena(), (size_t)both->n, sizeof(double));
         assert_non_null(*arrays[i]);
     }
     memcpy(both->reference, both->setup.state->y, (size_t)both->n * sizeof(double));
@@ -62,14 +62,6 @@ static void set_up(struct configurations *both, double angle, double bend) {
     for (int i = 0; i < both->n; i++) both->image[i] = both->field[i] = school_random(&both->setup);
     corotation_set_reference(both->corotation, both->reference);
     corotation_set_current(both->corotation, both->current);
-}
-
-static void clear(struct configurations *both) {
-    free(both->reference);
-    free(both->current);
-    free(both->field);
-    free(both->image);
-    school_clear(&both->setup);
 }
 
 static double product(const struct fish *fish, const double *a, const double *b) {
@@ -102,7 +94,6 @@ TEST(each_map_is_the_inverse_of_the_other) {
     corotation_map(both.corotation, true, both.image);
     // rounding of three rotations and the inverse rotations
     NEAR_ARRAY(both.n, both.image, both.field, 1e-14, 0);
-    clear(&both);
 }
 
 TEST(the_inner_product_weighted_with_masses_is_preserved) {
@@ -119,7 +110,6 @@ TEST(the_inner_product_weighted_with_masses_is_preserved) {
         NEAR(product(fish, both.image + fish->at.x, both.image + fish->at.ax),
              product(fish, both.field + fish->at.x, both.field + fish->at.ax), 1e-13, 0);
     }
-    clear(&both);
 }
 
 TEST(momenta_are_mapped_as_velocities_are) {
@@ -134,7 +124,6 @@ TEST(momenta_are_mapped_as_velocities_are) {
         assert_memory_equal(both.image + fish->at.px, both.image + fish->at.vx, size);
         if (!back) ABOVE(fabs(both.image[fish->at.px] - both.field[fish->at.vx]), 1e-3);
     }
-    clear(&both);
 }
 
 TEST(a_rigid_motion_is_mapped_to_a_rigid_motion) {
@@ -156,7 +145,6 @@ TEST(a_rigid_motion_is_mapped_to_a_rigid_motion) {
             NEAR_ARRAY(2 * fish->n_nodes, got, want, 1e-14, 0);
         }
     }
-    clear(&both);
 }
 
 // clear the end nodes of a, make a orthogonal to n orthonormal fields, and normalise a
@@ -197,7 +185,6 @@ TEST(a_node_rotates_by_the_mean_of_its_edges) {
     memcpy(want, image, 2 * (size_t)fish->n_nodes * sizeof *want);
     corotation_map(both.corotation, false, both.image);
     NEAR_ARRAY(2 * fish->n_nodes, image, want, 1e-13, 0);
-    clear(&both);
 }
 
 TEST(where_nodes_are_prescribed_vectors_rotate_with_the_nodes) {
@@ -210,7 +197,6 @@ TEST(where_nodes_are_prescribed_vectors_rotate_with_the_nodes) {
         NEAR(both.image[fish->at.vx + k], cos(0.8) * x - sin(0.8) * y, 1e-14, 0);
         NEAR(both.image[fish->at.vy + k], sin(0.8) * x + cos(0.8) * y, 1e-14, 0);
     }
-    clear(&both);
 }
 
 TEST(other_unknowns_are_not_mapped) {
@@ -226,7 +212,6 @@ TEST(other_unknowns_are_not_mapped) {
     corotation_set_reference(both.corotation, both.current);
     corotation_map(both.corotation, false, both.image);
     NEAR_ARRAY(both.n, both.image, both.field, 0, 0);
-    clear(&both);
 }
 
 // the elastic part of the Jacobian of fish f, accelerations by positions
@@ -298,7 +283,6 @@ TEST(an_elastic_matrix_rotates_with_the_body) {
             // neighbouring edges
             const double error = largest_difference(n, mapped, new), without = largest_difference(n, old, new);
             BELOW(error, (bends[i] > 0 ? 0.1 : 1e-12) * without);
-            clear(&both);
         }
     }
 }
@@ -336,6 +320,5 @@ TEST(a_mapped_elastic_force_has_no_net_force_and_moment) {
             }
         }
         ABOVE(unmapped, 1e-3 * fish->total_mass * largest);
-        clear(&both);
     }
 }

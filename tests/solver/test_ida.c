@@ -35,7 +35,6 @@ TEST(a_body_with_prescribed_nodes_follows_the_given_motion) {
                 NEAR_ARRAY(6, got, want, 1e-6, 1e-6);
             }
         }
-        simulate_free(simulation);
     }
 }
 
@@ -49,7 +48,6 @@ TEST(continuous_events_cost_no_restart) {
     }
     const struct integrator_counts continuous = counts_of(simulation);
     AT_MOST((double)continuous.steps / 100, 5);
-    simulate_free(simulation);
     simulation =
         school_simulation("time: {end: 1, shedding_interval: 0.01}\nwake: {shedding: impulsive}\nfish: [{}]\n");
     school_run(simulation, 1);
@@ -57,7 +55,6 @@ TEST(continuous_events_cost_no_restart) {
     ABOVE(impulsive.steps, continuous.steps);
     // every event evaluates the Jacobian again
     AT_LEAST(impulsive.jacobian_evaluations, 100);
-    simulate_free(simulation);
 }
 
 TEST(steps_divide_the_interval_and_keep_the_jacobian) {
@@ -76,7 +73,6 @@ TEST(steps_divide_the_interval_and_keep_the_jacobian) {
     // except where IDA itself changed the step
     assert_in_range(n_equal, 40, 50);
     BELOW(before.jacobian_evaluations, 50);
-    simulate_free(simulation);
 }
 
 TEST(a_very_stiff_body_keeps_its_course) {
@@ -91,7 +87,6 @@ TEST(a_very_stiff_body_keeps_its_course) {
         const struct fish *fish = simulation->school->fish;
         tail[i][0] = simulation->state->y[fish->at.x + fish->n_nodes - 1];
         tail[i][1] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
-        simulate_free(simulation);
     }
     // a few times the default tolerance
     NEAR(tail[0][0], tail[1][0], 5e-5, 0);
@@ -112,7 +107,6 @@ TEST(counts_go_on_across_restarts) {
         AT_MOST(now.jacobian_evaluations, now.newton_iterations);
         before = now;
     }
-    simulate_free(simulation);
 }
 
 TEST(a_restart_without_a_jump_does_not_change_the_path) {
@@ -125,7 +119,6 @@ TEST(a_restart_without_a_jump_does_not_change_the_path) {
         school_run(simulation, 0.6);
         const struct fish *fish = simulation->school->fish;
         tail[i] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
-        simulate_free(simulation);
     }
     // the error of a few hundred steps at 1e-8
     NEAR(tail[1], tail[0], 1e-6, 0);
@@ -139,7 +132,6 @@ TEST(too_many_steps_end_with_time_and_remedy) {
     assert_int_equal(status, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "solver.max_steps"));
     assert_non_null(strstr(status_message(), "t = "));
-    simulate_free(simulation);
 }
 
 TEST(equations_without_a_finite_value_end_with_time_fish_and_reason) {
@@ -152,7 +144,6 @@ TEST(equations_without_a_finite_value_end_with_time_fish_and_reason) {
     assert_non_null(strstr(status_message(), "nemo"));
     // the cause, not what IDA says about it
     assert_non_null(strstr(status_message(), "of fish nemo has no finite value at t = 0.1"));
-    simulate_free(simulation);
 }
 
 TEST(an_edge_that_is_pressed_to_nothing_is_named) {
@@ -166,7 +157,6 @@ TEST(an_edge_that_is_pressed_to_nothing_is_named) {
     assert_int_equal(status, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "edge 5 of fish nemo is pressed to"));
     assert_non_null(strstr(status_message(), "body.modulus is too low"));
-    simulate_free(simulation);
 }
 
 TEST(kinds_of_unknowns_are_the_same_in_all_intervals) {
@@ -185,7 +175,6 @@ TEST(kinds_of_unknowns_are_the_same_in_all_intervals) {
             residual_kinds(simulation->residual, now);
             NEAR_ARRAY(65, now, first, 0, 0);
         }
-        simulate_free(simulation);
     }
 }
 
@@ -196,7 +185,6 @@ TEST(an_unreachable_tolerance_ends_with_a_message) {
     while (status == STATUS_OK && simulation->state->t < 0.2) status = simulate_step(simulation);
     assert_int_equal(status, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "t = "));
-    simulate_free(simulation);
 }
 
 TEST(an_iteration_that_ignores_other_fish_ends_with_a_remedy) {
@@ -214,5 +202,4 @@ TEST(an_iteration_that_ignores_other_fish_ends_with_a_remedy) {
     assert_int_equal(status, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "no coupling of 120 of 120 pairs of fish, which are more than 0 m apart"));
     assert_non_null(strstr(status_message(), "increase solver.coupling_distance"));
-    simulate_free(simulation);
 }

@@ -51,7 +51,6 @@ TEST(rates_of_parabolas_are_exact_from_the_second_step_on) {
     integrator_rates_step(rates, 0.5, setup.state);
     const int i = fish->at.gamma;
     NEAR(setup.state->yp[i], (parabola(i, 0.5) - parabola(i, 0.4)) / 0.1, 1e-11, 0);
-    school_clear(&setup);
 }
 
 // ---- every row of the table of methods can be integrated
@@ -85,7 +84,6 @@ static double tail_after(const char *word, const char *step, const char *fish_te
     *order = counts.order;
     const struct fish *fish = simulation->school->fish;
     const double tail = simulation->state->y[fish->at.y + fish->n_nodes - 1];
-    simulate_free(simulation);
     return tail;
 }
 

@@ -66,7 +66,7 @@ static void build(struct system *system, const char *text, double relative) {
     school_build(&system->setup, text);
     school_stir(&system->setup);
     system->n = system->setup.school->n_unknowns;
-    system->scale = calloc(3 * (size_t)system->n, sizeof *system->scale);
+    NEW(test_arena(), system->scale, 3 * system->n);
     assert_non_null(system->scale);
     system->b = system->scale + system->n;
     system->x = system->b + system->n;
@@ -84,11 +84,6 @@ static void uncouple(struct system *system) {
     const unsigned char none[49] = {0};  // 7 fish at most
     jacobian_couple(system->setup.jacobian, none, system->setup.residual->couplings.pattern);
     assert_int_equal(system->setup.jacobian->n_couplings, 0);
-}
-
-static void clear(struct system *system) {
-    free(system->scale);
-    school_clear(&system->setup);
 }
 
 // Gauss with row pivoting on rows scaled to one
@@ -154,7 +149,6 @@ TEST(uncoupled_fish_need_no_iteration) {
     // in place
     school_ok(linear_solve(system.linear, system.b, system.b));
     NEAR_ARRAY(system.n, system.b, system.x, 0, 0);
-    clear(&system);
 }
 
 TEST(coupled_fish_are_solved_to_the_tolerance) {
@@ -174,7 +168,6 @@ TEST(coupled_fish_are_solved_to_the_tolerance) {
         ABOVE(counts.iterations, before);
         BELOW(counts.iterations, 40);
         before = counts.iterations;
-        clear(&system);
     }
 }
 
@@ -197,7 +190,6 @@ TEST(sheets_of_many_points_are_eliminated_by_lapack) {
         assert_int_equal(n_full, masked ? 2 : 3);
         school_ok(linear_solve(system.linear, system.b, system.x));
         BELOW(error_of(&system), 1e-9);
-        clear(&system);
     }
 }
 
@@ -239,7 +231,6 @@ TEST(a_rod_that_is_nearly_singular_is_not_eliminated_alone) {
     // without the sheet's inverse nothing has one
     set_pair(jacobian->own[0], school->fish[0].at.gamma + 4, 1);
     assert_int_equal(linear_setup(system.linear), STATUS_RETRY);
-    clear(&system);
 }
 
 TEST(a_small_residual_ends_the_iteration) {
@@ -264,7 +255,6 @@ TEST(a_small_residual_ends_the_iteration) {
         BELOW(error, fmax(1e-5, 50 * tolerance.absolute / largest));
     }
     assert_int_equal(fewest, 0);
-    clear(&system);
 }
 
 TEST(patterns_are_analysed_once) {
@@ -294,7 +284,6 @@ TEST(patterns_are_analysed_once) {
     assert_int_equal(counts.klu.factorisations, 8);
     school_ok(linear_solve(system.linear, system.b, system.x));
     BELOW(error_of(&system), 1e-4);
-    clear(&system);
 }
 
 // write derivatives of impermeability by the circulation shed into the blocks; returns how much they differ
@@ -357,7 +346,6 @@ TEST(the_column_of_the_circulation_shed_can_be_updated) {
         school_ok(linear_solve(system.linear, system.b, system.x));
         BELOW(error_of(&system), 1e-9);
         free(by_shed);
-        clear(&system);
     }
 }
 
@@ -393,7 +381,6 @@ TEST(bad_factors_are_replaced_by_ones_with_other_pivots) {
         school_ok(linear_solve(system.linear, system.b, system.x));
         BELOW(error_of(&system), 1e-14);
     }
-    clear(&system);
 }
 
 TEST(a_block_that_becomes_nearly_singular_gets_new_pivots) {
@@ -412,7 +399,6 @@ TEST(a_block_that_becomes_nearly_singular_gets_new_pivots) {
         school_ok(linear_setup(system.linear));
         assert_int_equal(linear_count(system.linear).klu.factorisations, passes[i].factorisations);
     }
-    clear(&system);
 }
 
 // a block in which a first pivot e makes another entry of its factors grow to 1/e, and a pivot of 2e-9 hides e from the
@@ -442,7 +428,6 @@ TEST(a_block_whose_factors_grow_gets_new_pivots) {
         school_ok(linear_setup(system.linear));
         assert_int_equal(linear_count(system.linear).klu.factorisations, factorisations[i]);
     }
-    clear(&system);
 }
 
 TEST(a_singular_block_is_final_at_first_and_a_retry_later) {
@@ -465,7 +450,6 @@ TEST(a_singular_block_is_final_at_first_and_a_retry_later) {
         assert_int_equal(linear_setup(system.linear), want[i]);
         if (want[i] != STATUS_OK) assert_non_null(strstr(status_message(), "fish6"));
     }
-    clear(&system);
 }
 
 TEST(a_right_hand_side_without_a_finite_value_asks_for_a_retry) {
@@ -478,7 +462,6 @@ TEST(a_right_hand_side_without_a_finite_value_asks_for_a_retry) {
     memset(system.b, 0, (size_t)system.n * sizeof *system.b);
     school_ok(linear_solve(system.linear, system.b, system.x));
     NEAR_ARRAY(system.n, system.x, system.b, 0, 0);
-    clear(&system);
 }
 
 // n fish in a square, the text of a case
@@ -537,7 +520,6 @@ TEST(a_school_costs_in_proportion_to_its_couplings) {
         AT_LEAST(iterations, 1);
         AT_MOST(iterations, 15);
         assert_int_equal(counts.klu.factorisations, cases[i].n);
-        clear(&system);
     }
 }
 
@@ -564,7 +546,6 @@ TEST(threads_change_no_bit) {
             memcpy(first, system.x, (size_t)system.n * sizeof *first);
         }
         assert_memory_equal(system.x, first, (size_t)system.n * sizeof *first);
-        clear(&system);
     }
     free(first);
 }

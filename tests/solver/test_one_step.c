@@ -32,7 +32,6 @@ static double tail_at_end(const char *text, const char *solver) {
     school_run(simulation, 0.4);
     const struct fish *fish = &simulation->school->fish[simulation->school->n_fish - 1];
     const double tail = simulation->state->y[fish->at.y + fish->n_nodes - 1];
-    simulate_free(simulation);
     return tail;
 }
 
@@ -89,7 +88,6 @@ TEST(soft_rods_of_many_nodes_converge_whatever_the_step) {
             "        start: {speed: 0}, motion: {prescribed: head, heave: 0.05, frequency: 1, speed: 0}}]\n",
             steps[i % 3], nodes[i / 3]);
         school_run(simulation, 0.1);
-        simulate_free(simulation);
     }
 }
 
@@ -106,7 +104,6 @@ TEST(a_jacobian_is_kept_for_many_steps) {
     assert_int_equal(counts.newton_iterations, 160);
     assert_int_equal(counts.residual_evaluations, counts.newton_iterations);
     assert_in_range(counts.jacobian_evaluations, 1, 20);
-    simulate_free(simulation);
 }
 
 TEST(the_rate_of_the_shed_circulation_is_a_difference_of_events) {
@@ -117,14 +114,12 @@ TEST(the_rate_of_the_shed_circulation_is_a_difference_of_events) {
             "fish: [{wave: {ramp: 0}, control: {law: heading, desired_heading: 150}}]\n",
             methods[i]);
         school_shed_event_by_event(simulation);
-        simulate_free(simulation);
     }
 }
 
 static void fails(const char *text, const char *message) {
     struct simulation *const simulation = school_simulation(text);
     school_fails(simulation, message);
-    simulate_free(simulation);
 }
 
 TEST(a_failure_tells_the_time) {
@@ -171,7 +166,6 @@ static void ends_of(const char *solver, double tail[2], double *imbalance) {
         tail[f] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
         *imbalance = fmax(*imbalance, fabs(of->energy_balance / of->actuation_work));
     }
-    simulate_free(simulation);
 }
 
 TEST(steps_converge_with_the_square_of_their_length) {
@@ -202,7 +196,6 @@ TEST(steps_back_lead_to_the_start) {
     for (int k = 0; k < 14; k++) y[at.vx + k] = -y[at.vx + k];
     school_run(simulation, 0.4);
     for (int k = 0; k < 14; k++) NEAR(y[at.x + k], start[k], 1e-12, 0);
-    simulate_free(simulation);
 }
 
 TEST(all_equations_hold_at_events) {
@@ -220,20 +213,17 @@ TEST(all_equations_hold_at_events) {
     assert_int_equal(counts.residual_evaluations, 1000);
     assert_int_equal(counts.order, 2);
     NEAR(counts.step_size, 0.001, 0, 0);
-    simulate_free(simulation);
 }
 
 TEST(verlet_has_the_rate_of_the_circulation_over_events) {
     struct simulation *const simulation = open_with(RODS, "method: verlet, step: 0.001");
     school_shed_event_by_event(simulation);
-    simulate_free(simulation);
 }
 
 static void verlet_fails(const char *solver, const char *message) {
     static const char stiff[] = TIMES "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+7, " NO_DAMPING "}}]\n";
     struct simulation *const simulation = open_with(stiff, solver);
     school_fails(simulation, message);
-    simulate_free(simulation);
 }
 
 TEST(a_failure_of_verlet_tells_the_time) {

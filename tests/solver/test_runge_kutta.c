@@ -19,7 +19,6 @@ static double tail_at_end(const char *method, double step, double rtol) {
     school_run(simulation, 0.4);
     const struct fish *fish = &simulation->school->fish[0];
     const double tail = simulation->state->y[fish->at.y + fish->n_nodes - 1];
-    simulate_free(simulation);
     return tail;
 }
 
@@ -52,7 +51,6 @@ TEST(one_evaluation_serves_the_end_of_a_step_and_the_start_of_the_next) {
         const struct integrator_counts *const counts = &simulation->totals;
         assert_int_equal(counts->steps, 400);
         assert_in_range(counts->residual_evaluations, 400 * methods[i].stages + 19, 400 * methods[i].stages + 25);
-        simulate_free(simulation);
     }
 }
 
@@ -68,7 +66,6 @@ TEST(a_body_without_forces_coasts_as_far_as_its_speed_says) {
         school_run(simulation, 0.4);
         // rounding of 2000 steps; with steps of its own choice a method lets the stiff body tremble within rtol
         NEAR(fabs(simulation->state->y[simulation->school->fish[0].at.x] - before), 0.2, i % 2 ? 1e-6 : 1e-12, 0);
-        simulate_free(simulation);
     }
 }
 
@@ -90,7 +87,6 @@ TEST(an_unstable_step_ends_with_a_message_that_tells_the_time) {
     // which one, and where
     assert_non_null(strstr(status_message(), "the largest velocity is v"));
     assert_non_null(strstr(status_message(), "] of fish fish1;"));
-    simulate_free(simulation);
 }
 
 TEST(a_torn_body_is_no_result) {
@@ -101,7 +97,6 @@ TEST(a_torn_body_is_no_result) {
         "fish: [{nodes: 7, sheet_points: 5, body: {modulus: 1.0e+7, bending_damping: 0,\n"
         "        stretching_damping: 0}}]\n");
     school_fails(simulation, "unstable at t = ");
-    simulate_free(simulation);
 }
 
 TEST(impulses_restart_the_explicit_method_too) {
@@ -115,7 +110,6 @@ TEST(impulses_restart_the_explicit_method_too) {
         school_run(simulation, 0.4);
         const struct fish *fish = &simulation->school->fish[0];
         tail[i] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
-        simulate_free(simulation);
     }
     NEAR(tail[0], tail[1], 1e-6, 0);
 }
@@ -138,7 +132,6 @@ TEST(a_failure_without_a_reason_is_not_explained_by_an_old_message) {
         assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
         silent_from = INFINITY;
         if (!strstr(status_message(), " s: the equations have no finite value; ")) fail_msg("%s", status_message());
-        simulate_free(simulation);
     }
 }
 
@@ -149,5 +142,4 @@ TEST(the_rate_of_the_shed_circulation_is_a_difference_of_events) {
         "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4}, wave: {ramp: 0},\n"
         "        control: {law: heading, desired_heading: 150}}]\n");
     school_shed_event_by_event(simulation);
-    simulate_free(simulation);
 }

@@ -34,7 +34,6 @@ TEST(a_depth_that_varies_is_none) {
         "     depth_table: [0.2, 0.3, 0.25, 0.1]}}\n");
     NEAR(impulse_depth(&setup.school->fish[0]), 0.6, 1e-15, 0);
     assert_true(isnan(impulse_depth(&setup.school->fish[1])));
-    school_clear(&setup);
 }
 
 // moments of all vortices shed by a fish: present moments plus booked losses
@@ -73,7 +72,6 @@ static double wither(const char *text) {
     }
     ABOVE(n_events, 10);
     const double lost = setup.state->momentum[0].lost[0];
-    school_clear(&setup);
     return lost;
 }
 
@@ -110,7 +108,6 @@ TEST(what_is_dropped_goes_to_the_tail) {
     const double *const booked = setup.state->momentum[0].lost;
     NEAR(booked[0], before.x - after.x - lost * tail[0], 1e-15, 1e-13);
     NEAR(booked[1], before.y - after.y - lost * tail[1], 1e-15, 1e-13);
-    school_clear(&setup);
 }
 
 TEST(what_merging_changes_is_booked) {
@@ -135,5 +132,4 @@ TEST(what_merging_changes_is_booked) {
     BELOW(wake->n_vortex, N - 20);
     NEAR_ARRAY(3, after, before, 1e-12, 1e-12);
     ABOVE(fabs(setup.state->momentum[0].lost[2]), 1e-6);
-    school_clear(&setup);
 }

@@ -25,7 +25,6 @@ TEST(state_before_the_start_is_placed_and_empty) {
         // one beat of 1 s and one more
         assert_int_equal(start->history[f].capacity, 51);
     }
-    school_clear(&setup);
 }
 
 TEST(a_fish_without_a_beat_remembers_one_sample) {
@@ -39,7 +38,6 @@ TEST(a_fish_without_a_beat_remembers_one_sample) {
         NEAR(state_recall(&setup.state->history[0], 0)->heading, i, 0, 0);
         assert_int_equal(setup.state->history[0].n, 1);
     }
-    school_clear(&setup);
 }
 
 TEST(samples_take_memory_for_the_events_of_the_run) {
@@ -68,8 +66,6 @@ TEST(samples_take_memory_for_the_events_of_the_run) {
     }
     assert_int_equal(period.state->history[0].n, 51);
     for (int age = 0; age < 51; age++) NEAR(state_recall(&period.state->history[0], age)->heading, 200 - age, 0, 0);
-    school_clear(&period);
-    school_clear(&setup);
 }
 
 TEST(a_kept_state_returns_without_a_copy_of_the_samples) {
@@ -93,7 +89,6 @@ TEST(a_kept_state_returns_without_a_copy_of_the_samples) {
         }
     }
     state_free(before);
-    school_clear(&setup);
 }
 
 TEST(history_recalls_the_newest_ones_in_order) {
@@ -154,7 +149,6 @@ TEST(rates_of_quartics_are_exact_after_five_events_without_a_jump) {
                 if (has_rate && n % 8 >= 4) NEAR(setup.state->yp[i], slope_of_quartic(i, t), 1e-10, 0);
             }
         }
-        school_clear(&setup);
     }
 }
 
@@ -323,8 +317,6 @@ TEST(a_copy_has_every_value_and_knows_that_its_wakes_have_changed) {
             assert_memory_equal(to, from, n * state_table_size(row));
         }
     }
-    school_clear(&one);
-    school_clear(&other);
 }
 
 TEST(indices_that_no_run_has_are_refused) {
@@ -353,5 +345,4 @@ TEST(indices_that_no_run_has_are_refused) {
     school_ok(state_table_check(s, setup.school));
     s->event = -1;
     assert_int_equal(state_table_check(s, setup.school), STATUS_FILE);
-    school_clear(&setup);
 }

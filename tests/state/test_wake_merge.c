@@ -132,7 +132,6 @@ static void check_bound(const char *text) {
         AT_MOST(largest, setup.school->wake_merge * n_merged / N);
         ABOVE(largest, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(the_velocity_at_the_bodies_changes_by_less_than_the_bound) {
@@ -158,7 +157,6 @@ TEST(nothing_is_merged_near_a_body_or_where_one_will_be) {
     const int n = merge_all(&setup);
     assert_int_equal(count_between(wake, 1, 2.999), 199);
     BELOW(count_between(wake, 8, 11), 250);
-    school_clear(&setup);
 
     // the other fish swims left below the wake, and passes most of the wake at a distance of 1
     trail(&setup, TIME
@@ -167,7 +165,6 @@ TEST(nothing_is_merged_near_a_body_or_where_one_will_be) {
     const int n_passed = merge_all(&setup);
     assert_int_equal(count_between(&setup.state->wake[0], 3.005, 8.995), 599);
     BELOW(n_passed, n);
-    school_clear(&setup);
 }
 
 TEST(the_newest_vortices_are_never_merged) {
@@ -194,7 +191,6 @@ TEST(the_newest_vortices_are_never_merged) {
         // older ones are merged
         for (int k = 0; k < 3; k++) NEAR_ARRAY(16, now[k] + wake->n_vortex - 16, newest[k], 0, 0);
         BELOW(wake->n_vortex, N / 2);
-        school_clear(&setup);
     }
 }
 
@@ -220,7 +216,6 @@ TEST(a_pair_that_dies_before_a_body_comes_is_merged) {
     }
     assert_int_equal(n_near, 400);
     BELOW(n_far, 500);
-    school_clear(&setup);
 }
 
 /* The distance of the body from which on the second and third of 19 markers are merged; reversed: the four markers in
@@ -243,7 +238,6 @@ static double merging_distance(int reversed) {
         setup.state->event = WAKE_MERGE_EVENTS;
         wake_merge(setup.school, setup.state);
         distance[wake->n_merged > 0] = middle;
-        school_clear(&setup);
     }
     return distance[0];
 }
@@ -270,7 +264,6 @@ TEST(wakes_take_turns) {
     // births stay in order
     const struct wake *const wake = &setup.state->wake[0];
     for (int i = 1; i < wake->n_vortex; i++) ABOVE(wake->birth[i], wake->birth[i - 1]);
-    school_clear(&setup);
 }
 
 TEST(without_the_key_nothing_is_merged) {
@@ -278,5 +271,4 @@ TEST(without_the_key_nothing_is_merged) {
     trail(&setup, TIME "wake: {lifetime: 16}\n" TWO);
     assert_int_equal(merge_all(&setup), 0);
     assert_int_equal(setup.state->wake[0].n_vortex, N);
-    school_clear(&setup);
 }

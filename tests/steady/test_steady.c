@@ -24,7 +24,6 @@ static void run_long(const char *text, int n_beats, struct brute *brute) {
     struct steady_setup setup;
     steady_setup_open(&setup, text);
     run_on(&setup.problem.map, n_beats, brute);
-    steady_setup_close(&setup);
 }
 
 TEST(speed_and_multiplier_are_those_of_a_long_run) {
@@ -39,7 +38,6 @@ TEST(speed_and_multiplier_are_those_of_a_long_run) {
     // the error of the run decays in ten beats by the tenth power of the largest multiplier, to 1 %
     NEAR(setup.real[0], pow((brute[24].speed - brute[49].speed) / (brute[14].speed - brute[49].speed), 0.1), 0.01, 0);
     NEAR(setup.imaginary[0], 0, 0, 0);
-    steady_setup_close(&setup);
 }
 
 /* The steps between two events are limited so that a beat fails after a large increment of the speed, but no beat of a
@@ -55,8 +53,6 @@ TEST(a_beat_that_fails_after_an_increment_is_repeated_after_a_smaller_one) {
     school_ok(steady_search_run(&free.problem));
     // the tolerance, 1e-5 lengths per beat, over the decay of the error in a beat, at least a tenth
     NEAR(limited.problem.map.last[0].speed, free.problem.map.last[0].speed, 1e-4, 0);
-    steady_setup_close(&limited);
-    steady_setup_close(&free);
 }
 
 // a plate with a part of the leading-edge suction of attached flow; a slower plate loses more suction
@@ -81,7 +77,6 @@ TEST(a_plate_with_limited_suction_has_the_speed_of_a_long_run) {
     // a tenth of the suction
     const struct pressure_forces *const forces = &simulation->diagnostics->fish[0].pressure;
     ABOVE(hypot(forces->separation[0], forces->separation[1]), 0.05 * hypot(forces->suction[0], forces->suction[1]));
-    steady_setup_close(&setup);
 }
 
 // a run converges to 1e-4 in 25 to 45 beats
@@ -99,7 +94,6 @@ static void circle(const char *text, double least_turn, int most_beats) {
     assert_in_range(setup.problem.map.n_beats, 1, most_beats);
     steady_setup_multipliers(&setup);
     BELOW(setup.real[0], 1);
-    steady_setup_close(&setup);
 }
 
 TEST(a_fish_that_is_steered_to_one_side_goes_in_a_circle) {
@@ -135,7 +129,6 @@ TEST(a_fish_that_coasts_has_the_same_speed_from_two_starts) {
         steady_setup_multipliers(&setup);
         ABOVE(setup.real[0], 0.97);
         BELOW(setup.real[0], 1);
-        steady_setup_close(&setup);
     }
     NEAR(speed[0], speed[1], 0, 3e-3);
 }
@@ -158,7 +151,6 @@ TEST(circulation_that_is_added_changes_nothing_else) {
     // Kelvin: the bound circulation is opposite to the shed circulation, less the circulation of the nascent stretch
     NEAR(bound_sheet_circulation(fish, now->y) - bound, -0.1, 0, 0.05);
     NEAR(wake_source(&now->wake[0], 3), source, 1e-14, 0);
-    steady_setup_close(&setup);
 }
 
 TEST(a_law_of_control_brings_the_heading_to_where_a_run_has_it) {
@@ -176,11 +168,9 @@ TEST(a_law_of_control_brings_the_heading_to_where_a_run_has_it) {
     steady_setup_open(&run, text);
     run_on(&run.problem.map, 50, brute);
     steady_map_read(&run.problem.map, 1, &heading, &reached);
-    steady_setup_close(&run);
     NEAR(found, reached, 1e-3, 0);
     NEAR(setup.problem.map.last[0].speed, brute[49].speed, 0, 1e-4);
     NEAR(setup.real[0], pow((brute[24].speed - brute[49].speed) / (brute[14].speed - brute[49].speed), 0.1), 0.01, 0);
-    steady_setup_close(&setup);
 }
 
 TEST(the_state_stays_where_its_multipliers_are_taken) {
@@ -198,7 +188,6 @@ TEST(the_state_stays_where_its_multipliers_are_taken) {
     // four runs of eight beats each: one undisturbed, three with an increment
     assert_int_equal(setup.n_multiplier_beats, 32);
     assert_int_equal(setup.problem.map.n_beats, 3);
-    steady_setup_close(&setup);
 }
 
 // the mean change of the speed in the last four of eight beats, over 1 minus the largest multiplier, that of the speed
@@ -216,7 +205,6 @@ TEST(the_step_of_the_multipliers_leads_to_the_fixed_point) {
     const double step = (at[1][0] - at[0][0]) / 4 / (1 - setup.real[0]);
     print_message("step of the speed: %.3e, by the largest multiplier %.3e\n", setup.way[0], step);
     NEAR(setup.way[0], step, 0, 0.3);
-    steady_setup_close(&setup);
 }
 
 TEST(scales_are_lengths_and_beats) {
@@ -230,7 +218,6 @@ TEST(scales_are_lengths_and_beats) {
         const struct steady_unknown unknown = {0, (enum steady_quantity)i};
         NEAR(steady_map_scale(&setup.problem.map, unknown), want[i], 0, 1e-15);
     }
-    steady_setup_close(&setup);
 }
 
 TEST(a_held_fish_is_steady_when_its_forces_repeat) {
@@ -246,7 +233,6 @@ TEST(a_held_fish_is_steady_when_its_forces_repeat) {
     steady_setup_beats(&setup, 10);
     NEAR(setup.problem.map.last[0].thrust, thrust, 0, 1e-3);
     NEAR(setup.problem.map.last[0].driving, power, 0, 1e-4);
-    steady_setup_close(&setup);
 }
 
 TEST(a_beat_without_a_finite_value_is_not_steady) {
@@ -268,7 +254,6 @@ TEST(a_beat_without_a_finite_value_is_not_steady) {
         *values[i] = kept;
     }
     assert_true(isfinite(steady_map_residual(&setup.problem.map)));
-    steady_setup_close(&setup);
 }
 
 TEST(two_beats_in_a_row_are_steady) {
@@ -285,7 +270,6 @@ TEST(two_beats_in_a_row_are_steady) {
     // the ramp, two more beats, and two that are steady
     const int ramp = (int)ceil(setup.simulation->school->fish[0].ramp / setup.problem.map.period * (1 - 1e-9));
     assert_int_equal(setup.problem.map.n_beats, ramp + 4);
-    steady_setup_close(&setup);
 }
 
 TEST(mean_powers_are_the_works_of_a_beat) {
@@ -313,7 +297,6 @@ TEST(mean_powers_are_the_works_of_a_beat) {
         NEAR(beat->actuation + drive,
              now->cost_of_transport * setup.simulation->school->fish[0].total_mass * now->speed, 1e-12, 1e-6);
         ABOVE(fabs(i == 0 ? beat->actuation : beat->driving), 1e-3);
-        steady_setup_close(&setup);
     }
 }
 
@@ -357,7 +340,6 @@ TEST(mean_forces_are_trapezoids_over_the_events_of_a_beat) {
     ABOVE(beat->rms_power, 1e-3);
     ABOVE(fabs(thrusts.value[0]), 1e-6);
     ABOVE(fabs(thrusts.value[20]), 1e-6);
-    steady_setup_close(&setup);
 }
 
 TEST(a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without) {
@@ -368,7 +350,6 @@ TEST(a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without) {
         setup.problem.map.last[0] = (struct steady_beat){.speed = 1, .turn = 0.3};
         setup.problem.map.before[0] = (struct steady_beat){.speed = 1, .turn = 0.1};
         NEAR(steady_map_residual(&setup.problem.map), 0.2 / (2 * acos(-1)) / (has_bias ? 1 : 10), 0, 1e-12);
-        steady_setup_close(&setup);
     }
 }
 
@@ -395,7 +376,6 @@ TEST(of_a_held_fish_thrust_and_power_must_repeat) {
         // speeds in lengths per beat of 1 s
         NEAR(steady_map_residual(map), changes[i].residual, 1e-14, 0);
     }
-    steady_setup_close(&setup);
 }
 
 TEST(headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is_steered) {
@@ -417,7 +397,6 @@ TEST(headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is_steere
     NEAR(heading[1], remainder(from[1] - from[0], turn), 1e-12, 0);
     NEAR(heading[2], remainder(from[2] - from[0], turn), 1e-12, 0);
     ABOVE(fabs(heading[0]), 0.05);
-    simulate_free(simulation);
 }
 
 TEST(a_formation_turns_with_its_first_fish) {
@@ -439,7 +418,6 @@ TEST(a_formation_turns_with_its_first_fish) {
     school_ok(steady_map_add(&map, 2, seen + 1, (const double[]){0.3, -0.2}));
     steady_map_read(&map, 3, seen, after);
     NEAR_ARRAY(3, after, ((double[]){before[0], before[1] + 0.3, before[2] - 0.2}), 1e-10, 0);
-    simulate_free(simulation);
 }
 
 TEST(a_fish_is_not_placed_on_another) {
@@ -455,7 +433,6 @@ TEST(a_fish_is_not_placed_on_another) {
     const double add[] = {value[2] - value[0] + 0.1, value[3] - value[1]};
     assert_int_equal(steady_map_add(&map, 2, place, add), STATUS_SOLVER);
     if (!strstr(status_message(), "makes b and c overlap")) fail_msg("%s", status_message());
-    simulate_free(simulation);
 }
 
 TEST(speed_and_slip_are_those_through_the_water) {
@@ -471,7 +448,6 @@ TEST(speed_and_slip_are_those_through_the_water) {
     steady_map_read(&setup.problem.map, 2, unknown, value);
     NEAR(value[0], c * u + s * v, 1e-12, 0);
     NEAR(value[1], c * v - s * u, 1e-12, 0);
-    steady_setup_close(&setup);
 }
 
 TEST(what_can_have_no_steady_state_is_refused_with_the_reason) {
@@ -538,5 +514,4 @@ TEST(the_balance_of_momentum_begins_with_the_rows_and_is_kept) {
     beat_balance(map, again);
     // to the tolerance of the solver
     NEAR_ARRAY(3, again, first, 1e-6, 0);
-    steady_setup_close(&setup);
 }

@@ -35,7 +35,6 @@ TEST(a_follower_finds_the_place_where_it_is_as_fast_as_its_leader) {
     // the formation is stable: beats without a search keep the places
     steady_setup_beats(&setup, 5);
     BELOW(steady_map_residual(&setup.problem.map), 3e-3);
-    steady_setup_close(&setup);
 }
 
 TEST(between_two_stable_places_is_one_that_the_follower_leaves) {
@@ -57,7 +56,6 @@ TEST(between_two_stable_places_is_one_that_the_follower_leaves) {
         steady_setup_beats(&setup, 5);
         ABOVE(side * (setup.problem.map.last[1].place[0] - place), 1);
     }
-    steady_setup_close(&setup);
 }
 
 TEST(fish_that_swim_freely_keep_the_place_that_is_found) {
@@ -76,7 +74,6 @@ TEST(fish_that_swim_freely_keep_the_place_that_is_found) {
     // the released follower keeps the place for some beats; an initial error of 0.1 lengths would drift by 0.05
     steady_setup_beats(&setup, 4);
     for (int i = 0; i < 2; i++) NEAR(setup.problem.map.last[1].place[i], found.place[i], 0.02, 0);
-    steady_setup_close(&setup);
 }
 
 TEST(a_diamond_of_plates_is_found_and_stable) {
@@ -98,7 +95,6 @@ TEST(a_diamond_of_plates_is_found_and_stable) {
     school_ok(steady_map_add(&setup.problem.map, 1, &ahead, &add));
     steady_setup_beats(&setup, 20);
     for (int f = 1; f < 4; f++) NEAR(setup.problem.map.last[f].place[0], place[f], 0.02, 0);
-    steady_setup_close(&setup);
 }
 
 TEST(a_follower_of_a_held_leader_takes_its_speed) {
@@ -110,7 +106,6 @@ TEST(a_follower_of_a_held_leader_takes_its_speed) {
     NEAR(setup.problem.map.last[1].speed, 4, 2 * 3e-3, 0);
     NEAR(spacing(&setup), 1, 0.15, 0);
     BELOW(hypot(setup.real[0], setup.imaginary[0]), 1);
-    steady_setup_close(&setup);
     // the follower falls back behind a faster leader with a small amplitude
     steady_setup_fails(PLATES
                        "fish: [{motion: {surge: given, speed: 6, heave: 0.03}}, {start: {position: [5.2, 0]}}]\n",
@@ -130,7 +125,6 @@ TEST(from_between_two_places_it_goes_where_the_fish_would) {
     const double *const place = setup.problem.map.last[1].place;
     NEAR(place[0], -1.55, 0.05, 0);
     NEAR(place[1], 0, 0.1, 0);
-    steady_setup_close(&setup);
 }
 
 /* Two fish and a search of at most 20 beats. */

@@ -57,7 +57,6 @@ TEST(without_water_they_are_those_of_a_clamped_beam) {
         NEAR(found.omega[i], omega, 0, within[j]);
         NEAR(found.rate[i], -0.01 * (pow(found.rate[i], 2) + pow(found.omega[i], 2)), 0, 1e-5);
     }
-    simulate_free(found.simulation);
 }
 
 // modes that decay alike, here not at all, differ by their frequencies
@@ -76,7 +75,6 @@ TEST(modes_without_damping_are_told_apart) {
         NEAR(found.omega[i], omega, 0, within[j]);
         NEAR(found.rate[i], 0, 1e-6, 0);
     }
-    simulate_free(found.simulation);
 }
 
 #define STREAM(velocity)                         \
@@ -97,7 +95,6 @@ TEST(a_run_grows_as_fast) {
     NEAR(found.values.growth, found.rate[0], 0, 0);
     NEAR(found.values.growth_frequency, found.omega[0] / (2 * 3.14159265358979), 0, 1e-12);
     const double rate = found.rate[0], period = 1 / found.values.growth_frequency;
-    simulate_free(found.simulation);
 
     struct simulation *const run = school_simulation(STREAM("[1, 0]") "fish: [{" FLAG
                                                                       "start: {heading: 179.9994, speed: "
@@ -117,7 +114,6 @@ TEST(a_run_grows_as_fast) {
     BELOW(most[1] - least[1], 0.05);
     // the mean over the interval leaves errors of the square of omega Dt
     NEAR(log((most[1] - least[1]) / (most[0] - least[0])) / (3 * period), rate, 0.004, 0);
-    simulate_free(run);
 }
 
 TEST(they_do_not_depend_on_who_moves) {
@@ -129,8 +125,6 @@ TEST(they_do_not_depend_on_who_moves) {
         NEAR(still.rate[i], moving.rate[i], 1e-6, 1e-5);
         NEAR(still.omega[i], moving.omega[i], 1e-6, 1e-5);
     }
-    simulate_free(still.simulation);
-    simulate_free(moving.simulation);
 }
 
 /* The modes of a flag in a stream, with the keys of the wake. */
@@ -154,7 +148,6 @@ TEST(the_lifetime_of_a_long_wake_does_not_matter) {
         NEAR(found[k].rate[0], found[0].rate[0], 2e-4, 0);
         NEAR(found[k].omega[0], found[0].omega[0], 2e-4, 0);
     }
-    for (int k = 0; k < 3; k++) simulate_free(found[k].simulation);
 }
 
 /* Growth has no limit: only modes that decay within the life of the wake are left out. */
@@ -165,8 +158,6 @@ TEST(a_mode_that_grows_fast_in_a_long_wake_is_found) {
     ABOVE(longer.rate[0] * 24, 6);
     NEAR(longer.rate[0], brief.rate[0], 0, 1e-2);
     NEAR(longer.omega[0], brief.omega[0], 0, 1e-2);
-    simulate_free(brief.simulation);
-    simulate_free(longer.simulation);
 }
 
 TEST(bodies_far_apart_have_the_modes_of_one) {
@@ -179,14 +170,11 @@ TEST(bodies_far_apart_have_the_modes_of_one) {
         NEAR(two.rate[j], one.rate[i], 1e-5, 0);
         NEAR(two.omega[j], one.omega[i], 1e-5, 0);
     }
-    simulate_free(one.simulation);
     // flags side by side interact
     struct found beside;
     find(&beside, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}, {" FLAG
                                    "start: {position: [0, 0.3], heading: 180, speed: 0}}]\n");
     ABOVE(fabs(beside.rate[0] - two.rate[0]) + fabs(beside.omega[0] - two.omega[0]), 0.02);
-    simulate_free(beside.simulation);
-    simulate_free(two.simulation);
 }
 
 /* A flag with the clamp downstream is a column under the load pi/4 rho U^2 of slender bodies, which buckles. */
@@ -209,7 +197,6 @@ TEST(what_has_no_stiffness_left_diverges) {
         for (int k = 0; k < found.values.n_exponents; k++) n_diverging += found.rate[k] > 1e-3 && !(found.omega[k] > 0);
         assert_int_equal(n_diverging, i);
         assert_int_equal(found.values.stiffness < 0, i);
-        simulate_free(found.simulation);
     }
 }
 
@@ -232,7 +219,6 @@ TEST(the_simulation_stays_where_it_is) {
     assert_int_equal(found.simulation->state->event, 0);
     assert_int_equal(found.simulation->state->wake[0].n_vortex, 0);
     free(before);
-    simulate_free(found.simulation);
 }
 
 TEST(multipliers_become_exponents) {

@@ -93,7 +93,6 @@ TEST(shapes_are_turned_and_scaled_to_the_first_edge) {
         NEAR(y[fish->at.x + k + 1] - y[fish->at.x + k], fish->edge_length * cos(angle), 1e-13, 0);
         NEAR(y[fish->at.y + k + 1] - y[fish->at.y + k], fish->edge_length * sin(angle), 1e-13, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(a_file_of_other_bodies_is_refused) {
@@ -109,7 +108,6 @@ TEST(a_file_of_other_bodies_is_refused) {
     school_build(&setup, TIME "fish: [{nodes: 7, sheet_points: 13, motion: {prescribed: head}}]\n");
     assert_int_equal(steady_start_shapes(test_arena(), path, setup.school, setup.state->y), STATUS_FILE);
     assert_non_null(strstr(status_message(), "does not have 7 nodes"));
-    school_clear(&setup);
 
     // a body with more nodes in the file, and one that is padded
     for (int is_padded = 0; is_padded < 2; is_padded++) {
@@ -123,6 +121,5 @@ TEST(a_file_of_other_bodies_is_refused) {
         const enum status status = steady_start_shapes(test_arena(), path, setup.school, setup.state->y);
         assert_int_equal(status, is_padded ? STATUS_OK : STATUS_FILE);
         if (!is_padded) assert_non_null(strstr(status_message(), "does not have 4 nodes"));
-        school_clear(&setup);
     }
 }

@@ -37,7 +37,6 @@ static void is_where_a_run_ends(const struct answer *answer, const char *text, d
     const struct fish *const fish = &run->school->fish[0];
     school_run(run, end);
     for (int i = fish->at.x; i < fish->at.vx; i++) NEAR(answer->simulation->state->y[i], run->state->y[i], within, 0);
-    simulate_free(run);
 }
 
 TEST(a_run_with_damping_comes_to_it) {
@@ -59,12 +58,10 @@ TEST(a_run_with_damping_comes_to_it) {
     ABOVE(fabs(found.fish[0].deflection), 0.02);
     // the starting vortex is far downstream by now; the remaining transient decays slowly
     is_where_a_run_ends(&found, pressure, 60, 1e-4);
-    simulate_free(found.simulation);
     answer(&found, across);
     school_ok(found.status);
     ABOVE(found.fish[0].deflection, 0.5);
     is_where_a_run_ends(&found, across, 70, 1e-4);
-    simulate_free(found.simulation);
 }
 
 // Helmbold's lift at AR 1 is 0.236 of two dimensions; no modes
@@ -100,7 +97,6 @@ TEST(a_body_of_finite_span_has_legs_to_infinity) {
 
     school_ok(steady_modes_find(found.simulation, &found.values));
     assert_int_equal(found.values.n_exponents, 0);
-    simulate_free(found.simulation);
 }
 
 TEST(forces_are_those_along_and_across_the_stream) {
@@ -117,7 +113,6 @@ TEST(forces_are_those_along_and_across_the_stream) {
     NEAR(found.fish[0].force[0], -found.fish[0].lift, 1e-12, 0);
     NEAR(found.fish[0].speed, 2, 1e-12, 0);
     NEAR(found.values.stiffness, 1, 0, 0);
-    simulate_free(found.simulation);
 }
 
 // a body of finite span that is held in a stream, and the same body that its drive carries through another stream
@@ -140,7 +135,6 @@ TEST(forces_on_a_carried_body_are_those_in_the_relative_stream) {
     const struct flow_fish *rings = &found[1].simulation->residual->flow->fish[0];
     NEAR(rings->downstream[0], 1 / hypot(1, 0.4), 1e-14, 0);
     NEAR(rings->downstream[1], -0.4 / hypot(1, 0.4), 1e-14, 0);
-    for (int i = 0; i < 2; i++) simulate_free(found[i].simulation);
 }
 
 // a flag with the clamp downstream is a column under the load pi/4 rho U^2 of slender bodies: Euler buckling
@@ -161,7 +155,6 @@ TEST(it_diverges_where_a_column_does) {
         school_ok(found.status);
         NEAR(found.values.stiffness, cos(pi / 2 * part[i]), 0.01, 0);
         NEAR(found.fish[0].deflection, 0, 1e-12, 0);
-        simulate_free(found.simulation);
     }
 }
 
@@ -181,7 +174,6 @@ TEST(natural_curvature_is_the_shape_at_rest) {
     const double last[2] = {y[fish->at.x + 8] - y[fish->at.x + 7], y[fish->at.y + 8] - y[fish->at.y + 7]};
     // the first edge points backwards from the nose; seven joints rotate the last edge
     NEAR(cos(atan2(last[1], last[0]) - (fish->start_heading - 3.14159265358979323846 + 7 * each)), 1, 1e-9, 0);
-    simulate_free(found.simulation);
 }
 
 static void refused(const char *text, const char *words) {
@@ -189,7 +181,6 @@ static void refused(const char *text, const char *words) {
     answer(&found, text);
     assert_int_equal(found.status, STATUS_CASE);
     if (!strstr(status_message(), words)) fail_msg("\"%s\" is not in \"%s\"", words, status_message());
-    simulate_free(found.simulation);
 }
 
 TEST(what_can_have_no_equilibrium_is_refused_with_the_reason) {
@@ -230,5 +221,4 @@ TEST(where_there_is_none_it_says_how_far_the_stream_can_grow) {
     const struct school *const school = found.simulation->school;
     NEAR(school->velocity[0], 0.01, 0, 0);
     NEAR(school->fish[0].load_tip[0], -1000, 0, 0);
-    simulate_free(found.simulation);
 }

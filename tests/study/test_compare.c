@@ -27,13 +27,6 @@ static const char repeated[] = CASE
 static const double wall_times[] = {100, 90, 2, 3, 10, 1, 1, 20, 3};
 enum { N_MEMBERS = sizeof wall_times / sizeof *wall_times };
 
-/* Memory of the tests of this file. */
-static struct arena *test_arena(void) {
-    static struct arena *arena;
-    if (!arena) arena = arena_create(NULL, "a test");
-    return arena;
-}
-
 static struct case_values parse(const char *text) {
     struct case_values values;
     assert_int_equal(case_parse(&values, text, strlen(text), "small.yaml", NULL, 0, NULL), STATUS_OK);

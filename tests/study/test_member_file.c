@@ -3,13 +3,6 @@
 #include "result_fixture.h"
 #include "study/member_file.h"
 
-/* Memory of the tests of this file. */
-static struct arena *test_arena(void) {
-    static struct arena *arena;
-    if (!arena) arena = arena_create(NULL, "a test");
-    return arena;
-}
-
 /* Rows at uneven times. Fish 0 has a period of 0.5 s, which ends in the last four rows, fish 1 one of 1 s, longer than
  * the run. */
 enum { N_ROWS = 5 };

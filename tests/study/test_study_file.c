@@ -39,13 +39,6 @@ TEST(a_given_value_gives_the_order_with_two_levels_each) {
     assert_int_equal(convergence_judge_exact(3, sizes, missing, one).verdict, CONVERGENCE_UNKNOWN);
 }
 
-/* Memory of the tests of this file. */
-static struct arena *test_arena(void) {
-    static struct arena *arena;
-    if (!arena) arena = arena_create(NULL, "a test");
-    return arena;
-}
-
 static const char refined[] =
     "format: 1\ntime: {end: 1, shedding_interval: 0.1}\nfish: [{}, {}]\n"
     "sweep:\n"

@@ -97,7 +97,6 @@ TEST(the_flow_of_a_row_is_that_of_the_run) {
         NEAR_ARRAY(N_POINTS, here.v, there.v, 1e-12, 0);
         NEAR_ARRAY(N_POINTS, here.v_x, there.v_x, 1e-10, 0);
         arena_free(arena);
-        simulate_free(run);
     }
 }
 
@@ -141,7 +140,6 @@ TEST(it_is_the_sum_of_all_wakes_and_sheets) {
         NEAR(points.v[i], sum[1], 1e-13, 0);
         NEAR(points.v_x[i] - points.u_y[i], sum[2], 1e-11, 0);
     }
-    simulate_free(run);
 }
 
 // the tail of a body feels all sheets and wakes as another body does
@@ -174,7 +172,6 @@ TEST(at_a_tail_it_is_what_the_tail_feels) {
         NEAR(points.v[f], felt[f][1], 1e-12, 0);
     }
     arena_free(arena);
-    simulate_free(run);
 }
 
 // ---- rows that there are not

@@ -25,7 +25,6 @@ TEST(the_panel_integrates_the_inverse_square_root) {
         for (int i = 0; i < SHEET_PANEL; i++) sum += panel->part[i] * pow(panel->xi[i], k - 0.5);
         NEAR(sum, 1 / (k + 0.5), 1e-15, 1e-14);
     }
-    school_clear(&setup);
 }
 
 TEST(a_marker_is_born_at_the_tail_at_every_event) {
@@ -51,8 +50,6 @@ TEST(a_marker_is_born_at_the_tail_at_every_event) {
                                     wake->v[n] - y[fish->at.vy + fish->n_nodes - 1]};
         ABOVE(relative[0] * tail.t[0] + relative[1] * tail.t[1], -1e-12);
     }
-
-    simulate_free(simulation);
 }
 
 TEST(a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail) {
@@ -71,7 +68,6 @@ TEST(a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail) {
         NEAR(relative[1] * tail.t[0] - relative[0] * tail.t[1], wake->slip[1] * tail.t[0] - wake->slip[0] * tail.t[1],
              1e-12, 0);
     }
-    simulate_free(simulation);
 }
 
 #define SPAN(word) "sheet: {curve: smooth}\nfish: [{force: pressure, sheet_points: 33, pressure: {span: " word "}}]\n"
@@ -106,7 +102,6 @@ TEST(every_view_has_the_same_circulation) {
         const double all = setup.state->y[setup.school->fish->at.circulation] - label[0];
         ABOVE(fabs(all), 0.01);
         for (int i = 0; i < 3; i++) NEAR(sum[i], all, 1e-13, 0);
-        school_clear(&setup);
     }
 }
 
@@ -133,7 +128,6 @@ TEST(stretches_decay_by_labels_only_if_rings_must_stay_closed) {
             NEAR(label[i + 1] - label[i], k == 0 ? by_stretch : by_labels, 1e-15, 1e-13);
             ABOVE(fabs(by_labels - by_stretch), 1e-4);
         }
-        school_clear(&setup);
     }
 }
 
@@ -153,7 +147,6 @@ TEST(the_smoothing_tapers_to_nothing_at_the_tail) {
     }
 
     ABOVE(sheet->n_released, 20);
-    simulate_free(simulation);
 }
 
 // beside the body the taper length falls from the length behind the tail, at right angles, to that beside the body, at
@@ -171,7 +164,6 @@ TEST(the_taper_is_shorter_beside_the_body) {
         const double q = along >= 0 ? 1 : fmax(0, 1 + 2 * along), length = 0.1 + 0.3 * ramp_step(q);
         NEAR(sheet_taper(fish, from, tangent), 0.1 * (1 - exp(-pow(r / length, 4))), 1e-14, 1e-11);
     }
-    school_clear(&setup);
 }
 
 // beyond 2.36 times the longer taper the taper is negligible in any direction; slightly closer the taper is finite
@@ -192,7 +184,6 @@ TEST(far_from_the_tail_the_smoothing_is_full) {
     // one spacing of the bound sheet beside the body: with the defaults 0.023 L at 0.05 L
     NEAR(sheet_taper(fish, (const double[]){-0.1, 0.02}, along), 0.2 * (1 - exp(-pow(0.10198 / 0.2, 4))), 1e-6, 0);
     NEAR(sheet_taper(fish, (const double[]){0, 0}, along), 0, 0, 0);
-    school_clear(&setup);
 }
 
 TEST(total_circulation_vanishes) {
@@ -205,5 +196,4 @@ TEST(total_circulation_vanishes) {
     }
 
     assert_int_equal(simulation->state->wake[0].n_vortex, 16);
-    simulate_free(simulation);
 }

@@ -50,7 +50,6 @@ TEST(path_follows_a_velocity_that_is_linear_in_time) {
     wake_advance(wake, interval);
     NEAR(wake->x[0], 1 + 3 * interval + 4 * interval * interval, 1e-15, 0);
     NEAR(wake->y[0], 2 - interval + interval * interval, 1e-15, 0);
-    school_clear(&setup);
 }
 
 // error after one turn on a circle with n intervals
@@ -106,7 +105,6 @@ TEST(strength_fades_as_the_ramp_over_the_last_part_of_life) {
     NEAR(at[0], 2 * (1 - ramp_step(0.525)), 1e-14, 0);
     NEAR(at[2], 2 * (1 - ramp_step(0.575)), 1e-14, 0);
     NEAR(at[1], (at[0] + at[2]) / 2, 1e-15, 0);
-    school_clear(&setup);
 }
 
 // between two events the strength is linear, also in the interval in which the decay begins
@@ -133,7 +131,6 @@ TEST(strength_within_an_interval_joins_the_strengths_at_its_ends) {
                 NEAR(wake_lost(wake, setup.school, age, q * 0.01), 2 * (1 - want), 1e-14, 0);
             }
         }
-        school_clear(&setup);
     }
 }
 
@@ -153,7 +150,6 @@ TEST(old_vortices_go_and_leave_their_circulation) {
     NEAR(wake->removed, 0.6, 1e-15, 0);
     wake_remove_old(wake, setup.school, 0.16);
     assert_int_equal(wake->n_vortex, 6);
-    school_clear(&setup);
 }
 
 TEST(without_fade_a_vortex_vanishes_within_one_interval) {
@@ -173,7 +169,6 @@ TEST(without_fade_a_vortex_vanishes_within_one_interval) {
     wake_remove_old(wake, setup.school, 0.12);
     assert_int_equal(wake->n_vortex, 0);
     NEAR(wake_lost(wake, setup.school, 0.12, 0), 2, 0, 0);
-    school_clear(&setup);
 }
 
 TEST(a_stretch_is_as_old_as_its_newer_marker) {
@@ -194,7 +189,6 @@ TEST(a_stretch_is_as_old_as_its_newer_marker) {
         ABOVE(lost, 0.1);
         NEAR(wake_lost(wake, setup.school, 0.08, tau), lost, 1e-13, 0);
     }
-    school_clear(&setup);
 }
 
 TEST(what_was_shed_long_ago_changes_no_vortex) {
@@ -251,7 +245,6 @@ TEST(a_vortex_from_outside_is_a_stretch_between_two_without_circulation) {
     assert_non_null(strstr(status_message(), "wake.spare_vortices: 3, of which 3 are used; 3 more are required"));
     assert_int_equal(wake->n_vortex, 13);
     NEAR(wake->removed, -99.5, 0, 0);
-    school_clear(&setup);
 }
 
 TEST(a_vortex_from_outside_among_vortices_is_the_newest) {
@@ -264,7 +257,6 @@ TEST(a_vortex_from_outside_among_vortices_is_the_newest) {
     const double got[] = {wake->x[3], wake->y[3], wake->circulation[3], wake->birth[3], wake->removed};
     NEAR_ARRAY(5, got, ((double[]){7, 8, 100, 0.2, -100}), 0, 0);
     assert_int_equal(wake_add_vortex(wake, setup.school, 0.2, 7, 8, 1), STATUS_CASE);
-    school_clear(&setup);
 }
 
 TEST(a_queue_goes_on_at_a_tail_that_was_moved) {
@@ -279,7 +271,6 @@ TEST(a_queue_goes_on_at_a_tail_that_was_moved) {
     const double got[] = {wake->x[4], wake->y[4], wake_source(wake, 3), wake->circulation[4], wake->birth[4]};
     NEAR_ARRAY(5, got, ((double[]){3, 5, 0, 9, 0.1}), 0, 0);
     assert_int_equal(wake_break(wake, setup.school, 0.1, (const double[]){4, 5}), STATUS_CASE);
-    school_clear(&setup);
 }
 
 TEST(markers_at_one_place_move_together) {
@@ -314,7 +305,6 @@ TEST(most_is_enough_and_not_too_much) {
     // markers at both ends of five stretches; a release at every event, and for impulses one at the start
     assert_int_equal(wake_most(setup.school, 1000), 6);
     assert_int_equal(wake_most(setup.school, 3), 4);
-    school_clear(&setup);
 }
 
 TEST(nascent_vortex_is_the_centroid_of_what_was_shed) {
