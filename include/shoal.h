@@ -35,7 +35,8 @@ enum shoal_status {
     SHOAL_USAGE = -1,  /* a wrong argument, a wrong case, a step past the end of the run */
     SHOAL_FILE = -2,   /* a file cannot be read or written */
     SHOAL_MEMORY = -3, /* out of memory */
-    SHOAL_SOLVER = -4  /* the integration failed, or a contact of bodies with contact.action: stop */
+    SHOAL_SOLVER = -4, /* the integration failed, or a contact of bodies with contact.action: stop */
+    SHOAL_STOPPED = -5 /* the set-up was stopped: shoal_listen */
 };
 
 /* ---- the life of a run ---- */
@@ -47,6 +48,11 @@ int shoal_open(struct shoal **run, const char *case_path, int n_assignments, con
 /* Open a run from the text of a case. folder: folder of included files; NULL: the working directory. */
 int shoal_open_text(struct shoal **run, const char *text, const char *folder, int n_assignments,
                     const char *const *assignments);
+
+/* Stop the set-up of later calls of shoal_open, shoal_open_text, shoal_load and shoal_clone in this thread once *stop
+ * is not 0: these calls then return SHOAL_STOPPED within a second. Another thread or a signal handler sets *stop, which
+ * must outlive the calls. NULL: no stop. */
+void shoal_listen(const volatile int *stop);
 
 /* Release a run; close an open result file. Accepts NULL. */
 void shoal_close(struct shoal *run);

@@ -13,6 +13,15 @@ needs matplotlib; Gymnasium is optional.
 
 import re as _re
 
+try:
+    import numpy as _numpy  # noqa: F401
+except ImportError as error:
+    if error.name != "numpy":
+        raise
+    from ._interpreter import advice as _advice
+
+    raise ImportError(_advice("numpy"), name="numpy") from None
+
 from . import _library
 from ._environments import SchoolEnv, SwimEnv, SwimVectorEnv
 from ._library import CaseError, Error, FileError, SolverError, version

@@ -23,7 +23,7 @@ def _from(module, name, otherwise):
     """A name of a module, if installed."""
     if importlib.util.find_spec(module.split(".")[0]) is None:
         return otherwise
-    return getattr(importlib.import_module(module), name)
+    return getattr(importlib.import_module(module), name, otherwise)
 
 
 class _Box:
@@ -126,8 +126,8 @@ class _Swimmer:
         return tuple(values)
 
     def _checked_goal(self, goal):
-        if goal is None:
-            return None
+        if goal is None or callable(goal):
+            return goal
         try:
             first, second = goal
             if isinstance(first, str) or np.ndim(second) == 1:
@@ -139,7 +139,14 @@ class _Swimmer:
         except (TypeError, ValueError) as error:
             if isinstance(error, CaseError):
                 raise
-        raise CaseError(f"a goal is (x, y), m, or (fish, (x, y)) for a place beside a fish, not {goal!r}")
+        raise CaseError("a goal is (x, y), m, (fish, (x, y)) for a place beside a fish, or a function of the time, s, "
+                        f"with one of these as its value, not {goal!r}")
+
+    def set_goal(self, goal):
+        """Set the goal from now on."""
+        if goal is None and {"goal", "closing"} & {*self.observations, *(self.reward_of if self._earned else ())}:
+            raise CaseError("observations or rewards of this environment need a goal")
+        self.goal = self._checked_goal(goal)
 
     # -- spaces
 
@@ -206,21 +213,20 @@ class _Swimmer:
         c, s = self._cos, self._sin
         return (c * x + s * y) / self.length, (c * y - s * x) / self.length
 
-    def place(self) -> np.ndarray:
-        """The place of the goal now, m: (2,)."""
-        other, (x, y) = self.goal
+    def _place(self):
+        other, (x, y) = self._checked_goal(self.goal(self.event.time)) if callable(self.goal) else self.goal
         if other is not None:
             of_fish = self.event("com")[other].tolist()
             x, y = x + of_fish[0], y + of_fish[1]
-        return np.array([x, y])
+        return x, y
+
+    def place(self) -> np.ndarray:
+        """The place of the goal now, m: (2,)."""
+        return np.array(self._place())
 
     def _to_goal(self):
-        other, (x, y) = self.goal
-        com = self.event("com")
-        if other is not None:
-            of_fish = com[other].tolist()
-            x, y = x + of_fish[0], y + of_fish[1]
-        own = com[self.fish].tolist()
+        x, y = self._place()
+        own = self._pair("com")
         return x - own[0], y - own[1]
 
     def to_goal(self) -> np.ndarray:
@@ -324,6 +330,8 @@ class _Swimmer:
 class _Swim:
     """The common part of the environments: a run that is restarted for each episode, and the swimmers."""
 
+    _OPTIONS = ["assignments"]
+
     def __init__(self, case, assignments, act_every, vary, far, render_mode):
         if assignments is not None and not isinstance(assignments, Mapping):
             raise TypeError(f'assignments are a dict {{"time.end": 2}}, not {kind(assignments)}')
@@ -370,6 +378,8 @@ class _Swim:
     def _choose_run(self, seed, options):
         if seed is not None:
             self._random = np.random.default_rng(seed)
+        for name in options or {}:
+            choice_of(name, self._OPTIONS, "reset: an option")
         changes = dict((options or {}).get("assignments", {}))
         for key, (low, high) in self._vary.items():
             changes[key] = self._random.uniform(low, high)
@@ -432,7 +442,7 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
     name. actions: names of bias, amplitude, frequency, or a dict with bounds {"bias": (-0.3, 0.3)}; an action outside
     the box is refused. observations: names of velocity, heading, curvature, muscle, flow, goal, closing, neighbours,
     action. reward: weights of speed, cost_of_transport, course, goal, or a function of the swimmer. goal: a point (x, y),
-    m, or ("leader", (1.2, 0)), a place beside a fish. course: desired course, degree. sensors: places (n, 2) for flow,
+    m, ("leader", (1.2, 0)), a place beside a fish, or a function of the time, s, for a goal that moves. course: desired course, degree. sensors: places (n, 2) for flow,
     from the nose, in lengths. act_every: time between actions, s, a multiple of time.shedding_interval. vary: bounds of
     assignments that are drawn at each reset, {"fish[1].start.heading": (170, 190)}. far: distance from the goal, in
     lengths, at which an episode is over (terminated); a failed integration terminates an episode too. render_mode:
@@ -441,6 +451,7 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
 
     metadata = {"render_modes": list(_RENDER_MODES), "render_fps": 25}
     spec = None
+    _OPTIONS = ["assignments", "goal"]
 
     def __init__(self, case, assignments=None, fish=0, actions=("bias",), observations=("velocity", "heading"),
                  reward=None, goal=None, course=180.0, sensors=_SENSORS, act_every=None, vary=None, far=None,
@@ -449,10 +460,17 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
         number = index_of(fish, self.run.names, "fish")
         self.swimmer = _Swimmer(self.event, number, actions, observations, reward or {"speed": 1.0}, goal, course, sensors)
         self.action_space, self.observation_space = self.swimmer.action_space(), self.swimmer.observation_space()
-        self._last = None
+        self._last, self._goal = None, goal
+
+    def set_goal(self, goal):
+        """Set the goal from now on, in later episodes too."""
+        self.swimmer.set_goal(goal)
+        self._goal = goal
 
     def reset(self, *, seed=None, options=None):
-        """Begin an episode; returns observation and info. options: {"assignments": {...}} changes the case."""
+        """Begin an episode; returns observation and info. options: {"assignments": {...}} changes the case, {"goal": ...}
+        the goal, both for this episode."""
+        self.swimmer.set_goal((options or {}).get("goal", self._goal))
         self._begin(seed, options)
         self.swimmer.begin()
         self._last = self.swimmer.see()
@@ -530,11 +548,18 @@ class SwimVectorEnv(_from("gymnasium.vector", "VectorEnv", object)):
 
     def reset(self, *, seed=None, options=None):
         """Begin all episodes; returns observations and infos. seed: of the first environment, the others follow; or a
-        sequence of num_envs seeds."""
+        sequence of num_envs seeds. options: as for SwimEnv; "goal" may be a list of num_envs goals."""
         seeds = [None if seed is None else seed + i for i in range(self.num_envs)] if np.ndim(seed) == 0 else list(seed)
         if len(seeds) != self.num_envs:
             raise CaseError(f"reset: {len(seeds)} seeds for {self.num_envs} environments")
-        done = self._map(lambda i: self.envs[i].reset(seed=seeds[i], options=options))
+        goals = (options or {}).get("goal")
+        own = [options] * self.num_envs
+        is_list = isinstance(goals, (list, np.ndarray)) and len(goals) > 0
+        if is_list and not isinstance(goals[0], str) and not np.isscalar(goals[0]):
+            if len(goals) != self.num_envs:
+                raise CaseError(f"reset: {len(goals)} goals for {self.num_envs} environments")
+            own = [{**options, "goal": goal} for goal in goals]
+        done = self._map(lambda i: self.envs[i].reset(seed=seeds[i], options=own[i]))
         self._over[:] = False
         return np.stack([one[0] for one in done]), self._gather([one[1] for one in done])
 
@@ -554,6 +579,12 @@ class SwimVectorEnv(_from("gymnasium.vector", "VectorEnv", object)):
         terminations, truncations = np.array(terminations), np.array(truncations)
         self._over = terminations | truncations
         return np.stack(observations), np.array(rewards), terminations, truncations, self._gather(infos)
+
+    def set_goal(self, i: int, goal):
+        """Set the goal of environment i from now on, in later episodes too."""
+        if not 0 <= i < self.num_envs:
+            raise CaseError(f"set_goal: there is no environment {i}: {self.num_envs}, numbered from 0")
+        self.envs[i].set_goal(goal)
 
     def render(self):
         """The pictures of all environments, a tuple."""
@@ -635,3 +666,13 @@ class SchoolEnv(_Swim, _from("pettingzoo", "ParallelEnv", object)):
     def state(self):
         """The observations of all fish in one array."""
         return np.concatenate([self._last[name] for name in self.possible_agents])
+
+
+def _register():
+    """Tell Gymnasium, if installed, the names of the environments: gymnasium.make("shoal/Swim-v0", case=...)."""
+    register = _from("gymnasium", "register", None)
+    if register is not None:
+        register("shoal/Swim-v0", entry_point="shoal:SwimEnv", vector_entry_point="shoal:SwimVectorEnv")
+
+
+_register()

@@ -6,6 +6,7 @@ import math
 import operator
 import os
 import pathlib
+import threading
 
 import numpy as np
 
@@ -52,6 +53,7 @@ _array = ctypes.c_void_p  # the address of doubles
 SIGNATURES = {  # name: result, arguments
     "shoal_open": (_int, ctypes.POINTER(_run), _text, _int, ctypes.POINTER(_text)),
     "shoal_open_text": (_int, ctypes.POINTER(_run), _text, _text, _int, ctypes.POINTER(_text)),
+    "shoal_listen": (None, ctypes.POINTER(_int)),
     "shoal_close": (None, _run),
     "shoal_step": (_int, _run),
     "shoal_advance": (_int, _run, _double),
@@ -126,6 +128,35 @@ def check(code: int) -> int:
     if code < 0:
         raise ERRORS.get(code, Error)(message())
     return code
+
+
+def open_run(function, *arguments) -> ctypes.c_void_p:
+    """The run that a function of the library opens. Ctrl-C stops the set-up: Python handles signals in the main thread,
+    between two lines, so the set-up runs in another thread and looks at a flag."""
+    pointer, stop, failure, is_done = ctypes.c_void_p(), ctypes.c_int(0), [], threading.Event()
+
+    def open_it():
+        library.shoal_listen(stop)
+        code = function(pointer, *arguments)
+        library.shoal_listen(None)
+        if code < 0:
+            failure.append(ERRORS.get(code, Error)(message()))
+        is_done.set()
+
+    if threading.current_thread() is threading.main_thread():
+        threading.Thread(target=open_it).start()
+        try:
+            is_done.wait()
+        except BaseException:
+            stop.value = 1
+            is_done.wait()
+            library.shoal_close(pointer)
+            raise
+    else:
+        open_it()
+    if failure:
+        raise failure[0]
+    return pointer
 
 
 def version() -> str:

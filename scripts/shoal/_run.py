@@ -161,12 +161,11 @@ class Run:
     def __init__(self, case: Case, assignments: Assignments = None, folder: str | os.PathLike | None = None):
         strings = [text_of(text, "an assignment") for text in strings_of(assignments)]
         array = (ctypes.c_char_p * len(strings))(*strings)
-        pointer = ctypes.c_void_p()
         if isinstance(case, Mapping):
             text, place = text_of(text_of_case(case), "a case"), None if folder is None else text_of(folder, "folder")
-            check(lib.library.shoal_open_text(pointer, text, place, len(strings), array))
+            pointer = lib.open_run(lib.library.shoal_open_text, text, place, len(strings), array)
         elif isinstance(case, (str, bytes, os.PathLike)):
-            check(lib.library.shoal_open(pointer, text_of(case, "a case"), len(strings), array))
+            pointer = lib.open_run(lib.library.shoal_open, text_of(case, "a case"), len(strings), array)
         else:
             raise TypeError(f"a case is the path of a case file or a dict, not {kind(case)}")
         self._take(pointer.value)
@@ -517,9 +516,7 @@ def _unpickle(cls, content: bytes) -> Run:
 
 
 def _load(cls, path):
-    pointer = ctypes.c_void_p()
-    check(lib.library.shoal_load(pointer, text_of(path, "path")))
-    return cls._adopt(pointer.value)
+    return cls._adopt(lib.open_run(lib.library.shoal_load, text_of(path, "path")).value)
 
 
 def load(path: str | os.PathLike) -> Run:

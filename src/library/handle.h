@@ -1,12 +1,18 @@
-/* handle.h: struct shoal, a run of the public interface, and the checks common to the public functions. The functions
- * of include/shoal.h are in shoal.c (the life of a run, reading, result files), shoal_change.c and shoal_copy.c. Tested
- * by tests/library/test_shoal.c and test_handle.c. */
+/* handle.h: struct shoal, a run of the public interface, and the parts common to the public functions. The functions of
+ * include/shoal.h are in shoal.c (the life of a run, reading, result files), shoal_change.c and shoal_copy.c. Tested by
+ * tests/library/test_shoal.c and test_handle.c.
+ *
+ * Every public function that requests memory is a boundary of memory (base/arena.h), and so is every part that runs
+ * under the lock of NetCDF. */
 #ifndef HANDLE_H
 #define HANDLE_H
 
 #include <pthread.h>
+#include <signal.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 
+#include "base/arena.h"
 #include "case/case.h"
 #include "result/durable.h"
 #include "result/result_file.h"
@@ -15,23 +21,21 @@
 #include "run/simulate.h"
 #include "shoal.h"
 
-/* NetCDF has a global list of open files, which is not thread-safe. */
-extern pthread_mutex_t handle_netcdf_lock;
-
 /* A case, shared by all copies of a run. */
 struct shared {
+    struct arena *arena; /* of this struct */
     atomic_int n_users;
     struct case_values values;
 };
 
 /* A run in memory: the handle of include/shoal.h. */
 struct shoal {
-    struct arena *arena; /* of the simulation */
+    struct arena *arena; /* of this struct, the simulation and the buffers */
     struct shared *shared;
     struct simulation *simulation;
-    int is_renewed;                        /* the integrator has restarted at this event */
+    bool is_renewed;                       /* the integrator has restarted at this event */
     struct integrator_counts when_reached; /* if is_renewed: the counts before the restart */
-    int has_failed;
+    bool has_failed;
     char failure[1024]; /* message of the step that failed */
     struct record record;
     char *record_path;              /* path of the result file */
@@ -40,22 +44,37 @@ struct shoal {
     char *result_path; /* path of the result file by the case */
 
     /* variables read since the last step */
-    int has_row;
+    bool has_row;
     struct integrator_counts counts;
     struct result_row row;
     void *buffer[RESULT_TABLE_MAX]; /* (largest size of the variable); never moves */
-    unsigned char is_filled[RESULT_TABLE_MAX];
+    bool is_filled[RESULT_TABLE_MAX];
 };
 
-/* Create a run without a case and without a simulation. Fails with STATUS_MEMORY; *run is then NULL. */
-enum status handle_create(struct shoal **run);
+/* A part of a public function. */
+typedef enum status handle_part(struct shoal *run, const void *data);
+
+/* Call a part with a boundary of memory; under the lock of NetCDF, which has a global list of open files that is not
+ * thread-safe. Fails as the part, or with STATUS_MEMORY. */
+enum status handle_call(struct shoal *run, handle_part *part, const void *data);
+enum status handle_with_netcdf(struct shoal *run, handle_part *part, const void *data);
+
+/* Create a run with a case that fill reads, or with the case of a run; fill completes the run. Fails as fill, or with
+ * STATUS_MEMORY; *run is then NULL. */
+enum status handle_create(struct shoal **run, const struct shoal *of, handle_part *fill, const void *data);
+
+/* Release a run without a result file, and the case after the last copy. */
+void handle_release(struct shoal *run);
+
+/* The flag of the last shoal_listen of this thread. */
+extern _Thread_local const volatile sig_atomic_t *handle_stop;
 
 /* Fail with STATUS_CASE for a NULL pointer, or for an unknown fish. function: name of the public function. */
 enum status handle_need(const void *pointer, const char *function, const char *name);
 enum status handle_check_fish(const struct shoal *run, int fish, const char *function);
 
-/* Whether a step of the run has failed; sets the message. */
-int handle_has_failed(const struct shoal *run, const char *function);
+/* Fail with STATUS_SOLVER if a step of the run has failed. */
+enum status handle_check_alive(const struct shoal *run, const char *function);
 
 /* Mark the run as failed with the present message. */
 void handle_fail(struct shoal *run);

@@ -3,39 +3,24 @@
 
 #include <limits.h>
 #include <math.h>
-#include <pthread.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "base/arena.h"
-#include "base/memory.h"
 #include "base/version.h"
 #include "case/sweep.h"
 #include "flow/flow_at_bodies.h"
 #include "library/handle.h"
 #include "result/target.h"
 #include "run/record.h"
+#include "solver/initial_conditions.h"
 
 _Static_assert((int)SHOAL_USAGE == STATUS_CASE && (int)SHOAL_FILE == STATUS_FILE &&
                    (int)SHOAL_MEMORY == STATUS_MEMORY && (int)SHOAL_SOLVER == STATUS_SOLVER,
                "public and internal status numbers agree");
 
-// ---- checks
-
-static enum status check_assignments(int n, const char *const *assignments, const char *function) {
-    if (n < 0) return status_fail(STATUS_CASE, "%s: %d assignments: the number cannot be negative", function, n);
-    if (n > 0) TRY(handle_need(assignments, function, "assignments"));
-    for (int i = 0; i < n; i++) {
-        if (!assignments[i]) return status_fail(STATUS_CASE, "%s: assignment %d is NULL", function, i);
-    }
-    return STATUS_OK;
-}
-
 // fail if the run cannot step
 static enum status check_can_step(const struct shoal *run, const char *function) {
-    TRY(handle_need(run, function, "run"));
-    if (handle_has_failed(run, function)) return STATUS_SOLVER;
+    TRY(handle_check_alive(run, function));
     if (run->simulation->state->event < run->simulation->n_events) return STATUS_OK;
     return status_fail(STATUS_CASE, "%s: the run is at its end, t = %g s: increase time.end", function,
                        run->simulation->state->t);
@@ -43,39 +28,47 @@ static enum status check_can_step(const struct shoal *run, const char *function)
 
 // ---- the life of a run
 
-static enum status create_simulation(struct shoal *run) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    run->arena = arena_create(NULL, "a run");
-    run->result_path = record_path(run->arena, &run->shared->values);
-    return simulate_create(run->arena, &run->simulation, &run->shared->values);
-}
+/* The case of a new run: a path, or a text that is not NULL. */
+struct opening {
+    const char *path, *text, *folder;
+    int n_assignments;
+    const char *const *assignments;
+};
 
-static enum status step_simulation(struct shoal *run) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    return simulate_step(run->simulation);
-}
-
-// create the simulation of a new run, unless reading the case failed; set *run, or release the new run
-static int finish_opening(struct shoal **run, struct shoal *new, enum status status) {
-    if (status == STATUS_OK) status = sweep_refuse(&new->shared->values);
-    if (status == STATUS_OK) status = create_simulation(new);
-    if (status == STATUS_OK) {
-        *run = new;
+static enum status open_case(struct shoal *run, const void *data) {
+    const struct opening *const from = data;
+    struct case_values *const values = &run->shared->values;
+    if (from->text) {
+        TRY(case_parse(values, from->text, strlen(from->text), "case", from->folder, from->n_assignments,
+                       from->assignments));
     } else {
-        shoal_close(new);
+        TRY(case_read(values, from->path, from->n_assignments, from->assignments));
     }
-    return status;
+    TRY(sweep_refuse(values));
+    run->result_path = record_path(run->arena, values);
+    TRY(simulate_start(run->arena, &run->simulation, values, handle_stop));
+
+    // the flag of the set-up may not outlive this call
+    run->simulation->stop = run->simulation->residual->stop = NULL;
+    initial_conditions_listen(run->simulation->consistent, NULL);
+    return STATUS_OK;
+}
+
+static enum status open_run(struct shoal **run, const struct opening *from, const char *function) {
+    const int n = from->n_assignments;
+    if (n < 0) return status_fail(STATUS_CASE, "%s: %d assignments: the number cannot be negative", function, n);
+    if (n > 0) TRY(handle_need(from->assignments, function, "assignments"));
+    for (int i = 0; i < n; i++) {
+        if (!from->assignments[i]) return status_fail(STATUS_CASE, "%s: assignment %d is NULL", function, i);
+    }
+    return handle_create(run, NULL, open_case, from);
 }
 
 int shoal_open(struct shoal **run, const char *case_path, int n_assignments, const char *const *assignments) {
     TRY(handle_need(run, __func__, "run"));
     *run = NULL;
     TRY(handle_need(case_path, __func__, "case_path"));
-    TRY(check_assignments(n_assignments, assignments, __func__));
-
-    struct shoal *new;
-    TRY(handle_create(&new));
-    return finish_opening(run, new, case_read(&new->shared->values, case_path, n_assignments, assignments));
+    return open_run(run, &(struct opening){case_path, NULL, NULL, n_assignments, assignments}, __func__);
 }
 
 int shoal_open_text(struct shoal **run, const char *text, const char *folder, int n_assignments,
@@ -83,21 +76,13 @@ int shoal_open_text(struct shoal **run, const char *text, const char *folder, in
     TRY(handle_need(run, __func__, "run"));
     *run = NULL;
     TRY(handle_need(text, __func__, "text"));
-    TRY(check_assignments(n_assignments, assignments, __func__));
-
-    struct shoal *new;
-    TRY(handle_create(&new));
-    return finish_opening(
-        run, new, case_parse(&new->shared->values, text, strlen(text), "case", folder, n_assignments, assignments));
+    return open_run(run, &(struct opening){NULL, text, folder, n_assignments, assignments}, __func__);
 }
 
-static int has_ended(const struct shoal *run) {
-    return run->simulation->state->event >= run->simulation->n_events;
-}
+// ---- the result file of a run
 
-// release path, checkpoints and claim of a closed result file
+// release checkpoints and claim of a closed result file
 static void release_record(struct shoal *run) {
-    free(run->record_path);
     run->record_path = NULL;
     arena_free(run->checkpoints.arena);
     run->checkpoints.arena = NULL;
@@ -117,90 +102,90 @@ static enum status check_process(struct shoal *run, const char *function) {
     return STATUS_FILE;
 }
 
-static enum status end_record(struct shoal *run) {
-    enum status status = STATUS_OK;
-    if (run->has_failed) {
-        status = status_fail(STATUS_SOLVER, "%s", run->failure);
-    } else if (!has_ended(run)) {
-        status = STATUS_STOPPED;
-    }
-
-    pthread_mutex_lock(&handle_netcdf_lock);
+// a status in the file: of the whole run
+static enum status close_record(struct shoal *run, const void *data) {
+    (void)data;
+    const bool has_ended = run->simulation->state->event >= run->simulation->n_events;
+    enum status status = has_ended ? STATUS_OK : STATUS_STOPPED;
+    if (run->has_failed) status = status_fail(STATUS_SOLVER, "%s", run->failure);
     if (run->simulation->residual) record_notes_write(run->record.file, run->simulation, NULL, NULL);
-    const enum status closed = record_close(&run->record, status);
-    pthread_mutex_unlock(&handle_netcdf_lock);
-    release_record(run);
 
     // record_close returns the status of the run if the file was closed without an error
+    const enum status closed = record_close(&run->record, status);
     return closed == status ? STATUS_OK : closed;
+}
+
+static enum status end_record(struct shoal *run) {
+    const enum status status = handle_with_netcdf(run, close_record, NULL);
+    run->record = (struct record){0};
+    release_record(run);
+    return status;
 }
 
 void shoal_close(struct shoal *run) {
     if (!run) return;
     if (check_process(run, __func__) == STATUS_OK && run->record.file) end_record(run);
-
-    for (int i = 0; i < RESULT_TABLE_MAX; i++) free(run->buffer[i]);
-    simulate_free(run->simulation);
-    arena_free(run->arena);
-
-    // the last copy of the run releases the case
-    if (atomic_fetch_sub(&run->shared->n_users, 1) == 1) {
-        case_free(&run->shared->values);
-        free(run->shared);
-    }
-
-    free(run);
+    handle_release(run);
 }
 
-static enum status shoal_write_row(struct shoal *run) {
+static enum status write_row(struct shoal *run, const void *data) {
+    (void)data;
     if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
     struct result_row row = *handle_row(run);
     return record_row(&run->record, &row);
 }
 
-static enum status write_due_row(struct shoal *run) {
-    TRY(check_process(run, "shoal_step"));
-
-    pthread_mutex_lock(&handle_netcdf_lock);
-    enum status status = shoal_write_row(run);
-    if (status != STATUS_OK) status = record_close(&run->record, status);
-    pthread_mutex_unlock(&handle_netcdf_lock);
-    if (status == STATUS_SOLVER) handle_fail(run);
-    if (status != STATUS_OK) release_record(run);
-    return status;
+static enum status close_failed(struct shoal *run, const void *status) {
+    return record_close(&run->record, *(const enum status *)status);
 }
 
-// the integrator restarts at every checkpoint of the case, with or without a result file: same bits in both runs
-static int is_checkpoint(const struct shoal *run) {
-    const struct case_values *const values = &run->shared->values;
-    const long interval = lround(values->time.checkpoint_interval / values->school.shedding_interval);
-    return interval > 0 && run->simulation->state->event % interval == 0;
+/* Close the file after a failure; returns the failure. The run continues without the file. */
+static enum status drop_record(struct shoal *run, enum status failure) {
+    if (run->record.file) failure = handle_with_netcdf(run, close_failed, &failure);
+    run->record = (struct record){0};
+    release_record(run);
+    return failure;
+}
+
+static enum status replace_checkpoint(struct shoal *run, const void *data) {
+    (void)data;
+    return checkpoints_write(&run->checkpoints, run->simulation, &run->record);
 }
 
 static enum status write_checkpoint(struct shoal *run) {
     TRY(check_process(run, "shoal_checkpoint"));
-    if (run->record.file) {
-        pthread_mutex_lock(&handle_netcdf_lock);
-        const enum status status = checkpoints_write(&run->checkpoints, run->simulation, &run->record);
-        pthread_mutex_unlock(&handle_netcdf_lock);
-        TRY(status);
-    }
+    if (run->record.file) TRY(handle_with_netcdf(run, replace_checkpoint, NULL));
+    return run->simulation->state->event < run->simulation->n_events ? handle_renew(run) : STATUS_OK;
+}
 
-    return has_ended(run) ? STATUS_OK : handle_renew(run);
+// ---- steps
+
+static enum status step_simulation(struct shoal *run, const void *data) {
+    (void)data;
+    return simulate_step(run->simulation);
 }
 
 int shoal_step(struct shoal *run) {
     TRY(check_can_step(run, __func__));
     handle_forget_row(run);
-
-    const enum status status = step_simulation(run);
-    if (status == STATUS_OK) {
-        TRY(write_due_row(run));
-        return is_checkpoint(run) ? write_checkpoint(run) : STATUS_OK;
+    enum status status = handle_call(run, step_simulation, NULL);
+    if (status != STATUS_OK) {
+        handle_fail(run);
+        return status == STATUS_CONTACT ? STATUS_SOLVER : status;
     }
 
-    handle_fail(run);
-    return status == STATUS_CONTACT ? STATUS_SOLVER : status;
+    // a row that is due
+    TRY(check_process(run, __func__));
+    status = handle_with_netcdf(run, write_row, NULL);
+    if (status != STATUS_OK) status = drop_record(run, status);
+    if (status == STATUS_SOLVER) handle_fail(run);
+    TRY(status);
+
+    // the integrator restarts at every checkpoint of the case, with or without a result file: same bits in both runs
+    const struct case_values *const values = &run->shared->values;
+    const long interval = lround(values->time.checkpoint_interval / values->school.shedding_interval);
+    const bool is_due = interval > 0 && run->simulation->state->event % interval == 0;
+    return is_due ? write_checkpoint(run) : STATUS_OK;
 }
 
 int shoal_advance(struct shoal *run, double t) {
@@ -246,33 +231,12 @@ int shoal_set(struct shoal *run, int fish, const char *key, int n, const double 
 
 // ---- reading at the last event
 
-static enum shoal_type type_of(enum result_type type) {
-    switch (type) {
-        case RESULT_INTEGER: return SHOAL_INT;
-        case RESULT_COUNT: return SHOAL_LONG;
-        case RESULT_TEXT: return SHOAL_CHAR;
-        default: return SHOAL_DOUBLE;
-    }
-}
-
-// allocate the buffer of variable i once, for the largest size in this run: pointers of callers stay valid
-static enum status reserve_buffer(struct shoal *run, int i) {
-    if (run->buffer[i]) return STATUS_OK;
-
-    const struct school *const school = run->simulation->school;
-    size_t length[RESULT_N_DIMENSIONS];
-    result_values_lengths(school, wake_most(school, run->simulation->n_events), length);
-    const size_t n = result_values_n(&result_table[i], length);
-    run->buffer[i] = calloc(n + 1, result_values_size(result_table[i].type));
-    return memory_check(run->buffer[i], result_table[i].name);
-}
-
 int shoal_read(struct shoal *run, const char *name, struct shoal_array *array) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     TRY(handle_need(array, __func__, "array"));
     *array = (struct shoal_array){.values = NULL};
     TRY(handle_need(run, __func__, "run"));
     TRY(handle_need(name, __func__, "name"));
-
     int i = 0;
     while (i < result_table_n && strcmp(result_table[i].name, name) != 0) i++;
     if (i == result_table_n) {
@@ -280,21 +244,32 @@ int shoal_read(struct shoal *run, const char *name, struct shoal_array *array) {
                            __func__, name);
     }
 
-    // fill the buffer of the variable once per event
+    // request the buffer once, for the largest size in this run: pointers of callers stay valid
     const struct result_variable *const variable = &result_table[i];
-    TRY(reserve_buffer(run, i));
+    const struct school *const school = run->simulation->school;
     size_t length[RESULT_N_DIMENSIONS];
+    if (!run->buffer[i]) {
+        result_values_lengths(school, wake_most(school, run->simulation->n_events), length);
+        const size_t n = result_values_n(variable, length);
+        run->buffer[i] = arena_new(run->arena, n + 1, result_values_size(variable->type));
+    }
+
+    // fill the buffer once per event
     int longest = 0;
-    for (int f = 0; f < run->simulation->school->n_fish; f++) {
+    for (int f = 0; f < school->n_fish; f++) {
         const int n = run->simulation->state->wake[f].n_vortex;
         if (n > longest) longest = n;
     }
-    result_values_lengths(run->simulation->school, longest, length);
+    result_values_lengths(school, longest, length);
     if (!run->is_filled[i]) result_values_fill(variable, length, handle_row(run), run->buffer[i]);
-    run->is_filled[i] = 1;
+    run->is_filled[i] = true;
 
+    const enum result_type type = variable->type;
     *array = (struct shoal_array){.values = run->buffer[i],
-                                  .type = type_of(variable->type),
+                                  .type = type == RESULT_INTEGER ? SHOAL_INT
+                                          : type == RESULT_COUNT ? SHOAL_LONG
+                                          : type == RESULT_TEXT  ? SHOAL_CHAR
+                                                                 : SHOAL_DOUBLE,
                                   .unit = variable->unit,
                                   .long_name = variable->long_name};
     for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) {
@@ -309,13 +284,16 @@ const char *shoal_variable(int i) {
     return i >= 0 && i < result_table_n ? result_table[i].name : NULL;
 }
 
-// velocity and vorticity at n points; work: (7 n)
-static enum status flow_at_points(struct shoal *run, int n, const double *points, double *work, double *velocity,
-                                  double *vorticity) {
+/* Evaluate the flow in an arena that the caller frees. */
+static enum status flow_at_points(struct shoal *run, int n, const double *points, double *velocity, double *vorticity,
+                                  struct arena **arena) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    *arena = arena_create(NULL, "the points of a flow");
+    double *work;
+    NEW(*arena, work, 7 * (size_t)n);
     double *const x = work, *const y = x + n;
     const struct targets at = {
         .n = n, .x = x, .y = y, .u = y + n, .v = y + 2 * n, .u_x = y + 3 * n, .u_y = y + 4 * n, .v_x = y + 5 * n};
-
     for (int i = 0; i < n; i++) {
         x[i] = points[2 * i];
         y[i] = points[2 * i + 1];
@@ -340,12 +318,10 @@ int shoal_flow(struct shoal *run, int n, const double *points, double *velocity,
     if (n == 0) return STATUS_OK;
     TRY(handle_need(points, __func__, "points"));
     TRY(handle_need(velocity, __func__, "velocity"));
-    if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
-
-    double *work;
-    TRY(MEMORY_NEW(work, 7 * (size_t)n, "the points of a flow"));
-    const enum status status = flow_at_points(run, n, points, work, velocity, vorticity);
-    free(work);
+    TRY(handle_check_alive(run, __func__));
+    struct arena *arena = NULL;
+    const enum status status = flow_at_points(run, n, points, velocity, vorticity, &arena);
+    arena_free(arena);
     return status;
 }
 
@@ -396,55 +372,55 @@ const char *shoal_result_path(const struct shoal *run) {
     return handle_need(run, __func__, "run") == STATUS_OK ? run->result_path : NULL;
 }
 
+/* A result file to begin. */
+struct target {
+    const char *path;
+    bool overwrite;
+};
+
 // keep an earlier result file until the first row of the new result is on disk
-static enum status create_result_file(struct shoal *run, int overwrite) {
+static enum status create_result_file(struct shoal *run, const void *data) {
+    const struct target *const target = data;
     const struct result_origin origin = {.path = run->record_path,
-                                         .overwrite = overwrite,
+                                         .overwrite = target->overwrite,
                                          .values = &run->shared->values,
                                          .command = "libshoal",
                                          .school = run->simulation->school,
                                          .n_events = run->simulation->n_events};
     TRY(record_create(run->arena, &run->record, &origin));
-
-    enum status status = shoal_write_row(run);
-    if (status == STATUS_OK) status = result_file_publish(run->record.file, "running");
-    return status == STATUS_OK ? STATUS_OK : record_close(&run->record, status);
+    TRY(write_row(run, NULL));
+    return result_file_publish(run->record.file, "running");
 }
 
 // claim the path, create the result file, and remove the checkpoints of an earlier run
-static enum status start_record(struct shoal *run, const char *path, int overwrite) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    TRY(memory_copy_string(&run->record_path, path, "a path"));
-    TRY(target_check(path, TARGET_NETCDF, overwrite));
-    TRY(durable_claim_take(&run->claim, path));
+static enum status begin_record(struct shoal *run, const void *data) {
+    const struct target *const target = data;
     run->checkpoints.arena = arena_create(run->arena, "the checkpoints");
-    TRY(checkpoints_create(run->checkpoints.arena, &run->checkpoints, &run->shared->values, path, NULL));
-
-    pthread_mutex_lock(&handle_netcdf_lock);
-    const enum status status = create_result_file(run, overwrite);
-    pthread_mutex_unlock(&handle_netcdf_lock);
-    if (status == STATUS_OK) checkpoints_remove(&run->checkpoints);
-    return status;
+    run->record_path = arena_text(run->checkpoints.arena, "%s", target->path);
+    TRY(target_check(target->path, TARGET_NETCDF, target->overwrite));
+    TRY(durable_claim_take(&run->claim, target->path));
+    TRY(checkpoints_create(run->checkpoints.arena, &run->checkpoints, &run->shared->values, target->path, NULL));
+    TRY(handle_with_netcdf(run, create_result_file, target));
+    checkpoints_remove(&run->checkpoints);
+    return STATUS_OK;
 }
 
 int shoal_write(struct shoal *run, const char *path, int overwrite) {
     TRY(handle_need(run, __func__, "run"));
     TRY(handle_need(path, __func__, "path"));
-    if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
+    TRY(handle_check_alive(run, __func__));
     TRY(check_process(run, __func__));
     if (run->record.file) {
         return status_fail(STATUS_CASE, "%s: the run already writes %s: call shoal_write_end first", __func__,
                            run->record_path);
     }
 
-    const enum status status = start_record(run, path, overwrite);
-    if (status != STATUS_OK) release_record(run);
-    return status;
+    const enum status status = handle_call(run, begin_record, &(struct target){path, overwrite});
+    return status == STATUS_OK ? STATUS_OK : drop_record(run, status);
 }
 
 int shoal_checkpoint(struct shoal *run) {
-    TRY(handle_need(run, __func__, "run"));
-    if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
+    TRY(handle_check_alive(run, __func__));
     if (!run->record.file) {
         return status_fail(STATUS_CASE, "%s: a checkpoint needs a result file: call shoal_write first", __func__);
     }
@@ -458,6 +434,10 @@ int shoal_write_end(struct shoal *run) {
 }
 
 // ---- the library
+
+void shoal_listen(const volatile int *stop) {
+    handle_stop = stop;
+}
 
 const char *shoal_message(void) {
     return status_message();

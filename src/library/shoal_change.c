@@ -1,10 +1,8 @@
 /* shoal_change.c: functions of include/shoal.h that change bodies and wakes at an event. */
 #include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
-#include "base/arena.h"
-#include "base/memory.h"
 #include "contact/clearance.h"
 #include "library/handle.h"
 #include "run/event.h"
@@ -25,14 +23,6 @@ int shoal_state(struct shoal *run, int fish, double *position, double *velocity)
 }
 
 // ---- checks of the new body
-
-static enum status change_check_finite(int n, const double *values, const char *name) {
-    for (int i = 0; i < n; i++) {
-        if (isfinite(values[i])) continue;
-        return status_fail(STATUS_CASE, "shoal_set_state: %s of node %d, %g, is not finite", name, i / 2, values[i]);
-    }
-    return STATUS_OK;
-}
 
 // edge lengths within a factor 2 of the length at rest, and turns of joints below the singularity of the curvature
 static enum status change_check_shape(const struct fish *fish, const double *position) {
@@ -59,14 +49,6 @@ static enum status change_check_shape(const struct fish *fish, const double *pos
         }
     }
     return STATUS_OK;
-}
-
-static enum status change_check_overlap(const struct simulation *simulation) {
-    const struct school *const school = simulation->school;
-    const struct closest *const closest = simulation->state->closest;
-    if (closest->distance > 0 || school->contact == CONTACT_WARN) return STATUS_OK;
-    return status_fail(STATUS_CASE, "shoal_set_state: %s and %s would overlap", school->fish[closest->fish[0]].name,
-                       school->fish[closest->fish[1]].name);
 }
 
 // ---- the change: complete, or no change on failure
@@ -102,24 +84,11 @@ static enum status change_apply(const struct change *change, const struct school
     return STATUS_OK;
 }
 
-// evaluate the forces of images again; the external impulse until this event is unchanged
-static enum status change_images(const struct simulation *simulation) {
-    struct state *const state = simulation->state;
-    const int n = simulation->school->n_fish;
-    double(*external)[3];
-    TRY(MEMORY_NEW(external, n, "the impulses of the fish"));
-
-    for (int f = 0; f < n; f++) memcpy(external[f], state->momentum[f].external, sizeof *external);
-    const enum status status = diagnostics_momentum_event(simulation->residual, state);
-    for (int f = 0; f < n; f++) memcpy(state->momentum[f].external, external[f], sizeof *external);
-    free(external);
-    return status;
-}
-
-static enum status change_make(struct shoal *run, const struct change *change) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
+static enum status change_make(struct shoal *run, const void *data) {
+    const struct change *const change = data;
     struct simulation *const simulation = run->simulation;
     struct state *const state = simulation->state;
+    const struct school *const school = simulation->school;
 
     // momentum balance before the change
     double before[3];
@@ -127,13 +96,17 @@ static enum status change_make(struct shoal *run, const struct change *change) {
     memcpy(before, simulation->diagnostics->momentum_balance, sizeof before);
     diagnostics_before_jump(simulation->residual, state);
 
-    TRY(change_apply(change, simulation->school, state));
+    TRY(change_apply(change, school, state));
 
     // restart the record of the closest approach
     if (change->position) {
-        clearance_start(simulation->school, state, simulation->residual->neighbours, simulation->residual->scratch);
-        TRY(change_check_overlap(simulation));
-        self_crossing_remember(simulation->school, state, simulation->residual->scratch);
+        const struct closest *const closest = state->closest;
+        clearance_start(school, state, simulation->residual->neighbours, simulation->residual->scratch);
+        if (!(closest->distance > 0) && school->contact != CONTACT_WARN) {
+            return status_fail(STATUS_CASE, "shoal_set_state: %s and %s would overlap",
+                               school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name);
+        }
+        self_crossing_remember(school, state, simulation->residual->scratch);
     }
 
     // make the state consistent, evaluate forces and samples again
@@ -141,14 +114,19 @@ static enum status change_make(struct shoal *run, const struct change *change) {
     TRY(handle_evaluate(simulation));
 
     // replace the newest sample of each fish; discard all earlier samples of a fish with new positions
-    for (int f = 0; f < simulation->school->n_fish; f++) {
+    for (int f = 0; f < school->n_fish; f++) {
         struct history *const history = &state->history[f];
         state_forget_newest(history);
         if (change->position && f == change->fish) history->n = 0;
     }
     TRY(diagnostics_remember(simulation->residual, state));
 
-    TRY(change_images(simulation));
+    // evaluate the forces of images again; the external impulse until this event is unchanged
+    double(*external)[3];
+    NEW(run->arena, external, school->n_fish);
+    for (int f = 0; f < school->n_fish; f++) memcpy(external[f], state->momentum[f].external, sizeof *external);
+    TRY(diagnostics_momentum_event(simulation->residual, state));
+    for (int f = 0; f < school->n_fish; f++) memcpy(state->momentum[f].external, external[f], sizeof *external);
     diagnostics_after_jump(simulation->residual, state);
 
     // book the change of momentum of the body as external impulse
@@ -163,22 +141,25 @@ static enum status change_make(struct shoal *run, const struct change *change) {
     return handle_renew(run);
 }
 
-static enum status change_run(struct shoal *run, const struct change *change) {
-    struct simulation *const simulation = run->simulation;
+static enum status restore_state(struct shoal *run, const void *kept) {
+    state_table_copy(run->simulation->state, kept, run->simulation->school, true);
+    return handle_renew(run);
+}
 
-    // keep a copy of the state
+/* Change a run; after a failure restore the state before the change. */
+static enum status change_run(struct shoal *run, const struct change *change) {
     TRY(handle_renew(run));
     const struct integrator_counts when_reached = run->when_reached;
-    struct state *const kept = state_create(run->arena, simulation->school);
-    state_table_copy(kept, simulation->state, simulation->school, true);
-    const enum status status = change_make(run, change);
+    struct state *const kept = state_create(run->arena, run->simulation->school);
+    state_table_copy(kept, run->simulation->state, run->simulation->school, true);
+
+    const enum status status = handle_call(run, change_make, change);
     if (status != STATUS_OK) {
-        // restore the state before the change, and keep the message of the failure
+        // keep the message of the failure
         char reason[sizeof run->failure];
         snprintf(reason, sizeof reason, "%s", status_message());
         handle_forget_row(run);
-        state_table_copy(simulation->state, kept, simulation->school, true);
-        if (handle_renew(run) != STATUS_OK) handle_fail(run);
+        if (handle_call(run, restore_state, kept) != STATUS_OK) handle_fail(run);
         status_fail(status, "%s", reason);
     }
 
@@ -188,24 +169,28 @@ static enum status change_run(struct shoal *run, const struct change *change) {
 }
 
 int shoal_set_state(struct shoal *run, int fish, const double *position, const double *velocity) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     TRY(handle_check_fish(run, fish, __func__));
-    if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
+    TRY(handle_check_alive(run, __func__));
     const struct fish *const of = &run->simulation->school->fish[fish];
-
-    if (position) TRY(change_check_finite(2 * of->n_nodes, position, "the position"));
-    if (velocity) TRY(change_check_finite(2 * of->n_nodes, velocity, "the velocity"));
+    const double *const given[] = {position, velocity};
+    for (int i = 0; i < 4 * of->n_nodes; i++) {
+        const int which = i / (2 * of->n_nodes), k = i % (2 * of->n_nodes);
+        if (!given[which] || isfinite(given[which][k])) continue;
+        return status_fail(STATUS_CASE, "%s: the %s of node %d, %g, is not finite", __func__,
+                           which == 0 ? "position" : "velocity", k / 2, given[which][k]);
+    }
     if (position) TRY(change_check_shape(of, position));
     if (!position && !velocity) return STATUS_OK;
-
     return change_run(run, &(struct change){.fish = fish, .position = position, .velocity = velocity});
 }
 
 int shoal_add_vortex(struct shoal *run, int fish, double x, double y, double circulation) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     TRY(handle_check_fish(run, fish, __func__));
-    if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
+    TRY(handle_check_alive(run, __func__));
     const double vortex[3] = {x, y, circulation};
-    for (int i = 0; i < 3; i++) {
-        if (isfinite(vortex[i])) continue;
+    if (!isfinite(x) || !isfinite(y) || !isfinite(circulation)) {
         return status_fail(STATUS_CASE, "%s: vortex at (%g, %g) with circulation %g: not finite", __func__, x, y,
                            circulation);
     }

@@ -462,6 +462,18 @@ class Words(unittest.TestCase):
             alone.advance(run.time)
             self.assertEqual(run["x"].tobytes(), alone["x"].tobytes())
 
+    def test_ctrl_c_stops_the_set_up(self):
+        # this set-up takes minutes
+        fine = {**PAIR, "fish": [{"nodes": 1500}]}
+        timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        started = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            shoal.Run(fine)
+        self.assertLess(time.monotonic() - started, 60)
+        timer.join()
+        shoal.Run(PAIR).step()
+
     def test_a_time_outside_of_the_case_is_refused_before_the_first_event(self):
         run = shoal.Run(PAIR)
         for time in (run.end + 2 * run.interval, -1):
@@ -671,6 +683,20 @@ def follower(**arguments):
                          goal=("a", (0.2, 0.7)), **arguments)
 
 
+class Interpreters(unittest.TestCase):
+    def test_an_interpreter_without_numpy_is_told_which_one_has_it(self):
+        # without the folders of Debian's packages
+        code = (f"import sys; sys.path = [p for p in sys.path if not p.endswith('packages')]\n"
+                f"sys.path.append({os.path.dirname(os.path.dirname(shoal.__file__))!r})\nimport shoal\n")
+        said = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, check=False)
+        self.assertEqual(said.returncode, 1)
+        last = said.stderr.strip().splitlines()[-1]
+        self.assertRegex(last, f"^ImportError: shoal needs numpy, which {sys.executable} does not have; /\\S+ has it$")
+        self.assertNotIn("During handling", said.stderr)
+        other = last.split()[-3]
+        subprocess.run([other, "-c", "import numpy"], check=True)
+
+
 class Environments(unittest.TestCase):
     def rules_of_gymnasium(self, env):
         """What gymnasium.utils.env_checker asks of an environment."""
@@ -859,6 +885,47 @@ class Environments(unittest.TestCase):
         many.close()
         one.close()
 
+    def test_a_goal_is_set_for_an_episode_or_from_now_on(self):
+        env = shoal.SwimEnv(PAIR, fish="b", observations=("goal",), goal=(1, 2))
+
+        def goal_after_reset(**options):
+            env.reset(options=options)
+            return env.swimmer.place().tolist()
+
+        self.assertEqual(goal_after_reset(), [1, 2])
+        self.assertEqual(goal_after_reset(goal=(3, 4)), [3, 4])
+        self.assertEqual(goal_after_reset(), [1, 2])
+        env.set_goal((5, 6))
+        self.assertEqual(env.swimmer.place().tolist(), [5, 6])
+        self.assertEqual(goal_after_reset(), [5, 6])
+        for options in {"gaol": (1, 2)}, {"goal": 3}, {"goal": None}:
+            with self.assertRaises(shoal.CaseError):
+                env.reset(options=options)
+
+    def test_a_goal_moves(self):
+        env = shoal.SwimEnv(PAIR, observations=("goal", "closing"), goal=lambda t: (1 + 2 * t, 3), act_every=0.04)
+        env.reset()
+        env.step([0])
+        self.assertEqual(env.swimmer.place().tolist(), [1.08, 3])
+        env.set_goal(lambda t: ("b", (t, 0)))
+        np.testing.assert_allclose(env.swimmer.place(), env.run["com"][1] + [0.04, 0])
+        with self.assertRaisesRegex(shoal.CaseError, "a goal is"):
+            env.reset(options={"goal": lambda t: "here"})
+
+    def test_many_environments_have_goals_of_their_own(self):
+        many = shoal.SwimVectorEnv(2, PAIR, threads=1, observations=("goal",), goal=(1, 2))
+        many.reset(options={"goal": [(3, 4), ("b", (0, 1))]})
+        self.assertEqual(many.envs[0].swimmer.place().tolist(), [3, 4])
+        np.testing.assert_allclose(many.envs[1].swimmer.place(), many.envs[1].run["com"][1] + [0, 1])
+        many.reset(options={"goal": [5, 6]})
+        self.assertEqual([env.swimmer.place().tolist() for env in many.envs], [[5, 6]] * 2)
+        many.set_goal(1, (7, 8))
+        many.reset()
+        self.assertEqual([env.swimmer.place().tolist() for env in many.envs], [[1, 2], [7, 8]])
+        for wrong in (lambda: many.reset(options={"goal": [(1, 2)]}), lambda: many.set_goal(2, (1, 2))):
+            with self.assertRaises(shoal.CaseError):
+                wrong()
+
     def test_a_school_keeps_the_rules_of_parallel_environments(self):
         env = shoal.SchoolEnv(PAIR, actions=("bias", "frequency"), act_every=0.04)
         self.assertEqual(env.possible_agents, ["a", "b"])
@@ -881,7 +948,8 @@ class Environments(unittest.TestCase):
 
     @unittest.skipIf(importlib.util.find_spec("gymnasium"), "Gymnasium is installed")
     def test_gymnasium_and_pettingzoo_are_used_where_they_are(self):
-        for package, text in (("gymnasium", "class Env: pass"), ("gymnasium/vector", "class VectorEnv: pass"),
+        registers = "class Env: pass\ndef register(name, **places): print(name, *places.values())\n"
+        for package, text in (("gymnasium", registers), ("gymnasium/vector", "class VectorEnv: pass"),
                               ("pettingzoo", "class ParallelEnv: pass")):
             os.makedirs(f"installed/{package}", exist_ok=True)
             pathlib.Path(f"installed/{package}/__init__.py").write_text(text)
@@ -896,7 +964,8 @@ class Environments(unittest.TestCase):
                 "    print(isinstance(env, gymnasium.Env), isinstance(school, pettingzoo.ParallelEnv))\n")
         said = [subprocess.run([sys.executable, "-c", code, *more], check=True, capture_output=True, text=True).stdout
                 for more in ([], ["installed"])]
-        self.assertEqual(said, ["shoal._environments False False\n", "gymnasium.spaces True True\nTrue True\n"])
+        self.assertEqual(said, ["shoal._environments False False\n", "shoal/Swim-v0 shoal:SwimEnv shoal:SwimVectorEnv\n"
+                                "gymnasium.spaces True True\nTrue True\n"])
 
 
 def example(name):
