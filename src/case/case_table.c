@@ -470,7 +470,8 @@ const struct key case_table[] = {
     {"fish.drag.form", REAL, IN_FISH(drag.form), NULL, ABOVE(0), "",
      .meaning = "skin boundary_layer: factor of the friction due to the thickness of the body",
      .derived = "1 + 2 h/L + 60 (h/L)^4 with the largest thickness h of an edge", .synonyms = "form_factor"},
-    {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "", .meaning = "normal drag coefficient",
+    {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "",
+     .meaning = "coefficient of the drag across the body: with force pressure, of the separated cross-flow",
      .synonyms = "c_d cd lateral", .published = "0.5", .derived = "1, or 0 with force pressure",
      .choice = {"fish.force", "pressure", 0, 1}, .follows = WORDS("fish.force")},
     {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "",
@@ -482,7 +483,7 @@ const struct key case_table[] = {
     {"fish.added_mass.coefficient", REAL, IN_FISH(added_mass.coefficient), "1", FROM(0), "",
      .meaning = "added-mass coefficient", .synonyms = "c_a ca", .published = "1.5"},
     {"fish.added_mass.extent", CHOICE, IN_FISH(added_mass.extent), "depth", ANY, "",
-     .meaning = "extent of the body in added mass and normal drag: thickness h or depth w",
+     .meaning = "extent of the body in added mass and normal drag, not with force pressure: thickness h or depth w",
      .words = WORDS("thickness", "depth"), .published = "thickness"},
 
     {"fish.start.position", PAIR, IN_FISH(start_position), "[0, 0]", ANY, "m",

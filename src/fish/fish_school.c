@@ -132,6 +132,11 @@ static void boundary_layer_set(struct fish *fish, const struct drag_parameters *
     fish->form = isnan(drag->form) ? 1 + 2 * largest + 60 * largest * largest * largest * largest : drag->form;
 }
 
+/* Whether the sheets of the fish consist of vortex rings: force: pressure with span: finite. */
+static int fish_is_strip(const struct fish_parameters *from) {
+    return from->force == FORCE_PRESSURE && from->span == SPAN_FINITE;
+}
+
 // drag, added mass and added mass shed at the tail: doc/model.md, section 9
 static void fluid_forces_set(struct fish *fish, const struct fish_parameters *from,
                              const struct fluid_parameters *fluid) {
@@ -147,7 +152,10 @@ static void fluid_forces_set(struct fish *fish, const struct fish_parameters *fr
                                        ? density * M_PI * drag->tangential * l * (h + w) / (published ? 8 : 4)
                                        : laminar_friction(fish, k, fluid);
 
-        fish->drag_normal[k] = density * drag->normal * l * across / 2;
+        // cross-flow drag: of a strip by the suction at the side edges of a lifting surface of the aspect ratio w/L
+        const double ratio = w / fish->length, extent = from->force == FORCE_PRESSURE ? w : across;
+        const double share = fish_is_strip(from) ? (3.4 + ratio) / (3.4 + ratio * (2.4 + 0.7 * ratio)) : 1;
+        fish->drag_normal[k] = density * drag->normal * l * extent / 2 * share;
         fish->added_mass[k] =
             reactive * M_PI * density * from->added_mass.coefficient * across * across * l / 4 * square;
         fish->displaced_mass[k] = reactive * density * M_PI * h * w / 4 * l;
@@ -382,11 +390,6 @@ static enum status pressure_set(struct fish *fish, int f, const struct fish_para
     fish->suction = from->suction * fish->full_suction;
     fish->suction_limit = from->suction_limit;
     return integrals_set(fish, f, per_edge, parameters->stop);
-}
-
-/* Whether the sheets of the fish consist of vortex rings: force: pressure with span: finite. */
-static int fish_is_strip(const struct fish_parameters *from) {
-    return from->force == FORCE_PRESSURE && from->span == SPAN_FINITE;
 }
 
 /* Set all data per vortex and per control point. Numbers of nodes and points, length and depth of the fish are set.

@@ -31,10 +31,10 @@ static enum status info_read(const struct info *info, long row, long f, const ch
 
 // ---- a run
 
-/* The columns: constants, values of the last row, and those of files with a held body. */
+/* The columns: constants, values of the last row, and values of files with a held body or with a cross-flow drag. */
 static const struct column {
     const char *head, *unit, *variable, *format;
-    enum { CONSTANT, LAST, LAST_OF_HELD } kind;
+    enum { CONSTANT, LAST, LAST_OF_HELD, LAST_OF_CROSS_FLOW } kind;
 } columns[] = {
     {"nodes", "", "n_nodes", "%.0f", CONSTANT},
     {"sheet", "", "n_sheet", "%.0f", CONSTANT},
@@ -47,6 +47,7 @@ static const struct column {
     {"thrust", "N", "mean_thrust", "%.4g", LAST_OF_HELD},
     {"power", "W", "mean_power", "%.4g", LAST_OF_HELD},
     {"efficiency", "", "efficiency", "%.4f", LAST_OF_HELD},
+    {"cross-flow", "W", "cross_flow_power", "%.3g", LAST_OF_CROSS_FLOW},
     {"energy", "J", "kinetic_energy", "%.4g", LAST},
     {"work", "J", "actuation_work", "%.4g", LAST},
     {"balance", "J", "energy_balance", "%.1e", LAST},
@@ -56,17 +57,22 @@ enum { N_COLUMNS = sizeof columns / sizeof *columns, N_CONSTANT_COLUMNS = 3 };
 static enum status info_print_table(const struct info *info) {
     const int n_columns = info->n_rows > 0 ? N_COLUMNS : N_CONSTANT_COLUMNS;
     const long n_fish = (long)info->n_fish, last = (long)info->n_rows - 1;
-    bool has_held = false;
+    bool has_held = false, has_cross_flow = false;
     for (long f = 0; f < n_fish; f++) {
-        double is_held;
+        double is_held, power = 0;
         TRY(info_read(info, NO_ROW, f, "is_held", &is_held));
+        if (last >= 0) TRY(info_read(info, last, f, "cross_flow_power", &power));
         has_held |= is_held > 0;
+        has_cross_flow |= fabs(power) > 0;
     }
 
     struct table *const table = table_create(info->reader->arena, 1);
     table_column(table, "fish", "");
+    bool is_shown[N_COLUMNS];
     for (int i = 0; i < n_columns; i++) {
-        if (columns[i].kind != LAST_OF_HELD || has_held) table_column(table, columns[i].head, columns[i].unit);
+        is_shown[i] = (columns[i].kind != LAST_OF_HELD || has_held) &&
+                      (columns[i].kind != LAST_OF_CROSS_FLOW || has_cross_flow);
+        if (is_shown[i]) table_column(table, columns[i].head, columns[i].unit);
     }
     table_column(table, "", NULL);  // the last column is left-aligned
 
@@ -76,7 +82,7 @@ static enum status info_print_table(const struct info *info) {
         table_cell(table, "%s", name);
         for (int i = 0; i < n_columns; i++) {
             double value;
-            if (columns[i].kind == LAST_OF_HELD && !has_held) continue;
+            if (!is_shown[i]) continue;
             TRY(info_read(info, columns[i].kind == CONSTANT ? NO_ROW : last, f, columns[i].variable, &value));
             table_number(table, columns[i].format, value);
         }

@@ -12,7 +12,7 @@
 
 enum {
     RESULT_SCHEMA = 1,     /* attribute shoal_schema; grows when a reader of the files has to change */
-    RESULT_TABLE_MAX = 160 /* no more variables than these */
+    RESULT_TABLE_MAX = 176 /* no more variables than these */
 };
 
 /* Dimensions; NONE ends a list of dimensions. Unused slots of a fish are NaN. A dimension of length 0 and variables

@@ -292,6 +292,7 @@ static void diagnostics_fill_fish(struct residual *residual, const struct state 
     to->damping_power = power.damping;
     to->drag_power = power.drag;
     to->friction_power = power.friction;
+    to->cross_flow_power = power.drag - power.friction;
     to->added_mass_power = power.added_mass;
     to->wake_power = power.wake;
     to->constraint_power = power.driving;

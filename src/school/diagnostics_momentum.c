@@ -41,6 +41,7 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     memcpy(to->resistive_force, forces.resistive, sizeof forces.resistive);
     memcpy(to->friction_force, forces.friction, sizeof forces.friction);
     memcpy(to->reactive_force, forces.reactive, sizeof forces.reactive);
+    for (int i = 0; i < 2; i++) to->cross_flow_force[i] = forces.resistive[i] - forces.friction[i];
     to->resistive_moment = forces.resistive_moment;
     to->friction_moment = forces.friction_moment;
     to->reactive_moment = forces.reactive_moment;

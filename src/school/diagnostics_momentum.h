@@ -28,12 +28,13 @@ struct diagnostics_fish {
     double contact_energy;                                    /* half the energy of the contacts, J */
     double added_mass_energy;                                 /* kinetic energy of the added mass, J */
     double actuation_power, damping_power, drag_power, added_mass_power, wake_power, constraint_power; /* W */
-    double friction_power; /* power of the drag along the body, W */
-    double contact_power;  /* power received for this half of the contacts, W */
-    double energy_balance; /* J */
-    double actuation_work; /* work of the muscle since the start, J */
-    /* forces on the body, N, and moments about the centre of mass, N m; friction: resistive force along the body */
-    double resistive_force[2], friction_force[2], reactive_force[2], constraint_force[2];
+    double friction_power, cross_flow_power; /* powers of the drag along and across the body, W */
+    double contact_power;                    /* power received for this half of the contacts, W */
+    double energy_balance;                   /* J */
+    double actuation_work;                   /* work of the muscle since the start, J */
+    /* forces on the body, N, and moments about the centre of mass, N m; friction and cross-flow:
+     * resistive force along and across the body */
+    double resistive_force[2], friction_force[2], cross_flow_force[2], reactive_force[2], constraint_force[2];
     double contact_force[2]; /* force of all bodies in contact, N */
     /* x, y, N s, and angular about the origin, N m s: impulse of all vortices including lost vortices; impulse of lost
      * vortices; impulse of the external forces */

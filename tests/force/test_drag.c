@@ -251,3 +251,55 @@ TEST(moment_is_that_of_the_forces_that_the_flow_adds) {
     ABOVE(fabs(moment / scale), 1e-4);
     NEAR(drag_moment(fish, still, still, y), 0, 0, 0);
 }
+
+/* c_n of an edge over rho w l/2 against the suction K_v,se/pi of both side edges of rectangular wings (Polhamus), from a
+ * lattice of vortices with Jordan's lift slope. */
+TEST(cross_flow_drag_of_a_strip_is_the_suction_of_its_side_edges) {
+    static const double suction[][2] = {{0.05, 3.079}, {0.1, 3.018}, {0.25, 2.842}, {0.5, 2.574},
+                                        {1, 2.136},    {2, 1.551},   {4, 0.967},    {8, 0.537}};
+    for (size_t i = 0; i < sizeof suction / sizeof *suction; i++) {
+        for (int is_thick = 0; is_thick < 2; is_thick++) {
+            char text[400];
+            snprintf(text, sizeof text,
+                     TIME
+                     "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+                     "fish: [{length: 2, nodes: 9, sheet_points: 101, force: pressure, pressure: {span: finite},\n"
+                     "        body: {depth: %g}, drag: {normal: 3}, added_mass: {extent: %s}}]\n",
+                     suction[i][0], is_thick ? "thickness" : "depth");
+            struct setup setup;
+            school_build(&setup, text);
+            const struct fish *const fish = setup.school->fish;
+            const double flat = 1000 * 3 * 2 * suction[i][0] * (2.0 / 8) / 2;
+            for (int k = 0; k < fish->n_edges; k++) {
+                NEAR(fish->drag_normal[k] / flat, suction[i][1] / acos(-1), 0, 0.012);
+                const struct edge edge = {.t = {1, 0}, .n = {0, 1}};
+                double force[2], friction[2];
+                drag_force(fish, k, &edge, (const double[]){0, -0.2}, force, friction);
+                NEAR(force[1], fish->drag_normal[k] * 0.04, 0, 1e-14);
+            }
+            school_clear(&setup);
+        }
+    }
+}
+
+// edges of a table of depths: each has the aspect ratio of its own depth; without rings the factor is 1
+TEST(cross_flow_drag_of_an_edge_has_the_depth_of_the_edge) {
+    static const double depth[] = {0.5, 0.7, 0.6, 0.4};
+    for (int is_finite = 0; is_finite < 2; is_finite++) {
+        char text[500];
+        snprintf(text, sizeof text,
+                 TIME
+                 "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+                 "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: %s}, drag: {normal: 1},\n"
+                 "        body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05],\n"
+                 "               depth_table: [0.5, 0.7, 0.6, 0.4]}}]\n",
+                 is_finite ? "finite" : "infinite");
+        struct setup setup;
+        school_build(&setup, text);
+        for (int k = 0; k < 4; k++) {
+            const double a = depth[k], share = is_finite ? (3.4 + a) / (3.4 + 2.4 * a + 0.7 * a * a) : 1;
+            NEAR(setup.school->fish->drag_normal[k], 1000 * share * a * 0.25 / 2, 0, 1e-14);
+        }
+        school_clear(&setup);
+    }
+}

@@ -160,8 +160,9 @@ static const struct variant {
     {"two fish of finite span and two depths in a channel",
      PRESSURE FAR "fluid: {velocity: [0.3, 0], walls: [-0.7, 1.1]}\n"
                   "fish:\n"
-                  "  - {nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}\n"
+                  "  - {nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}, drag: {normal: 1}}\n"
                   "  - {nodes: 4, sheet_points: 11, force: pressure, pressure: {span: finite}, body: {depth: 0.6},\n"
+                  "     drag: {normal: 2, law: linear_quadratic}, added_mass: {extent: thickness},\n"
                   "     start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"four fish of finite span, one force each, two depths", PRESSURE FAR
      "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
