@@ -147,7 +147,7 @@ class Steady:
     """The steady state of a case: values of `shoal steady`, and the result file.
 
     Attributes are the variables steady_* of the file without the prefix, one value per fish for variables of a fish:
-    speed [m s-1], cost_of_transport [m s-2], efficiency, thrust [N], strouhal, actuation_power [W], ...
+    speed [m s-1], cost_of_transport [m s-2], efficiency, towed_efficiency, thrust [N], strouhal, actuation_power [W], ...
     """
 
     def __init__(self, values: dict):

@@ -17,8 +17,8 @@ static struct drag_at drag_speed_law(const struct fish *fish, double factor, dou
                             factor * (2 * fabs(speed) + fish->linear_speed)};
 }
 
-// tangential drag on edge k
-static struct drag_at drag_tangential(const struct fish *fish, int k, double speed) {
+// tangential drag on edge k; waving: K_w
+static struct drag_at drag_tangential(const struct fish *fish, int k, double waving, double speed) {
     if (fish->friction == FRICTION_QUADRATIC) return drag_speed_law(fish, fish->drag_tangential[k], speed);
 
     // c_t (u^2 + u0^2)^(1/4) u
@@ -32,8 +32,8 @@ static struct drag_at drag_tangential(const struct fish *fish, int k, double spe
     const double square = speed * speed + fish->friction_speed * fish->friction_speed;
     const double ratio = square * fish->past_transition[k], laminar = 1 / (1 + ratio * ratio), turbulent = 1 - laminar;
     const double by_square = 2 * turbulent * laminar / square;
-    const double factor = fish->form * (1 + (fish->waving - 1) * laminar);
-    const double factor_slope = -fish->form * (fish->waving - 1) * by_square;
+    const double factor = fish->form * (1 + (waving - 1) * laminar);
+    const double factor_slope = -fish->form * (waving - 1) * by_square;
 
     // laminar and turbulent friction over the speed, blended, with the derivative by s2
     const double blasius = fish->drag_tangential[k] * sqrt(sqrt(square));
@@ -51,7 +51,7 @@ static struct drag_at drag_normal(const struct fish *fish, int k, double speed) 
 
 void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2],
                 double friction[2]) {
-    const double along = drag_tangential(fish, k, edge_dot(w, s->t)).force;
+    const double along = drag_tangential(fish, k, fish->waving, edge_dot(w, s->t)).force;
     const double across = drag_normal(fish, k, edge_dot(w, s->n)).force;
     for (int i = 0; i < 2; i++) {
         force[i] = -along * s->t[i] - across * s->n[i];
@@ -62,7 +62,7 @@ void drag_force(const struct fish *fish, int k, const struct edge *s, const doub
 void drag_slope(const struct fish *fish, int k, const struct edge *s, const double w[2], double by_velocity[2][2],
                 double by_turn[2]) {
     const double wt = edge_dot(w, s->t), wn = edge_dot(w, s->n);
-    const struct drag_at along = drag_tangential(fish, k, wt), across = drag_normal(fish, k, wn);
+    const struct drag_at along = drag_tangential(fish, k, fish->waving, wt), across = drag_normal(fish, k, wn);
 
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) {
@@ -71,6 +71,12 @@ void drag_slope(const struct fish *fish, int k, const struct edge *s, const doub
         by_turn[i] =
             -along.slope * wn * s->t[i] - along.force * s->n[i] + across.slope * wt * s->n[i] + across.force * s->t[i];
     }
+}
+
+double drag_towed(const struct fish *fish, double speed) {
+    double sum = 0;
+    for (int k = 0; k < fish->n_edges; k++) sum += drag_tangential(fish, k, 1, speed).force;
+    return sum;
 }
 
 double drag_moment(const struct fish *fish, const double *u, const double *v, const double *y) {

@@ -16,6 +16,9 @@ void drag_force(const struct fish *fish, int k, const struct edge *s, const doub
 void drag_slope(const struct fish *fish, int k, const struct edge *s, const double w[2], double by_velocity[2][2],
                 double by_turn[2]);
 
+/* Drag of the straight body that is towed along its axis, N: friction of all edges, without the factor of waving. */
+double drag_towed(const struct fish *fish, double speed);
+
 /* tau: moment about the centre of mass of the drag caused by the flow, sum (x - x_cm) x (F(v - u) - F(v)), over the
  * torque scale; dimensionless. */
 double drag_moment(const struct fish *fish, const double *u, const double *v, const double *y);

@@ -205,6 +205,7 @@ static const struct quantity {
     {"steady_power", "power of muscle and drive", "W", "%.5g", false},
     {"steady_cost_of_transport", "cost of transport", "m s-2", "%.5f", false},
     {"steady_efficiency", "efficiency", "", "%.5f", false},
+    {"steady_towed_efficiency", "towed efficiency", "", "%.5f", false},
     {"steady_strouhal", "Strouhal number", "", "%.5f", false},
 };
 

@@ -27,7 +27,7 @@ struct steady_fish {
     double fluid_power;                                      /* that goes into the fluid, W */
     double power;                                            /* of muscle and drive without the work of the thrust, W */
     double cost_of_transport;                                /* m s-2 */
-    double efficiency, strouhal;
+    double efficiency, towed_efficiency, strouhal;
 };
 
 struct steady_values {

@@ -141,6 +141,8 @@ const struct result_variable result_table[] = {
      .long_name = "mean power of muscle and drive over mass and speed, relative to the water"},
     {"steady_efficiency",     {FISH},                 RESULT_REAL,    "1",      IN_STEADY_FISH(efficiency),
      .long_name = "efficiency of the last beat"},
+    {"steady_towed_efficiency", {FISH},               RESULT_REAL,    "1",      IN_STEADY_FISH(towed_efficiency),
+     .long_name = "towed_efficiency of the last beat"},
     {"steady_strouhal",       {FISH},                 RESULT_REAL,    "1",      IN_STEADY_FISH(strouhal),
      .long_name = "Strouhal number"},
 
@@ -256,6 +258,9 @@ const struct result_variable result_table[] = {
     {"efficiency",            {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(efficiency),
      .long_name = "mean_thrust times speed over mean_power of a held body, else friction times speed over power "
                   "into the fluid, over the last period"},
+    {"towed_efficiency",      {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(towed_efficiency),
+     .long_name = "quasi-propulsive: drag of the towed straight body times speed over power into the fluid, over the "
+                  "last period; NaN for a held body"},
     {"mean_thrust",           {TIME, FISH},           RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(mean_thrust),
      .long_name = "mean force of the fluid along the path over the last period: 0 in steady swimming"},
     {"mean_power",            {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(mean_power),

@@ -13,6 +13,7 @@
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
 #include "force/bound_sheet.h"
+#include "force/drag.h"
 #include "force/fluid_force.h"
 #include "force/sensor_pressure.h"
 #include "school/diagnostics_energy.h"
@@ -179,6 +180,7 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
     to->speed = hypot(to->com_velocity[0] - new->stream[0], to->com_velocity[1] - new->stream[1]);
     to->drift = to->heading_error = to->strouhal = NAN;
     to->cost_of_transport = to->cost_of_transport_fluid = to->cost_of_transport_body = to->efficiency = NAN;
+    to->towed_efficiency = NAN;
     to->mean_thrust = to->mean_power = to->mean_actuation_power = NAN;
     if (history->n < 2) return;
 
@@ -216,6 +218,7 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
     if (is_held) return;
     to->mean_thrust = -mean_against(history, offsetof(struct sample, force), way, distance);
     to->efficiency = mean_against(history, offsetof(struct sample, friction), way, distance) * distance / into_water;
+    to->towed_efficiency = drag_towed(fish, to->speed) * distance / into_water;
 }
 
 struct diagnostics *diagnostics_create(struct arena *arena, const struct school *school) {

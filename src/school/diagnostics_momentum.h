@@ -53,6 +53,8 @@ struct diagnostics_fish {
     double cost_of_transport_body;   /* part of the cost of transport dissipated by damping, m s-2 */
     double efficiency;               /* held body: mean_thrust times speed over mean_power; else friction times speed
                                       * over the power transferred to the fluid, last period */
+    double towed_efficiency;         /* drag of the towed straight body times speed over the power transferred to the
+                                      * fluid, last period; NaN for a held body */
     double strouhal;                 /* frequency times peak-to-peak amplitude of the tail over speed */
 };
 

@@ -112,6 +112,7 @@ static void gather_means(struct run *run) {
                                       .power = last->mean_power,
                                       .cost_of_transport = last->cost_of_transport,
                                       .efficiency = last->efficiency,
+                                      .towed_efficiency = last->towed_efficiency,
                                       .strouhal = last->strouhal};
     }
 }

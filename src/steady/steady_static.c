@@ -327,6 +327,7 @@ static void static_fill_fish(const struct simulation *simulation, int f, struct 
                                   .power = NAN,
                                   .cost_of_transport = NAN,
                                   .efficiency = NAN,
+                                  .towed_efficiency = NAN,
                                   .strouhal = NAN};
 
     // drag and lift along and across the relative stream

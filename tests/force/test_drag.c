@@ -303,3 +303,24 @@ TEST(cross_flow_drag_of_an_edge_has_the_depth_of_the_edge) {
         school_clear(&setup);
     }
 }
+
+// Blasius' friction of both sides, or the turbulent law, with the factor of the form and without the factor of waving
+TEST(drag_of_a_towed_body_has_form_and_no_waving) {
+    static const char *const keys[] = {"skin: laminar", "transition: 1.0e+9, waving: 1.7, form: 1.3",
+                                       "transition: 0, waving: 1.7, form: 1.3"};
+    const double speed = 0.7, reynolds = speed * 2 / 0.002, area = 3 * speed * speed * 2 * 0.8;
+    const double want[] = {1.328 / 2 / sqrt(reynolds), 1.3 * 1.328 / 2 / sqrt(reynolds),
+                           1.3 * 0.037 / pow(reynolds, 0.2)};
+    for (int i = 0; i < 3; i++) {
+        char text[400];
+        snprintf(text, sizeof text,
+                 TIME
+                 "fluid: {viscosity: 0.002, density: 3}\n"
+                 "fish: [{length: 2, body: {depth: 0.4}, drag: {%s, normal: 2%s}}]\n",
+                 keys[i], i > 0 ? ", skin: boundary_layer" : "");
+        struct setup setup;
+        school_build(&setup, text);
+        NEAR(drag_towed(setup.school->fish, speed), area * want[i], 0, 1e-7);
+        school_clear(&setup);
+    }
+}

@@ -143,7 +143,8 @@ TEST_WITH(a_steady_state_is_printed_whole, set_up, tear_down) {
                                        .power = n[14],
                                        .cost_of_transport = n[15],
                                        .efficiency = n[16],
-                                       .strouhal = n[17]};
+                                       .towed_efficiency = n[17],
+                                       .strouhal = n[18]};
     }
     const struct steady_values values = {
         .n_beats = 12, .residual = 2e-6, .error = 3e-5, .stiffness = NAN, .fish = fish};
@@ -169,7 +170,8 @@ TEST_WITH(a_steady_state_is_printed_whole, set_up, tear_down) {
                "power of muscle and drive   1.8518     4.321  W\n"
                "cost of transport          1.97530   4.44442  m s-2\n"
                "efficiency                 2.09875   4.56787\n"
-               "Strouhal number            2.22221   4.69133\n"
+               "towed efficiency           2.22221   4.69133\n"
+               "Strouhal number            2.34566   4.81478\n"
                "\n"
                "  steps                          21\n"
                "  residual_evaluations           22\n"

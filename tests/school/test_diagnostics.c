@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "body/rod.h"
+#include "force/drag.h"
 #include "school.h"
 #include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
@@ -297,6 +298,7 @@ TEST(mean_forces_are_exact_for_forces_that_grow_evenly) {
         NEAR(of.mean_thrust, -(-3 - 2 * i), 1e-13, 0);
         // friction times the distance 0.4 over the work 0.4 on the water
         NEAR(of.efficiency, 2 + 2 * i, 1e-13, 0);
+        NEAR(of.towed_efficiency, drag_towed(setup.school->fish, 1), 0, 1e-13);
     }
 }
 
