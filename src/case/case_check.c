@@ -512,6 +512,8 @@ static const struct {
 } law_keys[] = {{"fish.control.limit", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE},
                 {"fish.control.feedforward", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING},
                 {"fish.control.damping", 1U << CONTROL_COURSE},
+                {"fish.control.slow", 1U << CONTROL_COURSE},
+                {"fish.control.course_filter", 1U << CONTROL_COURSE},
                 {"fish.control.rate", 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE}};
 
 static void check_control(const struct check *check) {

@@ -309,8 +309,14 @@ bool control_event(const struct fish *fish, struct control_memory *memory, const
         const double feedforward = control->feedforward * (memory->moment + view->interval * memory->moment_rate);
         target = control_law(fish, memory, view->t, view->mean_heading, feedforward, y);
     } else if (view->has_course) {
-        const double damping = control->damping * fish->period * view->course_rate;
-        target = control_law(fish, memory, view->t, view->course, damping, y);
+        // r: weight of the course, 0 without displacement
+        const double square = view->speed * view->speed;
+        const double weight = square > 0 ? square / (square + control->slow * control->slow) : 0;
+        memory->course_rate =
+            (1 - control->course_share) * memory->course_rate + control->course_share * (weight * view->course_rate);
+        const double error = angle_wrap(view->course - control_desired_heading(fish, memory, view->t, y));
+        const double damping = control->damping * fish->period * memory->course_rate;
+        target = control->limit * tanh(weight * control->gain * error + damping);
     }
 
     // approach the target by at most rate per second

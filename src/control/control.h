@@ -43,6 +43,7 @@ struct control_memory {
     int has_heading, has_waypoints, n_waypoints; /* values set from outside, below */
     double held_heading;                         /* desired heading after the last waypoint, rad */
     double phi0, phi0_rate;     /* event-based laws: value at the last event and rate until the next event, s-1 */
+    double course_rate;         /* e of law course, rad s-1 */
     double moment, moment_rate; /* tau_f and rate, dimensionless and s-1 */
 
     /* values set from outside; initially 0 */
@@ -57,8 +58,9 @@ struct control_view {
     double t, interval;         /* time of the event, and from this event to the next, s */
     double moment;              /* tau, moment of the flow */
     double mean_heading;        /* over the last period, rad */
-    int has_course;             /* whether the fish has moved for a full period */
+    int has_course;             /* whether a full period has passed */
     double course, course_rate; /* direction of motion over this period, rad, and rate, rad s-1 */
+    double speed;               /* mean over this period, m s-1; 0: course and course_rate are 0 */
 };
 
 /* Whether the law uses the moment of the flow. */

@@ -58,6 +58,8 @@ struct control_law_data {
     double acceptance_radius;        /* m */
     double torque_scale;             /* N m: unit of the feedforward moment */
     double filter_share;             /* weight of the newest moment in the moving mean: 1 - exp(-Dt/T_f) */
+    double slow;                     /* u_0 of law course, m s-1 */
+    double course_share;             /* weight of the newest rate in the filtered rate: 1 - exp(-Dt/T_c) */
 };
 
 struct fish {

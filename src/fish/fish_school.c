@@ -458,6 +458,8 @@ static enum status control_set(struct fish *fish, const struct fish_parameters *
     to->limit = control->limit;
     to->feedforward = control->feedforward;
     to->filter_share = -expm1(-parameters->shedding_interval / control->filter);
+    to->slow = fish->period > 0 ? control->slow * fish->length / fish->period : 0;
+    to->course_share = -expm1(-parameters->shedding_interval / control->course_filter);
     to->rate = control->rate;
     to->ramp = control->ramp;
     to->acceptance_radius = control->acceptance_radius * fish->length;

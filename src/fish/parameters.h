@@ -138,9 +138,11 @@ struct control_parameters {
     struct number_list waypoints;       /* pairs (m, m) */
     double acceptance_radius;           /* body lengths */
     double gain, damping, limit, feedforward;
-    double filter; /* s */
-    double rate;   /* s-1 */
-    double ramp;   /* s */
+    double slow;          /* body lengths per period: law course */
+    double course_filter; /* s: law course */
+    double filter;        /* s */
+    double rate;          /* s-1 */
+    double ramp;          /* s */
 };
 
 struct fish_parameters {

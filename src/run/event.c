@@ -137,7 +137,8 @@ static bool event_control(struct state *state, struct residual *residual) {
         struct control_view view = {
             .t = state->t, .interval = school->interval, .mean_heading = diagnostics_mean_heading(&state->history[f])};
         if (control_uses_moment(fish)) view.moment = drag_moment(fish, flow.u, flow.v, state->y);
-        view.has_course = diagnostics_course(&state->history[f], &view.course, &view.course_rate);
+        view.has_course =
+            diagnostics_course(&state->history[f], school->interval, &view.course, &view.course_rate, &view.speed);
 
         const double before = control_rate(fish, memory, state->t, 0, state->y);
         if (control_event(fish, memory, &view, state->y)) {

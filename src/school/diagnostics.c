@@ -75,18 +75,17 @@ enum status diagnostics_remember(struct residual *residual, struct state *state)
     return STATUS_OK;
 }
 
-int diagnostics_course(const struct history *history, double *course, double *rate) {
-    if (history->n < 2 || history->n < history->capacity) return 0;
+bool diagnostics_course(const struct history *history, double interval, double *course, double *rate, double *speed) {
+    if (history->n < 2 || history->n < history->capacity) return false;
 
     const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
     const double way[2] = {new->com[0] - old->com[0], new->com[1] - old->com[1]};
     const double change[2] = {new->velocity[0] - old->velocity[0], new->velocity[1] - old->velocity[1]};
     const double square = way[0] * way[0] + way[1] * way[1];
-    if (square <= 0) return 0;
-
     *course = atan2(way[1], way[0]);
-    *rate = (way[0] * change[1] - way[1] * change[0]) / square;
-    return 1;
+    *rate = square > 0 ? (way[0] * change[1] - way[1] * change[0]) / square : 0;
+    *speed = sqrt(square) / ((history->n - 1) * interval);
+    return true;
 }
 
 double diagnostics_mean_heading(const struct history *history) {

@@ -3,6 +3,8 @@
 #ifndef DIAGNOSTICS_H
 #define DIAGNOSTICS_H
 
+#include <stdbool.h>
+
 #include "school/diagnostics_momentum.h"
 #include "school/residual.h"
 #include "state/state.h"
@@ -14,9 +16,9 @@
  * STATUS_MEMORY. */
 enum status diagnostics_remember(struct residual *residual, struct state *state);
 
-/* Course: direction of the displacement of the centre of mass over the last period, rad, and rate of the course, rad
- * s-1. Returns 0 in the first period, or without displacement, else 1. */
-int diagnostics_course(const struct history *history, double *course, double *rate);
+/* Course: direction of the displacement of the centre of mass over the last period, rad, rate of the course, rad s-1,
+ * and mean speed, m s-1; without displacement all are 0. Returns false in the first period, else true. */
+bool diagnostics_course(const struct history *history, double interval, double *course, double *rate, double *speed);
 
 /* Mean of the headings in a history, rad, unwrapped. */
 double diagnostics_mean_heading(const struct history *history);

@@ -180,6 +180,7 @@ const struct state_row state_table[] = {
     {"control.held_heading", OF_CONTROL(STATE_REAL, held_heading), STATE_NO_ARRAY},
     {"control.phi0", OF_CONTROL(STATE_REAL, phi0), STATE_NO_ARRAY},
     {"control.phi0_rate", OF_CONTROL(STATE_REAL, phi0_rate), STATE_NO_ARRAY},
+    {"control.course_rate", OF_CONTROL(STATE_REAL, course_rate), STATE_NO_ARRAY},
     {"control.moment", OF_CONTROL(STATE_REAL, moment), STATE_NO_ARRAY},
     {"control.moment_rate", OF_CONTROL(STATE_REAL, moment_rate), STATE_NO_ARRAY},
     {"control.amplitude", OF_CONTROL(STATE_REAL, amplitude), STATE_NO_ARRAY},

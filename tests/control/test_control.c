@@ -189,6 +189,7 @@ TEST(course_is_damped_and_waits_for_a_whole_period) {
     assert_int_equal(control_event(fish, memory, &view, setup.state->y), 0);
     NEAR(memory->phi0_rate, 0, 0, 0);
     view.has_course = 1;
+    view.speed = 1e-3;
     control_event(fish, memory, &view, setup.state->y);
     // the law depends neither on the moment nor on the heading; the period is half a second
     const double target = 0.4 * tanh(0.7 * (2 - pi / 2) + 1.5 * 0.5 * -3);
@@ -199,8 +200,41 @@ TEST(course_is_damped_and_waits_for_a_whole_period) {
     NEAR(setup.value[fish->at.phi0], setup.state->y[fish->at.phi0] - target - 0.01 * target / 0.02, 1e-14, 0);
     // at most rate per second
     setup.school->fish[0].control.rate = 2;
-    control_event(fish, memory, &(struct control_view){.interval = 0.02, .has_course = 1, .course = 2}, setup.state->y);
+    const struct control_view far = {.interval = 0.02, .has_course = 1, .course = 2, .speed = 1};
+    control_event(fish, memory, &far, setup.state->y);
     NEAR(memory->phi0_rate, 2, 0, 0);
+}
+
+// u_0 = slow L/T, e by a filter with the time constant T_c: first e, then phi0
+TEST(course_weighs_slow_motion_and_filters_its_rate) {
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{length: 0.8, wave: {frequency: 2},\n"
+                 "        control: {law: course, desired_heading: 90, gain: 0.7, damping: 1.5, limit: 0.4, rate: 1e9,\n"
+                 "                  slow: 0.25, course_filter: 0.05}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    struct control_memory *const memory = &setup.state->control[0];
+    const double slow = 0.25 * 0.8 * 2, keep = exp(-0.02 / 0.05);
+    double e = 0;
+    for (int n = 0; n < 4; n++) {
+        // no displacement at the third event: the course has no weight
+        const double speed = n == 2 ? 0 : 0.3 + 0.2 * n, course = n == 2 ? 0 : 2 + 0.1 * n, rate = n == 2 ? 0 : 1 - n;
+        const struct control_view view = {
+            .t = 3, .interval = 0.02, .has_course = 1, .course = course, .course_rate = rate, .speed = speed};
+        const double r = speed * speed / (speed * speed + slow * slow);
+        e += (1 - keep) * (r * rate - e);
+        assert_false(control_event(fish, memory, &view, setup.state->y));
+        NEAR(memory->course_rate, e, 1e-15, 1e-14);
+        control_advance(memory, 0.02);
+        NEAR(memory->phi0, 0.4 * tanh(r * 0.7 * (course - pi / 2) + 1.5 * 0.5 * e), 1e-14, 1e-13);
+    }
+
+    // in the first period e and phi0 stay
+    const double before = memory->phi0;
+    assert_false(control_event(fish, memory, &(struct control_view){.interval = 0.02, .speed = 1}, setup.state->y));
+    NEAR(memory->course_rate, e, 0, 0);
+    NEAR(memory->phi0 + 0.02 * memory->phi0_rate, before, 1e-15, 0);
+    school_clear(&setup);
 }
 
 TEST(rate_is_that_of_the_bias_of_a_moving_fish) {

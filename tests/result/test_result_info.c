@@ -87,6 +87,7 @@ TEST_WITH(info_is_printed_whole, set_up, tear_down) {
         of->heading = -12.3456 * n;
         of->phi0 = 0.0123456 * n;
         of->shed_circulation = -1.23456e-3 * n;
+        of->cross_flow_power = -0.567891 * n;
         of->kinetic_energy = 23.45678 * n;
         of->actuation_work = 34.56789 * n;
         of->energy_balance = -4.5678e-5 * n;
@@ -97,28 +98,31 @@ TEST_WITH(info_is_printed_whole, set_up, tear_down) {
     enum status status;
     const char *const text = info(f->path, 0, &status);
     assert_int_equal(status, STATUS_OK);
-    is_printed(
-        strstr(text, "  status"),
-        "  status      complete\n"
-        "  rows        4, from t = 0 s to 1.5 s; a vortex every 0.1 s\n"
-        "\n"
-        "fish      nodes  sheet  length  vortices   speed  heading    phi0        shed  energy   work   balance\n"
-        "                             m             m s-1   degree              m2 s-1       J      J         J\n"
-        "leader        5      7       1         0  0.1235   -12.35  0.0123  -1.235e-03   23.46  34.57  -4.6e-05\n"
-        "suédois      7      5       2         0  0.2469   -24.69  0.0247  -2.469e-03   46.91  69.14  -9.1e-05\n"
-        "\n"
-        "  total circulation         1.1e+01 m2 s-1\n"
-        "  momentum balance          5.0e-03 N s\n"
-        "  least distance            12.0000 m\n"
-        "  polarisation              13.0000\n"
-        "\n"
-        "  steps                          21   1.40 per event\n"
-        "  residual_evaluations           22   1.47 per event\n"
-        "  newton_iterations              23   1.53 per event\n"
-        "  jacobian_evaluations           24   1.60 per event\n"
-        "  error_test_failures            25   1.67 per event\n"
-        "  convergence_failures           26   1.73 per event\n"
-        "  wall_time                   28.00 s   0.0536 times real time\n");
+    is_printed(strstr(text, "  status"),
+               "  status      complete\n"
+               "  rows        4, from t = 0 s to 1.5 s; a vortex every 0.1 s\n"
+               "\n"
+               "fish      nodes  sheet  length  vortices   speed  heading    phi0        shed"
+               "  cross-flow  energy   work   balance\n"
+               "                             m             m s-1   degree              m2 s-1"
+               "           W       J      J         J\n"
+               "leader        5      7       1         0  0.1235   -12.35  0.0123  -1.235e-03"
+               "      -0.568   23.46  34.57  -4.6e-05\n"
+               "suédois      7      5       2         0  0.2469   -24.69  0.0247  -2.469e-03"
+               "       -1.14   46.91  69.14  -9.1e-05\n"
+               "\n"
+               "  total circulation         1.1e+01 m2 s-1\n"
+               "  momentum balance          5.0e-03 N s\n"
+               "  least distance            12.0000 m\n"
+               "  polarisation              13.0000\n"
+               "\n"
+               "  steps                          21   1.40 per event\n"
+               "  residual_evaluations           22   1.47 per event\n"
+               "  newton_iterations              23   1.53 per event\n"
+               "  jacobian_evaluations           24   1.60 per event\n"
+               "  error_test_failures            25   1.67 per event\n"
+               "  convergence_failures           26   1.73 per event\n"
+               "  wall_time                   28.00 s   0.0536 times real time\n");
 }
 
 TEST_WITH(a_steady_state_is_printed_whole, set_up, tear_down) {

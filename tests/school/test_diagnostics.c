@@ -306,18 +306,23 @@ TEST(course_is_the_direction_of_the_way_in_the_last_period) {
     struct sample sample[3] = {
         {.com = {1, 0}, .velocity = {0.2, 0.1}}, {.com = {5, 5}}, {.com = {-1, 2}, .velocity = {0.5, 0}}};
     struct history history = {.capacity = 3, .n = 2, .last = 1, .sample = sample};
-    double course, rate;
+    double course, rate, speed;
     // no course in the first period, nor without a period
-    assert_int_equal(diagnostics_course(&history, &course, &rate), 0);
-    assert_int_equal(diagnostics_course(&(struct history){.capacity = 1, .n = 1, .sample = sample}, &course, &rate), 0);
+    assert_false(diagnostics_course(&history, 0.1, &course, &rate, &speed));
+    const struct history none = {.capacity = 1, .n = 1, .sample = sample};
+    assert_false(diagnostics_course(&none, 0.1, &course, &rate, &speed));
     history.n = 3;
     history.last = 2;
-    assert_int_equal(diagnostics_course(&history, &course, &rate), 1);
+    assert_true(diagnostics_course(&history, 0.1, &course, &rate, &speed));
+    NEAR(speed, sqrt(8) / 0.2, 0, 1e-14);
     NEAR(course, acos(-1) * 3 / 4, 1e-15, 0);
     // (-2, 2) x (0.3, -0.1)/8
     NEAR(rate, (-2 * -0.1 - 2 * 0.3) / 8, 1e-16, 1e-14);
+    // without displacement
     sample[2] = sample[0];
-    assert_int_equal(diagnostics_course(&history, &course, &rate), 0);
+    assert_true(diagnostics_course(&history, 0.1, &course, &rate, &speed));
+    NEAR(speed, 0, 0, 0);
+    NEAR(rate, 0, 0, 0);
 }
 
 TEST(speed_and_strouhal_number_are_those_of_a_driven_plate) {
