@@ -70,8 +70,8 @@ static enum status info_print_table(const struct info *info) {
     table_column(table, "fish", "");
     bool is_shown[N_COLUMNS];
     for (int i = 0; i < n_columns; i++) {
-        is_shown[i] = (columns[i].kind != LAST_OF_HELD || has_held) &&
-                      (columns[i].kind != LAST_OF_CROSS_FLOW || has_cross_flow);
+        is_shown[i] =
+            (columns[i].kind != LAST_OF_HELD || has_held) && (columns[i].kind != LAST_OF_CROSS_FLOW || has_cross_flow);
         if (is_shown[i]) table_column(table, columns[i].head, columns[i].unit);
     }
     table_column(table, "", NULL);  // the last column is left-aligned

@@ -502,3 +502,24 @@ TEST(waypoints_that_are_set_begin_where_the_fish_is) {
     // the course of the leg from the place of the fish at that time
     NEAR(control_desired_heading(fish, memory, 0, y), atan2(3, 4), 1e-14, 0);
 }
+
+/* From rest the direction of the path is ill-defined, and its rate closes a loop with the delay Dt: without the weight
+ * of slow motion and the filter the work grows from 19 to 55 J. */
+TEST(work_of_a_stiff_fish_from_rest_has_a_limit_in_the_interval) {
+    double work[2];
+    for (int i = 0; i < 2; i++) {
+        char text[400];
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS
+                 "time: {end: 6, shedding_interval: %g}\n"
+                 "fish: [{body: {modulus: 1e8}, control: {law: course, slow: 0.1, course_filter: 0.25}}]\n",
+                 i == 0 ? 0.02 : 0.01);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 6);
+        simulate_measure(simulation);
+        work[i] = simulation->diagnostics->fish[0].actuation_work;
+        simulate_free(simulation);
+    }
+    NEAR(work[0], work[1], 0, 0.02);
+    BELOW(work[1], 10);
+}
