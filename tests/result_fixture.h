@@ -166,7 +166,7 @@ static inline const char *text_of(int file, int variable, const char *name) {
     static char text[4096];
     size_t length;
     if (nc_inq_attlen(file, variable, name, &length) != NC_NOERR) fail_msg("there is no attribute %s", name);
-    assert_true(length < sizeof text);
+    BELOW(length, sizeof text);
     memset(text, 0, sizeof text);
     assert_int_equal(nc_get_att_text(file, variable, name, text), NC_NOERR);
     return text;

@@ -72,7 +72,7 @@ TEST(every_default_that_follows_another_key_names_keys_of_the_table) {
             assert_true(case_table[k].derive || case_table[k].choice.of);
         }
     }
-    assert_true(n > 0);
+    ABOVE(n, 0);
 }
 
 /* Derived defaults are rounded to the decimal. */

@@ -19,7 +19,8 @@ struct problem {
     double growth;      /* added to wrong at each solution */
     double coefficient; /* of the step */
     int is_periodic, n_residuals, n_set_ups, n_bad, n_updates, never_finite;
-    double updated; /* how wrong the Jacobian is after an update; 0: there are none */
+    double updated;  /* how wrong the Jacobian is after an update; 0: there are none */
+    long iterations; /* of the last solution */
 };
 
 // of all unknowns but the first; the last one is predicted as 0
@@ -72,9 +73,10 @@ static void update(void *data) {
     problem->wrong = problem->updated;
 }
 
-static void set_up(struct problem *problem) {
-    *problem = (struct problem){
-        .root = 1, .coefficient = 100, .updated = problem->updated, .is_periodic = problem->is_periodic};
+static struct problem *pose(double updated, int is_periodic) {
+    struct problem *problem;
+    NEW(test_arena(), problem, 1);
+    *problem = (struct problem){.root = 1, .coefficient = 100, .updated = updated, .is_periodic = is_periodic};
     school_build(&problem->setup, "time: {end: 1}\nfish: [{nodes: 4, sheet_points: 5}]\n");
     const int n = problem->setup.school->n_unknowns;
     sundials_context_create(&problem->context, problem->setup.arena, n, 1, &problem->failure);
@@ -103,33 +105,47 @@ static void set_up(struct problem *problem) {
     assert_int_equal(SUNNonlinSolSetLSetupFn(problem->solver, set_up_matrix), 0);
     assert_int_equal(SUNNonlinSolSetLSolveFn(problem->solver, solve_matrix), 0);
     assert_int_equal(SUNNonlinSolInitialize(problem->solver), 0);
+    return problem;
 }
 
-static void clear(struct problem *problem) {
-    school_clear(&problem->setup);
-}
-
-// solve as IDA does; returns the code, and the iterations
-static int solve(struct problem *problem, double tolerance, int evaluate, long *iterations) {
+// solve as IDA does
+static int solve(struct problem *problem, double tolerance, int evaluate) {
     problem->n_residuals = problem->n_set_ups = problem->n_bad = problem->n_updates = 0;
     problem->wrong += problem->growth;
     N_VConst(0, problem->total);
     const int code = SUNNonlinSolSolve(problem->solver, problem->predicted, problem->total, problem->weights, tolerance,
                                        evaluate, problem);
-    assert_int_equal(SUNNonlinSolGetNumIters(problem->solver, iterations), 0);
+    assert_int_equal(SUNNonlinSolGetNumIters(problem->solver, &problem->iterations), 0);
     return code;
 }
 
+// a problem with the Jacobian of its first solution
+static struct problem *pose_and_solve(double updated, int is_periodic) {
+    struct problem *const problem = pose(updated, is_periodic);
+    assert_int_equal(solve(problem, 1e-6, 1), 0);
+    return problem;
+}
+
+// solve for another root, with another step, an old Jacobian and the error that each iteration leaves
+static void solve_again(struct problem *problem, double wrong, double tolerance) {
+    problem->root = 2;
+    problem->coefficient *= 2;
+    problem->wrong = wrong;
+    assert_int_equal(solve(problem, tolerance, 0), 0);
+}
+
+static long failures_of(const struct problem *problem) {
+    long failures;
+    assert_int_equal(SUNNonlinSolGetNumConvFails(problem->solver, &failures), 0);
+    return failures;
+}
+
 TEST(an_exact_jacobian_needs_two_iterations) {
-    struct problem problem = {.updated = 0};
-    long iterations;
-    set_up(&problem);
-    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
-    assert_int_equal(iterations, 2);
-    assert_int_equal(problem.n_residuals, 2);
-    assert_int_equal(problem.n_set_ups, 1);
-    NEAR(error_of(&problem, problem.total), 0, 1e-15, 0);
-    clear(&problem);
+    struct problem *const problem = pose_and_solve(0, 0);
+    assert_int_equal(problem->iterations, 2);
+    assert_int_equal(problem->n_residuals, 2);
+    assert_int_equal(problem->n_set_ups, 1);
+    NEAR(error_of(problem, problem->total), 0, 1e-15, 0);
 }
 
 TEST(the_error_left_is_below_the_tolerance) {
@@ -138,23 +154,15 @@ TEST(the_error_left_is_below_the_tolerance) {
     const double tolerances[] = {1e-2, 4e-3};
     for (size_t i = 0; i < sizeof wrongs / sizeof *wrongs; i++) {
         for (int j = 0; j < 2; j++) {
-            struct problem problem = {.updated = 0};
-            long iterations, failures;
-            set_up(&problem);
-            assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
-            problem.root = 2;
-            problem.coefficient *= 2;
-            problem.wrong = wrongs[i];
-            assert_int_equal(solve(&problem, tolerances[j], 0, &iterations), 0);
-            assert_int_equal(problem.n_set_ups, 0);
-            const double rate = fabs(wrongs[i]), left = fabs(error_of(&problem, problem.total));
-            NEAR(left, 2 * pow(rate, (double)iterations), 0, 1e-9);
+            struct problem *const problem = pose_and_solve(0, 0);
+            solve_again(problem, wrongs[i], tolerances[j]);
+            assert_int_equal(problem->n_set_ups, 0);
+            const double rate = fabs(wrongs[i]), left = fabs(error_of(problem, problem->total));
+            NEAR(left, 2 * pow(rate, (double)problem->iterations), 0, 1e-9);
             AT_MOST(left, (wrongs[i] > 0 ? 1 : (1 + rate) / (1 - rate)) * tolerances[j]);
             // one iteration less is not enough, or cannot show the rate
-            if (iterations != 2) ABOVE(left, rate * rate * tolerances[j]);
-            assert_int_equal(SUNNonlinSolGetNumConvFails(problem.solver, &failures), 0);
-            assert_int_equal(failures, 0);
-            clear(&problem);
+            if (problem->iterations != 2) ABOVE(left, rate * rate * tolerances[j]);
+            assert_int_equal(failures_of(problem), 0);
         }
     }
 }
@@ -163,181 +171,138 @@ TEST(an_old_jacobian_that_does_not_converge_is_replaced) {
     // too slow, divergent, or not within the maximum of iterations
     const double wrongs[] = {0.95, -1.5, 0.8};
     for (size_t i = 0; i < sizeof wrongs / sizeof *wrongs; i++) {
-        struct problem problem = {.updated = 0};
-        long iterations, failures;
-        set_up(&problem);
-        assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
-        problem.root = 2;
-        problem.coefficient *= 2;
-        problem.wrong = wrongs[i];
-        assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
-        assert_int_equal(problem.n_set_ups, 1);
-        assert_int_equal(problem.n_bad, 1);
-        assert_int_equal(SUNNonlinSolGetNumConvFails(problem.solver, &failures), 0);
-        assert_int_equal(failures, 1);
+        struct problem *const problem = pose_and_solve(0, 0);
+        solve_again(problem, wrongs[i], 1e-6);
+        assert_int_equal(problem->n_set_ups, 1);
+        assert_int_equal(problem->n_bad, 1);
+        assert_int_equal(failures_of(problem), 1);
         // it fails as soon as the rate shows
-        assert_int_equal(iterations, (wrongs[i] == 0.8 ? 6 : 3) + 2);
-        NEAR(error_of(&problem, problem.total), 0, 1e-12, 0);
-        clear(&problem);
+        assert_int_equal(problem->iterations, (wrongs[i] == 0.8 ? 6 : 3) + 2);
+        NEAR(error_of(problem, problem->total), 0, 1e-12, 0);
     }
 }
 
 TEST(slow_places_show_beside_fast_algebraic_unknowns) {
-    struct problem problem = {.updated = 0};
-    long iterations;
-    set_up(&problem);
-    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    struct problem *const problem = pose_and_solve(0, 0);
     // the algebraic ones change by 1 and are right at once; the first unknown changes by 0.05, and slowly
-    problem.root = 2;
-    problem.coefficient *= 2;
-    problem.wrong = 1e-6;
-    problem.root_of_first = 0.05;
-    problem.wrong_for_first = 0.3;
-    assert_int_equal(solve(&problem, 1e-4, 0, &iterations), 0);
+    problem->root = 2;
+    problem->coefficient *= 2;
+    problem->wrong = 1e-6;
+    problem->root_of_first = 0.05;
+    problem->wrong_for_first = 0.3;
+    assert_int_equal(solve(problem, 1e-4, 0), 0);
     // in the root mean square over all unknowns
-    const double left = fabs(error_of_first(&problem, problem.total)) / sqrt((double)NV_LENGTH_S(problem.total));
+    const double left = fabs(error_of_first(problem, problem->total)) / sqrt((double)NV_LENGTH_S(problem->total));
     AT_MOST(left, 1e-4);
-    ABOVE(iterations, 3);
-    clear(&problem);
+    ABOVE(problem->iterations, 3);
 }
 
 TEST(an_old_jacobian_is_updated_once_in_a_solution) {
-    struct problem problem = {.updated = 0.01};
-    long iterations;
-    set_up(&problem);
+    struct problem *const problem = pose_and_solve(0.01, 0);
     // a new one is not
-    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
-    assert_int_equal(problem.n_updates, 0);
+    assert_int_equal(problem->n_updates, 0);
     // without the update this one would not converge
-    problem.root = 2;
-    problem.coefficient *= 2;
-    problem.wrong = 0.95;
-    assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
-    assert_int_equal(problem.n_updates, 1);
-    assert_int_equal(problem.n_set_ups, 0);
-    AT_MOST(iterations, 4);
-    clear(&problem);
+    solve_again(problem, 0.95, 1e-6);
+    assert_int_equal(problem->n_updates, 1);
+    assert_int_equal(problem->n_set_ups, 0);
+    AT_MOST(problem->iterations, 4);
 }
 
 TEST(small_corrections_that_do_not_shrink_are_noise) {
-    struct problem problem = {.updated = 0};
-    long iterations, failures;
-    set_up(&problem);
-    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    struct problem *const problem = pose_and_solve(0, 0);
     // corrections of 0.05 and 0.0475 tolerances
-    problem.root = 1 + 1e-6;
-    problem.wrong = 0.95;
-    assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
-    assert_int_equal(iterations, 2);
-    assert_int_equal(SUNNonlinSolGetNumConvFails(problem.solver, &failures), 0);
-    assert_int_equal(failures, 0);
-    AT_MOST(fabs(error_of(&problem, problem.total)), 1e-6);
-    clear(&problem);
+    problem->root = 1 + 1e-6;
+    problem->wrong = 0.95;
+    assert_int_equal(solve(problem, 1e-6, 0), 0);
+    assert_int_equal(problem->iterations, 2);
+    assert_int_equal(failures_of(problem), 0);
+    AT_MOST(fabs(error_of(problem, problem->total)), 1e-6);
 }
 
 TEST(a_new_jacobian_that_leaves_something_out_may_take_longer) {
-    struct problem problem = {.updated = 0};
-    long iterations;
-    set_up(&problem);
-    problem.root_of_first = 1;
-    problem.wrong_for_first = 0.3;
-    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
-    assert_in_range(iterations, 8, 14);
-    const double left = fabs(error_of_first(&problem, problem.total)) / sqrt((double)NV_LENGTH_S(problem.total));
+    struct problem *const problem = pose(0, 0);
+    problem->root_of_first = 1;
+    problem->wrong_for_first = 0.3;
+    assert_int_equal(solve(problem, 1e-6, 1), 0);
+    assert_in_range(problem->iterations, 8, 14);
+    const double left = fabs(error_of_first(problem, problem->total)) / sqrt((double)NV_LENGTH_S(problem->total));
     AT_MOST(left, 1e-6);
     // but not for ever
-    problem.wrong_for_first = 0.8;
-    problem.coefficient *= 2;
-    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), SUN_NLS_CONV_RECVR);
-    assert_int_equal(iterations, 20);
-    clear(&problem);
+    problem->wrong_for_first = 0.8;
+    problem->coefficient *= 2;
+    assert_int_equal(solve(problem, 1e-6, 1), SUN_NLS_CONV_RECVR);
+    assert_int_equal(problem->iterations, 20);
 }
 
 TEST(a_failure_with_a_new_jacobian_asks_for_a_smaller_step) {
-    struct problem problem = {.updated = 0};
-    long iterations;
-    set_up(&problem);
+    struct problem *const problem = pose(0, 0);
     // no root: y^2 + ... stays above zero
-    problem.root = 0;
-    problem.never_finite = 1;
-    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), SUN_NLS_CONV_RECVR);
-    assert_int_equal(iterations, 1);
-    clear(&problem);
+    problem->root = 0;
+    problem->never_finite = 1;
+    assert_int_equal(solve(problem, 1e-6, 1), SUN_NLS_CONV_RECVR);
+    assert_int_equal(problem->iterations, 1);
 }
 
 TEST(the_last_correction_is_the_guess_while_the_step_stays) {
-    struct problem problem = {.updated = 0};
-    long iterations;
-    set_up(&problem);
-    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    struct problem *const problem = pose_and_solve(0, 0);
     // the same correction again: the guess is the solution
-    problem.wrong = 0.3;
-    assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
-    assert_int_equal(iterations, 1);
+    problem->wrong = 0.3;
+    assert_int_equal(solve(problem, 1e-6, 0), 0);
+    assert_int_equal(problem->iterations, 1);
     // not with another step
-    problem.coefficient *= 1.001;
-    assert_int_equal(solve(&problem, 1e-3, 0, &iterations), 0);
-    ABOVE(iterations, 2);
+    problem->coefficient *= 1.001;
+    assert_int_equal(solve(problem, 1e-3, 0), 0);
+    ABOVE(problem->iterations, 2);
     // nor after a restart, whatever the step
-    assert_int_equal(SUNNonlinSolInitialize(problem.solver), 0);
-    assert_int_equal(solve(&problem, 1e-3, 0, &iterations), 0);
-    ABOVE(iterations, 2);
-    clear(&problem);
+    assert_int_equal(SUNNonlinSolInitialize(problem->solver), 0);
+    assert_int_equal(solve(problem, 1e-3, 0), 0);
+    ABOVE(problem->iterations, 2);
 }
 
 TEST(the_start_has_the_period_of_the_corrections) {
     // corrections with a period of solutions, which grow: the first solution of the third period starts at the root
     for (int period = 1; period <= 4; period++) {
-        struct problem problem = {.is_periodic = 1};
-        long iterations = 0;
-        set_up(&problem);
+        struct problem *const problem = pose(0, 1);
         for (int i = 0; i <= 2 * period; i++) {
             const double of_phase[] = {1, -3, 0.5, 2};
-            problem.root = of_phase[i % period] * (1 + 0.01 * (i / period));
-            assert_int_equal(solve(&problem, 1e-6, i == 0, &iterations), 0);
-            assert_int_equal(iterations, i < 2 * period ? 2 : 1);
+            problem->root = of_phase[i % period] * (1 + 0.01 * (i / period));
+            assert_int_equal(solve(problem, 1e-6, i == 0), 0);
+            assert_int_equal(problem->iterations, i < 2 * period ? 2 : 1);
         }
-        NEAR(error_of(&problem, problem.total), 0, 1e-10, 0);
+        NEAR(error_of(problem, problem->total), 0, 1e-10, 0);
         // not with another step
-        problem.coefficient *= 1.001;
-        assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
-        assert_int_equal(iterations, 2);
-        clear(&problem);
+        problem->coefficient *= 1.001;
+        assert_int_equal(solve(problem, 1e-6, 0), 0);
+        assert_int_equal(problem->iterations, 2);
     }
 }
 
 TEST(without_a_period_the_start_is_the_last_correction) {
-    struct problem problem = {.updated = 0};
-    long iterations;
-    set_up(&problem);
+    struct problem *const problem = pose(0, 0);
     for (int i = 0; i < 6; i++) {
-        problem.root = i % 2 == 0 ? 1 : -3;
-        assert_int_equal(solve(&problem, 1e-6, i == 0, &iterations), 0);
+        problem->root = i % 2 == 0 ? 1 : -3;
+        assert_int_equal(solve(problem, 1e-6, i == 0), 0);
     }
     // the last root once more, where a period of two would promise the other root
-    assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
-    assert_int_equal(iterations, 1);
-    clear(&problem);
+    assert_int_equal(solve(problem, 1e-6, 0), 0);
+    assert_int_equal(problem->iterations, 1);
 }
 
 TEST(a_jacobian_that_has_become_expensive_is_evaluated_again) {
-    struct problem problem = {.updated = 0};
-    long iterations, before = 0;
-    set_up(&problem);
-    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
-    int served = 1, spent = (int)iterations;
-    for (problem.growth = 0.01;; served++) {
-        before = iterations;
-        problem.coefficient *= 2;
-        assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
-        if (problem.n_set_ups > 0) break;
-        spent += (int)iterations;
+    struct problem *const problem = pose_and_solve(0, 0);
+    long before = 0;
+    int served = 1, spent = (int)problem->iterations;
+    for (problem->growth = 0.01;; served++) {
+        before = problem->iterations;
+        problem->coefficient *= 2;
+        assert_int_equal(solve(problem, 1e-6, 0), 0);
+        if (problem->n_set_ups > 0) break;
+        spent += (int)problem->iterations;
         BELOW(served, 100);
     }
     // not after a failure, but when the last solution cost as much as the mean one, the Jacobian's cost of 5 included
-    assert_int_equal(problem.n_bad, 0);
+    assert_int_equal(problem->n_bad, 0);
     AT_LEAST(before * served, spent + 5);
     BELOW(before * (served - 1), spent - before + 5 + served);
     ABOVE(served, 2);
-    clear(&problem);
 }

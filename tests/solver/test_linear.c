@@ -349,6 +349,14 @@ TEST(the_column_of_the_circulation_shed_can_be_updated) {
     }
 }
 
+// a school without couplings whose diagonal blocks are to be filled
+static struct jacobian *build_apart(struct system *system) {
+    build(system, SCHOOL, 1e-6);
+    uncouple(system);
+    for (int f = 0; f < 7; f++) sparse_forget(system->setup.jacobian->own[f]);
+    return system->setup.jacobian;
+}
+
 // fill a diagonal block with 2 x 2 matrices: pivots that are good for some values are bad for others
 static void set_pieces(struct sparse *own, double on_diagonal, double above, double below) {
     sparse_begin(own);
@@ -363,10 +371,7 @@ static void set_pieces(struct sparse *own, double on_diagonal, double above, dou
 
 TEST(bad_factors_are_replaced_by_ones_with_other_pivots) {
     struct system system;
-    build(&system, SCHOOL, 1e-6);
-    uncouple(&system);
-    struct jacobian *const jacobian = system.setup.jacobian;
-    for (int f = 0; f < 7; f++) sparse_forget(jacobian->own[f]);
+    struct jacobian *const jacobian = build_apart(&system);
     // a small change keeps the pivots; a diagonal that falls from 1 to 1e-9 does not: with the old pivots nine of
     // sixteen digits would be lost
     const struct {
@@ -385,10 +390,7 @@ TEST(bad_factors_are_replaced_by_ones_with_other_pivots) {
 
 TEST(a_block_that_becomes_nearly_singular_gets_new_pivots) {
     struct system system;
-    build(&system, SCHOOL, 1e-6);
-    uncouple(&system);
-    struct jacobian *const jacobian = system.setup.jacobian;
-    for (int f = 0; f < 7; f++) sparse_forget(jacobian->own[f]);
+    struct jacobian *const jacobian = build_apart(&system);
     // (1 s; s 1): one pivot falls to 2 (1 - s) while no entry grows
     const struct {
         double s;
@@ -416,10 +418,7 @@ static void set_growth(struct sparse *own, double e) {
 
 TEST(a_block_whose_factors_grow_gets_new_pivots) {
     struct system system;
-    build(&system, SCHOOL, 1e-6);
-    uncouple(&system);
-    struct jacobian *const jacobian = system.setup.jacobian;
-    for (int f = 0; f < 7; f++) sparse_forget(jacobian->own[f]);
+    struct jacobian *const jacobian = build_apart(&system);
     const double e[] = {1, 0.5, 1e-5};
     // six of seven: in the fish with a prescribed head these rows are masked
     const long factorisations[] = {7, 7, 13};
@@ -432,10 +431,7 @@ TEST(a_block_whose_factors_grow_gets_new_pivots) {
 
 TEST(a_singular_block_is_final_at_first_and_a_retry_later) {
     struct system system;
-    build(&system, SCHOOL, 1e-6);
-    uncouple(&system);
-    struct jacobian *const jacobian = system.setup.jacobian;
-    for (int f = 0; f < 7; f++) sparse_forget(jacobian->own[f]);
+    struct jacobian *const jacobian = build_apart(&system);
     const double beside[] = {1, 0.5, 1, 0.5};
     const enum status want[] = {STATUS_SOLVER, STATUS_OK, STATUS_RETRY, STATUS_OK};
     for (int i = 0; i < 4; i++) {

@@ -131,7 +131,7 @@ TEST(a_clone_without_memory_ends_the_boundary) {
         }
         assert_int_equal(clone_vector(both.vector[OURS][0]), 0);
         assert_memory_equal(values[OURS], values[SERIAL], sizeof values[SERIAL]);
-        assert_true(n_live > n_before);
+        ABOVE(n_live, n_before);
         clear(&both);
     }
     assert_int_equal(n_live, 0);
