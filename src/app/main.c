@@ -164,80 +164,61 @@ static enum status main_help(const struct request *request) {
     return refuse_command(request->positional);
 }
 
-/* Print all commands with their options as JSON. */
-static enum status describe(void) {
-    printf("{\"summary\": \"%s\",\n\"exit_codes\": \"", summary);
-    for (const char *c = exit_codes; *c; c++) putchar(*c == '\n' ? ' ' : *c);
-    printf("\",\n\"commands\": [");
-
-    for (int i = 0; i < N_COMMANDS; i++) {
-        if (i > 0) printf(",\n ");
-        main_describe(&commands[i], stdout);
-    }
-
-    printf("]}\n");
-    return STATUS_OK;
-}
-
-static enum status dispatch(struct arena *arena, const struct command *command, int argc, char **argv) {
-    // the command line, to be repeated in a shell
-    struct text line = {0};
-    for (int i = 0; i < argc; i++) {
-        if (i > 0) text_add(&line, " ");
-        text_add_word(&line, argv[i]);
-    }
-    if (line.failed) arena_lack(arena, 0);
-    arena_defer(arena, free, line.text);
-
-    // allocate one element more than the command line can fill: main_error adds an assignment
-    struct request request = {.arena = arena, .command_line = line.text};
-    NEW(arena, request.assignments, argc + 1);
-    NEW(arena, request.of, argc + 1);
-
-    // getopt starts after the name of the command
-    enum status status = STATUS_OK;
-    const int is_done = main_parse(command, argc - 1, argv + 1, &request, &status);
-    return is_done || status != STATUS_OK ? status : command->run(&request);
-}
-
-static enum status print_version(void) {
-    char libraries[VERSION_LENGTH];
-    version_libraries(libraries);
-    printf("%s\n%s\n", version_short(), libraries);
-    return STATUS_OK;
-}
-
-static enum status main_choose(struct arena *arena, int argc, char **argv) {
+/* Parse the command line and run the command. */
+static enum status main_choose(int argc, char **argv, struct arena **arena) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    *arena = arena_create(NULL, "the command");
+    const char *const word = argc < 2 ? "" : argv[1];
     if (argc < 2) {
         print_help(stderr);
         return status_fail(STATUS_CASE, "no command");
     }
 
-    if (strcmp(argv[1], "--version") == 0) return print_version();
-    if (strcmp(argv[1], "--describe") == 0) return describe();
+    if (strcmp(word, "--version") == 0) {
+        char libraries[VERSION_LENGTH];
+        version_libraries(libraries);
+        printf("%s\n%s\n", version_short(), libraries);
+        return STATUS_OK;
+    }
 
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+    // all commands with their options as JSON
+    if (strcmp(word, "--describe") == 0) {
+        printf("{\"summary\": \"%s\",\n\"exit_codes\": \"", summary);
+        for (const char *c = exit_codes; *c; c++) putchar(*c == '\n' ? ' ' : *c);
+        printf("\",\n\"commands\": [");
+        for (int i = 0; i < N_COMMANDS; i++) {
+            if (i > 0) printf(",\n ");
+            main_describe(&commands[i], stdout);
+        }
+        printf("]}\n");
+        return STATUS_OK;
+    }
+
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
         print_help(stdout);
         return STATUS_OK;
     }
 
-    for (int i = 0; i < N_COMMANDS; i++) {
-        if (strcmp(argv[1], commands[i].name) == 0) return dispatch(arena, &commands[i], argc, argv);
+    int found = 0;
+    while (found < N_COMMANDS && strcmp(word, commands[found].name) != 0) found++;
+    if (found == N_COMMANDS) return refuse_command(word);
+
+    // the command line, to be repeated in a shell
+    struct text line = {.arena = *arena};
+    for (int i = 0; i < argc; i++) {
+        if (i > 0) text_add(&line, " ");
+        text_add_word(&line, argv[i]);
     }
-    return refuse_command(argv[1]);
-}
 
-static enum status main_run_command(int argc, char **argv, struct arena **arena) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    *arena = arena_create(NULL, "the command");
-    return main_choose(*arena, argc, argv);
-}
+    // allocate one element more than the command line can fill: main_error adds an assignment
+    struct request request = {.arena = *arena, .command_line = line.text};
+    NEW(*arena, request.assignments, argc + 1);
+    NEW(*arena, request.of, argc + 1);
 
-// Errors of a case begin with file, line and column, so only other messages get the prefix.
-static void print_message(const char *message) {
-    const size_t length = strlen(message);
-    say_line(stderr, "%s%s%s", strstr(message, "error: ") ? "" : "shoal: error: ", message,
-             length > 0 && message[length - 1] == '\n' ? "" : "\n");
+    // getopt starts after the name of the command
+    enum status status = STATUS_OK;
+    const int is_done = main_parse(&commands[found], argc - 1, argv + 1, &request, &status);
+    return is_done || status != STATUS_OK ? status : commands[found].run(&request);
 }
 
 int main(int argc, char **argv) {
@@ -245,12 +226,19 @@ int main(int argc, char **argv) {
     main_reset_signals();
     main_guard_exit();
     struct arena *arena = NULL;
-    enum status status = main_run_command(argc, argv, &arena);
+    enum status status = main_choose(argc, argv, &arena);
     arena_free(arena);
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
         main_end_by_pipe();
         status = status_fail(STATUS_FILE, "cannot write to standard output");
     }
-    if (status != STATUS_OK) print_message(status_message());
+
+    // errors of a case begin with file, line and column, so only other messages get the prefix
+    if (status != STATUS_OK) {
+        const char *const message = status_message();
+        const size_t length = strlen(message);
+        say_line(stderr, "%s%s%s", strstr(message, "error: ") ? "" : "shoal: error: ", message,
+                 length > 0 && message[length - 1] == '\n' ? "" : "\n");
+    }
     return main_exit(status_exit_code(status));
 }

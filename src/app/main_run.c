@@ -1,7 +1,6 @@
 /* main_run.c: commands that make one result: shoal run, resume, demo and steady. */
 #include <limits.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,7 +8,6 @@
 #include "app/main_commands.h"
 #include "app/main_signals.h"
 #include "app/say.h"
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/version.h"
 #include "case/case.h"
@@ -24,7 +22,8 @@
 struct teller {
     struct progress progress; /* first, as say_progress_run expects */
     int n_warnings;
-    char *path; /* of the result; owned */
+    struct arena *arena;
+    const char *path; /* of the result */
 };
 
 /* Print and count a warning; clear the progress line first. data: struct teller. */
@@ -49,11 +48,10 @@ static enum status with_case(const struct request *request,
                                                  const char *path)) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    enum status status = sweep_refuse(&values);
     main_print_notes(request, &values);
-    if (status == STATUS_OK) {
-        status = make(&values, request, request->output ? request->output : record_path(request->arena, &values));
-    }
+    enum status status = sweep_refuse(&values);
+    const char *const path = request->output ? request->output : record_path(request->arena, &values);
+    if (status == STATUS_OK) status = make(&values, request, path);
     case_free(&values);
     return status;
 }
@@ -63,7 +61,8 @@ static enum status with_case(const struct request *request,
 static enum status tell_begin(const struct case_values *values, const char *path, void *data) {
     struct teller *const teller = data;
     TRY(parallel_try_threads(values->school.threads));
-    return memory_copy_string(&teller->path, path, "a file name");
+    teller->path = arena_text(teller->arena, "%s", path);
+    return STATUS_OK;
 }
 
 static void tell_note(const char *line, void *data) {
@@ -72,8 +71,8 @@ static void tell_note(const char *line, void *data) {
 }
 
 /* Run a case, or resume if values is NULL, and report progress, notes and warnings. */
-static enum status run_with_reports(const struct case_values *values, const struct request *request, const char *path,
-                                    struct teller *teller) {
+static enum status run_case(const struct case_values *values, const struct request *request, const char *path) {
+    struct teller teller = {.arena = request->arena, .path = ""};
     const struct simulate_options options = {.path = path,
                                              .overwrite = request->force,
                                              .command = request->command_line,
@@ -82,27 +81,23 @@ static enum status run_with_reports(const struct case_values *values, const stru
                                              .progress = request->quiet ? NULL : say_progress_run,
                                              .warn = tell_warning,
                                              .note = request->quiet ? NULL : tell_note,
-                                             .data = teller,
+                                             .data = &teller,
                                              .stop = main_stop_signal()};
     const struct simulate_changes changes = {request->n_assignments, request->assignments, *request->end != '\0'};
     if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
     main_catch_signals();
-    say_progress_start(&teller->progress);
+    say_progress_start(&teller.progress);
     const enum status status =
         values ? simulate_run(values, &options) : simulate_resume(request->positional, &changes, &options);
-    say_progress_end(&teller->progress);
-    return status;
-}
+    say_progress_end(&teller.progress);
+    TRY(status);
 
-static enum status run_case(const struct case_values *values, const struct request *request, const char *path) {
-    struct teller teller = {0};
-    enum status status = run_with_reports(values, request, path, &teller);
-    const char *const result = teller.path ? teller.path : "";
-    if (status == STATUS_OK && request->verbose) status = main_print_info(request->arena, result, 0);
-    if (status == STATUS_OK && !request->quiet && !request->verbose) say_line(stdout, "%s\n", result);
-    if (status == STATUS_OK) status = refuse_warnings(request, &teller, result);
-    free(teller.path);
-    return status;
+    if (request->verbose) {
+        TRY(main_print_info(request->arena, teller.path, 0));
+    } else if (!request->quiet) {
+        say_line(stdout, "%s\n", teller.path);
+    }
+    return refuse_warnings(request, &teller, teller.path);
 }
 
 enum status main_run(const struct request *request) {
@@ -115,26 +110,6 @@ enum status main_resume(const struct request *request) {
 
 // ---- demo
 
-static enum status draw_demo(const char *share, const char *result, const char *picture) {
-    char script[PATH_MAX + 32];
-    snprintf(script, sizeof script, "%s/scripts/plot.py", share);
-    fflush(NULL);
-    const pid_t child = fork();
-
-    if (child == 0) {
-        execl("/usr/bin/python3", "python3", script, result, picture, (char *)NULL);
-        _exit(127);
-    }
-
-    int outcome = -1;
-    if (child < 0 || waitpid(child, &outcome, 0) != child || outcome != 0) {
-        return status_fail(STATUS_FILE, "%s was written, but /usr/bin/python3 %s could not draw %s", result, script,
-                           picture);
-    }
-
-    return STATUS_OK;
-}
-
 static enum status check_demo_target(const char *path, enum target_kind kind, int force) {
     if (!force && access(path, F_OK) == 0) {
         return status_fail(STATUS_FILE, "%s exists: replace it with --force, or change to another folder", path);
@@ -143,7 +118,7 @@ static enum status check_demo_target(const char *path, enum target_kind kind, in
 }
 
 enum status main_demo(const struct request *request) {
-    char share[PATH_MAX], path[PATH_MAX + 32];
+    char share[PATH_MAX], path[PATH_MAX + 32], script[PATH_MAX + 32];
     if (!version_share(share)) {
         return status_fail(STATUS_FILE,
                            "cases/demo.yaml is neither in the source tree nor in share/shoal of the program");
@@ -157,7 +132,21 @@ enum status main_demo(const struct request *request) {
     demo.output = "demo.nc";
     demo.verbose = !request->quiet;
     TRY(main_run(&demo));
-    TRY(draw_demo(share, "demo.nc", "demo.png"));
+
+    // draw the picture
+    snprintf(script, sizeof script, "%s/scripts/plot.py", share);
+    fflush(NULL);
+    const pid_t child = fork();
+    if (child == 0) {
+        execl("/usr/bin/python3", "python3", script, demo.output, "demo.png", (char *)NULL);
+        _exit(127);
+    }
+    int outcome = -1;
+    if (child < 0 || waitpid(child, &outcome, 0) != child || outcome != 0) {
+        return status_fail(STATUS_FILE, "%s was written, but /usr/bin/python3 %s could not draw demo.png", demo.output,
+                           script);
+    }
+
     TRY(page_write(request->arena, "demo.nc", "demo.html", request->force));
     if (!request->quiet)
         say_line(stdout, "\nPicture: demo.png. Movie: demo.html (open in a browser). Case: %s.\n", path);
@@ -168,7 +157,7 @@ enum status main_demo(const struct request *request) {
 
 static enum status find_steady_state(const struct case_values *values, const struct request *request,
                                      const char *path) {
-    struct teller teller = {0};
+    struct teller teller = {.arena = request->arena};
     const struct steady_options options = {.path = path,
                                            .from = request->from,
                                            .overwrite = request->force,

@@ -70,54 +70,13 @@ static enum status read_numbers(const char *option, const char *text, const char
     return STATUS_OK;
 }
 
-static enum status read_time(const char *text, double *t) {
-    *t = NAN;
-    return text ? read_numbers("--at", text, "a time in s", 1, t) : STATUS_OK;
-}
-
-static enum status read_box(const char *text, const struct field_row *row, struct field_grid *grid) {
-    double corner[4];
-    field_file_box(row, grid->low, grid->high);
-    if (!text) return STATUS_OK;
-    TRY(read_numbers("--box", text, "X0,Y0,X1,Y1 in m", 4, corner));
-
-    for (int i = 0; i < 2; i++) {
-        grid->low[i] = corner[i];
-        grid->high[i] = corner[i + 2];
-        if (corner[i] < corner[i + 2]) continue;
-        return status_fail(STATUS_CASE, "--box %s: expects the lower left corner before the upper right one", text);
-    }
-
-    return STATUS_OK;
-}
-
-/* Read the numbers of points. The box must be set: the default number depends on the sides. */
-static enum status read_grid(const char *text, struct field_grid *grid) {
-    const double side[2] = {grid->high[0] - grid->low[0], grid->high[1] - grid->low[1]};
-    double n[2];
-    for (int i = 0; i < 2; i++) n[i] = fmax(2, 1 + round((STANDARD_POINTS - 1) * side[i] / fmax(side[0], side[1])));
-    if (text) TRY(read_numbers("--grid", text, "NX,NY, integers", 2, n));
-
-    for (int i = 0; i < 2; i++) {
-        if (n[i] != floor(n[i]) || n[i] < 2) {
-            return status_fail(STATUS_CASE, "--grid %s: expects NX,NY, integers from 2 on", text);
-        }
-    }
-
-    if (n[0] * n[1] > FIELD_FILE_POINTS) {
-        return status_fail(STATUS_CASE, "--grid %s: more than %d points", text, FIELD_FILE_POINTS);
-    }
-    grid->nx = (int)n[0];
-    grid->ny = (int)n[1];
-    return STATUS_OK;
-}
-
 enum status main_field(const struct request *request) {
     const char *const run = request->positional, *path = request->output;
     struct field_row *row;
     struct field_grid grid;
     double t;
-    TRY(read_time(request->at, &t));
+    t = NAN;
+    if (request->at) TRY(read_numbers("--at", request->at, "a time in s", 1, &t));
     if (path) TRY(target_refuse_input(path, run));
     TRY(field_row_read(request->arena, &row, run, t, request->n_assignments, request->assignments));
 
@@ -128,8 +87,31 @@ enum status main_field(const struct request *request) {
         path = arena_text(request->arena, "%.*s-field.nc", (int)(has_ending ? length - 3 : length), run);
     }
 
-    TRY(read_box(request->box, row, &grid));
-    TRY(read_grid(request->grid, &grid));
+    // the box
+    double corner[4], n[2];
+    field_file_box(row, grid.low, grid.high);
+    if (request->box) TRY(read_numbers("--box", request->box, "X0,Y0,X1,Y1 in m", 4, corner));
+    for (int i = 0; i < 2 && request->box; i++) {
+        grid.low[i] = corner[i];
+        grid.high[i] = corner[i + 2];
+        if (corner[i] < corner[i + 2]) continue;
+        return status_fail(STATUS_CASE, "--box %s: expects the lower left corner before the upper right one",
+                           request->box);
+    }
+
+    // the numbers of points; the default depends on the sides
+    const double side[2] = {grid.high[0] - grid.low[0], grid.high[1] - grid.low[1]};
+    for (int i = 0; i < 2; i++) n[i] = fmax(2, 1 + round((STANDARD_POINTS - 1) * side[i] / fmax(side[0], side[1])));
+    if (request->grid) TRY(read_numbers("--grid", request->grid, "NX,NY, integers", 2, n));
+    if (n[0] != floor(n[0]) || n[1] != floor(n[1]) || n[0] < 2 || n[1] < 2) {
+        return status_fail(STATUS_CASE, "--grid %s: expects NX,NY, integers from 2 on", request->grid);
+    }
+    if (n[0] * n[1] > FIELD_FILE_POINTS) {
+        return status_fail(STATUS_CASE, "--grid %s: more than %d points", request->grid, FIELD_FILE_POINTS);
+    }
+    grid.nx = (int)n[0];
+    grid.ny = (int)n[1];
+
     TRY(field_file_write(request->arena, path, request->force, run, request->command_line, row, &grid));
     if (!request->quiet) say_line(stdout, "%s: %d x %d points at t = %g s\n", path, grid.nx, grid.ny, row->state->t);
     return STATUS_OK;
