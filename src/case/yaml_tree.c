@@ -140,7 +140,10 @@ struct yaml_node *yaml_tree_copy(struct arena *arena, const struct yaml_node *no
 struct yaml_entry *yaml_tree_entry(const struct yaml_node *map, const char *key, size_t length) {
     if (!map || map->kind != YAML_MAP) return NULL;
     for (int i = 0; i < map->n; i++) {
-        if (strlen(map->entry[i].key) == length && memcmp(map->entry[i].key, key, length) == 0) return &map->entry[i];
+        // most keys differ in the first letter
+        const char *const own = map->entry[i].key;
+        if (length > 0 && *own != *key) continue;
+        if (strncmp(own, key, length) == 0 && own[length] == '\0') return &map->entry[i];
     }
     return NULL;
 }

@@ -59,13 +59,15 @@ static struct simulation *simulation_begin(struct arena *parent, const struct ca
     return new;
 }
 
-static enum status simulation_create_equations(struct simulation *simulation) {
+/* Create the equations and their initial conditions; stop in between when *stop is not 0. */
+static enum status simulation_create_equations(struct simulation *simulation, const volatile sig_atomic_t *stop) {
     arena_free(simulation->renewed);
     simulation->renewed = NULL;
     simulation->solver = NULL;
     simulation->residual = NULL;
     simulation->renewed = arena_create(simulation->arena, "the equations and the solver");
     TRY(residual_create(simulation->renewed, &simulation->residual, simulation->school, simulation->state));
+    TRY(status_ask(stop));
     return initial_conditions_create(simulation->renewed, &simulation->consistent, simulation->residual);
 }
 
@@ -79,7 +81,7 @@ enum status simulate_start(struct arena *parent, struct simulation **started, co
     simulation_set_order(simulation, values);
     simulation->state = state_create(simulation->arena, simulation->school);
     TRY(status_ask(stop));
-    TRY(simulation_create_equations(simulation));
+    TRY(simulation_create_equations(simulation, stop));
     simulation->diagnostics = diagnostics_create(simulation->arena, simulation->school);
     simulation->residual->stop = stop;
     initial_conditions_listen(simulation->consistent, stop);
@@ -99,7 +101,7 @@ const char *simulate_stopped_by(const volatile sig_atomic_t *stop) {
 
 enum status simulate_renew(struct simulation *simulation) {
     simulation->options.before = simulation->totals;
-    TRY(simulation_create_equations(simulation));
+    TRY(simulation_create_equations(simulation, NULL));
     return simulation->integrator->create(simulation->renewed, &simulation->solver, simulation->residual,
                                           simulation->state, &simulation->options);
 }
