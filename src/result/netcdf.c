@@ -181,22 +181,26 @@ void netcdf_write_doubles(struct netcdf_writer *writer, int variable, const size
                        : nc_put_var_double(writer->file, variable, values));
 }
 
-void netcdf_write_ints(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
-                       const int *values) {
-    CALL(writer, count ? nc_put_vara_int(writer->file, variable, start, count, values)
-                       : nc_put_var_int(writer->file, variable, values));
-}
-
-void netcdf_write_longs(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
-                        const long *values) {
-    CALL(writer, count ? nc_put_vara_long(writer->file, variable, start, count, values)
-                       : nc_put_var_long(writer->file, variable, values));
-}
-
-void netcdf_write_text(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
-                       const char *values) {
-    CALL(writer, count ? nc_put_vara_text(writer->file, variable, start, count, values)
-                       : nc_put_var_text(writer->file, variable, values));
+void netcdf_write(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
+                  const void *values) {
+    const int file = writer->file;
+    nc_type type = NC_NAT;
+    CALL(writer, nc_inq_vartype(file, variable, &type));
+    switch (type) {
+        case NC_CHAR:
+            CALL(writer, count ? nc_put_vara_text(file, variable, start, count, values)
+                               : nc_put_var_text(file, variable, values));
+            break;
+        case NC_INT:
+            CALL(writer, count ? nc_put_vara_int(file, variable, start, count, values)
+                               : nc_put_var_int(file, variable, values));
+            break;
+        case NC_INT64:
+            CALL(writer, count ? nc_put_vara_long(file, variable, start, count, values)
+                               : nc_put_var_long(file, variable, values));
+            break;
+        default: netcdf_write_doubles(writer, variable, start, count, values);
+    }
 }
 
 // ---- on disk
@@ -433,8 +437,12 @@ static enum status cannot_read(const char *path, int code) {
 
 // ---- the file
 
-enum status netcdf_open(struct netcdf_reader *reader, const char *path) {
-    *reader = (struct netcdf_reader){.path = path, .file = -1};
+static void netcdf_close(void *reader) {
+    nc_close(((struct netcdf_reader *)reader)->file);
+}
+
+enum status netcdf_open(struct arena *arena, struct netcdf_reader *reader, const char *path) {
+    *reader = (struct netcdf_reader){.arena = arena, .path = path, .file = -1};
     struct stat facts;
     struct netcdf_rows rows;
     char local[PATH_MAX];
@@ -451,23 +459,8 @@ enum status netcdf_open(struct netcdf_reader *reader, const char *path) {
     // NetCDF also returns NC_ENOMEM for a damaged header with huge sizes
     if (code == NC_ENOMEM)
         return status_fail(STATUS_FILE, "%s: cannot be read: the header is damaged, or out of memory", path);
-    return code == NC_NOERR ? STATUS_OK : cannot_read(path, code);
-}
-
-static void netcdf_release(void *object) {
-    struct netcdf_reader *const reader = object;
-    if (reader->file >= 0) nc_close(reader->file);
-    reader->file = -1;
-}
-
-void netcdf_close(struct netcdf_reader *reader) {
-    netcdf_release(reader);
-}
-
-enum status netcdf_open_in(struct arena *arena, struct netcdf_reader *reader, const char *path) {
-    TRY(netcdf_open(reader, path));
-    reader->arena = arena;
-    arena_defer(arena, netcdf_release, reader);
+    if (code != NC_NOERR) return cannot_read(path, code);
+    arena_defer(arena, netcdf_close, reader);
     return STATUS_OK;
 }
 
@@ -477,7 +470,7 @@ enum status netcdf_print(struct arena *arena, const char *path,
     struct netcdf_reader *reader;
     struct arena *const scratch = arena_create(arena, path);
     NEW(scratch, reader, 1);
-    TRY(netcdf_open_in(scratch, reader, path));
+    TRY(netcdf_open(scratch, reader, path));
     TRY(print(reader, stream));
     arena_free(scratch);
     return STATUS_OK;
@@ -494,21 +487,6 @@ enum status netcdf_attribute(const struct netcdf_reader *reader, const char *nam
     NEW(reader->arena, *string, (exists ? length : 0) + 1);
     const int code = exists ? nc_get_att_text(reader->file, NC_GLOBAL, name, *string) : NC_NOERR;
     return code == NC_NOERR ? STATUS_OK : cannot_read(reader->path, code);
-}
-
-enum status netcdf_read_string(const struct netcdf_reader *reader, const char *name, char **string) {
-    nc_type type = NC_CHAR;
-    size_t length = 0;
-    const bool exists = nc_inq_att(reader->file, NC_GLOBAL, name, &type, &length) == NC_NOERR;
-    *string = NULL;
-    if (type != NC_CHAR) return status_fail(STATUS_FILE, "%s: attribute %s is no string", reader->path, name);
-    *string = calloc((exists ? length : 0) + 1, 1);
-    if (!*string) return cannot_read(reader->path, NC_ENOMEM);
-    const int code = exists ? nc_get_att_text(reader->file, NC_GLOBAL, name, *string) : NC_NOERR;
-    if (code == NC_NOERR) return STATUS_OK;
-    free(*string);
-    *string = NULL;
-    return cannot_read(reader->path, code);
 }
 
 enum status netcdf_read_integer(const struct netcdf_reader *reader, const char *name, int missing, int *value) {

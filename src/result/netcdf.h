@@ -70,12 +70,10 @@ int netcdf_number(struct netcdf_writer *writer, const char *name);
 /* Write count values of a variable from start on, with one entry per dimension; both NULL: the entire variable. */
 void netcdf_write_doubles(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
                           const double *values);
-void netcdf_write_ints(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
-                       const int *values);
-void netcdf_write_longs(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
-                        const long *values);
-void netcdf_write_text(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
-                       const char *values);
+
+/* The same for values in memory of the type of the variable: char, int, long (int64), or double. */
+void netcdf_write(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
+                  const void *values);
 
 /* Make all rows visible to readers and flush to disk: now, or if the last flush is over a second ago. NetCDF writes the
  * number of rows after the rows, so that readers never see part of a row, even on a full disk. */
@@ -104,7 +102,7 @@ const char *netcdf_reason(int code);
  * writes more values than requested, whatever the contents of the file */
 
 struct netcdf_reader {
-    struct arena *arena; /* of strings; NULL after netcdf_open */
+    struct arena *arena; /* of strings */
     const char *path;
     int file;         /* NetCDF's number */
     size_t n_rows;    /* that are whole: the length of the dimension that grows */
@@ -117,23 +115,18 @@ struct netcdf_slice {
     size_t first, n;
 };
 
-/* Open a file of the classic formats. Refuses anything but a regular file, a damaged header, and a missing value of a
- * variable without rows. Incomplete rows do not count. The path must outlive the reader. */
-enum status netcdf_open(struct netcdf_reader *reader, const char *path);
-void netcdf_close(struct netcdf_reader *reader);
-
-/* Open a file that the arena closes. The reader must be a part of the arena. */
-enum status netcdf_open_in(struct arena *arena, struct netcdf_reader *reader, const char *path);
+/* Open a file of the classic formats, until the arena is freed. Refuses anything but a regular file, a damaged header,
+ * and a missing value of a variable without rows. Incomplete rows do not count. The reader must be a part of the arena;
+ * the path must outlive the arena. */
+enum status netcdf_open(struct arena *arena, struct netcdf_reader *reader, const char *path);
 
 /* Open a file, print the contents, close the file. arena: for scratch. A boundary, for the caller to close the
  * stream. Fails as netcdf_open or print. */
 enum status netcdf_print(struct arena *arena, const char *path,
                          enum status (*print)(const struct netcdf_reader *reader, FILE *stream), FILE *stream);
 
-/* An attribute of the file: a string in the arena of the reader, "" if missing; or an integer. netcdf_read_string: a
- * string that the caller frees. */
+/* An attribute of the file: a string in the arena of the reader, "" if missing; or an integer. */
 enum status netcdf_attribute(const struct netcdf_reader *reader, const char *name, char **string);
-enum status netcdf_read_string(const struct netcdf_reader *reader, const char *name, char **string);
 enum status netcdf_read_integer(const struct netcdf_reader *reader, const char *name, int missing, int *value);
 
 /* The length of a dimension; refused outside of min to max. */

@@ -124,7 +124,7 @@ enum status result_mark_check(struct arena *arena, const char *path, const struc
     struct netcdf_reader *reader;
     char *case_effective, *run_status;
     NEW(scratch, reader, 1);
-    TRY(netcdf_open_in(scratch, reader, path));
+    TRY(netcdf_open(scratch, reader, path));
     TRY(netcdf_attribute(reader, "case_effective", &case_effective));
     TRY(netcdf_attribute(reader, "run_status", &run_status));
     *is_complete = strcmp(run_status, "complete") == 0 && reader->n_missing == 0;
@@ -253,16 +253,7 @@ static void write_variable(struct result_file *result, int i, const struct resul
     size_t start[RESULT_MAX_DIMENSIONS] = {0}, count[RESULT_MAX_DIMENSIONS];
     for (int d = 0; variable->dimension[d] != NONE; d++) count[d] = result->length[variable->dimension[d]];
     if (result_table_has(variable, TIME)) start[0] = result->n_rows;
-    struct netcdf_writer *const writer = &result->writer;
-    const int number = result->number[i];
-    const void *const values = result->buffer;
-
-    switch (variable->type) {
-        case RESULT_INTEGER: netcdf_write_ints(writer, number, start, count, values); break;
-        case RESULT_COUNT: netcdf_write_longs(writer, number, start, count, values); break;
-        case RESULT_TEXT: netcdf_write_text(writer, number, start, count, values); break;
-        default: netcdf_write_doubles(writer, number, start, count, values);
-    }
+    netcdf_write(&result->writer, result->number[i], start, count, result->buffer);
 }
 
 /* Write all constants, or all of a row. */
@@ -309,7 +300,7 @@ static enum status copy_rows(struct result_file *result, const struct result_sou
     double *values;
     size_t length[RESULT_N_DIMENSIONS], most = 1;
     NEW(scratch, reader, 1);
-    TRY(netcdf_open_in(scratch, reader, source->path));
+    TRY(netcdf_open(scratch, reader, source->path));
     memcpy(length, result->length, sizeof length);
     TRY(netcdf_read_length(reader, result_table_dimension(VORTEX), 1, SIZE_MAX / 64, &length[VORTEX]));
     for (int i = 0; i < result_table_n; i++) {

@@ -39,7 +39,7 @@ enum status result_kind_info(struct arena *arena, int n_kinds, const struct resu
     const struct result_kind *kind = NULL;
     char *text;
     NEW(scratch, reader, 1);
-    TRY(netcdf_open_in(scratch, reader, path));
+    TRY(netcdf_open(scratch, reader, path));
     TRY(find_kind(reader, n_kinds, kinds, &kind));
 
     if (form == RESULT_INFO_JSON) {

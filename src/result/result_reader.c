@@ -69,7 +69,7 @@ enum status result_reader_open(struct arena *arena, struct result_reader **opene
     struct result_reader *reader;
     NEW(arena, reader, 1);
     *opened = reader;
-    TRY(netcdf_open_in(arena, &reader->file, path));
+    TRY(netcdf_open(arena, &reader->file, path));
     TRY(check_kind(reader));
     TRY(read_lengths(reader));
     TRY(netcdf_attribute(&reader->file, "title", &reader->title));

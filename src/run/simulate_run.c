@@ -250,20 +250,20 @@ static enum status resume_case(struct resume *resume, const struct simulate_chan
     resume->run.values = values;
 
     // the complete case of the checkpoint contains neither text nor study
-    struct netcdf_reader reader;
-    TRY(netcdf_open(&reader, resume->result));
-    char *of_file = NULL, *study = NULL;
-    enum status status = netcdf_read_string(&reader, "case_text", &of_file);
-    if (status == STATUS_OK) status = netcdf_read_string(&reader, "study_case", &study);
-    if (status == STATUS_OK) status = netcdf_read_integer(&reader, "study_member", 0, &values->member);
-    netcdf_close(&reader);
+    struct arena *const scratch = arena_create(resume->run.arena, resume->result);
+    struct netcdf_reader *reader;
+    char *of_file, *study;
+    NEW(scratch, reader, 1);
+    TRY(netcdf_open(scratch, reader, resume->result));
+    TRY(netcdf_attribute(reader, "case_text", &of_file));
+    TRY(netcdf_attribute(reader, "study_case", &study));
+    TRY(netcdf_read_integer(reader, "study_member", 0, &values->member));
 
     // a run outside a study has an empty text
-    values->text = of_file ? arena_text(values->arena, "%s", of_file) : NULL;
-    values->study = study && *study ? arena_text(values->arena, "%s", study) : NULL;
-    free(of_file);
-    free(study);
-    return status;
+    values->text = arena_text(values->arena, "%s", of_file);
+    values->study = *study ? arena_text(values->arena, "%s", study) : NULL;
+    arena_free(scratch);
+    return STATUS_OK;
 }
 
 /* Create the simulation from the state of the checkpoint. */

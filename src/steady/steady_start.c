@@ -27,7 +27,7 @@ static enum status start_open(struct arena *arena, struct reading **opened, cons
     double degrees;
     NEW(arena, reading, 1);
     *opened = reading;
-    TRY(netcdf_open_in(arena, &reading->reader, path));
+    TRY(netcdf_open(arena, &reading->reader, path));
     TRY(netcdf_read_length(&reading->reader, "time", 0, SIZE_MAX, &n_rows));
     TRY(netcdf_read_length(&reading->reader, "fish", 1, INT_MAX, &n));
     if (n_rows == 0 || n != (size_t)n_fish || !netcdf_has(&reading->reader, "steady_speed")) {

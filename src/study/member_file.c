@@ -234,7 +234,7 @@ enum status member_file_read(struct arena *arena, struct member_file *member, co
     *member = (struct member_file){0};
     NEW(scratch, reading, 1);
     reading->member = member;
-    enum status status = netcdf_open_in(scratch, &reading->reader, path);
+    enum status status = netcdf_open(scratch, &reading->reader, path);
     if (status == STATUS_OK && reading->reader.n_missing > 0) {
         status = status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
     }

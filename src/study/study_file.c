@@ -459,7 +459,7 @@ static void write_variables(struct netcdf_writer *writer, const struct contents 
             count[v->n_dimensions] = contents->length[BY_TEXT];
             memset(text, 0, contents->length[BY_TEXT]);
             memcpy(text, value.text, strlen(value.text));
-            netcdf_write_text(writer, variable, start, count, text);
+            netcdf_write(writer, variable, start, count, text);
         }
         if (v->type != NETCDF_TEXT) netcdf_write_doubles(writer, variable, NULL, NULL, number);
     }
@@ -626,7 +626,7 @@ static enum status study_file_read_members(struct arena *arena, struct reading *
 
 static enum status study_file_read_open(struct arena *arena, struct reading *reading, const char *path) {
     char *text;
-    TRY(netcdf_open_in(arena, &reading->reader, path));
+    TRY(netcdf_open(arena, &reading->reader, path));
     TRY(netcdf_attribute(&reading->reader, "study_case", &text));
     TRY(study_folder_parse(arena, &reading->study, text, path, 0, NULL));
     return study_file_read_members(arena, reading);

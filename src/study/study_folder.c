@@ -214,7 +214,7 @@ static enum status check_study_file(struct arena *arena, const struct case_value
     TRY(target_check(path, TARGET_NETCDF, true));
     if (force) return STATUS_OK;
     NEW(arena, reader, 1);
-    enum status status = netcdf_open_in(arena, reader, path);
+    enum status status = netcdf_open(arena, reader, path);
     if (status == STATUS_OK) status = netcdf_attribute(reader, "study_case", &text);
     if (status != STATUS_OK) return status == STATUS_MEMORY ? status : STATUS_OK;
     if (!*text || strcmp(text, study->merged) == 0) return STATUS_OK;

@@ -222,7 +222,7 @@ enum status field_row_read(struct arena *arena, struct field_row **new, const ch
     arena_defer(arena, field_row_release, row);
     *new = row;
     NEW(scratch, reading, 1);
-    TRY(netcdf_open_in(scratch, &reading->file, path));
+    TRY(netcdf_open(scratch, &reading->file, path));
 
     // the case
     int schema;

@@ -668,11 +668,12 @@ TEST(a_result_file_has_the_rows_that_are_due) {
     assert_int_equal(shoal_write_end(run), SHOAL_OK);
     shoal_close(run);
     struct netcdf_reader reader;
-    school_ok(netcdf_open(&reader, path));
+    struct arena *const arena = arena_create(NULL, "a test");
+    school_ok(netcdf_open(arena, &reader, path));
     size_t n_rows;
     school_ok(netcdf_read_length(&reader, "time", 1, 100, &n_rows));
     assert_int_equal(n_rows, 4);  // 0, 0.04, 0.08 and the end
-    netcdf_close(&reader);
+    arena_free(arena);
     assert_int_equal(unlink(path), 0);
 }
 
@@ -714,9 +715,10 @@ static void make_result_folder(void) {
 static size_t n_rows_of(const char *path) {
     struct netcdf_reader reader;
     size_t n_rows;
-    school_ok(netcdf_open(&reader, path));
+    struct arena *const arena = arena_create(NULL, "a test");
+    school_ok(netcdf_open(arena, &reader, path));
     school_ok(netcdf_read_length(&reader, "time", 0, 100, &n_rows));
-    netcdf_close(&reader);
+    arena_free(arena);
     return n_rows;
 }
 

@@ -77,6 +77,21 @@ static void assert_message(const char *part) {
     if (strstr(status_message(), part) == NULL) fail_msg("\"%s\" is not in \"%s\"", part, status_message());
 }
 
+/* One file at a time. */
+static struct arena *arena;
+
+static void close_file(void) {
+    arena_free(arena);
+    arena = NULL;
+}
+
+static enum status open_file(struct netcdf_reader *reader, const char *path) {
+    arena = arena_create(NULL, "a test");
+    const enum status status = netcdf_open(arena, reader, path);
+    if (status != STATUS_OK) close_file();
+    return status;
+}
+
 enum { N_ROWS = 3, N_FISH = 2 };
 
 /* Rows of two variables, one that does not grow, and a string. */
@@ -97,13 +112,13 @@ static enum status write_file(const char *path, bool overwrite) {
     netcdf_write_integer(&writer, NETCDF_GLOBAL, "number", 7);
     netcdf_write_integer(&writer, NETCDF_GLOBAL, "shoal_schema", 1);
     netcdf_end_definitions(&writer);
-    netcdf_write_ints(&writer, count, NULL, NULL, (int[]){4, 5});
-    netcdf_write_text(&writer, names, NULL, NULL, "first2nd\0\0");
+    netcdf_write(&writer, count, NULL, NULL, (int[]){4, 5});
+    netcdf_write(&writer, names, NULL, NULL, "first2nd\0\0");
     const enum status status = netcdf_publish(&writer, overwrite);
     for (size_t row = 0; row < N_ROWS && status == STATUS_OK; row++) {
         const double r = (double)row;
         netcdf_write_doubles(&writer, speed, (size_t[]){row, 0}, (size_t[]){1, N_FISH}, (double[]){r, r + 0.5});
-        netcdf_write_longs(&writer, steps, (size_t[]){row}, (size_t[]){1}, (long[]){10 + (long)row});
+        netcdf_write(&writer, steps, (size_t[]){row}, (size_t[]){1}, (long[]){10 + (long)row});
         netcdf_sync(&writer, false);
     }
     const enum status finished = netcdf_finish(&writer);
@@ -116,7 +131,7 @@ TEST_WITH(what_is_written_reads_back, set_up, tear_down) {
     const struct fixture *const f = *state;
     assert_int_equal(write_file(f->path, false), STATUS_OK);
     struct netcdf_reader reader;
-    assert_int_equal(netcdf_open(&reader, f->path), STATUS_OK);
+    assert_int_equal(open_file(&reader, f->path), STATUS_OK);
     double speed[N_ROWS][N_FISH], steps[N_ROWS], count[N_FISH];
     char names[N_FISH][5], *title;
     int number;
@@ -126,7 +141,7 @@ TEST_WITH(what_is_written_reads_back, set_up, tear_down) {
     assert_int_equal(netcdf_read_doubles(&reader, "count", all + 1, count), STATUS_OK);
     const struct netcdf_slice slice[] = {all[1], {"name", 0, 5}, {NULL}};
     assert_int_equal(netcdf_read_text(&reader, "names", slice, &names[0][0]), STATUS_OK);
-    assert_int_equal(netcdf_read_string(&reader, "title", &title), STATUS_OK);
+    assert_int_equal(netcdf_attribute(&reader, "title", &title), STATUS_OK);
     assert_int_equal(netcdf_read_integer(&reader, "number", 0, &number), STATUS_OK);
     assert_true(netcdf_has(&reader, "speed") && !netcdf_has(&reader, "Speed"));
     for (int row = 0; row < N_ROWS; row++) {
@@ -137,8 +152,7 @@ TEST_WITH(what_is_written_reads_back, set_up, tear_down) {
     assert_memory_equal(names, "first2nd\0\0", 10);
     assert_string_equal(title, "title of it");
     assert_int_equal(number, 7);
-    free(title);
-    netcdf_close(&reader);
+    close_file();
 }
 
 TEST_WITH(a_file_is_on_disk_before_its_name_and_the_name_before_the_rows, set_up, tear_down) {
@@ -222,7 +236,7 @@ static void craft(const char *path, nc_type type, int n) {
 /* Try to read a (2, 3) of v with a guard after it. */
 static enum status read_crafted(const char *path, bool as_text, const struct netcdf_slice *slice) {
     struct netcdf_reader reader;
-    assert_int_equal(netcdf_open(&reader, path), STATUS_OK);
+    assert_int_equal(open_file(&reader, path), STATUS_OK);
     double values[7];
     char text[7];
     memset(values, 0x55, sizeof values);
@@ -231,7 +245,7 @@ static enum status read_crafted(const char *path, bool as_text, const struct net
         as_text ? netcdf_read_text(&reader, "v", slice, text) : netcdf_read_doubles(&reader, "v", slice, values);
     assert_memory_equal(&values[6], "UUUUUUUU", sizeof *values);
     assert_int_equal(text[6], 0x55);
-    netcdf_close(&reader);
+    close_file();
     return status;
 }
 
@@ -266,7 +280,7 @@ TEST_WITH(attributes_and_lengths_are_checked_too, set_up, tear_down) {
     const struct fixture *const f = *state;
     craft(f->path, NC_DOUBLE, 2);
     struct netcdf_reader reader;
-    assert_int_equal(netcdf_open(&reader, f->path), STATUS_OK);
+    assert_int_equal(open_file(&reader, f->path), STATUS_OK);
     struct {
         int value, guard;
     } integer = {0, 0x55};
@@ -278,12 +292,11 @@ TEST_WITH(attributes_and_lengths_are_checked_too, set_up, tear_down) {
     assert_int_equal(netcdf_read_integer(&reader, "string", 0, &integer.value), STATUS_FILE);
     assert_int_equal(netcdf_read_integer(&reader, "nothing", -3, &integer.value), STATUS_OK);
     assert_int_equal(integer.value, -3);
-    assert_int_equal(netcdf_read_string(&reader, "numbers", &string), STATUS_FILE);
+    assert_int_equal(netcdf_attribute(&reader, "numbers", &string), STATUS_FILE);
     assert_message("attribute numbers is no string");
     assert_null(string);
-    assert_int_equal(netcdf_read_string(&reader, "nothing", &string), STATUS_OK);
+    assert_int_equal(netcdf_attribute(&reader, "nothing", &string), STATUS_OK);
     assert_string_equal(string, "");
-    free(string);
     assert_int_equal(netcdf_read_length(&reader, "b", 3, 3, &length), STATUS_OK);
     assert_int_equal(netcdf_read_length(&reader, "b", 4, 9, &length), STATUS_FILE);
     assert_int_equal(netcdf_read_length(&reader, "b", 0, 2, &length), STATUS_FILE);
@@ -293,13 +306,13 @@ TEST_WITH(attributes_and_lengths_are_checked_too, set_up, tear_down) {
     double value;
     assert_int_equal(netcdf_read_doubles(&reader, "z", (struct netcdf_slice[]){{NULL}}, &value), STATUS_FILE);
     assert_message("variable z is missing");
-    netcdf_close(&reader);
+    close_file();
 }
 
 static enum status try_to_open(const char *path) {
     struct netcdf_reader reader;
-    const enum status status = netcdf_open(&reader, path);
-    netcdf_close(&reader);
+    const enum status status = open_file(&reader, path);
+    close_file();
     return status;
 }
 
@@ -355,7 +368,7 @@ static void cut_everywhere(const char *path, int n_growing) {
     for (off_t length = whole - 1; length >= 0; length--) {
         assert_int_equal(truncate(path, length), 0);
         struct netcdf_reader reader;
-        const enum status status = netcdf_open(&reader, path);
+        const enum status status = open_file(&reader, path);
         if ((status == STATUS_OK) != (length >= constants)) fail_msg("%d growing, %ld bytes", n_growing, (long)length);
         if (length == constants - 1) assert_message("the end of the file is missing");
         if (status != STATUS_OK) continue;
@@ -371,7 +384,7 @@ static void cut_everywhere(const char *path, int n_growing) {
         if (want > 0) assert_int_equal(netcdf_read_doubles(&reader, "v0", all, values), STATUS_OK);
         if (want > 0) NEAR(values[3 * want - 1], 3, 0, 0);
         assert_int_equal(netcdf_read_doubles(&reader, "v0", more, values), STATUS_FILE);
-        netcdf_close(&reader);
+        close_file();
         struct netcdf_rows rows;
         assert_int_equal(netcdf_read_rows(path, &rows), STATUS_OK);
         assert_int_equal(rows.n, want);
@@ -410,11 +423,11 @@ TEST_WITH(a_header_that_counts_more_rows_than_there_are_does_not_count, set_up, 
             size_t n_rows;
             write_rows(f->path, NC_64BIT_DATA, n_growing);
             count_rows(f->path, counts[i]);
-            if (netcdf_open(&reader, f->path) != STATUS_OK) continue;  // NetCDF does not take each of them
+            if (open_file(&reader, f->path) != STATUS_OK) continue;  // NetCDF does not take each of them
             const int code = netcdf_read_length(&reader, "rows", 0, SIZE_MAX, &n_rows);
             assert_int_equal(code, STATUS_OK);
             assert_int_equal(n_rows, n_growing > 0 ? 5 : 0);
-            netcdf_close(&reader);
+            close_file();
         }
     }
 }
@@ -448,15 +461,15 @@ TEST_WITH(no_damage_of_a_header_does_harm, set_up, tear_down) {
         }
         assert_int_equal(pwrite(descriptor, damaged, size, 0), size);
         struct netcdf_reader reader;
-        if (netcdf_open(&reader, f->path) != STATUS_OK) continue;
+        if (open_file(&reader, f->path) != STATUS_OK) continue;
         double speed[N_ROWS * N_FISH];
         char names[N_FISH * 5], *title;
         const struct netcdf_slice all[] = {{"time", 0, N_ROWS}, {"fish", 0, N_FISH}, {NULL}};
         const struct netcdf_slice of_names[] = {all[1], {"name", 0, 5}, {NULL}};
         n_read += netcdf_read_doubles(&reader, "speed", all, speed) == STATUS_OK;
         netcdf_read_text(&reader, "names", of_names, names);
-        if (netcdf_read_string(&reader, "title", &title) == STATUS_OK) free(title);
-        netcdf_close(&reader);
+        netcdf_attribute(&reader, "title", &title);
+        close_file();
     }
     close(descriptor);
     // most bytes belong to strings

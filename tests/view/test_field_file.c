@@ -311,7 +311,7 @@ TEST(every_allocation_may_fail) {
     enum status status = STATUS_MEMORY;
     const int before = n_live;
     int n = 0;
-    for (; status != STATUS_OK && n < 2000; n++) {
+    for (; status != STATUS_OK && n < 20000; n++) {
         struct arena *const arena = arena_create(NULL, "a test");
         unlink(field_path);
         n_until_failure = n;
@@ -322,7 +322,7 @@ TEST(every_allocation_may_fail) {
         assert_int_equal(n_live, before);
     }
     ABOVE(n, 100);
-    BELOW(n, 2000);
+    BELOW(n, 20000);
 }
 
 static int make_folder(void **state) {
