@@ -76,47 +76,6 @@ static enum status find_multipliers(struct run *run) {
     return steady_reason_check(&run->problem, nearest);
 }
 
-static enum status correct_by_multipliers(struct run *run) {
-    double last = farthest;
-    TRY(find_multipliers(run));
-    for (int i = 0; i < CORRECTIONS; i++) {
-        const double now = speed_distance(run);
-        if (now <= far_away * run->values->steady.tolerance) return STATUS_OK;
-        TRY(steady_search_correct(&run->problem, now <= half * last ? run->way : NULL));
-        last = now;
-        TRY(find_multipliers(run));
-    }
-    return STATUS_OK;
-}
-
-// fill the means over the last beat
-static void gather_means(struct run *run) {
-    const struct steady_map *const map = &run->problem.map;
-    const struct school *const school = run->simulation->school;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct steady_beat *const beat = &map->last[f];
-        const struct diagnostics_fish *const last = &run->simulation->diagnostics->fish[f];
-        struct steady_fish *const found = &run->found.fish[f];
-        *found = (struct steady_fish){.speed = beat->speed,
-                                      .turn = beat->turn * 180 / M_PI,
-                                      .place = {beat->place[0], beat->place[1]},
-                                      .force = {beat->force[0], beat->force[1]},
-                                      .thrust = last->mean_thrust,
-                                      .drag = NAN,
-                                      .lift = NAN,
-                                      .deflection = NAN,
-                                      .actuation_power = beat->actuation,
-                                      .damping_power = beat->damping,
-                                      .constraint_power = beat->driving,
-                                      .fluid_power = beat->fluid,
-                                      .power = last->mean_power,
-                                      .cost_of_transport = last->cost_of_transport,
-                                      .efficiency = last->efficiency,
-                                      .towed_efficiency = last->towed_efficiency,
-                                      .strouhal = last->strouhal};
-    }
-}
-
 // ---- the rows
 
 static enum status write_if_due(void *data) {
@@ -143,7 +102,29 @@ static enum status write_beats(struct run *run) {
 
     run->problem.map.n_beats = n_beats;
     run->found.residual = larger(run->found.residual, steady_map_residual(&run->problem.map));
-    gather_means(run);
+
+    // the means over the last beat
+    for (int f = 0; f < simulation->school->n_fish; f++) {
+        const struct steady_beat *const beat = &run->problem.map.last[f];
+        const struct diagnostics_fish *const last = &simulation->diagnostics->fish[f];
+        run->found.fish[f] = (struct steady_fish){.speed = beat->speed,
+                                                  .turn = beat->turn * 180 / M_PI,
+                                                  .place = {beat->place[0], beat->place[1]},
+                                                  .force = {beat->force[0], beat->force[1]},
+                                                  .thrust = last->mean_thrust,
+                                                  .drag = NAN,
+                                                  .lift = NAN,
+                                                  .deflection = NAN,
+                                                  .actuation_power = beat->actuation,
+                                                  .damping_power = beat->damping,
+                                                  .constraint_power = beat->driving,
+                                                  .fluid_power = beat->fluid,
+                                                  .power = last->mean_power,
+                                                  .cost_of_transport = last->cost_of_transport,
+                                                  .efficiency = last->efficiency,
+                                                  .towed_efficiency = last->towed_efficiency,
+                                                  .strouhal = last->strouhal};
+    }
 
     return STATUS_OK;
 }
@@ -155,7 +136,18 @@ static enum status steady_find_fixed_point(struct run *run) {
     run->found.residual = steady_map_residual(&run->problem.map);
     run->found.error = NAN;
     run->found.stiffness = NAN;
-    if (run->values->steady.multipliers != NO && run->problem.n_unknowns > 0) TRY(correct_by_multipliers(run));
+
+    // correct the state by the multipliers until the speed is near the fixed point
+    const bool has_multipliers = run->values->steady.multipliers != NO && run->problem.n_unknowns > 0;
+    double last = farthest;
+    if (has_multipliers) TRY(find_multipliers(run));
+    for (int i = 0; i < CORRECTIONS && has_multipliers; i++) {
+        const double now = speed_distance(run);
+        if (now <= far_away * run->values->steady.tolerance) break;
+        TRY(steady_search_correct(&run->problem, now <= half * last ? run->way : NULL));
+        last = now;
+        TRY(find_multipliers(run));
+    }
     steady_modes_of_multipliers(&run->found, run->problem.map.period);
     run->found.n_beats = run->problem.map.n_beats;
     TRY(write_beats(run));
@@ -173,25 +165,16 @@ static enum status steady_find_fixed_point(struct run *run) {
     return STATUS_OK;
 }
 
-// equilibrium of bodies without a beat: one row
-static enum status find_equilibrium(struct run *run) {
+// the record of the result is closed after a lack of memory too
+static enum status steady_find(struct run *run, bool is_static) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
+    if (!is_static) return steady_find_fixed_point(run);
+
+    // an equilibrium of bodies without a beat has one row
     run->found.error = NAN;
     TRY(steady_static_find(run->simulation, run->options->from, &run->found));
     if (run->values->steady.multipliers != NO) TRY(steady_modes_find(run->simulation, &run->found));
     return write_if_due(run);
-}
-
-static enum status refuse_gust(const struct school *school) {
-    if (school->gust_profile == GUST_UNIFORM || !(fabs(school->gust[0]) + fabs(school->gust[1]) > 0)) return STATUS_OK;
-    return status_fail(STATUS_CASE,
-                       "a gust that travels past the fish has no steady state: run the case in time, or set "
-                       "fluid.gust.profile to uniform");
-}
-
-// the record of the result is closed after a lack of memory too
-static enum status steady_find(struct run *run, int is_static) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    return is_static ? find_equilibrium(run) : steady_find_fixed_point(run);
 }
 
 static enum status find_and_write(struct run *run) {
@@ -210,8 +193,13 @@ static enum status find_and_write(struct run *run) {
         TRY(simulate_create(run->arena, &run->simulation, run->values));
     }
     run->simulation->stop = options->stop;
-    TRY(refuse_gust(run->simulation->school));
-    const int is_static = steady_static_applies(run->simulation->school);
+    const struct school *const school = run->simulation->school;
+    if (school->gust_profile != GUST_UNIFORM && fabs(school->gust[0]) + fabs(school->gust[1]) > 0) {
+        return status_fail(STATUS_CASE,
+                           "a gust that travels past the fish has no steady state: run the case in time, or set "
+                           "fluid.gust.profile to uniform");
+    }
+    const bool is_static = steady_static_applies(run->simulation->school);
     TRY(is_static ? steady_static_refuse(run->simulation->school)
                   : steady_problem_create(&run->problem, &run->values->steady, run->simulation));
     run->problem.progress = report_progress;
@@ -232,7 +220,7 @@ static enum status find_and_write(struct run *run) {
                                          .overwrite = options->overwrite,
                                          .values = run->values,
                                          .command = options->command,
-                                         .school = run->simulation->school,
+                                         .school = school,
                                          .n_events = n_events,
                                          .is_steady = true};
     TRY(record_create(run->arena, &run->record, &origin));

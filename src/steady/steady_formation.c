@@ -44,8 +44,9 @@ struct formation {
     double *made_at;    /* unknowns at the last difference Jacobian       (n_unknowns) */
     double *matrix;     /* Jacobian, owned by the problem                 (n_unknowns, n_unknowns) */
     double last_norm;   /* norm of the change before the last step */
-    int has_value, has_matrix, n_slow;
-    int follows;    /* implicit Euler steps instead of Newton steps */
+    bool has_value, has_matrix;
+    int n_slow;
+    bool follows;   /* implicit Euler steps instead of Newton steps */
     int most_beats; /* beats of the whole search after which Newton's method stops */
     struct state *begun, *reached;
     struct state *late[COLUMN_BEATS]; /* states before each of the last beats */
@@ -64,11 +65,6 @@ static double largest_distance(int n, const double *from, const double *to) {
     return most;
 }
 
-static int is_place(const struct formation *formation, int i) {
-    const enum steady_quantity quantity = formation->problem->unknown[i].quantity;
-    return quantity == STEADY_AHEAD || quantity == STEADY_ASIDE;
-}
-
 // ---- evaluations
 
 static enum status beat_from(struct formation *formation, const double *u, double *change) {
@@ -80,63 +76,51 @@ static enum status beat_from(struct formation *formation, const double *u, doubl
     return STATUS_OK;
 }
 
-// repeat beats with the same initial values until the wake has converged
-static enum status settle_wake(struct formation *formation, const double *u, double *change) {
-    const int n = formation->problem->n_unknowns;
+static enum status formation_value(void *data, const double *u, double *change) {
+    struct formation *const formation = data;
+    const struct steady_problem *const problem = formation->problem;
+    const int n = problem->n_unknowns;
+    const size_t bytes = (size_t)n * sizeof *u;
+
+    // Newton's method can separate the fish until the interaction vanishes, make the fish overlap, or oscillate
+    const double most = largest_distance(n, formation->start, u);
+    if (!formation->follows && (most > farthest || problem->map.n_beats >= formation->most_beats)) {
+        return status_fail(
+            STATUS_SOLVER,
+            "no formation in %d beats: Newton's method moves a fish by %.2g lengths, limit %g, or needs more than half "
+            "of steady.beats: start nearer to the formation, or increase steady.beats",
+            problem->map.n_beats, most, farthest);
+    }
+
+    // repeat beats with the same initial values until the wake has converged
     for (int i = 0; i < BEATS; i++) {
         // keep the states before the last COLUMN_BEATS beats
         struct state *const oldest = formation->late[0];
         memmove(formation->late, formation->late + 1, (COLUMN_BEATS - 1) * sizeof oldest);
         formation->late[COLUMN_BEATS - 1] = oldest;
-        TRY(steady_map_save(formation->arena, formation->problem->map.simulation, &formation->late[COLUMN_BEATS - 1]));
-
+        TRY(steady_map_save(formation->arena, problem->map.simulation, &formation->late[COLUMN_BEATS - 1]));
         TRY(beat_from(formation, u, change));
         const double moved = largest_distance(n, formation->before, change);
-        memcpy(formation->before, change, (size_t)n * sizeof *change);
+        memcpy(formation->before, change, bytes);
 
         // the wake at the first evaluation belongs to other values
         const int fewest = formation->has_matrix ? COLUMN_BEATS : COLUMN_BEATS + 1;
         if (i + 1 >= fewest && moved <= fmax(settled * euclidean_norm(n, change), formation->tolerance)) break;
     }
 
-    return STATUS_OK;
-}
-
-// Broyden's update: the smallest change of the Jacobian that reproduces the last step
-static void broyden_update(struct formation *formation, const double *u, const double *change) {
-    const int n = formation->problem->n_unknowns;
+    // Broyden's update: the smallest change of the Jacobian that reproduces the last step
     for (int i = 0; i < n; i++) formation->step[i] = u[i] - formation->u[i];
     const double length = euclidean_norm(n, formation->step);
-    if (!formation->has_value || !formation->has_matrix || length < telling_step) return;
-
-    for (int i = 0; i < n; i++) {
+    const bool is_updated = formation->has_value && formation->has_matrix && length >= telling_step;
+    for (int i = 0; i < n && is_updated; i++) {
         double missing = change[i] - formation->change[i];
         for (int j = 0; j < n; j++) missing -= formation->matrix[i + j * n] * formation->step[j];
         for (int j = 0; j < n; j++) {
             formation->matrix[i + j * n] += missing / length * (formation->step[j] / length);
         }
     }
-}
 
-// Newton's method can separate the fish until the interaction vanishes, make the fish overlap, or oscillate
-static enum status check_iterate(const struct formation *formation, const double *u) {
-    const struct steady_problem *const problem = formation->problem;
-    const double most = largest_distance(problem->n_unknowns, formation->start, u);
-    if (formation->follows || (most <= farthest && problem->map.n_beats < formation->most_beats)) return STATUS_OK;
-    return status_fail(
-        STATUS_SOLVER,
-        "no formation in %d beats: Newton's method moves a fish by %.2g lengths, limit %g, or needs more "
-        "than half of steady.beats: start nearer to the formation, or increase steady.beats",
-        problem->map.n_beats, most, farthest);
-}
-
-static enum status formation_value(void *data, const double *u, double *change) {
-    struct formation *const formation = data;
-    const size_t bytes = (size_t)formation->problem->n_unknowns * sizeof *u;
-    TRY(check_iterate(formation, u));
-    TRY(settle_wake(formation, u, change));
-    broyden_update(formation, u, change);
-    formation->has_value = 1;
+    formation->has_value = true;
     memcpy(formation->u, u, bytes);
     memcpy(formation->change, change, bytes);
     return STATUS_OK;
@@ -144,38 +128,34 @@ static enum status formation_value(void *data, const double *u, double *change) 
 
 // ---- the Jacobian
 
-// every place must change the beat
-static enum status check_place_columns(const struct formation *formation) {
-    const int n = formation->problem->n_unknowns;
-    for (int j = 0; j < n; j++) {
-        if (is_place(formation, j))
-            TRY(steady_reason_check(formation->problem, euclidean_norm(n, formation->matrix + j * n)));
-    }
-    return STATUS_OK;
-}
-
-// each column repeats the last beats of the evaluation with an increment of one quantity
+// each column repeats the last beats of the evaluation with an increment of one quantity; every place must change the
+// beat
 static enum status formation_difference_jacobian(struct formation *formation) {
-    struct steady_map *const map = &formation->problem->map;
-    const int n = formation->problem->n_unknowns;
+    struct steady_problem *const problem = formation->problem;
+    struct simulation *const simulation = problem->map.simulation;
+    const int n = problem->n_unknowns;
     memcpy(formation->held, formation->u, (size_t)n * sizeof *formation->held);
     memcpy(formation->made_at, formation->u, (size_t)n * sizeof *formation->made_at);
-    TRY(steady_map_save(formation->arena, map->simulation, &formation->reached));
+    TRY(steady_map_save(formation->arena, simulation, &formation->reached));
 
     for (int j = 0; j < n; j++) {
         double *const column = formation->matrix + j * n;
-        TRY(steady_map_return(map->simulation, formation->late[0]));
+        TRY(steady_map_return(simulation, formation->late[0]));
         formation->held[j] += difference;
         for (int i = 0; i < COLUMN_BEATS; i++) TRY(beat_from(formation, formation->held, column));
         formation->held[j] = formation->u[j];
         for (int i = 0; i < n; i++) column[i] = (column[i] - formation->change[i]) / difference;
     }
 
-    formation->has_matrix = 1;
+    formation->has_matrix = true;
     formation->n_slow = 0;
-    TRY(steady_map_return(map->simulation, formation->reached));
-
-    return check_place_columns(formation);
+    TRY(steady_map_return(simulation, formation->reached));
+    for (int j = 0; j < n; j++) {
+        const enum steady_quantity quantity = problem->unknown[j].quantity;
+        if (quantity != STEADY_AHEAD && quantity != STEADY_ASIDE) continue;
+        TRY(steady_reason_check(problem, euclidean_norm(n, formation->matrix + j * n)));
+    }
+    return STATUS_OK;
 }
 
 static enum status formation_jacobian(void *data, double *matrix) {
@@ -184,7 +164,7 @@ static enum status formation_jacobian(void *data, double *matrix) {
     const double now = euclidean_norm(n, formation->change);
 
     formation->n_slow = now > least_progress * formation->last_norm ? formation->n_slow + 1 : 0;
-    const int is_elsewhere = largest_distance(n, formation->made_at, formation->u) > telling_step;
+    const bool is_elsewhere = largest_distance(n, formation->made_at, formation->u) > telling_step;
     if (!formation->has_matrix || (formation->n_slow >= SLOW_STEPS && is_elsewhere))
         TRY(formation_difference_jacobian(formation));
     formation->last_norm = now;
@@ -207,7 +187,7 @@ static enum status formation_newton(struct formation *formation) {
     steady_problem_read(problem, u);
     memcpy(formation->start, u, (size_t)n * sizeof *u);
     memcpy(formation->made_at, u, (size_t)n * sizeof *u);
-    formation->has_value = 0;
+    formation->has_value = false;
     const struct newton newton = {.n = n,
                                   .scale = scale,
                                   .tolerance = formation->tolerance / longest_step,
@@ -230,8 +210,8 @@ static enum status solve_or_follow(struct formation *formation) {
     if (status != STATUS_SOLVER || formation->last_norm <= 0) return status;
     TRY(steady_map_return(map->simulation, formation->begun));
     if (map->n_beats < most_beats) {
-        formation->follows = 1;
-        formation->has_matrix = 0;
+        formation->follows = true;
+        formation->has_matrix = false;
         status = formation_newton(formation);
         if (status != STATUS_SOLVER) return status;
         // the motion from the start explains more than the motion from the last iterate
@@ -243,7 +223,8 @@ static enum status solve_or_follow(struct formation *formation) {
 
 enum status steady_formation_solve(struct steady_problem *problem, double tolerance) {
     struct arena *const owner = problem->map.simulation->arena, *const arena = arena_create(owner, "a formation");
-    const int n = problem->n_unknowns, is_new = !problem->jacobian;
+    const int n = problem->n_unknowns;
+    const bool is_new = !problem->jacobian;
     if (is_new) NEW(owner, problem->jacobian, (size_t)n * (size_t)n);
     struct formation formation = {
         .arena = arena, .problem = problem, .tolerance = tolerance, .matrix = problem->jacobian, .has_matrix = !is_new};

@@ -16,14 +16,17 @@ enum steady_freedom steady_map_freedom(const struct fish *fish) {
     return fish->motion.is_held ? STEADY_HELD : STEADY_SURGES;
 }
 
-// ---- the beat
-
-/* Find the common beat period of all fish, and check that a beat has an integer number of events and gusts. */
-static enum status find_period(struct steady_map *map) {
-    const struct school *const school = map->simulation->school;
+enum status steady_map_create(struct steady_map *map, struct simulation *simulation) {
+    const struct school *const school = simulation->school;
     const struct fish *first = NULL;
+    *map = (struct steady_map){.simulation = simulation, .steered = -1};
+    NEW(simulation->arena, map->last, school->n_fish);
+    NEW(simulation->arena, map->before, school->n_fish);
+
+    // the common beat period of all fish
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
+        if (fish->control.law != CONTROL_NONE && map->steered < 0) map->steered = f;
         if (fish->period <= 0) continue;
         if (!first) first = fish;
         if (fabs(fish->period - first->period) <= 1e-9 * first->period) continue;
@@ -32,6 +35,7 @@ static enum status find_period(struct steady_map *map) {
                            first->name, 1 / first->period, fish->name, 1 / fish->period);
     }
 
+    // an integer number of events and gusts in a beat
     if (!first) return status_fail(STATUS_CASE, "no fish beats, so there is no beat to repeat");
     map->period = first->period;
     const double events = map->period / school->interval;
@@ -44,24 +48,12 @@ static enum status find_period(struct steady_map *map) {
     }
 
     const double gusts = school->gust_omega * map->period / (2 * M_PI);
-    const int has_gust = fabs(school->gust[0]) + fabs(school->gust[1]) > 0;
+    const bool has_gust = fabs(school->gust[0]) + fabs(school->gust[1]) > 0;
     if (!has_gust || fabs(gusts - nearbyint(gusts)) <= 1e-9 * gusts) return STATUS_OK;
     return status_fail(STATUS_CASE,
                        "a beat has %g gusts, not an integer: set fluid.gust.frequency to a multiple of the frequency "
                        "of the beat",
                        gusts);
-}
-
-enum status steady_map_create(struct steady_map *map, struct simulation *simulation) {
-    *map = (struct steady_map){.simulation = simulation, .steered = -1};
-    for (int f = simulation->school->n_fish - 1; f >= 0; f--) {
-        if (simulation->school->fish[f].control.law != CONTROL_NONE) map->steered = f;
-    }
-
-    TRY(find_period(map));
-    NEW(simulation->arena, map->last, simulation->school->n_fish);
-    NEW(simulation->arena, map->before, simulation->school->n_fish);
-    return STATUS_OK;
 }
 
 // ---- one beat
@@ -81,26 +73,6 @@ static void add_event(struct steady_map *map, double share) {
     }
 }
 
-// fill the values from the history; works give the mean powers, because works include the steps between events
-static void finish_beat(struct steady_map *map) {
-    for (int f = 0; f < map->simulation->school->n_fish; f++) {
-        const struct history *const history = &map->simulation->state->history[f];
-        const struct sample *const new = state_recall(history, 0), *const old = state_recall(history, history->n - 1);
-        struct steady_beat *const beat = &map->last[f];
-        beat->speed = map->simulation->diagnostics->fish[f].speed;
-        beat->turn = new->heading - old->heading;
-        const struct steady_unknown place[] = {{f, STEADY_AHEAD}, {f, STEADY_ASIDE}};
-        steady_map_read(map, 2, place, beat->place);
-
-        beat->actuation = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / map->period;
-        beat->damping = (new->work[WORK_DAMPING] - old->work[WORK_DAMPING]) / map->period;
-        beat->driving = (new->work[WORK_DRIVING] - old->work[WORK_DRIVING]) / map->period;
-        beat->fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / map->period;
-        beat->rms_thrust = sqrt(beat->rms_thrust);
-        beat->rms_power = sqrt(beat->rms_power);
-    }
-}
-
 enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *data), void *data) {
     struct steady_beat *const oldest = map->before;
     map->before = map->last;
@@ -117,7 +89,23 @@ enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *dat
         if (row) TRY(row(data));
     }
 
-    finish_beat(map);
+    // means from the history; works give the mean powers, because works include the steps between events
+    for (int f = 0; f < map->simulation->school->n_fish; f++) {
+        const struct history *const history = &map->simulation->state->history[f];
+        const struct sample *const new = state_recall(history, 0), *const old = state_recall(history, history->n - 1);
+        struct steady_beat *const beat = &map->last[f];
+        beat->speed = map->simulation->diagnostics->fish[f].speed;
+        beat->turn = new->heading - old->heading;
+        const struct steady_unknown place[] = {{f, STEADY_AHEAD}, {f, STEADY_ASIDE}};
+        steady_map_read(map, 2, place, beat->place);
+
+        beat->actuation = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / map->period;
+        beat->damping = (new->work[WORK_DAMPING] - old->work[WORK_DAMPING]) / map->period;
+        beat->driving = (new->work[WORK_DRIVING] - old->work[WORK_DRIVING]) / map->period;
+        beat->fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / map->period;
+        beat->rms_thrust = sqrt(beat->rms_thrust);
+        beat->rms_power = sqrt(beat->rms_power);
+    }
     map->n_beats++;
     return STATUS_OK;
 }
@@ -133,7 +121,7 @@ double steady_map_residual(const struct steady_map *map) {
     for (int f = 0; f < school->n_fish; f++) {
         const struct steady_beat *const now = &map->last[f], *const before = &map->before[f];
         residual = larger(residual, relative_change(now->speed, before->speed, school->fish[f].length / map->period));
-        const int circles = fabs(school->fish[f].control.bias) > 0;
+        const bool circles = fabs(school->fish[f].control.bias) > 0;
         residual = larger(residual, relative_change(now->turn, before->turn, (circles ? 1 : 10) * 2 * M_PI));
         for (int i = 0; i < 2 && map->is_formation; i++) {
             residual = larger(residual, relative_change(now->place[i], before->place[i], school->fish[f].length));
@@ -161,83 +149,38 @@ double steady_map_scale(const struct steady_map *map, struct steady_unknown unkn
     }
 }
 
-// the stream at the centre of mass: components along the heading and to the left
-static void stream_along(const struct steady_map *map, const struct rigid *rigid, double stream[2]) {
-    const struct simulation *const simulation = map->simulation;
-    double u, v;
-    flow_external(simulation->school, simulation->state->t, rigid->place[0], rigid->place[1], &u, &v);
-    const double c = cos(rigid->heading), s = sin(rigid->heading);
-    stream[0] = c * u + s * v;
-    stream[1] = c * v - s * u;
-}
-
-// heading relative to the heading of the first fish; for the first fish relative to the desired heading, if any
-static double heading_seen(const struct steady_map *map, int f, double heading, double first) {
-    const struct simulation *const simulation = map->simulation;
-    const struct state *const state = simulation->state;
-    const int by = map->steered;
-    if (f == 0 && by >= 0) {
-        first = control_desired_heading(&simulation->school->fish[by], &state->control[by], state->t, state->y);
-    }
-    return remainder(heading - first, 2 * M_PI);
-}
-
 void steady_map_read(const struct steady_map *map, int n, const struct steady_unknown *unknown, double *value) {
-    const struct school *const school = map->simulation->school;
-    const double *const y = map->simulation->state->y;
-    const struct rigid first = rigid_of(&school->fish[0], y);
+    const struct simulation *const simulation = map->simulation;
+    const struct school *const school = simulation->school;
+    const struct state *const state = simulation->state;
+    const struct rigid first = rigid_of(&school->fish[0], state->y);
 
     for (int i = 0; i < n; i++) {
-        const struct rigid rigid = rigid_of(&school->fish[unknown[i].fish], y);
-        double stream[2], place[2];
-        stream_along(map, &rigid, stream);
+        const int f = unknown[i].fish;
+        const struct rigid rigid = rigid_of(&school->fish[f], state->y);
+
+        // the stream at the centre of mass: components along the heading and to the left
+        double u, v, place[2];
+        flow_external(school, state->t, rigid.place[0], rigid.place[1], &u, &v);
+        const double c = cos(rigid.heading), s = sin(rigid.heading);
         rigid_relative_place(&first, &rigid, place);
+
+        // the heading is relative to that of the first fish; of the first fish, to the desired heading, if any
+        double heading = first.heading;
+        if (f == 0 && map->steered >= 0) {
+            heading =
+                control_desired_heading(&school->fish[map->steered], &state->control[map->steered], state->t, state->y);
+        }
         switch (unknown[i].quantity) {
-            case STEADY_SPEED: value[i] = rigid.velocity[0] - stream[0]; break;
-            case STEADY_SLIP: value[i] = rigid.velocity[1] - stream[1]; break;
+            case STEADY_SPEED: value[i] = rigid.velocity[0] - (c * u + s * v); break;
+            case STEADY_SLIP: value[i] = rigid.velocity[1] - (c * v - s * u); break;
             case STEADY_TURN: value[i] = rigid.turn; break;
-            case STEADY_HEADING: value[i] = heading_seen(map, unknown[i].fish, rigid.heading, first.heading); break;
+            case STEADY_HEADING: value[i] = remainder(rigid.heading - heading, 2 * M_PI); break;
             case STEADY_AHEAD: value[i] = place[0]; break;
             case STEADY_ASIDE: value[i] = place[1]; break;
-            case STEADY_SHED: value[i] = map->simulation->state->wake[unknown[i].fish].shed_before; break;
+            case STEADY_SHED: value[i] = state->wake[f].shed_before; break;
         }
     }
-}
-
-static void add_quantity(struct rigid *change, const struct rigid *first, enum steady_quantity quantity, double add) {
-    const double c = cos(first->heading), s = sin(first->heading);
-    switch (quantity) {
-        case STEADY_SPEED: change->velocity[0] += add; break;
-        case STEADY_SLIP: change->velocity[1] += add; break;
-        case STEADY_TURN: change->turn += add; break;
-        case STEADY_HEADING: change->heading += add; break;
-        case STEADY_AHEAD:
-            change->place[0] += c * add;
-            change->place[1] += s * add;
-            break;
-        case STEADY_ASIDE:
-            change->place[0] -= s * add;
-            change->place[1] += c * add;
-            break;
-        case STEADY_SHED: break;
-    }
-}
-
-// the added circulation counts as shed infinitely long ago
-static void add_shed(const struct school *school, struct state *state, const struct steady_unknown *unknown,
-                     double add) {
-    if (unknown->quantity != STEADY_SHED) return;
-    state->y[school->fish[unknown->fish].at.circulation] += add;
-    wake_add_shed(&state->wake[unknown->fish], add);
-}
-
-// rotate another fish with the first fish: the place in the frame of the first fish is constant
-static void add_turn(struct rigid *change, const struct rigid *first, const struct rigid *other, double turn) {
-    const double c = cos(turn) - 1, s = sin(turn);
-    const double way[2] = {other->place[0] - first->place[0], other->place[1] - first->place[1]};
-    change->heading += turn;
-    change->place[0] += c * way[0] - s * way[1];
-    change->place[1] += s * way[0] + c * way[1];
 }
 
 // renew all data derived from the state; evaluate the fluid velocity at the event
@@ -249,46 +192,68 @@ static enum status renew_simulation(struct simulation *simulation) {
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
-// restart the record of the closest approach
-static enum status check_overlap(struct simulation *simulation) {
-    const struct school *const school = simulation->school;
-    struct residual *const residual = simulation->residual;
-    const struct closest *const closest = simulation->state->closest;
-    clearance_start(school, simulation->state, residual->neighbours, residual->scratch);
-    if (closest->distance > 0 || school->contact == CONTACT_WARN) return STATUS_OK;
-    return status_fail(STATUS_SOLVER, "collision: the next search iterate makes %s and %s overlap",
-                       school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name);
-}
-
 enum status steady_map_add(struct steady_map *map, int n, const struct steady_unknown *unknown, const double *add) {
     struct simulation *const simulation = map->simulation;
+    struct residual *const residual = simulation->residual;
     struct state *const state = simulation->state;
     const struct school *const school = simulation->school;
     const struct rigid first = rigid_of(&school->fish[0], state->y);
+    const double c = cos(first.heading), s = sin(first.heading);
     double turn = 0;
 
-    diagnostics_before_jump(simulation->residual, state);
-    for (int i = 0; i < n; i++) add_shed(school, state, &unknown[i], add[i]);
-
+    diagnostics_before_jump(residual, state);
     for (int f = 0; f < school->n_fish; f++) {
         struct rigid change = {.heading = 0};
         for (int i = 0; i < n; i++) {
-            if (unknown[i].fish == f) add_quantity(&change, &first, unknown[i].quantity, add[i]);
+            if (unknown[i].fish != f) continue;
+            switch (unknown[i].quantity) {
+                case STEADY_SPEED: change.velocity[0] += add[i]; break;
+                case STEADY_SLIP: change.velocity[1] += add[i]; break;
+                case STEADY_TURN: change.turn += add[i]; break;
+                case STEADY_HEADING: change.heading += add[i]; break;
+                case STEADY_AHEAD:
+                    change.place[0] += c * add[i];
+                    change.place[1] += s * add[i];
+                    break;
+                case STEADY_ASIDE:
+                    change.place[0] -= s * add[i];
+                    change.place[1] += c * add[i];
+                    break;
+                case STEADY_SHED:
+                    // the added circulation counts as shed infinitely long ago
+                    state->y[school->fish[f].at.circulation] += add[i];
+                    wake_add_shed(&state->wake[f], add[i]);
+                    break;
+            }
         }
+
+        // rotate another fish with the first fish: the place in the frame of the first fish is constant
         if (f == 0) turn = change.heading;
-        const struct rigid other = rigid_of(&school->fish[f], state->y);
-        if (f > 0 && fabs(turn) > 0) add_turn(&change, &first, &other, turn);
+        if (f > 0 && fabs(turn) > 0) {
+            const struct rigid other = rigid_of(&school->fish[f], state->y);
+            const double way[2] = {other.place[0] - first.place[0], other.place[1] - first.place[1]};
+            change.heading += turn;
+            change.place[0] += (cos(turn) - 1) * way[0] - sin(turn) * way[1];
+            change.place[1] += sin(turn) * way[0] + (cos(turn) - 1) * way[1];
+        }
         rigid_change(school, state, f, &change);
     }
 
-    TRY(check_overlap(simulation));
+    // restart the record of the closest approach
+    const struct closest *const closest = state->closest;
+    clearance_start(school, state, residual->neighbours, residual->scratch);
+    if (!(closest->distance > 0) && school->contact != CONTACT_WARN) {
+        return status_fail(STATUS_SOLVER, "collision: the next search iterate makes %s and %s overlap",
+                           school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name);
+    }
 
     // velocities are given, as at the start of a run: solve for the momenta
-    simulation->residual->at_start = 1;
+    residual->at_start = 1;
     const enum status status = initial_conditions_solve(simulation->consistent, state->t, state->y, state->yp);
-    simulation->residual->at_start = 0;
+    residual->at_start = 0;
     TRY(status);
 
+    // the simulation has a new residual
     TRY(renew_simulation(simulation));
     diagnostics_after_jump(simulation->residual, state);
     return STATUS_OK;

@@ -3,6 +3,8 @@
 #ifndef STEADY_MAP_H
 #define STEADY_MAP_H
 
+#include <stdbool.h>
+
 #include "result/result_row.h"
 #include "run/simulate.h"
 #include "school/rigid.h"
@@ -47,7 +49,7 @@ struct steady_beat {
 
 struct steady_map {
     struct simulation *simulation;
-    int is_formation;                  /* the residual includes places */
+    bool is_formation;                 /* the residual includes places */
     int steered;                       /* first fish with a control law; -1: no fish */
     long events;                       /* per beat */
     double period;                     /* s */

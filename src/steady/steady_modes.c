@@ -22,19 +22,6 @@ static void set_growth(struct steady_values *found) {
 
 // ---- an equilibrium
 
-/* The number of events until the wakes are long enough; 0 without a stream. */
-static int count_events(const struct simulation *simulation) {
-    const struct school *const school = simulation->school;
-    const struct fish *const fish = &school->fish[0];
-    double stream[2], position[2], velocity[2], acceleration[2];
-    fish_prescribed_node(fish, 0, 0, position, velocity, acceleration);
-    flow_external(school, 0, position[0], position[1], &stream[0], &stream[1]);
-
-    const double speed = hypot(stream[0] - velocity[0], stream[1] - velocity[1]);
-    const double duration = fmin(school->lifetime, wake_lengths * fish->length / speed);
-    return speed > 0 ? (int)fmin(MOST_EVENTS, duration / school->interval) : 0;
-}
-
 /* Set the bodies to the positions at time t: the whole body moves at the velocity of the first node. */
 static void hold_bodies(const struct simulation *simulation, const struct state *equilibrium, double t) {
     const struct school *const school = simulation->school;
@@ -53,25 +40,42 @@ static void hold_bodies(const struct simulation *simulation, const struct state 
     }
 }
 
-static enum status find_modes_behind_bodies(struct arena *arena, struct simulation *simulation,
-                                            const struct state *equilibrium, int n_events,
-                                            struct steady_values *found) {
+enum status steady_modes_find(struct simulation *simulation, struct steady_values *found) {
+    const struct school *const school = simulation->school;
     struct state *const state = simulation->state;
-    int n_most = STEADY_QUANTITIES * simulation->school->n_fish, jumped;
+    const struct fish *const fish = &school->fish[0];
+
+    // the number of events until the wakes are long enough; 0 without a stream
+    double stream[2], position[2], velocity[2], acceleration[2];
+    fish_prescribed_node(fish, 0, 0, position, velocity, acceleration);
+    flow_external(school, 0, position[0], position[1], &stream[0], &stream[1]);
+    const double speed = hypot(stream[0] - velocity[0], stream[1] - velocity[1]);
+    const double duration = fmin(school->lifetime, wake_lengths * fish->length / speed);
+    const int n_events = speed > 0 ? (int)fmin(MOST_EVENTS, duration / school->interval) : 0;
+    found->n_exponents = 0;
+    set_growth(found);
+    if (n_events == 0 || school->finite || school->shedding == SHEDDING_IMPULSIVE || !(school->density > 0)) {
+        return STATUS_OK;
+    }
 
     // the held bodies grow a wake
+    struct arena *const arena = arena_create(simulation->arena, "the modes of the bodies");
+    struct state *kept = NULL;
+    int jumped, n_most = STEADY_QUANTITIES * school->n_fish;
+    TRY(steady_map_save(arena, simulation, &kept));
     simulation->residual->flow->is_steady = false;
     TRY(event_start(state, simulation->residual, simulation->consistent));
-    hold_bodies(simulation, equilibrium, state->t);
+    hold_bodies(simulation, kept, state->t);
     for (int i = 0; i < n_events; i++) {
         if (simulation->stop && *simulation->stop) {
             return status_fail(STATUS_STOPPED, "stopped %s before the modes were found",
                                simulate_stopped_by(simulation->stop));
         }
-        hold_bodies(simulation, equilibrium, fish_event_time(simulation->school, state->event + 1));
+        hold_bodies(simulation, kept, fish_event_time(school, state->event + 1));
         TRY(event_next(state, simulation->residual, simulation->consistent, &jumped));
     }
 
+    // the modes of the bodies with this wake
     struct mode *mode;
     NEW(arena, mode, n_most);
     TRY(modes_find(arena, simulation->residual, state, n_most, mode, &found->n_exponents));
@@ -79,22 +83,6 @@ static enum status find_modes_behind_bodies(struct arena *arena, struct simulati
         found->rate[i] = mode[i].rate;
         found->omega[i] = mode[i].omega;
     }
-    return STATUS_OK;
-}
-
-enum status steady_modes_find(struct simulation *simulation, struct steady_values *found) {
-    const int n_events = count_events(simulation);
-    found->n_exponents = 0;
-    set_growth(found);
-    if (n_events == 0 || simulation->school->finite || simulation->school->shedding == SHEDDING_IMPULSIVE ||
-        !(simulation->school->density > 0)) {
-        return STATUS_OK;
-    }
-
-    struct arena *const arena = arena_create(simulation->arena, "the modes of the bodies");
-    struct state *kept = NULL;
-    TRY(steady_map_save(arena, simulation, &kept));
-    TRY(find_modes_behind_bodies(arena, simulation, kept, n_events, found));
     TRY(steady_map_return(simulation, kept));
     arena_free(arena);
     set_growth(found);
@@ -134,12 +122,6 @@ struct disturbances {
     int n_columns;
 };
 
-static double largest_value(int n, const double *value) {
-    double most = 0;
-    for (int i = 0; i < n; i++) most = larger(most, fabs(value[i]));
-    return most;
-}
-
 // simulate from the kept state plus the increment; subtract the undisturbed beats, unless NULL, and stop above small
 static enum status follow_disturbance(struct disturbances *all, double *seen, const double *without, int *n_beats) {
     struct steady_map *const map = &all->problem->map;
@@ -151,34 +133,36 @@ static enum status follow_disturbance(struct disturbances *all, double *seen, co
         double *const now = seen + (*n_beats + 1) * n;
         TRY(steady_map_beat(map, NULL, NULL));
         steady_problem_read(all->problem, now);
-        for (int i = 0; i < n && without; i++) now[i] -= without[i + (*n_beats + 1) * n];
-        if (without && *n_beats > 0 && !(largest_value(n, now) <= small)) break;
+        double most = 0;
+        for (int i = 0; i < n && without; i++) {
+            now[i] -= without[i + (*n_beats + 1) * n];
+            most = larger(most, fabs(now[i]));
+        }
+        if (*n_beats > 0 && !(most <= small)) break;
     }
 
     return STATUS_OK;
 }
 
-// collect the columns before and after the last of n_beats beats; at least one beat
-static void collect_beats(struct disturbances *all, int n_beats) {
-    const size_t n = (size_t)all->problem->n_unknowns, bytes = n * sizeof *all->seen;
-    int first = n_beats - SLOW_BEATS;
-    if (first < 2) first = n_beats > 2 ? 2 : 1;
-    for (int k = first; k == first || k < n_beats; k++) {
-        memcpy(all->before + (size_t)all->n_columns * n, all->seen + (size_t)k * n, bytes);
-        memcpy(all->after + (size_t)all->n_columns * n, all->seen + (size_t)(k + 1) * n, bytes);
-        all->n_columns++;
-    }
-}
-
+// disturb each unknown and collect the columns before and after the last beats
 static enum status disturb_each_unknown(struct disturbances *all) {
     const struct steady_problem *const problem = all->problem;
+    const size_t n = (size_t)problem->n_unknowns, bytes = n * sizeof *all->seen;
     int n_beats;
     TRY(follow_disturbance(all, all->base, NULL, &n_beats));
-    for (int j = 0; j < problem->n_unknowns; j++) {
-        memset(all->add, 0, (size_t)problem->n_unknowns * sizeof *all->add);
+    for (size_t j = 0; j < n; j++) {
+        memset(all->add, 0, bytes);
         all->add[j] = disturbance * steady_map_scale(&problem->map, problem->unknown[j]);
         TRY(follow_disturbance(all, all->seen, all->base, &n_beats));
-        collect_beats(all, n_beats);
+
+        // at least one beat
+        int first = n_beats - SLOW_BEATS;
+        if (first < 2) first = n_beats > 2 ? 2 : 1;
+        for (int k = first; k == first || k < n_beats; k++) {
+            memcpy(all->before + (size_t)all->n_columns * n, all->seen + (size_t)k * n, bytes);
+            memcpy(all->after + (size_t)all->n_columns * n, all->seen + (size_t)(k + 1) * n, bytes);
+            all->n_columns++;
+        }
     }
     return STATUS_OK;
 }

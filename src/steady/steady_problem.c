@@ -7,80 +7,32 @@
 #include "base/mathematics.h"
 #include "school/diagnostics_energy.h"
 
-// ---- which quantities are slow
-
-static void add_unknown(struct steady_problem *problem, int f, enum steady_quantity quantity) {
-    problem->unknown[problem->n_unknowns++] = (struct steady_unknown){f, quantity};
-}
-
-static void add_pin(struct steady_problem *problem, int f, enum steady_quantity quantity) {
-    add_unknown(problem, f, quantity);
-    problem->pin[problem->n_pins++] = (struct steady_unknown){f, quantity};
-}
-
-static void list_fish_unknowns(struct steady_problem *problem, int f, const struct fish *fish) {
-    const enum steady_freedom freedom = steady_map_freedom(fish);
-    const int follows = f > 0 && problem->map.is_formation;
-    if (freedom == STEADY_HELD) return;
-    if (!follows) problem->solves_speed = 1;
-    add_pin(problem, f, STEADY_SPEED);
-    if (follows) add_pin(problem, f, STEADY_AHEAD);
-    if (freedom == STEADY_SURGES) return;
-    add_unknown(problem, f, STEADY_SLIP);
-    add_unknown(problem, f, STEADY_TURN);
-    if (follows) {
-        add_pin(problem, f, STEADY_ASIDE);
-        add_pin(problem, f, STEADY_HEADING);
-    } else if (problem->map.steered >= 0) {
-        add_unknown(problem, f, STEADY_HEADING);
-    }
-}
-
-static void list_unknowns(struct steady_problem *problem) {
-    const struct school *const school = problem->map.simulation->school;
-    struct arena *const arena = problem->map.simulation->arena;
-    const size_t most = STEADY_QUANTITIES * (size_t)school->n_fish;
-    NEW(arena, problem->unknown, most);
-    NEW(arena, problem->pin, most);
-    NEW(arena, problem->pinned, most);
-    NEW(arena, problem->scratch, 4 * most);
-
-    for (int f = 0; f < school->n_fish; f++) list_fish_unknowns(problem, f, &school->fish[f]);
-    steady_map_read(&problem->map, problem->n_pins, problem->pin, problem->pinned);
-}
-
 // ---- cases without a steady state
-
-static enum status refuse_fish(const struct school *school, const struct fish *fish) {
-    const enum steady_freedom freedom = steady_map_freedom(fish);
-    if (freedom != STEADY_HELD && fabs(school->shear) > 0) {
-        return status_fail(STATUS_CASE,
-                           "%s swims in a shear, where the stream depends on the place of the fish: hold the fish with "
-                           "motion.prescribed, or set fluid.shear to 0",
-                           fish->name);
-    }
-
-    if (freedom == STEADY_SWIMS && school->walls.n > 0) {
-        return status_fail(STATUS_CASE,
-                           "%s swims freely beside a wall without control of the wall distance: hold the fish with "
-                           "motion.prescribed (surge: free keeps the speed free), or remove fluid.walls",
-                           fish->name);
-    }
-
-    if (fish->control.n_waypoints > 0 || fish->control.n_headings > 1) {
-        return status_fail(STATUS_CASE, "%s changes heading during the case: give one desired_heading and no waypoints",
-                           fish->name);
-    }
-
-    return STATUS_OK;
-}
 
 static enum status refuse_case(const struct steady_problem *problem) {
     const struct school *const school = problem->map.simulation->school;
     int n_free = 0;
     for (int f = 0; f < school->n_fish; f++) {
-        TRY(refuse_fish(school, &school->fish[f]));
-        n_free += steady_map_freedom(&school->fish[f]) != STEADY_HELD;
+        const struct fish *const fish = &school->fish[f];
+        const enum steady_freedom freedom = steady_map_freedom(fish);
+        n_free += freedom != STEADY_HELD;
+        if (freedom != STEADY_HELD && fabs(school->shear) > 0) {
+            return status_fail(STATUS_CASE,
+                               "%s swims in a shear, where the stream depends on the place of the fish: hold the fish "
+                               "with motion.prescribed, or set fluid.shear to 0",
+                               fish->name);
+        }
+        if (freedom == STEADY_SWIMS && school->walls.n > 0) {
+            return status_fail(STATUS_CASE,
+                               "%s swims freely beside a wall without control of the wall distance: hold the fish with "
+                               "motion.prescribed (surge: free keeps the speed free), or remove fluid.walls",
+                               fish->name);
+        }
+        if (fish->control.n_waypoints > 0 || fish->control.n_headings > 1) {
+            return status_fail(STATUS_CASE,
+                               "%s changes heading during the case: give one desired_heading and no waypoints",
+                               fish->name);
+        }
     }
 
     if (n_free == 0 || school->n_fish == 1 || problem->map.is_formation) return STATUS_OK;
@@ -92,11 +44,42 @@ static enum status refuse_case(const struct steady_problem *problem) {
 
 enum status steady_problem_create(struct steady_problem *problem, const struct case_steady *settings,
                                   struct simulation *simulation) {
+    const struct school *const school = simulation->school;
+    struct arena *const arena = simulation->arena;
+    const size_t most = STEADY_QUANTITIES * (size_t)school->n_fish;
     *problem = (struct steady_problem){.settings = settings};
     TRY(steady_map_create(&problem->map, simulation));
     problem->map.is_formation = settings->formation == YES;
     TRY(refuse_case(problem));
-    list_unknowns(problem);
+    NEW(arena, problem->unknown, most);
+    NEW(arena, problem->pin, most);
+    NEW(arena, problem->pinned, most);
+    NEW(arena, problem->scratch, 4 * most);
+
+    // the slow quantities of each fish
+    for (int f = 0; f < school->n_fish; f++) {
+        const enum steady_freedom freedom = steady_map_freedom(&school->fish[f]);
+        const bool is_free = freedom != STEADY_HELD, swims = freedom == STEADY_SWIMS;
+        const bool follows = f > 0 && problem->map.is_formation, is_steered = problem->map.steered >= 0;
+        const struct {
+            enum steady_quantity quantity;
+            bool is_slow, is_pinned;
+        } rows[] = {
+            {STEADY_SPEED, is_free, true},
+            {STEADY_AHEAD, is_free && follows, true},
+            {STEADY_SLIP, swims, false},
+            {STEADY_TURN, swims, false},
+            {STEADY_ASIDE, swims && follows, true},
+            {STEADY_HEADING, swims && (follows || is_steered), follows},
+        };
+        if (is_free && !follows) problem->solves_speed = true;
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            const struct steady_unknown unknown = {f, rows[i].quantity};
+            if (rows[i].is_slow) problem->unknown[problem->n_unknowns++] = unknown;
+            if (rows[i].is_slow && rows[i].is_pinned) problem->pin[problem->n_pins++] = unknown;
+        }
+    }
+    steady_map_read(&problem->map, problem->n_pins, problem->pin, problem->pinned);
     return STATUS_OK;
 }
 
@@ -112,19 +95,25 @@ static double largest_difference(const struct steady_problem *problem, int apart
     return most;
 }
 
-static enum status no_steady_state(const struct steady_problem *problem) {
-    const struct steady_map *const map = &problem->map;
+enum status steady_problem_beat(struct steady_problem *problem) {
+    struct steady_map *const map = &problem->map;
     const struct fish *const first = map->simulation->school->fish;
-    const double speed = map->last[0].speed, equal = problem->settings->tolerance * first->length / map->period;
+    if (map->n_beats < problem->settings->beats) {
+        TRY(steady_map_beat(map, NULL, NULL));
+        problem->recent[map->n_beats % STEADY_RECENT] = map->last[0].speed;
+        if (problem->progress) problem->progress(problem, problem->data);
+        return STATUS_OK;
+    }
 
-    // describe the last beats: period of a repetition, or largest difference
+    // no steady state: describe the last beats, period of a repetition or largest difference
+    const double speed = map->last[0].speed, equal = problem->settings->tolerance * first->length / map->period;
     char rhythm[128] = "";
     if (map->n_beats >= STEADY_RECENT) {
         double most = 0;
         int period = 0;
         for (int apart = 1; apart < STEADY_RECENT; apart++) most = fmax(most, largest_difference(problem, apart));
         for (int apart = 2; apart <= STEADY_RECENT / 4 && period == 0; apart++) {
-            const int repeats = largest_difference(problem, 1) > equal && largest_difference(problem, apart) <= equal;
+            const bool repeats = largest_difference(problem, 1) > equal && largest_difference(problem, apart) <= equal;
             period = repeats ? apart : 0;
         }
         if (period > 0) {
@@ -143,20 +132,12 @@ static enum status no_steady_state(const struct steady_problem *problem) {
                        speed * map->period / first->length, rhythm);
 }
 
-enum status steady_problem_beat(struct steady_problem *problem) {
-    if (problem->map.n_beats >= problem->settings->beats) return no_steady_state(problem);
-    TRY(steady_map_beat(&problem->map, NULL, NULL));
-    problem->recent[problem->map.n_beats % STEADY_RECENT] = problem->map.last[0].speed;
-    if (problem->progress) problem->progress(problem, problem->data);
-    return STATUS_OK;
-}
-
 // set n quantities, SI units; leave the state untouched if all quantities have these values already
 static enum status steady_problem_put_quantities(struct steady_problem *problem, int n,
                                                  const struct steady_unknown *unknown, const double *to) {
     double *const add = problem->scratch;
     steady_map_read(&problem->map, n, unknown, add);
-    int is_elsewhere = 0;
+    bool is_elsewhere = false;
     for (int i = 0; i < n; i++) {
         add[i] = to[i] - add[i];
         is_elsewhere |= fabs(add[i]) > 1e-12 * steady_map_scale(&problem->map, unknown[i]);
@@ -225,7 +206,7 @@ static enum status report_drift(const struct steady_problem *problem, const char
     }
 
     fish_drift(map, fastest, drift);
-    const int is_along = fabs(drift[0]) >= fabs(drift[1]);
+    const bool is_along = fabs(drift[0]) >= fabs(drift[1]);
     const char *const ahead = drift[0] > 0 ? "ahead" : "back", *const aside =
                                                                    drift[1] > 0 ? "to the left" : "to the right";
     return status_fail(STATUS_SOLVER,
@@ -234,32 +215,29 @@ static enum status report_drift(const struct steady_problem *problem, const char
                        most * school->fish[fastest].length / map->period);
 }
 
-static enum status release_fish(struct steady_problem *problem, const char *first) {
-    struct simulation *const simulation = problem->map.simulation;
-    diagnostics_restart(simulation->residual, simulation->state);
-    for (int i = 0; i < BEATS; i++) {
-        TRY(steady_map_beat(&problem->map, NULL, NULL));
-        const double distance = simulation->state->closest->distance;
-        if (distance >= simulation->school->contact_range) continue;
-        const struct closest *const closest = simulation->state->closest;
-        const struct fish *const fish = simulation->school->fish;
-        return status_fail(STATUS_SOLVER,
-                           "%s: collision: after release, %s and %s approach to %.2g m in beat %d, within "
-                           "contact.range",
-                           first, fish[closest->fish[0]].name, fish[closest->fish[1]].name, closest->distance, i + 1);
-    }
-    return report_drift(problem, first);
-}
-
 enum status steady_reason_find(struct steady_problem *problem) {
+    struct simulation *const simulation = problem->map.simulation;
     const int n_beats = problem->map.n_beats;
-    const int is_late = n_beats >= problem->settings->beats;
     char first[64];
     snprintf(first, sizeof first, "no steady state in %d beats%s", n_beats,
-             is_late ? " (steady.beats)" : " near the start");
-    const enum status status = release_fish(problem, first);
+             n_beats >= problem->settings->beats ? " (steady.beats)" : " near the start");
+
+    // release the fish
+    enum status status = STATUS_OK;
+    int i = 0;
+    diagnostics_restart(simulation->residual, simulation->state);
+    for (; i < BEATS && status == STATUS_OK; i++) {
+        status = steady_map_beat(&problem->map, NULL, NULL);
+        if (simulation->state->closest->distance < simulation->school->contact_range) break;
+    }
     problem->map.n_beats = n_beats;
-    return status;
+    TRY(status);
+    if (i == BEATS) return report_drift(problem, first);
+    const struct closest *const closest = simulation->state->closest;
+    const struct fish *const fish = simulation->school->fish;
+    return status_fail(STATUS_SOLVER,
+                       "%s: collision: after release, %s and %s approach to %.2g m in beat %d, within contact.range",
+                       first, fish[closest->fish[0]].name, fish[closest->fish[1]].name, closest->distance, i + 1);
 }
 
 enum status steady_reason_check(const struct steady_problem *problem, double in_a_length) {

@@ -13,7 +13,7 @@ struct steady_problem {
     const struct case_steady *settings;
     int n_unknowns; /* slow quantities of the case                                 (n_unknowns) */
     struct steady_unknown *unknown;
-    int solves_speed; /* the first fish has a speed to solve for; without a formation no other fish has one */
+    bool solves_speed; /* the first fish has a speed to solve for; without a formation no other fish has one */
     int n_pins; /* unknowns fixed during the solution for the speed of the first fish: all speeds equal this speed,
                          places and headings of a formation equal the initial values (n_pins) */
     struct steady_unknown *pin;
@@ -92,8 +92,8 @@ enum status steady_start_shapes(struct arena *arena, const char *path, const str
 // ---- steady_static.c: the equilibrium of passive bodies in a stream: `shoal steady` of a case without a beat.
 // Tested by tests/steady/test_steady_static.c and tests/app/test_steady_command.sh.
 
-/* 1 if no fish beats, neither by a wave nor by prescribed motion. */
-int steady_static_applies(const struct school *school);
+/* Whether no fish beats, neither by a wave nor by prescribed motion. */
+bool steady_static_applies(const struct school *school);
 
 /* STATUS_CASE, with the reason and the remedy, if the bodies can have no equilibrium. */
 enum status steady_static_refuse(const struct school *school);

@@ -12,7 +12,7 @@
 /* Settings of the evaluations of a search, and the Jacobian, which is kept between solutions. */
 struct together {
     int beats; /* per evaluation; every beat begins with the same values, the last beat gives the change */
-    int is_known;
+    bool is_known;
     double matrix[STEADY_QUANTITIES * STEADY_QUANTITIES]; /* by columns */
 };
 
@@ -39,44 +39,28 @@ struct solution {
     struct state *before, *reached;                         /* before and after the last evaluation */
 };
 
-// list the slow quantities and, if removed circulation is retained, the shed circulation
-static void list_quantities(struct solution *solution) {
-    const struct steady_problem *const problem = solution->problem;
-    const struct steady_map *const map = &problem->map;
-    solution->n = problem->n_unknowns;
-    memcpy(solution->unknown, problem->unknown, (size_t)solution->n * sizeof *solution->unknown);
-    if (map->simulation->school->removed == REMOVED_RETAINED) {
-        solution->unknown[solution->n++] = (struct steady_unknown){0, STEADY_SHED};
-    }
-    for (int i = 0; i < solution->n; i++) solution->unit[i] = steady_map_scale(map, solution->unknown[i]);
-}
-
 static void search_read_all(const struct solution *solution, double *value) {
     steady_map_read(&solution->problem->map, solution->n, solution->unknown, value);
     for (int i = 0; i < solution->n; i++) value[i] /= solution->unit[i];
 }
 
-static enum status search_put_quantities(const struct solution *solution, const double *to) {
-    double add[STEADY_QUANTITIES], most = 0;
-    search_read_all(solution, add);
-    for (int i = 0; i < solution->n; i++) {
-        add[i] = to[i] - add[i];
-        most = larger(most, fabs(add[i]));
-        add[i] *= solution->unit[i];
-    }
-
-    // do not restart the integration without a change
-    return most <= 1e-12 ? STATUS_OK : steady_map_add(&solution->problem->map, solution->n, solution->unknown, add);
-}
-
 // change in the last beat of an evaluation; every beat begins with the values u
 static enum status evaluate_change(const struct solution *solution, const double *u, double *change) {
-    for (int i = 0; i < solution->together->beats; i++) {
-        TRY(search_put_quantities(solution, u));
+    const int n = solution->n;
+    for (int beat = 0; beat < solution->together->beats; beat++) {
+        double add[STEADY_QUANTITIES], most = 0;
+        search_read_all(solution, add);
+        for (int i = 0; i < n; i++) {
+            add[i] = u[i] - add[i];
+            most = larger(most, fabs(add[i]));
+            add[i] *= solution->unit[i];
+        }
+        // do not restart the integration without a change
+        if (most > 1e-12) TRY(steady_map_add(&solution->problem->map, n, solution->unknown, add));
         TRY(steady_problem_beat(solution->problem));
     }
     search_read_all(solution, change);
-    for (int i = 0; i < solution->n; i++) change[i] -= u[i];
+    for (int i = 0; i < n; i++) change[i] -= u[i];
     return STATUS_OK;
 }
 
@@ -90,37 +74,53 @@ static enum status together_value(void *data, const double *u, double *change) {
     return STATUS_OK;
 }
 
-// each column starts from the same state with an increment of one quantity
-static enum status search_difference_jacobian(struct solution *solution) {
-    struct simulation *const simulation = solution->problem->map.simulation;
-    TRY(steady_map_save(solution->arena, simulation, &solution->reached));
-    for (int j = 0; j < solution->n; j++) {
-        double *const column = solution->together->matrix + j * solution->n, u[STEADY_QUANTITIES];
-        memcpy(u, solution->u, sizeof u);
-        u[j] += difference;
-        TRY(steady_map_return(simulation, solution->before));
-        TRY(evaluate_change(solution, u, column));
-        for (int i = 0; i < solution->n; i++) column[i] = (column[i] - solution->change[i]) / difference;
-    }
-
-    solution->together->is_known = 1;
-    solution->n_steps = 0;
-    return steady_map_return(simulation, solution->reached);
-}
-
 static enum status together_jacobian(void *data, double *matrix) {
     struct solution *const solution = data;
-    if (!solution->together->is_known || solution->n_steps == STEPS) TRY(search_difference_jacobian(solution));
+    struct together *const together = solution->together;
+    struct simulation *const simulation = solution->problem->map.simulation;
+    const int n = solution->n;
+
+    // each column starts from the same state with an increment of one quantity
+    if (!together->is_known || solution->n_steps == STEPS) {
+        TRY(steady_map_save(solution->arena, simulation, &solution->reached));
+        for (int j = 0; j < n; j++) {
+            double *const column = together->matrix + j * n, u[STEADY_QUANTITIES];
+            memcpy(u, solution->u, sizeof u);
+            u[j] += difference;
+            TRY(steady_map_return(simulation, solution->before));
+            TRY(evaluate_change(solution, u, column));
+            for (int i = 0; i < n; i++) column[i] = (column[i] - solution->change[i]) / difference;
+        }
+        together->is_known = true;
+        solution->n_steps = 0;
+        TRY(steady_map_return(simulation, solution->reached));
+    }
     solution->n_steps++;
-    memcpy(matrix, solution->together->matrix, (size_t)(solution->n * solution->n) * sizeof *matrix);
+    memcpy(matrix, together->matrix, (size_t)(n * n) * sizeof *matrix);
     return STATUS_OK;
 }
 
-static enum status together_newton(struct solution *solution, double tolerance, int *is_done) {
-    struct steady_problem *const problem = solution->problem;
+/* Solve for slow quantities of the only fish that one beat changes by at most the tolerance. Evaluate the Jacobian
+ * unless is_known. *is_done: success; otherwise no convergence, and the simulation is restored. Fails after steady.beats
+ * as steady_problem_beat, or with STATUS_MEMORY. */
+static enum status together_solve(struct together *together, struct steady_problem *problem, double tolerance,
+                                  bool *is_done) {
+    const struct steady_map *const map = &problem->map;
+    struct arena *const arena = arena_create(map->simulation->arena, "the slow quantities of a fish");
+    struct solution solution = {.arena = arena, .together = together, .problem = problem, .n = problem->n_unknowns};
+
+    // the slow quantities and, if removed circulation is retained, the shed circulation
+    memcpy(solution.unknown, problem->unknown, (size_t)solution.n * sizeof *solution.unknown);
+    if (map->simulation->school->removed == REMOVED_RETAINED) {
+        solution.unknown[solution.n++] = (struct steady_unknown){0, STEADY_SHED};
+    }
     double scale[STEADY_QUANTITIES], u[STEADY_QUANTITIES];
-    for (int i = 0; i < solution->n; i++) scale[i] = longest_together;
-    const struct newton newton = {.n = solution->n,
+    for (int i = 0; i < solution.n; i++) {
+        solution.unit[i] = steady_map_scale(map, solution.unknown[i]);
+        scale[i] = longest_together;
+    }
+
+    const struct newton newton = {.n = solution.n,
                                   .scale = scale,
                                   .tolerance = tolerance / longest_together,
                                   .max_step = 1,
@@ -128,26 +128,15 @@ static enum status together_newton(struct solution *solution, double tolerance, 
                                   .max_iterations = ITERATIONS,
                                   .value = together_value,
                                   .jacobian = together_jacobian,
-                                  .data = solution};
-    TRY(steady_map_save(solution->arena, problem->map.simulation, &solution->begun));
-    search_read_all(solution, u);
-    const enum status status = newton_solve(solution->arena, &newton, u);
+                                  .data = &solution};
+    enum status status = steady_map_save(arena, map->simulation, &solution.begun);
+    search_read_all(&solution, u);
+    if (status == STATUS_OK) status = newton_solve(arena, &newton, u);
     *is_done = status == STATUS_OK;
-    if (status != STATUS_SOLVER || problem->map.n_beats >= problem->settings->beats) return status;
-    solution->together->is_known = 0;
-
-    return steady_map_return(problem->map.simulation, solution->begun);
-}
-
-/* Solve for slow quantities of the only fish that one beat changes by at most the tolerance. Evaluate the Jacobian
- * unless is_known. *is_done: 1 on success; 0: no convergence, the simulation is restored. Fails after steady.beats as
- * steady_problem_beat, or with STATUS_MEMORY. */
-static enum status together_solve(struct together *together, struct steady_problem *problem, double tolerance,
-                                  int *is_done) {
-    struct arena *const arena = arena_create(problem->map.simulation->arena, "the slow quantities of a fish");
-    struct solution solution = {.arena = arena, .together = together, .problem = problem};
-    list_quantities(&solution);
-    const enum status status = together_newton(&solution, tolerance, is_done);
+    if (status == STATUS_SOLVER && map->n_beats < problem->settings->beats) {
+        together->is_known = false;
+        status = steady_map_return(map->simulation, solution.begun);
+    }
     arena_free(arena);
     return status;
 }
@@ -190,7 +179,7 @@ struct search {
     double margin;       /* tolerance of Newton's method for a formation, over the tolerance */
     struct state *found; /* last solution for a formation; NULL: none */
     struct state *begun; /* state before the last attempt for the speed alone; NULL: none */
-    int has_failed;      /* a beat failed */
+    bool has_failed;     /* a beat failed */
     struct steady_unknown speed;
     double scale;        /* m s-1 */
     double step;         /* largest change of the speed in one Newton step, in lengths per beat */
@@ -261,37 +250,19 @@ static enum status solve_speed(struct search *search) {
 static enum status solve_fish(struct search *search) {
     if (search->n_tries-- > 0) return solve_speed(search);
     if (search->n_together-- <= 0) return STATUS_OK;
-    int is_done;
+    bool is_done;
     TRY(together_solve(&search->together, search->problem, ROUGH * search->problem->settings->tolerance, &is_done));
     if (!is_done) search->n_together = 0;
     return STATUS_OK;
 }
 
-static enum status solve_unknowns(struct search *search) {
-    struct steady_problem *const problem = search->problem;
-    if (problem->n_unknowns == 0) return STATUS_OK;
-    if (!problem->map.is_formation) return solve_fish(search);
-    TRY(steady_formation_solve(problem, search->margin * problem->settings->tolerance));
-    return steady_map_save(problem->map.simulation->arena, problem->map.simulation, &search->found);
-}
-
-// the speed of a circling fish depends on slip and turn, which have a memory of several beats
-static int has_circling_fish(const struct school *school) {
-    int circles = 0;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *const fish = &school->fish[f];
-        circles |= steady_map_freedom(fish) == STEADY_SWIMS && fabs(fish->control.bias) > 0;
-    }
-    return circles;
-}
-
 // simulate beats without increments until the changes of the last two beats meet the tolerance
-static enum status swim_freely(struct search *search, int *is_steady) {
+static enum status swim_freely(struct search *search, bool *is_steady) {
     struct steady_problem *const problem = search->problem;
     const double tolerance = problem->settings->tolerance;
     double change = INFINITY;
-    int is_lost = 0;
-    *is_steady = 0;
+    bool is_lost = false;
+    *is_steady = false;
 
     for (int i = 0; i < PATIENCE && !*is_steady && !is_lost; i++) {
         const double before = change;
@@ -325,8 +296,13 @@ static enum status run_search(struct search *search) {
         TRY(steady_problem_put_pins(problem, speed_now(search)));
     }
 
-    for (int is_steady = 0; !is_steady;) {
-        TRY(solve_unknowns(search));
+    for (bool is_steady = false; !is_steady;) {
+        if (problem->map.is_formation && problem->n_unknowns > 0) {
+            TRY(steady_formation_solve(problem, search->margin * problem->settings->tolerance));
+            TRY(steady_map_save(map->simulation->arena, map->simulation, &search->found));
+        } else if (problem->n_unknowns > 0) {
+            TRY(solve_fish(search));
+        }
         TRY(swim_freely(search, &is_steady));
     }
 
@@ -335,7 +311,7 @@ static enum status run_search(struct search *search) {
 
 enum status steady_search_correct(struct steady_problem *problem, const double *way) {
     struct search search = {.problem = problem, .n_together = TRIES_TOGETHER, .together = {.beats = AGED}};
-    int is_steady = 0;
+    bool is_steady = false;
     if (way) {
         double *const to = problem->scratch + 2 * problem->n_unknowns;
         steady_problem_read(problem, to);
@@ -356,12 +332,19 @@ enum status steady_search_run(struct steady_problem *problem) {
     struct search search = {
         .problem = problem, .speed = {0, STEADY_SPEED}, .slope = first_slope, .step = longest_step, .margin = margin};
     search.scale = steady_map_scale(&problem->map, search.speed);
-    const int is_circle = has_circling_fish(problem->map.simulation->school);
+
+    // the speed of a circling fish depends on slip and turn, which have a memory of several beats
+    const struct school *const school = problem->map.simulation->school;
+    bool is_circle = false;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        is_circle |= steady_map_freedom(fish) == STEADY_SWIMS && fabs(fish->control.bias) > 0;
+    }
     search.n_tries = is_circle ? 0 : TRIES;
     search.n_together = TRIES_TOGETHER;
     search.together.beats = is_circle ? 1 : AGED;
     const enum status status = run_search(&search);
-    const int is_late = problem->map.n_beats >= problem->settings->beats;
+    const bool is_late = problem->map.n_beats >= problem->settings->beats;
     if (status != STATUS_SOLVER || !is_late || !problem->map.is_formation || problem->n_unknowns == 0) return status;
 
     return steady_reason_find(problem);

@@ -41,31 +41,6 @@ static enum status start_open(struct arena *arena, struct reading **opened, cons
     return read_nose(reading, 0, reading->nose);
 }
 
-// transform the nose from the frame of the first fish in the file to the initial frame of the first fish
-static enum status read_place(const struct reading *reading, size_t f, const struct fish_parameters *first,
-                              double position[2]) {
-    double nose[2];
-    TRY(read_nose(reading, f, nose));
-    const double turn = angle_radians(first->start_heading) - reading->heading;
-    const double way[2] = {nose[0] - reading->nose[0], nose[1] - reading->nose[1]};
-    position[0] = first->start_position[0] + cos(turn) * way[0] - sin(turn) * way[1];
-    position[1] = first->start_position[1] + sin(turn) * way[0] + cos(turn) * way[1];
-    return STATUS_OK;
-}
-
-static enum status start_read_fish(const struct reading *reading, size_t f, const struct fish_parameters *first,
-                                   struct fish_parameters *fish) {
-    const int is_free = fish->motion.prescribed == PRESCRIBED_NONE || fish->motion.surge == SURGE_FREE;
-    double speed;
-    if (!is_free) return STATUS_OK;
-    TRY(netcdf_read_doubles(&reading->reader, "steady_speed", (struct netcdf_slice[]){{"fish", f, 1}, {NULL}}, &speed));
-    if (!isfinite(speed)) {
-        return status_fail(STATUS_FILE, "%s does not contain a steady state to start from", reading->reader.path);
-    }
-    fish->start_speed = fish->motion.speed = speed;
-    return f > 0 ? read_place(reading, f, first, fish->start_position) : STATUS_OK;
-}
-
 enum status steady_start_read(struct arena *arena, const char *path, const struct school_parameters *school,
                               struct fish_parameters **fish) {
     struct arena *const scratch = arena_create(arena, path);
@@ -75,7 +50,26 @@ enum status steady_start_read(struct arena *arena, const char *path, const struc
     TRY(start_open(scratch, &reading, path, school->n_fish));
     NEW(arena, copy, school->n_fish);
     memcpy(copy, school->fish, (size_t)school->n_fish * sizeof *copy);
-    for (int f = 0; f < school->n_fish; f++) TRY(start_read_fish(reading, (size_t)f, school->fish, &copy[f]));
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct motion_parameters *const motion = &copy[f].motion;
+        const struct netcdf_slice slice[] = {{"fish", (size_t)f, 1}, {NULL}};
+        double speed, nose[2];
+        if (motion->prescribed != PRESCRIBED_NONE && motion->surge != SURGE_FREE) continue;
+        TRY(netcdf_read_doubles(&reading->reader, "steady_speed", slice, &speed));
+        if (!isfinite(speed)) {
+            return status_fail(STATUS_FILE, "%s does not contain a steady state to start from", path);
+        }
+        copy[f].start_speed = copy[f].motion.speed = speed;
+        if (f == 0) continue;
+
+        // transform the nose from the frame of the first fish in the file to the initial frame of the first fish
+        const struct fish_parameters *const first = school->fish;
+        TRY(read_nose(reading, (size_t)f, nose));
+        const double turn = angle_radians(first->start_heading) - reading->heading;
+        const double way[2] = {nose[0] - reading->nose[0], nose[1] - reading->nose[1]};
+        copy[f].start_position[0] = first->start_position[0] + cos(turn) * way[0] - sin(turn) * way[1];
+        copy[f].start_position[1] = first->start_position[1] + sin(turn) * way[0] + cos(turn) * way[1];
+    }
     arena_free(scratch);
     *fish = copy;
     return STATUS_OK;
@@ -94,7 +88,7 @@ static enum status read_nodes(const struct reading *reading, size_t f, const str
     if (n >= n_nodes) TRY(netcdf_read_doubles(&reading->reader, "x", slice, places));
 
     // a body with fewer nodes is padded with NaN
-    int is_other = n < n_nodes;
+    bool is_other = n < n_nodes;
     for (size_t i = 0; i < 2 * n_nodes && !is_other; i++) is_other = !isfinite(places[i]);
     if (!is_other && n > n_nodes) {
         double beyond[2];
@@ -109,31 +103,28 @@ static enum status read_nodes(const struct reading *reading, size_t f, const str
                        fish->n_nodes);
 }
 
-// rotate and scale the shape so that edge 0 coincides with edge 0 of a straight body at the nose
-static void place_nodes(const struct fish *fish, const double *places, double *y) {
-    double direction[2], rate;
-    fish_prescribe(fish, 1, 0, y);
-    fish_prescribed_direction(fish, 0, direction, &rate);
-    const double edge[2] = {places[2] - places[0], places[3] - places[1]}, length = hypot(edge[0], edge[1]);
-    const double factor = fish->edge_length / (length * length);
-    const double c = factor * (edge[0] * direction[0] + edge[1] * direction[1]);
-    const double s = factor * (edge[0] * direction[1] - edge[1] * direction[0]);
-    for (int k = fish_n_prescribed(fish); k < fish->n_nodes; k++) {
-        const double way[2] = {places[2 * k] - places[0], places[2 * k + 1] - places[1]};
-        y[fish->at.x + k] = y[fish->at.x] + c * way[0] - s * way[1];
-        y[fish->at.y + k] = y[fish->at.y] + s * way[0] + c * way[1];
-    }
-}
-
 enum status steady_start_shapes(struct arena *arena, const char *path, const struct school *school, double *y) {
     struct arena *const scratch = arena_create(arena, path);
     struct reading *reading;
     TRY(start_open(scratch, &reading, path, school->n_fish));
     for (int f = 0; f < school->n_fish; f++) {
-        double *places;
-        NEW(scratch, places, 2 * school->fish[f].n_nodes);
-        TRY(read_nodes(reading, (size_t)f, &school->fish[f], places));
-        place_nodes(&school->fish[f], places, y);
+        const struct fish *const fish = &school->fish[f];
+        double *places, direction[2], rate;
+        NEW(scratch, places, 2 * fish->n_nodes);
+        TRY(read_nodes(reading, (size_t)f, fish, places));
+
+        // rotate and scale the shape so that edge 0 coincides with edge 0 of a straight body at the nose
+        fish_prescribe(fish, 1, 0, y);
+        fish_prescribed_direction(fish, 0, direction, &rate);
+        const double edge[2] = {places[2] - places[0], places[3] - places[1]}, length = hypot(edge[0], edge[1]);
+        const double factor = fish->edge_length / (length * length);
+        const double c = factor * (edge[0] * direction[0] + edge[1] * direction[1]);
+        const double s = factor * (edge[0] * direction[1] - edge[1] * direction[0]);
+        for (int k = fish_n_prescribed(fish); k < fish->n_nodes; k++) {
+            const double way[2] = {places[2 * k] - places[0], places[2 * k + 1] - places[1]};
+            y[fish->at.x + k] = y[fish->at.x] + c * way[0] - s * way[1];
+            y[fish->at.y + k] = y[fish->at.y] + s * way[0] + c * way[1];
+        }
     }
     arena_free(scratch);
     return STATUS_OK;

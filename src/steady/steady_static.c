@@ -14,11 +14,11 @@
 #include "solver/equilibrium.h"
 #include "steady/steady_problem.h"
 
-int steady_static_applies(const struct school *school) {
+bool steady_static_applies(const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
-        if (school->fish[f].period > 0) return 0;
+        if (school->fish[f].period > 0) return false;
     }
-    return 1;
+    return true;
 }
 
 // ---- cases without an equilibrium
@@ -28,43 +28,42 @@ static void velocity_of(const struct fish *fish, double velocity[2]) {
     fish_prescribed_node(fish, 0, 0, position, velocity, acceleration);
 }
 
-static enum status refuse_body(const struct school *school, const struct fish *fish) {
-    double velocity[2], first[2];
-    if (fish->motion.prescribed == PRESCRIBED_NONE || fish->motion.surge == SURGE_FREE) {
-        return status_fail(STATUS_CASE,
-                           "%s neither beats nor is held, so the stream carries the body away: hold the body with "
-                           "motion.prescribed (and motion.surge: given), or add a beat",
-                           fish->name);
-    }
-
-    if (fish->control.law != CONTROL_NONE) {
-        return status_fail(STATUS_CASE, "%s does not beat and cannot steer: set control.law to none", fish->name);
-    }
-
-    if (fish->ramp > 0 && fish_largest_turn(fish, 1, 0) > 0) {
-        return status_fail(STATUS_CASE, "the natural curvature of %s has a ramp of %g s: set wave.ramp to 0",
-                           fish->name, fish->ramp);
-    }
-
-    velocity_of(fish, velocity);
-    velocity_of(&school->fish[0], first);
-    if (fabs(velocity[0] - first[0]) + fabs(velocity[1] - first[1]) > 0) {
-        return status_fail(STATUS_CASE, "%s and %s move at different velocities: give both fish the same motion.speed",
-                           school->fish[0].name, fish->name);
-    }
-
-    if (fabs(velocity[1]) > 0 && (school->walls.n > 0 || fabs(school->shear) > 0)) {
-        return status_fail(STATUS_CASE,
-                           "%s moves across %s, so no equilibrium exists: set start.heading to 0 or 180, or "
-                           "motion.speed to 0",
-                           fish->name, school->walls.n > 0 ? "a channel" : "a shear");
-    }
-
-    return STATUS_OK;
-}
-
 enum status steady_static_refuse(const struct school *school) {
-    for (int f = 0; f < school->n_fish; f++) TRY(refuse_body(school, &school->fish[f]));
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        double velocity[2], first[2];
+        if (fish->motion.prescribed == PRESCRIBED_NONE || fish->motion.surge == SURGE_FREE) {
+            return status_fail(STATUS_CASE,
+                               "%s neither beats nor is held, so the stream carries the body away: hold the body with "
+                               "motion.prescribed (and motion.surge: given), or add a beat",
+                               fish->name);
+        }
+
+        if (fish->control.law != CONTROL_NONE) {
+            return status_fail(STATUS_CASE, "%s does not beat and cannot steer: set control.law to none", fish->name);
+        }
+
+        if (fish->ramp > 0 && fish_largest_turn(fish, 1, 0) > 0) {
+            return status_fail(STATUS_CASE, "the natural curvature of %s has a ramp of %g s: set wave.ramp to 0",
+                               fish->name, fish->ramp);
+        }
+
+        velocity_of(fish, velocity);
+        velocity_of(&school->fish[0], first);
+        if (fabs(velocity[0] - first[0]) + fabs(velocity[1] - first[1]) > 0) {
+            return status_fail(STATUS_CASE,
+                               "%s and %s move at different velocities: give both fish the same motion.speed",
+                               school->fish[0].name, fish->name);
+        }
+
+        if (fabs(velocity[1]) > 0 && (school->walls.n > 0 || fabs(school->shear) > 0)) {
+            return status_fail(STATUS_CASE,
+                               "%s moves across %s, so no equilibrium exists: set start.heading to 0 or 180, or "
+                               "motion.speed to 0",
+                               fish->name, school->walls.n > 0 ? "a channel" : "a shear");
+        }
+    }
+
     if (school->gust_omega > 0 && fabs(school->gust[0]) + fabs(school->gust[1]) > 0) {
         return status_fail(
             STATUS_CASE,
@@ -103,28 +102,6 @@ static const double most_turn = 0.5; /* rad */
 /* A branch ends if a step by this part of the stream fails. */
 static const double least_step = 1e-4;
 
-static enum status growth_create(struct growth *growth) {
-    const struct school *const school = growth->simulation->school;
-    struct state *const state = growth->simulation->state;
-    TRY(flow_check_steady(school));
-    struct arena *const arena = growth->arena =
-        arena_create(growth->simulation->arena, "the equilibrium of the bodies");
-    NEW(arena, growth->last, school->n_unknowns);
-    NEW(arena, growth->before, school->n_unknowns);
-    NEW(arena, growth->kept, school->n_unknowns);
-    growth->school = *school;
-    NEW(arena, growth->school.fish, school->n_fish);
-    memcpy(growth->school.fish, school->fish, (size_t)school->n_fish * sizeof *school->fish);
-    TRY(residual_create(arena, &growth->residual, &growth->school, state));
-    growth->equilibrium = equilibrium_create(arena, growth->residual, state);
-    return STATUS_OK;
-}
-
-static void growth_free(struct growth *growth) {
-    if (growth->equilibrium) equilibrium_end(growth->equilibrium);
-    arena_free(growth->arena);
-}
-
 // set the stream to this part of the full stream, and the loads to the square of this part, as forces of a stream scale
 static void static_set_part(struct growth *growth, double part) {
     const struct school *const whole = growth->simulation->school;
@@ -137,39 +114,7 @@ static void static_set_part(struct growth *growth, double part) {
     }
 }
 
-// set straight or naturally curved bodies without sheets
-static void set_to_rest(const struct simulation *simulation) {
-    double *const y = simulation->state->y;
-    for (int f = 0; f < simulation->school->n_fish; f++) {
-        const struct fish *const fish = &simulation->school->fish[f];
-        const struct fish_gait gait = fish_own_gait(fish, 0);
-        double direction[2], rate;
-        fish_prescribe(fish, 1, 0, y);
-        fish_prescribed_direction(fish, 0, direction, &rate);
-        double angle = atan2(direction[1], direction[0]);
-        for (int k = 1; k < fish->n_nodes; k++) {
-            if (k > 1) angle += fish_natural_angle(fish, k - 2, &gait, fish->control.bias);
-            if (fish_is_prescribed(fish, k, 0)) continue;
-            y[edge_place(fish, 0, k)] = y[edge_place(fish, 0, k - 1)] + fish->edge_length * cos(angle);
-            y[edge_place(fish, 1, k)] = y[edge_place(fish, 1, k - 1)] + fish->edge_length * sin(angle);
-        }
-        for (int i = fish->at.gamma; i < fish->at.phi0; i++) y[i] = 0;
-    }
-}
-
-// the largest rotation of an edge between two solutions
-static double largest_turn(const struct school *school, const double *from, const double *to) {
-    double most = 0;
-    for (int f = 0; f < school->n_fish; f++) {
-        for (int k = 0; k < school->fish[f].n_edges; k++) {
-            const struct edge a = edge_at(&school->fish[f], k, from), b = edge_at(&school->fish[f], k, to);
-            most = larger(most, fabs(atan2(a.t[0] * b.t[1] - a.t[1] * b.t[0], edge_dot(a.t, b.t))));
-        }
-    }
-    return most;
-}
-
-static int is_fatal(enum status status) {
+static bool is_fatal(enum status status) {
     return status == STATUS_MEMORY || status == STATUS_STOPPED;
 }
 
@@ -187,7 +132,17 @@ static enum status growth_solve(struct growth *growth, double part) {
 
     static_set_part(growth, part);
     enum status status = equilibrium_solve(growth->equilibrium);
-    if (status == STATUS_OK && !(largest_turn(simulation->school, growth->last, state->y) <= most_turn)) {
+
+    // the largest rotation of an edge since the last solution
+    double turn = 0;
+    for (int f = 0; f < simulation->school->n_fish && status == STATUS_OK; f++) {
+        const struct fish *const fish = &simulation->school->fish[f];
+        for (int k = 0; k < fish->n_edges; k++) {
+            const struct edge a = edge_at(fish, k, growth->last), b = edge_at(fish, k, state->y);
+            turn = larger(turn, fabs(atan2(a.t[0] * b.t[1] - a.t[1] * b.t[0], edge_dot(a.t, b.t))));
+        }
+    }
+    if (status == STATUS_OK && !(turn <= most_turn)) {
         status = status_fail(STATUS_SOLVER, "the solution is on another branch");
     }
 
@@ -209,23 +164,6 @@ static enum status growth_solve(struct growth *growth, double part) {
     return STATUS_OK;
 }
 
-// extrapolate linearly from the last two solutions
-static void growth_predict(const struct growth *growth, double part) {
-    const struct school *const school = growth->simulation->school;
-    const double step = growth->last_part - growth->before_part;
-    if (growth->n_solutions < 2 || part - growth->last_part > 2 * step) return;
-    const double q = (part - growth->last_part) / step;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct layout *const at = &school->fish[f].at;
-        for (int i = at->x; i < at->phi0; i++) {
-            const int is_place = i < at->vx;
-            if (is_place || i >= at->gamma) {
-                growth->simulation->state->y[i] += q * (growth->last[i] - growth->before[i]);
-            }
-        }
-    }
-}
-
 // determinant of the stiffness over the determinant at rest; negative if the equilibrium is statically unstable
 static enum status find_stiffness(struct growth *growth, double *stiffness) {
     struct equilibrium_stiffness now;
@@ -235,25 +173,29 @@ static enum status find_stiffness(struct growth *growth, double *stiffness) {
     return STATUS_OK;
 }
 
-static enum status report_end_of_branch(struct growth *growth) {
-    double stiffness;
-    char reason[512];
-    snprintf(reason, sizeof reason, "%s", status_message());
-    static_set_part(growth, growth->last_part);
-    TRY(find_stiffness(growth, &stiffness));
-    return status_fail(
-        STATUS_SOLVER,
-        "no equilibrium in this stream: the branch from rest ends at %.4g of the stream, with static stiffness %.2g "
-        "of the stiffness at rest; try a slower stream or a stiffer body, or start from another shape with --from (%s)",
-        growth->last_part, stiffness, reason);
-}
-
 static enum status growth_from_rest(struct growth *growth) {
-    struct state *const state = growth->simulation->state;
-    const size_t bytes = (size_t)growth->simulation->school->n_unknowns * sizeof *state->y;
+    const struct school *const school = growth->simulation->school;
+    double *const y = growth->simulation->state->y;
     static_set_part(growth, 0);
-    set_to_rest(growth->simulation);
-    memcpy(growth->last, state->y, bytes);
+
+    // straight or naturally curved bodies without sheets
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const struct fish_gait gait = fish_own_gait(fish, 0);
+        double direction[2], rate;
+        fish_prescribe(fish, 1, 0, y);
+        fish_prescribed_direction(fish, 0, direction, &rate);
+        double angle = atan2(direction[1], direction[0]);
+        for (int k = 1; k < fish->n_nodes; k++) {
+            if (k > 1) angle += fish_natural_angle(fish, k - 2, &gait, fish->control.bias);
+            if (fish_is_prescribed(fish, k, 0)) continue;
+            y[edge_place(fish, 0, k)] = y[edge_place(fish, 0, k - 1)] + fish->edge_length * cos(angle);
+            y[edge_place(fish, 1, k)] = y[edge_place(fish, 1, k - 1)] + fish->edge_length * sin(angle);
+        }
+        for (int i = fish->at.gamma; i < fish->at.phi0; i++) y[i] = 0;
+    }
+
+    memcpy(growth->last, y, (size_t)school->n_unknowns * sizeof *y);
     const enum status status = growth_solve(growth, 0);
     if (status != STATUS_SOLVER) return status;
     char reason[512];
@@ -263,20 +205,41 @@ static enum status growth_from_rest(struct growth *growth) {
 
 // increase the stream from rest with adaptive steps
 static enum status growth_to_stream(struct growth *growth) {
-    double step = 1;
+    const struct school *const school = growth->simulation->school;
+    double *const y = growth->simulation->state->y, step = 1, stiffness;
+    char reason[512];
     while (growth->last_part < 1) {
-        const double part = fmin(1, growth->last_part + step);
-        growth_predict(growth, part);
+        // extrapolate linearly from the last two solutions
+        const double part = fmin(1, growth->last_part + step), last_step = growth->last_part - growth->before_part;
+        const bool is_near = growth->n_solutions >= 2 && part - growth->last_part <= 2 * last_step;
+        for (int f = 0; f < school->n_fish && is_near; f++) {
+            const struct layout *const at = &school->fish[f].at;
+            const double q = (part - growth->last_part) / last_step;
+            for (int i = at->x; i < at->phi0; i++) {
+                if (i < at->vx || i >= at->gamma) y[i] += q * (growth->last[i] - growth->before[i]);
+            }
+        }
+
         const enum status status = growth_solve(growth, part);
         if (is_fatal(status)) return status;
         step *= status == STATUS_OK ? 2 : 0.5;
-        if (step < least_step) return report_end_of_branch(growth);
+        if (step >= least_step) continue;
+
+        // the end of the branch
+        snprintf(reason, sizeof reason, "%s", status_message());
+        static_set_part(growth, growth->last_part);
+        TRY(find_stiffness(growth, &stiffness));
+        return status_fail(STATUS_SOLVER,
+                           "no equilibrium in this stream: the branch from rest ends at %.4g of the stream, with "
+                           "static stiffness %.2g of the stiffness at rest; try a slower stream or a stiffer body, or "
+                           "start from another shape with --from (%s)",
+                           growth->last_part, stiffness, reason);
     }
     return STATUS_OK;
 }
 
 // solve for the full stream from the shapes in a file; *found: a solution exists
-static enum status growth_from_file(struct growth *growth, const char *from, int *found) {
+static enum status growth_from_file(struct growth *growth, const char *from, bool *found) {
     struct state *const state = growth->simulation->state;
     const size_t bytes = (size_t)growth->simulation->school->n_unknowns * sizeof *state->y;
     memcpy(growth->kept, growth->last, bytes);
@@ -294,8 +257,20 @@ static enum status growth_from_file(struct growth *growth, const char *from, int
 }
 
 static enum status find_solution(struct growth *growth, const char *from, struct steady_values *found) {
-    int is_found = 0;
-    TRY(growth_create(growth));
+    const struct school *const school = growth->simulation->school;
+    struct state *const state = growth->simulation->state;
+    struct arena *const arena = growth->arena;
+    TRY(flow_check_steady(school));
+    NEW(arena, growth->last, school->n_unknowns);
+    NEW(arena, growth->before, school->n_unknowns);
+    NEW(arena, growth->kept, school->n_unknowns);
+    growth->school = *school;
+    NEW(arena, growth->school.fish, school->n_fish);
+    memcpy(growth->school.fish, school->fish, (size_t)school->n_fish * sizeof *school->fish);
+    TRY(residual_create(arena, &growth->residual, &growth->school, state));
+    growth->equilibrium = equilibrium_create(arena, growth->residual, state);
+
+    bool is_found = false;
     TRY(growth_from_rest(growth));
     TRY(equilibrium_stiffness(growth->equilibrium, &growth->rest));
     if (from) TRY(growth_from_file(growth, from, &is_found));
@@ -305,60 +280,57 @@ static enum status find_solution(struct growth *growth, const char *from, struct
     return STATUS_OK;
 }
 
-// ---- the values of the equilibrium
-
-static void static_fill_fish(const struct simulation *simulation, int f, struct steady_fish *found) {
-    const struct fish *const fish = &simulation->school->fish[f];
-    const struct diagnostics_fish *const now = &simulation->diagnostics->fish[f];
-    const double *const y = simulation->state->y;
-    const int tail = fish->n_nodes - 1;
-    double stream[2], direction[2], rate;
-
-    flow_external(simulation->school, simulation->state->t, now->com[0], now->com[1], &stream[0], &stream[1]);
-    fish_prescribed_direction(fish, simulation->state->t, direction, &rate);
-    const double way[2] = {y[fish->at.x + tail] - y[fish->at.x], y[fish->at.y + tail] - y[fish->at.y]};
-    *found = (struct steady_fish){.speed = now->speed,
-                                  .turn = NAN,
-                                  .thrust = now->thrust,
-                                  .actuation_power = NAN,
-                                  .damping_power = NAN,
-                                  .constraint_power = now->constraint_power,
-                                  .deflection = way[0] * direction[1] - way[1] * direction[0],
-                                  .power = NAN,
-                                  .cost_of_transport = NAN,
-                                  .efficiency = NAN,
-                                  .towed_efficiency = NAN,
-                                  .strouhal = NAN};
-
-    // drag and lift along and across the relative stream
-    diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, found->force);
-    for (int i = 0; i < 2; i++) stream[i] -= now->com_velocity[i];
-    const double speed = hypot(stream[0], stream[1]);
-    found->fluid_power = edge_dot(found->force, stream);
-    found->drag = edge_dot(found->force, stream) / speed;
-    found->lift = (stream[0] * found->force[1] - stream[1] * found->force[0]) / speed;
-}
-
 enum status steady_static_find(struct simulation *simulation, const char *from, struct steady_values *found) {
     struct growth growth = {.simulation = simulation};
+    const struct school *const school = simulation->school;
     struct state *const state = simulation->state;
+    const double *const y = state->y;
+    growth.arena = arena_create(simulation->arena, "the equilibrium of the bodies");
     const enum status status = find_solution(&growth, from, found);
-
-    growth_free(&growth);
+    if (growth.equilibrium) equilibrium_end(growth.equilibrium);
+    arena_free(growth.arena);
     TRY(status);
 
     // evaluate the full case, which the residual of the simulation describes
     simulation->residual->flow->is_steady = true;
-    TRY(residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch));
+    TRY(residual_evaluate(simulation->residual, state->t, y, state->yp, simulation->residual->scratch));
     TRY(diagnostics_remember(simulation->residual, state));
     diagnostics_after_jump(simulation->residual, state);
     diagnostics_restart(simulation->residual, state);
     simulate_measure(simulation);
-    const struct rigid first = rigid_of(&simulation->school->fish[0], state->y);
-    for (int f = 0; f < simulation->school->n_fish; f++) {
-        const struct rigid rigid = rigid_of(&simulation->school->fish[f], state->y);
-        static_fill_fish(simulation, f, &found->fish[f]);
-        rigid_relative_place(&first, &rigid, found->fish[f].place);
+
+    const struct rigid first = rigid_of(&school->fish[0], y);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const struct diagnostics_fish *const now = &simulation->diagnostics->fish[f];
+        const struct rigid rigid = rigid_of(fish, y);
+        struct steady_fish *const one = &found->fish[f];
+        const int tail = fish->n_nodes - 1;
+        double stream[2], direction[2], rate;
+        fish_prescribed_direction(fish, state->t, direction, &rate);
+        const double way[2] = {y[fish->at.x + tail] - y[fish->at.x], y[fish->at.y + tail] - y[fish->at.y]};
+        *one = (struct steady_fish){.speed = now->speed,
+                                    .turn = NAN,
+                                    .thrust = now->thrust,
+                                    .actuation_power = NAN,
+                                    .damping_power = NAN,
+                                    .constraint_power = now->constraint_power,
+                                    .deflection = way[0] * direction[1] - way[1] * direction[0],
+                                    .power = NAN,
+                                    .cost_of_transport = NAN,
+                                    .efficiency = NAN,
+                                    .towed_efficiency = NAN,
+                                    .strouhal = NAN};
+        rigid_relative_place(&first, &rigid, one->place);
+
+        // drag and lift along and across the relative stream
+        flow_external(school, state->t, now->com[0], now->com[1], &stream[0], &stream[1]);
+        diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, one->force);
+        for (int i = 0; i < 2; i++) stream[i] -= now->com_velocity[i];
+        const double speed = hypot(stream[0], stream[1]);
+        one->fluid_power = edge_dot(one->force, stream);
+        one->drag = edge_dot(one->force, stream) / speed;
+        one->lift = (stream[0] * one->force[1] - stream[1] * one->force[0]) / speed;
     }
 
     return STATUS_OK;
