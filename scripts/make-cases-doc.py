@@ -149,8 +149,8 @@ Quantities are the quantities with orders, and QUANTITIES. Only a comparison of 
 
 ## error
 
-In place of a sweep, `error` requests the errors of quantities: `shoal study` and `shoal error` then vary each numerical
-key alone ([studies.md](studies.md#error-bars)). `shoal run` and `shoal steady` ignore `error`.
+`error` requests the errors of quantities, of a case or at every point of a sweep: `shoal study` and `shoal error` then
+vary each numerical key alone ([studies.md](studies.md#error-bars)). `shoal run` and `shoal steady` ignore `error`.
 
 ```yaml
 error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, most: 16}

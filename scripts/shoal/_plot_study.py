@@ -1,6 +1,7 @@
 """Pictures of studies: study.nc of `shoal study`, and the file of `shoal compare`, which is one. Used by shoal.plot.
 
     the errors of a case            what each key has in them, and the values at its levels
+    errors along a sweep            values with error bars over the first swept number, and the errors in per cent
     a refined axis                  the error of each level by Richardson with the next finer one, over the grid spacing, with a
                                     triangle of the design slope and the orders that are accepted; with another axis of three
                                     numbers or more values with error bars over that, and the errors in per cent
@@ -205,9 +206,36 @@ def plot_convergence(study, refined, figure, asked=None):
     legend_above(all_axes[0], figure, 2)
 
 
+def draw_bars(study, parameter, figure, quantities, lines_of):
+    """Values with their errors over a parameter, and on the right the errors in per cent, since most bars are shorter than a
+    mark. lines_of(quantity): for each line the label, the values of the parameter, value, bar, and the places of flags."""
+    figure.set_figheight(1.2 + 1.4 * len(quantities))
+    stack = figure.subplots(len(quantities), 2, sharex=True, squeeze=False, width_ratios=[3, 2])
+    for (axes, right), quantity in zip(stack, quantities):
+        lines = lines_of(quantity)
+        for i, (label, at, value, bar, doubtful) in enumerate(lines):
+            line = style(i)
+            axes.errorbar(at, value, bar, label=label or None, capsize=3, elinewidth=0.8, **line)
+            percent = 100 * bar / np.abs(value)
+            right.plot(at, percent, **line)
+            # a ring where the levels state no order, so that the bar is a largest difference
+            for panel, y in ((axes, value), (right, percent)):
+                panel.plot(at[doubtful], y[doubtful], ls="", marker="o", ms=9, mfc="none", color=line["color"], mew=0.8)
+        axes.set_ylabel(study.label(quantity).replace(" [", "\n["))
+        right.set_ylabel("error [%]")
+        right.set_ylim(0, 1.1 * right.dataLim.y1)
+        for panel in (axes, right):
+            panel.grid(lw=0.3, color=GRID)
+    stack[-1, 0].set_xscale(scale_of(study[parameter.name]))
+    for panel, note in zip(stack[-1], ("   (ring: flagged)", "")):
+        panel.set_xlabel(study.label(parameter.name) + note)
+    if len(lines) > 1:
+        legend_above(stack[0, 0], figure, 2)
+
+
 def plot_values(study, refined, parameter, figure, asked=None):
-    """Values of the finest level, or of the quantity that is asked for, with their errors over a parameter, and on the
-    right the errors in per cent, since most bars are shorter than a mark; a line per fish and per value of the rest."""
+    """Values of the finest level, or of the quantity that is asked for, with their errors over a parameter; a line per fish
+    and per value of the rest."""
     first, x = study["group_member"], study[parameter.name]
     finest = study[refined.name] == study["level_value"][-1]
     others = [v.name for axis in study.axes for v in axis if v.axis != refined.axis]
@@ -221,37 +249,54 @@ def plot_values(study, refined, parameter, figure, asked=None):
     members = [next(m for m in np.flatnonzero(finest) if settings[m] == settings[g]) for g in first]
     words = [", ".join(f"{n} {study[n][m]}" for n in others if n != parameter.name) for m in members]
     names = list(study["fish_name"])
-    figure.set_figheight(1.2 + 1.4 * len(known))
-    stack = figure.subplots(len(known), 2, sharex=True, squeeze=False, width_ratios=[3, 2])
-    for (axes, right), quantity in zip(stack, known):
-        i = 0
-        flagged = study.data[f"objection_{quantity}"][:]
+
+    def lines_of(quantity):
+        flagged, lines = study.data[f"objection_{quantity}"][:], []
         for word in dict.fromkeys(words):
             for f, name in enumerate(names):
                 rows = sorted((g for g in range(first.size) if words[g] == word), key=lambda g: x[members[g]])
-                at = x[[members[g] for g in rows]]
-                value = study[quantity][[members[g] for g in rows], f]
-                bar = study[f"error_{quantity}"][rows, f]
-                label = ", ".join(filter(None, [word, name if len(names) > 1 else ""]))
-                line = style(i)
-                axes.errorbar(at, value, bar, label=label or None, capsize=3, elinewidth=0.8, **line)
-                percent = 100 * bar / np.abs(value)
-                right.plot(at, percent, **line)
-                # a ring where the levels state no order, so that the bar is a largest difference
+                of = [members[g] for g in rows]
                 doubtful = [k for k, g in enumerate(rows) if str(flagged[g][f]).strip("\0")]
-                for panel, y in ((axes, value), (right, percent)):
-                    panel.plot(at[doubtful], y[doubtful], ls="", marker="o", ms=9, mfc="none", color=line["color"], mew=0.8)
-                i += 1
-        axes.set_ylabel(study.label(quantity).replace(" [", "\n["))
-        right.set_ylabel("error [%]")
-        right.set_ylim(0, 1.1 * right.dataLim.y1)
-        for panel in (axes, right):
-            panel.grid(lw=0.3, color=GRID)
-    stack[-1, 0].set_xscale(scale_of(x))
-    for panel, note in zip(stack[-1], ("   (ring: flagged)", "")):
-        panel.set_xlabel(study.label(parameter.name) + note)
-    if i > 1:
-        legend_above(stack[0, 0], figure, 2)
+                label = ", ".join(filter(None, [word, name if len(names) > 1 else ""]))
+                lines.append((label, x[of], study[quantity][of, f], study[f"error_{quantity}"][rows, f], doubtful))
+        return lines
+
+    draw_bars(study, parameter, figure, known, lines_of)
+
+
+def plot_points(study, figure, asked=None):
+    """The stated values of a sweep with errors over the first swept number; a line per fish and per value of the rest."""
+    swept = [v for axis in study.axes for v in axis if hasattr(v, "swept")]
+    numbers = [v for v in swept if study.is_number(v.name) and np.unique(study[v.name]).size > 1]
+    if not numbers:
+        raise FileError(f"{study.path}: no swept key has several numbers: there is nothing to draw errors over")
+    parameter, members = numbers[0], study["point_member"].astype(int)
+    x, names = study[parameter.name][members], list(study["fish_name"])
+    words = [", ".join(f"{v.long_name.split('.')[-1]} {study[v.name][m]}" for v in swept if v is not parameter) for m in members]
+    known = [name[len("bar_") :] for name in study.data.variables if name.startswith("bar_")]
+    if asked and asked not in known:
+        raise FileError(f"{study.path}: no error of {asked}: the file has those of {', '.join(known)}")
+    known = [q for q in ([asked] if asked else known) if np.isfinite(study[f"bar_{q}"]).any()]
+    if not known:
+        raise FileError(f"{study.path}: no errors to draw: too few levels are complete")
+
+    def lines_of(quantity):
+        value, bar, part = (study[f"{kind}_{quantity}"] for kind in ("stated", "bar", "part"))
+        flags, lines = study.data[f"key_flag_{quantity}"][:], []
+        for word in dict.fromkeys(words):
+            for f, name in enumerate(names):
+                if f > 0 and not np.isfinite(bar[:, f]).any():
+                    continue
+                rows = sorted((p for p in range(x.size) if words[p] == word), key=lambda p: x[p])
+                doubtful = [
+                    i for i, p in enumerate(rows)
+                    if any(str(flags[p][k][f]).strip("\0") and part[p, k, f] > 0.1 * bar[p, f] for k in range(part.shape[1]))
+                ]
+                label = ", ".join(filter(None, [word, name if len(names) > 1 else ""]))
+                lines.append((label, x[rows], value[rows, f], bar[rows, f], doubtful))
+        return lines
+
+    draw_bars(study, parameter, figure, known, lines_of)
 
 
 def plot_budget(study, figure):
@@ -628,6 +673,8 @@ def draw(path, figure, asked=None):
         raise CaseError(f"--of: {path} has no errors of {asked}: see {', '.join(quantities_of(study))}")
     if study.is_comparison:
         return plot_comparison(study, figure)
+    if "point_member" in study.data.variables:
+        return plot_points(study, figure, asked)
     if "key_name" in study.data.variables:
         return plot_budget(study, figure)
     if not study.axes:

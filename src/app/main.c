@@ -54,8 +54,8 @@ static const struct command commands[] = {
     {"error",
      "CASE",
      "estimate the errors of quantities: vary each numerical key of a case and compare the levels",
-     {'o', 'j', OPTION_OF, OPTION_WITHIN, OPTION_NO_CONFIRM, OPTION_PLAN, OPTION_LIMIT, OPTION_FORCE, OPTION_STRICT,
-      OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
+     {'o', 'j', OPTION_OF, OPTION_WITHIN, OPTION_SWEEP, OPTION_NO_CONFIRM, OPTION_PLAN, OPTION_LIMIT, OPTION_FORCE,
+      OPTION_STRICT, OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
      "folder of the members (default: the name of the case file with -error)",
      main_error},
     {"gather",
@@ -214,6 +214,7 @@ static enum status main_choose(int argc, char **argv, struct arena **arena) {
     struct request request = {.arena = *arena, .command_line = line.text};
     NEW(*arena, request.assignments, argc + 1);
     NEW(*arena, request.of, argc + 1);
+    NEW(*arena, request.sweeps, argc + 1);
 
     // getopt starts after the name of the command
     enum status status = STATUS_OK;

@@ -32,6 +32,8 @@ static const struct option_help all_options[] = {
     {OPTION_OF, "of", "QUANTITY",
      "quantity of a result or of a steady state (steady_...) to estimate the error of; repeatable"},
     {OPTION_WITHIN, "within", "X", "refine until the relative errors are below X, such as 0.01"},
+    {OPTION_SWEEP, "sweep", "KEY=LIST",
+     "errors at every value of a key, separated by commas: fish[*].body.modulus=1e5,1e6,1e7; repeatable"},
     {OPTION_PLAN, "plan", NULL, "print the members of the error estimate and the estimated time; do not run"},
     {OPTION_NO_CONFIRM, "no-confirm", NULL, "omit the finest level of each key: less time, wider error bounds"},
     {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B; do not gather"},
@@ -157,6 +159,7 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_BUNDLE: request->bundle = argument; break;
         case OPTION_OF: request->of[request->n_of++] = argument; break;
         case OPTION_WITHIN: request->within = argument; break;
+        case OPTION_SWEEP: request->sweeps[request->n_sweeps++] = argument; break;
         case OPTION_PLAN: request->plan = 1; break;
         case OPTION_NO_CONFIRM: request->no_confirm = 1; break;
         case OPTION_FROM: request->from = argument; break;

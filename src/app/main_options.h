@@ -36,6 +36,7 @@ enum option_code {
     OPTION_MAX_WALL,
     OPTION_OF,
     OPTION_WITHIN,
+    OPTION_SWEEP,
     OPTION_PLAN,
     OPTION_NO_CONFIRM
 };
@@ -54,6 +55,8 @@ struct request {
     const char *processes, *members;
     const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
     int slurm, strict;
+    int n_sweeps;
+    const char **sweeps; /* of --sweep, "KEY=LIST" */
     int n_of;
     const char **of; /* of --of, names of quantities */
     const char *within;

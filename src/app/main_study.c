@@ -1,5 +1,6 @@
 /* main_study.c: shoal study, error, gather and compare: many runs of one case. */
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -201,6 +202,22 @@ static enum status assign_errors(const struct case_values *values, const struct 
     return STATUS_OK;
 }
 
+/* Write the assignment of the key `sweep`: each --sweep KEY=LIST is an axis. */
+static enum status assign_sweep(const struct request *request, const char **assignment) {
+    const char *axes = "";
+    for (int i = 0; i < request->n_sweeps; i++) {
+        const char *const sweep = request->sweeps[i], *const list = strchr(sweep, '=');
+        if (!list || list == sweep || !list[1]) {
+            return status_fail(STATUS_CASE, "--sweep %s: expects KEY=VALUE,VALUE,...", sweep);
+        }
+        const bool is_list = list[1] == '[';
+        axes = arena_text(request->arena, "%s%s{key: \"%.*s\", values: %s%s%s}", axes, i > 0 ? ", " : "",
+                          (int)(list - sweep), sweep, is_list ? "" : "[", list + 1, is_list ? "" : "]");
+    }
+    *assignment = arena_text(request->arena, "sweep=[%s]", axes);
+    return STATUS_OK;
+}
+
 enum status main_error(const struct request *request) {
     struct case_values values;
     struct request with_errors = *request;
@@ -210,6 +227,9 @@ enum status main_error(const struct request *request) {
     case_free(&values);
     TRY(status);
     with_errors.assignments[with_errors.n_assignments++] = assignment;
+    if (request->n_sweeps > 0) {
+        TRY(assign_sweep(request, &with_errors.assignments[with_errors.n_assignments++]));
+    }
     status = case_read(&values, request->positional, with_errors.n_assignments, with_errors.assignments);
 
     if (status == STATUS_OK) {

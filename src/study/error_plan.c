@@ -505,6 +505,22 @@ static enum status create_points(struct error_sweep *sweep, char ***swept) {
         }
     }
 
+    // the conditions of expectations name keys of the one axis
+    struct sweep_expectation *expect;
+    NEW(arena, expect, study->n_expectations);
+    for (int e = 0; e < study->n_expectations; e++) {
+        struct sweep_condition *where;
+        expect[e] = study->expect[e];
+        NEW(arena, where, expect[e].n_where);
+        for (int i = 0; i < expect[e].n_where; i++) {
+            where[i] = expect[e].where[i];
+            for (int a = 0; a < expect[e].where[i].axis; a++) where[i].key += from[a].n_keys;
+            where[i].axis = 0;
+        }
+        expect[e].where = where;
+    }
+    study->expect = expect;
+
     axis->order = axis->within = NAN;
     study->sweep = axis;
     study->n_axes = 1;

@@ -441,6 +441,8 @@ static void write_variables(struct netcdf_writer *writer, const struct contents 
         const int variable = netcdf_define_variable(writer, &defined);
         if (v->row != SWEPT_KEY) continue;
         netcdf_write_integer(writer, variable, "axis", v->axis);
+        const bool is_swept = contents->errors && v->key < contents->errors->n_swept;
+        if (is_swept) netcdf_write_integer(writer, variable, "swept", 1);
         const bool is_refined = v->key == 0 && contents->study->sweep[v->axis].refine;
         if (is_refined) netcdf_write_integer(writer, variable, "refine", 1);
     }
@@ -802,7 +804,15 @@ static enum status refine_and_report(struct arena *arena, struct error_sweep *sw
     const struct convergence_orders none = {0};
     TRY(study_file_write(arena, study_folder_path(arena, folder, "study.nc"), study, members, &none, sweep, command));
     TRY(study_print_csv(sweep, study_folder_path(arena, folder, "error.csv")));
-    const enum status status = print_errors(sweep, members, stream);
+    enum status status = print_errors(sweep, members, stream);
+
+    // expectations concern the cases of the points, which are the first members
+    struct sweep_axis axis = *study->sweep;
+    struct case_values points = *study;
+    points.sweep = &axis;
+    axis.n_values = sweep->n_points;
+    const enum status expected = study_expect(&points, members, stream);
+    if (status == STATUS_OK) status = expected;
 
     // deliberately coarse levels have separate warnings, which are not printed
     const bool is_one = sweep->n_swept == 0;

@@ -800,7 +800,7 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
     for (int p = 0; p < sweep->n_points; p++) are_shared |= !sweep->point[p].is_full;
     if (are_shared) {
         fprintf(stream,
-                "*: nodes and shedding_interval varied here; of every other key the largest relative error of the "
+                "*: only nodes and shedding_interval are varied; every other key has the largest relative error of the "
                 "other points\n");
     }
     fprintf(stream, "error.csv has the shares of the keys and the reasons of flags\n");

@@ -147,11 +147,27 @@ refused a_refined_axis_with_errors 2 'error: replaces the refined axis sweep[0]'
 run check swimmer.yaml
 check check_takes_it test "$code" = 0
 
+# ---- a sweep: an error at every point
+
+run error foil.yaml --of steady_lift --sweep 'fish[*].body.modulus=1e5,3e5,1e6,3e6' --set 'fish[*].nodes=5' -o along
+check errors_along_a_sweep test "$code" = 0
+check a_row_for_each_point test "$(grep -cE '^ +[0-3]\*? +[13]e[56] +[0-9.]+ +[0-9.]+ +[0-9.]+' out)" = 4
+check points_between_share_errors grep -q '^  *2\*  *1e6 ' out
+check ends_and_middle_have_all_keys grep -q '^   *1  *3e5 ' out
+check the_shares_of_all_points test "$(grep -c 'steady_lift,N,.*,sum,.*,[13]e[56]$' along/error.csv)" = 4
+run info along/study.nc
+check info_has_the_points test "$(grep -cE '^ +[0-3]\*? +[13]e[56] ' out)" = 4
+run gather along
+check gather_has_the_points test "$(grep -cE '^ +[0-3]\*? +[13]e[56] ' out)" = 4
+refused a_sweep_without_values 2 '--sweep nodes: expects KEY=VALUE,VALUE' error foil.yaml --of steady_lift --sweep nodes
+
 # ---- pictures
 
 if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     /usr/bin/python3 "$scripts/plot.py" study swimmer-study/study.nc budget.png >drawn 2>&1
     check a_picture_of_the_budget test -s budget.png
+    /usr/bin/python3 "$scripts/plot.py" study along/study.nc along.png >>drawn 2>&1
+    check a_picture_of_errors_along_a_sweep test -s along.png
 else
     skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
 fi

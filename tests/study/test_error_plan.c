@@ -271,6 +271,43 @@ TEST(quantities_that_are_not_known_are_refused) {
     }
 }
 
+/* Five moduli: the ends and the middle vary all keys, the two others the nodes and the interval. */
+static const char swept[] = UNIFORM "sweep: [{key: \"fish[*].body.modulus\", values: [1e7, 3e7, 1e8, 3e8, 1e9]}]\n";
+
+TEST(a_sweep_has_a_plan_at_every_point) {
+    const struct error_study first = open_study(swept, "{of: steady_speed, keys: [nodes, sheet_points, rtol]}");
+    const struct error_sweep *const sweep = first.sweep;
+    assert_int_equal(sweep->n_points, 5);
+    assert_int_equal(sweep->n_swept, 1);
+    for (int p = 0; p < 5; p++) {
+        const struct error_study *const point = &sweep->point[p];
+        assert_int_equal(point->is_full, p % 2 == 0);
+        assert_int_equal(point->n_keys, p % 2 == 0 ? 3 : 1);
+        assert_int_equal(point->base, p);
+        assert_int_equal(sweep_member_before(point->study, p), p - 1);
+        for (int k = 0; k < point->n_keys; k++) {
+            for (int i = 0; i < point->key[k].n_levels; i++) {
+                struct case_values member;
+                assert_int_equal(case_member(&member, point->study, point->key[k].member[i]), STATUS_OK);
+                NEAR(member.school.fish[0].body.modulus, point->values->school.fish[0].body.modulus, 0, 0);
+                assert_int_equal(member.n_axes, 0);
+                assert_null(member.error);
+                case_free(&member);
+            }
+        }
+    }
+    close_study(&first);
+}
+
+TEST(a_key_of_the_sweep_is_not_varied) {
+    const struct error_study first = open_study(UNIFORM "sweep: [{key: \"fish[*].nodes\", values: [13, 17]}]\n",
+                                                "{of: steady_speed, keys: [nodes, rtol]}");
+    assert_int_equal(first.sweep->n_points, 2);
+    assert_int_equal(first.n_keys, 1);
+    assert_string_equal(first.key[0].row->path, "solver.rtol");
+    close_study(&first);
+}
+
 // ---- values of members
 
 /* The values of members: speed and cost with errors of second order in the nodes, of first order in the sheet and in
@@ -329,6 +366,33 @@ TEST(the_error_is_the_sum_over_the_keys_and_covers_the_true_one) {
     NEAR(next.cost, 2, 0, 1e-3);  // but for the millisecond that every beat counts
     NEAR(next.part, 1.25 * interval_error * 0.005 * 2 * cost / study.value[1], 0, 1e-6);
     close_study(&study);
+}
+
+/* The error of the sheet is largest at the middle of the sweep, where it is 3 % of the value. */
+TEST(errors_of_other_keys_are_shared_along_a_sweep) {
+    struct error_study first = open_study(swept, "{of: steady_speed, keys: [nodes, sheet_points, shedding_interval]}");
+    struct error_sweep *const sweep = first.sweep;
+    struct member_file *const members = make_members(&first);
+    const struct error_study_key *const sheet = key_of(&sweep->point[2], "fish.sheet_points");
+    convergence_sweep_judge(sweep, members);
+    const double value = sweep->point[2].value[0], before = sheet->part[0].error;
+    ABOVE(before, 0);
+    NEAR(sweep->point[1].shared[0], before / value * sweep->point[1].value[0], 0, 1e-9);
+    NEAR(sweep->point[1].error[0], sweep->point[0].error[0], 0, 1e-6);
+
+    // the next coarser level is off: the levels turn, and the error is the largest difference
+    set_value(&members[sheet->member[2]], "steady_speed", 1.03 * value);
+    convergence_sweep_judge(sweep, members);
+    NEAR(sheet->part[0].error, 0.03 * value, 0, 1e-9);
+    for (int p = 1; p < 5; p += 2) NEAR(sweep->point[p].shared[0], 0.03 * sweep->point[p].value[0], 0, 1e-9);
+    NEAR(sweep->point[0].shared[0], 0, 0, 0);
+
+    // an unknown error at a full point is unknown at the points that share it
+    members[sheet->member[3]].status = "failed: a test";
+    convergence_sweep_judge(sweep, members);
+    assert_true(isnan(sweep->point[1].error[0]));
+    ABOVE(sweep->point[0].error[0], 0);
+    close_study(&first);
 }
 
 /* Five tolerances, the stated one the coarsest: four of them are judged. */
