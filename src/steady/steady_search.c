@@ -101,8 +101,8 @@ static enum status together_jacobian(void *data, double *matrix) {
 }
 
 /* Solve for slow quantities of the only fish that one beat changes by at most the tolerance. Evaluate the Jacobian
- * unless is_known. *is_done: success; otherwise no convergence, and the simulation is restored. Fails after steady.beats
- * as steady_problem_beat, or with STATUS_MEMORY. */
+ * unless is_known. *is_done: success; otherwise no convergence, and the simulation is restored. Fails after
+ * steady.beats as steady_problem_beat, or with STATUS_MEMORY. */
 static enum status together_solve(struct together *together, struct steady_problem *problem, double tolerance,
                                   bool *is_done) {
     const struct steady_map *const map = &problem->map;

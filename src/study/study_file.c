@@ -40,167 +40,127 @@ enum { MOST_DIMENSIONS = 4 /* of a variable */ };
 static const char *const dimension_names[N_DIMENSIONS] = {"",      "member", "fish", "xy",        "group",
                                                           "level", "point",  "key",  "key_level", "text"};
 
-/* The rows of the table. */
-enum row_number {
-    MEMBER,
-    STATUS,
-    WARNINGS,
-    FISH_NAME,
-    SWEPT_KEY,
-    QUANTITY,
-    LEVEL_VALUE,
-    LEVEL_SIZE,
-    GROUP_MEMBER,
-    DESIGN_ORDER,
-    DIFFERENCE,
-    COARSE_ORDER,
-    ORDER,
-    LIMIT,
-    ERROR,
-    FLAG,
-    POINT_MEMBER,
-    KEY_NAME,
-    KEY_REASON,
-    KEY_LEVELS,
-    KEY_STATED,
-    KEY_IS_CHOICE,
-    KEY_DESIGN_ORDER,
-    KEY_VALUE,
-    KEY_MEMBER,
-    STATED,
-    BAR,
-    PART,
-    KEY_ORDER,
-    KEY_FLAG,
-    N_ROWS
-};
+/* The rows of the table, in this order. */
+enum { MEMBER, STATUS, WARNINGS, FISH_NAME, SWEPT_KEY, QUANTITY, N_MEMBER_ROWS };
+enum { LEVEL_VALUE = N_MEMBER_ROWS, LEVEL_SIZE, GROUP_MEMBER, DESIGN_ORDER, N_LEVEL_ROWS };
+enum { DIFFERENCE = N_LEVEL_ROWS, COARSE_ORDER, ORDER, LIMIT, ERROR, FLAG, N_ORDER_ROWS };
+enum { POINT_MEMBER = N_ORDER_ROWS, KEY_NAME, KEY_REASON, KEY_LEVELS, KEY_STATED, KEY_IS_CHOICE, N_NAME_ROWS };
+enum { KEY_DESIGN_ORDER = N_NAME_ROWS, KEY_VALUE, KEY_MEMBER, STATED, BAR, PART, KEY_ORDER, KEY_FLAG, N_ROWS };
 
 /* Existence of the variables of a row: once, for each swept key, for each quantity of members; with a refined axis, and
  * for each quantity with orders; in an error study, in a sweep of errors, and for each quantity with errors. */
 enum existence { ALWAYS, BY_SWEPT_KEY, BY_QUANTITY, IN_ORDERS, BY_ORDER, IN_ERRORS, IN_POINTS, BY_ERROR };
 
+static const char of_key[] = "of the key"; /* the unit of the key */
+
 /* A row: %s in name and meaning is the name of a quantity; unit NULL: unit of the quantity. */
 static const struct row {
-    const char *name, *unit, *meaning;
+    const char *name, *unit;
     enum netcdf_type type;
     enum existence existence;
     enum dimension dimension[MOST_DIMENSIONS];
+    const char *meaning;
 } rows[N_ROWS] = {
-    [MEMBER] = {"member", "1", "number of the member", NETCDF_INT, ALWAYS, {BY_MEMBER}},
-    [STATUS] = {"status", "", "status of the member at the end", NETCDF_TEXT, ALWAYS, {BY_MEMBER, BY_TEXT}},
-    [WARNINGS] = {"warnings",
-                  "",
-                  "warnings about the result of the member, one per line",
-                  NETCDF_TEXT,
-                  ALWAYS,
-                  {BY_MEMBER, BY_TEXT}},
-    [FISH_NAME] = {"fish_name", "", "name of the fish", NETCDF_TEXT, ALWAYS, {BY_FISH, BY_TEXT}},
-    [SWEPT_KEY] = {"%s", NULL, "%s", NETCDF_DOUBLE, BY_SWEPT_KEY, {BY_MEMBER}},
-    [QUANTITY] = {"%s", NULL, "%s", NETCDF_DOUBLE, BY_QUANTITY, {BY_MEMBER, BY_FISH, BY_XY}},
-    [LEVEL_VALUE] = {"level_value",
-                     "of the key",
-                     "value of the refined key, from coarse to fine",
-                     NETCDF_DOUBLE,
-                     IN_ORDERS,
-                     {BY_LEVEL}},
-    [LEVEL_SIZE] = {"level_size",
-                    "of the key",
-                    "grid spacing: the value, or 1/(n - 1) of n points",
-                    NETCDF_DOUBLE,
-                    IN_ORDERS,
-                    {BY_LEVEL}},
-    [GROUP_MEMBER] = {"group_member", "1", "first member of each group", NETCDF_INT, IN_ORDERS, {BY_GROUP}},
-    [DESIGN_ORDER] = {"group_design_order",
-                      "1",
-                      "order that the refined key has by design; NaN: none",
-                      NETCDF_DOUBLE,
-                      IN_ORDERS,
-                      {BY_GROUP}},
-    [DIFFERENCE] = {"difference_%s",
-                    NULL,
-                    "distance of %s from the finest level, or from the reference of the case",
-                    NETCDF_DOUBLE,
-                    BY_ORDER,
-                    {BY_GROUP, BY_FISH, BY_LEVEL}},
-    [COARSE_ORDER] = {"order_before_%s",
-                      "1",
-                      "observed order of %s of the next coarser levels",
-                      NETCDF_DOUBLE,
-                      BY_ORDER,
-                      {BY_GROUP, BY_FISH}},
-    [ORDER] =
-        {"order_%s", "1", "observed order of %s of the finest levels", NETCDF_DOUBLE, BY_ORDER, {BY_GROUP, BY_FISH}},
-    [LIMIT] = {"limit_%s",
-               NULL,
-               "%s extrapolated to zero spacing by Richardson's method (xy: positions only)",
-               NETCDF_DOUBLE,
-               BY_ORDER,
-               {BY_GROUP, BY_FISH, BY_XY}},
-    [ERROR] = {"error_%s",
-               NULL,
-               "error of %s at the finest level (doc/studies.md)",
-               NETCDF_DOUBLE,
-               BY_ORDER,
-               {BY_GROUP, BY_FISH}},
-    [FLAG] = {"objection_%s",
-              "",
-              "reason why the levels of %s have no order, and the error is a largest difference",
-              NETCDF_TEXT,
-              BY_ORDER,
-              {BY_GROUP, BY_FISH, BY_TEXT}},
-    [POINT_MEMBER] = {"point_member",
-                      "1",
-                      "member of the stated values of each point of a sweep with errors",
-                      NETCDF_INT,
-                      IN_POINTS,
-                      {BY_POINT}},
-    [KEY_NAME] = {"key_name", "", "numerical key that is varied alone", NETCDF_TEXT, IN_ERRORS, {BY_KEY, BY_TEXT}},
-    [KEY_REASON] = {"key_reason",
-                    "",
-                    "reason why the key is not varied, or empty",
-                    NETCDF_TEXT,
-                    IN_ERRORS,
-                    {BY_POINT, BY_KEY, BY_TEXT}},
-    [KEY_LEVELS] = {"key_levels", "1", "levels of the key", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY}},
-    [KEY_STATED] =
-        {"key_stated", "1", "level of the stated value, from 0, the finest", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY}},
-    [KEY_IS_CHOICE] = {"key_is_choice", "1", "1: choice of the model, not in the sum", NETCDF_INT, IN_ERRORS, {BY_KEY}},
-    [KEY_DESIGN_ORDER] =
-        {"key_design_order", "1", "order that the key has by design; NaN: none", NETCDF_DOUBLE, IN_ERRORS, {BY_KEY}},
-    [KEY_VALUE] = {"key_value",
-                   "of the key",
-                   "value of the key at each level, from fine to coarse",
-                   NETCDF_DOUBLE,
-                   IN_ERRORS,
-                   {BY_POINT, BY_KEY, BY_KEY_LEVEL}},
-    [KEY_MEMBER] =
-        {"key_member", "1", "member of each level; -1: none", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY, BY_KEY_LEVEL}},
-    [STATED] = {"stated_%s", NULL, "stated value of %s", NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_FISH}},
-    [BAR] = {"bar_%s",
-             NULL,
-             "error of the stated value of %s: the sum over the keys",
-             NETCDF_DOUBLE,
-             BY_ERROR,
-             {BY_POINT, BY_FISH}},
-    [PART] = {"part_%s",
-              NULL,
-              "error of %s by each key, or change by a choice of the model",
-              NETCDF_DOUBLE,
-              BY_ERROR,
-              {BY_POINT, BY_KEY, BY_FISH}},
-    [KEY_ORDER] =
-        {"key_order_%s", "1", "observed order of %s in each key", NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_KEY, BY_FISH}},
-    [KEY_FLAG] = {"key_flag_%s",
-                  "",
-                  "reason why the levels of each key give no order of %s, or empty",
-                  NETCDF_TEXT,
-                  BY_ERROR,
-                  {BY_POINT, BY_KEY, BY_FISH, BY_TEXT}},
+    {"member", "1", NETCDF_INT, ALWAYS, {BY_MEMBER}, "number of the member"},
+    {"status", "", NETCDF_TEXT, ALWAYS, {BY_MEMBER, BY_TEXT}, "status of the member at the end"},
+    {"warnings",
+     "",
+     NETCDF_TEXT,
+     ALWAYS,
+     {BY_MEMBER, BY_TEXT},
+     "warnings about the result of the member, one per line"},
+    {"fish_name", "", NETCDF_TEXT, ALWAYS, {BY_FISH, BY_TEXT}, "name of the fish"},
+    {"%s", NULL, NETCDF_DOUBLE, BY_SWEPT_KEY, {BY_MEMBER}, "%s"},
+    {"%s", NULL, NETCDF_DOUBLE, BY_QUANTITY, {BY_MEMBER, BY_FISH, BY_XY}, "%s"},
+    {"level_value", of_key, NETCDF_DOUBLE, IN_ORDERS, {BY_LEVEL}, "value of the refined key, from coarse to fine"},
+    {"level_size", of_key, NETCDF_DOUBLE, IN_ORDERS, {BY_LEVEL}, "grid spacing: the value, or 1/(n - 1) of n points"},
+    {"group_member", "1", NETCDF_INT, IN_ORDERS, {BY_GROUP}, "first member of each group"},
+    {"group_design_order",
+     "1",
+     NETCDF_DOUBLE,
+     IN_ORDERS,
+     {BY_GROUP},
+     "order that the refined key has by design; NaN: none"},
+    {"difference_%s",
+     NULL,
+     NETCDF_DOUBLE,
+     BY_ORDER,
+     {BY_GROUP, BY_FISH, BY_LEVEL},
+     "distance of %s from the finest level, or from the reference of the case"},
+    {"order_before_%s",
+     "1",
+     NETCDF_DOUBLE,
+     BY_ORDER,
+     {BY_GROUP, BY_FISH},
+     "observed order of %s of the next coarser levels"},
+    {"order_%s", "1", NETCDF_DOUBLE, BY_ORDER, {BY_GROUP, BY_FISH}, "observed order of %s of the finest levels"},
+    {"limit_%s",
+     NULL,
+     NETCDF_DOUBLE,
+     BY_ORDER,
+     {BY_GROUP, BY_FISH, BY_XY},
+     "%s extrapolated to zero spacing by Richardson's method (xy: positions only)"},
+    {"error_%s",
+     NULL,
+     NETCDF_DOUBLE,
+     BY_ORDER,
+     {BY_GROUP, BY_FISH},
+     "error of %s at the finest level (doc/studies.md)"},
+    {"objection_%s",
+     "",
+     NETCDF_TEXT,
+     BY_ORDER,
+     {BY_GROUP, BY_FISH, BY_TEXT},
+     "reason why the levels of %s have no order, and the error is a largest difference"},
+    {"point_member",
+     "1",
+     NETCDF_INT,
+     IN_POINTS,
+     {BY_POINT},
+     "member of the stated values of each point of a sweep with errors"},
+    {"key_name", "", NETCDF_TEXT, IN_ERRORS, {BY_KEY, BY_TEXT}, "numerical key that is varied alone"},
+    {"key_reason",
+     "",
+     NETCDF_TEXT,
+     IN_ERRORS,
+     {BY_POINT, BY_KEY, BY_TEXT},
+     "reason why the key is not varied, or empty"},
+    {"key_levels", "1", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY}, "levels of the key"},
+    {"key_stated", "1", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY}, "level of the stated value, from 0, the finest"},
+    {"key_is_choice", "1", NETCDF_INT, IN_ERRORS, {BY_KEY}, "1: choice of the model, not in the sum"},
+    {"key_design_order", "1", NETCDF_DOUBLE, IN_ERRORS, {BY_KEY}, "order that the key has by design; NaN: none"},
+    {"key_value",
+     of_key,
+     NETCDF_DOUBLE,
+     IN_ERRORS,
+     {BY_POINT, BY_KEY, BY_KEY_LEVEL},
+     "value of the key at each level, from fine to coarse"},
+    {"key_member", "1", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY, BY_KEY_LEVEL}, "member of each level; -1: none"},
+    {"stated_%s", NULL, NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_FISH}, "stated value of %s"},
+    {"bar_%s",
+     NULL,
+     NETCDF_DOUBLE,
+     BY_ERROR,
+     {BY_POINT, BY_FISH},
+     "error of the stated value of %s: the sum over the keys"},
+    {"part_%s",
+     NULL,
+     NETCDF_DOUBLE,
+     BY_ERROR,
+     {BY_POINT, BY_KEY, BY_FISH},
+     "error of %s by each key, or change by a choice of the model"},
+    {"key_order_%s", "1", NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_KEY, BY_FISH}, "observed order of %s in each key"},
+    {"key_flag_%s",
+     "",
+     NETCDF_TEXT,
+     BY_ERROR,
+     {BY_POINT, BY_KEY, BY_FISH, BY_TEXT},
+     "reason why the levels of each key give no order of %s, or empty"},
 };
 
 /* A variable of a file. */
 struct variable {
-    enum row_number row;
+    int row;
     int number;    /* of the quantity: in sweep_quantities for orders, requested for errors, else in member_file.h */
     int axis, key; /* of a swept key */
     const struct member_file_quantity *quantity; /* NULL: none */
@@ -254,7 +214,7 @@ static void add_variable(struct contents *contents, struct variable v) {
 
     v.name = fill_name(contents->arena, row->name, name);
     v.meaning = fill_name(contents->arena, row->meaning, meaning);
-    v.unit = v.type == NETCDF_TEXT ? "1" : row->unit && strcmp(row->unit, "of the key") != 0 ? row->unit : unit;
+    v.unit = v.type == NETCDF_TEXT ? "1" : row->unit && row->unit != of_key ? row->unit : unit;
     for (int i = 0; i < MOST_DIMENSIONS; i++) {
         // a quantity without fish or directions lacks these dimensions, a case without a sweep the dimension of points
         const enum dimension d = row->dimension[i];
@@ -272,7 +232,7 @@ static void add_variable(struct contents *contents, struct variable v) {
 static void list_variables(struct contents *contents) {
     const struct case_values *const study = contents->study;
     const bool has_orders = contents->orders->n_groups > 0;
-    for (enum row_number r = 0; r < N_ROWS; r++) {
+    for (int r = 0; r < N_ROWS; r++) {
         const enum existence existence = rows[r].existence;
         const bool is_one = existence == ALWAYS || (existence == IN_ORDERS && has_orders) ||
                             (existence == IN_ERRORS && contents->errors) ||
@@ -525,7 +485,7 @@ int study_file_listed(int i, struct result_listed *listed) {
     // of the quantities of members, the list has those that are computed; Q stands for any other quantity
     static char name[N_ROWS][64], meaning[N_ROWS][160];
     const struct member_file_quantity *quantity = NULL;
-    enum row_number r = MEMBER;
+    int r = MEMBER;
     for (int n = 0, q = 0; r < N_ROWS; r++) {
         if (r == SWEPT_KEY) continue;
         for (; r == QUANTITY && member_file_quantity(q); q++) {

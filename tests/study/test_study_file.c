@@ -370,25 +370,3 @@ TEST(quantities_of_a_case_are_those_of_a_study) {
     assert_string_equal(sweep_quantities[SWEEP_NOSE].name, "nose");
     assert_string_equal(sweep_quantities[SWEEP_TAIL].name, "tail");
 }
-
-TEST(a_table_has_aligned_columns_and_no_blanks_at_the_end) {
-    struct text_table table;
-    assert_int_equal(text_table_create(&table, 2, 3), STATUS_OK);
-    text_table_set(&table, 0, 0, "a");
-    table.n_left = 1;
-    text_table_set(&table, 0, 1, "%0*d", 2 * TEXT_CELL_BYTES, 1);
-    text_table_number(&table, 1, 0, "%.2f", 3.14159);
-    text_table_number(&table, 1, 1, "%.2f", NAN);
-    text_table_set(&table, 1, 2, "end");
-    char *text = NULL;
-    size_t size;
-    FILE *const stream = open_memstream(&text, &size);
-    text_table_print(&table, stream);
-    fclose(stream);
-    // what is too long is cut; the first column is aligned to the left
-    char wanted[4 * TEXT_CELL_BYTES];
-    snprintf(wanted, sizeof wanted, "a     %0*d\n3.14  %*s  end\n", TEXT_CELL_BYTES - 1, 0, TEXT_CELL_BYTES - 1, "-");
-    assert_string_equal(text, wanted);
-    free(text);
-    text_table_free(&table);
-}
