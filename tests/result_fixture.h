@@ -48,7 +48,7 @@ static inline int set_up(void **state) {
     struct fixture *f = calloc(1, sizeof *f);
     f->arena = arena_create(NULL, "a test");
     assert_int_equal(case_parse(&f->values, CASE_TEXT, strlen(CASE_TEXT), "case", ".", 0, NULL), STATUS_OK);
-    assert_int_equal(fish_school_create(&f->school, &f->values.school), STATUS_OK);
+    assert_int_equal(fish_school_create(NULL, &f->school, &f->values.school), STATUS_OK);
     f->state = state_create(NULL, f->school);
     number_consecutively(f->state->y, (size_t)f->school->n_unknowns, 1000);
     for (int i = 0; i < N_FISH; i++) {

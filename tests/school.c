@@ -31,12 +31,10 @@ void school_settings(struct case_values *values, const char *text) {
 // what is not in the arena of a setup
 struct owned {
     struct case_values values;
-    struct school *school;
 };
 
 static void release(void *object) {
     struct owned *const owned = object;
-    fish_school_free(owned->school);
     case_free(&owned->values);
 }
 
@@ -46,9 +44,9 @@ void school_build(struct setup *setup, const char *text) {
     NEW(setup->arena, owned, 1);
     arena_defer(setup->arena, release, owned);
     school_settings(&setup->values, text);
-    school_ok(fish_school_create(&setup->school, &setup->values.school));
+    school_ok(fish_school_create(setup->arena, &setup->school, &setup->values.school));
     setup->state = state_create(setup->arena, setup->school);
-    *owned = (struct owned){setup->values, setup->school};
+    *owned = (struct owned){setup->values};
     school_ok(residual_create(setup->arena, &setup->residual, setup->school, setup->state));
     setup->jacobian = jacobian_create(setup->arena, setup->school);
     residual_mask(setup->residual, setup->jacobian);

@@ -4,18 +4,16 @@
 #include <math.h>
 #include <stddef.h>
 
-static const double pi = 3.14159265358979323846;
-
 double angle_wrap(double angle) {
-    return remainder(angle, 2 * pi);
+    return remainder(angle, 2 * M_PI);
 }
 
 double angle_radians(double degrees) {
-    return degrees * (pi / 180);
+    return degrees * (M_PI / 180);
 }
 
 double angle_degrees(double radians) {
-    return radians * (180 / pi);
+    return radians * (180 / M_PI);
 }
 
 // ---- the smooth step, and ramps in time
@@ -58,7 +56,7 @@ static double legendre(int n, double x, double *slope) {
 void quadrature_legendre(int n, double *node, double *weight) {
     for (int i = 0; i < n; i++) {
         // Tricomi's estimate has at least three correct digits: five iterations converge to rounding
-        double x = -cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
+        double x = -cos(M_PI * (i + 0.75) / (n + 0.5)), slope = 1;
         for (int iteration = 0; iteration < 5; iteration++) x -= legendre(n, x, &slope) / slope;
         legendre(n, x, &slope);
         node[i] = (1 + x) / 2;

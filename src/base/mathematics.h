@@ -3,6 +3,7 @@
 #define MATHEMATICS_H
 
 #include <math.h>
+#include <stdbool.h>
 
 /* The larger and the smaller of two numbers; NaN, unlike fmax and fmin, if one of the numbers is NaN. */
 static inline double larger(double a, double b) {
@@ -42,6 +43,15 @@ void quadrature_of_sum(int n_terms, const double *x, const double *weight, doubl
 /* The integral over the newest interval, t[1] to t[0], of the parabola through the values at three times (n = 3), or of
  * the line through two (n = 2); the newest first. */
 double quadrature_newest(int n, const double t[3], const double value[3]);
+
+/* Twice the signed area of a triangle of points (x, y), positive for a left turn; whether the segments a b and c d
+ * cross inside. */
+static inline double triangle_area(const double *a, const double *b, const double *c) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+static inline bool segments_cross(const double *a, const double *b, const double *c, const double *d) {
+    return triangle_area(a, b, c) * triangle_area(a, b, d) < 0 && triangle_area(c, d, a) * triangle_area(c, d, b) < 0;
+}
 
 /* A rectangle with sides along the axes: corners, m; the box of no points has low INFINITY and high -INFINITY. */
 struct box {

@@ -6,25 +6,17 @@
 struct sparse *sparse_create(struct arena *arena, int first, int n) {
     struct sparse *matrix;
     NEW(arena, matrix, 1);
-    *matrix = (struct sparse){.arena = arena, .first = first, .n = n, .recording = 1};
+    *matrix = (struct sparse){.arena = arena, .first = first, .n = n, .recording = true};
     NEW(arena, matrix->masked, n);
     NEW(arena, matrix->column_start, n + 1);
     NEW(arena, matrix->value, 1);
     return matrix;
 }
 
-void sparse_forget(struct sparse *matrix) {
-    matrix->recording = 1;
-}
-
 void sparse_mask(struct sparse *matrix, int row, int masked) {
     unsigned char *const here = &matrix->masked[row - matrix->first];
-    if (*here != masked) matrix->recording = 1;
+    if (*here != masked) matrix->recording = true;
     *here = (unsigned char)masked;
-}
-
-int sparse_is_masked(const struct sparse *matrix, int row) {
-    return matrix->masked[row - matrix->first];
 }
 
 void sparse_record(struct sparse *matrix, int row, int column, double value) {
@@ -59,7 +51,7 @@ void sparse_begin(struct sparse *matrix) {
     }
 }
 
-static int is_kept(const struct sparse *matrix, int64_t entry) {
+static bool is_kept(const struct sparse *matrix, int64_t entry) {
     return entry < matrix->n_masked || !sparse_is_masked(matrix, matrix->entry_row[entry]);
 }
 
@@ -88,8 +80,13 @@ static int64_t entries_sort(const struct sparse *matrix, int64_t *order, int64_t
     return n_sorted;
 }
 
-// assign a position in the compressed columns to every distinct entry, and a slot to every recorded addition
-static void record_compile(struct sparse *matrix) {
+void sparse_end(struct sparse *matrix) {
+    if (!matrix->recording) {
+        assert(matrix->next == matrix->n_entries);
+        return;
+    }
+
+    // sort the recorded entries
     struct arena *const scratch = arena_create(matrix->arena, "the entries of a Jacobian");
     const size_t n_entries = (size_t)matrix->n_entries + 1;
     int64_t *order, *by_row, *count;
@@ -100,10 +97,11 @@ static void record_compile(struct sparse *matrix) {
     NEW(scratch, recorded, n_entries);
     const int64_t n_sorted = entries_sort(matrix, order, by_row, count);
     if (matrix->n_entries > 0) memcpy(recorded, matrix->slot, (size_t)matrix->n_entries * sizeof *recorded);
+
+    // assign a position in the compressed columns to every distinct entry, and a slot to every recorded addition
     GROW(matrix->arena, matrix->row_index, n_entries);
     GROW(matrix->arena, matrix->value, n_entries + 1);
     memset(matrix->value, 0, (n_entries + 1) * sizeof *matrix->value);
-
     int64_t n_nonzeros = 0;
     int row = -1, column = -1;
     memset(matrix->column_start, 0, ((size_t)matrix->n + 1) * sizeof *matrix->column_start);
@@ -120,20 +118,13 @@ static void record_compile(struct sparse *matrix) {
     }
     for (int c = 0; c < matrix->n; c++) matrix->column_start[c + 1] += matrix->column_start[c];
     matrix->n_nonzeros = n_nonzeros;
+
     // add in recorded order, as in a replay: recording and replay give the same bits
     for (int64_t i = 0; i < matrix->n_entries; i++) {
         if (matrix->slot[i] < 0) matrix->slot[i] = n_nonzeros;
         matrix->value[matrix->slot[i]] += recorded[i];
     }
-    matrix->recording = 0;
+    matrix->recording = false;
     matrix->version++;
     arena_free(scratch);
-}
-
-void sparse_end(struct sparse *matrix) {
-    if (matrix->recording) {
-        record_compile(matrix);
-    } else {
-        assert(matrix->next == matrix->n_entries);
-    }
 }

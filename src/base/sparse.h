@@ -11,6 +11,7 @@
 #define SPARSE_H
 
 #include <assert.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/arena.h"
@@ -28,7 +29,7 @@ struct sparse {
     unsigned version;      /* incremented with every new pattern */
 
     /* the record */
-    int recording;
+    bool recording;
     int n_masked; /* number of ones of masked rows, which are the first entries */
     int64_t n_entries, capacity, next;
     int *entry_row, *entry_column; /* (n_entries) */
@@ -40,11 +41,15 @@ struct sparse {
 struct sparse *sparse_create(struct arena *arena, int first, int n);
 
 /* Forget the pattern: the next pass records a new one. */
-void sparse_forget(struct sparse *matrix);
+static inline void sparse_forget(struct sparse *matrix) {
+    matrix->recording = true;
+}
 
 /* A masked row is a row of the identity: additions to it are ignored. After a change the next pass records. */
 void sparse_mask(struct sparse *matrix, int row, int masked);
-int sparse_is_masked(const struct sparse *matrix, int row);
+static inline bool sparse_is_masked(const struct sparse *matrix, int row) {
+    return matrix->masked[row - matrix->first];
+}
 
 /* Start a pass: all values become zero, except the ones of masked rows. */
 void sparse_begin(struct sparse *matrix);

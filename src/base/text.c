@@ -10,33 +10,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/arena.h"
 #include "base/memory.h"
-
-/* Reserve more bytes and a zero. */
-static bool text_reserve(struct text *text, size_t more) {
-    if (text->failed) return false;
-    if (text->length + more < text->capacity) return true;
-    const size_t capacity = 2 * (text->length + more) + 64;
-    if (text->arena) GROW(text->arena, text->text, capacity);
-    char *const grown = text->arena ? text->text : realloc(text->text, capacity);
-
-    if (!grown) {
-        text->failed = true;
-        return false;
-    }
-
-    text->text = grown;
-    text->capacity = capacity;
-    return true;
-}
 
 void text_add(struct text *text, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     const int length = vsnprintf(NULL, 0, format, arguments);
     va_end(arguments);
-    if (length < 0 || !text_reserve(text, (size_t)length)) return;
+    if (length < 0 || text->failed) return;
+
+    // enlarge for the addition and a zero
+    if (text->length + (size_t)length >= text->capacity) {
+        const size_t capacity = 2 * (text->length + (size_t)length) + 64;
+        char *grown = text->text;
+        if (text->arena) {
+            GROW(text->arena, grown, capacity);
+        } else {
+            grown = realloc(text->text, capacity);
+        }
+        text->failed = !grown;
+        if (!grown) return;
+        text->text = grown;
+        text->capacity = capacity;
+    }
+
     va_start(arguments, format);
     vsnprintf(text->text + text->length, (size_t)length + 1, format, arguments);
     va_end(arguments);
@@ -86,13 +83,13 @@ enum status text_take(struct text *text, char **string, const char *what) {
     text_add(text, "%s", "");
     if (text->failed) text_free(text);
     *string = text->text;
-    *text = (struct text){0};
+    *text = (struct text){.arena = text->arena};
     return memory_check(*string, what);
 }
 
 void text_free(struct text *text) {
     if (!text->arena) free(text->text);
-    *text = (struct text){0};
+    *text = (struct text){.arena = text->arena};
 }
 
 /* Switch this thread to the "C" locale; pass the result to restore_locale. */
@@ -154,27 +151,23 @@ static int skip_digits(const char **text) {
     return n;
 }
 
-/* True for an optional sign, digits with at most one point, and an optional exponent. */
-static bool text_is_number(const char *text) {
-    if (*text == '+' || *text == '-') text++;
-    int n = skip_digits(&text);
-    if (*text == '.') {
-        text++;
-        n += skip_digits(&text);
-    }
-
-    if (n == 0) return false;
-    if (*text == 'e' || *text == 'E') {
-        text++;
-        if (*text == '+' || *text == '-') text++;
-        if (skip_digits(&text) == 0) return false;
-    }
-
-    return *text == '\0';
-}
-
 bool text_number(const char *text, double *number) {
-    if (!text_is_number(text)) return false;
+    // an optional sign, digits with at most one point, and an optional exponent
+    const char *at = text;
+    if (*at == '+' || *at == '-') at++;
+    int n = skip_digits(&at);
+    if (*at == '.') {
+        at++;
+        n += skip_digits(&at);
+    }
+    if (n == 0) return false;
+    if (*at == 'e' || *at == 'E') {
+        at++;
+        if (*at == '+' || *at == '-') at++;
+        if (skip_digits(&at) == 0) return false;
+    }
+    if (*at != '\0') return false;
+
     locale_t c_locale;
     const locale_t before = use_c_locale(&c_locale);
     *number = strtod(text, NULL);
@@ -213,10 +206,6 @@ static char lower_case(char c) {
     return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
-static int text_smaller(int a, int b) {
-    return a < b ? a : b;
-}
-
 int text_distance(const char *a, size_t n, const char *b, size_t m) {
     enum { WORD = 40 };
     if (n > WORD || m > WORD) return INT_MAX;
@@ -227,10 +216,11 @@ int text_distance(const char *a, size_t n, const char *b, size_t m) {
     for (size_t i = 1; i <= n; i++) {
         for (size_t j = 1; j <= m; j++) {
             const int change = d[i - 1][j - 1] + (lower_case(a[i - 1]) != lower_case(b[j - 1]));
-            d[i][j] = text_smaller(change, text_smaller(d[i - 1][j], d[i][j - 1]) + 1);
+            const int gap = (d[i - 1][j] < d[i][j - 1] ? d[i - 1][j] : d[i][j - 1]) + 1;
+            d[i][j] = change < gap ? change : gap;
             const bool is_swap = i > 1 && j > 1 && lower_case(a[i - 1]) == lower_case(b[j - 2]) &&
                                  lower_case(a[i - 2]) == lower_case(b[j - 1]);
-            if (is_swap) d[i][j] = text_smaller(d[i][j], d[i - 2][j - 2] + 1);
+            if (is_swap && d[i - 2][j - 2] + 1 < d[i][j]) d[i][j] = d[i - 2][j - 2] + 1;
         }
     }
 

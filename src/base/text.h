@@ -8,17 +8,16 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 
-struct arena;
-
-/* Initialise to zero, or to {.arena = arena}: the string then belongs to the arena, no addition fails, and text_free is
- * not needed. Without an arena nothing more is added after a failed allocation, and failed is true. */
+/* A growing string. Initialise with the arena, which holds the string, as {.arena = arena}. Without an arena text_free
+ * releases the string, and after a failed allocation nothing more is added and failed is true. */
 struct text {
+    struct arena *arena;
     char *text; /* ends with a zero; NULL before the first addition */
     size_t length, capacity;
     bool failed;
-    struct arena *arena;
 };
 
 /* Append (printf format). */

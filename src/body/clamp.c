@@ -62,24 +62,11 @@ void clamp_jacobian(const struct fish *fish, double t, const double *y, struct s
     }
 }
 
-double clamp_energy(const struct fish *fish, double t, const double *y) {
-    if (!fish->has_clamp) return 0;
+struct clamp_terms clamp_terms(const struct fish *fish, double t, const double *y) {
+    if (!fish->has_clamp) return (struct clamp_terms){0};
     const struct clamp clamp = clamp_at(fish, t, y);
-    return fish->clamp_stiffness * clamp.bend.curvature * clamp.bend.curvature / 2;
-}
-
-double clamp_damping_power(const struct fish *fish, double t, const double *y) {
-    if (!fish->has_clamp) return 0;
-    const struct clamp clamp = clamp_at(fish, t, y);
-    return -clamp.by_rate * clamp.angle_rate * clamp.angle_rate;
-}
-
-double clamp_moment(const struct fish *fish, double t, const double *y) {
-    return fish->has_clamp ? -clamp_at(fish, t, y).moment : 0;
-}
-
-double clamp_driving_power(const struct fish *fish, double t, const double *y) {
-    if (!fish->has_clamp) return 0;
-    const struct clamp clamp = clamp_at(fish, t, y);
-    return -clamp.moment * clamp.given_rate;
+    return (struct clamp_terms){.energy = fish->clamp_stiffness * clamp.bend.curvature * clamp.bend.curvature / 2,
+                                .damping_power = -clamp.by_rate * clamp.angle_rate * clamp.angle_rate,
+                                .driving_power = -clamp.moment * clamp.given_rate,
+                                .moment = -clamp.moment};
 }

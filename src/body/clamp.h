@@ -5,7 +5,7 @@
  *     - - - - - - - -  node 0 -------- node 1
  *                     angle phi_c
  *
- * For a fish without a clamp all functions do nothing or return 0. */
+ * For a fish without a clamp all functions do nothing or return zeros. */
 #ifndef CLAMP_H
 #define CLAMP_H
 
@@ -18,15 +18,13 @@ void clamp_residual(const struct fish *fish, double t, const double *y, double *
 /* Add the derivatives of clamp_residual, each row divided by the node mass. */
 void clamp_jacobian(const struct fish *fish, double t, const double *y, struct sparse *jacobian);
 
-/* Elastic energy, J. */
-double clamp_energy(const struct fish *fish, double t, const double *y);
-
-/* Powers, W: of the damping of the clamp, never positive; and of the moment that turns the given direction, on the
- * body. */
-double clamp_damping_power(const struct fish *fish, double t, const double *y);
-double clamp_driving_power(const struct fish *fish, double t, const double *y);
-
-/* The moment of the clamp on the body, N m; 0 without one. */
-double clamp_moment(const struct fish *fish, double t, const double *y);
+/* Energy, powers and moment of the clamp; zeros without one. */
+struct clamp_terms {
+    double energy;        /* elastic, J */
+    double damping_power; /* of the damping of the clamp, W: never positive */
+    double driving_power; /* on the body, of the moment that turns the given direction, W */
+    double moment;        /* on the body, N m */
+};
+struct clamp_terms clamp_terms(const struct fish *fish, double t, const double *y);
 
 #endif

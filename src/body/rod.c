@@ -22,14 +22,6 @@ struct edge edge_at(const struct fish *fish, int k, const double *y) {
                          .rate = {vx[1] - vx[0], vy[1] - vy[0]}};
 }
 
-double edge_turn_rate(const struct edge *edge) {
-    return edge_dot(edge->n, edge->rate) / edge->length;
-}
-
-double edge_dot(const double a[2], const double b[2]) {
-    return a[0] * b[0] + a[1] * b[1];
-}
-
 struct bend edge_bend(const double before[2], const double after[2]) {
     const double sine = before[0] * after[1] - before[1] * after[0];
     const double angle = atan2(sine, edge_dot(before, after));
@@ -38,23 +30,8 @@ struct bend edge_bend(const double before[2], const double after[2]) {
     return bend;
 }
 
-int edge_place(const struct fish *fish, int i, int node) {
-    return (i == 0 ? fish->at.x : fish->at.y) + node;
-}
-int edge_velocity(const struct fish *fish, int i, int node) {
-    return (i == 0 ? fish->at.vx : fish->at.vy) + node;
-}
-int edge_acceleration(const struct fish *fish, int i, int node) {
-    return (i == 0 ? fish->at.ax : fish->at.ay) + node;
-}
-
 // ---- phibar = a(t) A (lbar/l_ref) (c0 + c1 sigma + c2 sigma^2) (sin(beta sigma + omega t + phase) + phi0), or
 // a table instead of the sine
-
-struct actuation actuation_from(const struct actuation *all, int first) {
-    return (struct actuation){all->curvature + first, all->rate + first, all->curvature_by_phi0 + first,
-                              all->rate_by_phi0 + first};
-}
 
 void actuation_find(const struct fish *fish, struct fish_gait gait, double phi0, double phi0_rate,
                     const struct actuation *to) {
@@ -75,16 +52,18 @@ void actuation_find(const struct fish *fish, struct fish_gait gait, double phi0,
     }
 }
 
-// a joint: gradient and rate of the turning angle, curvature and derivatives of the curvature by the angle
+// a joint: gradient and rate of the turning angle, curvature and derivatives of the curvature by the angle, moment
 enum { N_LOCAL = 6 };  // coordinates of the joint's three nodes: x, y of each in turn
 struct joint {
     struct edge before, after;
     struct bend bend;
     double gradient[N_LOCAL]; /* dphi/dx */
     double angle_rate;        /* dphi/dt */
+    double moment;            /* elastic, N m */
+    double undamped;          /* undamped part of the rate of curvature: of natural curvature if the strain is damped */
 };
 
-static struct joint joint_at(const struct fish *fish, int j, const double *y) {
+static struct joint joint_at(const struct fish *fish, const struct actuation *muscle, int j, const double *y) {
     struct joint joint = {.before = edge_at(fish, j, y), .after = edge_at(fish, j + 1, y)};
     const struct edge *a = &joint.before, *b = &joint.after;
     joint.bend = edge_bend(a->t, b->t);
@@ -96,6 +75,8 @@ static struct joint joint_at(const struct fish *fish, int j, const double *y) {
     }
 
     joint.angle_rate = edge_turn_rate(b) - edge_turn_rate(a);
+    joint.moment = fish->bending_stiffness[j] * (joint.bend.curvature - muscle->curvature[j]) / fish->edge_length;
+    joint.undamped = fish->damping == DAMPING_STRAIN ? muscle->rate[j] : 0;
     return joint;
 }
 
@@ -123,27 +104,22 @@ static void joint_hessian(const struct joint *joint, double hessian[N_LOCAL][N_L
     }
 }
 
-static double elastic_moment(const struct fish *fish, int j, double curvature, double natural_curvature) {
-    return fish->bending_stiffness[j] * (curvature - natural_curvature) / fish->edge_length;
-}
-
-// the undamped part of the rate of curvature: the rate of natural curvature if damping acts on the strain
-static double undamped_rate(const struct fish *fish, const struct actuation *muscle, int j) {
-    return fish->damping == DAMPING_STRAIN ? muscle->rate[j] : 0;
-}
-
 void rod_curvature(const struct fish *fish, const double *y, double *curvature) {
-    for (int j = 0; j < fish->n_joints; j++) curvature[j] = joint_at(fish, j, y).bend.curvature;
+    struct edge before = edge_at(fish, 0, y);
+    for (int j = 0; j < fish->n_joints; j++) {
+        const struct edge after = edge_at(fish, j + 1, y);
+        curvature[j] = edge_bend(before.t, after.t).curvature;
+        before = after;
+    }
 }
 
 void rod_residual(const struct fish *fish, const struct actuation *muscle, const double *y, double *residual) {
     double *const force[2] = {residual + fish->at.ax, residual + fish->at.ay};
     for (int j = 0; j < fish->n_joints; j++) {
-        const struct joint joint = joint_at(fish, j, y);
-        const double elastic = elastic_moment(fish, j, joint.bend.curvature, muscle->curvature[j]) * joint.bend.slope;
-        const double d = fish->bending_damping[j], undamped = undamped_rate(fish, muscle, j);
+        const struct joint joint = joint_at(fish, muscle, j, y);
+        const double elastic = joint.moment * joint.bend.slope, d = fish->bending_damping[j];
         const double damping =
-            d * joint.bend.slope * joint.bend.slope * joint.angle_rate - d * joint.bend.slope * undamped;
+            d * joint.bend.slope * joint.bend.slope * joint.angle_rate - d * joint.bend.slope * joint.undamped;
         for (int i = 0; i < N_LOCAL; i++) force[i % 2][j + i / 2] += (elastic + damping) * joint.gradient[i];
     }
 
@@ -161,12 +137,11 @@ void rod_residual(const struct fish *fish, const struct actuation *muscle, const
 
 static void joint_jacobian(const struct fish *fish, int j, const struct actuation *muscle, const double *y,
                            struct sparse *jacobian) {
-    const struct joint joint = joint_at(fish, j, y);
+    const struct joint joint = joint_at(fish, muscle, j, y);
     double hessian[N_LOCAL][N_LOCAL], turned[N_LOCAL];
     joint_hessian(&joint, hessian);
     const double stiffness = fish->bending_stiffness[j] / fish->edge_length, d = fish->bending_damping[j];
-    const double moment = elastic_moment(fish, j, joint.bend.curvature, muscle->curvature[j]);
-    const double undamped = undamped_rate(fish, muscle, j);
+    const double moment = joint.moment, undamped = joint.undamped;
     const double first = moment * joint.bend.slope + d * joint.bend.slope * joint.bend.slope * joint.angle_rate -
                          d * joint.bend.slope * undamped;
 
@@ -203,43 +178,39 @@ static void joint_jacobian(const struct fish *fish, int j, const struct actuatio
     }
 }
 
-static void edge_jacobian(const struct fish *fish, int k, const double *y, struct sparse *jacobian) {
-    const struct edge edge = edge_at(fish, k, y);
-    const double stretch_rate = edge_dot(edge.t, edge.rate), turn_rate = edge_turn_rate(&edge);
-    const double tension =
-        fish->axial_stiffness[k] * (edge.length / fish->edge_length - 1) + fish->axial_damping[k] * stretch_rate;
-    const double stiffness = fish->axial_stiffness[k] / fish->edge_length;
-
-    for (int i = 0; i < 4; i++) {
-        const int node = k + i / 2, row = (i % 2 == 0 ? fish->at.ax : fish->at.ay) + node;
-        for (int m = 0; m < 4; m++) {
-            const double sign = (i / 2 == m / 2 ? 1 : -1) / fish->mass[node];
-            const int a = i % 2, b = m % 2;
-            const double by_place = stiffness * edge.t[a] * edge.t[b] + tension / edge.length * edge.n[a] * edge.n[b] +
-                                    fish->axial_damping[k] * turn_rate * edge.t[a] * edge.n[b];
-            const double by_velocity = fish->axial_damping[k] * edge.t[a] * edge.t[b];
-            sparse_add(jacobian, row, (b == 0 ? fish->at.x : fish->at.y) + k + m / 2, sign * by_place);
-            sparse_add(jacobian, row, (b == 0 ? fish->at.vx : fish->at.vy) + k + m / 2, sign * by_velocity);
-        }
-    }
-}
-
 void rod_jacobian(const struct fish *fish, const struct actuation *muscle, const double *y, struct sparse *jacobian) {
     for (int j = 0; j < fish->n_joints; j++) joint_jacobian(fish, j, muscle, y, jacobian);
-    for (int k = 0; k < fish->n_edges; k++) edge_jacobian(fish, k, y, jacobian);
-}
 
-int rod_n_strains(const struct fish *fish) {
-    return fish->n_joints + fish->n_edges;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct edge edge = edge_at(fish, k, y);
+        const double stretch_rate = edge_dot(edge.t, edge.rate), turn_rate = edge_turn_rate(&edge);
+        const double tension =
+            fish->axial_stiffness[k] * (edge.length / fish->edge_length - 1) + fish->axial_damping[k] * stretch_rate;
+        const double stiffness = fish->axial_stiffness[k] / fish->edge_length;
+
+        for (int i = 0; i < 4; i++) {
+            const int node = k + i / 2, row = (i % 2 == 0 ? fish->at.ax : fish->at.ay) + node;
+            for (int m = 0; m < 4; m++) {
+                const double sign = (i / 2 == m / 2 ? 1 : -1) / fish->mass[node];
+                const int a = i % 2, b = m % 2;
+                const double by_place = stiffness * edge.t[a] * edge.t[b] +
+                                        tension / edge.length * edge.n[a] * edge.n[b] +
+                                        fish->axial_damping[k] * turn_rate * edge.t[a] * edge.n[b];
+                const double by_velocity = fish->axial_damping[k] * edge.t[a] * edge.t[b];
+                sparse_add(jacobian, row, (b == 0 ? fish->at.x : fish->at.y) + k + m / 2, sign * by_place);
+                sparse_add(jacobian, row, (b == 0 ? fish->at.vx : fish->at.vy) + k + m / 2, sign * by_velocity);
+            }
+        }
+    }
 }
 
 void rod_strains(const struct fish *fish, const struct actuation *muscle, const double *y,
                  const struct rod_strains *to) {
     for (int j = 0; j < fish->n_joints; j++) {
-        const struct joint joint = joint_at(fish, j, y);
+        const struct joint joint = joint_at(fish, muscle, j, y);
         to->strain[j] = joint.bend.curvature - muscle->curvature[j];
-        to->rate[j] = joint.bend.slope * joint.angle_rate - undamped_rate(fish, muscle, j);
-        to->stress[j] = elastic_moment(fish, j, joint.bend.curvature, muscle->curvature[j]);
+        to->rate[j] = joint.bend.slope * joint.angle_rate - joint.undamped;
+        to->stress[j] = joint.moment;
         // curvature damping acts in parallel to the muscle, strain damping in series
         if (fish->damping == DAMPING_STRAIN) to->stress[j] += fish->bending_damping[j] * to->rate[j];
     }
@@ -270,12 +241,12 @@ double rod_stretching_energy(const struct fish *fish, const double *strain) {
     return energy;
 }
 
-int rod_is_torn(const struct fish *fish, const double *y) {
+bool rod_is_torn(const struct fish *fish, const double *y) {
     const double most = 10 * fish->edge_length;
     for (int k = 0; k < fish->n_edges; k++) {
-        if (edge_at(fish, k, y).length > most) return 1;
+        if (edge_at(fish, k, y).length > most) return true;
     }
-    return 0;
+    return false;
 }
 
 int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio) {

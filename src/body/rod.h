@@ -25,10 +25,14 @@ struct edge {
 /* Edge k of a fish for the unknowns y. */
 struct edge edge_at(const struct fish *fish, int k, const double *y);
 
-/* The rate at which the edge turns, rad s-1. */
-double edge_turn_rate(const struct edge *edge);
+static inline double edge_dot(const double a[2], const double b[2]) {
+    return a[0] * b[0] + a[1] * b[1];
+}
 
-double edge_dot(const double a[2], const double b[2]);
+/* The rate at which the edge turns, rad s-1. */
+static inline double edge_turn_rate(const struct edge *edge) {
+    return edge_dot(edge->n, edge->rate) / edge->length;
+}
 
 /* The curvature kappa = 2 tan(angle/2) of a joint between the unit vectors before and after, with first and second
  * derivative by the angle from before to after. */
@@ -38,9 +42,15 @@ struct bend {
 struct bend edge_bend(const double before[2], const double after[2]);
 
 /* Index of component i (0: x, 1: y) of the position, velocity or acceleration of a node among all unknowns. */
-int edge_place(const struct fish *fish, int i, int node);
-int edge_velocity(const struct fish *fish, int i, int node);
-int edge_acceleration(const struct fish *fish, int i, int node);
+static inline int edge_place(const struct fish *fish, int i, int node) {
+    return (i == 0 ? fish->at.x : fish->at.y) + node;
+}
+static inline int edge_velocity(const struct fish *fish, int i, int node) {
+    return (i == 0 ? fish->at.vx : fish->at.vy) + node;
+}
+static inline int edge_acceleration(const struct fish *fish, int i, int node) {
+    return (i == 0 ? fish->at.ax : fish->at.ay) + node;
+}
 
 /* The muscle: a travelling wave or a table of natural curvature. doc/model.md, section 4. */
 
@@ -53,7 +63,10 @@ struct actuation {
 };
 
 /* The part of arrays for the joints of all fish that starts at joint `first`. */
-struct actuation actuation_from(const struct actuation *all, int first);
+static inline struct actuation actuation_from(const struct actuation *all, int first) {
+    return (struct actuation){all->curvature + first, all->rate + first, all->curvature_by_phi0 + first,
+                              all->rate_by_phi0 + first};
+}
 
 /* Fill all four arrays for the bias phi0 and the rate of the bias, s-1. */
 void actuation_find(const struct fish *fish, struct fish_gait gait, double phi0, double phi0_rate,
@@ -74,7 +87,9 @@ struct rod_strains {
     double *rate;   /* rate in the damping law, s-1; dl/dt, m s-1 */
     double *stress; /* moment against the muscle, N m; tension, N */
 };
-int rod_n_strains(const struct fish *fish);
+static inline int rod_n_strains(const struct fish *fish) {
+    return fish->n_joints + fish->n_edges;
+}
 
 /* Fill all three arrays from the positions and velocities of the nodes. */
 void rod_strains(const struct fish *fish, const struct actuation *muscle, const double *y,
@@ -85,7 +100,7 @@ double rod_bending_energy(const struct fish *fish, const double *strain);
 double rod_stretching_energy(const struct fish *fish, const double *strain);
 
 /* Whether an edge is longer than ten times the natural length: the sign of a step too long for the stiffness. */
-int rod_is_torn(const struct fish *fish, const double *y);
+bool rod_is_torn(const struct fish *fish, const double *y);
 
 /* The most compressed edge; *ratio: length over natural length. */
 int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio);

@@ -41,8 +41,8 @@ struct box clearance_box(const struct fish *fish, double distance, const double 
 void clearance_start(const struct school *school, struct state *state, struct neighbours *neighbours, double *between);
 
 /* Whether the distance of two bodies may be below a limit, m, at the end, or 0 on the way. */
-int clearance_may_be_near(const struct fish *a, const struct fish *b, const double *before, const double *y,
-                          double limit);
+bool clearance_may_be_near(const struct fish *a, const struct fish *b, const double *before, const double *y,
+                           double limit);
 
 /* The passage of two bodies with straight node paths. */
 struct passage {
@@ -74,7 +74,7 @@ void clearance_step(const struct school *school, struct state *state, double t, 
 /* Whether the centre line or the outline of a fish crosses itself. The outline follows both sides of the nodes at half
  * the thickness and ends in a point at nose and tail. The cost is linear in n_nodes unless the body turns by more than
  * half a turn. scratch: (4 n_nodes). */
-int self_crossing(const struct fish *fish, const double *y, double *scratch);
+bool self_crossing(const struct fish *fish, const double *y, double *scratch);
 
 /* Record the first crossing of any body in state->crossed and state->crossed_t. scratch: (n_unknowns). */
 void self_crossing_remember(const struct school *school, struct state *state, double *scratch);

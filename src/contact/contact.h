@@ -37,17 +37,15 @@ void contact_residual(const struct contact *contact, int f, const double *y, dou
  * partner of f. */
 void contact_jacobian(const struct contact *contact, int f, int g, const double *y, struct coupling_block *rows);
 
-/* contact_energy: half the energy of the contacts of fish f with partners, plus the full energy of the contacts with
- * walls, J; the sum over all fish is the potential. contact_power: power that fish f receives for this share of the
- * energy, W: half of the sum over partners of the power of the contact force on f minus the power on the partner; the
- * powers of all fish add up to 0. */
-double contact_energy(const struct contact *contact, int f, const double *y);
-double contact_power(const struct contact *contact, int f, const double *y);
-
-/* The force of all partners and of the walls on fish f, N, and the moment of this force about the origin, N m. */
-struct contact_forces {
-    double force[2], moment;
+/* The sums over the contacts of a fish. */
+struct contact_terms {
+    double energy; /* half the energy of the contacts with partners, plus the full energy of the contacts with walls, J;
+                        the sum over all fish is the potential */
+    double power;  /* received for this share of the energy, W: half of the sum over partners of the power of the
+                        contact force on the fish minus the power on the partner; the powers of all fish add up to 0 */
+    double force[2]; /* of all partners and of the walls on the fish, N */
+    double moment;   /* of this force about the origin, N m */
 };
-struct contact_forces contact_forces(const struct contact *contact, int f, const double *y);
+struct contact_terms contact_terms(const struct contact *contact, int f, const double *y);
 
 #endif

@@ -5,23 +5,7 @@
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "base/parallel.h"
 #include "base/wide.h"
-
-int fish_threads(const struct school *school) {
-    return parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
-}
-
-double fish_event_time(const struct school *school, long event) {
-    // a product of integers below 2^53 is exact, so the quotient has the only rounding
-    return (double)event * school->interval_ratio[0] / school->interval_ratio[1];
-}
-
-double fish_mean(const struct stencil *point, const double *value) {
-    double mean = 0;
-    for (int i = 0; i < point->n; i++) mean += point->weight[i] * value[point->node[i]];
-    return mean;
-}
 
 void fish_of_nodes(int n_points, int n_nodes, const double *matrix, const double *of_nodes, double *of_points) {
     memset(of_points, 0, (size_t)n_points * sizeof *of_points);
@@ -50,16 +34,8 @@ struct direction fish_direction(const struct fish *fish, const struct tangent *t
     return fish_direction_of(e);
 }
 
-int fish_has_momentum(const struct fish *fish) {
-    return fish->at.px < fish->at.ax;
-}
-
-int fish_feels_own_wake(const struct fish *fish) {
-    return fish->force != FORCE_REACTIVE;
-}
-
-int fish_has_wave(const struct fish *fish) {
-    int has = fish->n_harmonics > 0;
+bool fish_has_wave(const struct fish *fish) {
+    bool has = fish->n_harmonics > 0;
     for (int j = 0; j < fish->n_joints; j++) has |= fabs(fish->wave_amplitude[j]) > 0;
     return has && fish->omega > 0 && fish->motion.prescribed != PRESCRIBED_ALL;
 }
@@ -116,28 +92,16 @@ double fish_wall_distance(const struct school *school, const struct fish *fish, 
     return min;
 }
 
-static double cross(const double a[2], const double b[2], const double c[2]) {
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-static double segment_to_segment(const double a[2], const double b[2], const double c[2], const double d[2]) {
-    if (cross(a, b, c) * cross(a, b, d) < 0 && cross(c, d, a) * cross(c, d, b) < 0) return 0;
-    return fmin(fmin(point_to_segment(a, c, d), point_to_segment(b, c, d)),
-                fmin(point_to_segment(c, a, b), point_to_segment(d, a, b)));
-}
-
-static double max_half_thickness(const struct fish *fish) {
-    double max = 0;
-    for (int k = 0; k < fish->n_edges; k++) max = fmax(max, fish->thickness[k] / 2);
-    return max;
-}
-
 double fish_distance(const struct fish *a, const struct fish *b, const double *y, double limit) {
     // the boxes around the bodies exclude most pairs of a school
     const struct box box = box_around(a->n_nodes, y + a->at.x, y + a->at.y),
                      other = box_around(b->n_nodes, y + b->at.x, y + b->at.y);
 
-    if (box_gap(&box, &other) - max_half_thickness(a) - max_half_thickness(b) > limit) return INFINITY;
+    double thickest[2] = {0, 0};
+    for (int i = 0; i < a->n_edges; i++) thickest[0] = fmax(thickest[0], a->thickness[i] / 2);
+    for (int j = 0; j < b->n_edges; j++) thickest[1] = fmax(thickest[1], b->thickness[j] / 2);
+    if (box_gap(&box, &other) - thickest[0] - thickest[1] > limit) return INFINITY;
+
     double min = INFINITY;
     for (int i = 0; i < a->n_edges; i++) {
         const double p[2] = {y[a->at.x + i], y[a->at.y + i]}, q[2] = {y[a->at.x + i + 1], y[a->at.y + i + 1]};
@@ -150,7 +114,9 @@ double fish_distance(const struct fish *a, const struct fish *b, const double *y
             const double reach = min + thickness + length + fabs(s[0] - r[0]) + fabs(s[1] - r[1]);
             const double dx = r[0] - p[0], dy = r[1] - p[1];
             if (dx * dx + dy * dy > reach * reach) continue;
-            min = fmin(min, segment_to_segment(p, q, r, s) - thickness);
+            const double apart = fmin(fmin(point_to_segment(p, r, s), point_to_segment(q, r, s)),
+                                      fmin(point_to_segment(r, p, q), point_to_segment(s, p, q)));
+            min = fmin(min, (segments_cross(p, q, r, s) ? 0 : apart) - thickness);
         }
     }
 

@@ -20,7 +20,10 @@
 #ifndef FISH_H
 #define FISH_H
 
-#include "base/status.h"
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "base/parallel.h"
 #include "fish/parameters.h"
 #include "fish/shape.h"
 #include "fish/sheet_integrals.h"
@@ -36,7 +39,7 @@ struct layout {
 struct motion {
     enum prescribed prescribed;
     enum surge surge;          /* free: the heading is along x, and prescribed nodes move in x by the forces */
-    int is_held;               /* the motion along the heading is prescribed: surge given, prescribed not none */
+    bool is_held;              /* the motion along the heading is prescribed: surge given, prescribed not none */
     double speed;              /* m s-1 */
     double heave;              /* m */
     double pitch, pitch_phase; /* rad */
@@ -78,14 +81,14 @@ struct fish {
     double *thickness;         /* thickness across the plane of motion h, m               (n_edges) */
     double *depth;             /* extent out of that plane w, m                           (n_edges) */
     double *square, *cube;     /* mean of h^2 over thickness^2, of h^3 over thickness^3   (n_edges) */
-    int has_mean_section;      /* means over an edge, otherwise means of both nodes (fish.body.section) */
+    bool has_mean_section;     /* means over an edge, otherwise means of both nodes (fish.body.section) */
     double *axial_stiffness;   /* E A, N                                         (n_edges) */
     double *axial_damping;     /* d_s, kg s-1                                    (n_edges) */
     double *bending_stiffness; /* E I, N m2                                      (n_joints) */
     double *bending_damping;   /* d_b, N m s                                    (n_joints) */
     enum damping damping;      /* of the rate of curvature minus natural curvature, or of curvature alone */
     double tail_stiffness;     /* E I of the last edge, N m2 */
-    int has_clamp;             /* prescribed head: a joint at the nose holds the direction of edge 0 */
+    bool has_clamp;            /* prescribed head: a joint at the nose holds the direction of edge 0 */
     double clamp_stiffness;    /* 2 E I/lbar, N m */
     double clamp_damping;      /* N m s */
 
@@ -98,14 +101,13 @@ struct fish {
     double ramp;            /* s */
 
     enum force force;
-    double *
-        drag_tangential; /* c_t, kg m-1; Blasius' factor with other friction than quadratic, kg m-0.5 s-0.5 (n_edges) */
-    double *drag_normal; /* c_n, kg m-1                                       (n_edges) */
-    double *added_mass;  /* mu, kg                                            (n_edges) */
-    double *displaced_mass; /* rho_f A lbar, kg                                  (n_edges) */
-    double tail_added_mass; /* m_L, kg m-1; 0: no momentum shed at the tail */
-    int has_cusp;           /* whether the outline ends in a cusp: joukowski with tail thickness 0 */
-    double linear_speed;    /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
+    double *drag_tangential; /* c_t, kg m-1; Blasius' factor of other friction laws, kg m-0.5 s-0.5        (n_edges) */
+    double *drag_normal;     /* c_n, kg m-1                                       (n_edges) */
+    double *added_mass;      /* mu, kg                                            (n_edges) */
+    double *displaced_mass;  /* rho_f A lbar, kg                                  (n_edges) */
+    double tail_added_mass;  /* m_L, kg m-1; 0: no momentum shed at the tail */
+    bool has_cusp;           /* whether the outline ends in a cusp: joukowski with tail thickness 0 */
+    double linear_speed;     /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
     enum friction friction;
     double friction_speed;   /* u0 of laminar friction and of a boundary layer, m s-1 */
     double *drag_turbulent;  /* c_T of a boundary layer, kg m-0.8 s-0.2           (n_edges) */
@@ -126,18 +128,17 @@ struct fish {
     double *sensor;                    /* fractions of the length                                  (n_sensors) */
     double viscosity;                  /* kinematic, of the fluid, m2 s-1 */
     double nose_radius;                /* h^2/(2 L) with the largest thickness h, m */
-    struct sheet_integrals *integrals; /* NULL with other forces, unless there are rings */
-    int shares_integrals;              /* whether an earlier fish owns the integrals */
+    struct sheet_integrals *integrals; /* shared by equal sheets; NULL with other forces, unless there are rings */
 
     /* rings: section 18 */
     double strip_depth;       /* w_L, depth of the last edge, m; 0: sheets of infinite span */
-    int depth_varies;         /* whether the depth varies along the body */
+    bool depth_varies;        /* whether the depth varies along the body */
     double *sheet_half;       /* b^2/2 at the bound vortices, b = w/4, m2                  (n_sheet) */
     double *point_half;       /* b^2/2 at the points of the flow (flow.h), m2   (n_control + n_edges + 1) */
     double *control_widening; /* b db/du at control points, m2                             (n_control) */
 
     double *sheet_weight;            /* ds_j: circulation over unknown, m           (n_sheet) */
-    struct curve *curve;             /* line of the body; owns the stencils below     */
+    struct curve *curve;             /* line of the body, which holds the stencils below */
     struct stencil *sheet_point;     /* the bound vortices                          (n_sheet) */
     struct stencil *sheet_slope;     /* X' at the vortices, per edge; empty: length of an edge   (n_sheet) */
     struct stencil *control_point;   /* positions of the impermeability condition            (n_control) */
@@ -154,8 +155,7 @@ struct fish {
     double taper_beside; /* the same for vortices beside the body, m */
     double sheet_smoothing; /* of the bound sheet, for other bodies and wakes, m */
 
-    double
-        contact_strength; /* scale of the contact force: accelerates the body by one length per beat within a beat, N */
+    double contact_strength; /* contact force that accelerates the body by one length per beat within a beat, N */
 
     double start_position[2]; /* of the nose, m */
     double start_heading;     /* rad */
@@ -180,6 +180,7 @@ enum { WAKE_PER_VORTEX = 3 };
 
 /* Constants of a run. */
 struct school {
+    struct arena *arena; /* of everything below */
     int n_fish;
     struct fish *fish;
     int n_unknowns;
@@ -201,7 +202,7 @@ struct school {
     enum kutta kutta;
     double kutta_ramp; /* s */
     enum removed_circulation removed;
-    int finite;            /* whether the sheets are vortex rings: some fish has force: pressure with span: finite */
+    bool finite;           /* whether the sheets are vortex rings: some fish has force: pressure with span: finite */
     double wake_tolerance; /* estimated error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
 
     double wake_merge; /* velocity error at a body by merging in one wake, lengths per beat; 0: no merging */
@@ -216,14 +217,23 @@ struct school {
 };
 
 /* The number of threads of a loop over the unknowns of all fish: one or all. */
-int fish_threads(const struct school *school);
+static inline int fish_threads(const struct school *school) {
+    return parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+}
 
 /* The time of an event, s: the double nearest to the multiple of the decimal or rational interval of the case, 0.7 and
  * not 7 * 0.1. */
-double fish_event_time(const struct school *school, long event);
+static inline double fish_event_time(const struct school *school, long event) {
+    // a product of integers below 2^53 is exact, so the quotient has the only rounding
+    return (double)event * school->interval_ratio[0] / school->interval_ratio[1];
+}
 
 /* sum of weight * value over the nodes of the point. */
-double fish_mean(const struct stencil *point, const double *value);
+static inline double fish_mean(const struct stencil *point, const double *value) {
+    double mean = 0;
+    for (int i = 0; i < point->n; i++) mean += point->weight[i] * value[point->node[i]];
+    return mean;
+}
 
 /* Values at points from values of the nodes, by a full matrix of weights (n_nodes, n_points): the bits of fish_mean. */
 void fish_of_nodes(int n_points, int n_nodes, const double *matrix, const double *of_nodes, double *of_points);
@@ -241,14 +251,18 @@ struct direction fish_direction_of(const double vector[2]);
 struct direction fish_direction(const struct fish *fish, const struct tangent *tangent, const double *y);
 
 /* Whether the fish has the slices px, py: force: pressure. */
-int fish_has_momentum(const struct fish *fish);
+static inline bool fish_has_momentum(const struct fish *fish) {
+    return fish->at.px < fish->at.ax;
+}
 
 /* Whether the velocity of the own wake acts at the edge midpoints of the fish: not with force: reactive. doc/model.md,
  * section 9. */
-int fish_feels_own_wake(const struct fish *fish);
+static inline bool fish_feels_own_wake(const struct fish *fish) {
+    return fish->force != FORCE_REACTIVE;
+}
 
 /* Whether the muscle drives the body with a wave. */
-int fish_has_wave(const struct fish *fish);
+bool fish_has_wave(const struct fish *fish);
 
 /* The beat frequency, or the frequency of the prescribed motion; without a frequency, the speed of the fish or of the
  * stream in lengths per second; 1 without motion. Rate times length is the velocity scale. */

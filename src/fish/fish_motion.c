@@ -4,53 +4,45 @@
 #include <math.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 
-// Fourier coefficients, over the phase, of the table's curvature at a joint, as a turning angle
-static void harmonics_set(const struct fish *fish, const struct number_list *table, int joint) {
-    const double place = (joint + 1.0) / fish->n_edges * (table->n - 1), unit = fish->edge_length / fish->length;
-    const int row = place < table->n - 2 ? (int)place : table->n - 2, n = table->width;
-    const double *const low = &table->value[row * n], *const high = low + n;
-    double *const to = &fish->harmonic[2 * joint * fish->n_harmonics];
-
-    for (int m = 0; m < fish->n_harmonics; m++) {
-        // weight 1 for the mean, and for the highest harmonic of an even number of values
-        const double weight = (m == 0 || 2 * m == n ? 1.0 : 2.0) / n * unit;
-        for (int j = 0; j < n; j++) {
-            const double value = low[j] + (place - row) * (high[j] - low[j]), angle = 2 * M_PI * m * j / n;
-            to[2 * m] += weight * value * cos(angle);
-            if (2 * m < n) to[2 * m + 1] += weight * value * sin(angle);
-        }
-    }
-}
-
-static void wave_set(struct fish *fish, const struct fish_parameters *from) {
-    const struct wave_parameters *wave = &from->wave;
+void fish_gait_set(struct arena *arena, struct fish *fish, const struct fish_parameters *from) {
+    const struct wave_parameters *const wave = &from->wave;
+    const struct number_list *const table = &wave->table;
     const double reference = fish->length / (from->reference_nodes - 1);
+    NEW(arena, fish->wave_amplitude, fish->n_joints);
+    NEW(arena, fish->wave_phase, fish->n_joints);
+    fish->omega = 2 * M_PI * wave->frequency;
+    fish->ramp = wave->ramp;
+    fish->amplitude = wave->amplitude;
     for (int joint = 0; joint < fish->n_joints; joint++) {
         const double sigma = (joint + 1.0) / fish->n_edges;
         fish->wave_amplitude[joint] = wave->amplitude * (fish->edge_length / reference) *
                                       (wave->constant + wave->linear * sigma + wave->quadratic * sigma * sigma);
         // a table contains the phase along the body
-        fish->wave_phase[joint] = (wave->table.n > 0 ? 0 : wave->number * sigma) + angle_radians(wave->phase);
+        fish->wave_phase[joint] = (table->n > 0 ? 0 : wave->number * sigma) + angle_radians(wave->phase);
     }
 
-    fish->omega = 2 * M_PI * wave->frequency;
-    fish->ramp = wave->ramp;
-    fish->amplitude = wave->amplitude;
-}
-
-enum status fish_gait_set(struct fish *fish, const struct fish_parameters *from) {
-    TRY(MEMORY_NEW(fish->wave_amplitude, fish->n_joints, "the wave of a fish"));
-    TRY(MEMORY_NEW(fish->wave_phase, fish->n_joints, "the wave of a fish"));
-    wave_set(fish, from);
-
-    // read the table of the gait
-    if (from->wave.table.n == 0) return STATUS_OK;
-    fish->n_harmonics = from->wave.table.width / 2 + 1;
-    TRY(MEMORY_NEW(fish->harmonic, 2 * fish->n_joints * fish->n_harmonics, "the gait of a fish"));
-    for (int joint = 0; joint < fish->n_joints; joint++) harmonics_set(fish, &from->wave.table, joint);
-    return STATUS_OK;
+    // Fourier coefficients, over the phase, of the table's curvature at every joint, as a turning angle
+    if (table->n == 0) return;
+    const int n = table->width;
+    const double unit = fish->edge_length / fish->length;
+    fish->n_harmonics = n / 2 + 1;
+    NEW(arena, fish->harmonic, 2 * fish->n_joints * fish->n_harmonics);
+    for (int joint = 0; joint < fish->n_joints; joint++) {
+        const double place = (joint + 1.0) / fish->n_edges * (table->n - 1);
+        const int row = place < table->n - 2 ? (int)place : table->n - 2;
+        const double *const low = &table->value[row * n], *const high = low + n;
+        double *const to = &fish->harmonic[2 * joint * fish->n_harmonics];
+        for (int m = 0; m < fish->n_harmonics; m++) {
+            // weight 1 for the mean, and for the highest harmonic of an even number of values
+            const double weight = (m == 0 || 2 * m == n ? 1.0 : 2.0) / n * unit;
+            for (int j = 0; j < n; j++) {
+                const double value = low[j] + (place - row) * (high[j] - low[j]), angle = 2 * M_PI * m * j / n;
+                to[2 * m] += weight * value * cos(angle);
+                if (2 * m < n) to[2 * m + 1] += weight * value * sin(angle);
+            }
+        }
+    }
 }
 
 struct fish_gait fish_own_gait(const struct fish *fish, double t) {
@@ -104,13 +96,9 @@ int fish_n_prescribed(const struct fish *fish) {
     return 0;
 }
 
-int fish_is_prescribed(const struct fish *fish, int k, int i) {
-    return k < fish_n_prescribed(fish) && (i == 1 || fish->motion.surge == SURGE_GIVEN);
-}
-
 // heading angle of the prescribed motion, with first and second derivative
 static void prescribed_heading(const struct fish *fish, double t, double heading[3]) {
-    const struct motion *motion = &fish->motion;
+    const struct motion *const motion = &fish->motion;
     const double omega = motion->omega, angle = omega * t + motion->phase, pitch_angle = angle + motion->pitch_phase;
     heading[0] = fish->start_heading + motion->pitch * sin(pitch_angle);
     heading[1] = motion->pitch * omega * cos(pitch_angle);
@@ -147,7 +135,7 @@ void fish_prescribed_node(const struct fish *fish, int k, double t, double posit
     }
 }
 
-void fish_prescribe(const struct fish *fish, int at_start, double t, double *y) {
+void fish_prescribe(const struct fish *fish, bool at_start, double t, double *y) {
     const int n = at_start ? fish->n_nodes : fish_n_prescribed(fish);
     for (int k = 0; k < n; k++) {
         double position[2], velocity[2], acceleration[2];
@@ -166,7 +154,7 @@ void fish_start(const struct fish *fish, double *y) {
     double *const x = y + fish->at.x, *const z = y + fish->at.y;
     if (fish->motion.prescribed != PRESCRIBED_NONE) {
         // the free nodes behind a prescribed head start with the rigid motion of the head
-        fish_prescribe(fish, 1, 0, y);
+        fish_prescribe(fish, true, 0, y);
         return;
     }
 

@@ -4,12 +4,11 @@
 #ifndef FISH_MOTION_H
 #define FISH_MOTION_H
 
-#include "base/status.h"
+#include "base/arena.h"
 #include "fish/fish.h"
 
-/* Set the wave or the table of the fish from the parameters. n_joints, edge_length and length are set. Fails with
- * STATUS_MEMORY. */
-enum status fish_gait_set(struct fish *fish, const struct fish_parameters *from);
+/* Set the wave or the table of the fish from the parameters. n_joints, edge_length and length are set. */
+void fish_gait_set(struct arena *arena, struct fish *fish, const struct fish_parameters *from);
 
 /* State of the gait: amplitude relative to the amplitude of the case, with the initial ramp, and rate, s-1; phase angle
  * of the beat, rad, and angular frequency, rad s-1. */
@@ -43,7 +42,9 @@ double fish_largest_turn(const struct fish *fish, double amplitude, double bias)
 int fish_n_prescribed(const struct fish *fish);
 
 /* Whether component i (0: x, 1: y) of the motion of node k is prescribed. */
-int fish_is_prescribed(const struct fish *fish, int k, int i);
+static inline bool fish_is_prescribed(const struct fish *fish, int k, int i) {
+    return k < fish_n_prescribed(fish) && (i == 1 || fish->motion.surge == SURGE_GIVEN);
+}
 
 /* The direction from nose to tail of the prescribed motion at time t, and the angular rate, rad s-1. */
 void fish_prescribed_direction(const struct fish *fish, double t, double direction[2], double *rate);
@@ -54,7 +55,7 @@ void fish_prescribed_node(const struct fish *fish, int k, double t, double posit
 
 /* Write the positions and velocities of the prescribed motion at time t into the vector of all unknowns: prescribed
  * components only; at_start: all nodes. */
-void fish_prescribe(const struct fish *fish, int at_start, double t, double *y);
+void fish_prescribe(const struct fish *fish, bool at_start, double t, double *y);
 
 /* The initial state of a fish: natural shape, or straight shape of a prescribed motion, and a uniform
  * velocity. doc/model.md, sections 4 and 5. */

@@ -3,10 +3,8 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 
 enum { MOST_OF_POLYGON = 4 }; /* nodes per stencil on the polygon */
 
@@ -19,35 +17,18 @@ struct curve {
     double *barycentric;          /* c_k of the smooth curve                              (n_nodes) */
 };
 
-enum status curve_create(struct curve **curve, int n_nodes, int n_polygon, int n_smooth) {
-    *curve = NULL;
-    struct curve *new;
-    TRY(MEMORY_NEW(new, 1, "the line of a body"));
-    new->n_nodes = n_nodes;
-    new->most_weights = (long)MOST_OF_POLYGON *n_polygon + (long)n_nodes *n_smooth;
-    enum status status = MEMORY_NEW(new->every, n_nodes, "the line of a body");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->list, n_polygon * MOST_OF_POLYGON + 1, "the line of a body");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->weight, new->most_weights + 1, "the line of a body");
-    if (status == STATUS_OK) status = MEMORY_NEW(new->barycentric, n_nodes, "the line of a body");
-    if (status != STATUS_OK) {
-        curve_free(new);
-        return status;
-    }
-
-    for (int k = 0; k < n_nodes; k++) new->every[k] = k;
-
-    curve_smooth_factors(n_nodes, new->barycentric);
-    *curve = new;
-    return STATUS_OK;
-}
-
-void curve_free(struct curve *curve) {
-    if (!curve) return;
-    free(curve->every);
-    free(curve->list);
-    free(curve->weight);
-    free(curve->barycentric);
-    free(curve);
+struct curve *curve_create(struct arena *arena, int n_nodes, int n_polygon, int n_smooth) {
+    struct curve *curve;
+    NEW(arena, curve, 1);
+    curve->n_nodes = n_nodes;
+    curve->most_weights = (long)MOST_OF_POLYGON * n_polygon + (long)n_nodes * n_smooth;
+    NEW(arena, curve->every, n_nodes);
+    NEW(arena, curve->list, n_polygon * MOST_OF_POLYGON);
+    NEW(arena, curve->weight, curve->most_weights);
+    NEW(arena, curve->barycentric, n_nodes);
+    for (int k = 0; k < n_nodes; k++) curve->every[k] = k;
+    curve_smooth_factors(n_nodes, curve->barycentric);
+    return curve;
 }
 
 /* c_k = (-1)^k sum over j = max(0, k - 3) .. min(k, N - 4) of the binomial coefficients (3, k - j) */
@@ -99,18 +80,13 @@ struct stencil curve_edge_middle(const struct curve *curve, int edge) {
     return (struct stencil){.n = 2, .node = curve->every + edge, .weight = half};
 }
 
-// the node at u, or -1
-static int node_at(const struct curve *curve, double u) {
-    const int node = (int)u;
-    return node == u && node < curve->n_nodes ? node : -1;
-}
-
 /* b_k(u) = (c_k/(u - k))/sum over i of c_i/(u - i); on a node 0 or 1 */
 static void smooth_weights(const struct curve *curve, double u, double *b) {
-    const int node = node_at(curve, u);
+    const int node = (int)u;
+    const bool is_node = node == u && node < curve->n_nodes;
     double sum = 0;
     for (int k = 0; k < curve->n_nodes; k++) {
-        b[k] = node >= 0 ? k == node : curve->barycentric[k] / (u - k);
+        b[k] = is_node ? k == node : curve->barycentric[k] / (u - k);
         sum += b[k];
     }
 
@@ -126,17 +102,18 @@ struct stencil curve_smooth_point(struct curve *curve, double u) {
 /* b_k'(u) = b_k (sum over i of b_i/(u - i) - 1/(u - k)), on node m (c_k/c_m)/(m - k). The weight of the nearest node is
  * minus the sum of all other weights: exact, without cancellation. */
 struct stencil curve_smooth_slope(struct curve *curve, double u) {
-    const int n = curve->n_nodes, node = node_at(curve, u);
+    const int n = curve->n_nodes, node = (int)u;
+    const bool is_node = node == u && node < n;
     const int nearest = u < n - 1 ? (int)(u + 0.5) : n - 1;
     double *const slope = new_weights(curve, n);
     smooth_weights(curve, u, slope);
     double mean = 0, sum = 0;
-    for (int i = 0; node < 0 && i < n; i++) mean += slope[i] / (u - i);
+    for (int i = 0; !is_node && i < n; i++) mean += slope[i] / (u - i);
 
     for (int k = 0; k < n; k++) {
         if (k == nearest) continue;
         slope[k] =
-            node >= 0 ? curve->barycentric[k] / curve->barycentric[node] / (node - k) : slope[k] * (mean - 1 / (u - k));
+            is_node ? curve->barycentric[k] / curve->barycentric[node] / (node - k) : slope[k] * (mean - 1 / (u - k));
         sum += slope[k];
     }
 
@@ -146,23 +123,11 @@ struct stencil curve_smooth_slope(struct curve *curve, double u) {
 
 // ---- the Joukowski outline as a function of the circle angle, smooth up to both tips
 
-static const double pi = 3.14159265358979323846;
-
 /* zeta = r0 (exp(i theta) + d), z = zeta + c^2/zeta: the nose is at theta = pi, the tail at 0. */
 struct joukowski {
     double r0, c, d, nose;
     double length, tail; /* thickness at the tail, m */
 };
-
-static struct joukowski joukowski(const struct fish_parameters *fish) {
-    const double length = fish->length, d = fish->body.thickness, r0 = length * (1 - d) / 4;
-    return (struct joukowski){.r0 = r0,
-                              .c = r0 * (1 + d),
-                              .d = d,
-                              .nose = 2 * r0 * (1 + d * d) / (d - 1),
-                              .length = length,
-                              .tail = fish->body.tail_thickness * length};
-}
 
 // the chord coordinate, decreasing from tail to nose
 static double joukowski_chord(const struct joukowski *foil, double theta) {
@@ -173,7 +138,7 @@ static double joukowski_chord(const struct joukowski *foil, double theta) {
 // the angle of the point at arc coordinate s
 static double joukowski_angle(const struct joukowski *foil, double s) {
     // from tail (theta = 0) to nose (theta = pi): bisect to adjacent floating-point numbers
-    double low = 0, high = pi;
+    double low = 0, high = M_PI;
     for (;;) {
         const double theta = (low + high) / 2;
         if (theta <= low || theta >= high) break;
@@ -195,63 +160,58 @@ static double joukowski_half_thickness(const struct joukowski *foil, double thet
     return sqrt(cusp * cusp + wedge * wedge);
 }
 
-// minus ds/dtheta
-static double joukowski_stretch(const struct joukowski *foil, double theta) {
-    const double r0 = foil->r0, c = foil->c;
-    const double re = r0 * (cos(theta) + foil->d), im = r0 * sin(theta), square = re * re + im * im;
-    return im * (1 + c * c / square) - re * c * c * 2 * r0 * foil->d * im / (square * square);
-}
-
-// the means of h, h^2, h^3 between two arc coordinates: quadrature in theta, doubling the number of pieces until
-// convergence
-static void joukowski_means(const struct joukowski *foil, double from, double to, double mean[3]) {
+// Edge k: the means of h, h^2, h^3 between two arc coordinates by quadrature in theta, doubling the number of pieces
+// until convergence; or the mean of both ends.
+static struct profile_edge joukowski_edge(const struct fish_parameters *fish, int k) {
     enum { N = 16, MOST_PIECES = 4096 };
-    double node[N], weight[N];
-    quadrature_legendre(N, node, weight);
-    const double first = from > 0 ? joukowski_angle(foil, from) : pi, last = joukowski_angle(foil, to),
-                 span = first - last;
-    double before[3] = {0, 0, 0};
+    const double d = fish->body.thickness, r0 = fish->length * (1 - d) / 4;
+    const struct joukowski foil = {.r0 = r0,
+                                   .c = r0 * (1 + d),
+                                   .d = d,
+                                   .nose = 2 * r0 * (1 + d * d) / (d - 1),
+                                   .length = fish->length,
+                                   .tail = fish->body.tail_thickness * fish->length};
+    const int n_edges = fish->nodes - 1;
+    const double edge_length = fish->length / n_edges, from = k * edge_length, end = (k + 1) * edge_length;
+    struct profile_edge edge = {.w = fish->body.depth * fish->length, .square = 1, .cube = 1};
+    if (fish->body.section == SECTION_NODES) {
+        // the thickness of nose and tail is exact, independent of the rounding of the last arc coordinate
+        edge.h = (k > 0 ? joukowski_half_thickness(&foil, joukowski_angle(&foil, from)) : 0) +
+                 (k + 1 < n_edges ? joukowski_half_thickness(&foil, joukowski_angle(&foil, end)) : foil.tail / 2);
+        return edge;
+    }
 
-    for (int pieces = 1; pieces <= MOST_PIECES; pieces *= 2) {
-        double change = 0;
+    const double to = k + 1 < n_edges ? end : fish->length;
+    const double first = from > 0 ? joukowski_angle(&foil, from) : M_PI, last = joukowski_angle(&foil, to);
+    const double span = first - last;
+    double node[N], weight[N], mean[3] = {0}, before[3] = {0}, change = INFINITY;
+    quadrature_legendre(N, node, weight);
+    // to the rounding of the arc coordinates behind the angles
+    for (int pieces = 1; pieces <= MOST_PIECES && !(change < 1e-12); pieces *= 2) {
         for (int p = 0; p < 3; p++) mean[p] = 0;
         for (int i = 0; i < pieces * N; i++) {
             const double theta = last + span * (i / N + node[i % N]) / pieces;
-            const double h = 2 * joukowski_half_thickness(foil, theta);
-            const double part = weight[i % N] * span / pieces * joukowski_stretch(foil, theta) / (to - from);
+            const double h = 2 * joukowski_half_thickness(&foil, theta);
+
+            // -ds/dtheta
+            const double re = r0 * (cos(theta) + d), im = r0 * sin(theta), square = re * re + im * im, c = foil.c;
+            const double stretch = im * (1 + c * c / square) - re * c * c * 2 * r0 * d * im / (square * square);
+            const double part = weight[i % N] * span / pieces * stretch / (to - from);
             mean[0] += part * h;
             mean[1] += part * h * h;
             mean[2] += part * h * h * h;
         }
 
+        change = 0;
         for (int p = 0; p < 3; p++) {
             change = fmax(change, fabs(mean[p] - before[p]) / mean[p]);
             before[p] = mean[p];
         }
-
-        // rounding of the arc coordinates behind the angles
-        if (change < 1e-12) return;
-    }
-}
-
-static struct profile_edge joukowski_edge(const struct fish_parameters *fish, int k) {
-    const int n_edges = fish->nodes - 1;
-    const double edge_length = fish->length / n_edges, from = k * edge_length, to = (k + 1) * edge_length;
-    const struct joukowski foil = joukowski(fish);
-    struct profile_edge edge = {.w = fish->body.depth * fish->length, .square = 1, .cube = 1};
-
-    if (fish->body.section == SECTION_MEAN) {
-        double mean[3];
-        joukowski_means(&foil, from, k + 1 < n_edges ? to : fish->length, mean);
-        edge.h = mean[0];
-        edge.square = mean[1] / (mean[0] * mean[0]);
-        edge.cube = mean[2] / (mean[0] * mean[0] * mean[0]);
-    } else {
-        // the thickness of nose and tail is exact, independent of the rounding of the last arc coordinate
-        edge.h = (k > 0 ? joukowski_half_thickness(&foil, joukowski_angle(&foil, from)) : 0) +
-                 (k + 1 < n_edges ? joukowski_half_thickness(&foil, joukowski_angle(&foil, to)) : foil.tail / 2);
     }
 
+    edge.h = mean[0];
+    edge.square = mean[1] / (mean[0] * mean[0]);
+    edge.cube = mean[2] / (mean[0] * mean[0] * mean[0]);
     return edge;
 }
 

@@ -6,7 +6,7 @@
 #ifndef SHAPE_H
 #define SHAPE_H
 
-#include "base/status.h"
+#include "base/arena.h"
 #include "fish/parameters.h"
 
 /* A weighted sum over nodes. Point of the body: the weights add to 1. Vector along the body: the weights add to 0. */
@@ -25,9 +25,8 @@ struct tangent {
 struct curve;
 
 /* n_polygon, n_smooth: largest number of stencils on the polygon and on the smooth curve; the smooth curve needs at
- * least four nodes. Fails with STATUS_MEMORY; curve_free accepts NULL. */
-enum status curve_create(struct curve **curve, int n_nodes, int n_polygon, int n_smooth);
-void curve_free(struct curve *curve);
+ * least four nodes. */
+struct curve *curve_create(struct arena *arena, int n_nodes, int n_polygon, int n_smooth);
 
 /* The point u of the polygon: two nodes. */
 struct stencil curve_polygon_point(struct curve *curve, double u);

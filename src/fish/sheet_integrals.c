@@ -2,15 +2,11 @@
 #include "fish/sheet_integrals.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "base/memory.h"
 #include "base/wide.h"
 #include "fish/shape.h"
-
-static const double pi = 3.14159265358979323846;
 
 /* Gauss points per piece. A piece is at most the distance of two vortices: half a period of the highest term of the
  * series, and the error is below 1e-10 of this term. */
@@ -25,26 +21,6 @@ struct series {
     double *sum;    /* of all vortices j, from the last call of series_circulation or series_strength (n) */
 };
 
-static enum status series_create(struct series *series, int n) {
-    *series = (struct series){.n = n};
-    TRY(MEMORY_NEW(series->cosine, n * (n - 1), "the integrals over a sheet"));
-    TRY(MEMORY_NEW(series->term, n - 1, "the integrals over a sheet"));
-    TRY(MEMORY_NEW(series->sum, n, "the integrals over a sheet"));
-
-    for (int m = 1; m < n; m++) {
-        double *const column = series->cosine + (long)(m - 1) * n;
-        for (int j = 0; j < n; j++) column[j] = (m < n - 1 ? 1 : 0.5) * cos(m * j % (2 * (n - 1)) * pi / (n - 1));
-    }
-
-    return STATUS_OK;
-}
-
-static void series_free(struct series *series) {
-    free(series->cosine);
-    free(series->term);
-    free(series->sum);
-}
-
 static void series_sum(const struct series *series, double constant) {
     for (int j = 0; j < series->n; j++) series->sum[j] = constant;
     wide_multiply(series->n, series->n - 1, series->cosine, series->term, series->sum);
@@ -52,20 +28,14 @@ static void series_sum(const struct series *series, double constant) {
 
 // C_j of all vortices j at theta
 static void series_circulation(const struct series *series, double theta) {
-    for (int m = 1; m < series->n; m++) series->term[m - 1] = 2 / pi * sin(m * theta) / m;
-    series_sum(series, theta / pi);
-}
-
-// G of all vortices j for a control point at theta
-static void series_strength(const struct series *series, double theta) {
-    for (int m = 1; m < series->n; m++) series->term[m - 1] = 2 * cos(m * theta) / (series->n - 1);
-    series_sum(series, 1.0 / (series->n - 1));
+    for (int m = 1; m < series->n; m++) series->term[m - 1] = 2 / M_PI * sin(m * theta) / m;
+    series_sum(series, theta / M_PI);
 }
 
 // the kink for a vortex strength equal to the position: g = sin(theta) (1 - cos(theta)) minus the series of g
 static void kink_fill(struct sheet_integrals *to) {
     const int n = to->n_control;
-    const double h = pi / to->n_control, scale = sin(pi - h) * (1 - cos(pi - h)) * h;
+    const double h = M_PI / to->n_control, scale = sin(M_PI - h) * (1 - cos(M_PI - h)) * h;
     for (int c = 0; c < to->n_control; c++) {
         const double theta = h * (c + 0.5), place = 1 - cos(theta);
         double strength = sin(theta) * place * h, circulation = place * place / 2;
@@ -80,54 +50,55 @@ static void kink_fill(struct sheet_integrals *to) {
     }
 }
 
-/* Partial fractions of b_k b_i' with b_k = c_k/(D (u - k)) and the mean slope M = sum over k of b_k/(u - k), k != i:
+/* Add the momentum of one edge, in pieces of equal length in theta with these Gauss points. Partial fractions of b_k
+ * b_i' with b_k = c_k/(D (u - k)) and the mean slope M = sum over k of b_k/(u - k), k != i:
  *
  *     b_k b_i' = c_k c_i/D^2 1/((u - k)(u - i)) (M - 1/(u - i))                                          m = k - i
  *     P_kij = c_k c_i ((A_k - A_i + E_i)/m - (B_k - B_i)/m^2)
  *     A, B, E: integrals of density C_j/D^2 times M/(u - k), 1/(u - k), 1/(u - k)^2
  *
- * The terms at a point u; the diagonal is b_k b_k', with the slope of the nearest node as minus the sum of all other
- * slopes: exact, without cancellation. */
-static void parts_at(const struct sheet_integrals *to, double u, double weight, double *part) {
-    const int n = to->n_nodes, nearest = (int)(u + 0.5);
-    double *const a = part, *const b = part + n, *const e = part + 2 * n, *const own = part + 3 * n;
-    double sum = 0, mean = 0, slopes = 0;
-    for (int k = 0; k < n; k++) {
-        const double inverse = 1 / (u - k);
-        b[k] = inverse;
-        sum += to->factor[k] * inverse;
-        mean += to->factor[k] * inverse * inverse;
-    }
-    mean /= sum;
-
-    for (int k = 0; k < n; k++) {
-        const double value = to->factor[k] * b[k] / sum, slope = value * (mean - b[k]);
-        own[k] = weight * value * slope;
-        if (k != nearest) slopes += slope;
-    }
-    own[nearest] = -weight * to->factor[nearest] * b[nearest] / sum * slopes;
-
-    const double share = weight / (sum * sum);
-    for (int k = 0; k < n; k++) {
-        a[k] = share * mean * b[k];
-        e[k] = share * b[k] * b[k];
-        b[k] *= share;
-    }
-}
-
-// the momentum of one edge, in pieces of equal length in theta with these Gauss points; part: workspace (4 n_nodes)
-static enum status edge_integrate(struct sheet_integrals *to, const struct series *series, int edge, double density,
-                                  const double *node, const double *gauss, double *part,
-                                  const volatile sig_atomic_t *stop) {
+ * The diagonal is b_k b_k', with the slope of the nearest node as minus the sum of all other slopes: exact, without
+ * cancellation. part: workspace (4 n_nodes). */
+static enum status momentum_add(struct sheet_integrals *to, const struct series *series, int edge, double density,
+                                const double *node, const double *gauss, double *part,
+                                const volatile sig_atomic_t *stop) {
     const int n = to->n_nodes, n_edges = to->n_nodes - 1;
+    double *const a = part, *const b = part + n, *const e = part + 2 * n, *const own = part + 3 * n;
     const double first = acos(1 - 2.0 * edge / n_edges), last = acos(1 - 2.0 * (edge + 1) / n_edges);
-    const int needed = (int)ceil((last - first) / (pi / to->n_control)), n_pieces = needed < 2 ? 2 : needed;
+    const int needed = (int)ceil((last - first) / (M_PI / to->n_control)), n_pieces = needed < 2 ? 2 : needed;
     const double piece = (last - first) / n_pieces;
     for (int p = 0; p < GAUSS * n_pieces; p++) {
         TRY(status_ask(stop));
         const double theta = first + (p / GAUSS + node[p % GAUSS]) * piece;
         const double u = n_edges * (1 - cos(theta)) / 2;
-        parts_at(to, u, density * gauss[p % GAUSS] * piece * n_edges * sin(theta) / 2, part);
+        const double weight = density * gauss[p % GAUSS] * piece * n_edges * sin(theta) / 2;
+
+        // D and M
+        double sum = 0, mean = 0, slopes = 0;
+        for (int k = 0; k < n; k++) {
+            const double inverse = 1 / (u - k);
+            b[k] = inverse;
+            sum += to->factor[k] * inverse;
+            mean += to->factor[k] * inverse * inverse;
+        }
+        mean /= sum;
+
+        // the diagonal
+        const int nearest = (int)(u + 0.5);
+        for (int k = 0; k < n; k++) {
+            const double value = to->factor[k] * b[k] / sum, slope = value * (mean - b[k]);
+            own[k] = weight * value * slope;
+            if (k != nearest) slopes += slope;
+        }
+        own[nearest] = -weight * to->factor[nearest] * b[nearest] / sum * slopes;
+
+        const double share = weight / (sum * sum);
+        for (int k = 0; k < n; k++) {
+            a[k] = share * mean * b[k];
+            e[k] = share * b[k] * b[k];
+            b[k] *= share;
+        }
+
         series_circulation(series, theta);
         for (int j = 0; j < to->n_sheet; j++) {
             wide_multiply(4 * n, 1, part, &series->sum[j], to->part + (long)j * 4 * n);
@@ -136,92 +107,75 @@ static enum status edge_integrate(struct sheet_integrals *to, const struct serie
     return STATUS_OK;
 }
 
-static enum status integrals_fill(struct sheet_integrals *to, const struct series *series, const double *density,
+// fill all integrals; scratch: of the series
+static enum status integrals_fill(struct sheet_integrals *to, struct arena *scratch, const double *density,
                                   const volatile sig_atomic_t *stop) {
-    const size_t n_nodes = (size_t)to->n_nodes, n_sheet = (size_t)to->n_sheet, n_control = (size_t)to->n_control;
-    TRY(MEMORY_NEW(to->part, n_sheet * 4 * n_nodes, "the integrals over a sheet"));
-    TRY(MEMORY_NEW(to->factor, n_nodes, "the integrals over a sheet"));
-    TRY(MEMORY_NEW(to->inverse, 2 * n_nodes - 1, "the integrals over a sheet"));
-    TRY(MEMORY_NEW(to->strength, n_control * n_sheet, "the integrals over a sheet"));
-    TRY(MEMORY_NEW(to->circulation, n_control * n_sheet, "the integrals over a sheet"));
-    TRY(MEMORY_NEW(to->kink_strength, n_control, "the integrals over a sheet"));
-    TRY(MEMORY_NEW(to->kink_circulation, n_control, "the integrals over a sheet"));
-
-    // strength and circulation at the control points
-    for (int c = 0; c < to->n_control; c++) {
-        TRY(status_ask(stop));
-        const double theta = pi * (c + 0.5) / to->n_control;
-        series_strength(series, theta);
-        for (int j = 0; j < to->n_sheet; j++) to->strength[j * to->n_control + c] = series->sum[j];
-        series_circulation(series, theta);
-        for (int j = 0; j < to->n_sheet; j++) to->circulation[j * to->n_control + c] = series->sum[j];
+    const int n = to->n_sheet, n_control = to->n_control, n_nodes = to->n_nodes;
+    struct series series = {.n = n};
+    NEW(scratch, series.cosine, n * (n - 1));
+    NEW(scratch, series.term, n - 1);
+    NEW(scratch, series.sum, n);
+    for (int m = 1; m < n; m++) {
+        double *const column = series.cosine + (long)(m - 1) * n;
+        for (int j = 0; j < n; j++) column[j] = (m < n - 1 ? 1 : 0.5) * cos(m * j % (2 * (n - 1)) * M_PI / (n - 1));
     }
 
+    // strength and circulation at the control points
+    for (int c = 0; c < n_control; c++) {
+        TRY(status_ask(stop));
+        const double theta = M_PI * (c + 0.5) / n_control;
+        for (int m = 1; m < n; m++) series.term[m - 1] = 2 * cos(m * theta) / (n - 1);
+        series_sum(&series, 1.0 / (n - 1));
+        for (int j = 0; j < n; j++) to->strength[j * n_control + c] = series.sum[j];
+        series_circulation(&series, theta);
+        for (int j = 0; j < n; j++) to->circulation[j * n_control + c] = series.sum[j];
+    }
     kink_fill(to);
 
     // momentum
-    curve_smooth_factors(to->n_nodes, to->factor);
-    for (int m = 1; m < to->n_nodes; m++) {
-        to->inverse[to->n_nodes - 1 + m] = 1.0 / m;
-        to->inverse[to->n_nodes - 1 - m] = -1.0 / m;
+    curve_smooth_factors(n_nodes, to->factor);
+    for (int m = 1; m < n_nodes; m++) {
+        to->inverse[n_nodes - 1 + m] = 1.0 / m;
+        to->inverse[n_nodes - 1 - m] = -1.0 / m;
     }
     double *part, node[GAUSS], gauss[GAUSS];
     quadrature_legendre(GAUSS, node, gauss);
-    TRY(MEMORY_NEW(part, 4 * n_nodes, "the integrals over a sheet"));
-    enum status status = STATUS_OK;
-    for (int k = 0; k < to->n_nodes - 1 && status == STATUS_OK; k++) {
-        status = edge_integrate(to, series, k, density[k], node, gauss, part, stop);
-    }
-    free(part);
-    return status;
-}
-
-enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet, const double *density,
-                                   const volatile sig_atomic_t *stop) {
-    *integrals = NULL;
-    struct sheet_integrals *new;
-    TRY(MEMORY_NEW(new, 1, "the integrals over a sheet"));
-    new->n_nodes = n_nodes;
-    new->n_sheet = n_sheet;
-    new->n_control = n_sheet - 1;
-    struct series series;
-    enum status status = series_create(&series, n_sheet);
-    if (status == STATUS_OK) status = integrals_fill(new, &series, density, stop);
-    series_free(&series);
-
-    if (status != STATUS_OK) {
-        sheet_integrals_free(new);
-        return status;
-    }
-
-    *integrals = new;
+    NEW(scratch, part, 4 * n_nodes);
+    for (int k = 0; k < n_nodes - 1; k++) TRY(momentum_add(to, &series, k, density[k], node, gauss, part, stop));
     return STATUS_OK;
 }
 
-void sheet_integrals_free(struct sheet_integrals *integrals) {
-    if (!integrals) return;
-    free(integrals->part);
-    free(integrals->factor);
-    free(integrals->inverse);
-    free(integrals->strength);
-    free(integrals->circulation);
-    free(integrals->kink_strength);
-    free(integrals->kink_circulation);
-    free(integrals);
-}
+enum status sheet_integrals_create(struct arena *arena, struct sheet_integrals **integrals, int n_nodes, int n_sheet,
+                                   const double *density, const volatile sig_atomic_t *stop) {
+    struct sheet_integrals *to;
+    const int n_control = n_sheet - 1;
+    NEW(arena, to, 1);
+    to->n_nodes = n_nodes;
+    to->n_sheet = n_sheet;
+    to->n_control = n_control;
+    NEW(arena, to->part, (long)n_sheet * 4 * n_nodes);
+    NEW(arena, to->factor, n_nodes);
+    NEW(arena, to->inverse, 2 * n_nodes - 1);
+    NEW(arena, to->strength, n_control * n_sheet);
+    NEW(arena, to->circulation, n_control * n_sheet);
+    NEW(arena, to->kink_strength, n_control);
+    NEW(arena, to->kink_circulation, n_control);
 
-static void integrals_multiply(const struct sheet_integrals *integrals, const double *matrix, const double *circulation,
-                               double *sum) {
-    memset(sum, 0, (size_t)integrals->n_control * sizeof *sum);
-    wide_multiply(integrals->n_control, integrals->n_sheet, matrix, circulation, sum);
+    struct arena *const scratch = arena_create(arena, "the series of a sheet");
+    const enum status status = integrals_fill(to, scratch, density, stop);
+    arena_free(scratch);
+    *integrals = status == STATUS_OK ? to : NULL;
+    return status;
 }
 
 void sheet_integrals_around(const struct sheet_integrals *integrals, const double *circulation, double *around) {
-    integrals_multiply(integrals, integrals->strength, circulation, around);
+    memset(around, 0, (size_t)integrals->n_control * sizeof *around);
+    wide_multiply(integrals->n_control, integrals->n_sheet, integrals->strength, circulation, around);
 }
 
 void sheet_integrals_before(const struct sheet_integrals *integrals, const double *circulation, double *before) {
-    integrals_multiply(integrals, integrals->circulation, circulation, before);
+    memset(before, 0, (size_t)integrals->n_control * sizeof *before);
+    wide_multiply(integrals->n_control, integrals->n_sheet, integrals->circulation, circulation, before);
 }
 
 // add P_kij x_i/c_k of one vortex or of a sum over vortices for all nodes k, except k = i

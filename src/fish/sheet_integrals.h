@@ -8,6 +8,7 @@
 
 #include <signal.h>
 
+#include "base/arena.h"
 #include "base/status.h"
 
 struct sheet_integrals {
@@ -25,10 +26,9 @@ struct sheet_integrals {
 };
 
 /* Integrals on the smooth curve; density: fluid density times depth of every edge, kg m-2 (n_nodes - 1). Fails with
- * STATUS_MEMORY, or with STATUS_STOPPED once *stop is not 0 (stop may be NULL). sheet_integrals_free accepts NULL. */
-enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet, const double *density,
-                                   const volatile sig_atomic_t *stop);
-void sheet_integrals_free(struct sheet_integrals *integrals);
+ * STATUS_STOPPED once *stop is not 0 (stop may be NULL). */
+enum status sheet_integrals_create(struct arena *arena, struct sheet_integrals **integrals, int n_nodes, int n_sheet,
+                                   const double *density, const volatile sig_atomic_t *stop);
 
 /* Of a sheet with the given circulations (n_sheet), m2 s-1: Q_c, the circulation of the interval around each control
  * point (n_control), and the circulation between the nose and each control point (n_control). */

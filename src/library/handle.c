@@ -161,26 +161,18 @@ enum status handle_renew(struct shoal *run) {
     return status;
 }
 
-static void release_school(void *held) {
-    fish_school_free(*(struct school **)held);
-}
-
 enum status handle_take_up(struct shoal *run,
                            enum status (*fill)(struct state *state, const struct school *school, const void *from),
                            const void *from, const struct integrator_counts *totals) {
     const struct case_values *const values = &run->shared->values;
     struct school_parameters parameters = values->school;
     parameters.stop = handle_stop;
-    struct school **held, *school;
-    NEW(run->arena, held, 1);
-    arena_defer(run->arena, release_school, held);
-    TRY(fish_school_create(held, &parameters));
-    struct state *const state = state_create(run->arena, *held);
-    TRY(fill(state, *held, from));
+    struct school *school;
+    TRY(fish_school_create(run->arena, &school, &parameters));
+    struct state *const state = state_create(run->arena, school);
+    TRY(fill(state, school, from));
 
     // the simulation owns school and state
-    school = *held;
-    *held = NULL;
     TRY(simulate_take_up(run->arena, &run->simulation, values, school, state, totals));
     run->is_renewed = true;
     run->when_reached = *totals;

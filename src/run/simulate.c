@@ -37,18 +37,12 @@ static void simulation_set_order(struct simulation *simulation, const struct cas
     simulation->options.order = are_soft ? 5 : 3;
 }
 
-static void simulation_release(void *object) {
-    struct simulation *const simulation = object;
-    fish_school_free(simulation->school);
-}
-
 // an empty simulation of a case
 static struct simulation *simulation_begin(struct arena *parent, const struct case_values *values) {
     struct arena *const arena = arena_create(parent, "a simulation");
     struct simulation *new;
     NEW(arena, new, 1);
     new->arena = arena;
-    arena_defer(arena, simulation_release, new);
     new->started = clock_seconds(CLOCK_MONOTONIC);
     new->n_events = lround(values->time.end / values->school.shedding_interval);
     new->integrator = integrator_of(values->solver.method);
@@ -77,7 +71,7 @@ enum status simulate_start(struct arena *parent, struct simulation **started, co
     simulation->stop = stop;
     struct school_parameters parameters = values->school;
     parameters.stop = stop;
-    TRY(fish_school_create(&simulation->school, &parameters));
+    TRY(fish_school_create(simulation->arena, &simulation->school, &parameters));
     simulation_set_order(simulation, values);
     simulation->state = state_create(simulation->arena, simulation->school);
     TRY(status_ask(stop));
@@ -111,6 +105,7 @@ enum status simulate_take_up(struct arena *parent, struct simulation **simulatio
     struct simulation *const new = *simulation = simulation_begin(parent, values);
     new->school = school;
     new->state = state;
+    arena_move(school->arena, new->arena);
     arena_move(state->arena, new->arena);
     new->totals = *totals;
     simulation_set_order(new, values);

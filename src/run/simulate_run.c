@@ -270,13 +270,11 @@ static enum status resume_case(struct resume *resume, const struct simulate_chan
 static enum status resume_take_up(struct resume *resume) {
     struct run *const run = &resume->run;
     struct school *school = NULL;
-    TRY(fish_school_create(&school, &run->values->school));
+    TRY(fish_school_create(run->arena, &school, &run->values->school));
     struct state *const state = state_create(run->arena, school);
     const enum status status = checkpoint_set_state(&resume->checkpoint, state, school);
     if (status != STATUS_OK) {
         status_fail(status, "the checkpoint of %s cannot be used: %s", resume->result, status_message());
-        state_free(state);
-        fish_school_free(school);
         return status;
     }
 

@@ -24,7 +24,7 @@ static double constraint_power(struct residual *residual, int f, double t, const
     memcpy(force, fish->load_tip, sizeof fish->load_tip);
     if (fish->motion.prescribed == PRESCRIBED_NONE) return power;
 
-    power += clamp_driving_power(fish, t, y);
+    power += clamp_terms(fish, t, y).driving_power;
     double *const reaction = residual->scratch;
     residual_reaction(residual, f, y, residual->state->yp, reaction);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
@@ -85,7 +85,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
 
     // internal powers, constraints
     const double actuation = rod_actuation_power(fish, &muscle, strains.stress);
-    const double damping = rod_damping_power(fish, strains.rate) + clamp_damping_power(fish, t, y);
+    const double damping = rod_damping_power(fish, strains.rate) + clamp_terms(fish, t, y).damping_power;
     double driving_force[2];
     const double driving = constraint_power(residual, f, t, y, driving_force);
 
@@ -97,7 +97,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
                                       .wake = fluid.wake,
                                       .pressure = pressure.pressure_power,
                                       .suction = pressure.suction_power,
-                                      .contact = contact_power(residual->contact, f, y),
+                                      .contact = contact_terms(residual->contact, f, y).power,
                                       .driving = driving};
 
     // the powers in the frame of the external flow at the centre of mass; without external flow both frames agree
@@ -123,10 +123,11 @@ struct diagnostics_energies diagnostics_energies(struct residual *residual, int 
         const double vx = y[fish->at.vx + k], vy = y[fish->at.vy + k];
         kinetic += fish->mass[k] * (vx * vx + vy * vy) / 2;
     }
-    return (struct diagnostics_energies){.kinetic = kinetic,
-                                         .bending = rod_bending_energy(fish, strains.strain) + clamp_energy(fish, t, y),
-                                         .stretching = rod_stretching_energy(fish, strains.strain),
-                                         .contact = contact_energy(residual->contact, f, y)};
+    return (struct diagnostics_energies){
+        .kinetic = kinetic,
+        .bending = rod_bending_energy(fish, strains.strain) + clamp_terms(fish, t, y).energy,
+        .stretching = rod_stretching_energy(fish, strains.strain),
+        .contact = contact_terms(residual->contact, f, y).energy};
 }
 
 double diagnostics_energy(struct residual *residual, int f, double t, const double *y) {

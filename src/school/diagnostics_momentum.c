@@ -61,10 +61,10 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     to->thrust = force[0] * ahead[0] + force[1] * ahead[1];
 
     // constraint forces: reactions of prescribed nodes; moment of the reactions plus the moment of the clamp
-    const struct contact_forces contact = contact_forces(residual->contact, f, y);
+    const struct contact_terms contact = contact_terms(residual->contact, f, y);
     memcpy(to->contact_force, contact.force, sizeof to->contact_force);
     to->constraint_force[0] = to->constraint_force[1] = 0;
-    to->constraint_moment = clamp_moment(fish, t, y);
+    to->constraint_moment = clamp_terms(fish, t, y).moment;
     if (!is_prescribed) return;
     double *const reaction = residual->scratch;
     residual_reaction(residual, f, y, residual->state->yp, reaction);
@@ -206,12 +206,12 @@ static void external_force(struct residual *residual, int f, double t, const dou
     const struct fish *const fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const struct fluid_forces fluid = fluid_force_sum(fish, &flow, (const double[2]){0, 0}, y);
-    const struct contact_forces contact = contact_forces(residual->contact, f, y);
+    const struct contact_terms contact = contact_terms(residual->contact, f, y);
 
     double tail[2];
     place_of_tail(fish, y, tail);
     for (int i = 0; i < 2; i++) force[i] = fluid.resistive[i] + contact.force[i];
-    force[2] = fluid.resistive_moment + contact.moment + clamp_moment(fish, t, y);
+    force[2] = fluid.resistive_moment + contact.moment + clamp_terms(fish, t, y).moment;
     add_with_moment(force, tail[0], tail[1], fish->load_tip[0], fish->load_tip[1]);
 
     if (residual->pressure[f]) {

@@ -534,7 +534,7 @@ static enum status plan_points(struct error_sweep *sweep) {
     for (int p = 0; p < sweep->n_points; p++) {
         struct error_study *const point = &sweep->point[p];
         struct school *school;
-        TRY(fish_school_create(&school, &point->values->school));
+        TRY(fish_school_create(sweep->arena, &school, &point->values->school));
         for (int f = point->n_fish - 1; f >= 0; f--) {
             if (school->fish[f].period > 0) point->beat = school->fish[f].period;
         }

@@ -193,7 +193,8 @@ static void grid_write_all(struct netcdf_writer *writer, const struct field *fie
             const double thickness = (int)k < fish->n_edges ? fish->thickness[k] : NAN;
             netcdf_write_doubles(writer, THICKNESS, (const size_t[]){at, k}, (const size_t[]){1, 1}, &thickness);
         }
-        netcdf_write(writer, MEAN_SECTION, (const size_t[]){at}, (const size_t[]){1}, &fish->has_mean_section);
+        netcdf_write(writer, MEAN_SECTION, (const size_t[]){at}, (const size_t[]){1},
+                     &(const int){fish->has_mean_section});
         netcdf_write(writer, N_NODES, (const size_t[]){at}, (const size_t[]){1}, &fish->n_nodes);
         for (size_t i = 0; i < length[NAME_AXIS]; i++) {
             const char letter = i < strlen(fish->name) ? fish->name[i] : '\0';

@@ -209,7 +209,6 @@ static enum status field_read_row(struct arena *arena, struct reading *reading, 
 
 static void field_row_release(void *object) {
     struct field_row *const row = object;
-    fish_school_free(row->school);
     case_free(&row->values);
 }
 
@@ -234,7 +233,7 @@ enum status field_row_read(struct arena *arena, struct field_row **new, const ch
     TRY(netcdf_attribute(&reading->file, "case_effective", &effective));
     row->effective = arena_text(arena, "%s", effective);
     TRY(case_parse(&row->values, effective, strlen(effective), path, NULL, n_assignments, assignments));
-    TRY(fish_school_create(&row->school, &row->values.school));
+    TRY(fish_school_create(arena, &row->school, &row->values.school));
     row->state = state_create(arena, row->school);
 
     TRY(field_read_row(scratch, reading, t, row));

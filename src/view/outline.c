@@ -59,8 +59,8 @@ struct outline outline_create(struct arena *arena, int n_nodes, const double *th
     NEW(arena, outline.half, OUTLINE_POINTS);
 
     // weights of the nodes
-    struct curve *curve;
-    if (curve_create(&curve, n, 0, 2 * OUTLINE_POINTS) != STATUS_OK) arena_lack(arena, 0);
+    struct arena *const temporary = arena_create(arena, "the line of a body");
+    struct curve *const curve = curve_create(temporary, n, 0, 2 * OUTLINE_POINTS);
     for (int i = 0; i < OUTLINE_POINTS; i++) {
         // the last point is the last node, however the cosine is rounded
         const double part = (1 - cos(M_PI * i / (OUTLINE_POINTS - 1))) / 2;
@@ -72,7 +72,7 @@ struct outline outline_create(struct arena *arena, int n_nodes, const double *th
         }
     }
 
-    curve_free(curve);
+    arena_free(temporary);
 
     // thickness between the edges
     double *scratch;

@@ -50,14 +50,14 @@ TEST(force_is_minus_the_gradient_of_the_energy) {
     for (int i = 0; i < 2 * fish->n_nodes; i++) {
         const double here = y[i];
         y[i] = here + h;
-        const double high = clamp_energy(fish, setup.t, y);
+        const double high = clamp_terms(fish, setup.t, y).energy;
         y[i] = here - h;
-        const double low = clamp_energy(fish, setup.t, y);
+        const double low = clamp_terms(fish, setup.t, y).energy;
         y[i] = here;
         // truncation and rounding of the differences
         NEAR(setup.value[fish->at.ax + i], (high - low) / (2 * h), 1e-5, 1e-6);
     }
-    ABOVE(clamp_energy(fish, setup.t, y), 0.1);
+    ABOVE(clamp_terms(fish, setup.t, y).energy, 0.1);
 }
 
 TEST(powers_are_what_the_energy_and_the_nodes_do_not_take_up) {
@@ -72,10 +72,11 @@ TEST(powers_are_what_the_energy_and_the_nodes_do_not_take_up) {
         for (int i = 0; i < 2 * fish->n_nodes; i++) moved[side][i] += (side == 0 ? -h : h) * y[fish->at.vx + i];
     }
     const double rate =
-        (clamp_energy(fish, setup.t + h, moved[1]) - clamp_energy(fish, setup.t - h, moved[0])) / (2 * h);
+        (clamp_terms(fish, setup.t + h, moved[1]).energy - clamp_terms(fish, setup.t - h, moved[0]).energy) / (2 * h);
     clamp_residual(fish, setup.t, y, setup.value);
     for (int i = 0; i < 2 * fish->n_nodes; i++) power -= setup.value[fish->at.ax + i] * y[fish->at.vx + i];
-    const double damping = clamp_damping_power(fish, setup.t, y), driving = clamp_driving_power(fish, setup.t, y);
+    const double damping = clamp_terms(fish, setup.t, y).damping_power,
+                 driving = clamp_terms(fish, setup.t, y).driving_power;
     BELOW(damping, 0);
     ABOVE(fabs(driving), 1e-3);
     NEAR(rate, -power + damping + driving, 1e-5, 1e-6);
@@ -111,7 +112,7 @@ TEST(head_has_one_prescribed_node_and_published_sections_two) {
     for (int f = 0; f < 3; f++) {
         assert_int_equal(fish_n_prescribed(&fish[f]), n[f]);
         assert_int_equal(fish[f].has_clamp, has_clamp[f]);
-        NEAR(clamp_energy(&fish[f], 0.1, setup.state->y), 0, has_clamp[f] ? INFINITY : 0, 0);
+        NEAR(clamp_terms(&fish[f], 0.1, setup.state->y).energy, 0, has_clamp[f] ? INFINITY : 0, 0);
     }
 }
 
@@ -216,5 +217,5 @@ TEST(moment_of_a_tilt_is_that_of_half_a_cell) {
     const double angle = 0.1;
     y[fish->at.x + 1] = cos(angle) / 6;
     y[fish->at.y + 1] = sin(angle) / 6;
-    NEAR(clamp_energy(fish, 0, y), stiffness / 2 * pow(2 * tan(angle / 2), 2), 0, 1e-12);
+    NEAR(clamp_terms(fish, 0, y).energy, stiffness / 2 * pow(2 * tan(angle / 2), 2), 0, 1e-12);
 }

@@ -33,14 +33,14 @@ TEST(nobody_repels_what_is_farther_than_the_range) {
         for (int f = 0; f < 2; f++) {
             assert_int_equal(contact_partners(contact, f, &other), cases[i].n);
             for (int k = 0; k < cases[i].n; k++) assert_int_equal(other[k], 1 - f);
-            assert_int_equal(contact_energy(contact, f, setup.state->y) > 0, cases[i].n);
+            assert_int_equal(contact_terms(contact, f, setup.state->y).energy > 0, cases[i].n);
         }
     }
 }
 
 static double energy_of_school(struct setup *setup, const double *y) {
     double energy = 0;
-    for (int f = 0; f < setup->school->n_fish; f++) energy += contact_energy(setup->residual->contact, f, y);
+    for (int f = 0; f < setup->school->n_fish; f++) energy += contact_terms(setup->residual->contact, f, y).energy;
     return energy;
 }
 
@@ -84,12 +84,12 @@ TEST(forces_and_powers_of_all_add_up_to_nothing) {
     for (int f = 0; f < 3; f++) {
         const struct fish *const fish = &setup.school->fish[f];
         double force[2];
-        const struct contact_forces on = contact_forces(contact, f, y);
+        const struct contact_terms on = contact_terms(contact, f, y);
         memcpy(force, on.force, sizeof force);
         for (int i = 0; i < 2; i++) sum[i] += force[i];
         size = fmax(size, hypot(force[0], force[1]));
-        power += contact_power(contact, f, y);
-        largest = fmax(largest, fabs(contact_power(contact, f, y)));
+        power += contact_terms(contact, f, y).power;
+        largest = fmax(largest, fabs(contact_terms(contact, f, y).power));
         memset(setup.value, 0, (size_t)setup.school->n_unknowns * sizeof *setup.value);
         contact_residual(contact, f, y, setup.value);
         double own = 0;
@@ -133,13 +133,13 @@ TEST(walls_push_with_the_gradient_of_the_energy) {
             sum[i / fish->n_nodes] -= setup.value[fish->at.ax + i];
             n += fabs(gradient) > 0.1;
         }
-        const struct contact_forces on = contact_forces(contact, f, y);
+        const struct contact_terms on = contact_terms(contact, f, y);
         memcpy(force, on.force, sizeof force);
         NEAR_ARRAY(2, force, sum, 1e-13, 1e-13);
         NEAR(force[0], 0, 0, 0);
         NEAR(on.moment, moment, 1e-12, 1e-12);
         // a wall is at rest: no power
-        NEAR(contact_power(contact, f, y), 0, 0, 0);
+        NEAR(contact_terms(contact, f, y).power, 0, 0, 0);
     }
     ABOVE(n, 5);
 }
@@ -163,7 +163,7 @@ TEST(the_energy_above_walls_is_that_of_all_ends) {
         }
     }
     ABOVE(want, 1e-3);
-    NEAR(contact_energy(setup.residual->contact, 0, y), want, 0, 1e-12);
+    NEAR(contact_terms(setup.residual->contact, 0, y).energy, want, 0, 1e-12);
 }
 
 TEST(two_bodies_with_given_motions_pass_through_each_other) {

@@ -206,7 +206,7 @@ TEST(overlapping_fish_are_refused) {
     struct case_values values;
     school_settings(&values, TIME "fish: [{}, {start: {position: [0.3, 0.05]}}]\n");
     struct school *school = (struct school *)&values;
-    assert_int_equal(fish_school_create(&school, &values.school), STATUS_CASE);
+    assert_int_equal(fish_school_create(NULL, &school, &values.school), STATUS_CASE);
     assert_null(school);
     assert_non_null(strstr(status_message(), "overlap"));
     case_free(&values);
@@ -234,7 +234,7 @@ TEST(fish_that_begin_beyond_a_wall_are_refused) {
         struct case_values values;
         school_settings(&values, text);
         struct school *school;
-        assert_int_equal(fish_school_create(&school, &values.school), cases[i].status);
+        assert_int_equal(fish_school_create(NULL, &school, &values.school), cases[i].status);
         if (cases[i].status != STATUS_OK) assert_non_null(strstr(status_message(), "wall"));
         fish_school_free(school);
         case_free(&values);
@@ -330,7 +330,7 @@ TEST(bodies_in_boxes_apart_are_not_compared_edge_by_edge) {
     struct school *school;
     school_settings(&values, text);
     n_hypot = 0;
-    school_ok(fish_school_create(&school, &values.school));
+    school_ok(fish_school_create(NULL, &school, &values.school));
     const int per_pair = 4 * school->fish->n_edges * school->fish->n_edges;
     BELOW(n_hypot, per_pair);
     fish_school_free(school);

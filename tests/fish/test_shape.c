@@ -1,16 +1,9 @@
 /* test_shape.c: points and tangents of the polygon and of the smooth curve: doc/model.md, section 6. */
-#include "failing_malloc.h"
 #include "fish/shape.h"
 #include "near.h"
 #include "school.h"
 
 static const double pi = 3.14159265358979323846;
-
-static struct curve *make(int n_nodes, int n) {
-    struct curve *curve;
-    assert_int_equal(curve_create(&curve, n_nodes, n, n), STATUS_OK);
-    return curve;
-}
 
 static double sum(const struct stencil *stencil, const double *value) {
     double total = 0;
@@ -21,18 +14,20 @@ static double sum(const struct stencil *stencil, const double *value) {
 TEST(polygon_is_straight_between_two_nodes) {
     const double value[] = {2, 5, 3, -1};
     const double u[] = {0, 0.25, 1, 1.5, 2.75, 3}, want[] = {2, 2.75, 5, 4, 0, -1};
-    struct curve *curve = make(4, 6);
+    struct arena *const arena = arena_create(NULL, "a test");
+    struct curve *const curve = curve_create(arena, 4, 6, 6);
     for (int i = 0; i < 6; i++) {
         const struct stencil point = curve_polygon_point(curve, u[i]);
         assert_int_equal(point.n, 2);
         NEAR(sum(&point, value), want[i], 0, 0);
     }
-    curve_free(curve);
+    arena_free(arena);
 }
 
 TEST(middles_of_the_polygon_hold_each_node_once) {
     const double value[] = {2, 5, 3, -1};
-    struct curve *curve = make(4, 6);
+    struct arena *const arena = arena_create(NULL, "a test");
+    struct curve *const curve = curve_create(arena, 4, 6, 6);
     const struct stencil a = curve_polygon_point(curve, 0.25), b = curve_polygon_point(curve, 0.75),
                          c = curve_polygon_point(curve, 1.5), d = curve_polygon_point(curve, 2.75);
     const struct stencil one_edge = curve_polygon_middle(curve, &a, &b), two = curve_polygon_middle(curve, &b, &c),
@@ -45,7 +40,7 @@ TEST(middles_of_the_polygon_hold_each_node_once) {
     const struct stencil far = curve_polygon_middle(curve, &a, &d);
     assert_int_equal(far.n, 4);
     NEAR(sum(&far, value), 1.375, 0, 0);
-    curve_free(curve);
+    arena_free(arena);
 }
 
 // positions between nodes, on nodes, and as close to nodes as rounding permits
@@ -54,7 +49,8 @@ enum { N_PLACES = sizeof places / sizeof *places };
 
 TEST(smooth_curve_reproduces_cubics_and_their_slopes) {
     for (int n = 4; n <= 40; n += 3) {
-        struct curve *curve = make(n, 2 * N_PLACES);
+        struct arena *const arena = arena_create(NULL, "a test");
+        struct curve *const curve = curve_create(arena, n, 2 * N_PLACES, 2 * N_PLACES);
         for (int i = 0; i < N_PLACES; i++) {
             const double u = places[i] * (n - 1) / 3;
             const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
@@ -71,23 +67,25 @@ TEST(smooth_curve_reproduces_cubics_and_their_slopes) {
             NEAR(sum(&slope, constant), 0, 1e-14, 0);
             NEAR(sum(&slope, cubic) * (n - 1), -1 - s * (1.4 - 6 * s), 1e-13 * n, 0);
         }
-        curve_free(curve);
+        arena_free(arena);
     }
 }
 
 TEST(smooth_curve_goes_through_its_nodes) {
-    struct curve *curve = make(9, 9);
+    struct arena *const arena = arena_create(NULL, "a test");
+    struct curve *const curve = curve_create(arena, 9, 9, 9);
     for (int k = 0; k < 9; k++) {
         const struct stencil point = curve_smooth_point(curve, k);
         for (int i = 0; i < 9; i++) NEAR(point.weight[i], i == k, 0, 0);
     }
-    curve_free(curve);
+    arena_free(arena);
 }
 
 TEST(slope_is_the_derivative_of_the_point) {
     const double h = 1e-3;
     for (int n = 4; n <= 13; n += 3) {
-        struct curve *curve = make(n, 1000);
+        struct arena *const arena = arena_create(NULL, "a test");
+        struct curve *const curve = curve_create(arena, n, 1000, 1000);
         for (double u = 0.05; u < n - 1; u += 0.19) {
             const struct stencil slope = curve_smooth_slope(curve, u);
             const struct stencil at[4] = {curve_smooth_point(curve, u - 2 * h), curve_smooth_point(curve, u - h),
@@ -99,7 +97,7 @@ TEST(slope_is_the_derivative_of_the_point) {
                 NEAR(slope.weight[k], difference, 1e-10, 0);
             }
         }
-        curve_free(curve);
+        arena_free(arena);
     }
 }
 
@@ -110,39 +108,20 @@ static double error_of_arc(int n) {
         x[k] = cos(pi * k / (n - 1));
         y[k] = sin(pi * k / (n - 1));
     }
-    struct curve *curve = make(n, 10 * n);
+    struct arena *const arena = arena_create(NULL, "a test");
+    struct curve *const curve = curve_create(arena, n, 10 * n, 10 * n);
     for (int i = 0; i < 10 * (n - 1); i++) {
         const double u = 0.1 * i + 0.05;
         const struct stencil point = curve_smooth_point(curve, u);
         largest = fmax(largest, hypot(sum(&point, x) - cos(pi * u / (n - 1)), sum(&point, y) - sin(pi * u / (n - 1))));
     }
-    curve_free(curve);
+    arena_free(arena);
     return largest;
 }
 
 TEST(smooth_curve_is_of_fourth_order) {
     const double coarse = error_of_arc(41), fine = error_of_arc(81);
     assert_in_range((int)(100 * log2(coarse / fine)), 380, 420);
-}
-
-TEST(missing_memory_is_reported_and_leaks_nothing) {
-    const int before = n_live;
-    int n_failures = 0;
-    for (enum status status = STATUS_MEMORY; status != STATUS_OK; n_failures++) {
-        struct curve *curve;
-        n_until_failure = n_failures;
-        status = curve_create(&curve, 7, 3, 3);
-        n_until_failure = -1;
-        if (status == STATUS_OK) {
-            curve_free(curve);
-            continue;
-        }
-        assert_int_equal(status, STATUS_MEMORY);
-        assert_null(curve);
-        assert_int_equal(n_live, before);
-    }
-    ABOVE(n_failures, 1);
-    curve_free(NULL);
 }
 
 // ---- the outline of a body and the section of its edges: doc/model.md, section 1

@@ -83,7 +83,7 @@ static void read_state(const struct checkpoint *checkpoint) {
     if (status != STATUS_OK) return;
     struct school *school = NULL;
     struct state *state = NULL;
-    if (is_small(&values.school) && (status = fish_school_create(&school, &values.school)) == STATUS_OK) {
+    if (is_small(&values.school) && (status = fish_school_create(NULL, &school, &values.school)) == STATUS_OK) {
         state = state_create(NULL, school);
         status = checkpoint_set_state(checkpoint, state, school);
     }

@@ -459,11 +459,11 @@ TEST_GROUP(make_path, remove_path)
 
 static int n_schools;
 
-enum status __real_fish_school_create(struct school **school, const void *parameters);
-enum status __wrap_fish_school_create(struct school **school, const void *parameters);
-enum status __wrap_fish_school_create(struct school **school, const void *parameters) {
+enum status __real_fish_school_create(struct arena *parent, struct school **school, const void *parameters);
+enum status __wrap_fish_school_create(struct arena *parent, struct school **school, const void *parameters);
+enum status __wrap_fish_school_create(struct arena *parent, struct school **school, const void *parameters) {
     n_schools++;
-    return __real_fish_school_create(school, parameters);
+    return __real_fish_school_create(parent, school, parameters);
 }
 
 TEST(a_result_that_cannot_be_written_is_told_before_the_start) {

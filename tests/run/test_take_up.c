@@ -63,7 +63,7 @@ static struct simulation *taken_up(const struct simulation *from, const char *te
     struct school *school;
     struct simulation *simulation;
     school_settings(&values, text);
-    school_ok(fish_school_create(&school, &values.school));
+    school_ok(fish_school_create(NULL, &school, &values.school));
     struct state *const state = state_create(NULL, school);
     state_table_copy(state, from->state, school, true);
     school_ok(simulate_take_up(NULL, &simulation, &values, school, state, &from->totals));
