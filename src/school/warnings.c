@@ -92,6 +92,15 @@ static double solution_warning(enum warning warning, const struct subject *subje
             // a bias that follows the beat or its second harmonic reverses up to four times in a period
             return now->bias_reversals / 4;
 
+        case WARNING_STALL:
+            snprintf(line, WARNING_BYTES,
+                     "%s stalls: the flow separates at the nose for %.0f %% of the period (limit 50 %%), and the speed "
+                     "changes by %.0f %% from one beat to the next (limit 10 %%): outside the range of the model; "
+                     "reduce the angle of attack, by less heave or more pitch, or prescribe the speed",
+                     who, 100 * now->separation_share, 100 * now->drift);
+            if (fish->motion.prescribed == PRESCRIBED_NONE || !(fish->suction > 0)) return 0;
+            return smaller(fabs(now->drift) / nearly_steady, now->separation_share / 0.5);
+
         default: return 0;
     }
 }
@@ -152,7 +161,15 @@ static double resolution_warning(enum warning warning, const struct subject *sub
 static double model_warning(enum warning warning, const struct subject *subject, const char *who,
                             char line[WARNING_BYTES]) {
     const struct fish *const fish = &subject->school->fish[subject->f];
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    const struct motion *const motion = &fish->motion;
     double slowest = 0;
+
+    // largest speed of the tail by pitch, and speed through the water
+    const double tail = fabs(motion->pitch) * motion->omega * fabs(fish->length - motion->pivot);
+    const double held = hypot(motion->speed * cos(fish->start_heading) - subject->school->velocity[0],
+                              motion->speed * sin(fish->start_heading) - subject->school->velocity[1]);
+    const double travel = motion->is_held ? held : now->speed;
 
     switch (warning) {
         case WARNING_MODES:
@@ -178,6 +195,18 @@ static double model_warning(enum warning warning, const struct subject *subject,
                      who);
             return subject->school->density > 0 && fish->force == FORCE_PUBLISHED ? always : 0;
 
+        case WARNING_PITCH:
+            snprintf(line, WARNING_BYTES,
+                     "the pitch moves the tail of %s at %.2g of its speed through the water (limit 0.6): beyond the "
+                     "theory of attached flow, the power is up to twice too large; reduce motion.pitch or "
+                     "motion.frequency, or move motion.pivot towards the tail",
+                     who, tail / travel);
+
+            // only at nearly steady speed
+            if (motion->prescribed != PRESCRIBED_ALL || !(subject->school->density > 0)) return 0;
+            if (!motion->is_held && !(fabs(now->drift) < nearly_steady)) return 0;
+            return travel > 0 ? tail / travel / 0.6 : 0;
+
         default: return 0;
     }
 }
@@ -187,7 +216,8 @@ static double (*const of_fish[N_WARNINGS])(enum warning, const struct subject *,
     [WARNING_ENERGY] = solution_warning,   [WARNING_BEATS] = resolution_warning, [WARNING_DRIFT] = solution_warning,
     [WARNING_EVENTS] = resolution_warning, [WARNING_SHEET] = resolution_warning, [WARNING_MODES] = model_warning,
     [WARNING_EDGE] = solution_warning,     [WARNING_CHATTER] = solution_warning, [WARNING_CUSP] = model_warning,
-    [WARNING_TAIL] = resolution_warning,   [WARNING_FORCE] = model_warning,
+    [WARNING_TAIL] = resolution_warning,   [WARNING_FORCE] = model_warning,      [WARNING_PITCH] = model_warning,
+    [WARNING_STALL] = solution_warning,
 };
 
 // ---- divergence
@@ -274,6 +304,8 @@ const struct warning_words warnings_words[N_WARNINGS] = {
          "two edges are longer than (EI/(m_L omega^2))^(1/4), with EI of the last edge and omega of the beat"},
     [WARNING_FORCE] = {"the published force",
                        "may create energy; the other warnings for this fish are contact, crossing and divergence"},
+    [WARNING_PITCH] = {"fast pitch", "prescribed pitch moves the tail at more than 0.6 of the speed through the water"},
+    [WARNING_STALL] = {"a stalled foil", "prescribed motion, drift above 0.1 and separation_share above 0.5"},
 };
 
 // write the line of a warning about the school, if it applies

@@ -21,6 +21,8 @@ enum warning {
     WARNING_CUSP,
     WARNING_TAIL,
     WARNING_FORCE,
+    WARNING_PITCH,
+    WARNING_STALL,
     N_WARNINGS
 };
 enum { WARNING_BYTES = 384 /* of a line */ };

@@ -14,7 +14,7 @@
 
 // the warnings of a simulation, one character each: contact c, a body crosses itself x, divergence i, energy e,
 // momentum o, drift d, events v, sheet s, modes m, leading edge l, controller h, cusp u, few nodes at the
-// tail t, published force p; the runs are short, and the warning of few beats has its own test
+// tail t, published force p, fast pitch f, stalled foil a; the runs are short, and the warning of few beats has its own test
 static void expect_of(struct simulation *simulation, const char *expected) {
     simulate_measure(simulation);
     char line[WARNING_BYTES], found[N_WARNINGS + 1] = "";
@@ -24,7 +24,7 @@ static void expect_of(struct simulation *simulation, const char *expected) {
             continue;
         print_message("%s\n", line);
         assert_null(strchr(line, '\n'));
-        strncat(found, &"cxieo-dvsmlhutp"[w], 1);
+        strncat(found, &"cxieo-dvsmlhutpfa"[w], 1);
     }
     assert_string_equal(found, expected);
 }
@@ -139,7 +139,7 @@ TEST(an_open_energy_balance_is_told) {
     expect_warnings(SCHOOL_DEFAULTS
                     "time: {end: 10, shedding_interval: 0.5, output_interval: 0.5}\nfish: [{force: reactive, wave: "
                     "{amplitude: 0}, motion: {prescribed: all, speed: 1, pitch: 10, frequency: 1}}]\n",
-                    10, "ev");
+                    10, "evf");
 }
 
 TEST(an_open_energy_balance_is_told_within_the_first_beat) {
@@ -523,4 +523,62 @@ TEST(a_balance_that_is_not_finite_is_open_and_no_row) {
     school_ok(warnings_refuse(unequal->school, unequal->state, unequal->diagnostics));
     unequal->state->t = 5;
     expect_line(unequal, WARNING_MOMENTUM, NULL);
+}
+
+// a plate with the motion of cases/foil_anderson.yaml and this largest speed of the tail by pitch, over its speed
+static int warns_of_pitch(double ratio, const char *motion) {
+    char text[512], line[WARNING_BYTES];
+    // the pivot is two thirds of the chord before the tail
+    const double pitch = ratio * 5.392165 / (2 * M_PI * 2 / 3) * 180 / M_PI;
+    snprintf(text, sizeof text,
+             SCHOOL_DEFAULTS
+             "time: {end: 1, shedding_interval: 0.01}\n"
+             "fluid: {density: 1, viscosity: 1.348e-4}\n"
+             "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 5.392165}, wave: {amplitude: 0, "
+             "frequency: 0},\n  body: {profile: uniform, thickness: 0.12}, motion: {%s, pitch: %.17g, "
+             "pivot: 0.333333333, frequency: 1}}]\n",
+             motion, pitch);
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, 0.02);
+    simulate_measure(simulation);
+    const int warns = warnings_line(WARNING_PITCH, simulation->school, simulation->state, simulation->diagnostics,
+                                    simulation->residual->scratch, line);
+    if (warns) assert_non_null(strstr(line, "0.6"));
+    simulate_free(simulation);
+    return warns;
+}
+
+TEST(a_pitch_beyond_attached_flow_is_told) {
+    const char *const prescribed = "prescribed: all, heave: 0.75, pitch_phase: 90";
+    // foil_anderson, and the largest ratio with a power within 12 % of the experiments
+    assert_false(warns_of_pitch(0.3546, prescribed));
+    assert_false(warns_of_pitch(0.599, prescribed));
+    // powers from 9 to 145 % too large
+    assert_true(warns_of_pitch(0.65, prescribed));
+    assert_true(warns_of_pitch(1.4, prescribed));
+    // the tail of a bending body moves by itself
+    assert_false(warns_of_pitch(0.65, "prescribed: head"));
+    // free in surge: not before the speed is steady
+    assert_false(warns_of_pitch(1.4, "prescribed: all, surge: free"));
+}
+
+TEST(a_stalled_foil_is_told) {
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_DEFAULTS TIME "fish: [{motion: {prescribed: all, surge: free, heave: 0.1, frequency: 1}}]\n");
+    school_run(simulation, 0.02);
+    static const struct {
+        double drift, share;
+        int warns;
+    } cases[] = {{0.2, 0.6, 1}, {-0.2, 0.6, 1}, {0.09, 0.9, 0}, {0.9, 0.45, 0}, {NAN, 0.9, 0}, {0.2, NAN, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char line[WARNING_BYTES];
+        simulate_measure(simulation);
+        simulation->diagnostics->fish[0].drift = cases[i].drift;
+        simulation->diagnostics->fish[0].separation_share = cases[i].share;
+        assert_int_equal(warnings_line(WARNING_STALL, simulation->school, simulation->state, simulation->diagnostics,
+                                       simulation->residual->scratch, line),
+                         cases[i].warns);
+        if (cases[i].warns) assert_non_null(strstr(line, "60 %"));
+    }
+    simulate_free(simulation);
 }
