@@ -142,7 +142,7 @@ python_modules = $(shell $(PYTHON) -c 'import site, sys; \
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers figures site soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers figures site soak fuzz fuzz-programs mutants bench size style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -210,6 +210,9 @@ fuzz-programs: $(program) $(fuzz_programs)
 
 bench: $(program) $(bench_programs)  ## measure: inner loops, phases, schools, whole runs (doc/performance.md)
 	@scripts/bench.sh $(B)
+
+size:  ## print lines, files and functions of src, lines of tests, words of the documents (doc/architecture.md)
+	@scripts/size.py
 
 clean:  ## remove everything that was built
 	$(quiet)rm -rf build build-sanitize build-sanitize-clang build-sanitize-thread build-fuzzer

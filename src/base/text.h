@@ -1,4 +1,4 @@
-/* text.h: growing strings, conversion between numbers and strings, tables. Tested by tests/base/test_text.c.
+/* text.h: growing strings, conversion between numbers and strings. Tested by tests/base/test_text.c.
  *
  * Numbers are written and read with a decimal point, independent of the locale of the process. */
 #ifndef TEXT_H
@@ -66,26 +66,5 @@ void text_duration(char text[TEXT_DURATION_BYTES], double seconds);
 /* Write n bytes to a stream in base 64 (RFC 4648, with padding), for files that hold numbers in the middle of text. A
  * failure sets the error indicator of the stream (ferror). */
 void text_print_base64(FILE *stream, size_t n, const void *bytes);
-
-// ---- tables of strings in columns
-
-enum { TEXT_CELL_BYTES = 128 };
-struct text_table {
-    int n_rows, n_columns;
-    int n_left;                    /* the first n_left columns are left-aligned, like the last column */
-    char (*cell)[TEXT_CELL_BYTES]; /* (n_rows, n_columns) */
-};
-
-/* Create a table of empty cells; all columns except the last one are right-aligned. Fails with STATUS_MEMORY. */
-enum status text_table_create(struct text_table *table, int n_rows, int n_columns);
-void text_table_free(struct text_table *table);
-
-/* Fill a cell (printf format; longer text is truncated), or a cell with a number ("-" for NaN). */
-void text_table_set(const struct text_table *table, int row, int column, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-void text_table_number(const struct text_table *table, int row, int column, const char *format, double number);
-
-/* Print all columns with the alignment of each column. */
-void text_table_print(const struct text_table *table, FILE *stream);
 
 #endif

@@ -324,7 +324,7 @@ static void check_body(const struct check *check) {
     const double bias = (int)fish->control.law > CONTROL_NONE ? fish->control.limit : fabs(fish->control.bias);
     const double of_wave = envelope * fabs(wave->amplitude) * (fish->reference_nodes - 1) / (fish->nodes - 1);
     const double turn = wave->table.n > 0 ? curvature / (fish->nodes - 1) + of_wave * bias : of_wave * (1 + bias);
-    complain_if(turn >= 3.14159, check, wave->table.n > 0 ? "fish.wave.table" : "fish.wave.amplitude",
+    complain_if(turn >= M_PI, check, wave->table.n > 0 ? "fish.wave.table" : "fish.wave.amplitude",
                 "the wave turns a joint by up to %.3g rad; the maximum is 3.14", turn);
 }
 

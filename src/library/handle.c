@@ -258,7 +258,7 @@ enum status handle_set_key(const struct simulation *simulation, int fish, const 
     struct control_memory memory = simulation->state->control[fish];
     TRY(change_memory(of, simulation->state, (enum set_key_index)found, n, values, &memory));
     const double turn = fish_largest_turn(of, 1 + memory.amplitude.target, control_largest_bias(of, &memory));
-    if (!(turn < 3.14159)) {
+    if (!(turn < M_PI)) {
         return status_fail(STATUS_CASE, "the wave would turn a joint of %s by up to %.3g rad; it must stay below 3.14",
                            of->name, turn);
     }

@@ -4,8 +4,7 @@
 #include "base/table.h"
 #include "near.h"
 
-static void a_table_grows_by_rows_and_has_no_blanks_at_the_end(void **state) {
-    (void)state;
+TEST(a_table_grows_by_rows_and_has_no_blanks_at_the_end) {
     struct arena *const arena = arena_create(NULL, "a table");
     struct table *const table = table_create(arena, 1);
     table_column(table, "quantity", NULL);
@@ -27,11 +26,4 @@ static void a_table_grows_by_rows_and_has_no_blanks_at_the_end(void **state) {
                         "quantity     fish  status\n            m s-1\nspeed of 2    1.2\n"
                         "cost            -  failed\n");
     arena_free(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_table_grows_by_rows_and_has_no_blanks_at_the_end),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -185,27 +185,6 @@ TEST(a_duration_has_at_least_one_and_a_half_units) {
     }
 }
 
-TEST(columns_are_aligned_without_blanks_at_the_end) {
-    struct text_table table;
-    assert_int_equal(text_table_create(&table, 2, 3), STATUS_OK);
-    table.n_left = 1;
-    text_table_set(&table, 0, 0, "speed of %d", 2);
-    text_table_number(&table, 0, 1, "%.1f", 1.25);
-    text_table_set(&table, 0, 2, "m s-1");
-    text_table_set(&table, 1, 0, "cost");
-    text_table_number(&table, 1, 1, "%.3f", NAN);
-    char written[64] = "";
-    FILE *const stream = fmemopen(written, sizeof written, "w");
-    assert_non_null(stream);
-    text_table_print(&table, stream);
-    fclose(stream);
-    assert_string_equal(written, "speed of 2  1.2  m s-1\ncost          -\n");
-    text_table_free(&table);
-    n_until_failure = 0;
-    assert_int_equal(text_table_create(&table, 2, 3), STATUS_MEMORY);
-    n_until_failure = -1;
-}
-
 TEST(a_string_of_json_has_no_bare_quote_or_control_character) {
     char written[64] = "";
     FILE *const stream = fmemopen(written, sizeof written, "w");

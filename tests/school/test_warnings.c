@@ -14,7 +14,8 @@
 
 // the warnings of a simulation, one character each: contact c, a body crosses itself x, divergence i, energy e,
 // momentum o, drift d, events v, sheet s, modes m, leading edge l, controller h, cusp u, few nodes at the
-// tail t, published force p, fast pitch f, stalled foil a; the runs are short, and the warning of few beats has its own test
+// tail t, published force p, fast pitch f, stalled foil a; the runs are short, and the warning of few beats has its own
+// test
 static void expect_of(struct simulation *simulation, const char *expected) {
     simulate_measure(simulation);
     char line[WARNING_BYTES], found[N_WARNINGS + 1] = "";
