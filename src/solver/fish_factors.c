@@ -129,7 +129,7 @@ struct fish_factors {
     int64_t *split;             /* start of the rows of the sheet in each column of the block  (n) */
     struct sparse_columns rod;  /* A */
     struct dense_factors schur; /* S, later the factors of S                         (order n_sheet) */
-    double *row_scale;          /* the largest entry of each row of the block                  (n) */
+    double *row_scale;          /* one over the largest entry of each row of the block         (n) */
     int first_full, n_full;     /* the columns of A under which C is nearly full */
     double *full;               /* -C of these columns                               (n_full, n_sheet) */
     double *x_rod, *x_sheet;    /* solutions                               (AT_ONCE, n_rod), (n_sheet) */
@@ -205,8 +205,9 @@ void fish_factors_prepare(struct fish_factors *factors) {
 }
 
 // y -= A x for n rows of a column, with or without gaps between the rows
-static void subtract_column(const struct sparse *block, int64_t start, int64_t end, int64_t first_row, double x,
-                            double *restrict y) {
+static inline __attribute__((always_inline)) void subtract_column(const struct sparse *block, int64_t start,
+                                                                  int64_t end, int64_t first_row, double x,
+                                                                  double *restrict y) {
     const int64_t *const row = block->row_index;
     const double *const value = block->value + start;
     const int64_t n = end - start;
@@ -219,13 +220,24 @@ static void subtract_column(const struct sparse *block, int64_t start, int64_t e
 }
 
 // subtract C x from the rows of the sheet, except n_left columns from first_left on; x: unknowns of the rod
-static void subtract_rod(const struct fish_factors *factors, const double *x, int first_left, int n_left,
-                         double *rows) {
+static WIDE(void, subtract_rod,
+            (const struct fish_factors *factors, const double *x, int first_left, int n_left, double *rows),
+            (factors, x, first_left, n_left, rows)) {
     const struct sparse *const block = factors->block;
     for (int c = 0; c < factors->n_rod; c++) {
         if (x[c] == 0 || (c >= first_left && c < first_left + n_left)) continue;
         const int column = factors->first + c;
         subtract_column(block, factors->split[column], block->column_start[column + 1], factors->n_rod, x[c], rows);
+    }
+}
+
+// subtract B y from the rows of the rod; y: unknowns of the sheet
+static WIDE(void, subtract_sheet, (const struct fish_factors *factors, const double *y, double *rows),
+            (factors, y, rows)) {
+    const struct sparse *const block = factors->block;
+    for (int k = 0; k < factors->n_sheet; k++) {
+        const int column = sheet_column(factors, k);
+        subtract_column(block, block->column_start[column], factors->split[column], 0, y[k], rows);
     }
 }
 
@@ -245,7 +257,8 @@ static double fill_columns(struct fish_factors *factors, int first, int n) {
         memset(s, 0, (size_t)factors->schur.stride * sizeof *s);
         for (int64_t i = block->column_start[column]; i < block->column_start[column + 1]; i++) {
             const int64_t row = block->row_index[i];
-            before[k] = fmax(before[k], fabs(block->value[i]) / factors->row_scale[row]);
+            const double size = fabs(block->value[i]) * factors->row_scale[row];
+            before[k] = size > before[k] ? size : before[k];
             *(row < factors->n_rod ? x + row : s + row - factors->n_rod) = block->value[i];
         }
         has_rod |= factors->split[column] > block->column_start[column];
@@ -257,7 +270,8 @@ static double fill_columns(struct fish_factors *factors, int first, int n) {
         if (has_rod) subtract_rod(factors, factors->x_rod + k * factors->n_rod, 0, 0, s);
         double after = 0;
         for (int r = 0; r < factors->n_sheet; r++) {
-            after = fmax(after, fabs(s[r]) / factors->row_scale[factors->n_rod + r]);
+            const double size = fabs(s[r]) * factors->row_scale[factors->n_rod + r];
+            after = size > after ? size : after;
         }
         if (after > 0) least = fmin(least, before[k] / after);
     }
@@ -278,8 +292,10 @@ static enum status factors_set_up_parts(struct fish_factors *factors) {
     memset(factors->row_scale, 0, (size_t)block->n * sizeof *factors->row_scale);
     for (int64_t i = 0; i < block->n_nonzeros; i++) {
         double *const scale = &factors->row_scale[block->row_index[i]];
-        *scale = fmax(*scale, fabs(block->value[i]));
+        const double size = fabs(block->value[i]);
+        *scale = size > *scale ? size : *scale;
     }
+    for (int r = 0; r < block->n; r++) factors->row_scale[r] = 1 / factors->row_scale[r];
     memset(factors->full, 0, (size_t)factors->n_full * (size_t)n * sizeof *factors->full);
     for (int c = 0; c < factors->n_full; c++) {
         const int column = factors->first + factors->first_full + c;
@@ -327,7 +343,6 @@ void fish_factors_solve(struct fish_factors *factors, double *x) {
     }
 
     // unknowns of the sheet: S y = d - C A^-1 b
-    const struct sparse *const block = factors->block;
     const int n = factors->n_sheet;
     double *const rod = factors->x_rod, *const sheet = factors->x_sheet;
     memcpy(rod, x, (size_t)factors->n_rod * sizeof *rod);
@@ -339,10 +354,7 @@ void fish_factors_solve(struct fish_factors *factors, double *x) {
 
     // unknowns of the rod: A z = b - B y
     memcpy(rod, x, (size_t)factors->n_rod * sizeof *rod);
-    for (int k = 0; k < n; k++) {
-        const int column = sheet_column(factors, k);
-        subtract_column(block, block->column_start[column], factors->split[column], 0, sheet[k], rod);
-    }
+    subtract_sheet(factors, sheet, rod);
     sparse_factors_solve(factors->a, 1, rod);
     memcpy(x + factors->first, rod, (size_t)factors->n_rod * sizeof *rod);
     for (int k = 0; k < n; k++) x[sheet_column(factors, k)] = sheet[k];
