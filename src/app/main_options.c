@@ -115,18 +115,6 @@ void main_print_help(const struct command *command, FILE *stream) {
     }
 }
 
-static void describe_option(const struct command *command, const struct option_help *option, FILE *stream) {
-    const char letter[2] = {option->code < OPTION_SET ? (char)option->code : '\0', '\0'};
-    struct text meaning = {0};
-    write_meaning(command, option, &meaning);
-    text_print_member(stream, "{", "letter", *letter ? letter : NULL);
-    text_print_member(stream, ", ", "name", option->name);
-    text_print_member(stream, ", ", "argument", option->argument);
-    text_print_member(stream, ", ", "meaning", meaning.text ? meaning.text : "");
-    fputs("}", stream);
-    text_free(&meaning);
-}
-
 void main_describe(const struct command *command, FILE *stream) {
     text_print_member(stream, "{", "name", command->name);
     text_print_member(stream, ", ", "positional", command->positional);
@@ -134,8 +122,16 @@ void main_describe(const struct command *command, FILE *stream) {
     fputs(", \"options\": [", stream);
 
     for (int i = 0; command->options[i]; i++) {
-        if (i > 0) fputs(",\n  ", stream);
-        describe_option(command, option_of(command->options[i]), stream);
+        const struct option_help *const option = option_of(command->options[i]);
+        const char letter[2] = {option->code < OPTION_SET ? (char)option->code : '\0', '\0'};
+        struct text meaning = {0};
+        write_meaning(command, option, &meaning);
+        text_print_member(stream, i > 0 ? ",\n  {" : "{", "letter", *letter ? letter : NULL);
+        text_print_member(stream, ", ", "name", option->name);
+        text_print_member(stream, ", ", "argument", option->argument);
+        text_print_member(stream, ", ", "meaning", meaning.text ? meaning.text : "");
+        fputs("}", stream);
+        text_free(&meaning);
     }
 
     fputs("]}", stream);

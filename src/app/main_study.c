@@ -138,13 +138,6 @@ static enum status run_errors(const struct case_values *values, const struct req
                           : run_study(&sweep->study, request, folder);
 }
 
-static enum status write_scripts(struct arena *arena, const struct case_values *values, const char *folder,
-                                 int bundle) {
-    struct say_page page;
-    TRY(say_begin(&page));
-    return say_end(&page, stdout, study_slurm(arena, values, folder, bundle, page.stream));
-}
-
 static enum status study_run_in_folder(const struct case_values *values, const struct request *request,
                                        const char *ending) {
     char folder[512];
@@ -159,7 +152,10 @@ static enum status study_run_in_folder(const struct case_values *values, const s
     if (request->plan) {
         return status_fail(STATUS_CASE, "--plan: the case has no `error`; `shoal check` estimates a sweep");
     }
-    return request->slurm ? write_scripts(request->arena, values, place, bundle) : run_study(values, request, place);
+    if (!request->slurm) return run_study(values, request, place);
+    struct say_page page;
+    TRY(say_begin(&page));
+    return say_end(&page, stdout, study_slurm(request->arena, values, place, bundle, page.stream));
 }
 
 enum status main_study(const struct request *request) {
@@ -251,23 +247,6 @@ enum status main_gather(const struct request *request) {
 
 // ---- compare
 
-static enum status run_comparison(const struct case_values *values, const struct request *request,
-                                  const struct compare_options *options, double limit) {
-    struct progress progress;
-    say_progress_start(&progress);
-    const struct study_options run = {.command = request->command_line,
-                                      .limit = limit,
-                                      .progress = request->quiet ? NULL : say_progress_study,
-                                      .data = &progress,
-                                      .stop = main_stop_signal()};
-    main_catch_signals();
-    struct say_page page;
-    TRY(say_begin(&page));
-    const enum status status = study_compare(values, options, &run, page.stream);
-    say_progress_end(&progress);
-    return say_end(&page, request->quiet ? NULL : stdout, status);
-}
-
 enum status main_compare(const struct request *request) {
     struct compare_options options = {.methods = request->methods,
                                       .rtols = request->rtols,
@@ -281,7 +260,18 @@ enum status main_compare(const struct request *request) {
     if (request->output) TRY(target_check(request->output, TARGET_NETCDF, request->force));
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    const enum status status = run_comparison(&values, request, &options, limit);
+    struct progress progress;
+    const struct study_options run = {.command = request->command_line,
+                                      .limit = limit,
+                                      .progress = request->quiet ? NULL : say_progress_study,
+                                      .data = &progress,
+                                      .stop = main_stop_signal()};
+    struct say_page page;
+    say_progress_start(&progress);
+    main_catch_signals();
+    TRY(say_begin(&page));
+    const enum status status = study_compare(&values, &options, &run, page.stream);
+    say_progress_end(&progress);
     case_free(&values);
-    return status;
+    return say_end(&page, request->quiet ? NULL : stdout, status);
 }

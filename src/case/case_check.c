@@ -14,6 +14,9 @@
 
 static const double max_events = 1e9, max_vortices = 1e7 /* of one fish */;
 
+/* More memory than a computer has, and the memory of a vortex [bytes]. */
+static const double max_bytes = 1e12, bytes_per_vortex = 950;
+
 /* Within these bounds a double resolves positions to 1e-9 lengths and phases to 1e-6 cycles. */
 static const double max_lengths = 1e6, max_cycles = 1e9;
 
@@ -146,7 +149,7 @@ static void check_verlet(const struct check *check) {
 
 // ---- wake and fluid
 
-/* Check lifetime and decay, and refuse keys without effect for wake.shedding. */
+/* Check lifetime and decay, refuse keys without effect for wake.shedding, and a school beyond any memory. */
 static void check_wake(const struct check *check) {
     const struct wake_parameters *const wake = &check->values->school.wake;
     const struct sheet_parameters *const sheet = &check->values->school.sheet;
@@ -174,6 +177,18 @@ static void check_wake(const struct check *check) {
                 interval);
     complain_if(n_vortices > max_vortices, check, "wake.lifetime",
                 "%g vortices in the wake of a fish; the maximum is %g", n_vortices, max_vortices);
+
+    // a lower bound of the memory: vortices, and full matrices of the sheets
+    const struct school_parameters *const school = &check->values->school;
+    const double most = case_table_row("fish.sheet_points")->bounds.max;  // more are refused by check_derived
+    double of_sheets = 0;
+    for (int f = 0; f < school->n_fish; f++) of_sheets += 32 * pow(fmin(school->fish[f].sheet_points, most), 2);
+    const double of_wakes = bytes_per_vortex * n_vortices * school->n_fish;
+    complain_if(of_wakes > max_bytes, check, "wake.lifetime", "the wakes of %d fish take %.2g TB; the maximum is %g TB",
+                school->n_fish, 1e-12 * of_wakes, 1e-12 * max_bytes);
+    complain_if(of_sheets > max_bytes, check, "fish.sheet_points",
+                "the sheets of %d fish take %.2g TB; the maximum is %g TB", school->n_fish, 1e-12 * of_sheets,
+                1e-12 * max_bytes);
 }
 
 /* Limit the number of cycles, so that a double resolves the phase until time.end. */

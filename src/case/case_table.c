@@ -44,11 +44,6 @@ static double beat_frequency(const struct fish_parameters *fish) {
     return is_prescribed ? fish->motion.frequency : fish->wave.frequency;
 }
 
-/* The period of the wave [s]; 0 without a wave. */
-static double wave_period(const struct fish_parameters *fish) {
-    return fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
-}
-
 static void derive_case_name(const struct key_place *at) {
     if (at->values->name) return;
     const char *const slash = strrchr(at->origin, '/'), *const from = slash ? slash + 1 : at->origin;
@@ -135,7 +130,8 @@ static void derive_sheet_points(const struct key_place *at) {
 
 /* Set the times in beats: relaxation of the body, ramp of the wave, filter and ramp of the control. */
 static void derive_periods(const struct key_place *at) {
-    const double beat = beat_frequency(at->fish), period = wave_period(at->fish);
+    const double beat = beat_frequency(at->fish), frequency = at->fish->wave.frequency;
+    const double period = frequency > 0 ? 1 / frequency : 0;
     set_default(&at->fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
     set_default(&at->fish->wave.ramp, period);
     set_default(&at->fish->control.filter, period);

@@ -331,6 +331,29 @@ TEST(limits_are_where_the_messages_say) {
     }
 }
 
+TEST(a_school_beyond_any_memory_is_refused) {
+    static const struct {
+        const char *keys, *message;
+        int n_most; /* fish that are accepted */
+    } limits[] = {
+        {"time: {end: 1e5, shedding_interval: 0.01}\nwake: {lifetime: 1e5}\n", "the wakes of 106 fish take 1 TB", 105},
+        {"time: {end: 1}\ndefaults: {fish: {sheet_points: 10000}}\n", "the sheets of 313 fish take 1 TB", 312}};
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
+        for (int n = limits[i].n_most; n <= limits[i].n_most + 1; n++) {
+            struct text text = {0};
+            text_add(&text, "format: 1\n%sfish: [", limits[i].keys);
+            for (int f = 0; f < n; f++) text_add(&text, "{start: {position: [0, %d]}}, ", f);
+            text_add(&text, "]\n");
+            struct case_values values;
+            const enum status status = case_parse(&values, text.text, text.length, "cases/x.yaml", NULL, 0, NULL);
+            assert_int_equal(status, n == limits[i].n_most ? STATUS_OK : STATUS_CASE);
+            if (status != STATUS_OK) assert_non_null(strstr(status_message(), limits[i].message));
+            case_free(&values);
+            text_free(&text);
+        }
+    }
+}
+
 TEST(times_that_do_not_fit_a_given_interval_are_errors) {
     static const char text[] = "format: 1\ntime: {end: 2, shedding_interval: 0.007}\nfish: [{}]\n";
     struct case_values values;
