@@ -28,21 +28,6 @@ enum { MOST_ADDED = 3 };
 
 // ---- order
 
-// by bisection: the ratio of the differences, r^p (s^p - 1)/(r^p - 1), grows with the order p
-static double order_of_ratio(double ratio, double r, double s) {
-    double low = -20, high = 20;
-    while (high - low > 1e-12) {
-        const double p = (low + high) / 2;
-        const double now = fabs(p) < 1e-9 ? log(s) / log(r) : pow(r, p) * (pow(s, p) - 1) / (pow(r, p) - 1);
-        if (now < ratio) {
-            low = p;
-        } else {
-            high = p;
-        }
-    }
-    return (low + high) / 2;
-}
-
 static double distance(const double *a, const double *b) {
     return hypot(a[0] - b[0], a[1] - b[1]);
 }
@@ -52,7 +37,20 @@ double convergence_order(const double *size, const double (*value)[2]) {
     const double least = rounding * fmax(1, hypot(value[0][0], value[0][1]));
     if (!(fine > least)) return NAN;
     if (!(coarse > least)) return -INFINITY;
-    return order_of_ratio(coarse / fine, size[1] / size[0], size[2] / size[1]);
+
+    // by bisection: the ratio of the differences, r^p (s^p - 1)/(r^p - 1), grows with the order p
+    const double r = size[1] / size[0], s = size[2] / size[1];
+    double low = -20, high = 20;
+    while (high - low > 1e-12) {
+        const double p = (low + high) / 2;
+        const double ratio = fabs(p) < 1e-9 ? log(s) / log(r) : pow(r, p) * (pow(s, p) - 1) / (pow(r, p) - 1);
+        if (ratio < coarse / fine) {
+            low = p;
+        } else {
+            high = p;
+        }
+    }
+    return (low + high) / 2;
 }
 
 // ---- the rule

@@ -586,19 +586,15 @@ static enum status study_file_read_members(struct arena *arena, struct reading *
     return STATUS_OK;
 }
 
-static enum status study_file_read_open(struct arena *arena, struct reading *reading, const char *path) {
-    char *text;
-    TRY(netcdf_open(arena, &reading->reader, path));
-    TRY(netcdf_attribute(&reading->reader, "study_case", &text));
-    TRY(study_folder_parse(arena, &reading->study, text, path, 0, NULL));
-    return study_file_read_members(arena, reading);
-}
-
 enum status study_file_read(struct arena *arena, const char *path, struct case_values **study,
                             struct member_file **members, int *n_members) {
     struct reading *reading;
+    char *text;
     NEW(arena, reading, 1);
-    const enum status status = study_file_read_open(arena, reading, path);
+    enum status status = netcdf_open(arena, &reading->reader, path);
+    if (status == STATUS_OK) status = netcdf_attribute(&reading->reader, "study_case", &text);
+    if (status == STATUS_OK) status = study_folder_parse(arena, &reading->study, text, path, 0, NULL);
+    if (status == STATUS_OK) status = study_file_read_members(arena, reading);
     *study = reading->study;
     *members = reading->member;
     *n_members = (int)reading->n_members;
