@@ -460,16 +460,24 @@ def start(bench):
             yield power(modulus), f"{ramp:g}", *(per_event(run) if run else ["failed", "", ""])
 
 
-@table("rtol", "nose or tail [L]", "work of the muscle", "balance over work", *COUNTS)
+@table("start [m/s]", "modulus [Pa]", "1e-4", "3e-5", "1e-5", "1e-6", "half of the interval's")
 def tolerance(bench):
-    """errors of the default fish and cost over solver.rtol"""
-    reference = bench.run(DEFAULT, "time.end=3", "solver.rtol=1e-9", "wake.tolerance=1e-9")
-    work = reference["actuation_work"][-1, 0]
-    for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
-        run = bench.run(DEFAULT, "time.end=3", f"solver.rtol={rtol:g}")
-        balance = abs(run["energy_balance"][-1, 0] / work)
-        yield (power(rtol), short(error_of(run, reference)), short(abs(run["actuation_work"][-1, 0] / work - 1)),
-               short(balance), *per_event(run))
+    """errors over solver.rtol: nose or tail [1e-5 L] / work of the muscle [1e-4] (minutes)"""
+    for speed in (0.79, 0):
+        for modulus in (1e5, 1e6, 1e8, 1e10):
+            keys = ("time.end=5", f"fish[*].start.speed={speed:g}", f"{MODULUS}={modulus:g}")
+
+            def errors(run, right, share=1):
+                work = run["actuation_work"][-1, 0] / right["actuation_work"][-1, 0] - 1
+                return f"{1e5 * share * error_of(run, right):.2g}/{1e4 * share * abs(work):.2g}"
+
+            right = bench.run(DEFAULT, *keys, "solver.rtol=1e-8")
+            cells = [errors(bench.run(DEFAULT, *keys, f"solver.rtol={rtol}"), right)
+                     for rtol in ("1e-4", "3e-5", "1e-5", "1e-6")]
+            # the error of second order is four thirds of the difference from half of the interval
+            pair = [bench.run(DEFAULT, *keys, "solver.rtol=1e-7", f"time.shedding_interval={size:g}")
+                    for size in (0.01, 0.005)]
+            yield f"{speed:g}", power(modulus), *cells, errors(*pair, 2 / 3)
 
 
 @table("modulus [Pa]", "order", "nose or tail [L]", "balance over work", *COUNTS)
