@@ -102,14 +102,12 @@ static inline void are_equal(struct case_values *one, struct case_values *other)
         const struct key *const key = &case_table[k];
         if (strcmp(key->path, "preset") == 0 || strcmp(key->path, "output.file") == 0) continue;
         for (int i = 0; i < (case_table_is_of_fish(key) ? one->school.n_fish : 1); i++) {
-            struct text a = {0}, b = {0};
+            struct text a = {.arena = test_arena()}, b = {.arena = test_arena()};
             text_add(&a, "%s: ", key->path);
             text_add(&b, "%s: ", key->path);
             case_value_write(&a, key, case_table_field(key, one, &one->school.fish[i]));
             case_value_write(&b, key, case_table_field(key, other, &other->school.fish[i]));
             assert_string_equal(a.text, b.text);
-            text_free(&a);
-            text_free(&b);
         }
     }
     assert_int_equal(one->n_axes, other->n_axes);

@@ -91,10 +91,11 @@ static void print_wrapped(const char *sentence, FILE *stream) {
     fputc('\n', stream);
 }
 
-/* Write the meaning of an option of a command; the caller frees *meaning. */
-static void write_meaning(const struct command *command, const struct option_help *option, struct text *meaning) {
-    text_add(meaning, "%s", option->meaning ? option->meaning : command->output);
-    if (option->code == OPTION_METHODS) compare_words(meaning);
+static const char *meaning_of(struct arena *arena, const struct command *command, const struct option_help *option) {
+    struct text meaning = {.arena = arena};
+    text_add(&meaning, "%s", option->meaning ? option->meaning : command->output);
+    if (option->code == OPTION_METHODS) compare_words(&meaning);
+    return meaning.text;
 }
 
 void main_print_help(const struct command *command, FILE *stream) {
@@ -108,10 +109,9 @@ void main_print_help(const struct command *command, FILE *stream) {
                  option->argument ? " " : "", option->argument ? option->argument : "");
         if (option->code < OPTION_SET) names[1] = (char)option->code;
         fprintf(stream, "  %-24s ", names);
-        struct text meaning = {0};
-        write_meaning(command, option, &meaning);
-        print_wrapped(meaning.text ? meaning.text : "", stream);
-        text_free(&meaning);
+        struct arena *const arena = arena_create(NULL, "the meaning of an option");
+        print_wrapped(meaning_of(arena, command, option), stream);
+        arena_free(arena);
     }
 }
 
@@ -124,14 +124,13 @@ void main_describe(const struct command *command, FILE *stream) {
     for (int i = 0; command->options[i]; i++) {
         const struct option_help *const option = option_of(command->options[i]);
         const char letter[2] = {option->code < OPTION_SET ? (char)option->code : '\0', '\0'};
-        struct text meaning = {0};
-        write_meaning(command, option, &meaning);
+        struct arena *const arena = arena_create(NULL, "the meaning of an option");
         text_print_member(stream, i > 0 ? ",\n  {" : "{", "letter", *letter ? letter : NULL);
         text_print_member(stream, ", ", "name", option->name);
         text_print_member(stream, ", ", "argument", option->argument);
-        text_print_member(stream, ", ", "meaning", meaning.text ? meaning.text : "");
+        text_print_member(stream, ", ", "meaning", meaning_of(arena, command, option));
         fputs("}", stream);
-        text_free(&meaning);
+        arena_free(arena);
     }
 
     fputs("]}", stream);

@@ -9,7 +9,6 @@
 #include "app/main_commands.h"
 #include "app/main_signals.h"
 #include "app/say.h"
-#include "base/memory.h"
 #include "case/case.h"
 #include "case/sweep_error.h"
 #include "result/target.h"
@@ -166,12 +165,10 @@ enum status main_study(const struct request *request) {
     return status;
 }
 
-/* Write the assignment of the key `error`: the settings of the case, overridden by the command line. The caller frees
- * the assignment. */
+/* Write the assignment of the key `error`: the settings of the case, overridden by the command line. */
 static enum status assign_errors(const struct case_values *values, const struct request *request, char **assignment) {
     struct sweep_error error = {.within = NAN, .most = SWEEP_ERROR_MOST, .confirm = 1};
-    struct text text = {0};
-    *assignment = NULL;
+    struct text text = {.arena = request->arena};
     if (values->error) error = *values->error;
 
     if (request->n_of > 0) {
@@ -188,12 +185,6 @@ static enum status assign_errors(const struct case_values *values, const struct 
     if (request->no_confirm) error.confirm = 0;
     text_add(&text, "error=");
     sweep_error_write(&text, &error);
-
-    if (text.failed) {
-        text_free(&text);
-        return memory_check(NULL, "the command line");
-    }
-
     *assignment = text.text;
     return STATUS_OK;
 }
@@ -217,7 +208,7 @@ static enum status assign_sweep(const struct request *request, const char **assi
 enum status main_error(const struct request *request) {
     struct case_values values;
     struct request with_errors = *request;
-    char *assignment;
+    char *assignment = NULL;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
     enum status status = assign_errors(&values, request, &assignment);
     case_free(&values);
@@ -233,7 +224,6 @@ enum status main_error(const struct request *request) {
         case_free(&values);
     }
 
-    free(assignment);
     return status;
 }
 

@@ -12,7 +12,6 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "base/memory.h"
 #include "base/text.h"
 
 void say_line(FILE *stream, const char *format, ...) {
@@ -35,7 +34,7 @@ void say_line(FILE *stream, const char *format, ...) {
 enum status say_begin(struct say_page *page) {
     *page = (struct say_page){0};
     page->stream = open_memstream(&page->text, &page->n);
-    return memory_check(page->stream, "text to print");
+    return page->stream ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: text to print");
 }
 
 enum status say_end(struct say_page *page, FILE *stream, enum status status) {
@@ -43,7 +42,7 @@ enum status say_end(struct say_page *page, FILE *stream, enum status status) {
     if (page->text && stream) text_print_clean(stream, page->text);
     free(page->text);
     *page = (struct say_page){0};
-    return status == STATUS_OK && failed ? memory_check(NULL, "text to print") : status;
+    return status == STATUS_OK && failed ? status_fail(STATUS_MEMORY, "out of memory: text to print") : status;
 }
 
 // ---- one line, at most five times a second

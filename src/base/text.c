@@ -10,28 +10,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
-
 void text_add(struct text *text, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     const int length = vsnprintf(NULL, 0, format, arguments);
     va_end(arguments);
-    if (length < 0 || text->failed) return;
+    if (length < 0) return;
 
     // enlarge for the addition and a zero
     if (text->length + (size_t)length >= text->capacity) {
-        const size_t capacity = 2 * (text->length + (size_t)length) + 64;
-        char *grown = text->text;
-        if (text->arena) {
-            GROW(text->arena, grown, capacity);
-        } else {
-            grown = realloc(text->text, capacity);
-        }
-        text->failed = !grown;
-        if (!grown) return;
-        text->text = grown;
-        text->capacity = capacity;
+        text->capacity = 2 * (text->length + (size_t)length) + 64;
+        GROW(text->arena, text->text, text->capacity);
     }
 
     va_start(arguments, format);
@@ -79,19 +68,6 @@ void text_print_clean(FILE *stream, const char *string) {
     }
 }
 
-enum status text_take(struct text *text, char **string, const char *what) {
-    text_add(text, "%s", "");
-    if (text->failed) text_free(text);
-    *string = text->text;
-    *text = (struct text){.arena = text->arena};
-    return memory_check(*string, what);
-}
-
-void text_free(struct text *text) {
-    if (!text->arena) free(text->text);
-    *text = (struct text){.arena = text->arena};
-}
-
 /* Switch this thread to the "C" locale; pass the result to restore_locale. */
 static locale_t use_c_locale(locale_t *c_locale) {
     *c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
@@ -103,17 +79,19 @@ static void restore_locale(locale_t before, locale_t c_locale) {
     if (c_locale) freelocale(c_locale);
 }
 
-void text_add_number(struct text *text, double number) {
+void text_of_number(char text[TEXT_NUMBER_BYTES], double number) {
     locale_t c_locale;
     const locale_t before = use_c_locale(&c_locale);
-    char digits[40];
-
     for (int precision = 15; precision <= 17; precision++) {
-        snprintf(digits, sizeof digits, "%.*g", precision, number);
-        if (strtod(digits, NULL) == number) break;
+        snprintf(text, TEXT_NUMBER_BYTES, "%.*g", precision, number);
+        if (strtod(text, NULL) == number) break;
     }
-
     restore_locale(before, c_locale);
+}
+
+void text_add_number(struct text *text, double number) {
+    char digits[TEXT_NUMBER_BYTES];
+    text_of_number(digits, number);
     text_add(text, "%s", digits);
 }
 

@@ -11,19 +11,19 @@
 #include "base/arena.h"
 #include "base/status.h"
 
-/* A growing string. Initialise with the arena, which holds the string, as {.arena = arena}. Without an arena text_free
- * releases the string, and after a failed allocation nothing more is added and failed is true. */
+/* A growing string in an arena: begin with {.arena = arena}. */
 struct text {
     struct arena *arena;
     char *text; /* ends with a zero; NULL before the first addition */
     size_t length, capacity;
-    bool failed;
 };
 
 /* Append (printf format). */
 void text_add(struct text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Append the shortest decimal that reads back as exactly this number. */
+/* Write, or append, the shortest decimal that reads back as exactly this number. */
+enum { TEXT_NUMBER_BYTES = 40 };
+void text_of_number(char text[TEXT_NUMBER_BYTES], double number);
 void text_add_number(struct text *text, double number);
 
 /* The decimal number of 12 digits if it is at most two roundings from the number, else the number. */
@@ -40,13 +40,6 @@ void text_print_member(FILE *stream, const char *before, const char *name, const
 
 /* Print a string with control characters escaped (\x1b), for terminals. Line breaks and tabs are unchanged. */
 void text_print_clean(FILE *stream, const char *string);
-
-/* Set *string to the string of the text, which the caller frees, and zero the text; "" before the first addition. After
- * a failed allocation *string is NULL: fails with STATUS_MEMORY and the message "out of memory: WHAT". */
-enum status text_take(struct text *text, char **string, const char *what);
-
-/* Release the string and zero it. */
-void text_free(struct text *text);
 
 /* Number of insertions, deletions, changes and swaps of neighbours between a word of n and one of m characters,
  * whatever the case of the letters; INT_MAX if a word has more than 40 characters. */

@@ -134,6 +134,13 @@ void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, dou
     to[flow_tail(fish)] = of_nodes[fish->n_nodes - 1];
 }
 
+static void flow_place_wake(const struct flow *flow, const struct state *state, int f, bool is_new) {
+    const struct wake *const wake = &state->wake[f];
+    struct sheet *const sheet = &flow->fish[f].wake;
+    if (is_new) sheet_build(sheet, &flow->school->fish[f], flow->school, wake);
+    sheet_place(sheet, flow->school, wake, state->t, flow->t - state->t);
+}
+
 // released points of the wakes at the time of the flow; select the points again if the wakes have changed
 static void flow_place_wakes(struct flow *flow, const struct state *state, bool is_new) {
     const struct school *const school = flow->school;
@@ -144,12 +151,11 @@ static void flow_place_wakes(struct flow *flow, const struct state *state, bool 
     }
 
     const int threads = parallel_threads(school->threads, school->n_fish, n_placed, PARALLEL_VORTICES);
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) flow_place_wake(flow, state, f, is_new);
+    } else {
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct wake *const wake = &state->wake[f];
-        struct sheet *const sheet = &flow->fish[f].wake;
-        if (is_new) sheet_build(sheet, &school->fish[f], school, wake);
-        sheet_place(sheet, school, wake, state->t, flow->t - state->t);
+        for (int f = 0; f < school->n_fish; f++) flow_place_wake(flow, state, f, is_new);
     }
 }
 

@@ -15,7 +15,6 @@
 #include <unistd.h>
 
 #include "base/parallel.h"
-#include "base/text.h"
 #include "base/version.h"
 #include "result/durable.h"
 #include "result/target.h"
@@ -86,14 +85,16 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
     const time_t now = time(NULL);
     struct tm utc;
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
-    struct text history = {0};
-    text_add(&history, "%s %s", date, command);
-    if (history.failed) CALL(writer, ENOMEM);
+    // no jump leaves the part of a file behind
+    const size_t length = strlen(date) + strlen(command) + 2;
+    char *const history = malloc(length);
+    if (history) snprintf(history, length, "%s %s", date, command);
+    if (!history) CALL(writer, ENOMEM);
     netcdf_write_string(writer, NETCDF_GLOBAL, "Conventions", "CF-1.10");
     netcdf_write_string(writer, NETCDF_GLOBAL, "title", title);
-    netcdf_write_string(writer, NETCDF_GLOBAL, "history", history.failed ? "" : history.text);
+    netcdf_write_string(writer, NETCDF_GLOBAL, "history", history ? history : "");
     netcdf_write_string(writer, NETCDF_GLOBAL, "source", source);
-    text_free(&history);
+    free(history);
     return opened(writer, path);
 }
 

@@ -318,10 +318,9 @@ enum status result_info_steady(const struct netcdf_reader *reader, FILE *stream)
 /* Lists of the values, the last index the fastest; JSON has no number that is not finite. */
 static void print_json_list(const struct netcdf_slice *slice, const double **value, FILE *stream) {
     if (!slice->dimension) {
-        struct text text = {0};
-        text_add_number(&text, **value);
-        fputs(isfinite(**value) && text.text ? text.text : "null", stream);
-        text_free(&text);
+        char digits[TEXT_NUMBER_BYTES];
+        text_of_number(digits, **value);
+        fputs(isfinite(**value) ? digits : "null", stream);
         ++*value;
         return;
     }

@@ -57,10 +57,8 @@ enum status checkpoints_create(struct arena *arena, struct checkpoints *checkpoi
     checkpoints->previous = arena_text(arena, "%s" CHECKPOINTS_PREVIOUS, checkpoints->path);
     const char *const slash = strrchr(result, '/');
     checkpoints->result = arena_text(arena, "%s", slash ? slash + 1 : result);
-    struct text word = {0};
+    struct text word = {.arena = arena};
     text_add_word(&word, checkpoints->path);
-    if (word.failed) arena_lack(arena, 0);
-    arena_defer(arena, free, word.text);
     checkpoints->word = word.text;
 
     if (at) TRY(checkpoint_places_read(checkpoints, values, at));

@@ -73,11 +73,9 @@ static enum status sweep_add_method(struct text *sweep, const char *word, const 
         method = i;
     }
     if (method < 0) {
-        struct text known = {0};
+        struct text known = {.arena = sweep->arena};
         compare_words(&known);
-        status_fail(STATUS_CASE, "--methods: '%s' is unknown: choose from %s", word, known.text ? known.text : "");
-        text_free(&known);
-        return STATUS_CASE;
+        return status_fail(STATUS_CASE, "--methods: '%s' is unknown: choose from %s", word, known.text);
     }
 
     const bool by_step = options->steps && method != METHOD_IDA;
@@ -99,15 +97,10 @@ static enum status sweep_add_method(struct text *sweep, const char *word, const 
     return STATUS_OK;
 }
 
-/* Add a text that grows outside of the arena; the arena releases the text. */
-static void text_release(void *text) {
-    text_free(text);
-}
-
 static struct text *text_create(struct arena *arena) {
     struct text *text;
     NEW(arena, text, 1);
-    arena_defer(arena, text_release, text);
+    text->arena = arena;
     return text;
 }
 
@@ -143,7 +136,6 @@ enum status compare_create(struct arena *arena, struct case_values **study, cons
         while (list_next_word(&methods, word)) TRY(sweep_add_method(sweep, word, options, rtol->text));
     }
     text_add(sweep, "]}]");
-    if (sweep->failed || rtol->failed || end->failed || standard->failed) arena_lack(arena, 0);
 
     const char *const assignments[] = {sweep->text, arena_text(arena, "time.output_interval=%s", end->text),
                                        arena_text(arena, "output.wake_interval=%s", end->text)};

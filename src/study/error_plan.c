@@ -51,10 +51,9 @@ static bool is_in_beats(const struct case_values *values, const char *path) {
 static char *text_of(const struct error_study *study, const struct key *key, double value) {
     struct arena *const arena = study->sweep->arena;
     if (key->type == CHOICE) return arena_text(arena, "%s", key->words[(int)value]);
-    struct text text = {0};
+    struct text text = {.arena = arena};
     text_add_number(&text, value);
     text_add(&text, "%s", is_in_beats(study->values, key->path) ? " beats" : "");
-    arena_defer(arena, free, arena_take(arena, text.text));
     return text.text;
 }
 

@@ -489,7 +489,7 @@ enum status study_print_plan(const struct error_sweep *sweep, int n_processes, F
         for (int k = 0; k < sweep->point[p].n_keys; k++) {
             const struct error_study_key *const key = &sweep->point[p].key[k];
             char levels[LEVEL_BYTES];
-            struct text members = {0}, times = {0};
+            struct text members = {.arena = sweep->arena}, times = {.arena = sweep->arena};
             write_levels(key, levels);
             for (int i = key->n_levels - 1; i >= 0 && key->n_levels > 1; i--) {
                 text_add(&members, "%s%d", members.length > 0 ? " " : "", key->member[i]);
@@ -501,8 +501,6 @@ enum status study_print_plan(const struct error_sweep *sweep, int n_processes, F
             table_cell(table, "%s", members.text ? members.text : "not varied");
             table_cell(table, "%s", times.text ? times.text : "");
             table_row(table);
-            text_free(&members);
-            text_free(&times);
         }
     }
     table_print(table, stream);
@@ -777,7 +775,7 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
             }
 
             // the keys with a flag that has a hundredth of the error
-            struct text flags = {0};
+            struct text flags = {.arena = sweep->arena};
             for (int k = 0; k < point->n_keys; k++) {
                 bool is_flagged = false;
                 for (int q = 0; q < point->n_asked; q++) {
@@ -790,7 +788,6 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
                 if (is_flagged) text_add(&flags, "%s%s", flags.length > 0 ? ", " : "", name);
             }
             table_cell(table, "%s", flags.text ? flags.text : "");
-            text_free(&flags);
             table_row(table);
         }
     }

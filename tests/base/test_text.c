@@ -42,22 +42,20 @@ TEST(a_written_number_reads_back_bit_for_bit) {
         0,      -0.0, 1, 0.1, 1.0 / 3, 1e23, 5e-324, 1.7976931348623157e308, 0.30000000000000004, 123456789012345678.0,
         -2.5e-7};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        struct text text = {0};
+        struct text text = {.arena = test_arena()};
         text_add_number(&text, numbers[i]);
         double back;
         assert_true(text_number(text.text, &back));
         assert_memory_equal(&back, &numbers[i], sizeof back);
-        text_free(&text);
     }
 }
 
 TEST(a_number_is_written_with_no_more_digits_than_needed) {
-    struct text text = {0};
+    struct text text = {.arena = test_arena()};
     text_add_number(&text, 0.1);
     text_add(&text, " ");
     text_add_number(&text, 1e6);
     assert_string_equal(text.text, "0.1 1000000");
-    text_free(&text);
 }
 
 TEST(letters_that_change_places_are_one_slip) {
@@ -99,28 +97,10 @@ TEST(a_word_is_quoted_where_a_shell_would_change_it) {
                                            {"~", "'~'"},
                                            {"a;b", "'a;b'"}};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        struct text text = {0};
+        struct text text = {.arena = test_arena()};
         text_add_word(&text, words[i][0]);
         assert_string_equal(text.text, words[i][1]);
-        text_free(&text);
     }
-}
-
-TEST(a_text_that_lacks_memory_says_so_and_stays_as_it_was) {
-    struct text text = {0};
-    text_add(&text, "%s", "one");
-    char more[200];
-    memset(more, 'x', sizeof more);
-    more[199] = '\0';
-    n_until_failure = 0;
-    text_add(&text, "%s", more);
-    n_until_failure = -1;
-    assert_true(text.failed);
-    assert_string_equal(text.text, "one");
-    // what follows a gap is left out
-    text_add(&text, " two");
-    assert_string_equal(text.text, "one");
-    text_free(&text);
 }
 
 TEST(a_text_of_an_arena_grows_and_is_released_with_the_arena) {
@@ -130,7 +110,6 @@ TEST(a_text_of_an_arena_grows_and_is_released_with_the_arena) {
     for (int i = 0; i < 100; i++) text_add(&text, "%03d ", i);
     assert_int_equal(text.length, 400);
     assert_string_equal(text.text + 396, "099 ");
-    text_free(&text);
     arena_free(arena);
     assert_int_equal(n_live, n_before);
 }
@@ -143,33 +122,13 @@ TEST(the_locale_does_not_matter) {
     }
     if (!found) skip();
     double number = 0;
-    struct text text = {0};
+    struct text text = {.arena = test_arena()};
     const int is_number = text_number("2.5", &number);
     text_add_number(&text, 0.5);
     setlocale(LC_NUMERIC, "C");
     assert_true(is_number);
     NEAR(number, 2.5, 0, 0);
     assert_string_equal(text.text, "0.5");
-    text_free(&text);
-}
-
-TEST(the_string_of_a_text_is_taken_or_lack_of_memory_reported) {
-    char *string;
-    struct text text = {0};
-    assert_int_equal(text_take(&text, &string, "a path"), STATUS_OK);
-    assert_string_equal(string, "");
-    free(string);
-    text_add(&text, "%s.nc", "run");
-    assert_int_equal(text_take(&text, &string, "a path"), STATUS_OK);
-    assert_string_equal(string, "run.nc");
-    assert_null(text.text);
-    free(string);
-    n_until_failure = 0;
-    text_add(&text, "run");
-    n_until_failure = -1;
-    assert_int_equal(text_take(&text, &string, "a path"), STATUS_MEMORY);
-    assert_null(string);
-    assert_string_equal(status_message(), "out of memory: a path");
 }
 
 TEST(a_duration_has_at_least_one_and_a_half_units) {
@@ -220,15 +179,14 @@ TEST(the_examples_of_the_standard) {
 }
 
 TEST(a_text_doubles_its_memory) {
-    struct text text = {0};
+    struct arena *const arena = test_arena();
+    struct text text = {.arena = arena};
     const int most = 20;
     n_until_failure = most;
     for (int i = 0; i < 4000; i++) text_add(&text, "%04d ", i);
     const int n_allocations = most - n_until_failure;
     n_until_failure = -1;
-    assert_false(text.failed);
     assert_in_range(n_allocations, 1, 9);  // 20,000 bytes
     assert_int_equal(text.length, 20000);
     assert_int_equal(strlen(text.text), 20000);
-    free(text.text);
 }

@@ -340,7 +340,7 @@ TEST(a_school_beyond_any_memory_is_refused) {
         {"time: {end: 1}\ndefaults: {fish: {sheet_points: 10000}}\n", "the sheets of 313 fish take 1 TB", 312}};
     for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
         for (int n = limits[i].n_most; n <= limits[i].n_most + 1; n++) {
-            struct text text = {0};
+            struct text text = {.arena = test_arena()};
             text_add(&text, "format: 1\n%sfish: [", limits[i].keys);
             for (int f = 0; f < n; f++) text_add(&text, "{start: {position: [0, %d]}}, ", f);
             text_add(&text, "]\n");
@@ -349,7 +349,6 @@ TEST(a_school_beyond_any_memory_is_refused) {
             assert_int_equal(status, n == limits[i].n_most ? STATUS_OK : STATUS_CASE);
             if (status != STATUS_OK) assert_non_null(strstr(status_message(), limits[i].message));
             case_free(&values);
-            text_free(&text);
         }
     }
 }

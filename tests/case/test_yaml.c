@@ -36,10 +36,9 @@ static void release(struct fixture *fixture) {
 /* The text of a tree on one line; valid until the next call. */
 static const char *flow(const struct yaml_node *node) {
     static char line[1000];
-    struct text text = {0};
+    struct text text = {.arena = test_arena()};
     yaml_write_node(&text, node);
     snprintf(line, sizeof line, "%s", text.text);
-    text_free(&text);
     return line;
 }
 
@@ -274,7 +273,7 @@ TEST(strings_of_any_kind_are_written_so_that_they_read_back) {
                                           "'a'", "a\"b", "a\\b", "a\nb", "a\tb", "größe", "?a", "fish[*].x", "%a",
                                           "@a",  "`a",   "|",    ">",    "a:",   "<<",    "~",  "a?b",       "\x7f"};
     for (size_t i = 0; i < sizeof strings / sizeof *strings; i++) {
-        struct text text = {0};
+        struct text text = {.arena = test_arena()};
         text_add(&text, "[");
         yaml_write_scalar(&text, strings[i]);
         text_add(&text, "]\n");
@@ -283,6 +282,5 @@ TEST(strings_of_any_kind_are_written_so_that_they_read_back) {
         assert_int_equal(f.status, STATUS_OK);
         assert_string_equal(f.root->entry[0].value->text, strings[i]);
         release(&f);
-        text_free(&text);
     }
 }
