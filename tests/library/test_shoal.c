@@ -260,25 +260,6 @@ TEST(closing_nothing_is_allowed) {
     shoal_close(NULL);
 }
 
-TEST(opening_without_memory_fails_and_leaves_nothing) {
-    int n_failed = 0, is_reached = 1;
-    for (int n = 0; is_reached; n++) {
-        const int n_before = n_live;
-        struct shoal *run;
-        n_until_failure = n;
-        const int code = shoal_open(&run, *state, 0, NULL);
-        is_reached = n_until_failure == -1;
-        n_until_failure = -1;
-        n_failed += code != 0;
-        assert_true(code == 0 ? run != NULL : code < 0 && !run && shoal_message()[0] != '\0');
-        shoal_close(run);
-        assert_int_equal(n_live, n_before);
-        BELOW(n, 10000);
-    }
-    print_message("%d failures\n", n_failed);
-    ABOVE(n_failed, 100);
-}
-
 // ---- checked arguments
 
 static void refuses(int code, const char *words) {
@@ -904,29 +885,6 @@ TEST(only_copies_can_be_put_in_the_place_of_one_another) {
     shoal_close(other);
 }
 
-TEST(copying_without_memory_fails_and_leaves_the_run) {
-    struct shoal *const run = opened(*state, 0, NULL), *copy;
-    assert_int_equal(shoal_step(run), SHOAL_OK);
-    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
-    shoal_close(copy);
-    int n_failed = 0, is_reached = 1;
-    for (int n = 0; is_reached; n++) {
-        const int n_before = n_live;
-        n_until_failure = n;
-        const int code = shoal_clone(&copy, run);
-        is_reached = n_until_failure == -1;
-        n_until_failure = -1;
-        n_failed += code != 0;
-        assert_true(code == 0 ? copy != NULL : code < 0 && !copy);
-        shoal_close(copy);
-        assert_int_equal(n_live, n_before);
-        n += n / 4;
-    }
-    ABOVE(n_failed, 10);
-    assert_int_equal(shoal_step(run), SHOAL_OK);
-    shoal_close(run);
-}
-
 // ---- changes from outside
 
 static double one_of(struct shoal *run, const char *name, size_t i) {
@@ -1174,25 +1132,6 @@ TEST(a_vortex_without_room_is_refused) {
     shoal_close(other);
 }
 
-TEST(changing_without_memory_leaves_the_run) {
-    struct shoal *const run = opened_to_change(state, 0.1), *copy;
-    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
-    shoal_close(copy);
-    int n_failed = 0, is_reached = 1;
-    for (int n = 0; is_reached; n++) {
-        const int n_vortices = shoal_n_vortices(run, 0);
-        n_until_failure = n;
-        const int code = shoal_add_vortex(run, 0, -1, 1, 0.01);
-        is_reached = n_until_failure == -1;
-        n_until_failure = -1;
-        n_failed += code != 0;
-        if (code != 0) assert_int_equal(shoal_n_vortices(run, 0), n_vortices);
-        n += n / 4;
-    }
-    ABOVE(n_failed, 10);
-    shoal_close(run);
-}
-
 // ---- checkpoints of their own
 
 static char saved_path[] = "/tmp/test_shoal_saved.XXXXXX";
@@ -1238,28 +1177,6 @@ TEST(only_a_checkpoint_is_replaced_or_loaded) {
     shoal_close(run);
 }
 
-TEST(loading_without_memory_fails_and_leaves_nothing) {
-    struct shoal *const run = opened(*state, 0, NULL), *loaded;
-    make_saved_path();
-    assert_int_equal(shoal_save(run, saved_path), SHOAL_OK);
-    shoal_close(run);
-    int n_failed = 0, is_reached = 1;
-    for (int n = 0; is_reached; n++) {
-        const int n_before = n_live;
-        n_until_failure = n;
-        const int code = shoal_load(&loaded, saved_path);
-        is_reached = n_until_failure == -1;
-        n_until_failure = -1;
-        n_failed += code != 0;
-        assert_true(code == 0 ? loaded != NULL : code < 0 && !loaded);
-        shoal_close(loaded);
-        assert_int_equal(n_live, n_before);
-        n += n / 4;
-    }
-    ABOVE(n_failed, 10);
-    assert_int_equal(unlink(saved_path), 0);
-}
-
 TEST(a_fork_of_a_run_with_threads_goes_on) {
     // steps of the velocity sums that threads share
     const char *const many[] = {"solver.threads=2", "fish[*].sheet_points=129", "fish[*].nodes=17"};
@@ -1289,4 +1206,81 @@ TEST(the_end_is_the_time_of_an_event) {
 TEST(the_version_is_that_of_the_program) {
     assert_string_equal(shoal_version(), version_short());
     assert_memory_equal(shoal_version(), "shoal ", 6);
+}
+
+// ---- lack of memory
+
+/* Call each function that requests memory, until one fails. */
+static int live(const char *text, const char *path, struct shoal **run, struct shoal **other) {
+    static const char checkpoint[] = "/tmp/test_shoal_memory.ckpt";
+    const double points[] = {5, 5, -1, 2};
+    double position[2 * 7], velocity[4], vorticity[2];
+    struct shoal_array array;
+    TRY(shoal_open_text(run, text, NULL, 0, NULL));
+    TRY(shoal_write(*run, path, 1));
+    for (int i = 0; i < 3; i++) TRY(shoal_step(*run));
+    TRY(shoal_read(*run, "wake_x", &array));
+    TRY(shoal_flow(*run, 2, points, velocity, vorticity));
+    TRY(shoal_checkpoint(*run));
+    TRY(shoal_write_end(*run));
+    TRY(shoal_clone(other, *run));
+    if (strstr(text, "reactive")) TRY(shoal_add_vortex(*run, 0, -1, 1, 0.01));  // no ring for a vortex
+    TRY(shoal_state(*run, 0, position, NULL));
+    TRY(shoal_set_state(*run, 0, position, NULL));
+    TRY(shoal_restore(*run, *other));
+    shoal_close(*other);
+    *other = NULL;
+    TRY(shoal_save(*run, checkpoint));
+    TRY(shoal_load(other, checkpoint));
+    for (int i = 0; i < 12; i++) TRY(shoal_step(*other));
+    return SHOAL_OK;
+}
+
+/* Let one allocation fail, the first ones one by one, later ones at growing distances: the call fails for memory, and a
+ * run that a failed step has left between two events says so at each later call. */
+static void sweep(const char *text, const char *path, int least) {
+    int n = 0, code = SHOAL_MEMORY;
+    while (code != SHOAL_OK) {
+        const int n_before = n_live;
+        struct shoal *run = NULL, *other = NULL;
+        n_until_failure = n;
+        code = live(text, path, &run, &other);
+        n_until_failure = -1;
+        if (code != SHOAL_OK) {
+            assert_int_equal(code, SHOAL_MEMORY);
+            assert_non_null(strstr(shoal_message(), "out of memory"));
+            struct shoal *const last = other ? other : run;
+            if (last && shoal_step(last) != SHOAL_OK) assert_non_null(strstr(shoal_message(), "out of memory"));
+        }
+        shoal_close(other);
+        shoal_close(run);
+        if (n_live != n_before) fail_msg("allocation %d leaves %d: %s", n, n_live - n_before, shoal_message());
+        n += 1 + n / 50;
+    }
+    AT_LEAST(n, least);
+}
+
+#define MEMORY_CASE(solver, more)                                                                                    \
+    "format: 1\ntime: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\nwake: {spare_vortices: 9}\nsolver: " \
+    "{" solver "}\n" more
+
+TEST(without_memory_every_call_fails_and_leaves_nothing) {
+    // control laws with lists; a wake that grows from its first size
+    static const char plain[] =
+        "defaults: {fish: {force: reactive}}\nfish:\n"
+        "  - {nodes: 7, sheet_points: 9, control: {law: heading, waypoints: [[-3, 1]]}}\n"
+        "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, control: {law: heading, desired_heading: [[0, "
+        "180], "
+        "[1, 90]]}}\n";
+    // rings, and couplings that need GMRES
+    static const char pressure[] =
+        "fish:\n  - {nodes: 7, sheet_points: 21}\n  - {nodes: 7, sheet_points: 21, start: {position: [0, 0.4]}}\n";
+    static const char *const methods[] = {"method: ida", "method: rk4", "method: trapezoid, step: 0.01"};
+    make_result_folder();
+    for (int i = 0; i < 4; i++) {
+        char text[1500];
+        snprintf(text, sizeof text, MEMORY_CASE("%s", "%s"), methods[i % 3], i < 3 ? plain : pressure);
+        sweep(text, result_path, 300);
+    }
+    unlink("/tmp/test_shoal_memory.ckpt");
 }
