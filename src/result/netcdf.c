@@ -145,6 +145,14 @@ int netcdf_define_variable(struct netcdf_writer *writer, const struct netcdf_var
     }
 
     netcdf_write_string(writer, number, "units", *variable->units ? variable->units : "1");
+    if (variable->axis) netcdf_write_string(writer, number, "axis", variable->axis);
+    if (variable->flags) {
+        static const int values[] = {0, 1, 2, 3};
+        size_t n = 1;
+        for (const char *c = variable->flags; *c; c++) n += *c == ' ';
+        CALL(writer, nc_put_att_int(writer->file, number, "flag_values", NC_INT, n, values));
+        netcdf_write_string(writer, number, "flag_meanings", variable->flags);
+    }
     const double gap = NAN;
     if (variable->has_gaps) CALL(writer, nc_put_att_double(writer->file, number, "_FillValue", type, 1, &gap));
     return number;

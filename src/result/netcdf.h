@@ -33,6 +33,8 @@ struct netcdf_writer {
 struct netcdf_variable {
     const char *name, *long_name;
     const char *units; /* of numbers; "" is written as "1" */
+    const char *axis;  /* "T", "X" or "Y"; NULL: none */
+    const char *flags; /* the words of the values 0, 1, ..., separated by blanks; NULL: none */
     enum netcdf_type type;
     int n_dimensions, dimension[NETCDF_MAX_DIMENSIONS]; /* numbers of the dimensions */
     bool has_gaps;                                      /* NaN marks missing values */

@@ -195,6 +195,8 @@ static void file_define_variable(struct result_file *result, int i, const int *d
     struct netcdf_variable to_define = {.name = variable->name,
                                         .long_name = variable->long_name,
                                         .units = variable->unit,
+                                        .axis = strcmp(variable->name, "time") == 0 ? "T" : NULL,
+                                        .flags = variable->flags,
                                         .type = is_single ? NETCDF_FLOAT : types[variable->type]};
     for (const enum result_dimension *d = variable->dimension; *d != NONE; d++)
         to_define.dimension[to_define.n_dimensions++] = dimension_number[*d];
@@ -206,10 +208,10 @@ static void file_define_variable(struct result_file *result, int i, const int *d
     static const struct {
         enum result_dimension dimension;
         const char *name, *coordinates;
-    } coordinates[] = {{NODE, "node_arc", "fish_name node_arc"},
-                       {SHEET, "sheet_arc", "fish_name sheet_arc"},
-                       {CONTROL, "control_arc", "fish_name control_arc"},
-                       {SENSOR, "sensor_place", "fish_name sensor_place"}};
+    } coordinates[] = {
+        {NODE, "node_arc", "fish_name node_arc"},          {EDGE, "edge_arc", "fish_name edge_arc"},
+        {JOINT, "joint_arc", "fish_name joint_arc"},       {SHEET, "sheet_arc", "fish_name sheet_arc"},
+        {CONTROL, "control_arc", "fish_name control_arc"}, {SENSOR, "sensor_place", "fish_name sensor_place"}};
     const char *names = "fish_name";
     for (size_t k = 0; k < sizeof coordinates / sizeof *coordinates; k++) {
         const bool is_itself = strcmp(variable->name, coordinates[k].name) == 0;

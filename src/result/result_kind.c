@@ -82,6 +82,18 @@ int result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_j
         const int is_file = kinds[k].schema_name != NULL;
         int n_of_kind = 0;
         for (int i = 0; kinds[k].listed(i, &listed); i++) {
+            // append the words of the values
+            char meaning[320];
+            size_t length = (size_t)snprintf(meaning, sizeof meaning, "%s", listed.meaning);
+            const char *flag = listed.flags ? listed.flags : "";
+            for (int value = 0; *flag && length < sizeof meaning; value++) {
+                const int n_letters = (int)strcspn(flag, " ");
+                length += (size_t)snprintf(meaning + length, sizeof meaning - length, "%s%d %.*s",
+                                           value == 0 ? ": " : ", ", value, n_letters, flag);
+                flag += n_letters + (flag[n_letters] == ' ');
+            }
+            listed.meaning = meaning;
+
             if (word && !text_contains(listed.name, word) && !text_contains(listed.meaning, word)) continue;
             if (k > 0 && n_of_kind == 0 && !as_json)
                 fprintf(stream, is_file ? "\nIn the file of a %s:\n\n" : "\nThe %ss about a result:\n\n",

@@ -13,6 +13,7 @@
 struct result_listed {
     const char *name, *unit, *type, *meaning;
     char dimensions[80]; /* "time, fish" */
+    const char *flags;   /* the words of the values 0, 1, ..., separated by blanks; NULL: none */
 };
 
 struct result_kind {

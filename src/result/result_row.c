@@ -23,10 +23,14 @@ static void copy_values(int n, const double *value, double *slots) {
 
 void result_row_body(const struct result_row *row, int f, enum result_part part, double *slots) {
     const struct fish *const fish = &row->school->fish[f];
-    const double *const y = row->state->y;
+    const double *const y = row->state ? row->state->y : NULL;
     const int n = fish->n_nodes;
 
     switch (part) {
+        case PART_EDGE_ARC:
+            for (int k = 0; k < fish->n_edges; k++) slots[k] = (fish->arc[k] + fish->arc[k + 1]) / 2;
+            break;
+        case PART_JOINT_ARC: copy_values(fish->n_joints, fish->arc + 1, slots); break;
         case PART_POSITION: interleave(n, y + fish->at.x, y + fish->at.y, slots); break;
         case PART_VELOCITY: interleave(n, y + fish->at.vx, y + fish->at.vy, slots); break;
         case PART_ACCELERATION: {

@@ -63,11 +63,15 @@ const struct result_variable result_table[] = {
     {"edge_depth",            {FISH, EDGE},           RESULT_REAL,    "m",      ARRAY_IN_FISH(depth),
      .long_name = "depth (span) of the body, out of the plane of motion"},
     {"mean_section",          {FISH},                 RESULT_INTEGER, "1",      IN_FISH(has_mean_section),
-     .long_name = "1: edge_thickness and edge_depth are means over an edge; 0: means of both nodes"},
+     .flags = "mean_of_both_nodes mean_over_edge", .long_name = "edge_thickness and edge_depth"},
     {"fluid_force",           {FISH},                 RESULT_INTEGER, "1",      IN_FISH(force),
-     .long_name = "force: 0 reactive, 1 published, 2 pressure"},
+     .flags = "reactive published pressure", .long_name = "force"},
     {"is_held",               {FISH},                 RESULT_INTEGER, "1",      IN_FISH(motion.is_held),
-     .long_name = "1: motion along the heading is prescribed (motion.surge: given); 0: the body swims"},
+     .flags = "swims given", .long_name = "motion along the heading (motion.surge)"},
+    {"edge_arc",              {FISH, EDGE},           RESULT_REAL,    "m",      OF_BODY(EDGE_ARC),
+     .long_name = "arc coordinate of the middles of the edges"},
+    {"joint_arc",             {FISH, JOINT},          RESULT_REAL,    "m",      OF_BODY(JOINT_ARC),
+     .long_name = "arc coordinate of the joints"},
     {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",      OF_SHEET(SHEET_ARC),
      .long_name = "arc coordinate of the bound vortices, from the nose"},
     {"control_arc",           {FISH, CONTROL},        RESULT_REAL,    "m",      OF_SHEET(CONTROL_ARC),
@@ -455,7 +459,8 @@ int result_table_listed(int i, struct result_listed *listed) {
     static const char *const types[] = {"double", "double or float", "int", "int64", "char"};
     if (i >= result_table_n) return 0;
     const struct result_variable *const variable = &result_table[i];
-    *listed = (struct result_listed){variable->name, variable->unit, types[variable->type], variable->long_name, ""};
+    *listed = (struct result_listed){variable->name, variable->unit, types[variable->type], variable->long_name, "",
+                                     variable->flags};
     size_t length = 0;
 
     for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) {

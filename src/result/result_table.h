@@ -76,6 +76,7 @@ struct result_variable {
 
     enum output_forces forces; /* in the file if the case has these output.forces; 0: always */
     bool of_steady;            /* in the file of a steady state only */
+    const char *flags;         /* the words of the values 0, 1, ..., separated by blanks; NULL: none */
 };
 
 /* In the order of the file; wall_time is last, so that scripts can check a file for completeness. */

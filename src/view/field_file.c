@@ -33,22 +33,24 @@ static const struct variable {
     {"vorticity", {TIME_AXIS, Y_AXIS, X_AXIS}, NETCDF_FLOAT, "s-1", "vorticity of the fluid, dv/dx - du/dy"},
     {"body_x", {TIME_AXIS, FISH_AXIS, NODE_AXIS, XY_AXIS}, NETCDF_DOUBLE, "m", "position of the nodes, nose first"},
     {"edge_thickness", {FISH_AXIS, EDGE_AXIS}, NETCDF_DOUBLE, "m", "thickness of the body in the plane of motion"},
-    {"mean_section",
-     {FISH_AXIS},
-     NETCDF_INT,
-     "1",
-     "1: edge_thickness is a mean over an edge; 0: the mean of the values at the two nodes"},
+    {"mean_section", {FISH_AXIS}, NETCDF_INT, "1", "edge_thickness"},
     {"n_nodes", {FISH_AXIS}, NETCDF_INT, "1", "number of nodes"},
     {"fish_name", {FISH_AXIS, NAME_AXIS}, NETCDF_TEXT, "", "name of the fish"},
     {"wall_y", {WALL_AXIS}, NETCDF_DOUBLE, "m", "y of the walls; only with walls"},
 };
 
+static const char mean_flags[] = "mean_of_both_nodes mean_over_edge";
+
 int field_file_listed(int i, struct result_listed *listed) {
     if (i >= N_VARIABLES) return 0;
     static const char *const type_name[] = {"char", "int", "int64", "double or float", "double"};
     const struct variable *const variable = &variables[i];
-    *listed =
-        (struct result_listed){variable->name, variable->unit, type_name[variable->type], variable->long_name, ""};
+    *listed = (struct result_listed){variable->name,
+                                     variable->unit,
+                                     type_name[variable->type],
+                                     variable->long_name,
+                                     "",
+                                     i == MEAN_SECTION ? mean_flags : NULL};
 
     for (int d = 0; variable->axis[d] != NO_AXIS; d++) {
         const size_t length = strlen(listed->dimensions);
@@ -149,6 +151,8 @@ static void grid_define_all(struct netcdf_writer *writer, const struct field *fi
         const struct variable *const variable = &variables[i];
         struct netcdf_variable to_define = {.name = variable->name, .long_name = variable->long_name};
         to_define.units = variable->unit;
+        to_define.axis = i == TIME_AT ? "T" : i == X_AT ? "X" : i == Y_AT ? "Y" : NULL;
+        to_define.flags = i == MEAN_SECTION ? mean_flags : NULL;
         to_define.type = variable->type == NETCDF_FLOAT && !is_single ? NETCDF_DOUBLE : variable->type;
         to_define.has_gaps = i == BODY_X || i == THICKNESS;
         for (const int *axis = variable->axis; *axis != NO_AXIS; axis++) {

@@ -32,11 +32,12 @@ TEST_WITH(format_is_cdf5, set_up, tear_down) {
 
 // the fish, and the place on the body of each slot along a body
 static void coordinates_are_complete(const struct result_variable *variable, const char *coordinates) {
-    static const char *const places[][2] = {
-        {"node", "node_arc"}, {"sheet", "sheet_arc"}, {"control", "control_arc"}, {"sensor", "sensor_place"}};
+    static const char *const places[][2] = {{"node", "node_arc"},       {"edge", "edge_arc"},
+                                            {"joint", "joint_arc"},     {"sheet", "sheet_arc"},
+                                            {"control", "control_arc"}, {"sensor", "sensor_place"}};
     char want[100] = "fish_name";
     for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) {
-        for (int i = 0; i < 4; i++) {
+        for (int i = 0; i < 6; i++) {
             if (strcmp(result_table_dimension(*d), places[i][0]) != 0 || strcmp(variable->name, places[i][1]) == 0)
                 continue;
             strcat(strcat(want, " "), places[i][1]);
