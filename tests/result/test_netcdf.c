@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "crafted_file.h"
-#include "failing_malloc.h"
 #include "near.h"
 #include "result/netcdf.h"
 #include "result/target.h"
@@ -190,24 +189,6 @@ TEST_WITH(a_missing_folder_is_named, set_up, tear_down) {
     assert_int_equal(write_file(path, true), STATUS_FILE);
     assert_message("there is no folder");
     assert_int_equal(target_check("/no-such-folder.nc", TARGET_NETCDF, true), STATUS_OK);
-}
-
-TEST_WITH(every_failing_allocation_leaves_what_was_there, set_up, tear_down) {
-    const struct fixture *const f = *state;
-    for (int overwrite = 0; overwrite < 2; overwrite++) {
-        if (overwrite) assert_int_equal(write_file(f->path, false), STATUS_OK);
-        struct stat before, after;
-        const int exists = stat(f->path, &before) == 0;
-        assert_int_equal(exists, overwrite);
-        for (int n = 0; n < 2; n++) {
-            n_until_failure = n;
-            assert_int_equal(write_file(f->path, overwrite), STATUS_MEMORY);
-            n_until_failure = -1;
-            assert_int_equal(n_live, 0);
-            assert_int_equal(stat(f->path, &after) == 0, overwrite);
-            if (overwrite) assert_true(after.st_ino == before.st_ino && after.st_size == before.st_size);
-        }
-    }
 }
 
 // ---- reading foreign files

@@ -9,16 +9,6 @@
 #include "result/result_table.h"
 #include "result_fixture.h"
 
-// Which of the next allocations fails, counting from 1; 0: none.
-static int failing_allocation;
-
-void *__real_calloc(size_t n, size_t size);
-void *__wrap_calloc(size_t n, size_t size);
-void *__wrap_calloc(size_t n, size_t size) {
-    if (failing_allocation > 0 && --failing_allocation == 0) return NULL;
-    return __real_calloc(n, size);
-}
-
 // ---- what is in the file ----
 
 TEST_WITH(format_is_cdf5, set_up, tear_down) {
@@ -500,33 +490,4 @@ TEST_WITH(too_many_vortices_are_refused, set_up, tear_down) {
     assert_int_equal(append(f, result, 0, 1), STATUS_FILE);
     assert_message("room for");
     assert_int_equal(result_file_close(result, "failed"), STATUS_OK);
-}
-
-static enum status begin_in_bounds(struct fixture *f, struct arena **arena, struct result_file **result) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    const struct result_origin origin = origin_of(f);
-    *arena = arena_create(NULL, "a result");
-    return result_file_create(*arena, result, &origin);
-}
-
-TEST_WITH(no_memory_leaves_no_file, set_up, tear_down) {
-    struct fixture *f = *state;
-    struct result_file *result = NULL;
-    struct arena *arena = NULL;
-    enum status status = STATUS_MEMORY;
-    for (int i = 1; status != STATUS_OK; i++) {
-        failing_allocation = i;
-        arena = NULL;
-        status = begin_in_bounds(f, &arena, &result);
-        const bool has_failed = failing_allocation == 0;
-        failing_allocation = 0;
-        if (!has_failed) break;
-        arena_free(arena);
-        assert_int_equal(status, STATUS_MEMORY);
-        assert_null(result);
-        assert_int_not_equal(access(f->path, F_OK), 0);
-    }
-    assert_int_equal(status, STATUS_OK);
-    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
-    arena_free(arena);
 }

@@ -8,7 +8,6 @@
 
 #include "case/case.h"
 #include "case/sweep.h"
-#include "failing_malloc.h"
 #include "near.h"
 #include "study/compare.h"
 #include "study/study_file.h"
@@ -198,72 +197,4 @@ TEST(only_a_sweep_of_these_keys_is_a_comparison) {
     struct case_values study = parse(repeated);
     assert_true(compare_is(&study));
     case_free(&study);
-}
-
-static enum status print_in_bounds(struct arena *arena, const struct case_values *study,
-                                   const struct member_file *members, FILE *stream) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    compare_print(arena, study, members, stream);
-    return STATUS_OK;
-}
-
-static enum status read_in_bounds(struct arena *arena, const char *path, struct case_values **study,
-                                  struct member_file **members) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    return study_file_read(arena, path, study, members, &(int){0});
-}
-
-static enum status compare_in_bounds(const struct case_values *values, const struct compare_options *options,
-                                     const struct study_options *run, FILE *nowhere) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    return study_compare(values, options, run, nowhere);
-}
-
-/* Compare, and read the file that this leaves. */
-static enum status compare(struct arena *arena, const struct case_values *values, const char *path, FILE *nowhere) {
-    const struct compare_options options = {
-        .methods = "ida2,rk4", .rtols = "1e-3", .repeats = 1, .reference_rtol = 1e-6, .path = path};
-    const struct study_options run = {.command = "test"};
-    TRY(compare_in_bounds(values, &options, &run, nowhere));
-    struct case_values *study;
-    struct member_file *members;
-    TRY(read_in_bounds(arena, path, &study, &members));
-    const int n = sweep_n_members(study);
-    const double error = *at(&members[n - 1], "tail_error", 0, 0);
-    const enum status printed = print_in_bounds(arena, study, members, nowhere);
-    if (printed == STATUS_OK && strcmp(members[n - 1].status, "complete") == 0) {
-        ABOVE(error, 0);
-        BELOW(error, 1e-3);
-    }
-    return printed;
-}
-
-TEST(every_failing_allocation_is_reported_and_leaves_nothing) {
-    struct case_values values = parse(CASE "fish: [{force: reactive, nodes: 4, sheet_points: 5}]\n");
-    char path[] = "/tmp/shoal-comparison-XXXXXX";
-    close(mkstemp(path));
-    FILE *const nowhere = fopen("/dev/null", "w");
-    int n_failed = 0;
-    // where the comparison itself has memory enough, its processes, which begin with what is left, may not
-    for (int n = 0;; n += 1 + n / 30) {
-        const int n_before = n_live;
-        struct arena *const arena = arena_create(NULL, "a test");
-        n_until_failure = n;
-        const enum status status = compare(arena, &values, path, nowhere);
-        const int ran_out = n_until_failure == -1;
-        n_until_failure = -1;
-        arena_free(arena);
-        assert_int_equal(n_live, n_before);
-        if (status == STATUS_OK && !ran_out) break;
-        n_failed++;
-        if (status != STATUS_OK) {
-            assert_true(status == STATUS_MEMORY || status == STATUS_SOLVER);
-            assert_true(status_message()[0] != '\0');
-        }
-        assert_in_range(n, 0, 100000);
-    }
-    ABOVE(n_failed, 50);
-    fclose(nowhere);
-    unlink(path);
-    case_free(&values);
 }

@@ -8,7 +8,6 @@
 #include "base/text.h"
 #include "case/case.h"
 #include "case/sweep.h"
-#include "failing_malloc.h"
 #include "near.h"
 #include "study/error_plan.h"
 #include "study/study_print.h"
@@ -665,44 +664,4 @@ TEST(a_report_is_printed_whole) {
     csv[sizeof rows - 1] = '\0';
     is_printed(csv, rows);
     close_study(&study);
-}
-
-static enum status plan_and_refine(struct arena *arena, const struct case_values *values,
-                                   const struct member_file *members, int n_members, FILE *nowhere) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    struct error_sweep *sweep;
-    TRY(error_plan_create(arena, &sweep, values));
-    do {
-        convergence_sweep_judge(sweep, members);
-    } while (convergence_study_refine(&sweep->point[0], members, n_members) > 0);
-    return study_print_errors(&sweep->point[0], members, nowhere);
-}
-
-TEST(every_failing_allocation_is_reported_and_leaves_nothing) {
-    static const char text[] = UNIFORM "error: {of: steady_speed, within: 2e-3, keys: [nodes, shedding_interval]}\n";
-    struct case_values values;
-    assert_int_equal(case_parse(&values, text, strlen(text), "test.yaml", NULL, 0, NULL), STATUS_OK);
-    struct error_study whole =
-        open_study(UNIFORM, "{of: steady_speed, within: 2e-3, keys: [nodes, shedding_interval]}");
-    int n_rounds, n_failures = 0;
-    struct member_file *const members = follow(&whole, &n_rounds);
-    const int n_members = sweep_n_members(whole.study);
-    FILE *const nowhere = fopen("/dev/null", "w");
-    for (int n = 0;; n += 1 + n / 20) {
-        const int n_before = n_live;
-        struct arena *const arena = arena_create(NULL, "a test");
-        n_until_failure = n;
-        const enum status status = plan_and_refine(arena, &values, members, n_members, nowhere);
-        const int ran_out = n_until_failure == -1;
-        n_until_failure = -1;
-        arena_free(arena);
-        if (n_live != n_before) fail_msg("with allocation %d failing %d are left", n, n_live - n_before);
-        if (!ran_out) break;
-        if (status != STATUS_MEMORY) fail_msg("with allocation %d failing: %d %s", n, (int)status, status_message());
-        n_failures++;
-    }
-    ABOVE(n_failures, 40);
-    fclose(nowhere);
-    close_study(&whole);
-    case_free(&values);
 }

@@ -9,7 +9,6 @@
 #include "base/text.h"
 #include "case/sweep.h"
 #include "crafted_file.h"
-#include "failing_malloc.h"
 #include "near.h"
 #include "study/convergence.h"
 #include "study/study.h"
@@ -273,89 +272,6 @@ TEST(levels_of_points_are_their_distances_from_coarse_to_fine) {
     assert_memory_equal(orders.level, levels, sizeof levels);
     arena_free(arena);
     case_free(&study);
-}
-
-// ---- memory
-
-static const char small[] =
-    "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\nfish: [{force: reactive, nodes: 4, "
-    "sheet_points: 5}]\n"
-    "sweep: [{key: solver.rtol, values: [1e-3, 1e-4, 1e-5], refine: true}]\n";
-
-/* What fails: each with the case above and a folder. */
-struct attempt {
-    struct case_values study;
-    char folder[64];
-    FILE *nowhere;
-    struct arena *arena; /* of one attempt */
-};
-typedef enum status attempt_function(const struct attempt *attempt);
-
-static enum status run_small(const struct attempt *attempt) {
-    const struct study_options options = {.folder = attempt->folder, .command = "test", .last = -1, .n_processes = 2};
-    int n_failed;
-    TRY(study_run(&attempt->study, &options, &n_failed));
-    return study_report(&attempt->study, attempt->folder, NULL, "test", 0, attempt->nowhere, attempt->nowhere);
-}
-
-static enum status gather_small(const struct attempt *attempt) {
-    return study_gather(attempt->folder, "test", 0, attempt->nowhere, attempt->nowhere);
-}
-
-static enum status inform_of_small(const struct attempt *attempt) {
-    char path[80];
-    snprintf(path, sizeof path, "%s/study.nc", attempt->folder);
-    return study_info(attempt->arena, path, attempt->nowhere);
-}
-
-static enum status write_jobs_of_small(const struct attempt *attempt) {
-    return study_slurm(attempt->arena, &attempt->study, attempt->folder, 0, attempt->nowhere);
-}
-
-static enum status attempt_in_bounds(const struct attempt *attempt, attempt_function *function) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    return function(attempt);
-}
-
-/* Let ever later allocations fail until all succeed. In the processes of members as many succeed again: a member may
- * fail where the study does not. */
-static void fail_one_by_one(struct attempt *attempt, attempt_function *function, const char *name, int min) {
-    int n_failed = 0;
-    for (int n = 0;; n += 1 + n / 30) {
-        const int n_before = n_live;
-        attempt->arena = arena_create(NULL, "a test");
-        n_until_failure = n;
-        const enum status status = attempt_in_bounds(attempt, function);
-        const int ran_out = n_until_failure == -1;
-        n_until_failure = -1;
-        arena_free(attempt->arena);
-        if (n_live != n_before) fail_msg("%s: with allocation %d failing %d are left", name, n, n_live - n_before);
-        if (status == STATUS_OK && !ran_out) break;
-        n_failed++;
-        if (status == STATUS_OK) continue;
-        if (status != STATUS_MEMORY && status != STATUS_SOLVER) {
-            fail_msg("%s: with allocation %d failing: %s", name, n, status_message());
-        }
-        assert_true(status_message()[0] != '\0');
-        assert_in_range(n, 0, 100000);
-    }
-    print_message("%s: %d failures\n", name, n_failed);
-    AT_LEAST(n_failed, min);
-}
-
-TEST(every_failing_allocation_of_a_study_is_reported_and_leaves_nothing) {
-    struct attempt attempt = {.folder = "/tmp/shoal-study-XXXXXX", .nowhere = fopen("/dev/null", "w")};
-    assert_non_null(mkdtemp(attempt.folder));
-    assert_int_equal(case_parse(&attempt.study, small, strlen(small), "small.yaml", NULL, 0, NULL), STATUS_OK);
-    fail_one_by_one(&attempt, run_small, "study_run", 50);
-    fail_one_by_one(&attempt, gather_small, "study_gather", 50);
-    fail_one_by_one(&attempt, inform_of_small, "study_info", 30);
-    fail_one_by_one(&attempt, write_jobs_of_small, "study_slurm", 1);
-    char command[128];
-    snprintf(command, sizeof command, "rm -r %s", attempt.folder);
-    assert_int_equal(system(command), 0);
-    fclose(attempt.nowhere);
-    case_free(&attempt.study);
 }
 
 TEST(quantities_of_a_case_are_those_of_a_study) {

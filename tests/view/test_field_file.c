@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "crafted_file.h"
-#include "failing_malloc.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
 #include "run/simulate_run.h"
@@ -296,33 +295,6 @@ TEST(the_file_has_the_field_on_its_grid) {
     NEAR(value_of(file, "edge_thickness", 0, 1, 0, 0), row->school->fish[0].thickness[1], 0, 0);
     nc_close(file);
     arena_free(arena);
-}
-
-static enum status read_and_write(struct arena *arena) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    struct field_row *row;
-    const struct field_grid grid = {2, 3, {0, 0}, {1, 1}};
-    TRY(field_row_read(arena, &row, path, NAN, 0, NULL));
-    return field_file_write(arena, field_path, 0, path, "test", row, &grid);
-}
-
-TEST(every_allocation_may_fail) {
-    write_run(school_of("sheet"));
-    enum status status = STATUS_MEMORY;
-    const int before = n_live;
-    int n = 0;
-    for (; status != STATUS_OK && n < 20000; n++) {
-        struct arena *const arena = arena_create(NULL, "a test");
-        unlink(field_path);
-        n_until_failure = n;
-        status = read_and_write(arena);
-        n_until_failure = -1;
-        arena_free(arena);
-        assert_true(status == STATUS_OK || access(field_path, F_OK) != 0);
-        assert_int_equal(n_live, before);
-    }
-    ABOVE(n, 100);
-    BELOW(n, 20000);
 }
 
 static int make_folder(void **state) {

@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include "crafted_file.h"
-#include "failing_malloc.h"
 #include "result/result_reader.h"
 #include "result_fixture.h"
 #include "study/study_folder.h"
@@ -178,49 +177,4 @@ TEST_WITH(variables_that_do_not_fit_are_refused, set_up, tear_down) {
     // 17 variables are read in three ways, three of them without a dimension that could be too long
     AT_LEAST(n_refused, 17 * 3 - 3);
     free(bytes);
-}
-
-static enum status write_page(struct arena *arena, const struct fixture *f) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    unlink(page_of(f));
-    return page_write(arena, f->path, page_of(f), false);
-}
-
-static enum status write_vtk(struct arena *arena, const struct fixture *f) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    char folder[64];
-    const char *list;
-    snprintf(folder, sizeof folder, "%s/vtk", f->folder);
-    study_folder_remove(folder);
-    return vtk_export(arena, f->path, folder, true, &list);
-}
-
-TEST_WITH(every_failing_allocation_is_reported_and_leaves_nothing, set_up, tear_down) {
-    struct fixture *f = *state;
-    enum status (*const write[])(struct arena * arena, const struct fixture *f) = {write_page, write_vtk};
-    char name[80];
-    write_file(f, 2);
-    for (int i = 0; i < 2; i++) {
-        enum status status = STATUS_MEMORY;
-        const int before = n_live;
-        int n = 0;
-        for (; status != STATUS_OK && n < 1000; n++) {
-            struct arena *const arena = arena_create(NULL, "a test");
-            n_until_failure = n;
-            status = write[i](arena, f);
-            n_until_failure = -1;
-            arena_free(arena);
-            if (status != STATUS_OK) assert_int_equal(status, STATUS_MEMORY);
-            assert_int_equal(n_live, before);
-            for (int k = 0; status != STATUS_OK && k < 4; k++) {
-                static const char *const made[] = {"run.html", "run.html.part", "vtk/run.pvd", "vtk/run.pvd.part"};
-                snprintf(name, sizeof name, "%s/%s", f->folder, made[k]);
-                if (i == k / 2) assert_int_not_equal(access(name, F_OK), 0);
-            }
-        }
-        assert_in_range(n, 30, 999);
-    }
-    unlink(page_of(f));
-    snprintf(name, sizeof name, "%s/vtk", f->folder);
-    study_folder_remove(name);
 }
