@@ -58,6 +58,18 @@ void school_clear(struct setup *setup) {
     arena_free(setup->arena);
 }
 
+struct setup setup_of(const char *text) {
+    struct setup setup;
+    school_build(&setup, text);
+    return setup;
+}
+
+struct setup setup_stirred(const char *text) {
+    struct setup setup = setup_of(text);
+    school_stir(&setup);
+    return setup;
+}
+
 double school_random(struct setup *setup) {
     // Knuth's linear congruential generator; the upper bits are good ones
     setup->seed = setup->seed * 6364136223846793005u + 1442695040888963407u;

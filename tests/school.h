@@ -32,6 +32,8 @@ struct setup {
  * until the end of the test, or until school_clear. */
 void school_settings(struct case_values *values, const char *text);
 void school_build(struct setup *setup, const char *text);
+struct setup setup_of(const char *text);      /* the same */
+struct setup setup_stirred(const char *text); /* and school_stir */
 void school_clear(struct setup *setup);
 
 /* A random number in [-1, 1], always the same ones in the same order. */

@@ -25,8 +25,7 @@ static void ask(const struct setup *setup, double t, double phi0, double phi0_ra
 }
 
 TEST(curvature_is_the_formula_of_the_model) {
-    struct setup setup;
-    school_build(&setup, TIME WAVE);
+    struct setup setup = setup_of(TIME WAVE);
     struct asked asked;
     for (double t = 0; t < 1.5; t += 0.3) {
         ask(&setup, t, 0.2, 0, &asked);
@@ -40,8 +39,7 @@ TEST(curvature_is_the_formula_of_the_model) {
 }
 
 static void derivatives_agree(const char *text) {
-    struct setup setup;
-    school_build(&setup, text);
+    struct setup setup = setup_of(text);
     const double h = 1e-4, rate = 0.7;
     for (double t = 0.1; t < 1.5; t += 0.3) {
         struct asked at, low, high;
@@ -99,8 +97,7 @@ TEST(no_joint_turns_by_more_than_the_largest_turn) {
     for (int i = 0; i < 2; i++) {
         char text[256];
         snprintf(text, sizeof text, TIME "fish: [{nodes: 9, wave: {%s}}]\n", waves[i]);
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         const struct fish *const fish = setup.school->fish;
         const double largest = fish_largest_turn(fish, 1.5, 0.4);
         double most = 0;
@@ -126,8 +123,7 @@ TEST(a_table_is_met_at_its_places_and_phases) {
         "9]]}}]\n"};
     const double want[2][3][4] = {{{1, 2, -3}, {2, 0, 4}, {0, 1, 0}}, {{1, 2, -3, 0}, {2, 0, 4, 1}, {0, 1, 0, 2}}};
     for (int i = 0; i < 2; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
+        struct setup setup = setup_of(texts[i]);
         for (int phase = 0; phase < 3 + i; phase++) {
             for (int j = 0; j < 3; j++) {
                 // a quarter of the length turns by a quarter of curvature times length
@@ -139,8 +135,7 @@ TEST(a_table_is_met_at_its_places_and_phases) {
 }
 
 TEST(wave_travels_from_head_to_tail) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 31, wave: {ramp: 0}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{nodes: 31, wave: {ramp: 0}}]\n");
     // a crest stands where number s + omega t is constant: after 0.1 s it is 0.1 omega/6 lengths further back
     struct asked now, later;
     const double delay = 6.0 * 3 / 30 / (2 * acos(-1));
@@ -155,8 +150,7 @@ TEST(wave_travels_from_head_to_tail) {
 TEST(ramp_starts_from_a_straight_body_and_no_ramp_does_not) {
     const char *const texts[] = {TIME "fish: [{}]\n", TIME "fish: [{wave: {ramp: 0}}]\n"};
     for (int i = 0; i < 2; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
+        struct setup setup = setup_of(texts[i]);
         struct asked asked;
         ask(&setup, 0, 0.3, 0, &asked);
         for (int j = 0; j < 5; j++) {
@@ -170,8 +164,7 @@ TEST(turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes) {
     double total[2];
     const char *const texts[] = {TIME "fish: [{nodes: 121}]\n", TIME "fish: [{nodes: 241}]\n"};
     for (int i = 0; i < 2; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
+        struct setup setup = setup_of(texts[i]);
         struct asked asked;
         ask(&setup, 1.3, 1, 0, &asked);
         total[i] = 0;

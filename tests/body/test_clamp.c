@@ -32,17 +32,14 @@ TEST(jacobian_agrees_with_differences) {
                                  TIME "fish: [{body: {section: mean, relaxation_time: 0.1, bending_damping: 2}, " HEAD
                                       "}]\n"};
     for (int i = 0; i < 2; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(texts[i]);
         school_compare(&setup, value_of_clamp, jacobian_of_clamp, texts[i]);
     }
 }
 
 TEST(force_is_minus_the_gradient_of_the_energy) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{body: {section: mean, bending_damping: 0, relaxation_time: 0}, " HEAD "}]\n");
-    school_stir(&setup);
+    struct setup setup =
+        setup_stirred(TIME "fish: [{body: {section: mean, bending_damping: 0, relaxation_time: 0}, " HEAD "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     clamp_residual(fish, setup.t, y, setup.value);
@@ -61,9 +58,7 @@ TEST(force_is_minus_the_gradient_of_the_energy) {
 }
 
 TEST(powers_are_what_the_energy_and_the_nodes_do_not_take_up) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{body: {section: mean, relaxation_time: 0.01}, " HEAD "}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{body: {section: mean, relaxation_time: 0.01}, " HEAD "}]\n");
     const struct fish *fish = setup.school->fish;
     const double *const y = setup.state->y, h = 1e-5;
     double moved[2][256], power = 0;
@@ -103,10 +98,9 @@ TEST(energy_audit_of_a_clamped_fish_closes) {
 }
 
 TEST(head_has_one_prescribed_node_and_published_sections_two) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{body: {section: mean}, " HEAD
-                              "}, {start: {position: [0, 2]}, body: {section: "
-                              "nodes}, " HEAD "}, {start: {position: [0, 4]}, body: {section: mean}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{body: {section: mean}, " HEAD
+                                       "}, {start: {position: [0, 2]}, body: {section: "
+                                       "nodes}, " HEAD "}, {start: {position: [0, 4]}, body: {section: mean}}]\n");
     const struct fish *fish = setup.school->fish;
     const int n[] = {1, 2, 0}, has_clamp[] = {1, 0, 0};
     for (int f = 0; f < 3; f++) {
@@ -117,9 +111,8 @@ TEST(head_has_one_prescribed_node_and_published_sections_two) {
 }
 
 TEST(clamp_is_the_joint_of_half_a_cell) {
-    struct setup setup;
-    school_build(
-        &setup, TIME
+    struct setup setup = setup_of(
+        TIME
         "fish: [{nodes: 9, body: {section: mean, profile: uniform, bending_damping: 2, relaxation_time: 0.1}, " HEAD
         "}]\n");
     const struct fish *fish = setup.school->fish;
@@ -129,8 +122,7 @@ TEST(clamp_is_the_joint_of_half_a_cell) {
 }
 
 TEST(given_direction_is_that_of_the_prescribed_nodes) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{start: {heading: 25}, " HEAD "}]\n");
+    struct setup setup = setup_of(TIME "fish: [{start: {heading: 25}, " HEAD "}]\n");
     const struct fish *fish = setup.school->fish;
     const double h = 1e-5;
     double a[2], b[2], direction[3][2], rate, ignored[2];
@@ -170,8 +162,7 @@ static double lowest_mode(int nodes) {
              "  body: {section: mean, profile: uniform, thickness: 0.001, modulus: 3.2e+10},\n"
              "  motion: {prescribed: head, speed: 0}}]\n",
              nodes);
-    struct setup setup;
-    school_build(&setup, text);
+    struct setup setup = setup_of(text);
     const struct fish *fish = setup.school->fish;
     school_ok(residual_jacobian(setup.residual, 0, 0, setup.state->y, setup.jacobian));
     double *const dense = school_dense_jacobian(setup.jacobian);
@@ -203,9 +194,8 @@ TEST(frequency_of_a_clamped_beam_is_of_second_order_in_its_whole_length) {
 }
 
 TEST(moment_of_a_tilt_is_that_of_half_a_cell) {
-    struct setup setup;
-    school_build(
-        &setup, TIME
+    struct setup setup = setup_of(
+        TIME
         "fish: [{body: {section: mean, profile: uniform, thickness: 0.1, modulus: 1.0e+5, bending_damping: 0.5},\n"
         "        start: {heading: 180}, motion: {prescribed: head}}]\n");
     const struct fish *fish = setup.school->fish;

@@ -5,9 +5,7 @@
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 TEST(frame_is_orthonormal_and_points_from_node_to_node) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 5}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{nodes: 5}]\n");
     const struct fish *fish = setup.school->fish;
     const double *const y = setup.state->y;
     for (int k = 0; k < fish->n_edges; k++) {
@@ -28,9 +26,7 @@ TEST(frame_is_orthonormal_and_points_from_node_to_node) {
 }
 
 TEST(rate_of_turn_is_that_of_a_rigid_rotation) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 5}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{nodes: 5}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     for (int k = 0; k < fish->n_nodes; k++) {

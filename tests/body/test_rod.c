@@ -76,9 +76,7 @@ TEST(derivatives_agree_with_differences) {
                                  TIME "fish: [{body: {relaxation_time: 0.1, profile: uniform}}]\n",
                                  TIME "fish: [{" STRAIN "}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(texts[i]);
         school_compare(&setup, value_of_rod, jacobian_of_rod, texts[i]);
     }
 }
@@ -88,9 +86,7 @@ static double elastic_energy(const struct fish *fish, const double *y) {
 }
 
 TEST(elastic_force_is_minus_the_gradient_of_the_energy) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{" BODY "}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     // nodes at rest: no damping
@@ -110,9 +106,7 @@ TEST(elastic_force_is_minus_the_gradient_of_the_energy) {
 }
 
 TEST(internal_forces_have_no_sum_and_no_moment) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{" BODY "}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     const double *const y = setup.state->y;
     rod_residual(fish, &muscle, y, setup.value);
@@ -131,9 +125,7 @@ TEST(internal_forces_have_no_sum_and_no_moment) {
 }
 
 TEST(damping_power_is_that_of_the_damping_forces_and_never_positive) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{" BODY "}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     double *const elastic = calloc((size_t)fish->at.end, sizeof *elastic);
@@ -160,9 +152,7 @@ TEST(damping_power_is_that_of_the_damping_forces_and_never_positive) {
 }
 
 TEST(rigid_motion_is_not_damped) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{" BODY "}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -186,8 +176,7 @@ static void bend(struct setup *setup, double angle, double stretch) {
 }
 
 TEST(energies_of_a_regular_polygon_are_exact) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{body: {profile: uniform, thickness: 0.1, modulus: 2.0e+5}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{body: {profile: uniform, thickness: 0.1, modulus: 2.0e+5}}]\n");
     const struct fish *fish = setup.school->fish;
     const double angle = 0.3, stretch = 1.05, pi = acos(-1);
     bend(&setup, angle, stretch);
@@ -205,8 +194,7 @@ TEST(energy_of_a_circular_arc_converges_to_that_of_the_continuum) {
                                  TIME "fish: [{nodes: 41, body: {profile: uniform, thickness: 0.1}}]\n"};
     double error[2];
     for (int i = 0; i < 2; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
+        struct setup setup = setup_of(texts[i]);
         const double R = 0.5, pi = acos(-1), EI = 1e6 * pi * 0.25 * 0.001 / 64;
         const struct fish *fish = setup.school->fish;
         bend(&setup, fish->edge_length / R, 1);
@@ -220,8 +208,7 @@ TEST(energy_of_a_circular_arc_converges_to_that_of_the_continuum) {
 }
 
 TEST(polygon_of_the_natural_curvature_is_at_rest) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{" BODY "}]\n");
+    struct setup setup = setup_of(TIME "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     const double angle = 0.4, kappa = 2 * tan(0.2);
     double curvature[5] = {kappa, kappa, kappa, kappa, kappa};
@@ -234,8 +221,7 @@ TEST(polygon_of_the_natural_curvature_is_at_rest) {
 }
 
 TEST(turning_angles_keep_their_sign_in_every_direction) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{}]\n");
+    struct setup setup = setup_of(TIME "fish: [{}]\n");
     double curvature[5];
     // the body turns by 1.2 rad at each of five joints: almost once round, through the cut of the arc tangent
     for (int sign = -1; sign <= 1; sign += 2) {
@@ -246,9 +232,7 @@ TEST(turning_angles_keep_their_sign_in_every_direction) {
 }
 
 TEST(muscle_power_is_the_change_of_energy_at_a_fixed_shape) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{" BODY "}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     const double h = 1e-4;
     double low[5], high[5];
@@ -289,9 +273,7 @@ TEST(what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes) {
     for (int i = 0; i < 2; i++) {
         char text[256];
         snprintf(text, sizeof text, TIME "fish: [{%s}]\n", bodies[i]);
-        struct setup setup;
-        school_build(&setup, text);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(text);
         const struct fish *fish = setup.school->fish;
         const double *const y = setup.state->y;
         rod_residual(fish, &muscle, y, setup.value);
@@ -305,9 +287,7 @@ TEST(what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes) {
 }
 
 TEST(a_body_that_does_what_its_muscle_asks_is_not_damped) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{" STRAIN "}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{" STRAIN "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     // edge lengths are constant; edge k turns at the sum of the rates of the joints before it
@@ -327,8 +307,7 @@ TEST(a_body_that_does_what_its_muscle_asks_is_not_damped) {
 }
 
 TEST(a_body_is_torn_at_ten_times_the_length_of_an_edge) {
-    struct setup setup;
-    school_build(&setup, "time: {end: 1}\nfish: [{nodes: 7}]\n");
+    struct setup setup = setup_of("time: {end: 1}\nfish: [{nodes: 7}]\n");
     const struct fish *const fish = setup.school->fish;
     double *const tail = &setup.state->y[fish->at.x + 6];
     const double before = tail[-1], sign = *tail > before ? 1 : -1;
@@ -339,8 +318,7 @@ TEST(a_body_is_torn_at_ten_times_the_length_of_an_edge) {
 }
 
 TEST(the_shortest_edge_is_the_one_compressed_most) {
-    struct setup setup;
-    school_build(&setup, "time: {end: 1}\nfish: [{nodes: 7, wave: {amplitude: 0}}]\n");
+    struct setup setup = setup_of("time: {end: 1}\nfish: [{nodes: 7, wave: {amplitude: 0}}]\n");
     const struct fish *const fish = setup.school->fish;
     double *const x = &setup.state->y[fish->at.x], ratio;
     rod_shortest_edge(fish, setup.state->y, &ratio);
@@ -351,8 +329,7 @@ TEST(the_shortest_edge_is_the_one_compressed_most) {
 }
 
 TEST(the_sharpest_joint_is_the_one_that_turns_most) {
-    struct setup setup;
-    school_build(&setup, "time: {end: 1}\nfish: [{nodes: 7, wave: {amplitude: 0}}]\n");
+    struct setup setup = setup_of("time: {end: 1}\nfish: [{nodes: 7, wave: {amplitude: 0}}]\n");
     const struct fish *const fish = setup.school->fish;
     double *const x = &setup.state->y[fish->at.x], *const y = &setup.state->y[fish->at.y], turn;
     // turn the body behind node 3 to the right, behind node 5 back by less

@@ -28,8 +28,8 @@ static void residue_of(const struct fish *fish, const double *y, double *residue
 }
 
 TEST(the_balance_finds_the_stresses_that_the_accelerations_say) {
-    struct setup setup;
-    school_build(&setup, TIME
+    struct setup setup =
+        setup_of(TIME
                  "fluid: {density: 0}\nfish: [{nodes: 9, wave: {amplitude: 0},\n"
                  "  body: {modulus: 1.0e+9, damping: strain, relaxation_time: 0.02, bending_damping: 0.1}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -69,11 +69,10 @@ TEST(the_balance_finds_the_stresses_that_the_accelerations_say) {
 
 // a body that is bent by up to 0.3 rad at a joint, on which nothing but its rod acts
 TEST(the_balance_of_a_bent_body_has_the_stresses_of_its_law) {
-    struct setup setup;
-    school_build(&setup, TIME
-                 "fluid: {density: 0}\nfish: [{nodes: 9, wave: {amplitude: 0},\n"
-                 "  body: {modulus: 1.0e+5, damping: strain, relaxation_time: 0.02, bending_damping: 0.1}}]\n");
-    school_stir(&setup);
+    struct setup setup =
+        setup_stirred(TIME
+                      "fluid: {density: 0}\nfish: [{nodes: 9, wave: {amplitude: 0},\n"
+                      "  body: {modulus: 1.0e+5, damping: strain, relaxation_time: 0.02, bending_damping: 0.1}}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y, want[STRAINS], got[STRAINS] = {0};
     memset(y + fish->at.ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
@@ -100,9 +99,7 @@ TEST(stresses_ahead_of_prescribed_nodes_stay) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[256];
         snprintf(text, sizeof text, TIME "fish: [{nodes: 7, motion: {%s}}]\n", cases[i].motion);
-        struct setup setup;
-        school_build(&setup, text);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(text);
         const struct fish *fish = setup.school->fish;
         double before[STRAINS], after[STRAINS];
         stresses(fish, setup.state->y, before);
@@ -147,8 +144,7 @@ TEST(strains_creep_as_the_law_of_the_material_says) {
                  "fish: [{nodes: 5, body: {damping: strain, bending_damping: 0, stretching_damping: 0, "
                  "relaxation_time: %g}}]\n",
                  relaxation[r]);
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         const struct fish *fish = setup.school->fish;
         const int n = rod_n_strains(fish);
         const double tau = relaxation[r];
@@ -178,8 +174,7 @@ TEST(strains_creep_as_the_law_of_the_material_says) {
 }
 
 TEST(without_an_older_stress_the_step_is_linear) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 5, body: {damping: strain, relaxation_time: 0.02}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{nodes: 5, body: {damping: strain, relaxation_time: 0.02}}]\n");
     const struct fish *fish = setup.school->fish;
     const double s[3] = {0.3, -2, 0}, h = 0.004;
     double nothing[STRAINS], before[STRAINS], now[STRAINS], strain[STRAINS];

@@ -133,8 +133,7 @@ TEST(two_bodies_that_turn_towards_each_other_have_touched) {
 // a body that turns about its nose at rest, through the nose of the other one
 TEST(a_body_that_sweeps_over_another_has_touched_it) {
     for (int sweeper = 0; sweeper < 2; sweeper++) {
-        struct setup setup;
-        school_build(&setup, PAIR("0", "3"));
+        struct setup setup = setup_of(PAIR("0", "3"));
         double *const between = calloc((size_t)setup.school->n_unknowns, sizeof *between), *const y = setup.state->y;
         for (int end = 0; end < 2; end++) {
             for (int f = 0; f < 2; f++) {

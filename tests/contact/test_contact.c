@@ -25,8 +25,7 @@ TEST(nobody_repels_what_is_farther_than_the_range) {
                  {TIME "contact: {action: warn}\n" BESIDE("0.119"), 0},
                  {TIME "contact: {action: stop}\n" BESIDE("0.119"), 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct setup setup;
-        school_build(&setup, cases[i].text);
+        struct setup setup = setup_of(cases[i].text);
         struct contact *const contact = setup.residual->contact;
         school_ok(contact_find(contact, setup.state, 0, setup.state->y));
         const int *other;
@@ -50,9 +49,7 @@ static double energy_of_school(struct setup *setup, const double *y) {
          "190}}, {nodes: 9, sheet_points: 11, start: {position: [0.1, -0.35], heading: 170}}]\n"
 
 TEST(forces_are_the_gradient_of_the_energy) {
-    struct setup setup;
-    school_build(&setup, NEAR_ANOTHER);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(NEAR_ANOTHER);
     double *const y = setup.state->y, h = 1e-5;
     school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
     for (int f = 0; f < 3; f++) contact_residual(setup.residual->contact, f, y, setup.value);
@@ -74,9 +71,7 @@ TEST(forces_are_the_gradient_of_the_energy) {
 }
 
 TEST(forces_and_powers_of_all_add_up_to_nothing) {
-    struct setup setup;
-    school_build(&setup, NEAR_ANOTHER);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(NEAR_ANOTHER);
     const double *const y = setup.state->y;
     const struct contact *const contact = setup.residual->contact;
     school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
@@ -107,12 +102,11 @@ TEST(forces_and_powers_of_all_add_up_to_nothing) {
 }
 
 TEST(walls_push_with_the_gradient_of_the_energy) {
-    struct setup setup;
-    school_build(&setup, TIME
-                 "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5, action: warn}\n"
-                 "fish: [{sheet_points: 9}, {nodes: 5, sheet_points: 7, length: 0.7, start: {position: "
-                 "[0.2, 0.3], heading: 190}}]\n");
-    school_stir(&setup);
+    struct setup setup =
+        setup_stirred(TIME
+                      "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5, action: warn}\n"
+                      "fish: [{sheet_points: 9}, {nodes: 5, sheet_points: 7, length: 0.7, start: {position: "
+                      "[0.2, 0.3], heading: 190}}]\n");
     double *const y = setup.state->y, h = 1e-5;
     const struct contact *const contact = setup.residual->contact;
     school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
@@ -146,9 +140,8 @@ TEST(walls_push_with_the_gradient_of_the_energy) {
 
 // doc/model.md, section 16: half of phi of every end of each edge above each wall
 TEST(the_energy_above_walls_is_that_of_all_ends) {
-    struct setup setup;
-    school_build(&setup, TIME "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5}\nfish: [{sheet_points: 9}]\n");
-    school_stir(&setup);
+    struct setup setup =
+        setup_stirred(TIME "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5}\nfish: [{sheet_points: 9}]\n");
     const struct fish *const fish = &setup.school->fish[0];
     const double *const y = setup.state->y, r = setup.school->contact_range;
     double want = 0;
@@ -175,8 +168,7 @@ TEST(two_bodies_with_given_motions_pass_through_each_other) {
                  "defaults: {fish: {sheet_points: 9, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1},"
                  " motion: {prescribed: all}}}\nfish: [{motion: {prescribed: %s}}, {start: {position: [0, 0.2]}}]\n",
                  motions[i]);
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         double *const y = setup.state->y;
         const struct fish *const fish = &setup.school->fish[1];
         for (int k = 0; k < fish->n_nodes; k++) y[fish->at.y + k] -= 0.15;
@@ -187,8 +179,7 @@ TEST(two_bodies_with_given_motions_pass_through_each_other) {
 }
 
 TEST(who_is_beyond_a_wall_asks_for_a_smaller_step) {
-    struct setup setup;
-    school_build(&setup, TIME STRAIGHT "fluid: {walls: [-0.2]}\nfish: [{}]\n");
+    struct setup setup = setup_of(TIME STRAIGHT "fluid: {walls: [-0.2]}\nfish: [{}]\n");
     const struct fish *const fish = &setup.school->fish[0];
     double *const y = setup.state->y;
     // half of the body is 0.05 thick
@@ -202,8 +193,7 @@ TEST(who_is_beyond_a_wall_asks_for_a_smaller_step) {
 }
 
 TEST(what_crosses_on_its_way_asks_for_a_smaller_step) {
-    struct setup setup;
-    school_build(&setup, TIME BESIDE("0.2"));
+    struct setup setup = setup_of(TIME BESIDE("0.2"));
     struct contact *const contact = setup.residual->contact;
     const struct fish *const fish = &setup.school->fish[1];
     double *const y = setup.state->y;
@@ -622,8 +612,7 @@ TEST(the_energy_is_that_of_all_ends_above_all_edges) {
         NEAR_ANOTHER, TIME "contact: {range: 0.5}\n" STRAIGHT "fish: [{}, {start: {position: [1.4, 0.01]}}]\n",
         TIME "contact: {range: 0.5}\n" STRAIGHT "fish: [{}, {start: {position: [2.4, 0.01], heading: 0}}]\n"};
     for (int i = 0; i < 3; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
+        struct setup setup = setup_of(texts[i]);
         if (i == 0) school_stir(&setup);
         const double *const y = setup.state->y;
         memcpy(setup.state->closest->before, y, (size_t)setup.school->n_unknowns * sizeof *y);

@@ -96,8 +96,8 @@ TEST(a_tail_that_enters_the_right_side_of_the_nose_crosses_the_outline) {
     // only the closing segment of the outline, from the last point to the nose, is crossed
     const double x[] = {0, 0.2, 0.2, -0.1, -0.1, 0.1, 0.1}, y_of_tail[] = {-0.005, -0.002, 0.002};
     double y[] = {0, 0, 0.2, 0.2, -0.2, -0.2, 0};
-    struct setup setup;
-    school_build(&setup, SCHOOL_DEFAULTS TIME "fish: [{nodes: 7, body: {profile: uniform, thickness: 0.02}}]\n");
+    struct setup setup =
+        setup_of(SCHOOL_DEFAULTS TIME "fish: [{nodes: 7, body: {profile: uniform, thickness: 0.02}}]\n");
     const struct fish *const fish = setup.school->fish;
     double *const to = setup.state->y;
     for (int i = 0; i < 3; i++) {

@@ -17,8 +17,7 @@ static double sum(int n, const double *value) {
 }
 
 TEST(joukowski_body_has_the_mass_of_the_reference) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{}]\n");
+    struct setup setup = setup_of(TIME "fish: [{}]\n");
     const struct fish *fish = &setup.school->fish[0];
     // an independent program's mass of the same body
     NEAR(fish->total_mass, 57.50243756590633, 1e-10, 0);
@@ -26,8 +25,7 @@ TEST(joukowski_body_has_the_mass_of_the_reference) {
 }
 
 TEST(mean_sections_give_the_mass_and_the_stiffness_of_the_foil) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 17, body: {section: mean, density: 1000, modulus: 1}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{nodes: 17, body: {section: mean, density: 1000, modulus: 1}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     // an independent program's mass of the same body
     NEAR(fish->total_mass, 30.842513753404223, 1e-9, 0);
@@ -42,10 +40,9 @@ TEST(mean_sections_give_the_mass_and_the_stiffness_of_the_foil) {
 }
 
 TEST(added_mass_takes_the_mean_square_of_the_thickness) {
-    struct setup setup;
-    school_build(&setup, TIME
-                 "fish: [{body: {section: mean}}, {start: {position: [0, 2]}, body: {section: mean}, "
-                 "added_mass: {extent: depth}}]\n");
+    struct setup setup = setup_of(TIME
+                                  "fish: [{body: {section: mean}}, {start: {position: [0, 2]}, body: {section: mean}, "
+                                  "added_mass: {extent: depth}}]\n");
     const struct fish *thick = &setup.school->fish[0], *wide = &setup.school->fish[1];
     for (int k = 0; k < thick->n_edges; k++) {
         const double h = thick->thickness[k], l = 1.0 / 6;
@@ -63,8 +60,7 @@ TEST(second_moments_are_the_two_formulas) {
     const double h = 0.1, w = 0.25, area = pi * h * w / 4;
     const double moment[] = {pi * w * h * h * h / 64, 2000 * area * w * w / 12 / 6};
     for (int i = 0; i < 2; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
+        struct setup setup = setup_of(texts[i]);
         const struct fish *fish = &setup.school->fish[0];
         for (int j = 0; j < fish->n_joints; j++) NEAR(fish->bending_stiffness[j], 3e5 * moment[i], 0, 1e-14);
         for (int k = 0; k < fish->n_edges; k++) NEAR(fish->axial_stiffness[k], 3e5 * area, 0, 1e-14);
@@ -73,8 +69,8 @@ TEST(second_moments_are_the_two_formulas) {
 }
 
 TEST(damping_and_wave_scale_with_refinement) {
-    struct setup setup;
-    school_build(&setup, TIME
+    struct setup setup =
+        setup_of(TIME
                  "fish: [{nodes: 13, body: {bending_damping: 0.5, stretching_damping: 2, relaxation_time: "
                  "0.01, profile: uniform}, wave: {phase: 30, frequency: 1.5}}]\n");
     const struct fish *fish = &setup.school->fish[0];
@@ -93,9 +89,8 @@ TEST(damping_and_wave_scale_with_refinement) {
 }
 
 TEST(table_of_heights_is_taken_as_it_is) {
-    struct setup setup;
-    school_build(
-        &setup, TIME
+    struct setup setup = setup_of(
+        TIME
         "fish: [{nodes: 4, body: {profile: table, thickness_table: [0.1, 0.2, 0.3], depth_table: [0.3, 0.2, 0.1]}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     const double h[] = {0.1, 0.2, 0.3}, w[] = {0.3, 0.2, 0.1};
@@ -126,8 +121,7 @@ static double arc_of(const struct fish *fish, const struct stencil *point) {
 }
 
 TEST(sheet_points_are_cosine_points_and_weights_add_up_to_the_length) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{sheet_points: 11, length: 1.2}]\n");
+    struct setup setup = setup_of(TIME "fish: [{sheet_points: 11, length: 1.2}]\n");
     const struct fish *fish = &setup.school->fish[0];
     NEAR(sum(11, fish->sheet_weight), 1.2, 0, 1e-14);
     for (int j = 0; j < 11; j++) {
@@ -139,8 +133,7 @@ TEST(sheet_points_are_cosine_points_and_weights_add_up_to_the_length) {
 }
 
 TEST(control_points_are_chebyshev_points_or_midpoints_of_chords) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{sheet_points: 11}]\n");
+    struct setup setup = setup_of(TIME "fish: [{sheet_points: 11}]\n");
     for (int c = 0; c < 10; c++) {
         NEAR(arc_of(setup.school->fish, &setup.school->fish[0].control_point[c]), (1 - cos(pi * (c + 0.5) / 10)) / 2,
              1e-15, 0);
@@ -177,8 +170,7 @@ TEST(smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature) {
 }
 
 TEST(start_is_straight_behind_the_nose_with_one_velocity) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{start: {position: [2, 3], heading: 30, speed: 0.7}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{start: {position: [2, 3], heading: 30, speed: 0.7}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     const double *const y = setup.state->y;
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -190,8 +182,7 @@ TEST(start_is_straight_behind_the_nose_with_one_velocity) {
 }
 
 TEST(start_without_ramp_has_the_natural_shape) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{wave: {ramp: 0, phase: 40}, control: {bias: 0.3}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{wave: {ramp: 0, phase: 40}, control: {bias: 0.3}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     const double *const x = setup.state->y + fish->at.x, *const y = setup.state->y + fish->at.y;
     double before = atan2(y[1] - y[0], x[1] - x[0]);
@@ -242,9 +233,8 @@ TEST(fish_that_begin_beyond_a_wall_are_refused) {
 }
 
 TEST(unknowns_stand_fish_after_fish_in_the_documented_order) {
-    struct setup setup;
-    school_build(&setup,
-                 TIME "fish: [{nodes: 5, sheet_points: 6}, {nodes: 4, sheet_points: 5, start: {position: [0, 2]}}]\n");
+    struct setup setup =
+        setup_of(TIME "fish: [{nodes: 5, sheet_points: 6}, {nodes: 4, sheet_points: 5, start: {position: [0, 2]}}]\n");
     const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
     const int first[] = {a->x, a->y, a->vx, a->vy, a->ax, a->ay, a->gamma, a->circulation, a->phi0, a->end};
     const int want[] = {0, 5, 10, 15, 20, 25, 30, 36, 37, 38};
@@ -255,8 +245,7 @@ TEST(unknowns_stand_fish_after_fish_in_the_documented_order) {
 }
 
 TEST(gust_blows_across_the_stream) {
-    struct setup setup;
-    school_build(&setup, TIME "fluid: {velocity: [3, 4], gust: {amplitude: 0.5, frequency: 2}}\nfish: [{}]\n");
+    struct setup setup = setup_of(TIME "fluid: {velocity: [3, 4], gust: {amplitude: 0.5, frequency: 2}}\nfish: [{}]\n");
     NEAR(setup.school->gust[0], -0.4, 1e-15, 0);
     NEAR(setup.school->gust[1], 0.3, 1e-15, 0);
     NEAR(setup.school->gust_omega, 4 * pi, 0, 1e-15);
@@ -275,8 +264,7 @@ TEST(a_wave_has_an_amplitude_a_frequency_and_a_free_body) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[256];
         snprintf(text, sizeof text, "time: {end: 1, shedding_interval: 0.02}\nfish: [{%s}]\n", cases[i].fish);
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         const struct fish *const fish = setup.school->fish;
         assert_int_equal(fish_has_wave(fish), cases[i].has_wave);
         // the friction of a body on which a wave travels
@@ -289,10 +277,9 @@ TEST(a_wave_has_an_amplitude_a_frequency_and_a_free_body) {
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 TEST(distance_is_that_of_the_outlines) {
-    struct setup setup;
-    school_build(&setup, TIME
-                 "defaults: {fish: {body: {profile: uniform, thickness: 0.1}}}\n"
-                 "fish: [{}, {start: {position: [0, 0.5]}}, {start: {position: [1.5, 0]}}]\n");
+    struct setup setup = setup_of(TIME
+                                  "defaults: {fish: {body: {profile: uniform, thickness: 0.1}}}\n"
+                                  "fish: [{}, {start: {position: [0, 0.5]}}, {start: {position: [1.5, 0]}}]\n");
     const struct fish *fish = setup.school->fish;
     NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, INFINITY), 0.4, 1e-14, 0);
     // tail at x = 1 to nose at 1.5, minus half of both thicknesses
@@ -356,8 +343,8 @@ static double sampled_distance(const struct fish *a, const struct fish *b, const
 }
 
 TEST(distance_of_bent_bodies_is_the_least_of_their_points) {
-    struct setup setup;
-    school_build(&setup, TIME
+    struct setup setup =
+        setup_of(TIME
                  "defaults: {fish: {nodes: 4, sheet_points: 5, body: {profile: uniform, thickness: 0.02}}}\n"
                  "fish: [{}, {length: 0.7, start: {position: [0, 0.5]}}]\n");
     const struct fish *a = &setup.school->fish[0], *b = &setup.school->fish[1];
@@ -385,8 +372,8 @@ TEST(distance_of_bent_bodies_is_the_least_of_their_points) {
 }
 
 TEST(distance_from_a_wall_counts_the_thicker_edge_of_a_node) {
-    struct setup setup;
-    school_build(&setup, TIME
+    struct setup setup =
+        setup_of(TIME
                  "fluid: {walls: [-1]}\nfish: [{nodes: 5, wave: {amplitude: 0}, body: {profile: table, "
                  "thickness_table: [0.1, 0.2, 0.05, 0.3], depth_table: [0.2, 0.2, 0.2, 0.2]}}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -400,8 +387,8 @@ TEST(distance_from_a_wall_counts_the_thicker_edge_of_a_node) {
 }
 
 TEST(a_street_has_two_staggered_rows_along_the_stream) {
-    struct setup setup;
-    school_build(&setup, TIME
+    struct setup setup =
+        setup_of(TIME
                  "fluid: {velocity: [0, 2]}\n"
                  "wake: {vortices: [[7, 8, 9]],\n"
                  "       street: {vortices: 3, spacing: 0.8, row_distance: 0.3, circulation: 5, position: [1, 2]}}\n"

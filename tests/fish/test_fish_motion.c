@@ -7,8 +7,8 @@
 static const double pi = 3.14159265358979323846;
 
 TEST(prescribed_velocity_and_acceleration_are_derivatives) {
-    struct setup setup;
-    school_build(&setup, TIME
+    struct setup setup =
+        setup_of(TIME
                  "fish: [{start: {heading: 20}, motion: {prescribed: all, speed: 0.6, heave: 0.2, pitch: 25, "
                  "pitch_phase: 70, frequency: 1.3, phase: 15, pivot: 0.3}}]\n");
     const struct fish *fish = &setup.school->fish[0];
@@ -25,9 +25,8 @@ TEST(prescribed_velocity_and_acceleration_are_derivatives) {
 }
 
 TEST(prescribed_body_is_straight_and_turns_about_its_pivot) {
-    struct setup setup;
-    school_build(
-        &setup, TIME
+    struct setup setup = setup_of(
+        TIME
         "fish: [{nodes: 5, start: {heading: 180, speed: 2, position: [1, 1]}, motion: {prescribed: all, heave: "
         "0.2, pitch: 25, frequency: 1, pivot: 0.25}}]\n");
     const struct fish *fish = &setup.school->fish[0];
@@ -45,8 +44,8 @@ TEST(prescribed_body_is_straight_and_turns_about_its_pivot) {
 }
 
 TEST(pitch_is_its_phase_before_heave) {
-    struct setup setup;
-    school_build(&setup, TIME
+    struct setup setup =
+        setup_of(TIME
                  "fish: [{start: {heading: 0}, motion: {prescribed: all, heave: 0.2, pitch: 25, pitch_phase: 90, "
                  "frequency: 1}}]\n");
     const struct fish *fish = setup.school->fish;

@@ -46,9 +46,7 @@ static void add_fish(const struct setup *setup, int g, double x, double y, doubl
 }
 
 TEST(every_point_feels_the_sources_that_the_model_says) {
-    struct setup setup;
-    school_build(&setup, TWO);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TWO);
     school_flow(&setup, setup.state->y);
     flow_velocity(setup.residual->flow, setup.state, setup.t, setup.state->y);
     const struct flow *flow = setup.residual->flow;
@@ -81,9 +79,7 @@ TEST(every_point_feels_the_sources_that_the_model_says) {
 }
 
 TEST(wake_vortices_feel_everything_with_smoothed_sheets) {
-    struct setup setup;
-    school_build(&setup, TWO);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TWO);
 
     // at an event: the positions of the vortices are stored in the wake
     setup.t = setup.state->t;
@@ -108,8 +104,7 @@ TEST(wake_vortices_feel_everything_with_smoothed_sheets) {
 }
 
 TEST(external_flow_is_stream_plus_shear_plus_gust) {
-    struct setup setup;
-    school_build(&setup, TWO);
+    struct setup setup = setup_of(TWO);
     double u, v;
     const double t = 1.0 / 12, gust = 0.2 * 0.5, stream = hypot(0.1, 0.2);
     flow_external(setup.school, t, 0, 2, &u, &v);
@@ -127,8 +122,7 @@ TEST(a_travelling_gust_moves_along_the_stream) {
                  "fluid: {velocity: [0.6, 0.8], shear: 0.3, gust: {amplitude: 1, position: 0.2, %s}}\n"
                  "fish: [{nodes: 5, sheet_points: 21, force: published}]\n",
                  profiles[i]);
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         const struct school *const school = setup.school;
 
         // the zero of the sine and the middle of the step are 0.2 m along the stream at the start, and move at 1 m/s
@@ -161,8 +155,7 @@ TEST(a_travelling_gust_moves_along_the_stream) {
 }
 
 TEST(external_acceleration_is_that_of_a_particle_of_the_fluid) {
-    struct setup setup;
-    school_build(&setup, TWO);
+    struct setup setup = setup_of(TWO);
     const double t = 0.3, h = 1e-5, y = 2;
     double u[3], v[3], acceleration[2];
     for (int i = 0; i < 3; i++) flow_external(setup.school, t + (i - 1) * h, 0, y, &u[i], &v[i]);
@@ -186,9 +179,7 @@ static void velocity_at(struct setup *setup, int i, double step, double *velocit
 }
 
 static void compare_derivatives(const char *text) {
-    struct setup setup;
-    school_build(&setup, text);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(text);
     struct flow *flow = setup.residual->flow;
     struct influence_block *block = &setup.residual->jacobian_scratch[0].block;
     double velocity[4][64];
@@ -336,9 +327,7 @@ TEST(beside_a_wall_everything_feels_mirrored_fish) {
 }
 
 TEST(changed_wakes_are_placed_again) {
-    struct setup setup;
-    school_build(&setup, TWO);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TWO);
     struct flow *flow = setup.residual->flow;
     school_flow(&setup, setup.state->y);
     const double before = flow->u[0];
@@ -349,9 +338,7 @@ TEST(changed_wakes_are_placed_again) {
 }
 
 TEST(gradient_pass_leaves_the_velocity_as_it_is) {
-    struct setup setup;
-    school_build(&setup, TWO);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TWO);
     struct flow *flow = setup.residual->flow;
     school_flow(&setup, setup.state->y);
     double with[64];
@@ -363,9 +350,7 @@ TEST(gradient_pass_leaves_the_velocity_as_it_is) {
 }
 
 TEST(threads_change_no_bit) {
-    struct setup setup;
-    school_build(&setup, TWO);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TWO);
     struct flow *flow = setup.residual->flow;
     double one[64];
     school_flow(&setup, setup.state->y);

@@ -68,9 +68,7 @@ TEST(derivatives_agree_with_differences) {
     const enum bound_sheet_law laws[] = {BOUND_SHEET_EDGE, BOUND_SHEET_RATE, BOUND_SHEET_FROZEN};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         for (int l = 0; l < 3; l++) {
-            struct setup setup;
-            school_build(&setup, texts[i]);
-            school_stir(&setup);
+            struct setup setup = setup_stirred(texts[i]);
             law = laws[l];
             school_compare(&setup, value_of_sheet, jacobian_of_sheet, texts[i]);
         }
@@ -87,8 +85,7 @@ static void solve_plate(const char *collocation, const char *kutta, int m, const
              "wake: {smoothing: 1.0e+9}\nsheet: {collocation: %s, kutta: %s}\n"
              "fish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n",
              more, collocation, kutta, m);
-    struct setup setup;
-    school_build(&setup, text);
+    struct setup setup = setup_of(text);
     struct initial_conditions *consistent;
     school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
     school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
@@ -155,8 +152,7 @@ static double circulation_beside_a_vortex(int m) {
     snprintf(text, sizeof text,
              TIME "wake: {smoothing: 0.2}\nfish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n",
              m);
-    struct setup setup;
-    school_build(&setup, text);
+    struct setup setup = setup_of(text);
     wake_release(&setup.state->wake[0], 0.4, 0.3, 1, 0);
     struct initial_conditions *consistent;
     school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
@@ -190,8 +186,7 @@ static double circulation_of_a_bent_body(line *place, const char *curve, int n_n
              "wake: {smoothing: 1.0e+9}\nsheet: {curve: %s}\n"
              "fish: [{nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {speed: 0}}]\n",
              cos(pi / 18), sin(pi / 18), curve, n_nodes, m);
-    struct setup setup;
-    school_build(&setup, text);
+    struct setup setup = setup_of(text);
     const struct fish *fish = setup.school->fish;
     for (int k = 0; k < n_nodes; k++) {
         double at[2];
@@ -265,8 +260,8 @@ TEST(smooth_curve_and_polygon_of_a_bent_fish_have_one_limit) {
 }
 
 TEST(strength_is_circulation_per_length_of_the_body_as_it_is) {
-    struct setup setup;
-    school_build(&setup, TIME "sheet: {curve: smooth}\nfish: [{sheet_points: 9, length: 1.2, start: {heading: 30}}]\n");
+    struct setup setup =
+        setup_of(TIME "sheet: {curve: smooth}\nfish: [{sheet_points: 9, length: 1.2, start: {heading: 30}}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
 
@@ -294,8 +289,7 @@ TEST(end_correction_makes_a_sheet_that_ends_with_a_step_exact) {
                  "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{sheet_points: %d, length: 1.2, start: "
                  "{speed: 0}}]\n",
                  m);
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         const struct fish *fish = setup.school->fish;
         double *const y = setup.state->y, with[64];
         for (int j = 1; j < m - 1; j++) y[fish->at.gamma + j] = fish_mean(&fish->sheet_point[j], fish->arc) / 1.2;
@@ -317,9 +311,7 @@ TEST(end_correction_makes_a_sheet_that_ends_with_a_step_exact) {
 }
 
 TEST(kelvin_counts_bound_shed_and_dissipated_circulation) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{sheet_points: 9}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{sheet_points: 9}]\n");
     school_flow(&setup, setup.state->y);
     const struct fish *fish = setup.school->fish;
     const double *u, *v;
@@ -333,9 +325,7 @@ TEST(kelvin_counts_bound_shed_and_dissipated_circulation) {
 }
 
 TEST(shedding_rate_is_edge_strength_times_slip) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{sheet_points: 9}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{sheet_points: 9}]\n");
     school_flow(&setup, setup.state->y);
     const struct fish *fish = setup.school->fish;
     const double *const y = setup.state->y, *u, *v;

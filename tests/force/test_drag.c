@@ -50,8 +50,7 @@ TEST(slope_of_the_force_agrees_with_differences) {
                                  TIME "fish: [{drag: {tangential: 0.3, law: linear_quadratic}}]\n",
                                  TIME "fluid: {viscosity: 0.1}\nfish: [{drag: {skin: laminar}}]\n"};
     for (int i = 0; i < 3; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
+        struct setup setup = setup_of(texts[i]);
         // the force is quadratic in w and in cosine and sine: truncation error of order h^2
         compare_slope(setup.school->fish, 2, (const double[]){-0.4, 0.3}, 1e-8);
     }
@@ -68,8 +67,7 @@ TEST(slope_of_the_force_agrees_with_differences) {
 
 // friction of a plate at this speed over friction of a laminar boundary layer
 static double friction_over_blasius(const char *text, double speed) {
-    struct setup setup;
-    school_build(&setup, text);
+    struct setup setup = setup_of(text);
     const struct edge edge = {.t = {1, 0}, .n = {0, 1}};
     const double nu = setup.values.school.fluid.viscosity, w[2] = {-speed, 0.3};
     double total = 0;
@@ -105,8 +103,7 @@ TEST(boundary_layer_of_a_plate_is_laminar_turbulent_or_between) {
 
 // at the transition Reynolds number of the middle of an edge, half of the friction of the edge is turbulent
 TEST(transition_of_an_edge_is_that_of_its_middle) {
-    struct setup setup;
-    school_build(&setup, PLATE("9", BARE));
+    struct setup setup = setup_of(PLATE("9", BARE));
     const struct fish *const fish = setup.school->fish;
     for (int k = 0; k < fish->n_edges; k++) {
         const double speed = 2e5 * 1e-6 / (2 * (k + 0.5) / 8), w[2] = {-speed, 0};
@@ -148,8 +145,7 @@ TEST(a_body_with_a_wave_has_the_factor_of_waving) {
         snprintf(text, sizeof text,
                  SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, pressure: {span: infinite}}}\nfish: [{%s}]\n",
                  cases[i].fish);
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         assert_int_equal(setup.school->fish->friction, FRICTION_BOUNDARY_LAYER);
         NEAR(setup.school->fish->waving, cases[i].waving, 0, 0);
     }
@@ -161,8 +157,7 @@ TEST(boundary_layer_is_smooth_and_takes_energy) {
                                  PLATE("9", ", transition: 0"), PLATE("9", ", transition: 1.0e+4, waving: 2")};
     const double speeds[] = {1e-9, 2e-5, 1e-4, 1e-3, 0.03, 0.1, 0.3, 1, 3, 30};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
+        struct setup setup = setup_of(texts[i]);
         const struct fish *const fish = setup.school->fish;
         for (size_t s = 0; s < 2 * sizeof speeds / sizeof *speeds; s++) {
             const double speed = (s % 2 ? -1 : 1) * speeds[s / 2], w[2] = {0.8 * speed, -0.6 * speed};
@@ -188,11 +183,10 @@ TEST(boundary_layer_is_smooth_and_takes_energy) {
 
 // Blasius: 1.328 rho w sqrt(nu L) U^(3/2) for both sides
 TEST(laminar_friction_of_a_plate_is_that_of_its_boundary_layer) {
-    struct setup setup;
-    school_build(&setup, TIME
-                 "fluid: {viscosity: 0.002, density: 3}\n"
-                 "fish: [{length: 2, body: {depth: 0.4}, wave: {frequency: 0}, start: {speed: 0.5},\n"
-                 "        drag: {skin: laminar, normal: 0}}]\n");
+    struct setup setup = setup_of(TIME
+                                  "fluid: {viscosity: 0.002, density: 3}\n"
+                                  "fish: [{length: 2, body: {depth: 0.4}, wave: {frequency: 0}, start: {speed: 0.5},\n"
+                                  "        drag: {skin: laminar, normal: 0}}]\n");
     const struct fish *fish = setup.school->fish;
     const struct edge edge = {.t = {1, 0}, .n = {0, 1}};
     const double w[2] = {-0.7, 0.3}, slow[2] = {1e-9, 0};
@@ -228,11 +222,9 @@ static double moment_about(const struct fish *fish, const double *u, const doubl
 }
 
 TEST(moment_is_that_of_the_forces_that_the_flow_adds) {
-    struct setup setup;
-    school_build(
-        &setup, TIME
+    struct setup setup = setup_stirred(
+        TIME
         "fluid: {velocity: [0.3, -0.2], shear: 0.7}\nfish: [{sheet_points: 9, length: 1.1, wave: {frequency: 1.2}}]\n");
-    school_stir(&setup);
     school_flow(&setup, setup.state->y);
     const struct fish *fish = setup.school->fish;
     const double *const y = setup.state->y, still[64] = {0};
@@ -266,8 +258,7 @@ TEST(cross_flow_drag_of_a_strip_is_the_suction_of_its_side_edges) {
                      "fish: [{length: 2, nodes: 9, sheet_points: 101, force: pressure, pressure: {span: finite},\n"
                      "        body: {depth: %g}, drag: {normal: 3}, added_mass: {extent: %s}}]\n",
                      suction[i][0], is_thick ? "thickness" : "depth");
-            struct setup setup;
-            school_build(&setup, text);
+            struct setup setup = setup_of(text);
             const struct fish *const fish = setup.school->fish;
             const double flat = 1000 * 3 * 2 * suction[i][0] * (2.0 / 8) / 2;
             for (int k = 0; k < fish->n_edges; k++) {
@@ -294,8 +285,7 @@ TEST(cross_flow_drag_of_an_edge_has_the_depth_of_the_edge) {
                  "        body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05],\n"
                  "               depth_table: [0.5, 0.7, 0.6, 0.4]}}]\n",
                  is_finite ? "finite" : "infinite");
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         for (int k = 0; k < 4; k++) {
             const double a = depth[k], share = is_finite ? (3.4 + a) / (3.4 + 2.4 * a + 0.7 * a * a) : 1;
             NEAR(setup.school->fish->drag_normal[k], 1000 * share * a * 0.25 / 2, 0, 1e-14);
@@ -317,8 +307,7 @@ TEST(drag_of_a_towed_body_has_form_and_no_waving) {
                  "fluid: {viscosity: 0.002, density: 3}\n"
                  "fish: [{length: 2, body: {depth: 0.4}, drag: {%s, normal: 2%s}}]\n",
                  keys[i], i > 0 ? ", skin: boundary_layer" : "");
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         NEAR(drag_towed(setup.school->fish, speed), area * want[i], 0, 1e-7);
         school_clear(&setup);
     }

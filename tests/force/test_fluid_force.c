@@ -68,9 +68,7 @@ TEST(jacobian_agrees_with_differences) {
         "     force: reactive, drag: {law: linear_quadratic}, added_mass: {extent: depth}}\n"
         "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(texts[i]);
         school_compare(&setup, value_of_forces, jacobian_of_forces, texts[i]);
     }
 }
@@ -79,8 +77,7 @@ TEST(jacobian_agrees_with_differences) {
 static void force_on_plate(const char *keys, double vx, double vy, double ay, double force[2]) {
     char text[256];
     snprintf(text, sizeof text, TIME "fish: [{body: {profile: uniform, thickness: 0.1}, %s}]\n", keys);
-    struct setup setup;
-    school_build(&setup, text);
+    struct setup setup = setup_of(text);
     const struct fish *fish = setup.school->fish;
     for (int k = 0; k < fish->n_nodes; k++) {
         setup.state->y[fish->at.vx + k] = vx;
@@ -137,9 +134,7 @@ TEST(powers_are_those_of_the_forces) {
                  "fluid: {shear: 0.5, velocity: [0, 0.3]}\n"
                  "fish: [{sheet_points: 9, force: %s, drag: {tangential: 0.3}, added_mass: {extent: depth}}]\n",
                  forces[i]);
-        struct setup setup;
-        school_build(&setup, text);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(text);
         school_flow(&setup, setup.state->y);
         const struct fish *fish = setup.school->fish;
         const struct flow_at_body flow = flow_at_body(setup.residual->flow, 0);
@@ -161,11 +156,9 @@ TEST(powers_are_those_of_the_forces) {
 
 TEST(friction_is_the_tangential_part_of_the_drag) {
     const double about[2] = {0.3, -0.7};
-    struct setup setup;
-    school_build(&setup, TIME
-                 "fluid: {shear: 0.5, velocity: [0, 0.3]}\n"
-                 "fish: [{sheet_points: 9, drag: {tangential: 0.3}}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME
+                                       "fluid: {shear: 0.5, velocity: [0, 0.3]}\n"
+                                       "fish: [{sheet_points: 9, drag: {tangential: 0.3}}]\n");
     school_flow(&setup, setup.state->y);
     const struct fish *fish = setup.school->fish;
     const struct flow_at_body flow = flow_at_body(setup.residual->flow, 0);
@@ -190,8 +183,7 @@ TEST(friction_is_the_tangential_part_of_the_drag) {
 }
 
 TEST(added_mass_takes_up_no_tangential_acceleration) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{start: {speed: 0}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{start: {speed: 0}}]\n");
     const struct fish *fish = setup.school->fish;
     for (int k = 0; k < fish->n_nodes; k++) setup.state->y[fish->at.ax + k] = 3;
     const double still[64] = {0};

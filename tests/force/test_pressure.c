@@ -484,11 +484,10 @@ TEST(a_strength_that_is_singular_at_the_tail_has_no_kink) {
 // g = sin(theta) (1 - cos(theta)) has the kink of a sheet that goes on behind the tail: C = (1 - cos(theta))^2/2, for
 // the rate of the circulation and, with finite span, for the flow that diverges
 TEST(a_kink_at_the_tail_has_its_exact_circulation) {
-    struct setup setup;
-    school_build(&setup, SCHOOL_DEFAULTS
-                 "time: {end: 1, shedding_interval: 0.01}\n"
-                 "fish: [{nodes: 17, sheet_points: 33, force: pressure, pressure: {span: finite},\n"
-                 "        body: {profile: uniform, thickness: 0.1, depth: 1}}]\n");
+    struct setup setup = setup_of(SCHOOL_DEFAULTS
+                                  "time: {end: 1, shedding_interval: 0.01}\n"
+                                  "fish: [{nodes: 17, sheet_points: 33, force: pressure, pressure: {span: finite},\n"
+                                  "        body: {profile: uniform, thickness: 0.1, depth: 1}}]\n");
     const struct fish *const fish = setup.school->fish;
     struct pressure *const pressure = setup.residual->pressure[0];
     double *const y = setup.state->y, *const yp = setup.state->yp, zero[64] = {0}, div[64];

@@ -56,8 +56,8 @@ static void go_on(const double *state, const double *acceleration, double tau, d
 }
 
 TEST(force_follows_from_lagrange_s_equations_of_the_kinetic_energy) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 4, sheet_points: 5, force: reactive, added_mass: {extent: depth}}]\n");
+    struct setup setup =
+        setup_of(TIME "fish: [{nodes: 4, sheet_points: 5, force: reactive, added_mass: {extent: depth}}]\n");
     const struct fish *fish = setup.school->fish;
     const double still[2] = {0, 0};
     for (int trial = 0; trial < 5; trial++) {
@@ -89,9 +89,7 @@ TEST(force_follows_from_lagrange_s_equations_of_the_kinetic_energy) {
 }
 
 TEST(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_surrounds) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{force: reactive, added_mass: {extent: depth}}]\n");
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "fish: [{force: reactive, added_mass: {extent: depth}}]\n");
     const struct fish *fish = setup.school->fish;
     const double u[2] = {0.4, -0.3}, b[2] = {1.1, 0.7}, still[2] = {0, 0};
     for (int k = 0; k < fish->n_edges; k++) {
@@ -120,8 +118,7 @@ static void forces_on_plate(const char *motion, double t, double force[7][2]) {
              "        drag: {" NO_DRAG
              "}, added_mass: {extent: depth, coefficient: 1}, motion: {prescribed: all, %s}}]\n",
              motion);
-    struct setup setup;
-    school_build(&setup, text);
+    struct setup setup = setup_of(text);
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     for (int k = 0; k < fish->n_nodes; k++) {

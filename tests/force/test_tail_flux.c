@@ -52,16 +52,13 @@ TEST(derivatives_agree_with_differences) {
         "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE
         "}, {nodes: 5, sheet_points: 7, start: {position: [0.2, 0.5]}}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(texts[i]);
         school_compare(&setup, value_of_flux, jacobian_of_flux, texts[i]);
     }
 }
 
 TEST(it_takes_from_the_body_what_it_leaves_in_the_wake) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 6, force: reactive, " WIDE "}]\n");
+    struct setup setup = setup_of(TIME "fish: [{nodes: 6, force: reactive, " WIDE "}]\n");
     const struct fish *fish = setup.school->fish;
     const double still[64] = {0};
     const struct flow_at_body flow = {.u = still, .v = still};
@@ -91,8 +88,7 @@ TEST(it_takes_from_the_body_what_it_leaves_in_the_wake) {
 }
 
 TEST(it_has_the_velocity_of_a_linear_flow_at_the_tail) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 6, force: reactive, " WIDE "}]\n");
+    struct setup setup = setup_of(TIME "fish: [{nodes: 6, force: reactive, " WIDE "}]\n");
     const struct fish *fish = setup.school->fish;
     double u[64] = {0}, v[64] = {0}, force[2], want[2];
 
@@ -129,8 +125,7 @@ TEST(its_mass_is_that_of_the_extent_at_the_tail) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[256];
         snprintf(text, sizeof text, TIME "fish: [{%s}]\n", cases[i].keys);
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         NEAR(setup.school->fish[0].tail_added_mass, pi / 4 * cases[i].mass, 0, 1e-14);
     }
 }

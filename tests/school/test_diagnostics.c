@@ -280,8 +280,7 @@ TEST(mean_heading_is_the_trapezoidal_mean) {
 /* Means of a force over five samples of a free fish that swims at the speed 1 towards -x: by the trapezoidal rule a
  * constant force is its own mean, and so is the middle of a force that grows at a constant rate. */
 TEST(mean_forces_are_exact_for_forces_that_grow_evenly) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{}]\n");
+    struct setup setup = setup_of(TIME "fish: [{}]\n");
     for (int i = 0; i < 2; i++) {
         struct sample samples[6];
         struct history history = {.capacity = 5, .n_slots = 6, .last = -1, .sample = samples};
@@ -689,8 +688,7 @@ TEST(a_body_that_sweeps_over_a_wake_loses_no_circulation) {
 }
 
 TEST(heading_is_unwrapped) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{start: {heading: 170}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{start: {heading: 170}}]\n");
     const struct fish *fish = setup.school->fish;
     // turned round in steps of 50 degrees, two and a half times
     for (int i = 0; i < 19; i++) {

@@ -234,9 +234,7 @@ static void value_of_school(struct setup *setup, const double *y, const double *
 
 TEST(jacobian_agrees_with_differences_for_every_option) {
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
-        struct setup setup;
-        school_build(&setup, variants[i].text);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(variants[i].text);
         school_compare(&setup, value_of_school, NULL, variants[i].name);
         if (setup.school->shedding == SHEDDING_IMPULSIVE) {
             setup.residual->shed_now = SHED_BY_IMPULSE;
@@ -256,9 +254,7 @@ TEST(jacobian_agrees_with_differences_where_the_suction_ends) {
         "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n";
     const double factor[] = {0.3, 0.9, 1, 1.1, 2};
     for (size_t i = 0; i < sizeof factor / sizeof *factor; i++) {
-        struct setup setup;
-        school_build(&setup, text);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(text);
         value_of_school(&setup, setup.state->y, setup.state->yp, setup.value);
         for (int f = 0; f < 2; f++) {
             const double about[2] = {0, 0};
@@ -279,9 +275,7 @@ static void compare_overtaken(const char *keys, int with_legs) {
              "defaults: {fish: {nodes: 5, %s, force: pressure}}\n"
              "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n",
              keys);
-    struct setup setup;
-    school_build(&setup, text);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(text);
     for (int f = 0; f < 2; f++) {
         const struct fish *const fish = &setup.school->fish[f];
         struct wake *const wake = &setup.state->wake[f];
@@ -312,8 +306,7 @@ TEST(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else) {
     const char *const text = TIME
         "solver: {coupling_distance: 0.6}\n"
         "fish: [{sheet_points: 9}, {sheet_points: 9, start: {position: [0, 1]}}]\n";
-    struct setup setup;
-    school_build(&setup, text);
+    struct setup setup = setup_of(text);
     const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
     const size_t n = (size_t)setup.school->n_unknowns;
     assert_int_equal(setup.residual->couplings.coupled[1], 0);
@@ -337,9 +330,8 @@ TEST(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else) {
 }
 
 TEST(unknowns_have_names_kinds_and_scales) {
-    struct setup setup;
-    school_build(
-        &setup, TIME
+    struct setup setup = setup_of(
+        TIME
         "fish: [{nodes: 4, sheet_points: 5},\n"
         "  {length: 2, nodes: 5, sheet_points: 6, start: {position: [0, 1]}, motion: {prescribed: head, heave: "
         "0.1, frequency: 1}}]\n");
@@ -388,8 +380,7 @@ TEST(circulation_shed_is_differential_only_with_a_rate) {
                  {TIME "wake: {shedding: impulsive}\n" FISH, 0, 1},
                  {TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\n" FISH, 0, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct setup setup;
-        school_build(&setup, cases[i].text);
+        struct setup setup = setup_of(cases[i].text);
         assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic);
         setup.residual->shed_now = SHED_BY_IMPULSE;
         assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic_at_impulse);
@@ -397,9 +388,7 @@ TEST(circulation_shed_is_differential_only_with_a_rate) {
 }
 
 TEST(a_value_that_is_not_finite_asks_for_a_retry_and_says_where) {
-    struct setup setup;
-    school_build(&setup, TIME FISH);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME FISH);
     setup.state->y[setup.school->fish[0].at.phi0] = INFINITY;
     assert_int_equal(residual_evaluate(setup.residual, setup.t, setup.state->y, setup.state->yp, setup.value),
                      STATUS_RETRY);
@@ -407,12 +396,10 @@ TEST(a_value_that_is_not_finite_asks_for_a_retry_and_says_where) {
 }
 
 TEST(rows_of_prescribed_nodes_vanish_on_their_motion_only) {
-    struct setup setup;
-    school_build(
-        &setup, TIME
+    struct setup setup = setup_stirred(
+        TIME
         "fish: [{start: {heading: 25}, motion: {prescribed: all, speed: 0.6, heave: 0.2, pitch: 20, pitch_phase: 70, "
         "frequency: 1.3}}]\n");
-    school_stir(&setup);
     const struct fish *const fish = setup.school->fish;
     double *const y = setup.state->y;
     fish_prescribe(fish, 1, setup.t, y);

@@ -64,8 +64,7 @@ static void check_residual(struct setup *setup, double t, const char *text) {
 
 TEST(all_equations_hold_at_the_start_for_every_option) {
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
+        struct setup setup = setup_of(texts[i]);
         struct initial_conditions *solver;
         school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
         school_ok(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp));
@@ -74,8 +73,7 @@ TEST(all_equations_hold_at_the_start_for_every_option) {
 }
 
 TEST(blocks_left_out_of_the_jacobian_change_no_solution) {
-    struct setup setup;
-    school_build(&setup, uncoupled);
+    struct setup setup = setup_of(uncoupled);
     assert_int_equal(setup.residual->couplings.coupled[1], 0);
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
@@ -85,9 +83,7 @@ TEST(blocks_left_out_of_the_jacobian_change_no_solution) {
 
 TEST(all_equations_hold_again_from_any_state) {
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(texts[i]);
         // the solver moves prescribed nodes to their given motion: their positions and velocities are algebraic
         struct initial_conditions *solver;
         school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
@@ -98,9 +94,7 @@ TEST(all_equations_hold_again_from_any_state) {
 }
 
 TEST(differential_unknowns_stay_as_they_are) {
-    struct setup setup;
-    school_build(&setup, TIME "sheet: {kutta: rate}\n" FISH);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME "sheet: {kutta: rate}\n" FISH);
     double *const kind = calloc((size_t)setup.school->n_unknowns, sizeof *kind);
     double *const before = calloc((size_t)setup.school->n_unknowns, sizeof *before);
     assert_non_null(kind);
@@ -124,13 +118,12 @@ TEST(differential_unknowns_stay_as_they_are) {
 
 // places and velocities at the start, later places and momenta; the prescribed node has its motion at all times
 TEST(momenta_follow_at_the_start_and_velocities_later) {
-    struct setup setup;
-    school_build(&setup, TIME
-                 "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
-                 "fish: [{nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite}, motion: "
-                 "{prescribed: head, heave: 0.1, "
-                 "frequency: 1}}]\n");
-    school_stir(&setup);
+    struct setup setup =
+        setup_stirred(TIME
+                      "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+                      "fish: [{nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite}, motion: "
+                      "{prescribed: head, heave: 0.1, "
+                      "frequency: 1}}]\n");
     const struct layout *at = &setup.school->fish[0].at;
     double *const y = setup.state->y, before[128];
     struct initial_conditions *solver;
@@ -183,9 +176,7 @@ TEST(light_bodies_take_no_iterations_either) {
 }
 
 TEST(a_second_solution_changes_nothing) {
-    struct setup setup;
-    school_build(&setup, TIME FISH);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME FISH);
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
     school_ok(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp));
@@ -199,9 +190,7 @@ TEST(a_second_solution_changes_nothing) {
 }
 
 TEST(a_state_that_is_not_a_number_is_refused_and_kept) {
-    struct setup setup;
-    school_build(&setup, TIME FISH);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(TIME FISH);
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
     const struct fish *fish = setup.school->fish;
@@ -217,8 +206,7 @@ TEST(a_state_that_is_not_a_number_is_refused_and_kept) {
 }
 
 TEST(a_singular_jacobian_is_named) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{name: nemo, sheet_points: 11}]\n");
+    struct setup setup = setup_of(TIME "fish: [{name: nemo, sheet_points: 11}]\n");
     // Kelvin's theorem without circulations, and its residual
     struct fish *fish = setup.school->fish;
     for (int j = 0; j < fish->n_sheet; j++) fish->sheet_weight[j] = 0;
@@ -231,8 +219,7 @@ TEST(a_singular_jacobian_is_named) {
 }
 
 TEST(a_rate_that_is_not_a_number_does_not_matter) {
-    struct setup setup;
-    school_build(&setup, TIME FISH);
+    struct setup setup = setup_of(TIME FISH);
     const struct fish *fish = setup.school->fish;
     setup.state->yp[fish->at.x + 1] = NAN;
     struct initial_conditions *solver;

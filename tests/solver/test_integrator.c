@@ -26,8 +26,7 @@ static void set(struct setup *setup, double t) {
 }
 
 TEST(rates_of_parabolas_are_exact_from_the_second_step_on) {
-    struct setup setup;
-    school_build(&setup, two_fish);
+    struct setup setup = setup_of(two_fish);
     const struct fish *fish = setup.school->fish;
     struct integrator_rates *const rates = integrator_rates_create(setup.arena, setup.school);
     const double times[] = {0, 0.1, 0.13, 0.2, 0.35};

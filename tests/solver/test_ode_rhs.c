@@ -50,9 +50,7 @@ static const char *const cases[] = {
 
 TEST(all_equations_hold_for_the_computed_unknowns) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct setup setup;
-        school_build(&setup, cases[i]);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(cases[i]);
         struct ode_rhs *rhs;
         rhs = ode_rhs_create(test_arena(), setup.residual);
         school_ok(ode_rhs_rates(rhs, setup.t, setup.state->y, setup.state->yp));
@@ -63,8 +61,7 @@ TEST(all_equations_hold_for_the_computed_unknowns) {
 }
 
 TEST(what_is_not_finite_asks_for_a_smaller_step) {
-    struct setup setup;
-    school_build(&setup, cases[0]);
+    struct setup setup = setup_of(cases[0]);
     struct ode_rhs *rhs;
     rhs = ode_rhs_create(test_arena(), setup.residual);
     setup.state->y[setup.school->fish[0].at.x + 2] = NAN;
@@ -73,8 +70,7 @@ TEST(what_is_not_finite_asks_for_a_smaller_step) {
 
 TEST(a_singular_system_asks_for_a_smaller_step) {
     for (int i = 0; i < 2; i++) {
-        struct setup setup;
-        school_build(&setup, cases[0]);
+        struct setup setup = setup_of(cases[0]);
         struct fish *fish = setup.school->fish;
         // Kelvin's theorem without circulations; a node without mass
         for (int j = 0; i == 0 && j < fish->n_sheet; j++) fish->sheet_weight[j] = 0;

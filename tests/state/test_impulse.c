@@ -25,9 +25,8 @@ TEST(impulses_are_those_of_point_vortices) {
 }
 
 TEST(a_depth_that_varies_is_none) {
-    struct setup setup;
-    school_build(
-        &setup, TIME
+    struct setup setup = setup_of(
+        TIME
         "fish:\n"
         "  - {length: 2, body: {depth: 0.3}}\n"
         "  - {nodes: 5, start: {position: [3, 3]}, body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05],\n"
@@ -48,9 +47,7 @@ static void all_of(const struct setup *setup, double sum[3]) {
 // A wake at rest from birth to removal: every event reduces the circulation, or removes a vortex. Returns the final
 // loss in x.
 static double wither(const char *text) {
-    struct setup setup;
-    school_build(&setup, text);
-    school_stir(&setup);
+    struct setup setup = setup_stirred(text);
     struct wake *const wake = &setup.state->wake[0];
     const double interval = setup.school->interval;
     double before[3], now[3];
@@ -88,9 +85,8 @@ TEST(what_fades_or_is_removed_is_booked_where_it_is) {
 
 // dropped circulation returns to the body at the tail: the loss contains only the displacement to the tail
 TEST(what_is_dropped_goes_to_the_tail) {
-    struct setup setup;
-    school_build(&setup, TIME "wake: {lifetime: 0.3, decay: 0.2, removed_circulation: dropped}\nfish: [{}]\n");
-    school_stir(&setup);
+    struct setup setup =
+        setup_stirred(TIME "wake: {lifetime: 0.3, decay: 0.2, removed_circulation: dropped}\nfish: [{}]\n");
     const struct fish *const fish = &setup.school->fish[0];
     struct wake *const wake = &setup.state->wake[0];
     for (int i = 0; i < wake->n_vortex; i++) {
@@ -112,11 +108,9 @@ TEST(what_is_dropped_goes_to_the_tail) {
 
 TEST(what_merging_changes_is_booked) {
     enum { N = 200 };
-    struct setup setup;
-    school_build(
-        &setup, TIME
+    struct setup setup = setup_stirred(
+        TIME
         "wake: {lifetime: 8, decay: 6, merge: 0.01, shedding: sheet}\nsheet: {curve: smooth}\nfish: [{nodes: 5}]\n");
-    school_stir(&setup);
     struct wake *const wake = &setup.state->wake[0];
     wake_resize(wake, 0);
     setup.state->t = 5;

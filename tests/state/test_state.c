@@ -10,8 +10,7 @@
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 TEST(state_before_the_start_is_placed_and_empty) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{start: {heading: 90}}, {start: {position: [1, 2]}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{start: {heading: 90}}, {start: {position: [1, 2]}}]\n");
     const struct state *start = setup.state;
     NEAR(start->t, 0, 0, 0);
     assert_int_equal(start->event, 0);
@@ -28,8 +27,7 @@ TEST(state_before_the_start_is_placed_and_empty) {
 }
 
 TEST(a_fish_without_a_beat_remembers_one_sample) {
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{wave: {frequency: 0}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{wave: {frequency: 0}}]\n");
     assert_int_equal(setup.state->history[0].capacity, 1);
     for (int i = 1; i <= 3; i++) {
         const struct sample sample = {.heading = i};
@@ -42,10 +40,9 @@ TEST(a_fish_without_a_beat_remembers_one_sample) {
 
 TEST(samples_take_memory_for_the_events_of_the_run) {
     // a beat of 1e6 s has 1e8 events of 0.01 s, of which a run has twenty
-    struct setup setup;
-    school_build(&setup,
-                 "time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.01}\n"
-                 "fish: [{wave: {frequency: 1e-6}}]\n");
+    struct setup setup = setup_of(
+        "time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.01}\n"
+        "fish: [{wave: {frequency: 1e-6}}]\n");
     struct history *const history = &setup.state->history[0];
     assert_int_equal(history->n_slots, 0);
     assert_in_range(history->capacity, 10000000, 10000001);
@@ -57,8 +54,7 @@ TEST(samples_take_memory_for_the_events_of_the_run) {
     for (int age = 0; age < 20; age++) NEAR(state_recall(history, age)->heading, 20 - age, 0, 0);
 
     // a school of one period: never more than the samples of the period and one
-    struct setup period;
-    school_build(&period, "time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\nfish: [{}]\n");
+    struct setup period = setup_of("time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\nfish: [{}]\n");
     for (int n = 1; n <= 200; n++) {
         state_reserve(period.state, period.school);
         state_remember(&period.state->history[0], &(struct sample){.heading = n});
@@ -69,8 +65,7 @@ TEST(samples_take_memory_for_the_events_of_the_run) {
 }
 
 TEST(a_kept_state_returns_without_a_copy_of_the_samples) {
-    struct setup setup;
-    school_build(&setup, "time: {end: 2, shedding_interval: 0.2, output_interval: 0.2}\nfish: [{}]\n");
+    struct setup setup = setup_of("time: {end: 2, shedding_interval: 0.2, output_interval: 0.2}\nfish: [{}]\n");
     struct state *const before = state_create(NULL, setup.school);
     struct history *const history = &setup.state->history[0];
     for (int n = 1; n <= 40; n++) {
@@ -125,8 +120,7 @@ TEST(rates_of_quartics_are_exact_after_five_events_without_a_jump) {
         "pressure: "
         "{span: infinite}}, {nodes: 5, force: reactive, start: {position: [0, 2]}}]\n";
     for (int shed_is_algebraic = 0; shed_is_algebraic < 2; shed_is_algebraic++) {
-        struct setup setup;
-        school_build(&setup, two_fish);
+        struct setup setup = setup_of(two_fish);
         const struct fish *const fish = setup.school->fish;
         for (int n = 0; n < 16; n++) {
             const double t = 0.02 * n;
@@ -320,8 +314,7 @@ TEST(a_copy_has_every_value_and_knows_that_its_wakes_have_changed) {
 }
 
 TEST(indices_that_no_run_has_are_refused) {
-    struct setup setup;
-    school_build(&setup, SCHOOL);
+    struct setup setup = setup_of(SCHOOL);
     struct state *const s = setup.state;
     state_reserve(s, setup.school);
     for (int f = 0; f < 2; f++) state_remember(&s->history[f], &(struct sample){.heading = 1});

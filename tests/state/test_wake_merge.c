@@ -225,8 +225,7 @@ static double merging_distance(int reversed) {
     double distance[2] = {2, 200};
     while (distance[1] - distance[0] > 1e-9) {
         const double middle = (distance[0] + distance[1]) / 2;
-        struct setup setup;
-        school_build(&setup, TIME "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\nfish: [{}]\n");
+        struct setup setup = setup_of(TIME "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\nfish: [{}]\n");
         const struct fish *const fish = setup.school->fish;
         for (int k = 0; k < fish->n_nodes; k++) setup.state->y[fish->at.vx + k] = setup.state->y[fish->at.vy + k] = 0;
         struct wake *const wake = &setup.state->wake[0];

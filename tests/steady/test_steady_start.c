@@ -73,8 +73,8 @@ TEST(followers_keep_their_places_in_the_frame_of_the_first_fish) {
 // an arc of a body that is twice as long and points elsewhere, as an arc behind the prescribed first edge
 TEST(shapes_are_turned_and_scaled_to_the_first_edge) {
     const double turn = 0.3, first = 2.1;
-    struct setup setup;
-    school_build(&setup, TIME
+    struct setup setup =
+        setup_of(TIME
                  "fish: [{nodes: 5, sheet_points: 9, wave: {amplitude: 0}, start: {position: [1, 2], heading: 160},\n"
                  "        motion: {prescribed: head}}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -104,8 +104,7 @@ TEST(a_file_of_other_bodies_is_refused) {
     assert_null(found);
     assert_non_null(strstr(status_message(), "does not contain a steady state of 2 fish"));
 
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 7, sheet_points: 13, motion: {prescribed: head}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{nodes: 7, sheet_points: 13, motion: {prescribed: head}}]\n");
     assert_int_equal(steady_start_shapes(test_arena(), path, setup.school, setup.state->y), STATUS_FILE);
     assert_non_null(strstr(status_message(), "does not have 7 nodes"));
 

@@ -10,8 +10,7 @@
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 TEST(the_panel_integrates_the_inverse_square_root) {
-    struct setup setup;
-    school_build(&setup, TIME SHEET "fish: [{}]\n");
+    struct setup setup = setup_of(TIME SHEET "fish: [{}]\n");
     struct sheet sheet = {.n_single = 0};
     sheet_reserve(setup.arena, &sheet, 0);
     sheet_build(&sheet, setup.school->fish, setup.school, setup.state->wake);
@@ -78,9 +77,7 @@ TEST(every_view_has_the_same_circulation) {
     for (int k = 0; k < 2; k++) {
         char text[512];
         snprintf(text, sizeof text, TIME SHEET "%s", fish[k]);
-        struct setup setup;
-        school_build(&setup, text);
-        school_stir(&setup);
+        struct setup setup = setup_stirred(text);
         setup.t = setup.state->t;
         school_flow(&setup, setup.state->y);
         const struct wake *const wake = &setup.state->wake[0];
@@ -111,8 +108,7 @@ TEST(stretches_decay_by_labels_only_if_rings_must_stay_closed) {
     for (int k = 0; k < 2; k++) {
         char text[512];
         snprintf(text, sizeof text, TIME "wake: {shedding: sheet, lifetime: 0.2, decay: 0.15}\n%s", fish[k]);
-        struct setup setup;
-        school_build(&setup, text);
+        struct setup setup = setup_of(text);
         struct wake *const wake = &setup.state->wake[0];
         for (int i = 0; i < 8; i++) {
             wake_release(wake, i, sin(i), 0.1 * cos(i), setup.state->t - 0.02 * (8 - i));
@@ -152,8 +148,7 @@ TEST(the_smoothing_tapers_to_nothing_at_the_tail) {
 // beside the body the taper length falls from the length behind the tail, at right angles, to that beside the body, at
 // an angle of 30 degrees with the normal and beyond
 TEST(the_taper_is_shorter_beside_the_body) {
-    struct setup setup;
-    school_build(&setup, TIME SHEET "fish: [{}]\n");
+    struct setup setup = setup_of(TIME SHEET "fish: [{}]\n");
     const struct fish *const fish = setup.school->fish;
     const double tangent[] = {0.6, 0.8}, pi = acos(-1);
     for (int degrees = -180; degrees <= 180; degrees += 5) {
@@ -168,8 +163,7 @@ TEST(the_taper_is_shorter_beside_the_body) {
 
 // beyond 2.36 times the longer taper the taper is negligible in any direction; slightly closer the taper is finite
 TEST(far_from_the_tail_the_smoothing_is_full) {
-    struct setup setup;
-    school_build(&setup, TIME SHEET "fish: [{length: 2}]\n");
+    struct setup setup = setup_of(TIME SHEET "fish: [{length: 2}]\n");
     const struct fish *const fish = setup.school->fish;
     const double along[2] = {1, 0};
     for (double angle = 0; angle < 6.3; angle += 0.3) {
