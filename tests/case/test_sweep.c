@@ -5,6 +5,7 @@
 
 #include "case/case.h"
 #include "case/sweep.h"
+#include "case/sweep_error.h"
 #include "case_fixture.h"
 
 TEST(a_sweep_keeps_its_values_as_assignments_take_them) {
@@ -125,4 +126,15 @@ TEST(a_sweep_is_refused_as_one_run_with_a_remedy) {
     assert_int_equal(sweep_refuse(&s), STATUS_CASE);
     assert_non_null(strstr(status_message(), "error: sweep: this case has a sweep of 3 axes: use `shoal study`"));
     case_free(&s);
+}
+
+TEST(a_key_of_an_error_has_at_most_nine_levels) {
+    static const char text[] = "format: 1\ntime: {end: 1}\nfish: [{}]\n";
+    const char *const levels[] = {"error={of: speed, keys: {nodes: [9, 10, 11, 12, 13, 14, 15, 16, 17]}}",
+                                  "error={of: speed, keys: {nodes: [9, 10, 11, 12, 13, 14, 15, 16, 17, 18]}}"};
+    struct case_values s = parse_with(text, levels[0], NULL, NULL);
+    assert_int_equal(s.error->levels[0].n, 9);
+    case_free(&s);
+    assert_int_equal(case_parse(&s, text, strlen(text), "x.yaml", NULL, 1, &levels[1]), STATUS_CASE);
+    assert_non_null(strstr(status_message(), "more than 9 levels of 'fish.nodes'"));
 }

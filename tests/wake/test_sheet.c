@@ -102,6 +102,29 @@ TEST(every_view_has_the_same_circulation) {
     }
 }
 
+// model.md, section 18: s(d) = w^2/8 (1 - exp(-(d/(3 w))^4)) at the distance d from the tail along the sheet
+TEST(legs_grow_along_the_sheet_and_old_stretches_have_fewer_points) {
+    enum { N = 9 };
+    struct setup setup = setup_of(TIME SHEET SPAN("finite"));
+    const struct fish *const fish = setup.school->fish;
+    struct wake *const wake = &setup.state->wake[0];
+    const double w = fish->strip_depth, spacing = 0.7 * w;
+    for (int i = N - 1; i >= 0; i--) wake_release(wake, i * spacing, 0, 0.1 * i, setup.state->t - 0.02 * i);
+    struct sheet sheet = {.n_single = 0};
+    sheet_reserve(setup.arena, &sheet, N);
+    sheet_build(&sheet, fish, setup.school, wake);
+
+    // four points on the newest stretch, two on the next three, one on older ones
+    int n_points[N] = {0};
+    for (int i = 0; i < sheet.graded.n_released; i++) {
+        const int age = N - 1 - sheet.graded.stretch[i];
+        const double distance = (age - 1 + sheet.graded.xi[i]) * spacing;
+        NEAR(sheet.graded.leg[0][i], w * w / 8 * (1 - exp(-pow(distance / (3 * w), 4))), 1e-15, 1e-12);
+        n_points[age]++;
+    }
+    for (int age = 1; age < N; age++) assert_int_equal(n_points[age], age == 1 ? 4 : age <= 4 ? 2 : 1);
+}
+
 // with finite span labels decay; else the circulation of every stretch decays with the age of the newer marker
 TEST(stretches_decay_by_labels_only_if_rings_must_stay_closed) {
     static const char *const fish[] = {SPAN("infinite"), SPAN("finite")};
