@@ -167,7 +167,7 @@ test-c: deps  ## run the tests in C only (a minute)
 
 test-platforms:  ## build and test on other systems in chroots, as root: Debian 12 and 13, gcc and clang, arm64 (hours)
 	@$(parallel) all
-	@scripts/platforms.sh $(if $(PLATFORMS),,--write README.md) $(PLATFORMS)
+	@scripts/platforms.sh $(if $(PLATFORMS),,--write doc/install.md) $(PLATFORMS)
 
 test-slurm: deps  ## install Slurm where it is missing, start it, run a study on it, stop it (as root)
 	@scripts/install-deps.sh slurm-wlm munge
