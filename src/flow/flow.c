@@ -36,6 +36,35 @@ double flow_square(const struct flow *flow, enum flow_pair pair, const struct fl
     }
 }
 
+const struct sources *flow_sources(const struct flow *flow, int g, const struct flow_sum *sum) {
+    const struct flow_fish *const of = &flow->fish[g];
+    switch (sum->pair) {
+        case WAKE_AT_BODY: return sum->of_images ? &of->wake_image : &of->wake.middles.sources;
+        case WAKE_AT_WAKE: return sum->of_images ? &of->markers_image : &of->markers;
+        default: return sum->of_images ? &of->body_image : &of->body;
+    }
+}
+
+struct kernel_pair flow_pair_of(const struct flow *flow, int f, int g, const struct flow_sum *sum) {
+    const double square =
+        flow_square(flow, sum->pair, &flow->class[flow->class_of[f]], &flow -> class[flow->class_of[g]]);
+    return flow->kernel->other(flow->school->fish[g].strip_depth, square);
+}
+
+void flow_append_with_span(struct sources *many, const struct sources *sources, double span) {
+    const int first = many->n;
+    sources_append(many, sources->n);
+    for (int i = 0; i < sources->n; i++) {
+        many->x[first + i] = sources->x[i];
+        many->y[first + i] = sources->y[i];
+        many->q[first + i] = span * sources->q[i];
+        many->dx[first + i] = span * sources->dx[i];
+        many->dy[first + i] = span * sources->dy[i];
+        many->half[first + i] = sources->half[i];
+        many->leg[first + i] = sources->leg[i];
+    }
+}
+
 // ---- creation
 
 // one class per length, in the order of the first fish of each length; consecutive points for each class
@@ -261,9 +290,8 @@ static void flow_place_nascent(struct flow *flow, const struct state *state, int
     images_write(&sheet->middles.sources, flow->n_images, flow->image, &of->wake_image);
 }
 
-void flow_place(struct flow *flow, const struct state *state, double t, const double *y) {
-    const struct school *const school = flow->school;
-    const unsigned long version = state_wake_version(state, school);
+void flow_place_released(struct flow *flow, const struct state *state, double t) {
+    const unsigned long version = state_wake_version(state, flow->school);
     const bool is_new = !flow->has_sources || flow->version != version;
 
     // released points move on known paths: their positions at one time are independent of y
@@ -274,7 +302,11 @@ void flow_place(struct flow *flow, const struct state *state, double t, const do
         flow_place_wakes(flow, state, is_new);
         flow->has_sources = !flow->is_steady;
     }
+}
 
+void flow_place(struct flow *flow, const struct state *state, double t, const double *y) {
+    const struct school *const school = flow->school;
+    flow_place_released(flow, state, t);
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
     if (threads == 1) {
         for (int f = 0; f < school->n_fish; f++) flow_place_body(flow, f, y);

@@ -97,6 +97,7 @@ struct flow {
 
     /* sums of many fish by the tree: sources and targets of one sum; whether the sum of bodies or of wakes of one class
      * or of the images at another class is by the tree, in this evaluation (2, 2, n_classes, n_classes) */
+    struct others *others; /* sums of distant sources of other fish: others.h; NULL before the first sum */
     struct tree *tree;
     struct sources many, places;
     int *by_tree;
@@ -126,6 +127,9 @@ int flow_tail(const struct fish *fish);
 /* Place all sources and the points of all fish at time t (at or after the event of the state) for the unknowns y. */
 void flow_place(struct flow *flow, const struct state *state, double t, const double *y);
 
+/* Place the released sources of all wakes at time t. */
+void flow_place_released(struct flow *flow, const struct state *state, double t);
+
 /* Whether the wakes are free sheets (shedding: sheet). */
 bool flow_has_free_sheets(const struct flow *flow);
 
@@ -134,6 +138,20 @@ bool flow_has_free_sheets(const struct flow *flow);
 enum flow_pair { BODY_AT_BODY, WAKE_AT_BODY, BODY_AT_WAKE, WAKE_AT_WAKE };
 double flow_square(const struct flow *flow, enum flow_pair pair, const struct flow_class *target,
                    const struct flow_class *source);
+
+/* The sources of a fish for all other targets: the body or the wake, at points or at markers, themselves or the
+ * images. */
+struct flow_sum {
+    enum flow_pair pair;
+    bool of_images;
+};
+const struct sources *flow_sources(const struct flow *flow, int g, const struct flow_sum *sum);
+
+/* The pair of these sources of fish g and targets of fish f. */
+struct kernel_pair flow_pair_of(const struct flow *flow, int f, int g, const struct flow_sum *sum);
+
+/* Append sources with their span in the strengths. */
+void flow_append_with_span(struct sources *many, const struct sources *sources, double span);
 
 /* Interpolate a quantity at the nodes of fish f to the points of fish f; of_points: values at the points of all fish
  * (n_points). */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "flow/flow.h"
+#include "flow/others.h"
 
 struct flow_at_body flow_at_body(const struct flow *flow, int f) {
     const int first = flow->points[f].first;
@@ -34,21 +35,6 @@ void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]) 
 
 // ---- other fish and images
 
-const struct sources *flow_sources(const struct flow *flow, int g, const struct flow_sum *sum) {
-    const struct flow_fish *const of = &flow->fish[g];
-    switch (sum->pair) {
-        case WAKE_AT_BODY: return sum->of_images ? &of->wake_image : &of->wake.middles.sources;
-        case WAKE_AT_WAKE: return sum->of_images ? &of->markers_image : &of->markers;
-        default: return sum->of_images ? &of->body_image : &of->body;
-    }
-}
-
-struct kernel_pair flow_pair_of(const struct flow *flow, int f, int g, const struct flow_sum *sum) {
-    const double square =
-        flow_square(flow, sum->pair, &flow->class[flow->class_of[f]], &flow -> class[flow->class_of[g]]);
-    return flow->kernel->other(flow->school->fish[g].strip_depth, square);
-}
-
 static int *by_tree(const struct flow *flow, const struct flow_sum *sum, int targets, int sources) {
     const int n = flow->n_classes, is_wake = sum->pair == WAKE_AT_BODY || sum->pair == WAKE_AT_WAKE;
     return &flow->by_tree[((2 * is_wake + sum->of_images) * n + targets) * n + sources];
@@ -75,25 +61,12 @@ void flow_select_by_tree(struct flow *flow, bool at_wakes, const struct range *t
                     n_sources += flow->class_of[f] == k ? n_own : 0;
                     if (flow->class_of[f] == c && c == k && !keeps_own) own += (double)n * n_own;
                 }
-                *by_tree(flow, &sum, c, k) = tree_is_faster(
-                    flow->kernel, n_sources, (double)n_targets * n_sources - 2 * own, school->wake_tolerance);
+                const bool is_by_others = !at_wakes && !sum.of_images && others_are_selected(flow);
+                *by_tree(flow, &sum, c, k) =
+                    !is_by_others && tree_is_faster(flow->kernel, n_sources, (double)n_targets * n_sources - 2 * own,
+                                                    school->wake_tolerance);
             }
         }
-    }
-}
-
-// append sources with their span in the strengths
-static void append_with_span(struct sources *many, const struct sources *sources, double span) {
-    const int first = many->n;
-    sources_append(many, sources->n);
-    for (int i = 0; i < sources->n; i++) {
-        many->x[first + i] = sources->x[i];
-        many->y[first + i] = sources->y[i];
-        many->q[first + i] = span * sources->q[i];
-        many->dx[first + i] = span * sources->dx[i];
-        many->dy[first + i] = span * sources->dy[i];
-        many->half[first + i] = sources->half[i];
-        many->leg[first + i] = sources->leg[i];
     }
 }
 
@@ -108,7 +81,7 @@ void flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_sum *su
     for (int g = 0; g < school->n_fish; g++) {
         if (flow->class_of[g] != k) continue;
         pair = flow_pair_of(flow, f, g, sum);
-        append_with_span(&flow->many, flow_sources(flow, g, sum), pair.span);
+        flow_append_with_span(&flow->many, flow_sources(flow, g, sum), pair.span);
     }
 
     // half of wake.tolerance, in lengths per beat, shared by bodies, wakes and images
@@ -198,6 +171,18 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
     kernel_induce(&bound, &of->own, (struct range){0, fish->n_sheet}, &at);
 }
 
+// the near part of fish g at points of fish f
+static void induce_near(const struct flow *flow, int f, int g, const struct targets *at) {
+    const struct others_near near = others_near(flow, f, g);
+    const struct sheet_points *const middles = &flow->fish[g].wake.middles;
+    if (near.body.n == 0 && near.n_wake == 0) return;
+    const struct kernel_pair body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
+    const struct kernel_pair wake = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
+    kernel_induce(&body, &flow->fish[g].body, near.body, at);
+    for (int i = 0; i < near.n_wake; i++) kernel_induce(&wake, &middles->sources, near.wake[i], at);
+    if (near.body.n > 0) kernel_induce(&wake, &middles->sources, (struct range){middles->n_released, 1}, at);
+}
+
 static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, int with_gradient) {
     const struct school *school = flow->school;
     const struct targets all = flow_targets(flow, with_gradient);
@@ -215,8 +200,11 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, i
     }
 
     induce_own(flow, chunk, &all, with_gradient);
+    const bool by_far_points = others_are_selected(flow);
+    if (by_far_points) others_add(flow, chunk->fish, chunk->at, &at);
     for (int g = 0; g < school->n_fish; g++) {
-        for (int i = 0; i < (school->walls.n > 0 ? 4 : 2); i++) {
+        if (by_far_points && g != chunk->fish) induce_near(flow, chunk->fish, g, &at);
+        for (int i = by_far_points ? 2 : 0; i < (school->walls.n > 0 ? 4 : 2); i++) {
             const struct flow_sum sum = {i % 2 == 0 ? BODY_AT_BODY : WAKE_AT_BODY, i >= 2};
             flow_induce_other(flow, chunk->fish, g, &sum, g == chunk->fish && !sum.of_images, &at);
         }
@@ -257,6 +245,8 @@ static void sum_many(struct flow *flow, int threads, int with_gradient) {
 }
 
 static void flow_sum(struct flow *flow, const struct state *state, double t, const double *y, int with_gradient) {
+    if (!flow->others) flow->others = others_create(flow->arena, flow);
+    others_select(flow, state);
     flow_place(flow, state, t, y);
     double n_sources = 0;
     for (int f = 0; f < flow->school->n_fish; f++)
@@ -266,6 +256,7 @@ static void flow_sum(struct flow *flow, const struct state *state, double t, con
 
     flow_zero(flow, with_gradient);
     sum_many(flow, threads, with_gradient);
+    if (others_are_selected(flow)) others_sum(flow, state, y, threads);
 
     if (threads == 1) {
         for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], with_gradient);

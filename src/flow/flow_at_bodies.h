@@ -39,17 +39,6 @@ void flow_field(struct flow *flow, const struct state *state, const struct targe
 
 // ---- sums of one kind of sources of many fish, for flow_at_wake.c too
 
-/* The sources of a fish for all other targets: the body or the wake, at points or at markers, themselves or the
- * images. */
-struct flow_sum {
-    enum flow_pair pair;
-    bool of_images;
-};
-const struct sources *flow_sources(const struct flow *flow, int g, const struct flow_sum *sum);
-
-/* The pair of these sources of fish g and targets of fish f. */
-struct kernel_pair flow_pair_of(const struct flow *flow, int f, int g, const struct flow_sum *sum);
-
 /* Select the sums at bodies, or at wakes, that are by the tree; n_targets: of each fish. */
 void flow_select_by_tree(struct flow *flow, bool at_wakes, const struct range *targets);
 

@@ -124,6 +124,7 @@ struct kernel {
     int cost;     /* of an interaction, in interactions of infinite span */
     /* below these numbers the direct sum is faster than the tree: measured by `make bench` */
     int tree_sources;
+    int far_sources; /* below this number of sources the direct sum is faster than far points: others.h */
     double tree_interactions;
     /* the pairs of sources of a strip of this depth and targets in the same strip, or other targets; square: e^2, m2 */
     struct kernel_pair (*own)(double depth, double square);

@@ -1,0 +1,492 @@
+/* others.c: selection by a bound for every source, sums at far points, polynomials to the points of the body. */
+#include "flow/others.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "flow/flow.h"
+
+enum { FAR = KERNEL_BLOCK, TIMES = 3, VALUES = 8 };
+
+/* A body that has moved by more than this from the path of its last event, in lengths, has no far sources. */
+static const double most_drift = 4e-3;
+
+/* The far points of a fish. */
+struct others_fish {
+    bool is_used;       /* else no source is far: too few nodes, or a depth that varies */
+    double *to_points;  /* values of the polynomials of the far points at the points (FAR, n_points) */
+    double *from_nodes; /* positions of the far points by nodes                      (n_nodes, FAR) */
+    double half[FAR];
+    /* at the event: position, velocity and acceleration of the far points */
+    double start[2][FAR], velocity[2][FAR], acceleration[2][FAR];
+    double speed; /* the largest of a node, m s-1 */
+    /* u, v, div, u_x, u_y, v_x, div_x, div_y at the far points: of far wakes at three times, of all far sources now */
+    double wake[TIMES][VALUES][FAR], now[VALUES][FAR];
+    double x[FAR], y[FAR];
+    bool has_drifted;
+    int n_near, near_capacity; /* ranges of near sources in wakes */
+    struct range *near;
+};
+
+/* What one fish is for another. */
+struct others_pair {
+    bool is_far_body;       /* with the nascent point */
+    int first_near, n_near; /* among the near ranges of the fish */
+    struct range whole;     /* the released sources */
+};
+
+struct others {
+    struct arena *arena;
+    int n_fish;
+    struct others_fish *fish;     /*                        (n_fish) */
+    struct others_pair *pair;     /* targets, then sources  (n_fish, n_fish) */
+    bool is_selected, is_by_tree; /* the far wakes */
+    struct sources points;        /* far points of a class, for the tree */
+    double *value[VALUES];        /* at these points      (FAR n_fish) */
+    double t;
+    unsigned long version;
+    double *past; /* unknowns at the event              (n_unknowns) */
+};
+
+struct others *others_create(struct arena *arena, const struct flow *flow) {
+    const struct school *const school = flow->school;
+    struct others *others;
+    NEW(arena, others, 1);
+    others->arena = arena;
+    others->n_fish = school->n_fish;
+    NEW(arena, others->fish, school->n_fish);
+    NEW(arena, others->pair, (size_t)school->n_fish * (size_t)school->n_fish);
+    NEW(arena, others->past, school->n_unknowns);
+    others->points.arena = arena;
+    for (int k = 0; k < VALUES; k++) NEW(arena, others->value[k], FAR * school->n_fish);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        struct others_fish *const of = &others->fish[f];
+        const int n = fish->n_nodes, n_points = flow_n_points(fish);
+        of->is_used = n >= 4 && !fish->depth_varies;
+        NEW(arena, of->to_points, FAR * n_points);
+        NEW(arena, of->from_nodes, n * FAR);
+        if (!of->is_used) continue;
+
+        // far points on the smooth curve through the nodes
+        double *factor, chebyshev[FAR];
+        NEW(arena, factor, n);
+        curve_smooth_factors(n, factor);
+        for (int i = 0; i < FAR; i++) {
+            chebyshev[i] = cos(M_PI * (2 * i + 1) / (2 * FAR));
+            const double u = (n - 1) * (1 + chebyshev[i]) / 2;
+            double sum = 0;
+            for (int k = 0; k < n; k++) sum += fabs(u - k) < 1e-12 ? 1e30 : factor[k] / (u - k);
+            for (int k = 0; k < n; k++) {
+                of->from_nodes[k * FAR + i] = (fabs(u - k) < 1e-12 ? 1e30 : factor[k] / (u - k)) / sum;
+            }
+            of->half[i] = fish->point_half ? fish->point_half[0] : 0;
+        }
+
+        // polynomials: 1 at one of the far points, 0 at the others
+        for (int p = 0; p < n_points; p++) {
+            const struct stencil *const point = p < fish->n_control ? &fish->control_point[p] : NULL;
+            double u = p == n_points - 1 ? n - 1 : p - fish->n_control + 0.5;
+            if (point) u = 0;
+            for (int k = 0; point && k < point->n; k++) u += point->weight[k] * point->node[k];
+            const double t = 2 * u / (n - 1) - 1;
+            for (int i = 0; i < FAR; i++) {
+                double value = 0;
+                for (int k = 0; k < FAR; k++) {
+                    value +=
+                        (k == 0 ? 1.0 : 2.0) / FAR * cos(k * acos(chebyshev[i])) * cos(k * acos(fmax(-1, fmin(1, t))));
+                }
+                of->to_points[i * n_points + p] = value;
+            }
+        }
+    }
+    return others;
+}
+
+bool others_are_selected(const struct flow *flow) {
+    return flow->others->is_selected;
+}
+
+// ---- selection
+
+/* The smallest ellipse with foci at both ends of a body around a source: the interpolation has an error of the order of
+ * rho^-FAR; and the distance from the body. slack: by which source and body may approach in an interval, and by which
+ * the body is bent. */
+struct ellipse {
+    double rho, distance;
+};
+static struct ellipse ellipse_of(const double end[2][2], double length, double slack, double x, double y) {
+    const double r[2] = {hypot(x - end[0][0], y - end[0][1]), hypot(x - end[1][0], y - end[1][1])};
+    const double sum = fmax(1, (r[0] + r[1] - 2 * slack) / length);
+    return (struct ellipse){sum + sqrt(sum * sum - 1), (sum - 1) * length / 2};
+}
+
+/* A target body, and the largest error of a source. */
+struct selection {
+    const struct flow *flow;
+    /* at the event: ends of the body and their distance; distances of the body from the chord, and of its points from
+     * the curve of the far points */
+    double end[2][2], chord, bend, aside;
+    double speed, tolerance;
+};
+
+// whether a source of a kernel is far: the errors of the polynomial, of the gradient in place of the kernel, and for
+// wakes of the parabola in time
+static bool is_far(const struct selection *to, const struct kernel_pair *pair, const struct sources *sources, int i,
+                   double half, double speed, bool is_wake) {
+    const double step = to->flow->school->interval * (to->speed + speed);
+    const struct ellipse at =
+        ellipse_of((const double(*)[2])to->end, to->chord, to->bend + step, sources->x[i], sources->y[i]);
+    if (!(at.distance > 0)) return false;
+    const double low = pair->factor * (half + sources->half[i]) + sources->leg[i], r2 = at.distance * at.distance;
+    const double d = sqrt(sources->dx[i] * sources->dx[i] + sources->dy[i] * sources->dy[i]);
+    const double size = pair->kernel->bound(pair, r2, low, fabs(sources->q[i]), d, to->chord);
+    const double in_time = is_wake ? 0.05 * pow(step / at.distance, 3) : 0;
+    const double beside = to->aside * to->aside / r2;
+    return size * (2 * pow(at.rho, -FAR) + beside + in_time) <= to->tolerance;
+}
+
+static void near_add(struct others *others, struct others_fish *of, int i, bool begins) {
+    if (begins) {
+        if (of->n_near == of->near_capacity) {
+            of->near_capacity = 2 * of->near_capacity + 16;
+            GROW(others->arena, of->near, of->near_capacity);
+        }
+        of->near[of->n_near++] = (struct range){i, 0};
+    }
+    of->near[of->n_near - 1].n++;
+}
+
+static void select_at(struct flow *flow, const struct state *state, int f, double n_sources) {
+    struct others *const others = flow->others;
+    const struct school *const school = flow->school;
+    const struct fish *const fish = &school->fish[f];
+    struct others_fish *const of = &others->fish[f];
+    const double *const y = others->past, *const node_x = y + fish->at.x, *const node_y = y + fish->at.y;
+    const int last = fish->n_nodes - 1;
+    of->n_near = 0;
+
+    // the body at the event
+    struct selection to = {.flow = flow, .end = {{node_x[0], node_y[0]}, {node_x[last], node_y[last]}}};
+    const double along[2] = {node_x[last] - node_x[0], node_y[last] - node_y[0]};
+    to.chord = hypot(along[0], along[1]);
+    to.speed = of->speed;
+    to.tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish) / (4 * sqrt(n_sources));
+    for (int k = 0; k <= last; k++) {
+        const double r[2] = {node_x[k] - node_x[0], node_y[k] - node_y[0]};
+        to.bend = fmax(to.bend, fabs(r[0] * along[1] - r[1] * along[0]) / to.chord);
+    }
+
+    // besides the points that the body has at the event, displacements within an interval
+    to.aside = 3e-4 * fish->length;
+    for (int p = 0; p < flow->points[f].n && of->is_used; p++) {
+        double r[2] = {flow->x[flow->points[f].first + p], flow->y[flow->points[f].first + p]};
+        for (int i = 0; i < FAR; i++) {
+            const double part = of->to_points[i * flow->points[f].n + p];
+            r[0] -= part * of->start[0][i];
+            r[1] -= part * of->start[1][i];
+        }
+        to.aside = fmax(to.aside, hypot(r[0], r[1]));
+    }
+
+    const double half = flow->kernel->has_legs ? of->half[0] : 0;
+    for (int g = 0; g < school->n_fish; g++) {
+        struct others_pair *const pair = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
+        const struct flow_fish *const other = &flow->fish[g];
+        const struct wake *const wake = &state->wake[g];
+        const int n_released = other->wake.middles.n_released;
+        *pair = (struct others_pair){.first_near = of->n_near, .whole = {0, n_released}};
+        if (g == f) continue;
+
+        // runs of near sources in the wake
+        const struct kernel_pair of_wake = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
+        bool was_near = false, newest_is_far = of->is_used;
+        for (int i = 0; i < n_released; i++) {
+            const int marker = i < wake->n_vortex - 1 ? i + wake->has_markers : i;
+            const double speed = hypot(wake->u[marker], wake->v[marker]);
+            const bool near =
+                !of->is_used || !is_far(&to, &of_wake, &other->wake.middles.sources, i, half, speed, true);
+            if (near) near_add(others, of, i, !was_near);
+            was_near = near;
+            newest_is_far = !near;
+        }
+        pair->n_near = of->n_near - pair->first_near;
+
+        // the body, with the nascent point
+        const struct kernel_pair of_body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
+        pair->is_far_body = of->is_used && newest_is_far && n_released > 0;
+        for (int c = 0; c < other->body.n && pair->is_far_body; c++) {
+            pair->is_far_body = is_far(&to, &of_body, &other->body, c, half, others->fish[g].speed, false);
+        }
+    }
+}
+
+// the targets of far points
+static struct targets far_targets(const struct flow *flow, struct others_fish *of, const double *x, const double *y,
+                                  double value[VALUES][FAR]) {
+    return (struct targets){.n = FAR,
+                            .x = x,
+                            .y = y,
+                            .half = flow->kernel->has_legs ? of->half : NULL,
+                            .u = value[0],
+                            .v = value[1],
+                            .div = value[2],
+                            .u_x = value[3],
+                            .u_y = value[4],
+                            .v_x = value[5],
+                            .div_x = value[6],
+                            .div_y = value[7]};
+}
+
+// the far points on the path of the event, tau later
+static void far_places(const struct others_fish *of, double tau, double *x, double *y) {
+    for (int i = 0; i < FAR; i++) {
+        x[i] = of->start[0][i] + tau * (of->velocity[0][i] + tau / 2 * of->acceleration[0][i]);
+        y[i] = of->start[1][i] + tau * (of->velocity[1][i] + tau / 2 * of->acceleration[1][i]);
+    }
+}
+
+// all released sources of all fish at the far points of all fish, class by class, with all wakes placed at this time
+static void sum_by_tree(struct flow *flow, int time, int threads) {
+    struct others *const others = flow->others;
+    const struct school *const school = flow->school;
+    for (int c = 0; c < flow->n_classes; c++) {
+        struct sources *const points = &others->points, *const many = &flow->many;
+        int n = 0, first = 0;
+        for (int f = 0; f < school->n_fish; f++) n += flow->class_of[f] == c && others->fish[f].is_used ? FAR : 0;
+        points->n = 0;
+        sources_append(points, n);
+        n = 0;
+        for (int f = 0; f < school->n_fish; f++) {
+            if (flow->class_of[f] != c || !others->fish[f].is_used) continue;
+            if (n == 0) first = f;
+            far_places(&others->fish[f], time * school->interval / 2, points->x + n, points->y + n);
+            memcpy(points->half + n, others->fish[f].half, sizeof others->fish[f].half);
+            n += FAR;
+        }
+        if (n == 0) continue;
+
+        // an eighth of wake.tolerance for each sum
+        const struct fish *const fish = &school->fish[first];
+        const double tolerance =
+            school->wake_tolerance * fish->length * fish_rate(school, fish) / (8 * flow->n_classes);
+        double **const value = others->value;
+        const struct targets at = {.n = n,
+                                   .x = points->x,
+                                   .y = points->y,
+                                   .half = points->half,
+                                   .u = value[0],
+                                   .v = value[1],
+                                   .div = value[2],
+                                   .u_x = value[3],
+                                   .u_y = value[4],
+                                   .v_x = value[5],
+                                   .div_x = value[6],
+                                   .div_y = value[7]};
+        for (int k = 0; k < VALUES; k++) memset(value[k], 0, (size_t)n * sizeof **value);
+        for (int k = 0; k < flow->n_classes; k++) {
+            struct kernel_pair pair = {0};
+            many->n = 0;
+            for (int g = 0; g < school->n_fish; g++) {
+                if (flow->class_of[g] != k) continue;
+                const struct sheet_points *const middles = &flow->fish[g].wake.middles;
+                pair = flow_pair_of(flow, first, g, &(struct flow_sum){WAKE_AT_BODY, false});
+                flow_append_with_span(many, &middles->sources, pair.span);
+                many->n -= middles->n_nascent;
+            }
+            pair.span = 1;
+            tree_induce(flow->tree, &pair, many, fish->length, tolerance, threads, &at);
+        }
+
+        n = 0;
+        for (int f = 0; f < school->n_fish; f++) {
+            if (flow->class_of[f] != c || !others->fish[f].is_used) continue;
+            for (int k = 0; k < VALUES; k++) memcpy(others->fish[f].wake[time][k], value[k] + n, FAR * sizeof **value);
+            n += FAR;
+        }
+    }
+}
+
+// the far wakes at one of three times: the far sources; or, after sum_by_tree, less the near and own sources
+static void sum_wakes(struct flow *flow, int f, int time) {
+    struct others *const others = flow->others;
+    struct others_fish *const of = &others->fish[f];
+    double x[FAR], y[FAR];
+    if (!of->is_used) return;
+    if (!others->is_by_tree) memset(of->wake[time], 0, sizeof of->wake[time]);
+    far_places(of, time * flow->school->interval / 2, x, y);
+
+    const struct targets at = far_targets(flow, of, x, y, of->wake[time]);
+    for (int g = 0; g < others->n_fish; g++) {
+        const struct sources *const sources = &flow->fish[g].wake.middles.sources;
+        const struct others_pair *const near = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
+        const struct range *const range = of->near + near->first_near;
+        struct kernel_pair pair = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
+        if (others->is_by_tree) {
+            pair.span = -pair.span;
+            if (g == f) kernel_induce(&pair, sources, near->whole, &at);
+            for (int i = 0; i < near->n_near; i++) kernel_induce(&pair, sources, range[i], &at);
+            continue;
+        }
+
+        for (int i = 0, first = 0; i <= near->n_near && g != f; i++) {
+            const int end = i < near->n_near ? range[i].first : near->whole.n;
+            kernel_induce(&pair, sources, (struct range){first, end - first}, &at);
+            first = i < near->n_near ? end + range[i].n : end;
+        }
+    }
+}
+
+void others_select(struct flow *flow, const struct state *state) {
+    struct others *const others = flow->others;
+    const struct school *const school = flow->school;
+    const unsigned long version = state_wake_version(state, school);
+    const size_t size = (size_t)school->n_unknowns * sizeof *others->past;
+    int n_vortices = 0;
+    for (int f = 0; f < school->n_fish; f++) n_vortices += state->wake[f].n_vortex;
+    if (!(school->wake_tolerance > 0) || flow->is_steady || state->n_past == 0 || school->n_fish == 1 ||
+        n_vortices < flow->kernel->far_sources) {
+        others->is_selected = false;
+        return;
+    }
+    if (others->is_selected && others->t == state->t && others->version == version &&
+        memcmp(others->past, state->past, size) == 0) {
+        return;
+    }
+
+    others->is_selected = true;
+    others->t = state->t;
+    others->version = version;
+    memcpy(others->past, state->past, size);
+    flow_place(flow, state, state->t, others->past);
+    double n_sources = 1;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        struct others_fish *const of = &others->fish[f];
+        const double *const y = others->past;
+        n_sources += flow->fish[f].wake.middles.n_released + flow->fish[f].body.n;
+        of->speed = 0;
+        for (int k = 0; k < fish->n_nodes; k++) {
+            of->speed = fmax(of->speed, hypot(y[fish->at.vx + k], y[fish->at.vy + k]));
+        }
+        const int slices[] = {fish->at.x, fish->at.y, fish->at.vx, fish->at.vy, fish->at.ax, fish->at.ay};
+        double *const to[] = {of->start[0],    of->start[1],        of->velocity[0],
+                              of->velocity[1], of->acceleration[0], of->acceleration[1]};
+        for (int i = 0; i < 6 && of->is_used; i++) {
+            fish_of_nodes(FAR, fish->n_nodes, of->from_nodes, y + slices[i], to[i]);
+        }
+    }
+    for (int f = 0; f < school->n_fish; f++) select_at(flow, state, f, n_sources);
+    others->is_by_tree =
+        tree_is_faster(flow->kernel, (int)n_sources, 2 * FAR * school->n_fish * n_sources, school->wake_tolerance);
+
+    const int threads =
+        parallel_threads(school->threads, school->n_fish, n_sources * school->n_fish * FAR, PARALLEL_INTERACTIONS);
+    for (int time = 0; time < TIMES; time++) {
+        flow_place_released(flow, state, state->t + time * school->interval / 2);
+        if (others->is_by_tree) sum_by_tree(flow, time, school->threads);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+        for (int f = 0; f < school->n_fish; f++) sum_wakes(flow, f, time);
+    }
+}
+
+// ---- sums
+
+struct others_near others_near(const struct flow *flow, int f, int g) {
+    const struct others *const others = flow->others;
+    const struct others_pair *const pair = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
+    const bool has_drifted = others->fish[f].has_drifted;
+    const bool is_far_body = pair->is_far_body && !has_drifted && !others->fish[g].has_drifted;
+    return (struct others_near){.body = {0, is_far_body ? 0 : flow->fish[g].body.n},
+                                .wake = has_drifted ? &pair->whole : others->fish[f].near + pair->first_near,
+                                .n_wake = has_drifted ? 1 : pair->n_near};
+}
+
+void others_sum(struct flow *flow, const struct state *state, const double *y, int threads) {
+    struct others *const others = flow->others;
+    const struct school *const school = flow->school;
+    const double tau = flow->t - state->t, s = tau / school->interval;
+    const double weight[TIMES] = {(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)};
+
+    // far points, and whether a body is elsewhere
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        struct others_fish *const of = &others->fish[f];
+        of->has_drifted = !of->is_used;
+        if (!of->is_used) continue;
+        fish_of_nodes(FAR, fish->n_nodes, of->from_nodes, y + fish->at.x, of->x);
+        fish_of_nodes(FAR, fish->n_nodes, of->from_nodes, y + fish->at.y, of->y);
+        double place[2][FAR];
+        far_places(of, tau, place[0], place[1]);
+        for (int i = 0; i < FAR; i++) {
+            const double dx = of->x[i] - place[0][i], dy = of->y[i] - place[1][i];
+            of->has_drifted =
+                of->has_drifted || !(dx * dx + dy * dy <= most_drift * most_drift * fish->length * fish->length);
+        }
+    }
+
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int f = 0; f < school->n_fish; f++) {
+        struct others_fish *const of = &others->fish[f];
+        memset(of->now, 0, sizeof of->now);
+        if (of->has_drifted) continue;
+
+        // the parabola of the far wakes, and the gradient times the displacement
+        for (int k = 0; k < VALUES; k++) {
+            for (int i = 0; i < FAR; i++) {
+                of->now[k][i] =
+                    weight[0] * of->wake[0][k][i] + weight[1] * of->wake[1][k][i] + weight[2] * of->wake[2][k][i];
+            }
+        }
+        double place[2][FAR];
+        far_places(of, tau, place[0], place[1]);
+        for (int i = 0; i < FAR; i++) {
+            const double dx = of->x[i] - place[0][i], dy = of->y[i] - place[1][i];
+            const double v_y = of->now[2][i] - of->now[3][i];
+            of->now[0][i] += of->now[3][i] * dx + of->now[4][i] * dy;
+            of->now[1][i] += of->now[5][i] * dx + v_y * dy;
+            of->now[2][i] += of->now[6][i] * dx + of->now[7][i] * dy;
+        }
+
+        // far bodies
+        const struct targets at = far_targets(flow, of, of->x, of->y, of->now);
+        for (int g = 0; g < school->n_fish; g++) {
+            if (!others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g].is_far_body ||
+                others->fish[g].has_drifted)
+                continue;
+            const struct flow_fish *const other = &flow->fish[g];
+            const struct kernel_pair body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
+            const struct kernel_pair wake = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
+            kernel_induce(&body, &other->body, (struct range){0, other->body.n}, &at);
+            kernel_induce(&wake, &other->wake.middles.sources, (struct range){other->wake.middles.n_released, 1}, &at);
+        }
+    }
+}
+
+void others_add(const struct flow *flow, int f, struct range which, const struct targets *at) {
+    const struct others_fish *const of = &flow->others->fish[f];
+    if (of->has_drifted) return;
+    const int n_points = flow->points[f].n, first = which.first - flow->points[f].first;
+    for (int p = 0; p < which.n; p++) {
+        double value[VALUES] = {0}, x = 0, y = 0;
+        for (int i = 0; i < FAR; i++) {
+            const double part = of->to_points[i * n_points + first + p];
+            for (int k = 0; k < VALUES; k++) value[k] += part * of->now[k][i];
+            x += part * of->x[i];
+            y += part * of->y[i];
+        }
+
+        // the point beside the curve of the far points
+        const double dx = at->x[p] - x, dy = at->y[p] - y;
+        at->u[p] += value[0] + value[3] * dx + value[4] * dy;
+        at->v[p] += value[1] + value[5] * dx + (value[2] - value[3]) * dy;
+        if (flow->kernel->has_legs) at->div[p] += value[2] + value[6] * dx + value[7] * dy;
+        if (!at->u_x) continue;
+        at->u_x[p] += value[3];
+        at->u_y[p] += value[4];
+        at->v_x[p] += value[5];
+        if (!flow->kernel->has_legs) continue;
+        at->div_x[p] += value[6];
+        at->div_y[p] += value[7];
+    }
+}

@@ -1,0 +1,134 @@
+/* test_others.c: distant sources by far points, against the sum of all sources. doc/numerics.md, section 12. */
+#include <stdio.h>
+#include <string.h>
+
+#include "flow/flow_at_bodies.h"
+#include "flow/others.h"
+#include "school.h"
+
+#define TIME SCHOOL_DEFAULTS "time: {end: 2, shedding_interval: 0.02}\n"
+
+/* Fish of two lengths, near each other and behind each other. */
+#define SCHOOL                                                                                    \
+    "defaults: {fish: {nodes: 9, sheet_points: 21, start: {speed: 0.8}, pressure: {span: %s}}}\n" \
+    "fish:\n"                                                                                     \
+    "  - {}\n"                                                                                    \
+    "  - {start: {position: [1.6, 0]}}\n"                                                         \
+    "  - {length: 0.7, start: {position: [0.2, 0.9]}}\n"                                          \
+    "  - {start: {position: [-2.5, 1.4]}}\n"
+
+static struct simulation *swum(const char *span) {
+    struct simulation *const simulation = school_simulation_of(TIME SCHOOL, span);
+    school_run(simulation, 0.8);
+    return simulation;
+}
+
+/* The tree for any number of sources. */
+static struct kernel always;
+static const struct kernel *kernel_of(const struct flow *flow, bool by_tree) {
+    always = *flow->kernel;
+    always.tree_sources = always.far_sources = 0;
+    always.tree_interactions = by_tree ? 0 : INFINITY;
+    return &always;
+}
+
+enum { SUMS = 8, MOST_POINTS = 512 };
+static double kept[SUMS][MOST_POINTS];
+static void keep(struct flow *flow, double *sums[SUMS]) {
+    double *const all[SUMS] = {flow->u, flow->v, flow->div, flow->u_x, flow->u_y, flow->v_x, flow->div_x, flow->div_y};
+    AT_MOST(flow->n_points, MOST_POINTS);
+    for (int k = 0; k < SUMS; k++) {
+        memcpy(kept[k], all[k], sizeof(double) * (size_t)flow->n_points);
+        sums[k] = all[k];
+    }
+}
+
+// velocities within an interval, with the bodies displaced from the path of the event: below wake.tolerance, and the
+// far points are used: the errors are not rounding
+TEST(errors_are_below_the_tolerance) {
+    static const char *const spans[] = {"infinite", "finite"};
+    for (int k = 0; k < 4; k++) {
+        struct simulation *const simulation = swum(spans[k / 2]);
+        struct school *const school = simulation->school;
+        struct flow *const flow = simulation->residual->flow;
+        const struct state *const at = simulation->state;
+        flow->kernel = kernel_of(flow, k % 2 == 1);
+        double y[4096], *sums[SUMS], worst = 0, gradient = 0;
+        AT_MOST(school->n_unknowns, 4096);
+        for (int part = 0; part <= 4; part++) {
+            const double tau = part * school->interval / 4;
+            memcpy(y, at->y, sizeof *y * (size_t)school->n_unknowns);
+            for (int f = 0; f < school->n_fish; f++) {
+                const struct fish *const fish = &school->fish[f];
+                for (int i = 0; i < 2 * fish->n_nodes; i++) {
+                    y[fish->at.x + i] += tau * y[fish->at.vx + i] + 1e-4 * part * sin(0.3 * i);
+                }
+            }
+            for (int exact = 0; exact < 2; exact++) {
+                const double tolerance = school->wake_tolerance;
+                school->wake_tolerance = exact ? 0 : tolerance;
+                flow_gradient(flow, at, at->t + tau, y);
+                assert_true(others_are_selected(flow) == !exact);
+                if (!exact) keep(flow, sums);
+                school->wake_tolerance = tolerance;
+            }
+            for (int s = 0; s < SUMS; s++) {
+                for (int p = 0; p < flow->n_points; p++) {
+                    double *const to = s < 3 ? &worst : &gradient;
+                    *to = fmax(*to, fabs(kept[s][p] - sums[s][p]));
+                }
+            }
+        }
+
+        // the smallest body: 0.7 lengths per beat
+        print_message("%s, %s: velocity and divergence %.2g, gradients %.2g\n", spans[k / 2], k % 2 ? "tree" : "sums",
+                      worst, gradient);
+        const double unit = school->wake_tolerance * 0.7 * fish_rate(school, &school->fish[2]);
+        BELOW(worst, unit);
+        ABOVE(worst, 1e-6 * unit);
+        BELOW(gradient, 200 * unit);
+        simulate_free(simulation);
+    }
+}
+
+TEST(a_body_elsewhere_feels_all_sources) {
+    struct simulation *const simulation = swum("finite");
+    struct school *const school = simulation->school;
+    struct flow *const flow = simulation->residual->flow;
+    struct state *const at = simulation->state;
+    const struct fish *const fish = &school->fish[0];
+    for (int k = 0; k < fish->n_nodes; k++) at->y[fish->at.y + k] -= 0.3;
+    double *sums[SUMS];
+    flow_gradient(flow, at, at->t, at->y);
+    keep(flow, sums);
+    school->wake_tolerance = 0;
+    flow_gradient(flow, at, at->t, at->y);
+    // the order of the sources differs
+    NEAR_ARRAY(flow->points[0].n, flow->u + flow->points[0].first, kept[0] + flow->points[0].first, 1e-13, 1e-13);
+    NEAR_ARRAY(flow->points[0].n, flow->div + flow->points[0].first, kept[2] + flow->points[0].first, 1e-12, 1e-12);
+    simulate_free(simulation);
+}
+
+// the selection depends on the state alone, not on evaluations before
+TEST(bits_do_not_depend_on_threads_or_evaluations_before) {
+    struct simulation *const simulation = swum("finite");
+    struct school *const school = simulation->school;
+    const struct state *const at = simulation->state;
+    struct flow *const flow = simulation->residual->flow;
+    for (int k = 0; k < 2; k++) {
+        flow->kernel = kernel_of(flow, k == 1);
+        double *sums[SUMS];
+        at->wake[0].version++;
+        flow_gradient(flow, at, at->t + 0.007, at->y);
+        keep(flow, sums);
+        struct flow *const fresh = flow_create(test_arena(), school);
+        fresh->kernel = flow->kernel;
+        school->threads = 3;
+        flow_velocity(fresh, at, at->t + 0.011, at->y);
+        flow_gradient(fresh, at, at->t + 0.007, at->y);
+        school->threads = 1;
+        assert_memory_equal(fresh->u, kept[0], sizeof(double) * (size_t)flow->n_points);
+        assert_memory_equal(fresh->u_x, kept[3], sizeof(double) * (size_t)flow->n_points);
+    }
+    simulate_free(simulation);
+}
