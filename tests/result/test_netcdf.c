@@ -100,14 +100,34 @@ static enum status write_file(const char *path, bool overwrite) {
     const int time = netcdf_define_dimension(&writer, "time", 0),
               fish = netcdf_define_dimension(&writer, "fish", N_FISH),
               name = netcdf_define_dimension(&writer, "name", 5);
-    const int speed = netcdf_define_variable(
-        &writer, &(struct netcdf_variable){"speed", "a speed", "m s-1", NETCDF_DOUBLE, 2, {time, fish}, true});
-    const int steps = netcdf_define_variable(
-        &writer, &(struct netcdf_variable){"steps", "steps", "", NETCDF_INT64, 1, {time}, false});
-    const int count = netcdf_define_variable(
-        &writer, &(struct netcdf_variable){"count", "a count", "", NETCDF_INT, 1, {fish}, false});
-    const int names = netcdf_define_variable(
-        &writer, &(struct netcdf_variable){"names", "names", "", NETCDF_TEXT, 2, {fish, name}, false});
+    const int speed = netcdf_define_variable(&writer, &(struct netcdf_variable){.name = "speed",
+                                                                                .long_name = "a speed",
+                                                                                .units = "m s-1",
+                                                                                .type = NETCDF_DOUBLE,
+                                                                                .n_dimensions = 2,
+                                                                                .dimension = {time, fish},
+                                                                                .has_gaps = true});
+    const int steps = netcdf_define_variable(&writer, &(struct netcdf_variable){.name = "steps",
+                                                                                .long_name = "steps",
+                                                                                .units = "",
+                                                                                .type = NETCDF_INT64,
+                                                                                .n_dimensions = 1,
+                                                                                .dimension = {time},
+                                                                                .has_gaps = false});
+    const int count = netcdf_define_variable(&writer, &(struct netcdf_variable){.name = "count",
+                                                                                .long_name = "a count",
+                                                                                .units = "",
+                                                                                .type = NETCDF_INT,
+                                                                                .n_dimensions = 1,
+                                                                                .dimension = {fish},
+                                                                                .has_gaps = false});
+    const int names = netcdf_define_variable(&writer, &(struct netcdf_variable){.name = "names",
+                                                                                .long_name = "names",
+                                                                                .units = "",
+                                                                                .type = NETCDF_TEXT,
+                                                                                .n_dimensions = 2,
+                                                                                .dimension = {fish, name},
+                                                                                .has_gaps = false});
     netcdf_write_integer(&writer, NETCDF_GLOBAL, "number", 7);
     netcdf_write_integer(&writer, NETCDF_GLOBAL, "shoal_schema", 1);
     netcdf_end_definitions(&writer);
