@@ -531,7 +531,7 @@ static const char keys_elsewhere[] =
     "solver.coupling_distance solver.threads solver.max_steps output.file output.precision output.forces "
     "output.wake_interval steady.tolerance steady.beats steady.output_beats steady.formation steady.multipliers "
     "defaults "
-    "fish.name fish.control.damping fish.control.ramp sweep expect error ";
+    "fish.name fish.control.damping fish.control.slow fish.control.course_filter fish.control.ramp sweep expect error ";
 
 /* The kind of the school of a row: 1 and 2 for rows that begin with r and p, else 0. */
 static int school_kind(const char *row) {
