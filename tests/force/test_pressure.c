@@ -29,9 +29,9 @@ static void build_plate(struct setup *setup, int nodes, int points, const char *
 
     // the keys do not allow this value
     setup->values.school.fish[0].sheet_points = points;
-    school_ok(fish_school_create(NULL, &setup->school, &setup->values.school));
-    setup->state = state_create(NULL, setup->school);
-    setup->arena = arena_create(NULL, "a test");
+    school_ok(fish_school_create(test_arena(), &setup->school, &setup->values.school));
+    setup->state = state_create(test_arena(), setup->school);
+    setup->arena = arena_create(test_arena(), "a test");
     school_ok(residual_create(setup->arena, &setup->residual, setup->school, setup->state));
     setup->value = NULL;
     setup->jacobian = NULL;

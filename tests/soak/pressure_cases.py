@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """pressure_cases.py PROGRAM [CASES [FIRST [BEATS]]]: fish with the force of the pressure in contact, then random legal
-schools. Each run must end well, with finite numbers and no circulation in total. Half an hour.
+schools; with an argument the schools only. Each run must end well, with finite numbers and no circulation in total. Half an hour.
 
 Contact: 60 schools side by side, 20 fish sent into a wall at 2 and 4 m/s, 20 pairs head on, all from soft to stiff, each
 with infinite and with finite span.
@@ -11,6 +11,7 @@ light to heavy (mass over rho L w of 0.01 to 10; those heavier than the fluid th
 
 import math
 import random
+import sys
 
 import netCDF4
 import numpy as np
@@ -114,7 +115,8 @@ def draw_head_on(draw):
 
 def cases():
     """The number of each case, its text, its length and its rate."""
-    for drawn, count in ((draw_dense_school, 60), (draw_wall, 20), (draw_head_on, 20)):
+    contact = ((draw_dense_school, 60), (draw_wall, 20), (draw_head_on, 20)) if len(sys.argv) == 2 else ()
+    for drawn, count in contact:
         number = 0
         while count > 0:
             text = "format: 1\n" + drawn(random.Random(number))
