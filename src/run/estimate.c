@@ -18,8 +18,8 @@ static const double bytes_of_file = 7e6;
 /* Residual evaluations per event, for an estimate without a completed event: doc/numerics.md, section 4. */
 static const double usual_evaluations = 12;
 
-/* Memory per vortex [bytes], for synthetic wakes too short for a measurement: 200,000 vortices take 370 MB, since arrays
- * that grow leave their old pieces to the arena. */
+/* Memory per vortex [bytes], for synthetic wakes too short for a measurement: 200,000 vortices take 370 MB, because
+ * arrays that grow leave their old pieces to the arena. */
 static const double usual_bytes = 1900;
 
 /* Vortices per fish in the first synthetic wake, which doubles from wake to wake; maximum number of wakes. */

@@ -26,6 +26,7 @@ static void build_plate(struct setup *setup, int nodes, int points, const char *
              "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
              nodes, 2 * nodes - 1, more);
     school_settings(&setup->values, text);
+    arena_move(setup->values.arena, test_arena());
 
     // the keys do not allow this value
     setup->values.school.fish[0].sheet_points = points;
