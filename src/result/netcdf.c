@@ -259,8 +259,8 @@ void netcdf_abandon(struct netcdf_writer *writer) {
 }
 
 // ---- check a file for completeness, and find the rows. NetCDF reads a missing end as zeros, and requests memory for
-// the numbers of entries in the header before reading the entries: NetCDF 4.9.0 took more than 4 GB, or crashed, with
-// 20 of 4000 damaged headers.
+// the numbers of entries in the header before reading the entries: NetCDF 4.9.0 hung on 20 of 4000 damaged headers; of
+// five of these, two crashed and two took more than 4 GB.
 //
 //     header    = "CDF" version  n_rows  dimensions  attributes  variables
 //     list      = tag  n  n entries; both 0: none          tag: DIMENSION, ATTRIBUTE, VARIABLE
