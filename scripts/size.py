@@ -7,6 +7,7 @@ doc/architecture.md, section 6.
 """
 
 import re
+import signal
 import statistics
 import sys
 from pathlib import Path
@@ -75,4 +76,5 @@ def main():
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # size.py | head
     sys.exit(main())

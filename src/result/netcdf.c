@@ -144,7 +144,7 @@ int netcdf_define_variable(struct netcdf_writer *writer, const struct netcdf_var
         return number;
     }
 
-    netcdf_write_string(writer, number, "units", *variable->units ? variable->units : "1");
+    netcdf_write_string(writer, number, "units", variable->units && *variable->units ? variable->units : "1");
     if (variable->axis) netcdf_write_string(writer, number, "axis", variable->axis);
     if (variable->flags) {
         static const int values[] = {0, 1, 2, 3};

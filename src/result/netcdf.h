@@ -32,7 +32,7 @@ struct netcdf_writer {
 /* A variable to define. */
 struct netcdf_variable {
     const char *name, *long_name;
-    const char *units; /* of numbers; "" is written as "1" */
+    const char *units; /* of numbers; "" or NULL is written as "1" */
     const char *axis;  /* "T", "X" or "Y"; NULL: none */
     const char *flags; /* the words of the values 0, 1, ..., separated by blanks; NULL: none */
     enum netcdf_type type;

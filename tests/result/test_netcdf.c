@@ -107,27 +107,18 @@ static enum status write_file(const char *path, bool overwrite) {
                                                                                 .n_dimensions = 2,
                                                                                 .dimension = {time, fish},
                                                                                 .has_gaps = true});
-    const int steps = netcdf_define_variable(&writer, &(struct netcdf_variable){.name = "steps",
-                                                                                .long_name = "steps",
-                                                                                .units = "",
-                                                                                .type = NETCDF_INT64,
-                                                                                .n_dimensions = 1,
-                                                                                .dimension = {time},
-                                                                                .has_gaps = false});
-    const int count = netcdf_define_variable(&writer, &(struct netcdf_variable){.name = "count",
-                                                                                .long_name = "a count",
-                                                                                .units = "",
-                                                                                .type = NETCDF_INT,
-                                                                                .n_dimensions = 1,
-                                                                                .dimension = {fish},
-                                                                                .has_gaps = false});
-    const int names = netcdf_define_variable(&writer, &(struct netcdf_variable){.name = "names",
-                                                                                .long_name = "names",
-                                                                                .units = "",
-                                                                                .type = NETCDF_TEXT,
-                                                                                .n_dimensions = 2,
-                                                                                .dimension = {fish, name},
-                                                                                .has_gaps = false});
+    const int steps = netcdf_define_variable(
+        &writer,
+        &(struct netcdf_variable){
+            .name = "steps", .long_name = "steps", .type = NETCDF_INT64, .n_dimensions = 1, .dimension = {time}});
+    const int count = netcdf_define_variable(
+        &writer,
+        &(struct netcdf_variable){
+            .name = "count", .long_name = "a count", .type = NETCDF_INT, .n_dimensions = 1, .dimension = {fish}});
+    const int names = netcdf_define_variable(
+        &writer,
+        &(struct netcdf_variable){
+            .name = "names", .long_name = "names", .type = NETCDF_TEXT, .n_dimensions = 2, .dimension = {fish, name}});
     netcdf_write_integer(&writer, NETCDF_GLOBAL, "number", 7);
     netcdf_write_integer(&writer, NETCDF_GLOBAL, "shoal_schema", 1);
     netcdf_end_definitions(&writer);

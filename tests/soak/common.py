@@ -1,6 +1,6 @@
 """common.py: shared by the tests that disturb the program. The first argument is the program; the test is in a new folder,
 which goes with it; the last line is how many passed and failed."""
-import atexit, collections, os, resource, shutil, subprocess, sys, tempfile
+import atexit, collections, os, resource, shutil, signal, subprocess, sys, tempfile
 import netCDF4
 
 program = os.path.abspath(sys.argv[1])
@@ -8,6 +8,8 @@ build = os.path.dirname(program)
 counts = collections.Counter()
 folder = tempfile.mkdtemp()
 os.chdir(folder)
+# a background job of a shell ignores SIGINT, and so would the program
+signal.signal(signal.SIGINT, signal.default_int_handler)
 atexit.register(shutil.rmtree, folder, ignore_errors=True)
 
 
