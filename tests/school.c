@@ -47,7 +47,7 @@ void school_build(struct setup *setup, const char *text) {
     school_ok(fish_school_create(setup->arena, &setup->school, &setup->values.school));
     setup->state = state_create(setup->arena, setup->school);
     *owned = (struct owned){setup->values};
-    school_ok(residual_create(setup->arena, &setup->residual, setup->school, setup->state));
+    setup->residual = residual_create(setup->arena, setup->school, setup->state);
     setup->jacobian = jacobian_create(setup->arena, setup->school);
     residual_mask(setup->residual, setup->jacobian);
     setup->term = sparse_create(setup->arena, 0, setup->school->n_unknowns);

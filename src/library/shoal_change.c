@@ -119,13 +119,13 @@ static enum status change_make(struct shoal *run, const void *data) {
         state_forget_newest(history);
         if (change->position && f == change->fish) history->n = 0;
     }
-    TRY(diagnostics_remember(simulation->residual, state));
+    diagnostics_remember(simulation->residual, state);
 
     // evaluate the forces of images again; the external impulse until this event is unchanged
     double(*external)[3];
     NEW(run->arena, external, school->n_fish);
     for (int f = 0; f < school->n_fish; f++) memcpy(external[f], state->momentum[f].external, sizeof *external);
-    TRY(diagnostics_momentum_event(simulation->residual, state));
+    diagnostics_momentum_event(simulation->residual, state);
     for (int f = 0; f < school->n_fish; f++) memcpy(state->momentum[f].external, external[f], sizeof *external);
     diagnostics_after_jump(simulation->residual, state);
 

@@ -157,8 +157,8 @@ static bool event_control(struct state *state, struct residual *residual) {
 static enum status event_finish(struct state *state, struct residual *residual, struct initial_conditions *initial,
                                 int jumps, int *jumped) {
     TRY(event_flow(state, residual));
-    TRY(diagnostics_momentum_event(residual, state));
-    TRY(diagnostics_remember(residual, state));
+    diagnostics_momentum_event(residual, state);
+    diagnostics_remember(residual, state);
     self_crossing_remember(residual->school, state, residual->scratch);
     warnings_remember(residual->school, state);
 

@@ -60,7 +60,7 @@ static enum status simulation_create_equations(struct simulation *simulation, co
     simulation->solver = NULL;
     simulation->residual = NULL;
     simulation->renewed = arena_create(simulation->arena, "the equations and the solver");
-    TRY(residual_create(simulation->renewed, &simulation->residual, simulation->school, simulation->state));
+    simulation->residual = residual_create(simulation->renewed, simulation->school, simulation->state);
     TRY(status_ask(stop));
     return initial_conditions_create(simulation->renewed, &simulation->consistent, simulation->residual);
 }

@@ -26,7 +26,7 @@ static void way_through_water(const struct sample *new, const struct sample *old
     for (int i = 0; i < 2; i++) way[i] = new->com[i] - old->com[i] - (new->drifted[i] - old->drifted[i]);
 }
 
-enum status diagnostics_remember(struct residual *residual, struct state *state) {
+void diagnostics_remember(struct residual *residual, struct state *state) {
     const double interval = residual->school->interval;
     const int threads = fish_threads(residual->school);
     state_reserve(state, residual->school);
@@ -72,7 +72,6 @@ enum status diagnostics_remember(struct residual *residual, struct state *state)
         }
         state_remember(history, &sample);
     }
-    return STATUS_OK;
 }
 
 bool diagnostics_course(const struct history *history, double interval, double *course, double *rate, double *speed) {

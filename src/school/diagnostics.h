@@ -12,9 +12,8 @@
 /* Samples of every fish at the events of the last period, and quantities over the period: means,
  * course, amplitude of the tail. doc/model.md, section 13. */
 
-/* Add a sample to the history of every fish; call at every event, before diagnostics_event. Fails with
- * STATUS_MEMORY. */
-enum status diagnostics_remember(struct residual *residual, struct state *state);
+/* Add a sample to the history of every fish; call at every event, before diagnostics_event. */
+void diagnostics_remember(struct residual *residual, struct state *state);
 
 /* Course: direction of the displacement of the centre of mass over the last period, rad, rate of the course, rad s-1,
  * and mean speed, m s-1; without displacement all are 0. Returns false in the first period, else true. */

@@ -261,7 +261,7 @@ static void add_force_on_sources(const double *u, const double *v, const double 
     }
 }
 
-enum status diagnostics_momentum_event(struct residual *residual, struct state *state) {
+void diagnostics_momentum_event(struct residual *residual, struct state *state) {
     const struct school *const school = residual->school;
     struct flow *const flow = residual->flow;
     const double half = school->interval / 2;
@@ -286,7 +286,7 @@ enum status diagnostics_momentum_event(struct residual *residual, struct state *
 
     // walls or a travelling gust, never both
     const bool has_walls = school->walls.n > 0, has_gust = school->gust_profile != GUST_UNIFORM;
-    if (!has_reaction || !(school->density > 0) || (!has_walls && !has_gust)) return STATUS_OK;
+    if (!has_reaction || !(school->density > 0) || (!has_walls && !has_gust)) return;
     if (has_walls) flow_images(flow, state);
     for (int f = 0; f < school->n_fish; f++) {
         if (!diagnostics_has_reaction(school, &school->fish[f])) continue;
@@ -316,7 +316,6 @@ enum status diagnostics_momentum_event(struct residual *residual, struct state *
             momentum->images[i] = now[i];
         }
     }
-    return STATUS_OK;
 }
 
 // ---- the balance

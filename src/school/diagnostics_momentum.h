@@ -90,8 +90,8 @@ void diagnostics_momentum_step(struct residual *residual, struct state *state, i
                                const double times[3]);
 
 /* Add the impulse of images in walls, and the loss by legs of rings, since the event before. Call at every event, after
- * the velocities of all wakes and the residual have been evaluated. Fails with STATUS_MEMORY. */
-enum status diagnostics_momentum_event(struct residual *residual, struct state *state);
+ * the velocities of all wakes and the residual have been evaluated. */
+void diagnostics_momentum_event(struct residual *residual, struct state *state);
 
 /* Start all momentum balances with the present state. */
 void diagnostics_momentum_start(struct residual *residual, struct state *state);

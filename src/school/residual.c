@@ -164,8 +164,7 @@ int residual_couple_contacts(struct residual_couplings *couplings, const struct 
     return n_contacts > 0;
 }
 
-enum status residual_create(struct arena *arena, struct residual **residual, const struct school *school,
-                            const struct state *state) {
+struct residual *residual_create(struct arena *arena, const struct school *school, const struct state *state) {
     struct residual *new;
     NEW(arena, new, 1);
     new->school = school;
@@ -214,8 +213,7 @@ enum status residual_create(struct arena *arena, struct residual **residual, con
     NEW(arena, new->couplings.coupled, (size_t)school->n_fish * (size_t)school->n_fish);
     new->contact = contact_create(arena, school);
     residual_couple(&new->couplings, state->y);
-    *residual = new;
-    return STATUS_OK;
+    return new;
 }
 
 enum bound_sheet_law residual_sheet_law(const struct residual *residual) {

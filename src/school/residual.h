@@ -106,9 +106,8 @@ struct jacobian_scratch {
     struct coupling_block rows;
 };
 
-/* Every evaluation reads the state, which must outlive the residual. Fails with STATUS_MEMORY. */
-enum status residual_create(struct arena *arena, struct residual **residual, const struct school *school,
-                            const struct state *state);
+/* Every evaluation reads the state, which must outlive the residual. */
+struct residual *residual_create(struct arena *arena, const struct school *school, const struct state *state);
 
 /* value = F(t, y, yp). Returns STATUS_RETRY if a value is not finite, or if repelling bodies touch. */
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);

@@ -267,7 +267,7 @@ static enum status find_solution(struct growth *growth, const char *from, struct
     growth->school = *school;
     NEW(arena, growth->school.fish, school->n_fish);
     memcpy(growth->school.fish, school->fish, (size_t)school->n_fish * sizeof *school->fish);
-    TRY(residual_create(arena, &growth->residual, &growth->school, state));
+    growth->residual = residual_create(arena, &growth->school, state);
     growth->equilibrium = equilibrium_create(arena, growth->residual, state);
 
     bool is_found = false;
@@ -294,7 +294,7 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
     // evaluate the full case, which the residual of the simulation describes
     simulation->residual->flow->is_steady = true;
     TRY(residual_evaluate(simulation->residual, state->t, y, state->yp, simulation->residual->scratch));
-    TRY(diagnostics_remember(simulation->residual, state));
+    diagnostics_remember(simulation->residual, state);
     diagnostics_after_jump(simulation->residual, state);
     diagnostics_restart(simulation->residual, state);
     simulate_measure(simulation);

@@ -33,7 +33,7 @@ static void build_plate(struct setup *setup, int nodes, int points, const char *
     school_ok(fish_school_create(test_arena(), &setup->school, &setup->values.school));
     setup->state = state_create(test_arena(), setup->school);
     setup->arena = arena_create(test_arena(), "a test");
-    school_ok(residual_create(setup->arena, &setup->residual, setup->school, setup->state));
+    setup->residual = residual_create(setup->arena, setup->school, setup->state);
     setup->value = NULL;
     setup->jacobian = NULL;
     setup->term = NULL;
