@@ -141,6 +141,23 @@ static int create(void) {
     return 0;
 }
 
+static int defer(struct arena *arena) {
+    MEMORY_BOUNDARY(-1);
+    arena_defer(arena, note, "z");
+    return 0;
+}
+
+TEST(an_object_that_cannot_be_deferred_is_released_at_once) {
+    memset(order, 0, sizeof order);
+    struct arena *const arena = arena_create(NULL, "a solver");
+    n_until_failure = 0;
+    assert_int_equal(defer(arena), -1);
+    n_until_failure = -1;
+    assert_string_equal(order, "z");
+    arena_free(arena);
+    assert_string_equal(order, "z");
+}
+
 static int take_nothing(struct arena *arena) {
     MEMORY_BOUNDARY(-1);
     assert_ptr_equal(arena_take(arena, arena), arena);

@@ -139,6 +139,30 @@ TEST(walls_push_with_the_gradient_of_the_energy) {
 }
 
 // doc/model.md, section 16: half of phi of every end of each edge above each wall
+TEST(a_wall_is_a_spring_that_stiffens) {
+    // E = k r (1 - s)^3/s: E' = k (3 - 2 s - 1/s^2), E'' = 2 k/r (1/s^3 - 1), also where the last term decides
+    static const double parts[] = {0.1, 0.5, 0.9, 0.99};
+    for (int i = 0; i < 4; i++) {
+        const double s = parts[i], range = 0.2, wall = -0.05 - s * range;
+        char text[400];
+        snprintf(text, sizeof text, TIME STRAIGHT "fluid: {walls: [%.17g]}\ncontact: {range: 0.2}\nfish: [{}]\n", wall);
+        struct setup setup = setup_of(text);
+        const struct fish *const fish = &setup.school->fish[0];
+        const double *const y = setup.state->y, k = fish->contact_strength;
+        school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
+        contact_residual(setup.residual->contact, 0, y, setup.value);
+        struct coupling_block block = setup.residual->jacobian_scratch[0].rows;
+        block.n_rows = 2 * fish->n_nodes;
+        contact_jacobian(setup.residual->contact, 0, 0, y, &block);
+        for (int node = 1; node < fish->n_nodes - 1; node++) {
+            const int at = fish->n_nodes + node;
+            NEAR(setup.value[fish->at.ay + node], k * (3 - 2 * s - 1 / (s * s)), 0, 1e-10);
+            NEAR(block.value[at * block.n_rows + at] * fish->mass[node], 2 * k / range * (1 / (s * s * s) - 1), 0,
+                 1e-10);
+        }
+    }
+}
+
 TEST(the_energy_above_walls_is_that_of_all_ends) {
     struct setup setup =
         setup_stirred(TIME "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5}\nfish: [{sheet_points: 9}]\n");

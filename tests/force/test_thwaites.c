@@ -154,3 +154,27 @@ TEST(incidence_separates_the_layer_on_one_side) {
     ABOVE(sides[0].separation[1], 0);
     BELOW(sides[0].separation[1], 0.3);
 }
+
+// the strength of a body of finite span counts per depth: half of the strength on half of the depth is the same sheet
+TEST(a_sheet_is_as_strong_as_its_strength_over_its_depth) {
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 2, shedding_interval: 0.02}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+        "fluid: {viscosity: 1e-3, velocity: [1, 0.1]}\n"
+        "fish: [{force: pressure, pressure: {span: finite}, sheet_points: 33, wave: {amplitude: 0}, motion: "
+        "{prescribed: all},\n"
+        "        drag: {skin: laminar}, body: {profile: uniform, depth: 0.25}}]\n");
+    school_run(simulation, 0.2);
+    struct fish *const fish = &simulation->school->fish[0];
+    struct pressure *const pressure = simulation->residual->pressure[0];
+    const double *const y = simulation->state->y;
+    const struct thwaites_friction whole = friction_of(simulation);
+    for (int c = 0; c < fish->n_control; c++) {
+        const double around = pressure_sheet_at(pressure, c, y, simulation->state->yp).strength *
+                              pressure->point[c].body.length * fish->control_interval[c];
+        pressure->point[c].circulation -= around / 2;
+        fish->point_half[c] /= 4;
+    }
+    const struct thwaites_friction half = thwaites_friction(pressure, y, simulation->state->yp);
+    for (int side = 0; side < 2; side++) NEAR_ARRAY(2, half.force[side], whole.force[side], 0, 1e-10);
+    ABOVE(fabs(whole.force[0][0] - whole.force[1][0]), 0.01 * fabs(whole.force[0][0]));
+}

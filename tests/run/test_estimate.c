@@ -190,3 +190,18 @@ TEST(a_run_that_fails_at_once_has_no_estimate) {
     assert_int_equal(estimate_run(simulation, 1, &estimate), STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "solver.max_steps"));
 }
+
+TEST(the_samples_of_a_period_take_memory) {
+    // a period of 2 events, and of a million: the history of one fish grows to the length of the period
+    double bytes[2];
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 1000, shedding_interval: 0.001}\nwake: {lifetime: 0.01, tolerance: 0}\n"
+            "fish: [{nodes: 5, sheet_points: 9, wave: {frequency: %s}}]\n",
+            i == 0 ? "500" : "0.001");
+        struct estimate estimate;
+        school_ok(estimate_run(simulation, 0.05, &estimate));
+        bytes[i] = estimate.bytes;
+    }
+    NEAR(bytes[1] - bytes[0], 1e6 * sizeof(struct sample), 0, 0.1);
+}

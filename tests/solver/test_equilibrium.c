@@ -44,11 +44,18 @@ TEST(the_equations_of_a_run_hold_at_rest) {
     struct rig rig = rig_of(pair);
     const struct school *const school = rig.simulation->school;
     const struct residual *const residual = rig.simulation->residual;
+    // what the bodies did before does not count
+    for (int i = 0; i < school->n_unknowns; i++) rig.simulation->state->yp[i] = 3;
+    for (int f = 0; f < 2; f++) {
+        for (int i = school->fish[f].at.vx; i < school->fish[f].at.gamma; i++) rig.simulation->state->y[i] = 7;
+    }
     school_ok(equilibrium_solve(rig.equilibrium));
     AT_MOST(equilibrium_residual(rig.equilibrium), 1e-10);
     equilibrium_end(rig.equilibrium);
     rig.equilibrium = NULL;
     assert_int_equal(residual->shed_now, SHED_BY_LAW);
+    assert_false(residual->flow->is_steady);
+    NEAR(residual->couplings.reach, school->coupling_distance, 0, 0);
     // every equation of the school, not only those that have been solved, and with Kelvin's theorem
     double *const value = calloc((size_t)school->n_unknowns, sizeof *value);
     run_value(&rig, value);
