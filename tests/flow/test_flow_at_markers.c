@@ -204,3 +204,30 @@ TEST(two_wakes_have_opposite_forces_for_each_other) {
         }
     }
 }
+
+#define MIRRORED(y, heading, phase)                                                                \
+    "force: pressure, nodes: 7, sheet_points: 21, pressure: {span: finite}, wave: {phase: " #phase \
+    "}, "                                                                                          \
+    "start: {position: [0, " #y "], heading: " #heading "}"
+
+// a wall between a fish and its mirror image changes nothing, also for rings, whose circulation changes
+TEST(a_wall_is_a_mirror) {
+    static const char *const texts[] = {"fluid: {walls: [0]}\nfish: [{" MIRRORED(0.3, 170, 0) "}]\n",
+                                        "fish: [{" MIRRORED(0.3, 170, 0) "}, {" MIRRORED(-0.3, 190, 180) "}]\n"};
+    struct simulation *simulation[2];
+    for (int i = 0; i < 2; i++) {
+        char text[1024];
+        snprintf(text, sizeof text, TIME SHEET "solver: {rtol: 1e-9}\n%s", texts[i]);
+        simulation[i] = school_simulation(text);
+        school_run(simulation[i], 0.4);
+        flow_at_wake(simulation[i]->residual->flow, simulation[i]->state);
+    }
+    const int n = simulation[0]->state->wake[0].n_vortex;
+    const struct wake *const with = &simulation[0]->state->wake[0], *const without = &simulation[1]->state->wake[0];
+    double largest = 0;
+    for (int i = 0; i < n; i++) largest = fmax(largest, fabs(with->rate[i]));
+    ABOVE(largest, 1e-3);
+    NEAR_ARRAY(n, with->rate, without->rate, 1e-6 * largest, 0);
+    NEAR_ARRAY(n, with->x, without->x, 1e-7, 0);
+    NEAR_ARRAY(n, with->y, without->y, 1e-7, 0);
+}

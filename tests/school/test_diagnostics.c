@@ -279,6 +279,24 @@ TEST(mean_heading_is_the_trapezoidal_mean) {
 
 /* Means of a force over five samples of a free fish that swims at the speed 1 towards -x: by the trapezoidal rule a
  * constant force is its own mean, and so is the middle of a force that grows at a constant rate. */
+TEST(separation_is_the_part_of_the_period_above_the_limit) {
+    struct setup setup = setup_of(TIME "fish: [{}]\n");
+    struct fish fish = *setup.school->fish;
+    fish.suction_limit = 0.5;
+    struct sample samples[6];
+    struct history history = {.capacity = 5, .n_slots = 6, .last = -1, .sample = samples};
+    struct diagnostics_fish of = {.com_velocity = {1, 2}};
+    state_remember(&history, &(struct sample){.leading_edge = -1, .stream = {0.25, 1}});
+    diagnostics_period(&fish, &history, 0.1, &of);
+    NEAR(of.separation_share, 1, 0, 0);
+    // of a single sample the speeds at this time
+    NEAR(of.ground_speed, hypot(1, 2), 1e-15, 0);
+    NEAR(of.speed, hypot(0.75, 1), 1e-15, 0);
+    for (int k = 1; k < 5; k++) state_remember(&history, &(struct sample){.leading_edge = k == 4 ? 0.4 : 0.6});
+    diagnostics_period(&fish, &history, 0.1, &of);
+    NEAR(of.separation_share, 3.5 / 4, 1e-15, 0);
+}
+
 TEST(mean_forces_are_exact_for_forces_that_grow_evenly) {
     struct setup setup = setup_of(TIME "fish: [{}]\n");
     for (int i = 0; i < 2; i++) {
@@ -564,8 +582,8 @@ TEST(forces_by_name_make_up_momentum_and_angular_momentum) {
 }
 
 /* At an event: the force of the pressure, its power, the pressure at the middle control point, suction and friction,
- * and the momentum of the body. */
-enum { FORCE, POWER = 2, JUMP, REST, MOMENTUM = 6, N_OF_EVENT = 8 };
+ * and momentum, moment and angular momentum of the body about its centre of mass. */
+enum { FORCE, POWER = 2, JUMP, REST, MOMENTUM = 6, MOMENT = 8, ANGULAR, N_OF_EVENT };
 
 static void record_events(const char *text, int n_events, double *value) {
     struct simulation *const simulation = school_simulation(text);
@@ -578,6 +596,13 @@ static void record_events(const char *text, int n_events, double *value) {
             value[FORCE + i] = of->pressure.pressure[i];
             value[REST + i] = of->pressure.suction[i] + of->resistive_force[i];
             value[MOMENTUM + i] = fish->total_mass * of->com_velocity[i];
+        }
+        value[MOMENT] = of->pressure.pressure_moment + of->pressure.suction_moment + of->resistive_moment;
+        value[ANGULAR] = 0;
+        for (int k = 0; k < fish->n_nodes; k++) {
+            const double *const y = simulation->state->y;
+            value[ANGULAR] += fish->mass[k] * ((y[fish->at.x + k] - of->com[0]) * y[fish->at.vy + k] -
+                                               (y[fish->at.y + k] - of->com[1]) * y[fish->at.vx + k]);
         }
         value[POWER] = of->pressure.pressure_power;
         value[JUMP] = pressure_jump(simulation->residual->pressure[0], fish->n_control / 2, simulation->state->y,
@@ -638,12 +663,33 @@ TEST(force_at_events_is_the_rate_of_the_momentum) {
     record_events(SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n", N, value);
     for (int n = 10; n < N - 2; n++) {
         const double *const m = value + n * N_OF_EVENT + MOMENTUM;
-        for (int i = 0; i < 2; i++) {
-            const double rate =
+        double rate[4];
+        for (int i = 0; i <= ANGULAR - MOMENTUM; i++) {
+            rate[i] =
                 (m[i - 2 * N_OF_EVENT] - 8 * m[i - N_OF_EVENT] + 8 * m[i + N_OF_EVENT] - m[i + 2 * N_OF_EVENT]) / 0.12;
-            NEAR(value[n * N_OF_EVENT + FORCE + i] + value[n * N_OF_EVENT + REST + i], rate, 0.015, 0);
         }
+        for (int i = 0; i < 2; i++) {
+            NEAR(value[n * N_OF_EVENT + FORCE + i] + value[n * N_OF_EVENT + REST + i], rate[i], 0.015, 0);
+        }
+        NEAR(value[n * N_OF_EVENT + MOMENT], rate[ANGULAR - MOMENTUM], 0.01, 0);
     }
+}
+
+TEST(moments_follow_the_origin) {
+    // M(a) = M(0) - a x F
+    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}]\n");
+    school_run(simulation, 0.3);
+    simulate_measure(simulation);
+    const struct pressure *const pressure = simulation->residual->pressure[0];
+    const double a[2] = {3, -2}, *const y = simulation->state->y;
+    const struct pressure_forces at_zero = pressure_sum(pressure, (const double[]){0, 0}, y);
+    const struct pressure_forces at_a = pressure_sum(pressure, a, y);
+    const double change[] = {at_zero.pressure_moment - at_a.pressure_moment,
+                             at_zero.suction_moment - at_a.suction_moment,
+                             at_zero.momentum_moment - at_a.momentum_moment};
+    const double *const force[] = {at_a.pressure, at_a.suction, at_a.momentum};
+    for (int i = 0; i < 3; i++) NEAR(change[i], a[0] * force[i][1] - a[1] * force[i][0], 1e-12, 1e-10);
+    ABOVE(fabs(change[1]), 1e-6);
 }
 
 TEST(vortices_inside_an_outline_are_counted) {
@@ -653,7 +699,9 @@ TEST(vortices_inside_an_outline_are_counted) {
         &setup, TIME
         "wake: {shedding: continuous, taper: 0, taper_beside: 0}\ndefaults: {fish: {wave: {amplitude: 0}, body: "
         "{profile: uniform, thickness: 0.1}}}\nfish: [{}, {start: {position: [0, 1]}}]\n");
-    const double place[][2] = {{0.5, 0.049}, {0.5, 0.051}, {0.9, -0.049}, {-0.049, 0}, {-0.051, 0}, {0.2, 1}};
+    // the fourth: beside the round nose, but in the box of the body
+    const double place[][2] = {{0.5, 0.049}, {0.5, 0.051}, {0.9, -0.049}, {-0.045, 0.045},
+                               {-0.049, 0},  {-0.051, 0},  {0.2, 1}};
     struct wake *const wake = &setup.state->wake[1];
     for (size_t i = 0; i < sizeof place / sizeof *place; i++) {
         wake_release(wake, place[i][0], place[i][1], 0.1, 0);

@@ -141,6 +141,24 @@ TEST(the_velocity_at_the_bodies_changes_by_less_than_the_bound) {
     check_bound(TIME "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-2}\n" TWO);
 }
 
+TEST(a_merged_marker_has_the_mean_rate_of_the_pair) {
+    struct setup setup;
+    trail(&setup, TIME "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-4}\n" TWO);
+    struct wake *const wake = &setup.state->wake[0];
+    for (int i = 0; i < N; i++) {
+        wake->rate[i] = i % 2 ? 1 : -1;
+        wake->rate_before[i] = 2 * wake->rate[i];
+    }
+    wake_merge(setup.school, setup.state);
+    int n_means[2] = {0, 0};
+    for (int i = 0; i < wake->n_vortex; i++) {
+        n_means[0] += !(fabs(wake->rate[i]) > 0);
+        n_means[1] += !(fabs(wake->rate_before[i]) > 0);
+    }
+    ABOVE(wake->n_merged, 10);
+    for (int i = 0; i < 2; i++) assert_int_equal(n_means[i], wake->n_merged);
+}
+
 /* How many vortices between x = low and high the wake has. */
 static int count_between(const struct wake *wake, double low, double high) {
     int n = 0;
