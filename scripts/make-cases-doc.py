@@ -153,7 +153,7 @@ Quantities are the quantities with orders, and QUANTITIES. Only a comparison of 
 vary each numerical key alone ([studies.md](studies.md#error-bars)). `shoal run` and `shoal steady` ignore `error`.
 
 ```yaml
-error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, most: 16}
+error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, models: false, most: 16}
 ```
 
 | key | meaning |
@@ -162,7 +162,8 @@ error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: defaul
 | `within` | refine until the errors are below this part of the values; not reached: exit code 3 |
 | `most` | refine to members of at most this many times the CPU time of the case (16) |
 | `confirm` | `false`: without a finer level of each key |
-| `keys` | `default`, a list of `nodes`, `sheet_points`, `shedding_interval`, `rtol`, `step`, `tolerance`, `merge`, `lifetime`, `smoothing`, `sheet_smoothing`, `taper`, or a map of levels: `{nodes: [13, 17, 25, 35], rtol: default}` |
+| `models` | `true`: also with other choices of the model ([studies.md](studies.md#error-bars)) |
+| `keys` | `default`, a list of `nodes`, `sheet_points`, `shedding_interval`, `rtol`, `step`, `tolerance`, `merge`, `lifetime`, or a map of levels: `{nodes: [13, 17, 25, 35], rtol: default}` |
 
 ## The subset of YAML
 

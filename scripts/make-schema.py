@@ -30,7 +30,7 @@ NESTED = {
     "list of axes": {**LIST, "items": AXIS},
     "list of expectations": {**LIST, "items": OBJECT},
     "defaults": section({"fish": FISH}),
-    "error": section({"of": ONE_OR_MORE, "within": POSITIVE, "most": POSITIVE, "confirm": BOOLEAN,
+    "error": section({"of": ONE_OR_MORE, "within": POSITIVE, "most": POSITIVE, "confirm": BOOLEAN, "models": BOOLEAN,
                       "keys": {"type": ["string", "array", "object"]}}),
 }
 

@@ -409,13 +409,15 @@ def error_rows(bench, are_choices):
     if not bench.errors:
         for force in ("reactive", "pressure"):
             text, folder = DEFAULT.replace("{name: fish}", f"{{name: fish, force: {force}}}"), f"error-{force}"
-            bench.call("error", bench.case(text), "--of", "steady_speed", "--of", "steady_cost_of_transport", "-q",
-                       "--force", "-o", folder)
+            bench.call("error", bench.case(text), "--of", "steady_speed", "--of", "steady_cost_of_transport", "--models",
+                       "-q", "--force", "-o", folder)
             with open(os.path.join(bench.folder, folder, "error.csv"), encoding="utf-8", newline="") as file:
                 bench.errors.append(list(csv.DictReader(file)))
     rows = {}
     for number, table_of_force in enumerate(bench.errors):
         for line in table_of_force:
+            if line["key"] in ("lowest", "highest"):
+                continue
             row = rows.setdefault(line["key"], {"levels": [], "cells": {}, "is_choice": "choice" in line["verdict"]})
             if line["levels"] not in row["levels"]:
                 row["levels"].append(line["levels"])
@@ -438,7 +440,7 @@ def errors(bench):
 
 @table("key", *ERRORS)
 def choices(bench):
-    """change of the same numbers where lengths of the model are halved"""
+    """change of the same numbers by other choices of the model"""
     yield from error_rows(bench, True)
 
 

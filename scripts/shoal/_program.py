@@ -251,23 +251,27 @@ class Estimate(NamedTuple):
     error: float  #: in unit; NaN if a member failed
     unit: str  #: for example "m s-1"
     flags: list[str]  #: per flagged key, why the levels of the key are not accepted
+    models: tuple[float, float] | None = None  #: lowest and highest value with other choices of the model
 
     def __str__(self):
         digits = max(0, 1 - int(np.floor(np.log10(self.error)))) if 0 < self.error < np.inf else 6
         number = f"{self.value:.{digits}f} ± {self.error:.{digits}f} {self.unit}"
-        return f"{self.quantity}{' of ' + self.fish if self.fish else ''}: {number}{' (flagged)' if self.flags else ''}"
+        others = f"; other models: {self.models[0]:.4g} to {self.models[1]:.4g}" if self.models else ""
+        return f"{self.quantity}{' of ' + self.fish if self.fish else ''}: {number}{' (flagged)' if self.flags else ''}{others}"
 
 
-def error(case, of, within: float | None = None, assignments=None, path=None, overwrite: bool = False,
+def error(case, of, within: float | None = None, models: bool = False, assignments=None, path=None, overwrite: bool = False,
           processes: int | None = None, progress: bool | None = None, folder=None) -> list[Estimate]:
     """Vary every numerical key of a case by `shoal error`; returns quantities with their error bars, per fish.
 
     of: a quantity or a list of quantities, as "steady_speed". within: refine until the relative errors are smaller.
+    models: repeat the numbers with other choices of the model.
     path: of the folder of the members, study.nc and error.csv (None: the name of the case with -error). An error that
     cannot be made smaller than within is a shoal.Error.
     """
     options = [word for quantity in ([of] if isinstance(of, str) else of) for word in ("--of", text_of(quantity, "of"))]
     options += [] if within is None else ["--within", repr(number_of(within, "within"))]
+    options += ["--models"] if models else []
     path = _run_study("error", case, assignments, path, overwrite, processes, progress, folder, options)
     found: dict = {}
     with open(os.path.join(path, "error.csv"), encoding="utf-8", newline="") as file:
@@ -275,7 +279,11 @@ def error(case, of, within: float | None = None, assignments=None, path=None, ov
             place = row["fish"], row["quantity"]
             if row["key"] == "sum":
                 found[place] = Estimate(*place, float(row["value"]), float(row["error"]), row["unit"], [])
-            elif row["verdict"] not in ("accepted", "none", "a choice of the model, not in the sum"):
+            elif row["key"] in ("lowest", "highest"):
+                models = (found[place].models or ()) + (float(row["value"]),)
+                found[place] = found[place]._replace(models=models)
+            elif row["verdict"] not in ("accepted", "differences are below the noise",
+                                        "a choice of the model, not in the sum"):
                 found[place].flags.append(f"{row['key']}: {row['verdict']}")
     return list(found.values())
 

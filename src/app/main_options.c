@@ -36,6 +36,7 @@ static const struct option_help all_options[] = {
      "errors at every value of a key, separated by commas: fish[*].body.modulus=1e5,1e6,1e7; repeatable"},
     {OPTION_PLAN, "plan", NULL, "print the members of the error estimate and the estimated time; do not run"},
     {OPTION_NO_CONFIRM, "no-confirm", NULL, "omit the finest level of each key: less time, wider error bounds"},
+    {OPTION_MODELS, "models", NULL, "repeat the value with other choices of the model, such as force and friction"},
     {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B; do not gather"},
     {OPTION_VTK, "vtk", "FOLDER", "write VTK files for ParaView into this folder"},
     {OPTION_FORCE, "force", NULL, "overwrite existing results"},
@@ -157,6 +158,7 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_SWEEP: request->sweeps[request->n_sweeps++] = argument; break;
         case OPTION_PLAN: request->plan = 1; break;
         case OPTION_NO_CONFIRM: request->no_confirm = 1; break;
+        case OPTION_MODELS: request->models = 1; break;
         case OPTION_FROM: request->from = argument; break;
         case OPTION_AT: request->at = argument; break;
         case OPTION_GRID: request->grid = argument; break;

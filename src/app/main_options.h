@@ -38,7 +38,8 @@ enum option_code {
     OPTION_WITHIN,
     OPTION_SWEEP,
     OPTION_PLAN,
-    OPTION_NO_CONFIRM
+    OPTION_NO_CONFIRM,
+    OPTION_MODELS
 };
 
 /* The parsed command line. A string is NULL if the option is absent. */
@@ -60,7 +61,7 @@ struct request {
     int n_of;
     const char **of; /* of --of, names of quantities */
     const char *within;
-    int plan, no_confirm;
+    int plan, no_confirm, models;
     const char *from;
     const char *at, *grid, *box;
     const char *vtk;

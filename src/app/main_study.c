@@ -183,6 +183,7 @@ static enum status assign_errors(const struct case_values *values, const struct 
 
     if (request->within) TRY(study_read_number("--within", request->within, 0, &error.within));
     if (request->no_confirm) error.confirm = 0;
+    if (request->models) error.models = 1;
     text_add(&text, "error=");
     sweep_error_write(&text, &error);
     *assignment = text.text;

@@ -80,6 +80,7 @@ char *sweep_member_text(struct arena *arena, const struct case_values *study, in
     for (int a = 0; a < study->n_axes; a++) {
         const int value = sweep_member_value(study, member, a);
         for (int k = 0; k < study->sweep[a].n_keys; k++) {
+            if (!*study->sweep[a].value[value * study->sweep[a].n_keys + k]) continue;
             if (list.length > 0) text_add(&list, ", ");
             sweep_add_assignment(&list, &study->sweep[a], value, k);
         }
@@ -204,11 +205,13 @@ static void axis_check_levels(const struct axis *axis, const struct yaml_node *n
     const struct sweep_axis *const into = axis->into;
     if (!axis->key[0]) return;
 
-    if (!sweep_error_find(axis->key[0]->path)) {
+    const struct sweep_error_key *const found = sweep_error_find(axis->key[0]->path);
+    if (!found || (found->kind == SWEEP_MODEL && strncmp(found->path, "fish.", 5) == 0)) {
         struct text known = {.arena = axis->errors->arena};
         for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
             const char *const path = sweep_error_keys[i].path;
             const bool is_of_fish = strncmp(path, "fish.", 5) == 0;
+            if (is_of_fish && sweep_error_keys[i].kind == SWEEP_MODEL) continue;
             text_add(&known, "%s%s%s", i > 0 ? ", " : "", is_of_fish ? "fish[*]" : "", is_of_fish ? path + 4 : path);
         }
         yaml_errors_add(axis->errors, node->mark, "%s.refine: '%.60s' is not a resolution; these are: %s", axis->name,

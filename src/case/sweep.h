@@ -22,7 +22,8 @@ struct sweep_axis {
     int n_keys;
     struct sweep_key *key; /* (n_keys) */
     int n_values;
-    char **value;         /* value i of key k is value[i * n_keys + k], as --set takes it     (n_values * n_keys) */
+    char **value;         /* value i of key k is value[i * n_keys + k], as --set takes it, "": of the case
+                             (n_values * n_keys) */
     bool refine;          /* the values are resolutions of the first key: a study of convergence */
     bool steady;          /* members are steady states; each search starts from the state of the previous value */
     int *before;          /* start from the state of this value instead, -1: start of the case; NULL     (n_values) */

@@ -6,19 +6,30 @@
 
 #include "case/sweep.h"
 
+#define OF_PRESSURE .switch_path = "fish.force", .switch_value = FORCE_PRESSURE
+#define OF_LAYER .switch_path = "fish.drag.skin", .switch_value = FRICTION_BOUNDARY_LAYER
+
 /* The table that studies of convergence, error bars and doc/studies.md share. */
 const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS] = {
-    {"fish.nodes", NULL, SWEEP_POINTS, {1 / 1.5, 1 / 2.0}, 1.4, 2},
-    {"fish.sheet_points", NULL, SWEEP_POINTS, {1 / 1.4, 1 / 2.0}, 1.4, 1},
-    {"time.shedding_interval", NULL, SWEEP_SPACING, {2, 4}, 0.5, 1},  // of a sheet: see sweep_error_order
-    {"solver.rtol", NULL, SWEEP_SPACING, {10, 0}, 0.1, 1},
-    {"solver.step", NULL, SWEEP_SPACING, {2, 4}, 0.5, 1},  // of the first order: see sweep_error_order
-    {"wake.tolerance", NULL, SWEEP_SPACING, {10, 0}, 0.1, 1},
-    {"wake.merge", NULL, SWEEP_SPACING, {10, 0}, 0.1, 1},
-    {"wake.lifetime", "wake.decay", SWEEP_DURATION, {1 / 2.0, 0}, 2, 1},
-    {"wake.smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, 1},
-    {"sheet.smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, 1},
-    {"wake.taper", "wake.taper_beside", SWEEP_MODEL, {0, 0}, 0.5, 1},
+    {"fish.nodes", NULL, SWEEP_POINTS, {1 / 1.5, 1 / 2.0}, 1.4, .order = 2},
+    {"fish.sheet_points", NULL, SWEEP_POINTS, {1 / 1.4, 1 / 2.0}, 1.4, .order = 1},
+    {"time.shedding_interval", NULL, SWEEP_SPACING, {2, 4}, 0.5, .order = 1},  // of a sheet: see sweep_error_order
+    {"solver.rtol", NULL, SWEEP_SPACING, {10, 0}, 0.1, .order = 1},
+    {"solver.step", NULL, SWEEP_SPACING, {2, 4}, 0.5, .order = 1},  // of the first order: see sweep_error_order
+    {"wake.tolerance", NULL, SWEEP_SPACING, {10, 0}, 0.1, .order = 1},
+    {"wake.merge", NULL, SWEEP_SPACING, {10, 0}, 0.1, .order = 1},
+    {"wake.lifetime", "wake.decay", SWEEP_DURATION, {1 / 2.0, 0}, 2, .order = 1},
+    {"wake.smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, .order = 1},
+    {"sheet.smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, .order = 1},
+    {"wake.taper", "wake.taper_beside", SWEEP_MODEL, {0, 0}, 0.5, .order = 1},
+    {"fish.force", "fish.drag.skin", SWEEP_MODEL, .n_levels = 2, .level = {FORCE_REACTIVE, FORCE_PRESSURE}},
+    {"fish.pressure.span", NULL, SWEEP_MODEL, .n_levels = 2, .level = {SPAN_FINITE, SPAN_INFINITE}, OF_PRESSURE},
+    {"fish.pressure.suction_limit", NULL, SWEEP_MODEL, .n_levels = 2, .level = {0.11, 0.25}, OF_PRESSURE},
+    {"fish.drag.form", NULL, SWEEP_MODEL, .n_levels = 1, .level = {1}, OF_LAYER},
+    {"fish.drag.waving", NULL, SWEEP_MODEL, .n_levels = 2, .level = {1, 2}, OF_LAYER},
+    {"fish.drag.transition", NULL, SWEEP_MODEL, .n_levels = 2, .level = {0, 1e8}, OF_LAYER},
+    {"fish.drag.normal", NULL, SWEEP_MODEL, .n_levels = 2, .level = {0, 2}},
+    {"fish.body.relaxation_time", NULL, SWEEP_MODEL, {4, 0}, 0.25, .order = 1},
 };
 
 const struct sweep_error_key *sweep_error_find(const char *path) {
@@ -122,7 +133,7 @@ void sweep_error_read(struct case_values *values, const struct yaml_node *root, 
         return;
     }
 
-    yaml_tree_check_keys(map, "error", "of, within, keys, confirm, most", errors);
+    yaml_tree_check_keys(map, "error", "of, within, keys, confirm, models, most", errors);
     struct sweep_error *const error = NEW(values->arena, values->error, 1);
     error->within = yaml_tree_positive(map, "error", "within", NAN, errors);
     error->most = yaml_tree_positive(map, "error", "most", SWEEP_ERROR_MOST, errors);
@@ -134,8 +145,10 @@ void sweep_error_read(struct case_values *values, const struct yaml_node *root, 
         yaml_errors_add(errors, map->mark, "error: replaces the refined axis sweep[%d]: remove error or refine", a);
     }
     const struct yaml_node *const of = yaml_tree_find(map, "of"), *const keys = yaml_tree_find(map, "keys"),
-                                  *const confirm = yaml_tree_find(map, "confirm");
+                                  *const confirm = yaml_tree_find(map, "confirm"),
+                                  *const models = yaml_tree_find(map, "models");
     error->confirm = !confirm || yaml_tree_boolean(confirm, "error.confirm", errors);
+    error->models = models && yaml_tree_boolean(models, "error.models", errors);
     if (keys) read_keys(values->arena, error, keys, errors);
 
     // the quantities
@@ -176,6 +189,7 @@ void sweep_error_write(struct text *text, const struct sweep_error *error) {
     }
 
     if (!error->confirm) text_add(text, ", confirm: false");
+    if (error->models) text_add(text, ", models: true");
     for (int i = 0; i < error->n_keys; i++) {
         text_add(text, "%s%s: ", i == 0 ? ", keys: {" : ", ", strrchr(error->levels[i].key->path, '.') + 1);
         if (error->levels[i].n == 0) text_add(text, "default");

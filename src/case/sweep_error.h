@@ -1,6 +1,7 @@
-/* sweep_error.h: the numerical keys, and the requested error estimates of a case. Tested by tests/case/test_sweep.c.
+/* sweep_error.h: the numerical keys, the choices of the model, and the requested error estimates of a case. Tested by
+ * tests/case/test_sweep.c.
  *
- *     error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, most: 16}
+ *     error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, models: false}
  *
  * Evaluation: study/error_plan.h and doc/studies.md. */
 #ifndef SWEEP_ERROR_H
@@ -16,22 +17,26 @@ enum sweep_error_kind {
     SWEEP_POINTS,   /* a number of points n: grid spacing 1/(n - 1) */
     SWEEP_SPACING,  /* the value is the grid spacing, or a tolerance */
     SWEEP_DURATION, /* the larger the better: 1/duration is the grid spacing */
-    SWEEP_MODEL     /* a length of the model: the effect is printed but does not count as an error */
+    SWEEP_MODEL     /* a choice of the model, varied with `models`: the change is printed, it is no error */
 };
 
-/* A numerical key, or a choice of the model that looks like one. */
+/* A numerical key, or a choice of the model. */
 struct sweep_error_key {
     const char *path;      /* of the table of keys */
     const char *companion; /* another key that is changed in proportion; NULL: none */
     enum sweep_error_kind kind;
     double coarser[2], finer; /* levels: the base value times these; 0: none */
     double order;             /* design order; NaN: none. See sweep_error_order */
+    int n_levels;             /* a choice: levels that do not depend on the base value, numbers of words among them */
+    double level[2];          /* (n_levels) */
+    const char *switch_path;  /* the key that must have the value of the switch; NULL: none */
+    int switch_value;
 };
 
-enum { SWEEP_N_ERROR_KEYS = 11 };
+enum { SWEEP_N_ERROR_KEYS = 19 };
 extern const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS];
 
-/* The row of a key by the path in the table of keys, such as "fish.nodes"; NULL: not numerical. */
+/* The row of a key by the path in the table of keys, such as "fish.nodes"; NULL: not in the table. */
 const struct sweep_error_key *sweep_error_find(const char *path);
 
 /* The design order of a key in this case; NaN: none. */
@@ -56,6 +61,7 @@ struct sweep_error {
     double within; /* refine until the error is below this part of the value; NaN: do not refine */
     double most;   /* refine to members of at most this many times the cost of the case */
     bool confirm;  /* with a finer level of each key */
+    bool models;   /* with all choices of the model */
     int n_keys;
     struct sweep_error_levels *levels; /* of the keys that are varied; none: of all     (n_keys) */
 };

@@ -71,7 +71,8 @@ static bool is_of_all_fish(const struct error_sweep *sweep, const char *path) {
     for (int p = 0; p < sweep->n_points; p++) {
         const struct case_values *const values = sweep->point[p].values;
         for (int f = 1; f < n_owners(values, path); f++) {
-            if (fabs(plan_number_of(values, path, f) - plan_number_of(values, path, 0)) > 0) return false;
+            const double own = plan_number_of(values, path, f), first = plan_number_of(values, path, 0);
+            if (!(fabs(own - first) <= 0) && !(isnan(own) && isnan(first))) return false;
         }
     }
     return true;
@@ -125,21 +126,21 @@ static void row_apply(const struct row *row, const struct error_plan_change *cha
     const struct error_study_key *const key = &study->key[change->key];
     const char *const path = key->row->path, *const companion = key->row->companion;
     const double part = change->value / plan_number_of(values, path, 0);
-    const bool are_nodes = strcmp(path, "fish.nodes") == 0;
-    if (!are_nodes && !(fabs(part - 1) > 1e-12)) return;
+    const bool are_nodes = strcmp(path, "fish.nodes") == 0, is_choice = key->row->n_levels > 0;
+    if (!are_nodes && !(fabs(change->value - key->value[key->first_stated]) > 1e-12 * change->value)) return;
 
     // all levels of the nodes use the sheet of the finest level
     const double finest = fmax(change->value, key->n_levels > 0 ? key->value[0] : 0);
     const double nodes_part = fmax(1, finest / plan_number_of(values, "fish.nodes", 0));
     for (int f = 0; f < n_owners(values, path); f++) {
-        const double value = f == 0 ? change->value : part * plan_number_of(values, path, f);
+        const double value = f == 0 || is_choice ? change->value : part * plan_number_of(values, path, f);
         row_set(row, path, f, key->row->kind == SWEEP_POINTS ? round(value) : value);
         if (!are_nodes) continue;
         const double nodes = round(nodes_part * plan_number_of(values, "fish.nodes", f));
         row_set(row, "fish.sheet_points", f, fmax(plan_number_of(values, "fish.sheet_points", f), 2 * nodes - 1));
     }
 
-    if (companion) row_set(row, companion, 0, part * plan_number_of(values, companion, 0));
+    if (companion && !is_choice) row_set(row, companion, 0, part * plan_number_of(values, companion, 0));
     if (strcmp(path, "time.shedding_interval") != 0) return;
 
     // times that must be multiples of the interval; the end time has no effect on a steady state
@@ -300,6 +301,9 @@ static enum status choose_levels(struct error_study *study) {
         // the far wake converges with the design order only after two halvings of the spacing; the other keys have four
         // levels all the same: three would be judged by twice the largest difference
         const double base = key->value[0];
+        for (int i = 0; i < row->n_levels && !given; i++) {
+            if (is_valid_level(study, k, row->level[i])) error_plan_insert(key, row->level[i]);
+        }
         int n_missing = 0, n_finer = row->kind == SWEEP_MODEL || error->confirm;
         for (int i = 0; i < 2 && !given; i++) {
             if (!(row->coarser[i] > 0)) continue;
@@ -322,11 +326,18 @@ static enum status choose_levels(struct error_study *study) {
 
 // ---- keys
 
-/* Whether a key affects the results of this case. */
-static bool is_used(const struct error_study *study, const struct sweep_error_key *row) {
+/* Whether a key with this value affects the results of this case. */
+static bool is_used(const struct error_study *study, const struct sweep_error_key *row, double value) {
     const struct case_values *const values = study->values;
-    const double value = plan_number_of(values, row->path, 0);
     const bool is_wake = strncmp(row->path, "wake.", 5) == 0, has_fluid = values->school.fluid.density > 0;
+
+    // the key of a choice may need another choice; a factor of 1 is off, and only a moving body has damping
+    if (row->switch_path && (int)plan_number_of(values, row->switch_path, 0) != row->switch_value) return false;
+    if (strcmp(row->path, "fish.drag.waving") == 0 && !(value > 1)) return false;
+    if (study->is_static && strncmp(row->path, "fish.pressure.", 14) == 0) return true;
+    if (strcmp(row->path, "fish.body.relaxation_time") == 0) {
+        return value > 0 && !study->is_static && values->school.fish[0].motion.prescribed != PRESCRIBED_ALL;
+    }
 
     // an equilibrium has no events, but the wake of the modes is shed at events
     const bool is_interval = strcmp(row->path, "time.shedding_interval") == 0;
@@ -342,22 +353,24 @@ static bool is_used(const struct error_study *study, const struct sweep_error_ke
 }
 
 /* Add all varied keys of a point, without levels; no key of the sweep. */
-static enum status choose_keys(struct error_study *study) {
+static enum status choose_keys(struct error_study *study, const struct school *school) {
     const struct sweep_error *const error = study->study->error;
     const struct sweep_axis *const axis = &study->study->sweep[0];
     for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
         const struct sweep_error_key *const row = &sweep_error_keys[i];
-        bool is_wanted = error->n_keys == 0;
+        bool is_wanted = row->kind == SWEEP_MODEL ? error->models : error->n_keys == 0;
         for (int k = 0; k < error->n_keys; k++) is_wanted |= error->levels[k].key == row;
         for (int c = 0; c < study->sweep->n_swept; c++) is_wanted &= strcmp(axis->key[c].row, row->path) != 0;
         const bool is_local = strcmp(row->path, "fish.nodes") == 0 || strcmp(row->path, "time.shedding_interval") == 0;
-        if (!is_wanted || !is_used(study, row) || !(study->is_full || is_local)) continue;
+        double value = plan_number_of(study->values, row->path, 0);
+        if (isnan(value)) value = strcmp(row->path, "fish.drag.form") == 0 ? school->fish->form : school->fish->waving;
+        if (!is_wanted || !is_used(study, row, value) || !(study->is_full || is_local)) continue;
 
         struct error_study_key *const key = &study->key[study->n_keys++];
         *key = (struct error_study_key){.row = row,
                                         .unit = is_in_beats(study->values, row->path) ? " beats" : "",
                                         .n_levels = 1,
-                                        .value = {plan_number_of(study->values, row->path, 0)},
+                                        .value = {value},
                                         .member = {-1}};
         NEW(study->sweep->arena, key->part, study->n_asked * study->n_fish);
     }
@@ -446,6 +459,8 @@ static enum status choose_quantities(struct error_study *study) {
     NEW(study->sweep->arena, study->error, n);
     NEW(study->sweep->arena, study->together, n);
     NEW(study->sweep->arena, study->shared, n);
+    NEW(study->sweep->arena, study->lowest, n);
+    NEW(study->sweep->arena, study->highest, n);
     return STATUS_OK;
 }
 
@@ -540,7 +555,7 @@ static enum status plan_points(struct error_sweep *sweep) {
         point->is_static = steady_static_applies(school);
         enum status status = choose_quantities(point);
         point->is_static &= point->is_steady;
-        if (status == STATUS_OK) status = choose_keys(point);
+        if (status == STATUS_OK) status = choose_keys(point, school);
         if (status == STATUS_OK) list_objections(point, school);
         fish_school_free(school);
         TRY(status);
@@ -556,9 +571,11 @@ static enum status plan_points(struct error_sweep *sweep) {
         for (int c = 0; c < axis->n_keys; c++) {
             const char *const path = axis->key[c].row;
             const int f = strncmp(axis->key[c].path, "fish[", 5) == 0 ? atoi(axis->key[c].path + 5) : 0;
-            value[c] = c < sweep->n_swept
-                           ? swept[p * sweep->n_swept + c]
-                           : text_of(point, case_table_row(path), plan_number_of(point->values, path, f));
+            const struct sweep_error_key *const row = sweep_error_find(path);
+            const bool is_choice = row && row->n_levels > 0;
+            value[c] = c < sweep->n_swept ? swept[p * sweep->n_swept + c]
+                       : is_choice        ? arena_text(sweep->arena, "%s", "")
+                                   : text_of(point, case_table_row(path), plan_number_of(point->values, path, f));
         }
         point->base = point->stated = row_append(sweep, value, p - 1);
     }

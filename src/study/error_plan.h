@@ -43,6 +43,12 @@ struct error_study_key {
     struct convergence_result *part;   /* of each quantity; for a choice of the model: the change (n_asked, n_fish) */
 };
 
+/* The lowest or highest value of a quantity over all choices of the model. */
+struct error_study_model {
+    double value;
+    int key, level; /* key -1: no choice has another value */
+};
+
 /* The errors of one point. */
 struct error_study {
     struct error_sweep *sweep;        /* the owner */
@@ -60,7 +66,9 @@ struct error_study {
     int stated;            /* the member of the stated value */
     double *value, *error; /* stated values, and their errors; NaN: unknown   (n_asked, n_fish) */
     double *together;      /* part of the error: interaction of refined keys  (n_asked, n_fish) */
-    double *shared;  /* part of the error: other keys, from the full points                         (n_asked, n_fish) */
+    double *shared; /* part of the error: other keys, from the full points                         (n_asked, n_fish) */
+    struct error_study_model *lowest,
+        *highest;    /* values with other choices of the model            (n_asked, n_fish) */
     double noise;    /* relative error of the integrator and of the search */
     double cost;     /* CPU time of the stated value over the CPU time of the case */
     bool is_reached; /* the error is within the bound of the case, or the case has no bound */

@@ -45,7 +45,19 @@ enum { MEMBER, STATUS, WARNINGS, FISH_NAME, SWEPT_KEY, QUANTITY, N_MEMBER_ROWS }
 enum { LEVEL_VALUE = N_MEMBER_ROWS, LEVEL_SIZE, GROUP_MEMBER, DESIGN_ORDER, N_LEVEL_ROWS };
 enum { DIFFERENCE = N_LEVEL_ROWS, COARSE_ORDER, ORDER, LIMIT, ERROR, FLAG, N_ORDER_ROWS };
 enum { POINT_MEMBER = N_ORDER_ROWS, KEY_NAME, KEY_REASON, KEY_LEVELS, KEY_STATED, KEY_IS_CHOICE, N_NAME_ROWS };
-enum { KEY_DESIGN_ORDER = N_NAME_ROWS, KEY_VALUE, KEY_MEMBER, STATED, BAR, PART, KEY_ORDER, KEY_FLAG, N_ROWS };
+enum {
+    KEY_DESIGN_ORDER = N_NAME_ROWS,
+    KEY_VALUE,
+    KEY_MEMBER,
+    STATED,
+    BAR,
+    LOWEST,
+    HIGHEST,
+    PART,
+    KEY_ORDER,
+    KEY_FLAG,
+    N_ROWS
+};
 
 /* Existence of the variables of a row: once, for each swept key, for each quantity of members; with a refined axis, and
  * for each quantity with orders; in an error study, in a sweep of errors, and for each quantity with errors. */
@@ -134,7 +146,7 @@ static const struct row {
      NETCDF_DOUBLE,
      IN_ERRORS,
      {BY_POINT, BY_KEY, BY_KEY_LEVEL},
-     "value of the key at each level, from fine to coarse"},
+     "value of the key at each level, from fine to coarse; of a word, its number"},
     {"key_member", "1", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY, BY_KEY_LEVEL}, "member of each level; -1: none"},
     {"stated_%s", NULL, NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_FISH}, "stated value of %s"},
     {"bar_%s",
@@ -143,6 +155,18 @@ static const struct row {
      BY_ERROR,
      {BY_POINT, BY_FISH},
      "error of the stated value of %s: the sum over the keys"},
+    {"lowest_%s",
+     NULL,
+     NETCDF_DOUBLE,
+     BY_ERROR,
+     {BY_POINT, BY_FISH},
+     "lowest value of %s with other choices of the model; NaN: not asked for"},
+    {"highest_%s",
+     NULL,
+     NETCDF_DOUBLE,
+     BY_ERROR,
+     {BY_POINT, BY_FISH},
+     "highest value of %s with other choices of the model; NaN: not asked for"},
     {"part_%s",
      NULL,
      NETCDF_DOUBLE,
@@ -324,8 +348,11 @@ static struct value error_value(const struct contents *contents, const struct va
     const struct error_study *const point = &contents->errors->point[contents->length[BY_POINT] > 0 ? *i : 0];
     if (v->row == POINT_MEMBER) return (struct value){.number = point->stated};
     if (v->n_dimensions > 0 && v->dimension[0] == BY_POINT) i++;
-    const bool is_sum = v->row == STATED || v->row == BAR;
+    const bool is_model = v->row == LOWEST || v->row == HIGHEST;
+    const bool is_sum = v->row == STATED || v->row == BAR || is_model;
     const int place = error_plan_place(point, v->number, is_sum ? i[0] : i[1]);
+    if (is_model && !(contents->study->error->models && point->is_full)) return (struct value){.number = NAN};
+    if (is_model) return (struct value){.number = (v->row == LOWEST ? point->lowest : point->highest)[place].value};
     if (is_sum) return (struct value){.number = v->row == STATED ? point->value[place] : point->error[place]};
 
     // the key does not have to be varied at this point

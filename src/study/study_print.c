@@ -8,6 +8,7 @@
 #include "base/table.h"
 #include "base/text.h"
 #include "case/case.h"
+#include "case/case_table.h"
 #include "case/sweep.h"
 #include "result/durable.h"
 #include "result/target.h"
@@ -434,14 +435,21 @@ static bool report_is_error(const struct error_study_key *key) {
     return key->row->kind != SWEEP_MODEL;
 }
 
+/* The value of a level: "17", or a word. */
+static const char *level_text(const struct error_study *study, const struct error_study_key *key, int level) {
+    const struct key *const row = case_table_row(key->row->path);
+    return row->type == CHOICE ? row->words[(int)key->value[level]]
+                               : arena_text(study->sweep->arena, "%.4g", key->value[level]);
+}
+
 /* "13 17 [25] 35", from coarse to fine; the stated value in brackets. */
-static void write_levels(const struct error_study_key *key, char text[LEVEL_BYTES]) {
+static void write_levels(const struct error_study *study, const struct error_study_key *key, char text[LEVEL_BYTES]) {
     int length = 0;
     *text = '\0';
     for (int i = key->n_levels - 1; i >= 0 && length < LEVEL_BYTES - 1; i--) {
         const bool is_stated = i == key->stated;
-        length += snprintf(text + length, (size_t)(LEVEL_BYTES - length), "%s%s%.4g%s", length > 0 ? " " : "",
-                           is_stated ? "[" : "", key->value[i], is_stated ? "]" : "");
+        length += snprintf(text + length, (size_t)(LEVEL_BYTES - length), "%s%s%s%s", length > 0 ? " " : "",
+                           is_stated ? "[" : "", level_text(study, key, i), is_stated ? "]" : "");
     }
     if (length < LEVEL_BYTES) snprintf(text + length, (size_t)(LEVEL_BYTES - length), "%s", key->unit);
 }
@@ -490,7 +498,7 @@ enum status study_print_plan(const struct error_sweep *sweep, int n_processes, F
             const struct error_study_key *const key = &sweep->point[p].key[k];
             char levels[LEVEL_BYTES];
             struct text members = {.arena = sweep->arena}, times = {.arena = sweep->arena};
-            write_levels(key, levels);
+            write_levels(&sweep->point[p], key, levels);
             for (int i = key->n_levels - 1; i >= 0 && key->n_levels > 1; i--) {
                 text_add(&members, "%s%d", members.length > 0 ? " " : "", key->member[i]);
                 text_add(&times, "%s%.2g", times.length > 0 ? " " : "", duration[key->member[i]]);
@@ -552,6 +560,18 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
         if (fabs(value) > 0) fprintf(stream, " (%.2g %%)", 100 * error / fabs(value));
         fprintf(stream, "\n");
     }
+
+    // "other models: from 0.7754 (drag.transition 0) to 0.936 m s-1 (force reactive)"
+    const struct error_study_model *const models[] = {&study->lowest[place], &study->highest[place]};
+    if (isnan(value) || !study->study->error->models) return;
+    for (int i = 0; i < 2; i++) {
+        fprintf(stream, "%s %.4g%s%s", i == 0 ? "other models: from" : " to", models[i]->value, blank, unit);
+        if (models[i]->key < 0) continue;
+        const struct error_study_key *const key = &study->key[models[i]->key];
+        const char *const path = key->row->path + (strncmp(key->row->path, "fish.", 5) == 0 ? 5 : 0);
+        fprintf(stream, " (%s %s)", path, level_text(study, key, models[i]->level));
+    }
+    fprintf(stream, "\n");
 }
 
 void study_print_reason(const struct error_study *study, const struct error_study_key *key, int place,
@@ -623,7 +643,7 @@ static void print_shares(const struct error_study *study, const struct error_stu
         n_moved += key->stated != key->first_stated;
         if (!report_is_error(key)) continue;
         char levels[LEVEL_BYTES];
-        write_levels(key, levels);
+        write_levels(study, key, levels);
         table_cell(table, "%s", key->row->path);
         table_cell(table, "%s", levels);
         for (int q = 0; q < study->n_asked; q++) {
@@ -669,7 +689,7 @@ static void print_choices(const struct error_study *study, FILE *stream) {
             is_none &= key->part[place].verdict == CONVERGENCE_NONE;
         }
         char levels[LEVEL_BYTES];
-        write_levels(key, levels);
+        write_levels(study, key, levels);
         fprintf(stream, "%s%s (%s) ", n++ > 0 ? "; " : "choices, not in the sum: ", key->row->path, levels);
         if (is_none) {
             fprintf(stream, "none");
@@ -741,6 +761,7 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
     const struct error_study *const first = &sweep->point[0];
     const struct sweep_axis *const axis = &sweep->study.sweep[0];
     const int n_shown = first->n_fish < MAX_FISH_SHOWN ? first->n_fish : MAX_FISH_SHOWN;
+    const bool has_models = sweep->study.error->models;
     struct table *const table = table_create(sweep->arena, 0);
     table_column(table, "point", "");
     for (int c = 0; c < sweep->n_swept; c++) add_key_column(table, &axis->key[c]);
@@ -750,6 +771,7 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
         table_column(table, short_name_of(first, q), strcmp(unit, "1") == 0 ? "" : unit);
         table_column(table, "error", NULL);
         table_column(table, "%", NULL);
+        if (has_models) table_column(table, "other models", NULL);
     }
     table_column(table, "flagged", NULL);
 
@@ -772,6 +794,9 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
                 }
                 table_cell(table, isnan(error) ? "unknown" : "%.*f", decimals, error);
                 table_number(table, "%.2g", 100 * error / fabs(value));
+                if (!has_models) continue;
+                table_cell(table, point->is_full ? "%.4g to %.4g" : "", point->lowest[place].value,
+                           point->highest[place].value);
             }
 
             // the keys with a flag that has a hundredth of the error
@@ -819,24 +844,37 @@ enum status study_print_csv(const struct error_sweep *sweep, const char *path) {
 
     for (int p = 0; p < sweep->n_points; p++) {
         const struct error_study *const study = &sweep->point[p];
-        for (int i = 0; i < study->n_fish * study->n_asked * (study->n_keys + 1); i++) {
-            const int k = i % (study->n_keys + 1) - 1, q = i / (study->n_keys + 1) % study->n_asked;
-            const int f = i / (study->n_keys + 1) / study->n_asked, place = error_plan_place(study, q, f);
+        const int n_rows = study->n_keys + 3;  // the sum, the keys, the lowest and the highest value of other models
+        for (int i = 0; i < study->n_fish * study->n_asked * n_rows; i++) {
+            const int k = i % n_rows - 1, q = i / n_rows % study->n_asked, f = i / n_rows / study->n_asked;
+            const int place = error_plan_place(study, q, f);
             const struct member_file_quantity *const quantity = member_file_quantity(study->quantity[q]);
-            const struct error_study_key *const key = k < 0 ? NULL : &study->key[k];
+            const struct error_study_model *const model = k == study->n_keys  ? &study->lowest[place]
+                                                          : k > study->n_keys ? &study->highest[place]
+                                                                              : NULL;
+            const struct error_study_key *const key =
+                k < 0 || (model && model->key < 0) ? NULL : &study->key[model ? model->key : k];
             if ((f > 0 && !quantity->of_fish) || (key && key->n_levels == 1)) continue;
+            if (model && !study->study->error->models) continue;
             char levels[LEVEL_BYTES] = "", reason[CONVERGENCE_BYTES] = "";
-            if (key) write_levels(key, levels);
-            if (key) study_print_reason(study, key, place, reason);
-            const double error = key ? key->part[place].error : study->error[place];
-            const char *const verdict = !key                    ? ""
-                                        : !report_is_error(key) ? "a choice of the model, not in the sum"
-                                        : *reason               ? reason
-                                                                : convergence_words(key->part[place].verdict);
+            if (key && !model) write_levels(study, key, levels);
+            if (key && !model) study_print_reason(study, key, place, reason);
+            if (key && model) {
+                snprintf(levels, LEVEL_BYTES, "%s %s", key->row->path, level_text(study, key, model->level));
+            }
+            const char *const name = model ? (k == study->n_keys ? "lowest" : "highest") : key ? key->row->path : "sum";
+            const double value = model ? model->value : study->value[place];
+            const double error = model ? fabs(value - study->value[place])
+                                 : key ? key->part[place].error
+                                       : study->error[place];
+            const char *const verdict = !key && !model                   ? ""
+                                        : model || !report_is_error(key) ? "a choice of the model, not in the sum"
+                                        : *reason                        ? reason
+                                                                         : convergence_words(key->part[place].verdict);
             fprintf(file, "\"%s\",%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,\"%s\"",
-                    quantity->of_fish ? study->values->school.fish[f].name : "", quantity->name, quantity->unit,
-                    study->value[place], key ? key->row->path : "sum", levels, key ? key->part[place].order : NAN,
-                    error, 100 * error / fabs(study->value[place]), verdict);
+                    quantity->of_fish ? study->values->school.fish[f].name : "", quantity->name, quantity->unit, value,
+                    name, levels, key && !model ? key->part[place].order : NAN, error,
+                    100 * error / fabs(study->value[place]), verdict);
             for (int c = 0; c < sweep->n_swept; c++) {
                 fprintf(file, ",%s", axis->value[study->base * axis->n_keys + c]);
             }

@@ -536,13 +536,15 @@ class Programs(unittest.TestCase):
     def test_an_error_is_the_number_of_the_program(self):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            lift, = shoal.error(ROOT / "cases/foil_static.yaml", "steady_lift", path="budget")
+            lift, = shoal.error(ROOT / "cases/foil_static.yaml", "steady_lift", path="budget", models=True)
         with open("budget/error.csv") as file:
             total = next(line for line in file if ",sum," in line).split(",")
         self.assertEqual((lift.fish, lift.quantity, lift.unit), ("foil", "steady_lift", "N"))
         self.assertEqual((lift.value, lift.error), (float(total[3]), float(total[7])))
         self.assertTrue(1e-6 < lift.error / lift.value < 1e-2, lift)
-        self.assertRegex(str(lift), r"^steady_lift of foil: 0\.\d+ ± 0\.0+[1-9]\d N( \(flagged\))?$")
+        self.assertRegex(str(lift), r"^steady_lift of foil: 0\.\d+ ± 0\.0+[1-9]\d N \(flagged\); other models: 0\.\d+ to 0\.\d+$")
+        self.assertTrue(lift.models[0] < lift.value - lift.error, lift)  # less lift with a finite span
+        self.assertTrue(lift.flags and "noise" not in " ".join(lift.flags), lift.flags)
         with self.assertRaisesRegex(shoal.CaseError, "nothing_known"):
             shoal.error(ROOT / "cases/foil_static.yaml", "nothing_known", path="budget", overwrite=True)
 

@@ -114,6 +114,12 @@ check choices_are_listed_apart grep -qE '^choices, not in the sum: wake.smoothin
 check the_noise_is_stated grep -qE '^noise of a value, of integrator and search: ' out
 check only_the_case_has_multipliers test "$(ncdump -v steady_error swimmer-study/study.nc | sed -n '/^data/,$p' | tr -d ' \n;}' |
     sed 's/.*=//' | tr , '\n' | grep -c '^[0-9]')" = 1
+run error swimmer.yaml --of steady_speed --models -j 2 -o models --set 'fish[*].sheet_points=33'
+check other_models_have_a_second_line grep -qE '^other models: from [0-9.]+ m s-1 \([a-z_.]+ [a-z0-9.+]+\) to [0-9.]+ m s-1 \(' out
+check each_choice_is_listed grep -qE '^choices.*fish.force \(pressure \[reactive\]\) [0-9.]+ %; fish.drag.normal \(2 \[1\] 0\)' out
+check the_table_has_the_range test "$(grep -cE ',(lowest|highest),[a-z_.]+ [a-z0-9.+]+,nan,' models/error.csv)" = 2
+check so_has_the_file test "$(ncdump -v lowest_steady_speed models/study.nc | sed -n 's/^ lowest_steady_speed = \(.*\) ;/\1/p' | cut -c 1-6)" = \
+    "$(sed -n 's/^"fish",steady_speed,m s-1,\([0-9.]*\),lowest.*/\1/p' models/error.csv | cut -c 1-6)"
 run error swimmer.yaml --of speed --no-confirm
 check a_run_has_its_error grep -qE '^speed of fish: [0-9.]+ \+- [0-9.]+ m s-1' out
 check levels_are_fewer_without_confirm grep -qE '^fish.nodes +5 6 \[9\] .* 3 levels' out
