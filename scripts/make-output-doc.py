@@ -94,8 +94,7 @@ resumed also needs the times of the stops: `--checkpoint-at` with the attribute 
 Besides the attributes above a file has `Conventions` (CF-1.10), `title` (the name of the case), `merged_vortices`,
 `checkpoint_at` (times of checkpoints besides `time.checkpoint_interval`, in the format of `--checkpoint-at`: `0.3,1.25`)
 and `shoal_schema` (1; a program with another number cannot read the file). Every variable has `long_name` and, except
-strings, `units`. `fish`, `xy`, `fish_name`, `node_arc`,
-`edge_arc`, `joint_arc`, `sheet_arc` and `control_arc` are coordinates.
+strings, `units`. `fish`, `xy`, `node_arc`, `edge_arc`, `joint_arc`, `sheet_arc` and `control_arc` are coordinates.
 """
 
 # Title of a section, and the test on the dimensions of its variables.

@@ -265,7 +265,7 @@ def error_bars(bench):
             value, bar = float(study[f"stated_{quantity}"][fish]), float(study[f"bar_{quantity}"][fish])
             part = np.where(is_choice, 0, study[f"part_{quantity}"][:, fish])
             cells += [with_bar(value, bar), f"`{keys[np.argmax(part)]}`"]
-        yield name, strings(study["fish_name"])[fish], *cells
+        yield name, strings(study["fish"])[fish], *cells
 
 
 # ---- are true errors below the bars? ----

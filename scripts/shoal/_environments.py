@@ -271,8 +271,8 @@ class _Swimmer:
     _SEEN = {  # name: (function, bound)
         "velocity": (_see_velocity, 20),
         "heading": (_see_heading, 1),
-        "curvature": (lambda self: self.event("curvature")[self.fish, : self.n_joints], 20),
-        "muscle": (lambda self: self.event("natural_curvature")[self.fish, : self.n_joints], 20),
+        "curvature": (lambda self: self.event("curvature")[self.fish, : self.n_joints] * self.length, 500),
+        "muscle": (lambda self: self.event("natural_curvature")[self.fish, : self.n_joints] * self.length, 500),
         "flow": (_see_flow, 20),
         "pressure": (_see_pressure, 100),
         "goal": (_see_goal, 1000),

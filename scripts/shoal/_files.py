@@ -33,7 +33,7 @@ class Results:
         if self.read("wall_time", -1) == 0:
             raise FileError(f"{path}: the end of the file is missing: was it copied completely?")
         self.n_fish = self.data.dimensions["fish"].size
-        self.names = list(self["fish_name"])
+        self.names = list(self["fish"])
         self.n_nodes = self["n_nodes"].astype(int)
         self.thickness = self["edge_thickness"]
         self.mean_section = self["mean_section"] == 1

@@ -169,7 +169,7 @@ def plot_convergence(study, refined, figure, asked=None):
     per fish."""
     level, size, first = study["level_value"], study["level_size"], study["group_member"]
     design = float(study["group_design_order"][0])
-    names = list(study["fish_name"])
+    names = list(study["fish"])
     all_axes = figure.subplots(1, len(names), squeeze=False, sharey=True)[0]
     errors = {name: level_errors(study, name, design) for name in ([asked] if asked else quantities_of(study))}
     known = np.concatenate([np.zeros(0), *(e[np.isfinite(e) & (e > 0)] for e in errors.values())])
@@ -248,7 +248,7 @@ def plot_values(study, refined, parameter, figure, asked=None):
         raise FileError(f"{study.path}: no errors to draw: too few levels are complete")
     members = [next(m for m in np.flatnonzero(finest) if settings[m] == settings[g]) for g in first]
     words = [", ".join(f"{n} {study[n][m]}" for n in others if n != parameter.name) for m in members]
-    names = list(study["fish_name"])
+    names = list(study["fish"])
 
     def lines_of(quantity):
         flagged, lines = study.data[f"objection_{quantity}"][:], []
@@ -271,7 +271,7 @@ def plot_points(study, figure, asked=None):
     if not numbers:
         raise FileError(f"{study.path}: no swept key has several numbers: there is nothing to draw errors over")
     parameter, members = numbers[0], study["point_member"].astype(int)
-    x, names = study[parameter.name][members], list(study["fish_name"])
+    x, names = study[parameter.name][members], list(study["fish"])
     words = [", ".join(f"{v.long_name.split('.')[-1]} {study[v.name][m]}" for v in swept if v is not parameter) for m in members]
     known = [name[len("bar_") :] for name in study.data.variables if name.startswith("bar_")]
     if asked and asked not in known:
@@ -488,7 +488,7 @@ def draw_contours(axes, x, y, values, digits, norm):
 
 def plot_map(study, x, y, labels, quantity, figure):
     """One panel per fish: cells with their values, or contours through many places."""
-    names = list(study["fish_name"])
+    names = list(study["fish"])
     x, y = x[study.complete], y[study.complete]
     values = study[quantity][study.complete]
     known = values[np.isfinite(values)]
@@ -553,7 +553,7 @@ def plot_lines(study, figure, asked=None, x=None, label=None):
     if x is None:
         x = study[first.name] if is_number else np.arange(study.complete.size)
     rest = [[case_of(study, m, first)] if study.axes[1:] else [] for m in range(x.size)]
-    names = list(study["fish_name"])
+    names = list(study["fish"])
     quantities = [asked] if asked else panels_of(study, first)
     figure.set_figheight(1.2 + 1.2 * len(quantities))
     stack = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]

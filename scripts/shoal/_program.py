@@ -152,7 +152,7 @@ class Steady:
 
     def __init__(self, values: dict):
         self.path: str = values["file"]  #: the result file, with the rows of the last beats
-        self.names: list[str] = values["fish_name"]  #: of the fish
+        self.names: list[str] = values["fish"]  #: of the fish
         self._values = {name[len("steady_"):]: np.array(value, dtype=float) if value is not None else np.nan
                         for name, value in values.items() if name.startswith("steady_")}
 

@@ -18,14 +18,8 @@ def _xarray():
     return xarray
 
 
-def _text(values) -> list[str]:
-    return [value.decode() if isinstance(value, bytes) else str(value) for value in values]
-
-
 def _with_names(data):
-    """The dataset with the coordinates fish and xy."""
-    if "fish" not in data.coords and "fish_name" in data:
-        data = data.assign_coords(fish=_text(data["fish_name"].values))
+    """The dataset with the coordinate xy."""
     return data if "xy" in data.coords or "xy" not in data.dims else data.assign_coords(xy=["x", "y"])
 
 

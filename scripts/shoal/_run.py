@@ -379,7 +379,7 @@ class Run:
     def names(self) -> list[str]:
         """The names of the fish."""
         if self._names is None:
-            self._names = [name.tobytes().rstrip(b"\0").decode() for name in self["fish_name"]]
+            self._names = [name.tobytes().rstrip(b"\0").decode() for name in self["fish"]]
         self._open()
         return list(self._names)
 

@@ -242,7 +242,7 @@ def plot_swim(results, options):
 
 def reference_shape(natural_curvature):
     """Midline of length 1 with the natural curvature of the joints, the nose at 0, swimming towards -x."""
-    turning = 2 * np.arctan(natural_curvature / 2)
+    turning = 2 * np.arctan(natural_curvature / (natural_curvature.size + 1) / 2)
     angle = np.concatenate([[0], np.cumsum(turning)])
     edges = np.column_stack([np.cos(angle), np.sin(angle)]) / angle.size
     return np.concatenate([[[0, 0]], np.cumsum(edges, axis=0)])
@@ -296,7 +296,7 @@ def plot_gait(results, options):
     for fish in shown:
         rows = beat_rows(results, fish, options.shapes)
         phases = (results.time[rows] - results.time[rows[0]]) * results["frequency"][fish]
-        curvature = curvatures[rows, fish, : results.n_nodes[fish] - 2]
+        curvature = curvatures[rows, fish, : results.n_nodes[fish] - 2] * results["body_length"][fish]
         shapes[fish] = list(zip(phases, map(reference_shape, curvature)))
     points = np.concatenate([shape for of_fish in shapes.values() for _, shape in of_fish])
     y = 1.1 * np.abs(points[:, 1]).max()

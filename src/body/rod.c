@@ -108,7 +108,7 @@ void rod_curvature(const struct fish *fish, const double *y, double *curvature) 
     struct edge before = edge_at(fish, 0, y);
     for (int j = 0; j < fish->n_joints; j++) {
         const struct edge after = edge_at(fish, j + 1, y);
-        curvature[j] = edge_bend(before.t, after.t).curvature;
+        curvature[j] = edge_bend(before.t, after.t).curvature / fish->edge_length;
         before = after;
     }
 }

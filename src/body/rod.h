@@ -72,7 +72,7 @@ static inline struct actuation actuation_from(const struct actuation *all, int f
 void actuation_find(const struct fish *fish, struct fish_gait gait, double phi0, double phi0_rate,
                     const struct actuation *to);
 
-/* Curvature kappa = 2 tan(phi/2) of every joint, dimensionless (n_joints). */
+/* Curvature kappa/l = 2 tan(phi/2)/l of every joint, l: rest length of an edge, m-1 (n_joints). */
 void rod_curvature(const struct fish *fish, const double *y, double *curvature);
 
 /* Subtract the elastic and damping forces from the rows ax, ay of the residual [N]. */

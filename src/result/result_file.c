@@ -190,7 +190,7 @@ static void file_define_variable(struct result_file *result, int i, const int *d
                                              [RESULT_COUNT] = NETCDF_INT64,
                                              [RESULT_TEXT] = NETCDF_TEXT};
     const struct result_variable *const variable = &result_table[i];
-    const bool of_fish = result_table_has(variable, FISH), is_text = variable->type == RESULT_TEXT;
+    const bool of_fish = result_table_has(variable, FISH);
     const bool is_single = variable->type == RESULT_BULK && precision == PRECISION_SINGLE;
     struct netcdf_variable to_define = {.name = variable->name,
                                         .long_name = variable->long_name,
@@ -202,22 +202,18 @@ static void file_define_variable(struct result_file *result, int i, const int *d
         to_define.dimension[to_define.n_dimensions++] = dimension_number[*d];
     to_define.has_gaps = of_fish && (to_define.type == NETCDF_DOUBLE || to_define.type == NETCDF_FLOAT);
     result->number[i] = netcdf_define_variable(&result->writer, &to_define);
-    if (!of_fish || is_text) return;
 
-    // the variables that name the slots of this one
+    // the place on the body of each slot of this variable
     static const struct {
         enum result_dimension dimension;
-        const char *name, *coordinates;
-    } coordinates[] = {
-        {NODE, "node_arc", "fish_name node_arc"},          {EDGE, "edge_arc", "fish_name edge_arc"},
-        {JOINT, "joint_arc", "fish_name joint_arc"},       {SHEET, "sheet_arc", "fish_name sheet_arc"},
-        {CONTROL, "control_arc", "fish_name control_arc"}, {SENSOR, "sensor_place", "fish_name sensor_place"}};
-    const char *names = "fish_name";
-    for (size_t k = 0; k < sizeof coordinates / sizeof *coordinates; k++) {
-        const bool is_itself = strcmp(variable->name, coordinates[k].name) == 0;
-        if (result_table_has(variable, coordinates[k].dimension) && !is_itself) names = coordinates[k].coordinates;
+        const char *name;
+    } coordinates[] = {{NODE, "node_arc"},   {EDGE, "edge_arc"},       {JOINT, "joint_arc"},
+                       {SHEET, "sheet_arc"}, {CONTROL, "control_arc"}, {SENSOR, "sensor_place"}};
+    for (size_t k = 0; k < sizeof coordinates / sizeof *coordinates && of_fish; k++) {
+        const char *const name = coordinates[k].name;
+        if (!result_table_has(variable, coordinates[k].dimension) || strcmp(variable->name, name) == 0) continue;
+        netcdf_write_string(&result->writer, result->number[i], "coordinates", name);
     }
-    netcdf_write_string(&result->writer, result->number[i], "coordinates", names);
 }
 
 static void file_define_all(struct result_file *result, const struct case_values *values, const char *effective) {

@@ -362,7 +362,7 @@ enum status result_json_steady(const struct netcdf_reader *reader, FILE *stream)
     TRY(netcdf_read_length(reader, "name", 1, INT_MAX, &n_name));
     text_print_member(stream, "{", "file", reader->path);
     const struct netcdf_slice names[] = {{"fish", 0, n_fish}, {"name", 0, n_name}, {NULL}};
-    TRY(print_json_strings(reader, "fish_name", names, stream));
+    TRY(print_json_strings(reader, "fish", names, stream));
 
     for (int i = 0; i < result_table_n; i++) {
         const struct result_variable *const variable = &result_table[i];

@@ -17,7 +17,7 @@ enum status result_info(struct arena *arena, const char *path, FILE *stream);
  * STATUS_FILE. */
 enum status result_info_steady(const struct netcdf_reader *reader, FILE *stream);
 
-/* Print the steady state of a result file as a JSON object with "file", "fish_name", and every variable steady_... as a
+/* Print the steady state of a result file as a JSON object with "file", "fish", and every variable steady_... as a
  * number or as lists over the dimensions. NaN becomes null; unused slots of multipliers are omitted. The file must have
  * a steady state. Fails with STATUS_FILE. */
 enum status result_json_steady(const struct netcdf_reader *reader, FILE *stream);

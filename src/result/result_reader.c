@@ -107,7 +107,7 @@ enum status result_reader_name(const struct netcdf_reader *file, size_t f, char 
     size_t n;
     TRY(netcdf_read_length(file, "name", 1, MAX_LENGTH, &n));
     NEW(file->arena, *name, n + 1);
-    return netcdf_read_text(file, "fish_name", (struct netcdf_slice[]){{"fish", f, 1}, {"name", 0, n}, {NULL}}, *name);
+    return netcdf_read_text(file, "fish", (struct netcdf_slice[]){{"fish", f, 1}, {"name", 0, n}, {NULL}}, *name);
 }
 
 size_t result_reader_n(const struct result_reader *reader, const char *name) {

@@ -42,7 +42,8 @@ void result_row_body(const struct result_row *row, int f, enum result_part part,
         case PART_CURVATURE: rod_curvature(fish, y, slots); break;
         default: {
             const struct range joints = row->residual->joints[f];
-            copy_values(joints.n, row->residual->muscle.curvature + joints.first, slots);
+            const double *const bends = row->residual->muscle.curvature + joints.first;
+            for (int j = 0; j < joints.n; j++) slots[j] = bends[j] / fish->edge_length;
         }
     }
 }

@@ -26,8 +26,6 @@
 // clang-format off
 const struct result_variable result_table[] = {
     // constants
-    {"fish_name",             {FISH, NAME},           RESULT_TEXT,    "",       ARRAY_IN_FISH(name),
-     .long_name = "name of the fish"},
     {"fish",                  {FISH, NAME},           RESULT_TEXT,    "",       ARRAY_IN_FISH(name),
      .long_name = "name of the fish: coordinate of the dimension fish"},
     {"xy",                    {XY, NAME},             RESULT_TEXT,    "",       .owner = OF_AXIS, .is_pointer = true,
@@ -159,10 +157,10 @@ const struct result_variable result_table[] = {
      .long_name = "velocity of the nodes"},
     {"a",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-2",  OF_BODY(ACCELERATION),
      .long_name = "acceleration of the nodes"},
-    {"natural_curvature",     {TIME, FISH, JOINT},    RESULT_BULK,    "1",      OF_BODY(NATURAL_CURVATURE),
-     .long_name = "natural curvature of the joints, 2 tan(angle/2)"},
-    {"curvature",             {TIME, FISH, JOINT},    RESULT_BULK,    "1",      OF_BODY(CURVATURE),
-     .long_name = "curvature of the joints, 2 tan(angle/2)"},
+    {"natural_curvature",     {TIME, FISH, JOINT},    RESULT_BULK,    "m-1",    OF_BODY(NATURAL_CURVATURE),
+     .long_name = "natural curvature of the joints, 2 tan(angle/2)/edge_length"},
+    {"curvature",             {TIME, FISH, JOINT},    RESULT_BULK,    "m-1",    OF_BODY(CURVATURE),
+     .long_name = "curvature of the joints, 2 tan(angle/2)/edge_length"},
     {"sheet_x",               {TIME, FISH, SHEET, XY},RESULT_BULK,    "m",      OF_SHEET(SHEET_POSITION),
      .long_name = "position of the bound vortices"},
     {"sheet_strength",        {TIME, FISH, SHEET},    RESULT_BULK,    "m s-1",  OF_SHEET(SHEET_STRENGTH),

@@ -81,7 +81,7 @@ static const struct row {
      ALWAYS,
      {BY_MEMBER, BY_TEXT},
      "warnings about the result of the member, one per line"},
-    {"fish_name", "", NETCDF_TEXT, ALWAYS, {BY_FISH, BY_TEXT}, "name of the fish"},
+    {"fish", "", NETCDF_TEXT, ALWAYS, {BY_FISH, BY_TEXT}, "name of the fish"},
     {"%s", NULL, NETCDF_DOUBLE, BY_SWEPT_KEY, {BY_MEMBER}, "%s"},
     {"%s", NULL, NETCDF_DOUBLE, BY_QUANTITY, {BY_MEMBER, BY_FISH, BY_XY}, "%s"},
     {"level_value", of_key, NETCDF_DOUBLE, IN_ORDERS, {BY_LEVEL}, "value of the refined key, from coarse to fine"},

@@ -35,7 +35,7 @@ static const struct variable {
     {"edge_thickness", {FISH_AXIS, EDGE_AXIS}, NETCDF_DOUBLE, "m", "thickness of the body in the plane of motion"},
     {"mean_section", {FISH_AXIS}, NETCDF_INT, "1", "edge_thickness"},
     {"n_nodes", {FISH_AXIS}, NETCDF_INT, "1", "number of nodes"},
-    {"fish_name", {FISH_AXIS, NAME_AXIS}, NETCDF_TEXT, "", "name of the fish"},
+    {"fish", {FISH_AXIS, NAME_AXIS}, NETCDF_TEXT, "", "name of the fish"},
     {"wall_y", {WALL_AXIS}, NETCDF_DOUBLE, "m", "y of the walls; only with walls"},
 };
 
@@ -166,7 +166,7 @@ static void grid_define_all(struct netcdf_writer *writer, const struct field *fi
     netcdf_write_string(writer, NETCDF_GLOBAL, "comment",
                         "external flow, all wakes and all bound sheets, with the smoothing of the velocity induced at "
                         "other bodies; bodies are lines, so the flow around the thickness is omitted, as is the "
-                        "smaller smoothing of the newest wake at the own body");
+                        "smaller smoothing of the newest wake at its own body");
     netcdf_write_string(writer, NETCDF_GLOBAL, "case_effective", field->row->effective);
     netcdf_end_definitions(writer);
 }

@@ -62,7 +62,7 @@ def quantity(data, name, fish):
     if name == "tail":
         return np.ptp(data["x"][beat, fish, -1, 1])
     if name == "turning":
-        return np.degrees(2 * np.arctan(data["natural_curvature"][beat, fish] / 2)).sum(axis=1).mean()
+        return np.degrees(2 * np.arctan(data["natural_curvature"][beat, fish] * data["edge_length"][fish] / 2)).sum(axis=1).mean()
     how, _, variable = name.rpartition(":")
     values = np.ma.filled(data[variable][:], np.nan)
     if variable.startswith("steady_"):

@@ -284,7 +284,7 @@ run, data = json.load(open("run.json")), netCDF4.Dataset("summary.nc")
 data.set_auto_mask(False)
 assert run["kind"] == "run" and run["status"] == "complete" and run["rows"] == len(data["time"]) and len(run["warnings"]) == 1
 assert run["warnings"][0].startswith("the run has 0.3 beats of fish: means and powers are not those of a cycle")
-assert run["fish_name"] == ["fish"] and run["case"] == "demo"
+assert run["fish"] == ["fish"] and run["case"] == "demo"
 for name, variable in data.variables.items():
     if {"node", "edge", "joint", "sheet", "control", "vortex"} & set(variable.dimensions):
         assert name not in run, name

@@ -284,7 +284,7 @@ class Members:
     def __init__(self, values):
         self.values = values
     def __getitem__(self, name):
-        return np.array(["one"]) if name == "fish_name" else self.values[:, None]
+        return np.array(["one"]) if name == "fish" else self.values[:, None]
     def label(self, name):
         return name
 for values, n_axes in ((Members.x * Members.y, 2), (1 + 1e-9 * Members.x, 1)):

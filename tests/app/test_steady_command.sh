@@ -96,8 +96,8 @@ import netCDF4, numpy as np
 found, data = json.load(open("out")), netCDF4.Dataset("json.nc")
 data.set_auto_mask(False)
 names = [name for name in data.variables if name.startswith("steady_")]
-assert sorted(found) == sorted(names + ["file", "fish_name"]), sorted(found)
-assert found["file"] == "json.nc" and found["fish_name"] == ["a \"fish\""], found
+assert sorted(found) == sorted(names + ["file", "fish"]), sorted(found)
+assert found["file"] == "json.nc" and found["fish"] == ["a \"fish\""], found
 for name in names:
     values = np.array(data[name][...], float)
     if data[name].dimensions[:1] == ("multiplier",):

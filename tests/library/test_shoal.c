@@ -508,7 +508,7 @@ TEST(a_wake_is_read_without_empty_slots) {
 TEST(names_and_counts_are_read_too) {
     struct shoal *const run = opened(*state, 0, NULL);
     struct shoal_array array;
-    assert_int_equal(shoal_read(run, "fish_name", &array), SHOAL_OK);
+    assert_int_equal(shoal_read(run, "fish", &array), SHOAL_OK);
     assert_int_equal(array.type, SHOAL_CHAR);
     assert_memory_equal(array.values, "ab", 2);
     assert_int_equal(shoal_read(run, "n_nodes", &array), SHOAL_OK);
