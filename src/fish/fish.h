@@ -151,7 +151,7 @@ struct fish {
     struct stencil heading_point; /* the body point at a third of the length */
 
     double smoothing;    /* delta of the free vortices, m */
-    double taper;        /* distance from the tail over which the smoothing for the own body grows from 0 to delta, m */
+    double taper;        /* distance from the tail over which the smoothing for its own body grows from 0 to delta, m */
     double taper_beside; /* the same for vortices beside the body, m */
     double sheet_smoothing; /* of the bound sheet, for other bodies and wakes, m */
 
@@ -255,7 +255,7 @@ static inline bool fish_has_momentum(const struct fish *fish) {
     return fish->at.px < fish->at.ax;
 }
 
-/* Whether the velocity of the own wake acts at the edge midpoints of the fish: not with force: reactive. doc/model.md,
+/* Whether the velocity of its own wake acts at the edge midpoints of the fish: not with force: reactive. doc/model.md,
  * section 9. */
 static inline bool fish_feels_own_wake(const struct fish *fish) {
     return fish->force != FORCE_REACTIVE;

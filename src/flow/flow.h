@@ -7,14 +7,14 @@
  *     | control points (M-1)      | edge midpoints (N-1)      | tail (1)        |
  *
  * The sources of one fish, a list for each kind of target. The kernel (kernel.h) has a pair of constants for targets in
- * the own strip and for all other targets:
+ * the strip of the same fish, and another for all other targets:
  *
  *     own control points        own: bound vortices, and legs at the control points; wake, point by point, tapered
  *     own midpoints, own tail   the middle of every stretch, at midpoints not with force: reactive; point vortices: the
  *                               queue, and at the tail the bound vortices
  *     bodies of other fish      body: control points, or bound vortices; the middle of every stretch, or the queue
- *     own and other wakes       body, for the own markers tapered; markers, or the queue
- *     images in walls           of all fish, including the own, as for other fish
+ *     own and other wakes       body, for its own markers tapered; markers, or the queue
+ *     images in walls           of all fish, including itself, as for other fish
  *
  * Smoothing: flow_square. Fish of equal length form a class, whose sources and targets have the same smoothing. */
 #ifndef FLOW_H
@@ -33,7 +33,7 @@ enum { N_LEG_SUMS = 7 };
 
 /* The sources of one fish. */
 struct flow_fish {
-    struct sheet wake;    /* for the own control points, and for all other targets */
+    struct sheet wake;    /* for control points of this fish, and for all other targets */
     struct sources own;   /* bound vortices, then legs at control points, if the kernel has legs */
     struct sources body;  /* with integrals of the sheet: control points, each with the circulation of its interval and
                              its leg; else the bound vortices */
@@ -82,7 +82,7 @@ struct flow {
     /* div u, gradient of div u; a of the edge force, gradient of a, one component after the other       (n_points) */
     double *div, *div_x, *div_y, *edge, *edge_gradient;
     double *image_u, *image_v, *image_div; /* of all images, after flow_images                  (n_points) */
-    double *legs[N_LEG_SUMS];              /* workspace: velocities of the own legs at control points (n_points) */
+    double *legs[N_LEG_SUMS];              /* workspace: velocities of a fish's legs at its control points (n_points) */
 
     struct flow_fish *fish; /* (n_fish) */
     int n_images;

@@ -51,7 +51,7 @@ void flow_select_by_tree(struct flow *flow, bool at_wakes, const struct range *t
             at_wakes ? (i < 2 ? BODY_AT_WAKE : WAKE_AT_WAKE) : (i < 2 ? BODY_AT_BODY : WAKE_AT_BODY), i % 2};
         for (int c = 0; c < flow->n_classes; c++) {
             for (int k = 0; k < flow->n_classes; k++) {
-                // the tree includes the own sources of a fish, which are then subtracted, except of wakes without legs
+                // the tree includes a fish's own sources, which are then subtracted, except of wakes without legs
                 const bool keeps_own = sum.of_images || (sum.pair == WAKE_AT_WAKE && !flow->kernel->has_legs);
                 int n_targets = 0, n_sources = 0;
                 double own = 0;
@@ -142,7 +142,7 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, const
     const struct kernel_pair smooth = flow->kernel->own(fish->strip_depth, wake_square);
     const struct sources *const seen = &of->wake.middles.sources;
 
-    // control points: all sources of the own body, and the wake of a sheet, with legs
+    // control points: all sources of this body, and the wake of a sheet, with legs
     struct targets at = points_of(flow, all, chunk->fish, control);
     if (fish->depth_varies && control.n > 0) {
         at.edge = flow->edge + control.first;

@@ -54,13 +54,13 @@ static struct targets markers_of(const struct flow *flow, int f, struct range wh
                             .div = flow->wake_div + first};
 }
 
-// whether the own wake acts like any other: with one pair of constants, and in a sum by the tree
+// whether a wake acts on itself like any other: with one pair of constants, and in a sum by the tree
 static bool own_is_in_tree(const struct flow *flow, int f) {
     const struct flow_sum sum = {WAKE_AT_WAKE, false};
     return !flow->kernel->has_legs && flow_is_by_tree(flow, f, f, &sum);
 }
 
-// set the velocity of the own wake at all markers of a fish
+// set the velocity at all markers of a fish induced by its wake
 static void induce_own_wake(const struct flow *flow, int f) {
     const struct flow_class *const class = &flow->class[flow->class_of[f]];
     const struct kernel_pair smooth =
@@ -71,8 +71,8 @@ static void induce_own_wake(const struct flow *flow, int f) {
     if (!own_is_in_tree(flow, f)) kernel_induce_mutual(&smooth, &flow->fish[f].markers, &at);
 }
 
-// add the velocity of the own body: with the smoothing of the sheet tapered near the tail; at the newborn marker the
-// velocity is evaluated h/(2 pi) behind the tail
+// add the velocity induced by the body that shed the markers: with the smoothing of the sheet tapered near the tail; at
+// the newborn marker the velocity is evaluated h/(2 pi) behind the tail
 static void induce_own_body(const struct flow *flow, const struct state *state, int f, struct range which,
                             const struct targets *markers) {
     const struct fish *const fish = &flow->school->fish[f];
@@ -111,7 +111,7 @@ static void induce_own_body(const struct flow *flow, const struct state *state, 
     kernel_induce(&pair, body, (struct range){0, body->n}, &at);
 }
 
-// add the velocity of the external flow, of the own body and of all others
+// add the velocity of the external flow, of the body that shed the markers, and of all others
 static void induce_at_markers(const struct flow *flow, const struct state *state, int f, struct range which) {
     const struct school *const school = flow->school;
     const int first = flow->wake_range[f].first + which.first;

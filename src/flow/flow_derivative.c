@@ -212,7 +212,7 @@ static void four_add(struct four *four, const struct influence_block *block, con
     }
 }
 
-// bound vortices of a fish at a range of the own points
+// bound vortices of a fish at a range of its points
 static void derive_bound(const struct pass *pass, struct range points, const struct kernel_pair *pair) {
     const struct fish *const fish = &pass->flow->school->fish[pass->g];
     const struct sources *const own = &pass->flow->fish[pass->g].own;
@@ -237,7 +237,7 @@ static void derive_bound(const struct pass *pass, struct range points, const str
     }
 }
 
-// the body of fish g at a range of the points of fish f: only legs in the own strip, else the whole sources
+// the body of fish g at a range of the points of fish f: only legs in its own strip, else the whole sources
 static void derive_body(const struct pass *pass, struct range points, const struct kernel_pair *pair, double image) {
     const struct fish *const fish = &pass->flow->school->fish[pass->g];
     const struct flow_fish *const of = &pass->flow->fish[pass->g];
@@ -492,7 +492,7 @@ void flow_derivative(const struct flow *flow, int f, int g, struct influence_blo
     block->n_columns = flow_n_columns(&flow->school->fish[g]);
     derive_sources(flow, f, g, true, false, block);
 
-    // the points of a fish move with the own nodes in the field of all sources
+    // the points of a fish move with its nodes in the field of all sources
     if (f == g) derive_points(flow, f, block);
 }
 

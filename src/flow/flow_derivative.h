@@ -27,7 +27,7 @@ void flow_derivative(const struct flow *flow, int f, int g, struct influence_blo
  * vortex of unit circulation of fish g: columns gamma (M_g), circulation (1). Positions: as at the last velocity. */
 void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block);
 
-/* Fill a block of one column with the velocity at the points of fish f induced by the own nascent vortex or stretch of
+/* Fill a block of one column with the velocity at the points of fish f induced by its nascent vortex or stretch of
  * unit circulation. Positions: as at the last velocity. */
 void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block);
 

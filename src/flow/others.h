@@ -9,7 +9,7 @@
  *     near sources   are left to the sum of flow_at_bodies.c
  *
  * Which sources are far is decided at each event, from the state alone: the bits do not depend on threads or on a
- * resumed run. Images, the own body and the own wake are never far. */
+ * resumed run. Images, and the body and wake of the same fish, are never far. */
 #ifndef OTHERS_H
 #define OTHERS_H
 

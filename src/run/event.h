@@ -11,17 +11,17 @@
 #include "solver/initial_conditions.h"
 #include "state/state.h"
 
-/* Make the state at t = 0 consistent and perform the first event. Fails with STATUS_MEMORY or STATUS_SOLVER. */
+/* Make the state at t = 0 consistent and perform the first event. Fails with STATUS_SOLVER. */
 enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial);
 
 /* Perform the next event; the unknowns are given at the time of the event. *jumped: the unknowns are discontinuous at
- * the event, and the integrator has to restart. Fails with STATUS_MEMORY or STATUS_SOLVER. */
+ * the event, and the integrator has to restart. Fails with STATUS_SOLVER. */
 enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial, int *jumped);
 
 /* Account for bodies or wakes that a caller has changed at the event of the state: make the unknowns consistent, as at
  * an event with a jump, and evaluate the velocities of all vortices again. The next interval advances the vortices
  * with these velocities alone. velocities_are_given: the momenta follow from the velocities of the bodies, as at the
- * start; else the velocities follow from the momenta. The integrator has to restart. Fails with STATUS_MEMORY or
+ * start; else the velocities follow from the momenta. The integrator has to restart. Fails with
  * STATUS_SOLVER. */
 enum status event_change(struct state *state, struct residual *residual, struct initial_conditions *initial,
                          int velocities_are_given);

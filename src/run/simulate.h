@@ -48,14 +48,14 @@ const char *simulate_stopped_by(const volatile sig_atomic_t *stop);
 
 /* At an event: discard everything but state and totals (the integrator with history, the Jacobians with factors)
  * and create these parts again from state and totals. The simulation is then identical to a
- * simulation made by simulate_take_up. Fails with STATUS_MEMORY or STATUS_SOLVER; the simulation can then only be
+ * simulation made by simulate_take_up. Fails with STATUS_SOLVER; the simulation can then only be
  * freed. */
 enum status simulate_renew(struct simulation *simulation);
 
 /* Release the simulation with everything that the simulation owns. Accepts NULL. */
 void simulate_free(struct simulation *simulation);
 
-/* Integrate to the next event and perform the event. Fails with STATUS_SOLVER, STATUS_MEMORY, STATUS_STOPPED, or with
+/* Integrate to the next event and perform the event. Fails with STATUS_SOLVER, STATUS_STOPPED, or with
  * STATUS_CONTACT (bodies in contact, contact.action: stop); the state is then between two events. */
 enum status simulate_step(struct simulation *simulation);
 

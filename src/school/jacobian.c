@@ -81,7 +81,7 @@ void jacobian_add(const struct jacobian *jacobian, double factor, int n, const i
                   const int *column_number, double *matrix) {
     const struct school *const school = jacobian->school;
     for (int f = 0; f < school->n_fish; f++) {
-        // the own block
+        // the diagonal block
         const struct sparse *const own = jacobian->own[f];
         for (int c = 0; c < own->n; c++) {
             const int column = column_number[own->first + c];

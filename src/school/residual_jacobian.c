@@ -32,8 +32,8 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
     }
 }
 
-// add the rows of a fish to the own block of the fish: only entries that may differ from zero. The flow velocity at the
-// midpoint of an edge depends on the nodes of the edge and, with the own wake, on the tail node and the circulation
+// add the rows of a fish to its diagonal block: only entries that may differ from zero. The flow velocity at the
+// midpoint of an edge depends on the nodes of the edge and, with its wake, on the tail node and the circulation
 // shed through the nascent vortex; the flux at the tail depends on the nodes of the last two edges; with pressure, or
 // with images in walls, every row depends on every column.
 static void add_own_rows(const struct residual *residual, const struct fish *fish, const struct coupling_block *rows,
@@ -97,7 +97,7 @@ static void fish_jacobian(struct residual *residual, int f, double t, double cj,
     bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual), ramp_value(t, school->kutta_ramp), cj, u, v, y, own);
     control_jacobian(fish, &residual->state->control[f], t, t - residual->state->t, y, own);
 
-    // dependence through the flow velocity: on the own unknowns, then on the unknowns of coupled fish
+    // dependence through the flow velocity: on the unknowns of this fish, then on the unknowns of coupled fish
     flow_jacobian(residual, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
     contact_jacobian(residual->contact, f, f, y, &jacobian_scratch->rows);
     add_own_rows(residual, fish, &jacobian_scratch->rows, own);

@@ -20,7 +20,7 @@ static const double tolerance = 1e-14;
  * accept this norm after the last iteration. */
 static const double rounded = 1e-12;
 
-/* With momenta no equation but the own linear equation depends on an acceleration, and velocities are algebraic: their
+/* With momenta an acceleration appears only in its own linear equation, and velocities are algebraic: their
  * rounding errors in stiff forces must not prevent convergence. Factor on the scale of accelerations. */
 static const double loose = 1e6;
 

@@ -77,12 +77,11 @@ double steady_map_scale(const struct steady_map *map, struct steady_unknown unkn
 void steady_map_read(const struct steady_map *map, int n, const struct steady_unknown *unknown, double *value);
 
 /* Add increments to the quantities, solve for a consistent state and restart the integration. Fails with STATUS_SOLVER,
- * also if bodies overlap, or with STATUS_MEMORY. */
+ * also if bodies overlap. */
 enum status steady_map_add(struct steady_map *map, int n, const struct steady_unknown *unknown, const double *add);
 
 /* Save the state; return to a saved state and restart the integration. steady_map_save creates *state in the arena, a
- * child of the arena of the simulation, if NULL. Both fail with STATUS_MEMORY, steady_map_return also with
- * STATUS_SOLVER. */
+ * child of the arena of the simulation, if NULL. steady_map_return fails with STATUS_SOLVER. */
 enum status steady_map_save(struct arena *arena, const struct simulation *simulation, struct state **state);
 enum status steady_map_return(struct simulation *simulation, const struct state *state);
 

@@ -79,14 +79,14 @@ enum status steady_search_correct(struct steady_problem *problem, const double *
 
 /* Copy the fish of a school into a new array *fish. Free fish get the speeds of the steady
  * state in the file; free fish other than the first also get the places relative to the first fish. The copies share
- * the memory of the original fish. Fails with STATUS_FILE if the file contains no steady state of this number of fish,
- * or with STATUS_MEMORY; *fish is then NULL. */
+ * the memory of the original fish. Fails with STATUS_FILE if the file contains no steady state of this number of fish;
+ * *fish is then NULL. */
 enum status steady_start_read(struct arena *arena, const char *path, const struct school_parameters *school,
                               struct fish_parameters **fish);
 
 /* Set the positions of the free nodes to the shapes of an equilibrium in a file, relative to the nose and to the
  * prescribed direction, in body lengths. arena: for scratch; y: all unknowns of the school. Fails with STATUS_FILE if
- * the bodies in the file have other numbers of nodes, or with STATUS_MEMORY. */
+ * the bodies in the file have other numbers of nodes. */
 enum status steady_start_shapes(struct arena *arena, const char *path, const struct school *school, double *y);
 
 // ---- steady_static.c: the equilibrium of passive bodies in a stream: `shoal steady` of a case without a beat.
@@ -101,7 +101,7 @@ enum status steady_static_refuse(const struct school *school);
 /* Bring a simulation from the initial state to the equilibrium and fill *found; the caller allocates found->fish. Start
  * from the shapes of another equilibrium in the file from. If from is NULL, has other bodies or gives no solution,
  * increase the stream in steps from rest. Fails with STATUS_SOLVER if no equilibrium exists; the message gives the
- * largest stream with an equilibrium. Fails also with STATUS_MEMORY or STATUS_STOPPED. */
+ * largest stream with an equilibrium. Fails also with STATUS_STOPPED. */
 enum status steady_static_find(struct simulation *simulation, const char *from, struct steady_values *found);
 
 // ---- steady_modes.c: growth and decay of small disturbances: modes of the bodies for an equilibrium, multipliers for
@@ -110,7 +110,7 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
 /* Fill the exponents of an equilibrium; the state of the simulation is restored on success. Hold the bodies while a
  * wake of zero strength is convected downstream, then find the modes with solver/modes.h. No exponents with
  * pressure.span: finite, if the state jumps at events (wake.shedding: impulsive), without a stream, or without
- * shedding. Fails with STATUS_MEMORY, STATUS_SOLVER or STATUS_STOPPED. */
+ * shedding. Fails with STATUS_SOLVER or STATUS_STOPPED. */
 enum status steady_modes_find(struct simulation *simulation, struct steady_values *found);
 
 /* Fill the exponents of a beat from the multipliers and the period, s. */
@@ -118,7 +118,7 @@ void steady_modes_of_multipliers(struct steady_values *found, double period);
 
 /* Find the multipliers at the current state of the simulation, by decreasing absolute value (n_unknowns). The state is
  * restored on success. way: step to the fixed point of the linearised map, over the scales of the unknowns
- * (n_unknowns). *n_beats: number of beats simulated. Fails with STATUS_SOLVER or STATUS_MEMORY. */
+ * (n_unknowns). *n_beats: number of beats simulated. Fails with STATUS_SOLVER. */
 enum status steady_multipliers_find(struct steady_problem *problem, double *real, double *imaginary, double *way,
                                     int *n_beats);
 
