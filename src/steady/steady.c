@@ -227,8 +227,14 @@ static enum status find_and_write(struct run *run) {
 
     const enum status status = steady_find(run, is_static);
     if (status == STATUS_STOPPED && !is_static) {
-        status_fail(status, "stopped %s in beat %d of the search; a search cannot be resumed: start the search again",
-                    simulate_stopped_by(options->stop), run->problem.map.n_beats + 1);
+        const struct steady_map *const map = &run->problem.map;
+        char found[128] = "";
+        if (map->n_beats > 0) {
+            snprintf(found, sizeof found, ", at a speed of %.4g m/s with a residual change per beat of %.2g",
+                     map->last[0].speed, steady_map_residual(map));
+        }
+        status_fail(status, "stopped %s in beat %d of the search%s; a search cannot be resumed: start the search again",
+                    simulate_stopped_by(options->stop), map->n_beats + 1, found);
     }
 
     if (status == STATUS_OK) {

@@ -210,9 +210,11 @@ static enum status report_drift(const struct steady_problem *problem, const char
     const char *const ahead = drift[0] > 0 ? "ahead" : "back", *const aside =
                                                                    drift[1] > 0 ? "to the left" : "to the right";
     return status_fail(STATUS_SOLVER,
-                       "%s: drift: after release, %s drifts %s relative to %s by %.2g lengths per beat, %.2g m/s",
+                       "%s: drift: after release, %s drifts %s relative to %s by %.2g lengths per beat, %.2g m/s, from "
+                       "the place (%.3g, %.3g) m, ahead and to the left",
                        first, school->fish[fastest].name, is_along ? ahead : aside, school->fish[0].name, most,
-                       most * school->fish[fastest].length / map->period);
+                       most * school->fish[fastest].length / map->period, map->last[fastest].place[0],
+                       map->last[fastest].place[1]);
 }
 
 enum status steady_reason_find(struct steady_problem *problem) {
