@@ -10,6 +10,8 @@
     plot.py pressure RUN.nc [PICTURE]  the jump of the pressure along the bodies over the last beat (force: pressure)
     plot.py school RUN.nc [PICTURE]    polarisation, distances to the nearest neighbour and contacts over time
     plot.py field  FIELD.nc [PICTURE]  vorticity (--speed: speed) and streamlines, from a file of `shoal field`
+
+For a journal --style paper adds letters to the panels and makes the figure 170 mm wide, or --width 85.
 """
 
 import argparse
@@ -97,6 +99,8 @@ def parse(arguments):
         options[kind] = kinds.add_parser(kind, help=words)
         options[kind].add_argument("results", metavar="RUN.nc")
         options[kind].add_argument("picture", metavar="PICTURE", nargs="?", help="default: RUN.png in this folder")
+        options[kind].add_argument("--style", choices=("screen", "paper"), default="screen", help="paper: letters on the panels")
+        options[kind].add_argument("--width", type=float, metavar="MM", help="of --style paper: one column 85, two 170 (170)")
     options["swim"].add_argument("--times", type=float, nargs="+", metavar="T", help="one panel per time [s]")
     options["swim"].add_argument(
         "--limits", type=float, nargs=4, metavar=("X0", "X1", "Y0", "Y1"), help="the window shown [m]"
@@ -126,6 +130,8 @@ def parse(arguments):
         parser.parse_args(arguments)  # prints help or what is missing, and ends
     check_options(arguments[0], options, arguments[1:])
     chosen = options[arguments[0]].parse_intermixed_args(arguments[1:])  # options and names in any order
+    if chosen.width is not None and (chosen.style != "paper" or not 40 <= chosen.width <= 400):
+        stop("--width: from 40 to 400 mm, with --style paper", EXIT_USAGE)
     return argparse.Namespace(kind=arguments[0], **vars(chosen))
 
 
@@ -162,6 +168,8 @@ def main(arguments):
             stop(error, EXIT_USAGE)
         except DAMAGE as error:
             stop(f"{options.results}: cannot be drawn, it may be damaged ({type(error).__name__}: {error})", EXIT_FILE)
+        if options.style == "paper":
+            plot.paper(figure, options.width or 170)
         save(figure, picture)
     print(picture)
 

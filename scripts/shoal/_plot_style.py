@@ -161,6 +161,40 @@ def colour_bar(figure, mappable, panels, label, **options):
     return bar
 
 
+# ---- figures of a paper
+
+MILLIMETRES = 25.4  # of an inch
+NARROW = 120  # below this width text is smaller, and a legend has two columns [mm]
+
+
+def paper(figure, width=170):
+    """Make a figure ready for a journal: the width in millimetres that is left after trimming (85: one column, 170: two),
+    and letters on the panels if there are several."""
+    shown = [axes for axes in figure.axes if axes.get_visible() and axes.get_label() != "<colorbar>"]
+    for i, axes in enumerate(shown if len(shown) > 1 else []):
+        axes.annotate(f"({chr(ord('a') + i % 26)})", (0, 1), (-4, 3), xycoords="axes fraction", textcoords="offset points",
+                      ha="right", va="bottom", fontweight="bold")
+    was, height = figure.get_size_inches()
+    target = width / MILLIMETRES
+    figure.set_size_inches(target, height * max(target / was, 0.8))
+    for text in figure.findobj(matplotlib.text.Text) if width < NARROW else []:
+        text.set_size(0.8 * text.get_size())
+    for axes in shown if width < NARROW else []:  # a legend in one row is too long
+        legend = axes.get_legend()
+        if legend and len(legend.get_texts()) > 1:
+            axes.legend(legend.legendHandles, [text.get_text() for text in legend.get_texts()], loc="lower left", ncol=2,
+                        bbox_to_anchor=(0, 1.02), borderpad=0, columnspacing=1, fontsize=6)
+            axes.set_title(axes.get_title(), pad=8 * -(-len(legend.get_texts()) // 2) + 4)
+    for _ in range(3):  # the layout changes with the size
+        figure.canvas.draw()
+        legends = [axes.get_legend() for axes in shown if axes.get_legend()]
+        box = figure.get_tightbbox(bbox_extra_artists=[*figure.get_default_bbox_extra_artists(), *legends])
+        missing = target - box.width - 2 * STYLE["savefig.pad_inches"]
+        size = figure.get_size_inches()
+        figure.set_size_inches(max(size[0] + missing, target / 3), size[1])
+    return figure
+
+
 # ---- scales of axes
 
 

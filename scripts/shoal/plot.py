@@ -23,7 +23,7 @@ from ._files import Results, kind_of
 from ._library import CaseError, FileError, kind as kind_of_value
 from ._plot_style import (
     BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, MANY, PATH, PHASES, RED, STYLE, WIDTH, Wall, calm, colour_bar, draw_bands,
-    matplotlib, unit_text, with_unit,
+    matplotlib, paper, unit_text, with_unit,
 )
 
 from matplotlib import pyplot
@@ -31,7 +31,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.transforms import ScaledTranslation
 
-__all__ = ["swim", "gait", "time", "forces", "pressure", "school", "field", "study", "STYLE"]
+__all__ = ["swim", "gait", "time", "forces", "pressure", "school", "field", "study", "paper", "STYLE"]
 
 NAMED = 30  # the names of more fish than these would hide the fish
 MOST_PANELS = 24  # of a picture with a panel per fish

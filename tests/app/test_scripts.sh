@@ -84,6 +84,13 @@ draws plot.py gait run.nc gait.svg
 draws plot.py time run.nc --balance time.pdf
 draws plot.py run.nc default.png
 draws plot.py forces run.nc --beats 1 forces.png
+draws plot.py time run.nc --style paper -- two_columns.png
+draws plot.py forces run.nc --style paper --width 85 -- one_column.png
+check "a figure of a paper has its width" eval '/usr/bin/python3 -c "
+from matplotlib import image
+widths = [image.imread(name).shape[1] / 200 * 25.4 for name in (\"two_columns.png\", \"one_column.png\")]
+assert abs(widths[0] - 170) < 0.5 and abs(widths[1] - 85) < 0.5, widths"'
+refuses 2 "--width: from 40 to 400 mm, with --style paper" plot.py time run.nc --width 85 -- no.png
 "$program" field run.nc --grid 60,40 -q
 "$program" run "$root/cases/demo.yaml" -q -o pressure.nc --set time.end=1 --set "fish[0].force=pressure"
 draws plot.py pressure pressure.nc along.png
