@@ -38,15 +38,6 @@ static enum status study_read_number(const char *option, const char *text, doubl
     return status_fail(STATUS_CASE, "%s %s: expects a number above 0", option, text);
 }
 
-/* Read one member, "3", or a range of members, "3-7". */
-static enum status read_range(const char *text, int *first, int *last) {
-    int length = 0;
-    const int n = sscanf(text, "%9d-%9d%n", first, last, &length);
-    if (n == 1 && sscanf(text, "%*d%n", &length) == 0) *last = *first;
-    if (n >= 1 && text[length] == '\0' && *first >= 0 && *last >= *first) return STATUS_OK;
-    return status_fail(STATUS_CASE, "--members %s: expects the number of a member, or a range such as 0-9", text);
-}
-
 static enum status study_options_from(const struct request *request, const char *folder, struct progress *progress,
                                       struct study_options *options) {
     *options = (struct study_options){.folder = folder,
@@ -58,9 +49,16 @@ static enum status study_options_from(const struct request *request, const char 
                                       .stop = main_stop_signal()};
     if (request->processes) TRY(read_count("-j", request->processes, &options->n_processes));
     if (request->limit) TRY(study_read_number("--limit", request->limit, 0, &options->limit));
-    if (request->members) TRY(read_range(request->members, &options->first, &options->last));
     if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
-    return STATUS_OK;
+    if (!request->members) return STATUS_OK;
+
+    // one member, "3", or a range of members, "3-7"
+    int length = 0, *const first = &options->first, *const last = &options->last;
+    const int n = sscanf(request->members, "%9d-%9d%n", first, last, &length);
+    if (n == 1 && sscanf(request->members, "%*d%n", &length) == 0) *last = *first;
+    if (n >= 1 && request->members[length] == '\0' && *first >= 0 && *last >= *first) return STATUS_OK;
+    return status_fail(STATUS_CASE, "--members %s: expects the number of a member, or a range such as 0-9",
+                       request->members);
 }
 
 /* Tables and warnings of a study. */

@@ -53,16 +53,12 @@ void say_progress_start(struct progress *progress) {
     *progress = (struct progress){.terminal = isatty(STDERR_FILENO), .drawn_at = -1};
 }
 
-/* The columns of the terminal; 80 if unknown. */
-static int terminal_width(void) {
-    struct winsize size;
-    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
-
 /* Print the parts of a line, the most important first: on a terminal as many as fit into its width, without the last
  * column, where some terminals begin a new line; all in a log. */
 static void progress_print(struct progress *progress, int n, char part[][PART_BYTES]) {
-    const int width = progress->terminal ? terminal_width() - 1 : INT_MAX;
+    struct winsize size;
+    const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+    const int width = progress->terminal ? columns - 1 : INT_MAX;
     int column = 0;
     if (progress->terminal) fputc('\r', stderr);
 

@@ -18,14 +18,6 @@ _Static_assert((int)SHOAL_USAGE == STATUS_CASE && (int)SHOAL_FILE == STATUS_FILE
                    (int)SHOAL_MEMORY == STATUS_MEMORY && (int)SHOAL_SOLVER == STATUS_SOLVER,
                "public and internal status numbers agree");
 
-// fail if the run cannot step
-static enum status check_can_step(const struct shoal *run, const char *function) {
-    TRY(handle_check_alive(run, function));
-    if (run->simulation->state->event < run->simulation->n_events) return STATUS_OK;
-    return status_fail(STATUS_CASE, "%s: the run is at its end, t = %g s: increase time.end", function,
-                       run->simulation->state->t);
-}
-
 // ---- the life of a run
 
 /* The case of a new run: a path, or a text that is not NULL. */
@@ -166,7 +158,11 @@ static enum status step_simulation(struct shoal *run, const void *data) {
 }
 
 int shoal_step(struct shoal *run) {
-    TRY(check_can_step(run, __func__));
+    TRY(handle_check_alive(run, __func__));
+    if (run->simulation->state->event >= run->simulation->n_events) {
+        return status_fail(STATUS_CASE, "%s: the run is at its end, t = %g s: increase time.end", __func__,
+                           run->simulation->state->t);
+    }
     handle_forget_row(run);
     enum status status = handle_call(run, step_simulation, NULL);
     if (status != STATUS_OK) {

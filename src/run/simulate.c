@@ -190,7 +190,7 @@ enum status simulate_step(struct simulation *simulation) {
         initial_conditions_listen(simulation->consistent, simulation->stop);
         status = event_next(state, simulation->residual, simulation->consistent, &jumped);
         if (status == STATUS_OK) integrator->count(simulation->solver, &simulation->totals);
-        if (status == STATUS_OK && jumped) status = integrator->restart(simulation->solver);
+        if (status == STATUS_OK && jumped && integrator->restart) status = integrator->restart(simulation->solver);
     }
 
     return status == STATUS_SOLVER ? simulation_explain(simulation, status) : status;

@@ -31,7 +31,8 @@ struct integrator_options {
 
 /* A family of methods. A solver advances y and yp of a state in place, and reads the wakes through the residual. */
 struct integrator {
-    /* Create a solver for the present state, which must be consistent. Fails with STATUS_SOLVER. */
+    /* Create a solver for the present state, which must be consistent; NULL without a history. Fails with
+     * STATUS_SOLVER. */
     enum status (*create)(struct arena *arena, void **solver, struct residual *residual, struct state *state,
                           const struct integrator_options *options);
 
@@ -40,7 +41,8 @@ struct integrator {
      * STATUS_STOPPED at any time between the two events; never with STATUS_RETRY. */
     enum status (*advance)(void *solver, double t, const volatile sig_atomic_t *stop);
 
-    /* Discard the history after a jump of the state, which must be consistent. Fails with STATUS_SOLVER. */
+    /* Discard the history after a jump of the state, which must be consistent; NULL without a history. Fails with
+     * STATUS_SOLVER. */
     enum status (*restart)(void *solver);
 
     void (*count)(const void *solver, struct integrator_counts *counts);

@@ -212,12 +212,6 @@ static void verlet_count(const void *data, struct integrator_counts *counts) {
     *counts = ((const struct verlet *)data)->counts;
 }
 
-// Verlet has no history
-static enum status verlet_restart(void *data) {
-    (void)data;
-    return STATUS_OK;
-}
-
 static enum status verlet_unstable(const struct verlet *solver, double t) {
     return status_fail(
         STATUS_SOLVER,
@@ -290,4 +284,4 @@ static enum status verlet_advance(void *data, double t, const volatile sig_atomi
 }
 
 const struct integrator one_step_verlet = {
-    .create = verlet_create, .advance = verlet_advance, .restart = verlet_restart, .count = verlet_count};
+    .create = verlet_create, .advance = verlet_advance, .count = verlet_count};

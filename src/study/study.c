@@ -306,15 +306,6 @@ static enum status lock_members(struct study *study) {
     }
 }
 
-// remove the empty lock file unless other studies hold locks
-static void unlock_members(struct study *study) {
-    struct stat facts;
-    if (study->lock < 0) return;
-    const bool is_last = durable_lock(study->lock, 0, 0) != EAGAIN;
-    if (is_last && fstat(study->lock, &facts) == 0 && facts.st_size == 0) unlink(study->lock_path);
-    close(study->lock);
-}
-
 static enum status plan_and_run(struct study *study) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct study_options *const options = study->options;
@@ -350,7 +341,15 @@ enum status study_run(const struct case_values *values, const struct study_optio
     if (study.is_masked) sigprocmask(SIG_SETMASK, &study.mask, NULL);
     *n_failed = study.progress.n_failed;
     if (study.report) munmap(study.report, (size_t)study.n_jobs * sizeof *study.report);
-    unlock_members(&study);
+
+    // remove the empty lock file unless other studies hold locks
+    struct stat facts;
+    if (study.lock >= 0) {
+        const bool is_last = durable_lock(study.lock, 0, 0) != EAGAIN;
+        if (is_last && fstat(study.lock, &facts) == 0 && facts.st_size == 0) unlink(study.lock_path);
+        close(study.lock);
+    }
+
     arena_free(arena);
     return status;
 }
