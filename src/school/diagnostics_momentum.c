@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mathematics.h"
-#include "body/clamp.h"
+#include "body/rod.h"
 #include "control/control.h"
 #include "fish/fish_motion.h"
 #include "flow/flow.h"

@@ -5,7 +5,6 @@
 
 #include "base/mathematics.h"
 #include "base/parallel.h"
-#include "body/clamp.h"
 #include "body/rod.h"
 #include "contact/clearance.h"
 #include "fish/fish.h"

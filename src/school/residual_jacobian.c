@@ -4,7 +4,6 @@
 
 #include "base/mathematics.h"
 #include "base/parallel.h"
-#include "body/clamp.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 #include "force/bound_sheet.h"

@@ -1,6 +1,4 @@
 /* field_row.c: from the variables of a result file back to a state. */
-#include "view/field_row.h"
-
 #include <limits.h>
 #include <math.h>
 #include <stdbool.h>
@@ -12,6 +10,7 @@
 #include "force/bound_sheet.h"
 #include "result/netcdf.h"
 #include "result/result_table.h"
+#include "view/field_file.h"
 
 /* A result file that is being read. */
 struct reading {

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "body/clamp.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 #include "school.h"
