@@ -150,7 +150,7 @@ def attack_by_signals():
         command, number = commands[i % len(commands)], random.choice([signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
         process = subprocess.Popen([program, *command, "-q"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, start_new_session=True)
-        time.sleep(random.uniform(0, 2))
+        time.sleep(random.uniform(0.2, 2))  # the program listens after some milliseconds
         process.send_signal(number)
         begun = time.monotonic()
         try:
