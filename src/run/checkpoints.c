@@ -35,8 +35,7 @@ static enum status checkpoint_places_read(struct checkpoints *checkpoints, const
         snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), at);
         const bool is_number = text_number(word, &time);
         const double event = is_number ? round(time / interval) : 0;
-        if (!is_number || !(fabs(time - event * interval) <= 1e-9 * time) || time < 0 ||
-            time > values->time.end + interval / 2) {
+        if (!is_number || !(fabs(time - event * interval) <= 1e-9 * time) || time > values->time.end + interval / 2) {
             return status_fail(STATUS_CASE,
                                "--checkpoint-at: '%s' is not the time of an event: an integer multiple of "
                                "time.shedding_interval, %.9g s, up to time.end, %.9g s",

@@ -283,5 +283,4 @@ static enum status verlet_advance(void *data, double t, const volatile sig_atomi
     return STATUS_OK;
 }
 
-const struct integrator one_step_verlet = {
-    .create = verlet_create, .advance = verlet_advance, .count = verlet_count};
+const struct integrator one_step_verlet = {.create = verlet_create, .advance = verlet_advance, .count = verlet_count};

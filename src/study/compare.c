@@ -323,16 +323,9 @@ static void cost_row(struct table *table, const struct case_values *study, int n
     name_method(study, point[0].member, name);
     table_cell(table, "%s", name);
 
-    // the last setting with an error below the common one
+    // the last setting with an error below the common one, which the first setting reaches
     int i = n - 1;
-    while (i >= 0 && point[i].error > error) i--;
-    if (i < 0) {
-        name_setting(study, point[0].member, fine);
-        for (int c = 0; c < 4; c++) table_cell(table, "%s", "");
-        table_cell(table, "not reached: error %.1e with %s", point[0].error, fine);
-        table_row(table);
-        return;
-    }
+    while (i > 0 && point[i].error > error) i--;
 
     // if the errors of all settings are below, the cheapest setting gives an upper bound
     const bool is_bound = i == n - 1;

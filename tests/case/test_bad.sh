@@ -163,6 +163,7 @@ set_fails set_index_huge 'fish[99999999999999999999]: there is no such fish' 'fi
 set_fails set_index_negative 'fish[-1].nodes: expects the number of a fish' 'fish[-1].nodes=7'
 set_fails set_index_missing 'fish.nodes: write fish[0].nodes for one fish, or fish[*].nodes for every fish' fish.nodes=7
 set_fails set_index_after_a_dot '--set fish.0.length=2: error: fish.0.length: write fish[0].length' fish.0.length=2
+set_fails set_index_for_a_key '--set fish.0=2: error: fish.0: write fish[0]' fish.0=2
 set_fails set_star_after_a_dot 'fish.*.wave.phase: write fish[*].wave.phase' 'fish.*.wave.phase=2'
 set_fails set_in_another_section 'unknown key here; the key belongs to fish[0].wave or fish[0].motion' 'fish[0].body.frequency=2'
 set_fails set_in_one_other_section 'unknown key here; the key belongs to fish[0].body' 'fish[0].wave.modulus=2'
@@ -174,6 +175,7 @@ set_fails set_below_a_value 'time.end.x: time.end is a value and has no keys' ti
 set_fails set_mistyped '--set time.end=soon: error: time.end: expects a number in s, got '"'soon'" time.end=soon
 set_fails set_out_of_range '--set fish[*].nodes=3: error: fish[1].nodes: must be from 4 to 10000, got 3' 'fish[*].nodes=3'
 set_fails set_empty '--set time.end=: error: time.end: expects a number in s, got nothing' time.end=
+set_fails set_blank '--set time.end= : error: time.end: expects a number in s, got nothing' 'time.end= '
 set_fails set_bad_yaml "needs ',' between values and ends with ']'" 'fish[0].start.position=[1'
 set_fails set_only_a_comment "expects a value after the '='" 'name=# eel'
 set_fails set_unknown_key_in_map "fish[0].wave.amplitud: unknown key; did you mean 'amplitude'?" 'fish[0].wave={amplitud: 1}'

@@ -147,6 +147,16 @@ TEST(derived_defaults_follow_what_they_derive_from) {
     case_free(&s);
 }
 
+// 170 events a second: other intervals are rounded to the nearest multiple, that of the wake to ten of them
+TEST(intervals_are_rounded_to_events) {
+    struct case_values s = parse(
+        "format: 1\ntime: {end: 10, checkpoint_interval: 0.102}\noutput: {wake_interval: 0.15}\n"
+        "fish: [{wave: {frequency: 1.7}}]\n");
+    NEAR(s.time.checkpoint_interval, 17 / 170.0, 0, 1e-14);
+    NEAR(s.output.wake_interval, 30 / 170.0, 0, 1e-14);
+    case_free(&s);
+}
+
 TEST(every_default_of_the_table_is_a_value_of_its_key) {
     struct case_values s = parse(minimal), published = parse_with(minimal, "preset=published", NULL, NULL);
     case_free(&s);

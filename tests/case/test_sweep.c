@@ -23,6 +23,15 @@ TEST(a_sweep_keeps_its_values_as_assignments_take_them) {
     case_free(&s);
 }
 
+TEST(values_in_beats_are_no_numbers) {
+    struct case_values s = parse(
+        "format: 1\ntime: {end: 1}\nfish: [{}]\n"
+        "sweep: [{key: wake.lifetime, values: [3, 4]}, {key: wake.decay, values: [1 beat, 1]}]\n");
+    assert_true(s.sweep[0].key[0].is_number);
+    assert_false(s.sweep[1].key[0].is_number);
+    case_free(&s);
+}
+
 TEST(members_are_numbered_with_the_last_axis_fastest) {
     struct case_values study = parse(zipped);
     assert_int_equal(sweep_n_members(&study), 6);

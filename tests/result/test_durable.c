@@ -25,6 +25,18 @@ int __wrap_fsync(int descriptor) {
     return __real_fsync(descriptor);
 }
 
+// a read is interrupted once, or ends too early
+static int read_is_interrupted, read_is_short;
+ssize_t __real_read(int descriptor, void *bytes, size_t n);
+ssize_t __wrap_read(int descriptor, void *bytes, size_t n);
+ssize_t __wrap_read(int descriptor, void *bytes, size_t n) {
+    if (read_is_short) return 0;
+    if (!read_is_interrupted) return __real_read(descriptor, bytes, n);
+    read_is_interrupted = 0;
+    errno = EINTR;
+    return -1;
+}
+
 static char folder[] = "/tmp/test_durable_XXXXXX", path[64], previous[64];
 
 static int set_up(void **state) {
@@ -323,6 +335,21 @@ TEST(a_name_that_is_not_on_the_disk_is_an_error) {
     folder_fails = 0;
     unlink(path);
     unlink(previous);
+}
+
+TEST(a_read_is_repeated_and_complete) {
+    put(path, "sound");
+    read_is_interrupted = 1;
+    holds(path, "sound");
+    assert_int_equal(read_is_interrupted, 0);
+    unsigned char *bytes;
+    size_t n;
+    struct arena *const arena = arena_create(NULL, "a test");
+    read_is_short = 1;
+    assert_int_equal(durable_read(arena, path, &bytes, &n), STATUS_FILE);
+    read_is_short = 0;
+    arena_free(arena);
+    unlink(path);
 }
 
 TEST(only_ordinary_files_are_read_and_a_pipe_is_not_waited_for) {
