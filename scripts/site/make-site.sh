@@ -25,7 +25,7 @@ sed -i 's|](README.md)|](index.md)|; s|](../README.md)|](../index.md)|' "$source
     printf '```\n\n```{toctree}\n:hidden:\n:caption: %s\n\n' Reference
     printf '%s\n' doc/api-python doc/api-c doc/model doc/numerics doc/article
     printf '```\n\n```{toctree}\n:hidden:\n:caption: %s\n\n' Evidence
-    printf '%s\n' doc/verification doc/performance doc/reliability
+    printf '%s\n' doc/validation doc/verification doc/performance doc/reliability
     printf '```\n\n```{toctree}\n:hidden:\n:caption: %s\n\n' Development
     printf '%s\n' doc/architecture doc/style CONTRIBUTING CHANGES
     printf '```\n'
