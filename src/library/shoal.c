@@ -100,7 +100,7 @@ static enum status close_record(struct shoal *run, const void *data) {
     const bool has_ended = run->simulation->state->event >= run->simulation->n_events;
     enum status status = has_ended ? STATUS_OK : STATUS_STOPPED;
     if (run->has_failed) status = status_fail(STATUS_SOLVER, "%s", run->failure);
-    if (run->simulation->residual) record_notes_write(run->record.file, run->simulation, NULL, NULL);
+    if (run->simulation->residual) record_notes_write(run->record.file, run->simulation, "", NULL, NULL);
 
     // record_close returns the status of the run if the file was closed without an error
     const enum status closed = record_close(&run->record, status);

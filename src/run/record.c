@@ -64,10 +64,10 @@ enum status record_close(struct record *record, enum status status) {
 
 // ---- notes about the whole run
 
-void record_notes_write(struct result_file *file, const struct simulation *simulation,
+void record_notes_write(struct result_file *file, const struct simulation *simulation, const char *found,
                         void (*warn)(const char *line, void *data), void *data) {
-    char line[WARNING_BYTES], lines[N_WARNINGS * (WARNING_BYTES + 1)];
-    size_t length = 0;
+    char line[WARNING_BYTES], lines[(N_WARNINGS + 4) * (WARNING_BYTES + 1)];
+    size_t length = (size_t)snprintf(lines, sizeof lines, "%s", found);
     for (enum warning w = 0; w < N_WARNINGS; w++) {
         if (!warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
                            simulation->residual->scratch, line))

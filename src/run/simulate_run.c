@@ -101,7 +101,7 @@ static enum status run_finish(struct run *run, enum status status) {
 
     // no notes for a run that was stopped or could not be renewed
     if (status != STATUS_STOPPED && run->simulation->residual) {
-        record_notes_write(run->record.file, run->simulation, run->options->warn, run->options->data);
+        record_notes_write(run->record.file, run->simulation, "", run->options->warn, run->options->data);
     }
     return record_close(&run->record, status);
 }

@@ -2,6 +2,7 @@
 #include "steady/steady.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include "result/target.h"
 #include "run/record.h"
 #include "school/diagnostics_energy.h"
+#include "school/warnings.h"
 #include "steady/steady_problem.h"
 
 /* Correct the state, at most CORRECTIONS times, while the estimated distance between the speed and the speed of the
@@ -22,6 +24,9 @@
 static const double far_away = 10, half = 0.5, farthest = 2;
 enum { CORRECTIONS = 6 };
 
+/* A symmetric gait without control that turns by more, in degrees per beat, swims in a circle. */
+static const double most_turn = 0.5;
+
 struct run {
     const struct case_values *values;
     const struct steady_options *options;
@@ -31,6 +36,7 @@ struct run {
     double *way; /* correction towards the fixed point, from the multipliers       (problem.n_unknowns) */
     struct steady_values found;
     struct record record;
+    char warnings[4 * WARNING_BYTES]; /* lines about the state that was found */
 };
 
 static void report_progress(const struct steady_problem *problem, void *data) {
@@ -150,19 +156,56 @@ static enum status steady_find_fixed_point(struct run *run) {
     }
     steady_modes_of_multipliers(&run->found, run->problem.map.period);
     run->found.n_beats = run->problem.map.n_beats;
-    TRY(write_beats(run));
+    return write_beats(run);
+}
 
-    // the integrator restarts at the first row; a restart error can exceed a small tolerance
+// add a line to the warnings of the result and tell it
+__attribute__((format(printf, 2, 3))) static void warn(struct run *run, const char *format, ...) {
+    char line[WARNING_BYTES];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    const size_t length = strlen(run->warnings);
+    snprintf(run->warnings + length, sizeof run->warnings - length, "%s%s", length > 0 ? "\n" : "", line);
+    if (run->options->warn) run->options->warn(line, run->options->data);
+}
+
+/* Warn of a state that a run would leave, of a gait that leads in a circle by itself, and of beats that do not repeat: the
+ * integrator restarts at the first row, and the error of the restart can exceed a small tolerance. */
+static void warn_of_state(struct run *run) {
+    const struct school *const school = run->simulation->school;
+    const struct steady_values *const found = &run->found;
     const double tolerance = run->values->steady.tolerance;
-    if (run->found.residual <= tolerance || !run->options->warn) return STATUS_OK;
-    char line[256];
-    snprintf(line, sizeof line,
+    if (found->residual > tolerance) {
+        warn(run,
              "the beats of the result change by %.2g per beat, more than steady.tolerance, %g: the state is unstable, "
-             "or the "
-             "integrator restarts with this error: lower solver.rtol",
-             run->found.residual, tolerance);
-    run->options->warn(line, run->options->data);
-    return STATUS_OK;
+             "or "
+             "the integrator restarts with this error: lower solver.rtol",
+             found->residual, tolerance);
+    }
+
+    const double largest = found->n_multipliers > 0 ? hypot(found->real[0], found->imaginary[0]) : 0;
+    if (largest > 1) {
+        warn(run,
+             "the steady state is unstable: a disturbance grows by the factor %.4g a beat (limit 1), so that a run "
+             "leaves "
+             "it; %s",
+             largest,
+             school->n_fish > 1 ? "search from another place, or hold the places by control"
+                                : "a deeper body, cross-flow drag (drag.normal) or control.law: course stabilises it");
+    }
+
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const double turn = found->fish[f].turn;
+        if (fish->control.law != CONTROL_NONE || fish->control.bias != 0 || !(fabs(turn) > most_turn)) continue;
+        warn(run,
+             "%s swims in a circle: it turns by %.3g degrees a beat (limit %g) without control, and its speed is that "
+             "on "
+             "the circle; a deeper body, cross-flow drag (drag.normal) or control.law: course keeps it straight",
+             fish->name, turn, most_turn);
+    }
 }
 
 // the record of the result is closed after a lack of memory too
@@ -239,7 +282,8 @@ static enum status find_and_write(struct run *run) {
 
     if (status == STATUS_OK) {
         result_file_steady(run->record.file, run->simulation->school, &run->found);
-        record_notes_write(run->record.file, run->simulation, options->warn, options->data);
+        if (!is_static) warn_of_state(run);
+        record_notes_write(run->record.file, run->simulation, run->warnings, options->warn, options->data);
     }
 
     // rename the temporary file to the result file and close the file; a failed search keeps an earlier result
