@@ -24,8 +24,8 @@ struct setup {
     uint64_t seed;             /* of the random numbers */
 };
 
-/* A text with this line has the defaults of the program. */
-#define SCHOOL_DEFAULTS "# defaults\n"
+/* A text with this line has the defaults of the program, with a thicker body. */
+#define SCHOOL_DEFAULTS "include: [tests/data/thick.yaml]\n"
 
 /* "format: 1", a name and, without SCHOOL_DEFAULTS or a preset, the defaults of the article's model (a small fish:
  * tests/data/small.yaml) go before the text. Fails the test with the message of an error. A school lives

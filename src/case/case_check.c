@@ -528,7 +528,6 @@ static const struct {
                 {"fish.control.feedforward", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING},
                 {"fish.control.damping", 1U << CONTROL_COURSE},
                 {"fish.control.slow", 1U << CONTROL_COURSE},
-                {"fish.control.course_filter", 1U << CONTROL_COURSE},
                 {"fish.control.rate", 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE}};
 
 static void check_control(const struct check *check) {
@@ -563,6 +562,8 @@ static void check_control(const struct check *check) {
     const bool has_filter = fabs(control->filter - period) > 1e-9 * period;  // durations are rounded
     complain_if(!has_moment(control) && has_filter, check, "fish.control.filter",
                 "has no effect without feedforward: remove the key");
+    complain_if(control->law != CONTROL_COURSE && fabs(control->course_filter - period / 4) > 1e-9 * period, check,
+                "fish.control.course_filter", "has no effect with 'law: %s': remove the key", law);
     complain_if(!has_points && is_given(check, "fish.control.acceptance_radius"), check,
                 "fish.control.acceptance_radius", "has no effect without control.waypoints: remove the key");
     const bool is_start = heading->n == 1 && !(fabs(heading->value[1] - fish->start_heading) > 0);

@@ -202,7 +202,7 @@ const char case_template[] =
     "      amplitude: 0.4     # rad, of the angle by which the muscle bends the body\n"
     "      frequency: 1       # Hz\n"
     "    body:\n"
-    "      modulus: 1e6       # Pa, Young's modulus: stiffer or softer body\n"
+    "      modulus: 1.5e6     # Pa, Young's modulus: stiffer or softer body\n"
     "  # a second fish half a length to the side:\n"
     "  # - {name: other, start: {position: [0, 0.5]}}\n"
     "\n"

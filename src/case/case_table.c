@@ -128,13 +128,20 @@ static void derive_sheet_points(const struct key_place *at) {
     at->fish->sheet_points = usual > of_depth ? usual : of_depth;
 }
 
-/* Set the times in beats: relaxation of the body, ramp of the wave, filter and ramp of the control. */
+/* Cross-flow separates from a free body; the flow of a held plate and of two dimensions is attached. */
+static void derive_normal_drag(const struct key_place *at) {
+    const bool is_held = (int)at->fish->motion.prescribed > PRESCRIBED_NONE;
+    set_default(&at->fish->drag.normal, at->fish->force != FORCE_PRESSURE || (fish_is_strip(at->fish) && !is_held));
+}
+
+/* Set the times in beats: relaxation of the body, ramp of the wave, filters and ramp of the control. */
 static void derive_periods(const struct key_place *at) {
     const double beat = beat_frequency(at->fish), frequency = at->fish->wave.frequency;
     const double period = frequency > 0 ? 1 / frequency : 0;
     set_default(&at->fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
     set_default(&at->fish->wave.ramp, period);
     set_default(&at->fish->control.filter, period);
+    set_default(&at->fish->control.course_filter, period / 4);
     set_default(&at->fish->control.ramp, period > 0 ? period / 2 : 1);
 }
 
@@ -298,7 +305,7 @@ const struct key case_table[] = {
 
     {"solver.method", METHOD, AT(solver.method), "ida", ANY, "", .meaning = "integration method: see below",
      .synonyms = "integrator scheme"},
-    {"solver.rtol", REAL, AT(solver.rtol), "1e-5", FROM_TO(1e-14, 0.1), "",
+    {"solver.rtol", REAL, AT(solver.rtol), "3e-5", FROM_TO(1e-14, 0.1), "",
      .meaning = "error allowed per step, over the scale of each unknown (doc/numerics.md, section 3)",
      .synonyms = "tolerance tol reltol relative_tolerance"},
     {"solver.order", INTEGER, AT(solver.order), NULL, FROM_TO(1, 5), "",
@@ -384,14 +391,14 @@ const struct key case_table[] = {
     {"fish.body.profile", CHOICE, IN_FISH(body.profile), "joukowski", ANY, "",
      .meaning = "thickness along the body: a Joukowski foil, uniform, or the lists thickness_table and depth_table",
      .words = WORDS("joukowski", "uniform", "table"), .synonyms = "shape"},
-    {"fish.body.thickness", REAL, IN_FISH(body.thickness), "0.2", BETWEEN(0, 1), "",
-     .meaning = "joukowski: parameter d of the foil; uniform: thickness over length"},
+    {"fish.body.thickness", REAL, IN_FISH(body.thickness), "0.1", BETWEEN(0, 1), "",
+     .meaning = "joukowski: parameter d of the foil; uniform: thickness over length", .published = "0.2"},
     {"fish.body.tail_thickness", REAL, IN_FISH(body.tail_thickness), NULL, FROM_BELOW(0, 1), "",
      .meaning = "joukowski: thickness at the tail over length; 0: a cusp, without convergence in the nodes",
      .derived = "0.04 with profile joukowski, else 0", .choice = {"fish.body.profile", "joukowski", 0.04, 0},
      .published = "0"},
-    {"fish.body.depth", REAL, IN_FISH(body.depth), "0.25", ABOVE(0), "",
-     .meaning = "depth of the body (its span, out of the plane of motion) over length"},
+    {"fish.body.depth", REAL, IN_FISH(body.depth), "0.2", ABOVE(0), "",
+     .meaning = "depth of the body (its span, out of the plane of motion) over length", .published = "0.25"},
     {"fish.body.thickness_table", NUMBERS, IN_FISH(body.thickness_table), "[]", ABOVE(0), "m",
      .meaning = "profile table: thickness of every edge", .synonyms = "height heights"},
     {"fish.body.depth_table", NUMBERS, IN_FISH(body.depth_table), "[]", ABOVE(0), "m",
@@ -401,7 +408,8 @@ const struct key case_table[] = {
      .words = WORDS("mean", "nodes"), .published = "nodes"},
     {"fish.body.density", REAL, IN_FISH(body.density), "1000", ABOVE(0), "kg m-3", .meaning = "density of the body",
      .synonyms = "rho rho_b", .published = "2000"},
-    {"fish.body.modulus", REAL, IN_FISH(body.modulus), "1e6", ABOVE(0), "Pa", .meaning = "Young's modulus of the body",
+    {"fish.body.modulus", REAL, IN_FISH(body.modulus), "1.5e6", ABOVE(0), "Pa",
+     .meaning = "Young's modulus of the body", .published = "1e6",
      .synonyms = "stiffness young youngs_modulus young_modulus elasticity rigidity e"},
     {"fish.body.second_moment", CHOICE, IN_FISH(body.second_moment), "ellipse", ANY, "",
      .meaning = "second moment of area; ellipse: of the elliptic cross-section; published: the formula of the article",
@@ -465,11 +473,13 @@ const struct key case_table[] = {
      .derived = "1.5 for a body with a wave, else 1"},
     {"fish.drag.form", REAL, IN_FISH(drag.form), NULL, ABOVE(0), "",
      .meaning = "skin boundary_layer: factor of the friction due to the thickness of the body",
-     .derived = "1 + 2 h/L + 60 (h/L)^4 with the largest thickness h of an edge", .synonyms = "form_factor"},
+     .derived = "of an elliptic body, or of a wing with pressure.span infinite (doc/model.md, section 9)",
+     .synonyms = "form_factor"},
     {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "",
      .meaning = "coefficient of the drag across the body: with force pressure, of the separated cross-flow",
-     .synonyms = "c_d cd lateral", .published = "0.5", .derived = "1, or 0 with force pressure",
-     .choice = {"fish.force", "pressure", 0, 1}, .follows = WORDS("fish.force")},
+     .synonyms = "c_d cd lateral", .published = "0.5",
+     .derived = "1, or 0 with force pressure and span infinite or a prescribed motion", .derive = derive_normal_drag,
+     .follows = WORDS("fish.force", "fish.pressure.span", "fish.motion.prescribed")},
     {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "",
      .meaning = "dependence of both drag forces on the velocity v: v |v|, or v (V1 + |v|)", .published = "quadratic",
      .words = WORDS("quadratic", "linear_quadratic")},
@@ -538,10 +548,12 @@ const struct key case_table[] = {
     {"fish.control.damping", REAL, IN_FISH(control.damping), "1", ANY, "",
      .meaning = "course: weight of the rate of change of the course, in rad per period",
      .synonyms = "k_d kd derivative"},
-    {"fish.control.slow", REAL, IN_FISH(control.slow), "0", FROM(0), "",
+    {"fish.control.slow", REAL, IN_FISH(control.slow), "0.1", FROM(0), "",
      .meaning = "course: speed in body lengths per period below which the course has less weight"},
-    {"fish.control.course_filter", REAL, IN_FISH(control.course_filter), "0", FROM(0), "s",
-     .meaning = "course: time constant of the filter of the rate of change of the course; 0: no filter"},
+    {"fish.control.course_filter", REAL, IN_FISH(control.course_filter), NULL, FROM(0), "s",
+     .meaning = "course: time constant of the filter of the rate of change of the course; 0: no filter",
+     .derived = "a quarter of a period, 0.25/wave.frequency (0 for frequency 0)", .derive = derive_periods,
+     .cause = "fish.wave.frequency"},
     {"fish.control.limit", REAL, IN_FISH(control.limit), "0.5", ABOVE(0), "",
      .meaning = "maximum of the steering bias"},
     {"fish.control.feedforward", REAL, IN_FISH(control.feedforward), "0", ANY, "",

@@ -81,7 +81,7 @@ static void body_fluid_set(struct fish *fish, const struct fish_parameters *from
     const bool wide = from->added_mass.extent == EXTENT_DEPTH, published = from->force == FORCE_PUBLISHED;
     const double density = fluid->density, reactive = from->force == FORCE_PRESSURE ? 0 : 1;
     const double at_transition = fluid->viscosity * drag->transition, l = fish->edge_length;
-    double thickest = 0;
+    double thickest = 0, largest = 0, surface = 0;
     fish->viscosity = fluid->viscosity;
     fish->force = from->force;
     fish->has_cusp = from->body.profile == PROFILE_JOUKOWSKI && from->body.tail_thickness <= 0;
@@ -112,11 +112,21 @@ static void body_fluid_set(struct fish *fish, const struct fish_parameters *from
             reactive * M_PI * density * from->added_mass.coefficient * across * across * l / 4 * square;
         fish->displaced_mass[k] = reactive * density * M_PI * h * w / 4 * l;
         thickest = fmax(thickest, h);
+
+        // S of an ellipse by the trapezoid rule of its perimeter
+        enum { N_ANGLES = 32 };
+        largest = fmax(largest, fmin(sqrt(h * w), 2 * h) / fish->length);
+        for (int i = 0; i < N_ANGLES; i++) {
+            const double along = cos(M_PI / 2 * (i + 0.5) / N_ANGLES), square = along * along;
+            surface += M_PI / 2 * sqrt(square + h / w * (h / w) * (1 - square)) / N_ANGLES / fish->n_edges;
+        }
     }
 
     // form factor, and the nose of an ellipse of the largest thickness
-    const double largest = thickest / fish->length;
-    fish->form = isnan(drag->form) ? 1 + 2 * largest + 60 * largest * largest * largest * largest : drag->form;
+    const double plane = thickest / fish->length;
+    const double of_fish = surface * (1 + 1.5 * pow(largest, 1.5) + 7 * pow(largest, 3));
+    const double of_wing = 1 + 2 * plane + 60 * pow(plane, 4);
+    fish->form = !isnan(drag->form) ? drag->form : fish_is_strip(from) ? of_fish : of_wing;
     fish->nose_radius = thickest * thickest / (2 * fish->length);
 
     // added mass shed at the tail

@@ -29,11 +29,14 @@ TEST(a_key_that_switches_other_defaults_is_noted_with_them) {
     // the keys of the row, and the keys that follow from these
     notes_are("wake.shedding=continuous",
               "--set wake.shedding=continuous: note: wake.shedding: changes the defaults of other keys: wake.taper 0, "
-              "wake.taper_beside 0, fish.force reactive, fish.pressure.span infinite, fish.drag.skin quadratic, "
-              "fish.drag.normal 1");
+              "wake.taper_beside 0, fish.force reactive, fish.pressure.span infinite, fish.drag.skin quadratic");
     notes_are("fish[0].force=reactive",
               "note: fish[0].force: changes the defaults of other keys: fish.pressure.span infinite, fish.drag.skin "
-              "quadratic, fish.drag.normal 1");
+              "quadratic");
+    notes_are("fish[0].pressure.span=infinite",
+              "fish[0].pressure.span: changes the defaults of other keys: fish.drag.normal 0");
+    notes_are("fish[0].motion.prescribed=head",
+              "fish[0].motion.prescribed: changes the defaults of other keys: fish.drag.normal 0");
     notes_are("sheet.curve=polygon", "note: sheet.curve: changes the defaults of other keys: fish.force reactive, ");
     notes_are("fish[0].control.waypoints=[[1, 1]]",
               "fish[0].control.waypoints: changes the defaults of other keys: fish.control.law course");
@@ -41,8 +44,8 @@ TEST(a_key_that_switches_other_defaults_is_noted_with_them) {
               "fish[0].wave.frequency: changes the defaults of other keys: fish.body.relaxation_time 0");
 
     // a written key has no default
-    notes_are("fish[0]={force: reactive, pressure: {span: infinite}, drag: {skin: quadratic, normal: 0.5}}", "");
-    notes_are("fish[0]={force: reactive, pressure: {span: infinite}, drag: {normal: 0.5}}",
+    notes_are("fish[0]={force: reactive, pressure: {span: infinite}, drag: {skin: quadratic}}", "");
+    notes_are("fish[0]={force: reactive, pressure: {span: infinite}}",
               "fish[0].force: changes the defaults of other keys: fish.drag.skin quadratic");
 
     // the usual value, another number, and the preset change nothing else
@@ -54,11 +57,11 @@ TEST(a_key_that_switches_other_defaults_is_noted_with_them) {
 
 TEST(a_key_that_fish_share_is_noted_once_with_the_defaults_that_follow) {
     static const char text[] =
-        "format: 1\ntime: {end: 3}\ndefaults: {fish: {force: reactive}}\nfish: [{}, {drag: {normal: 1}}, {}]\n";
+        "format: 1\ntime: {end: 3}\ndefaults: {fish: {force: reactive}}\nfish: [{}, {drag: {skin: quadratic}}, {}]\n";
     struct case_values values = parse(text);
     const char *const first = strstr(values.notes, ":3:26: note: fish[0].force");
     assert_non_null(first);
-    assert_non_null(strstr(first, "fish.drag.normal 1\n"));
+    assert_non_null(strstr(first, "fish.drag.skin quadratic\n"));
     assert_null(strstr(first, "fish[2]"));
     case_free(&values);
 }
@@ -79,6 +82,7 @@ TEST(every_default_that_follows_another_key_names_keys_of_the_table) {
 TEST(the_derived_filter_of_a_period_is_no_given_key) {
     struct case_values values = parse_with(minimal, "fish[0].wave.frequency=1.0001", NULL, NULL);
     NEAR(values.school.fish[0].control.filter, 1 / 1.0001, 0, 1e-14);
+    NEAR(values.school.fish[0].control.course_filter, 0.25 / 1.0001, 0, 1e-14);
     case_free(&values);
 }
 
@@ -111,10 +115,9 @@ TEST(a_fluid_without_friction_is_noted) {
 TEST(few_nodes_under_pressure_are_noted) {
     notes_are("fish[0]={nodes: 9, force: pressure}", "fish[0].nodes: 9: with force pressure, fewer than 17 nodes");
     notes_are("fish[0]={nodes: 17, force: pressure}", "");
-    notes_are("fish[0]={nodes: 9, force: reactive, pressure: {span: infinite}, drag: {skin: quadratic, normal: 1}}",
-              "");
+    notes_are("fish[0]={nodes: 9, force: reactive, pressure: {span: infinite}, drag: {skin: quadratic}}", "");
     // a rigid plate has no shape to resolve
-    notes_are("fish[0]={nodes: 9, force: pressure, motion: {prescribed: all}}", "");
+    notes_are("fish[0]={nodes: 9, force: pressure, drag: {normal: 0}, motion: {prescribed: all}}", "");
 }
 
 TEST(a_wave_that_travels_forwards_is_noted) {
@@ -313,7 +316,7 @@ TEST(limits_are_where_the_messages_say) {
          SHORT "fish: [{nodes: 7, control: {bias: 2.1}, wave: {amplitude: 0.5, constant: 1, linear: 0, quadratic: 0, "
                "table: [[12.8, -1], [1, 1]]}}]\n",
          "turns a joint by up to 3.18 rad"},
-        {FINITE("21"), FINITE("20"), "a span of 0.25 lengths needs at least 21 points"},
+        {FINITE("26"), FINITE("25"), "a span of 0.2 lengths needs at least 26 points"},
         {SHORT "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite}}]\n",
          SHORT "fish: [{nodes: 9, sheet_points: 16, force: pressure, pressure: {span: infinite}}]\n",
          "of 9 nodes needs at least 17 points, not 16"},

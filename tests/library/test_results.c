@@ -29,7 +29,8 @@ static const double tolerance = 1e-5, of_keys = 1e-5;
 #endif
 static const double of_differences = 1e-2;
 
-#define TIME "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {rtol: 1e-8}\n"
+#define BODY "defaults: {fish: {body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
+#define TIME "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {rtol: 1e-8}\n" BODY
 #define STREAM "fluid: {velocity: [0.2, -0.1], shear: 0.3, gust: {amplitude: 0.15, frequency: 2.2}}\n"
 #define FISH "nodes: 5, sheet_points: 17, wave: {frequency: 4, phase: 20}"
 #define SLENDER "force: reactive, " FISH
@@ -91,22 +92,21 @@ static const struct run {
      "    {" SLENDER
      ", start: {position: [0.1, -0.7], heading: 180, speed: 0.4}, motion: {prescribed: head, surge: free,\n"
      "     heave: 0.05, frequency: 4}}]\n"},
-    {"contact",
-     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {rtol: 1e-8}\n"
-     "fluid: {walls: [-0.1]}\nwake: {shedding: continuous, taper: 0, taper_beside: 0, lifetime: 0.1}\n"
-     "contact: {range: 0.06}\n"
-     "fish: [{" SLENDER ", start: {position: [0, 0.04], speed: 0.6}, body: {modulus: 2e6}},\n"
-     "    {" SLENDER ", length: 0.8, start: {position: [0.1, 0.34], heading: 176, speed: 0.5}}]\n"},
+    {"contact", "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {rtol: 1e-8}\n" BODY
+                "fluid: {walls: [-0.1]}\nwake: {shedding: continuous, taper: 0, taper_beside: 0, lifetime: 0.1}\n"
+                "contact: {range: 0.06}\n"
+                "fish: [{" SLENDER ", start: {position: [0, 0.04], speed: 0.6}, body: {modulus: 2e6}},\n"
+                "    {" SLENDER ", length: 0.8, start: {position: [0.1, 0.34], heading: 176, speed: 0.5}}]\n"},
     {"explicit",
-     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\n"
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\n" BODY
      "fluid: {density: 800, velocity: [0.1, 0.1]}\nwake: {shedding: impulsive, lifetime: 0.1}\n"
      "fish: [{" SLENDER ", start: {speed: 0.8}, control: {bias: -0.2}, body: {modulus: 1e5, density: 1200}},\n"
      "    {" SLENDER ", start: {position: [0.2, 0.8], speed: 0.5}, body: {modulus: 1e5}}]\n"},
     {"explicit_sheet",
-     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: heun, step: 2.5e-4}\n"
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: heun, step: 2.5e-4}\n" BODY
      "wake: {lifetime: 0.1}\nfish: [{" SLENDER ", start: {speed: 0.8}, body: {modulus: 1e5}}]\n"},
     {"trapezoid",
-     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: trapezoid, step: 1.25e-3}\n" STREAM
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: trapezoid, step: 1.25e-3}\n" BODY STREAM
      "wake: {lifetime: 0.1}\noutput: {forces: edges}\n"
      "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, start: {heading: 170, speed: 0.8}, drag: {skin: "
      "boundary_layer}},\n"
@@ -114,19 +114,19 @@ static const struct run {
      ", length: 0.8, start: {position: [0.2, 0.6], speed: 0.5}, control: {law: heading, desired_heading: "
      "170}}]\n"},
     {"implicit_euler",
-     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: implicit_euler, step: 1.25e-3}\n"
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: implicit_euler, step: 1.25e-3}\n" BODY
      "wake: {lifetime: 0.1}\n"
      "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, motion: {prescribed: head, heave: 0.05, pitch: "
      "10, frequency: 4}}]\n"},
     {"dormand_prince",
-     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: dormand_prince, rtol: 1e-9}\n" STREAM
-     "wake: {lifetime: 0.1, shedding: continuous}\n"
+     "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: dormand_prince, rtol: 1e-9}\n" BODY
+         STREAM "wake: {lifetime: 0.1, shedding: continuous}\n"
      "fish: [{" SLENDER
      ", start: {speed: 0.8}, body: {modulus: 1e5, density: 1200}, added_mass: {extent: thickness}},\n"
      "    {" SLENDER ", body: {modulus: 1e5}, motion: {prescribed: head, surge: free, heave: 0.05, frequency: 4},\n"
      "     start: {position: [0.2, 0.7], speed: 0.5}}]\n"},
     {"explicit_pressure",
-     "format: 1\ntime: {end: 0.1, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\n" STREAM
+     "format: 1\ntime: {end: 0.1, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\n" BODY STREAM
      "wake: {lifetime: 0.1}\n"
      "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, body: {modulus: 1e5}, load: {tip: [1, 2]},\n"
      "     motion: {prescribed: head, heave: 0.05, pitch: 10, frequency: 4}}]\n"},
@@ -136,7 +136,7 @@ static const struct run {
      "    {" FISH ", force: pressure, pressure: {span: infinite}, start: {position: [0.2, 0.7], speed: 0.6}}]\n"},
     // names with "steady": steady states
     {"steady_equilibrium",
-     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n"
+     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n" BODY
      "fluid: {density: 2, velocity: [0.8, 0.2], shear: 0.3, viscosity: 0}\nwake: {lifetime: 2, decay: 0.5}\n"
      "fish: [{nodes: 6, sheet_points: 17, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0.2, "
      "constant: 1, linear: 0.5, frequency: "
@@ -146,12 +146,12 @@ static const struct run {
      "{prescribed: all},\n"
      "     start: {position: [0.3, 0.8], heading: 160}}]\n"},
     {"steady_circle",
-     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n"
+     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n" BODY
      "fluid: {velocity: [0.2, 0.1]}\nsteady: {tolerance: 1e-6}\n"
      "fish: [{force: reactive, nodes: 6, sheet_points: 13, start: {speed: 0.9}, control: {bias: 0.2}, drag: {normal: "
      "1}}]\n"},
     {"steady_held",
-     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n"
+     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n" BODY
      "fluid: {velocity: [0.9, 0.1]}\nsteady: {tolerance: 1e-6}\n"
      "fish: [{nodes: 6, sheet_points: 17, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0.1},\n"
      "     motion: {prescribed: head, heave: 0.1, pitch: 12, pitch_phase: 80, frequency: 1}}]\n"},
@@ -354,7 +354,7 @@ TEST(results_of_short_runs_stay) {
 /* Two intervals of a school in which most keys act. In place of %s: the forces on fish 0, 1 and 2, and what only some
  * forces allow. */
 static const char school[] =
-    "format: 1\ntime: {end: 0.02, shedding_interval: 0.01}\nsolver: {rtol: 1e-8}\n"
+    "format: 1\ntime: {end: 0.02, shedding_interval: 0.01}\nsolver: {rtol: 1e-8}\n" BODY
     "fluid: {velocity: [0.2, -0.1]%s}\nwake: {lifetime: 0.3, decay: 0.295}\noutput: {forces: edges}\n"
     "fish: [{nodes: 5, sheet_points: 25, wave: {phase: 20, ramp: 0}, start: {heading: 170, speed: 0.8}%s},\n"
     "    {nodes: 6, sheet_points: 27, length: 0.8, wave: {frequency: 2, phase: 50, ramp: 0.1},\n"

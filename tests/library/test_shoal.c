@@ -23,7 +23,7 @@ static const char case_text[] =
     "name: two\n"
     "time: {end: 0.1, shedding_interval: 0.02}\n"
     "wake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
-    "defaults: {fish: {start: {speed: 1}}}\n"
+    "defaults: {fish: {start: {speed: 1}, body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
     "fish:\n"
     "  - {name: a, nodes: 5, sheet_points: 7}\n"
     "  - {name: b, nodes: 7, sheet_points: 9, start: {position: [0.2, 0.7]}, wave: {phase: 60}}\n";
@@ -1274,7 +1274,7 @@ TEST(without_memory_every_call_fails_and_leaves_nothing) {
         "[1, 90]]}}\n";
     // rings, and couplings that need GMRES
     static const char pressure[] =
-        "fish:\n  - {nodes: 7, sheet_points: 21}\n  - {nodes: 7, sheet_points: 21, start: {position: [0, 0.4]}}\n";
+        "fish:\n  - {nodes: 7, sheet_points: 26}\n  - {nodes: 7, sheet_points: 26, start: {position: [0, 0.4]}}\n";
     static const char *const methods[] = {"method: ida", "method: rk4", "method: trapezoid, step: 0.01"};
     make_result_folder();
     for (int i = 0; i < 4; i++) {

@@ -514,7 +514,9 @@ TEST(a_failure_of_a_folded_body_says_so) {
 // the default order of a fish with these values, or of a school that is written as a list
 static int order_of(const char *solver, const char *fish) {
     char text[400];
-    snprintf(text, sizeof text, "format: 1\n" TIME "solver: {%s}\nfish: %s\n", solver, fish);
+    snprintf(text, sizeof text,
+             "format: 1\n" TIME "solver: {%s}\ndefaults: {fish: {body: {thickness: 0.2, depth: 0.25}}}\nfish: %s\n",
+             solver, fish);
     struct case_values values;
     school_ok(case_parse(&values, text, strlen(text), "test", NULL, 0, NULL));
     struct simulation *simulation;

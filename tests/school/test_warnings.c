@@ -79,7 +79,7 @@ TEST(a_controller_that_chatters_is_told) {
     "time: {end: 8, shedding_interval: 0.02}\n"                                                        \
     "fish: [{force: reactive, start: {speed: 0.9}, wave: {amplitude: 0.7}, body: {modulus: 1.0e+7},\n" \
     "  control: {law: course, " keys "desired_heading: [[0, 180], [3, 180], [3.1, 120]]}}]\n"
-    expect_warnings(STEERED("damping: 2, "), 7, "dh");
+    expect_warnings(STEERED("slow: 0, course_filter: 0, damping: 2, "), 7, "dh");
     // the defaults turn and hold the course without
     expect_warnings(STEERED(""), 4, "d");
     expect_warnings(STEERED(""), 7, "d");
