@@ -117,8 +117,9 @@ static void body_fluid_set(struct fish *fish, const struct fish_parameters *from
         enum { N_ANGLES = 32 };
         largest = fmax(largest, fmin(sqrt(h * w), 2 * h) / fish->length);
         for (int i = 0; i < N_ANGLES; i++) {
-            const double along = cos(M_PI / 2 * (i + 0.5) / N_ANGLES), square = along * along;
-            surface += M_PI / 2 * sqrt(square + h / w * (h / w) * (1 - square)) / N_ANGLES / fish->n_edges;
+            const double along = cos(M_PI / 2 * (i + 0.5) / N_ANGLES), cosine_square = along * along;
+            surface +=
+                M_PI / 2 * sqrt(cosine_square + h / w * (h / w) * (1 - cosine_square)) / N_ANGLES / fish->n_edges;
         }
     }
 
