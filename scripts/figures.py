@@ -145,6 +145,8 @@ FIGURES = {
     "depth": [f"shoal study {STUDY}depth.yaml -q -o depth", "plot.py study depth/study.nc depth.png"],
     # one run at a time: its axis is time
     "stiffness": [f"shoal study {STUDY}stiffness.yaml -q -j 1 -o stiffness", "plot.py study stiffness/study.nc stiffness.png"],
+    "follower_map": [f"shoal study {STUDY}follower_map.yaml -q -o follower_map",
+                     "plot.py study follower_map/study.nc --of cost_of_transport --relative -- follower_map.png"],
     "validation": ["scripts/validation.py validation.png"],
     "best_gait": ["doc/examples/best_gait.py --figure best_gait.png"],
     "hold_place": ["doc/examples/hold_place.py --figure hold_place.png"],

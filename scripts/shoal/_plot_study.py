@@ -522,6 +522,29 @@ def plot_map(study, x, y, labels, quantity, figure):
     colour_bar(figure, matplotlib.cm.ScalarMappable(norm, "cividis"), all_axes, study.label(quantity))
 
 
+def plot_relative(study, x, y, labels, quantity, figure):
+    """A panel per fish but the first: the quantity over that of the first fish in per cent; gains are blue, losses red, and
+    a line shows where there is neither."""
+    names, values = list(study["fish"]), study[quantity][study.complete]
+    if len(names) < 2:
+        raise CaseError("--relative: compares with the first fish, and there is one fish")
+    x, y = x[study.complete], y[study.complete]
+    values = 100 * (values / values[:, :1] - 1)
+    most = np.nanmax(np.abs(values[:, 1:]))
+    colours = "RdBu_r" if any(word in quantity for word in ("cost", "power")) else "RdBu"
+    norm = matplotlib.colors.Normalize(-most, most)
+    all_axes = figure.subplots(len(names) - 1, 1, squeeze=False, sharex=True, sharey=True)[:, 0]
+    for f, axes in enumerate(all_axes, start=1):
+        here = np.isfinite(values[:, f])
+        axes.tricontourf(x[here], y[here], values[here, f], np.linspace(-most, most, 22), cmap=colours, norm=norm)
+        axes.tricontour(x[here], y[here], values[here, f], [0], colors="black", linewidths=1)
+        axes.plot(x, y, ls="", marker=".", ms=2, color="black")
+        axes.set(aspect="equal", ylabel=labels[1], title=names[f])
+    all_axes[-1].set_xlabel(labels[0])
+    words = study.label(quantity).split(" [")[0]
+    colour_bar(figure, matplotlib.cm.ScalarMappable(norm, colours), all_axes, f"{words}\nover {names[0]} [%]")
+
+
 def is_known(study, name):
     """True if all complete members have a value of this name."""
     return name in study.data.variables and np.isfinite(study[name][study.complete]).all()
@@ -657,15 +680,18 @@ def own_words(study):
     return "an error budget" if "key_name" in study.data.variables else "a comparison of methods"
 
 
-def draw(path, figure, asked=None):
-    """Draw what a file calls for on an empty figure; asked: the quantity of a map, or of lines over an axis."""
+def draw(path, figure, asked=None, relative=False):
+    """Draw what a file calls for on an empty figure; asked: the quantity of a map, or of lines over an axis; relative: a map
+    over the first fish."""
     study, quantity = Study(path), asked or "speed"
     drawn = study.data.variables.get(quantity)
     if drawn is None or drawn.dimensions[1:] != ("fish",) or not study.is_number(quantity):
         raise FileError(f"{path}: {quantity} is not a quantity of the fish in it, such as speed or cost_of_transport")
     over = map_axes(study)
+    if relative and not over:
+        raise CaseError(f"--relative: only maps take it, and {path} has no two axes of numbers or places")
     if over:
-        return plot_map(study, *over, quantity, figure)
+        return (plot_relative if relative else plot_map)(study, *over, quantity, figure)
     has_own = study.is_comparison or any(name in study.data.variables for name in ("key_name", "solver_method"))
     if asked and has_own:
         raise CaseError(f"--of: only maps, curves and refined axes take it, and {path} is drawn as {own_words(study)}")

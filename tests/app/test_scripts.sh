@@ -162,6 +162,7 @@ draws plot.py study map/study.nc --of shed_circulation -- map.png
 refuses 2 "--of: refine/study.nc has no errors of energy_balance: see nose, tail" plot.py study refine/study.nc --of energy_balance -- no.png
 draws plot.py study refine/study.nc --of speed -- refine_speed.png
 draws plot.py study refine/study.nc refine.png
+refuses 2 "--relative: only maps take it" plot.py study refine/study.nc --relative -- no.png
 "$program" study refine.yaml -q -o nodes --set 'sweep=[{key: "fish[*].nodes", values: [5, 6, 7, 9], refine: true}]' \
     --set 'fish[0].sheet_points=17' >/dev/null 2>&1
 "$program" compare refine.yaml -q -o stiff.nc --set 'sweep=[]' --set solver.max_steps=60 --set 'fish[0].body.modulus=1e9' \
@@ -294,6 +295,19 @@ class Members:
         return np.array(["one"]) if name == "fish" else self.values[:, None]
     def label(self, name):
         return name
+class Pair(Members):
+    """The same of two fish: the second is 30 % below to 30 % above the first."""
+    def __getitem__(self, name):
+        return np.array(["one", "two"]) if name == "fish" else np.column_stack([2 + 0 * self.values, 2 + 0.6 * self.values])
+for name in ("cost_of_transport", "speed"):
+    figure = plot.pyplot.figure(layout="constrained")
+    _plot_study.plot_relative(Pair(2 * Members.x - 3), Members.x, Members.y, ["x", "y"], name, figure)
+    panel, bar = figure.axes
+    assert panel.get_title() == "two" and bar.get_ylabel().endswith("over one [%]"), bar.get_ylabel()
+    red, _, blue, _ = panel.collections[0].get_facecolor()[0]  # of the lowest values
+    assert np.allclose(bar.get_ylim(), (-30, 30)) and (blue > red) == (name != "speed"), (bar.get_ylim(), red, blue)
+    zero = np.concatenate([path.vertices for path in panel.collections[-1].get_paths()])
+    assert np.allclose(zero[:, 0], 1.5), "the line without gain and loss"
 for values, n_axes in ((Members.x * Members.y, 2), (1 + 1e-9 * Members.x, 1)):
     figure = plot.pyplot.figure(layout="constrained")
     _plot_study.plot_map(Members(values), Members.x, Members.y, ["x", "y"], "speed", figure)
