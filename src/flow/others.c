@@ -19,7 +19,11 @@ struct others_fish {
     double half[FAR];
     /* at the event: position, velocity and acceleration of the far points */
     double start[2][FAR], velocity[2][FAR], acceleration[2][FAR];
-    double speed; /* the largest of a node, m s-1 */
+    /* at the event: ends of the body and their distance; distances of the body from the chord, and of all points and of
+     * the control points from the curve of the far points */
+    double end[2][2], chord, bend, aside, beside;
+    double speed;        /* the largest of a node, m s-1 */
+    struct sources body; /* the body, by sources at its far points             (FAR) */
     /* u, v, div, u_x, u_y, v_x, div_x, div_y at the far points: of far wakes at three times, of all far sources now */
     double wake[TIMES][VALUES][FAR], now[VALUES][FAR];
     double x[FAR], y[FAR];
@@ -31,6 +35,7 @@ struct others_fish {
 /* What one fish is for another. */
 struct others_pair {
     bool is_far_body;       /* with the nascent point */
+    bool by_few;            /* the body acts from its far points */
     int first_near, n_near; /* among the near ranges of the fish */
     struct range whole;     /* the released sources */
 };
@@ -42,7 +47,7 @@ struct others {
     struct others_pair *pair;     /* targets, then sources  (n_fish, n_fish) */
     bool is_selected, is_by_tree; /* the far wakes */
     struct sources points;        /* far points of a class, for the tree */
-    double *value[VALUES];        /* at these points      (FAR n_fish) */
+    double *value;                /* at these points      (VALUES, FAR n_fish) */
     double t;
     unsigned long version;
     double *past; /* unknowns at the event              (n_unknowns) */
@@ -58,7 +63,7 @@ struct others *others_create(struct arena *arena, const struct flow *flow) {
     NEW(arena, others->pair, (size_t)school->n_fish * (size_t)school->n_fish);
     NEW(arena, others->past, school->n_unknowns);
     others->points.arena = arena;
-    for (int k = 0; k < VALUES; k++) NEW(arena, others->value[k], FAR * school->n_fish);
+    NEW(arena, others->value, VALUES * FAR * school->n_fish);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         struct others_fish *const of = &others->fish[f];
@@ -67,6 +72,8 @@ struct others *others_create(struct arena *arena, const struct flow *flow) {
         NEW(arena, of->to_points, FAR * n_points);
         NEW(arena, of->from_nodes, n * FAR);
         if (!of->is_used) continue;
+        of->body.arena = arena;
+        sources_append(&of->body, FAR);
 
         // far points on the smooth curve through the nodes
         double *factor, chebyshev[FAR];
@@ -80,7 +87,7 @@ struct others *others_create(struct arena *arena, const struct flow *flow) {
             for (int k = 0; k < n; k++) {
                 of->from_nodes[k * FAR + i] = (fabs(u - k) < 1e-12 ? 1e30 : factor[k] / (u - k)) / sum;
             }
-            of->half[i] = fish->point_half ? fish->point_half[0] : 0;
+            of->half[i] = of->body.half[i] = fish->point_half ? fish->point_half[0] : 0;
         }
 
         // polynomials: 1 at one of the far points, 0 at the others
@@ -109,41 +116,27 @@ bool others_are_selected(const struct flow *flow) {
 
 // ---- selection
 
-/* The smallest ellipse with foci at both ends of a body around a source: the interpolation has an error of the order of
- * rho^-FAR; and the distance from the body. slack: by which source and body may approach in an interval, and by which
- * the body is bent. */
-struct ellipse {
-    double rho, distance;
-};
-static struct ellipse ellipse_of(const double end[2][2], double length, double slack, double x, double y) {
-    const double r[2] = {hypot(x - end[0][0], y - end[0][1]), hypot(x - end[1][0], y - end[1][1])};
-    const double sum = fmax(1, (r[0] + r[1] - 2 * slack) / length);
-    return (struct ellipse){sum + sqrt(sum * sum - 1), (sum - 1) * length / 2};
-}
-
-/* A target body, and the largest error of a source. */
-struct selection {
-    const struct flow *flow;
-    /* at the event: ends of the body and their distance; distances of the body from the chord, and of its points from
-     * the curve of the far points */
-    double end[2][2], chord, bend, aside;
-    double speed, tolerance;
-};
-
-// whether a source of a kernel is far: the errors of the polynomial, of the gradient in place of the kernel, and for
-// wakes of the parabola in time
-static bool is_far(const struct selection *to, const struct kernel_pair *pair, const struct sources *sources, int i,
-                   double half, double speed, bool is_wake) {
-    const double step = to->flow->school->interval * (to->speed + speed);
-    const struct ellipse at =
-        ellipse_of((const double(*)[2])to->end, to->chord, to->bend + step, sources->x[i], sources->y[i]);
-    if (!(at.distance > 0)) return false;
-    const double low = pair->factor * (half + sources->half[i]) + sources->leg[i], r2 = at.distance * at.distance;
+/* Whether a source of a kernel is far: the errors of the polynomial, of the gradient in place of the kernel, and for
+ * wakes of the parabola in time. The smallest ellipse with foci at both ends of the body around the source gives the
+ * error of the polynomial, of the order of rho^-FAR, and the distance from the body; source and body may approach in an
+ * interval, and the body is bent. */
+static bool is_far(const struct others_fish *to, double interval, const struct kernel_pair *pair,
+                   const struct sources *sources, int i, double half, double speed, bool is_wake, double tolerance) {
+    const double step = interval * (to->speed + speed);
+    double sum = -2 * (to->bend + step);
+    for (int k = 0; k < 2; k++) {
+        const double r[2] = {sources->x[i] - to->end[k][0], sources->y[i] - to->end[k][1]};
+        sum += sqrt(r[0] * r[0] + r[1] * r[1]);
+    }
+    if (!(sum > to->chord)) return false;
+    const double distance = (sum - to->chord) / 2, r2 = distance * distance, axis = sum / to->chord;
+    const double low = pair->factor * (half + sources->half[i]) + sources->leg[i];
     const double d = sqrt(sources->dx[i] * sources->dx[i] + sources->dy[i] * sources->dy[i]);
     const double size = pair->kernel->bound(pair, r2, low, fabs(sources->q[i]), d, to->chord);
-    const double in_time = is_wake ? 0.05 * pow(step / at.distance, 3) : 0;
-    const double beside = to->aside * to->aside / r2;
-    return size * (2 * pow(at.rho, -FAR) + beside + in_time) <= to->tolerance;
+    const double part = step / distance, in_time = is_wake ? 0.05 * part * part * part : 0;
+    double power = axis + sqrt(axis * axis - 1);
+    for (int k = FAR; k > 1; k /= 2) power *= power;
+    return size * (2 / power + to->aside * to->aside / r2 + in_time) <= tolerance;
 }
 
 static void near_add(struct others *others, struct others_fish *of, int i, bool begins) {
@@ -157,39 +150,79 @@ static void near_add(struct others *others, struct others_fish *of, int i, bool 
     of->near[of->n_near - 1].n++;
 }
 
-static void select_at(struct flow *flow, const struct state *state, int f, double n_sources) {
-    struct others *const others = flow->others;
-    const struct school *const school = flow->school;
-    const struct fish *const fish = &school->fish[f];
-    struct others_fish *const of = &others->fish[f];
-    const double *const y = others->past, *const node_x = y + fish->at.x, *const node_y = y + fish->at.y;
+// the body of a fish at the event
+static void remember_body(struct flow *flow, int f) {
+    const struct fish *const fish = &flow->school->fish[f];
+    struct others_fish *const of = &flow->others->fish[f];
+    const double *const y = flow->others->past, *const x = y + fish->at.x, *const aside = y + fish->at.y;
     const int last = fish->n_nodes - 1;
-    of->n_near = 0;
-
-    // the body at the event
-    struct selection to = {.flow = flow, .end = {{node_x[0], node_y[0]}, {node_x[last], node_y[last]}}};
-    const double along[2] = {node_x[last] - node_x[0], node_y[last] - node_y[0]};
-    to.chord = hypot(along[0], along[1]);
-    to.speed = of->speed;
-    to.tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish) / (4 * sqrt(n_sources));
+    of->speed = of->bend = 0;
+    memcpy(of->end, (const double[2][2]){{x[0], aside[0]}, {x[last], aside[last]}}, sizeof of->end);
+    const double along[2] = {x[last] - x[0], aside[last] - aside[0]};
+    of->chord = hypot(along[0], along[1]);
     for (int k = 0; k <= last; k++) {
-        const double r[2] = {node_x[k] - node_x[0], node_y[k] - node_y[0]};
-        to.bend = fmax(to.bend, fabs(r[0] * along[1] - r[1] * along[0]) / to.chord);
+        const double r[2] = {x[k] - x[0], aside[k] - aside[0]};
+        of->bend = fmax(of->bend, fabs(r[0] * along[1] - r[1] * along[0]) / of->chord);
+        of->speed = fmax(of->speed, hypot(y[fish->at.vx + k], y[fish->at.vy + k]));
     }
+    if (!of->is_used) return;
 
-    // besides the points that the body has at the event, displacements within an interval
-    to.aside = 3e-4 * fish->length;
-    for (int p = 0; p < flow->points[f].n && of->is_used; p++) {
+    const int slices[] = {fish->at.x, fish->at.y, fish->at.vx, fish->at.vy, fish->at.ax, fish->at.ay};
+    double *const to[] = {of->start[0],    of->start[1],        of->velocity[0],
+                          of->velocity[1], of->acceleration[0], of->acceleration[1]};
+    for (int i = 0; i < 6; i++) fish_of_nodes(FAR, fish->n_nodes, of->from_nodes, y + slices[i], to[i]);
+
+    // the points that the body has at the event
+    of->beside = 0;
+    of->aside = 3e-4 * fish->length; /* displacements within an interval */
+    for (int p = 0; p < flow->points[f].n; p++) {
         double r[2] = {flow->x[flow->points[f].first + p], flow->y[flow->points[f].first + p]};
         for (int i = 0; i < FAR; i++) {
             const double part = of->to_points[i * flow->points[f].n + p];
             r[0] -= part * of->start[0][i];
             r[1] -= part * of->start[1][i];
         }
-        to.aside = fmax(to.aside, hypot(r[0], r[1]));
+        of->aside = fmax(of->aside, hypot(r[0], r[1]));
+        if (p < fish->n_control) of->beside = fmax(of->beside, hypot(r[0], r[1]));
     }
+}
 
-    const double half = flow->kernel->has_legs ? of->half[0] : 0;
+/* Whether the body of fish g acts on fish f from the far points of g. A polynomial of the velocity along the source,
+ * with the ellipse around its body, gives the strengths at the far points; the points of the body may lie beside their
+ * curve. */
+static bool acts_from_few(const struct flow *flow, int f, int g, double tolerance) {
+    const struct others_fish *const from = &flow->others->fish[g];
+    const struct sources *const body = &flow->fish[g].body;
+    if (!from->is_used || !flow->school->fish[g].integrals) return false;
+    const struct kernel_pair pair = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
+    const struct others_fish *const to = &flow->others->fish[f];
+    double q = 0, d = 0, least = INFINITY;
+    for (int c = 0; c < body->n; c++) {
+        q += fabs(body->q[c]);
+        d += sqrt(body->dx[c] * body->dx[c] + body->dy[c] * body->dy[c]);
+    }
+    for (int i = 0; i < FAR; i++) {
+        double sum = 0;
+        for (int k = 0; k < 2; k++) sum += hypot(to->start[0][i] - from->end[k][0], to->start[1][i] - from->end[k][1]);
+        least = fmin(least, sum);
+    }
+    least -= 2 * (from->bend + flow->school->interval * (to->speed + from->speed));
+    if (!(least > from->chord)) return false;
+    const double distance = (least - from->chord) / 2, axis = least / from->chord;
+    const double low = pair.factor * (to->half[0] + from->half[0]);
+    const double size = pair.kernel->bound(&pair, distance * distance, low, q, d, from->chord);
+    return size * (2 * pow(axis + sqrt(axis * axis - 1), -FAR) + 2 * from->beside / distance) <=
+           tolerance * sqrt(body->n);
+}
+
+static void select_at(struct flow *flow, const struct state *state, int f, double n_sources) {
+    struct others *const others = flow->others;
+    const struct school *const school = flow->school;
+    const struct fish *const fish = &school->fish[f];
+    struct others_fish *const of = &others->fish[f];
+    const double tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish) / (4 * sqrt(n_sources));
+    const double half = flow->kernel->has_legs ? of->half[0] : 0, interval = school->interval;
+    of->n_near = 0;
     for (int g = 0; g < school->n_fish; g++) {
         struct others_pair *const pair = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
         const struct flow_fish *const other = &flow->fish[g];
@@ -203,9 +236,9 @@ static void select_at(struct flow *flow, const struct state *state, int f, doubl
         bool was_near = false, newest_is_far = of->is_used;
         for (int i = 0; i < n_released; i++) {
             const int marker = i < wake->n_vortex - 1 ? i + wake->has_markers : i;
-            const double speed = hypot(wake->u[marker], wake->v[marker]);
-            const bool near =
-                !of->is_used || !is_far(&to, &of_wake, &other->wake.middles.sources, i, half, speed, true);
+            const double speed = sqrt(wake->u[marker] * wake->u[marker] + wake->v[marker] * wake->v[marker]);
+            const bool near = !of->is_used || !is_far(of, interval, &of_wake, &other->wake.middles.sources, i, half,
+                                                      speed, true, tolerance);
             if (near) near_add(others, of, i, !was_near);
             was_near = near;
             newest_is_far = !near;
@@ -216,26 +249,30 @@ static void select_at(struct flow *flow, const struct state *state, int f, doubl
         const struct kernel_pair of_body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
         pair->is_far_body = of->is_used && newest_is_far && n_released > 0;
         for (int c = 0; c < other->body.n && pair->is_far_body; c++) {
-            pair->is_far_body = is_far(&to, &of_body, &other->body, c, half, others->fish[g].speed, false);
+            pair->is_far_body =
+                is_far(of, interval, &of_body, &other->body, c, half, others->fish[g].speed, false, tolerance);
         }
+        pair->by_few = pair->is_far_body && acts_from_few(flow, f, g, tolerance);
     }
 }
 
-// the targets of far points
-static struct targets far_targets(const struct flow *flow, struct others_fish *of, const double *x, const double *y,
-                                  double value[VALUES][FAR]) {
-    return (struct targets){.n = FAR,
+// far points as targets, with an array of n_values for each sum
+static struct targets far_targets(int n, const double *x, const double *y, const double *half, double *value,
+                                  int n_values) {
+    double *sum[VALUES];
+    for (int k = 0; k < VALUES; k++) sum[k] = value + (long)k * n_values;
+    return (struct targets){.n = n,
                             .x = x,
                             .y = y,
-                            .half = flow->kernel->has_legs ? of->half : NULL,
-                            .u = value[0],
-                            .v = value[1],
-                            .div = value[2],
-                            .u_x = value[3],
-                            .u_y = value[4],
-                            .v_x = value[5],
-                            .div_x = value[6],
-                            .div_y = value[7]};
+                            .half = half,
+                            .u = sum[0],
+                            .v = sum[1],
+                            .div = sum[2],
+                            .u_x = sum[3],
+                            .u_y = sum[4],
+                            .v_x = sum[5],
+                            .div_x = sum[6],
+                            .div_y = sum[7]};
 }
 
 // the far points on the path of the event, tau later
@@ -270,20 +307,8 @@ static void sum_by_tree(struct flow *flow, int time, int threads) {
         const struct fish *const fish = &school->fish[first];
         const double tolerance =
             school->wake_tolerance * fish->length * fish_rate(school, fish) / (8 * flow->n_classes);
-        double **const value = others->value;
-        const struct targets at = {.n = n,
-                                   .x = points->x,
-                                   .y = points->y,
-                                   .half = points->half,
-                                   .u = value[0],
-                                   .v = value[1],
-                                   .div = value[2],
-                                   .u_x = value[3],
-                                   .u_y = value[4],
-                                   .v_x = value[5],
-                                   .div_x = value[6],
-                                   .div_y = value[7]};
-        for (int k = 0; k < VALUES; k++) memset(value[k], 0, (size_t)n * sizeof **value);
+        const struct targets at = far_targets(n, points->x, points->y, points->half, others->value, n);
+        memset(others->value, 0, VALUES * (size_t)n * sizeof *others->value);
         for (int k = 0; k < flow->n_classes; k++) {
             struct kernel_pair pair = {0};
             many->n = 0;
@@ -298,11 +323,13 @@ static void sum_by_tree(struct flow *flow, int time, int threads) {
             tree_induce(flow->tree, &pair, many, fish->length, tolerance, threads, &at);
         }
 
-        n = 0;
+        int done = 0;
         for (int f = 0; f < school->n_fish; f++) {
             if (flow->class_of[f] != c || !others->fish[f].is_used) continue;
-            for (int k = 0; k < VALUES; k++) memcpy(others->fish[f].wake[time][k], value[k] + n, FAR * sizeof **value);
-            n += FAR;
+            for (int k = 0; k < VALUES; k++) {
+                memcpy(others->fish[f].wake[time][k], others->value + (long)k * n + done, FAR * sizeof *others->value);
+            }
+            done += FAR;
         }
     }
 }
@@ -316,7 +343,8 @@ static void sum_wakes(struct flow *flow, int f, int time) {
     if (!others->is_by_tree) memset(of->wake[time], 0, sizeof of->wake[time]);
     far_places(of, time * flow->school->interval / 2, x, y);
 
-    const struct targets at = far_targets(flow, of, x, y, of->wake[time]);
+    const double *const half = flow->kernel->has_legs ? of->half : NULL;
+    const struct targets at = far_targets(FAR, x, y, half, of->wake[time][0], FAR);
     for (int g = 0; g < others->n_fish; g++) {
         const struct sources *const sources = &flow->fish[g].wake.middles.sources;
         const struct others_pair *const near = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
@@ -361,20 +389,8 @@ void others_select(struct flow *flow, const struct state *state) {
     flow_place(flow, state, state->t, others->past);
     double n_sources = 1;
     for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *const fish = &school->fish[f];
-        struct others_fish *const of = &others->fish[f];
-        const double *const y = others->past;
         n_sources += flow->fish[f].wake.middles.n_released + flow->fish[f].body.n;
-        of->speed = 0;
-        for (int k = 0; k < fish->n_nodes; k++) {
-            of->speed = fmax(of->speed, hypot(y[fish->at.vx + k], y[fish->at.vy + k]));
-        }
-        const int slices[] = {fish->at.x, fish->at.y, fish->at.vx, fish->at.vy, fish->at.ax, fish->at.ay};
-        double *const to[] = {of->start[0],    of->start[1],        of->velocity[0],
-                              of->velocity[1], of->acceleration[0], of->acceleration[1]};
-        for (int i = 0; i < 6 && of->is_used; i++) {
-            fish_of_nodes(FAR, fish->n_nodes, of->from_nodes, y + slices[i], to[i]);
-        }
+        remember_body(flow, f);
     }
     for (int f = 0; f < school->n_fish; f++) select_at(flow, state, f, n_sources);
     others->is_by_tree =
@@ -425,6 +441,27 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
         }
     }
 
+    // the strengths of the body at its far points
+    for (int f = 0; f < school->n_fish; f++) {
+        struct others_fish *const of = &others->fish[f];
+        const struct sources *const body = &flow->fish[f].body;
+        if (of->has_drifted || !school->fish[f].integrals) continue;
+        for (int i = 0; i < FAR; i++) {
+            const double *const part = of->to_points + (long)i * flow->points[f].n;
+            double q = 0, dx = 0, dy = 0;
+            for (int c = 0; c < body->n; c++) {
+                q += part[c] * body->q[c];
+                dx += part[c] * body->dx[c];
+                dy += part[c] * body->dy[c];
+            }
+            of->body.x[i] = of->x[i];
+            of->body.y[i] = of->y[i];
+            of->body.q[i] = q;
+            of->body.dx[i] = dx;
+            of->body.dy[i] = dy;
+        }
+    }
+
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         struct others_fish *const of = &others->fish[f];
@@ -449,15 +486,16 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
         }
 
         // far bodies
-        const struct targets at = far_targets(flow, of, of->x, of->y, of->now);
+        const double *const half = flow->kernel->has_legs ? of->half : NULL;
+        const struct targets at = far_targets(FAR, of->x, of->y, half, of->now[0], FAR);
         for (int g = 0; g < school->n_fish; g++) {
-            if (!others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g].is_far_body ||
-                others->fish[g].has_drifted)
-                continue;
+            const struct others_pair *const pair = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
+            if (!pair->is_far_body || others->fish[g].has_drifted) continue;
             const struct flow_fish *const other = &flow->fish[g];
             const struct kernel_pair body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
             const struct kernel_pair wake = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
-            kernel_induce(&body, &other->body, (struct range){0, other->body.n}, &at);
+            const struct sources *const from = pair->by_few ? &others->fish[g].body : &other->body;
+            kernel_induce(&body, from, (struct range){0, from->n}, &at);
             kernel_induce(&wake, &other->wake.middles.sources, (struct range){other->wake.middles.n_released, 1}, &at);
         }
     }

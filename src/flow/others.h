@@ -5,7 +5,8 @@
  *                    from the far points to the points of the body
  *     far wakes      summed at the start, in the middle and at the end of an interval, at far points that move with the
  *                    velocity of the last event; in between a parabola in time, and the gradient times the displacement
- *     far bodies     summed at every evaluation, with the nascent point of the wake
+ *     far bodies     summed at every evaluation, with the nascent point of the wake; distant ones from their own far
+ *                    points, whose strengths have the moments of the body along its curve
  *     near sources   are left to the sum of flow_at_bodies.c
  *
  * Which sources are far is decided at each event, from the state alone: the bits do not depend on threads or on a
