@@ -208,8 +208,16 @@ fuzz: deps  ## mutate cases, results and checkpoints for TIME seconds, with the 
 
 fuzz-programs: $(program) $(fuzz_programs)
 
-bench: $(program) $(bench_programs)  ## measure: inner loops, phases, schools, whole runs (doc/performance.md)
+# the program that doc/performance.md compares with
+commit_before = 34de7f766241
+program_before = $(B)/before/build/shoal
+
+bench: $(program) $(bench_programs) $(program_before)  ## measure: inner loops, phases, schools, whole runs (doc/performance.md)
 	@scripts/bench.sh $(B)
+
+$(program_before):
+	@mkdir -p $(B)/before && git archive $(commit_before) | tar -x -C $(B)/before
+	@$(MAKE) -C $(B)/before B=build build/shoal
 
 size:  ## print lines, files and functions of src, lines of tests, words of the documents (doc/architecture.md)
 	@scripts/size.py

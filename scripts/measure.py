@@ -82,8 +82,8 @@ MODULUS = "fish[*].body.modulus"
 class Bench:
     """Runs cases in a temporary folder."""
 
-    def __init__(self, program, verbose):
-        self.program, self.verbose = program, verbose
+    def __init__(self, program, verbose, before=None):
+        self.program, self.verbose, self.before = program, verbose, before
         self.errors = []  # tables of `shoal error`, which two tables show
         self.folder = tempfile.mkdtemp(prefix="shoal-measure-")
 
@@ -608,13 +608,48 @@ def threads(bench):
         yield n, "yes" if bits == reference else "NO"
 
 
-@table("case", "simulated [s]", "events", "CPU time [s]")
-def cost(bench):
-    """CPU seconds of default runs and of the article's diamond, one thread, the smallest of three (minutes)"""
-    for name, text, end in (("one fish", DEFAULT, 8), ("16 fish", lattice(16, (1.5, 1.5), 6), 6),
-                            ("diamond", "diamond", 6)):
-        keys = f"time.end={end}", "solver.threads=1"
-        yield name, end, n_events(bench.run(text, *keys)), f"{bench.seconds(text, *keys):.2f}"
+def swimmers(n, end, more=""):
+    """n fish at cruising speed with the default body of the program before."""
+    side = math.ceil(math.sqrt(n))
+    body = "body: {thickness: 0.2, depth: 0.25, modulus: 1e6}, drag: {normal: 0}"
+    fish = [f"  - {{start: {{position: [{2 * (i % side)}, {i // side}]}}}}" for i in range(n)]
+    return "\n".join(["format: 1", f"time: {{end: {end}, shedding_interval: 0.02, output_interval: 0.2}}",
+                      f"defaults: {{fish: {{start: {{speed: 0.79}}, {body}{more}}}}}", "fish:", *fish, ""])
+
+
+@table("case", "simulated [s]", "CPU time before [s]", "CPU time over it, 1e-5", "3e-5", "error before", "1e-5", "3e-5")
+def ratios(bench):
+    """CPU time against the program before (--before), and errors as in the table tolerance (an hour)"""
+    now, before = bench, Bench(bench.before, bench.verbose)
+    slow = ("fish[*].start.speed=0",)
+    infinite = swimmers(16, 2, ", pressure: {span: infinite}")
+    for name, text, end, keys in (("one fish", swimmers(1, 5), 5, ()), ("4 fish", swimmers(4, 3), 3, ()),
+                                  ("16 fish", swimmers(16, 2), 2, ()), ("64 fish", swimmers(64, 0.8), 0.8, ()),
+                                  ("64 fish", swimmers(64, 3.2), 3.2, ()), ("16 fish, infinite", infinite, 2, ()),
+                                  ("one fish from rest", swimmers(1, 20), 20, slow), ("diamond", "diamond", 5, ()),
+                                  ("`steady`", swimmers(1, 20), None, slow)):
+        variants = [(before, "1e-5"), (now, "1e-5"), (now, "3e-5")]
+        seconds, errors = [math.inf] * 3, ["", "", ""]
+        for _ in range(3 if name != "64 fish" else 1):
+            for i, (program, rtol) in enumerate(variants):
+                start = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+                sets = *keys, f"solver.rtol={rtol}", "solver.threads=1"
+                run = program.run(text, *sets, f"time.end={end}") if end else program.steady(text, *sets)
+                seconds[i] = min(seconds[i], resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - start)
+                # NetCDF reads lazily: keep the values before the next run replaces the file
+                errors[i] = (nose_and_tail(run), float(run["actuation_work"][-1, 0])) if end else ""
+        if end and name != "64 fish":
+            for i, program in ((0, before), (1, now)):
+                right = program.run(text, *keys, "solver.rtol=1e-8", "solver.max_steps=100000", f"time.end={end}")
+                places, work = nose_and_tail(right), float(right["actuation_work"][-1, 0])
+                for k in (0,) if i == 0 else (1, 2):
+                    of_place = max(float(np.linalg.norm(np.subtract(a, b))) for a, b in zip(errors[k][0], places))
+                    errors[k] = f"{1e5 * of_place:.2g}/{1e4 * abs(errors[k][1] / work - 1):.2g}"
+        else:
+            errors = [""] * 3
+        yield (name, f"{end:g}" if end else "", f"{seconds[0]:.2f}", *(f"{one / seconds[0]:.2f}" for one in seconds[1:]),
+               *errors)
+    shutil.rmtree(before.folder)
 
 
 @table("force", "span", "CPU time over reactive", "of 16 fish", *COUNTS)
@@ -773,13 +808,15 @@ def main():
     parser.add_argument("--write", action="store_true", help="NAMEs are documents, to be changed")
     parser.add_argument("--list", action="store_true", help="list the tables")
     parser.add_argument("--program", default=os.path.join(HERE, "build", "shoal"), help="default: build/shoal")
+    parser.add_argument("--before", default=os.path.join(HERE, "build", "before", "build", "shoal"),
+                        help="the program before, of `make bench`; default: build/before/build/shoal")
     parser.add_argument("--verbose", action="store_true", help="show the commands")
     options = parser.parse_args()
     if options.list:
         for name, (_, rows) in TABLES.items():
             print(f"{name:14s} {rows.__doc__}")
         return
-    bench = Bench(os.path.abspath(options.program), options.verbose)
+    bench = Bench(os.path.abspath(options.program), options.verbose, os.path.abspath(options.before))
     n_different = 0
     try:
         for name in options.names:
