@@ -400,7 +400,7 @@ static struct clamp clamp_at(const struct fish *fish, double t, const double *y)
     return clamp;
 }
 
-void clamp_residual(const struct fish *fish, double t, const double *y, double *residual) {
+void rod_clamp_residual(const struct fish *fish, double t, const double *y, double *residual) {
     if (!fish->has_clamp) return;
     const struct clamp clamp = clamp_at(fish, t, y);
     for (int i = 0; i < 2; i++) {
@@ -410,7 +410,7 @@ void clamp_residual(const struct fish *fish, double t, const double *y, double *
     }
 }
 
-void clamp_jacobian(const struct fish *fish, double t, const double *y, struct sparse *jacobian) {
+void rod_clamp_jacobian(const struct fish *fish, double t, const double *y, struct sparse *jacobian) {
     if (!fish->has_clamp) return;
     const struct clamp clamp = clamp_at(fish, t, y);
     const struct edge *edge = &clamp.edge;
@@ -434,11 +434,11 @@ void clamp_jacobian(const struct fish *fish, double t, const double *y, struct s
     }
 }
 
-struct clamp_terms clamp_terms(const struct fish *fish, double t, const double *y) {
-    if (!fish->has_clamp) return (struct clamp_terms){0};
+struct rod_clamp_terms rod_clamp_terms(const struct fish *fish, double t, const double *y) {
+    if (!fish->has_clamp) return (struct rod_clamp_terms){0};
     const struct clamp clamp = clamp_at(fish, t, y);
-    return (struct clamp_terms){.energy = fish->clamp_stiffness * clamp.bend.curvature * clamp.bend.curvature / 2,
-                                .damping_power = -clamp.by_rate * clamp.angle_rate * clamp.angle_rate,
-                                .driving_power = -clamp.moment * clamp.given_rate,
-                                .moment = -clamp.moment};
+    return (struct rod_clamp_terms){.energy = fish->clamp_stiffness * clamp.bend.curvature * clamp.bend.curvature / 2,
+                                    .damping_power = -clamp.by_rate * clamp.angle_rate * clamp.angle_rate,
+                                    .driving_power = -clamp.moment * clamp.given_rate,
+                                    .moment = -clamp.moment};
 }

@@ -42,8 +42,8 @@ enum status record_row(const struct record *record, struct result_row *row);
  * when closing fails. */
 enum status record_close(struct record *record, enum status status);
 
-/* Write the lines of warnings about a state that was found, which may be "", all warnings about the last row, and the
- * closest approach of two bodies into the file. Call warn, which may be NULL, for each warning about the row with data. */
+/* Write warnings into the file: lines about a state that was found, which may be "", and those about the last row; then
+ * the closest approach of two bodies. Call warn, which may be NULL, for each warning about the row with data. */
 void record_notes_write(struct result_file *file, const struct simulation *simulation, const char *found,
                         void (*warn)(const char *line, void *data), void *data);
 

@@ -23,7 +23,7 @@ static double constraint_power(struct residual *residual, int f, double t, const
     memcpy(force, fish->load_tip, sizeof fish->load_tip);
     if (fish->motion.prescribed == PRESCRIBED_NONE) return power;
 
-    power += clamp_terms(fish, t, y).driving_power;
+    power += rod_clamp_terms(fish, t, y).driving_power;
     double *const reaction = residual->scratch;
     residual_reaction(residual, f, y, residual->state->yp, reaction);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
@@ -84,7 +84,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
 
     // internal powers, constraints
     const double actuation = rod_actuation_power(fish, &muscle, strains.stress);
-    const double damping = rod_damping_power(fish, strains.rate) + clamp_terms(fish, t, y).damping_power;
+    const double damping = rod_damping_power(fish, strains.rate) + rod_clamp_terms(fish, t, y).damping_power;
     double driving_force[2];
     const double driving = constraint_power(residual, f, t, y, driving_force);
 
@@ -124,7 +124,7 @@ struct diagnostics_energies diagnostics_energies(struct residual *residual, int 
     }
     return (struct diagnostics_energies){
         .kinetic = kinetic,
-        .bending = rod_bending_energy(fish, strains.strain) + clamp_terms(fish, t, y).energy,
+        .bending = rod_bending_energy(fish, strains.strain) + rod_clamp_terms(fish, t, y).energy,
         .stretching = rod_stretching_energy(fish, strains.strain),
         .contact = contact_terms(residual->contact, f, y).energy};
 }

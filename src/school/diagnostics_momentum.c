@@ -64,7 +64,7 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     const struct contact_terms contact = contact_terms(residual->contact, f, y);
     memcpy(to->contact_force, contact.force, sizeof to->contact_force);
     to->constraint_force[0] = to->constraint_force[1] = 0;
-    to->constraint_moment = clamp_terms(fish, t, y).moment;
+    to->constraint_moment = rod_clamp_terms(fish, t, y).moment;
     if (!is_prescribed) return;
     double *const reaction = residual->scratch;
     residual_reaction(residual, f, y, residual->state->yp, reaction);
@@ -211,7 +211,7 @@ static void external_force(struct residual *residual, int f, double t, const dou
     double tail[2];
     place_of_tail(fish, y, tail);
     for (int i = 0; i < 2; i++) force[i] = fluid.resistive[i] + contact.force[i];
-    force[2] = fluid.resistive_moment + contact.moment + clamp_terms(fish, t, y).moment;
+    force[2] = fluid.resistive_moment + contact.moment + rod_clamp_terms(fish, t, y).moment;
     add_with_moment(force, tail[0], tail[1], fish->load_tip[0], fish->load_tip[1]);
 
     if (residual->pressure[f]) {

@@ -266,7 +266,7 @@ void residual_balance(const struct residual *residual, int f, const double *y, d
     // forces of the body, contacts and the fluid
     const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
     rod_residual(fish, &muscle, y, value);
-    clamp_residual(fish, residual->flow->t, y, value);
+    rod_clamp_residual(fish, residual->flow->t, y, value);
     contact_residual(residual->contact, f, y, value);
     fluid_force_residual(fish, &flow, y, value);
     if (residual->pressure[f]) {

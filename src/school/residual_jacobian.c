@@ -85,7 +85,7 @@ static void fish_jacobian(struct residual *residual, int f, double t, double cj,
     const struct actuation muscle = residual_muscle(residual, f, t, y);
     rod_jacobian(fish, &muscle, y, own);
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
-    clamp_jacobian(fish, t, y, own);
+    rod_clamp_jacobian(fish, t, y, own);
     fluid_force_jacobian(fish, &flow, y, own);
     if (residual->pressure[f]) {
         pressure_update(residual->pressure[f], &flow, y);

@@ -171,8 +171,8 @@ __attribute__((format(printf, 2, 3))) static void warn(struct run *run, const ch
     if (run->options->warn) run->options->warn(line, run->options->data);
 }
 
-/* Warn of a state that a run would leave, of a gait that leads in a circle by itself, and of beats that do not repeat: the
- * integrator restarts at the first row, and the error of the restart can exceed a small tolerance. */
+/* Warn of a state that a run would leave, of a gait that leads in a circle by itself, and of beats that do not repeat:
+ * the integrator restarts at the first row, and the error of the restart can exceed a small tolerance. */
 static void warn_of_state(struct run *run) {
     const struct school *const school = run->simulation->school;
     const struct steady_values *const found = &run->found;

@@ -15,7 +15,7 @@ static const double pi = 3.14159265358979323846;
 static void value_of_clamp(struct setup *setup, const double *y, const double *yp, double *value) {
     (void)yp;
     const struct fish *fish = setup->school->fish;
-    clamp_residual(fish, setup->t, y, value);
+    rod_clamp_residual(fish, setup->t, y, value);
     for (int i = 0; i < 2; i++) {
         for (int node = 0; node < 2; node++) value[edge_acceleration(fish, i, node)] /= fish->mass[node];
     }
@@ -23,7 +23,7 @@ static void value_of_clamp(struct setup *setup, const double *y, const double *y
 
 static void jacobian_of_clamp(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
     (void)cj;
-    clamp_jacobian(setup->school->fish, setup->t, y, jacobian);
+    rod_clamp_jacobian(setup->school->fish, setup->t, y, jacobian);
 }
 
 TEST(jacobian_agrees_with_differences) {
@@ -41,19 +41,19 @@ TEST(force_is_minus_the_gradient_of_the_energy) {
         setup_stirred(TIME "fish: [{body: {section: mean, bending_damping: 0, relaxation_time: 0}, " HEAD "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
-    clamp_residual(fish, setup.t, y, setup.value);
+    rod_clamp_residual(fish, setup.t, y, setup.value);
     const double h = 1e-5;
     for (int i = 0; i < 2 * fish->n_nodes; i++) {
         const double here = y[i];
         y[i] = here + h;
-        const double high = clamp_terms(fish, setup.t, y).energy;
+        const double high = rod_clamp_terms(fish, setup.t, y).energy;
         y[i] = here - h;
-        const double low = clamp_terms(fish, setup.t, y).energy;
+        const double low = rod_clamp_terms(fish, setup.t, y).energy;
         y[i] = here;
         // truncation and rounding of the differences
         NEAR(setup.value[fish->at.ax + i], (high - low) / (2 * h), 1e-5, 1e-6);
     }
-    ABOVE(clamp_terms(fish, setup.t, y).energy, 0.1);
+    ABOVE(rod_clamp_terms(fish, setup.t, y).energy, 0.1);
 }
 
 TEST(powers_are_what_the_energy_and_the_nodes_do_not_take_up) {
@@ -66,11 +66,12 @@ TEST(powers_are_what_the_energy_and_the_nodes_do_not_take_up) {
         for (int i = 0; i < 2 * fish->n_nodes; i++) moved[side][i] += (side == 0 ? -h : h) * y[fish->at.vx + i];
     }
     const double rate =
-        (clamp_terms(fish, setup.t + h, moved[1]).energy - clamp_terms(fish, setup.t - h, moved[0]).energy) / (2 * h);
-    clamp_residual(fish, setup.t, y, setup.value);
+        (rod_clamp_terms(fish, setup.t + h, moved[1]).energy - rod_clamp_terms(fish, setup.t - h, moved[0]).energy) /
+        (2 * h);
+    rod_clamp_residual(fish, setup.t, y, setup.value);
     for (int i = 0; i < 2 * fish->n_nodes; i++) power -= setup.value[fish->at.ax + i] * y[fish->at.vx + i];
-    const double damping = clamp_terms(fish, setup.t, y).damping_power,
-                 driving = clamp_terms(fish, setup.t, y).driving_power;
+    const double damping = rod_clamp_terms(fish, setup.t, y).damping_power,
+                 driving = rod_clamp_terms(fish, setup.t, y).driving_power;
     BELOW(damping, 0);
     ABOVE(fabs(driving), 1e-3);
     NEAR(rate, -power + damping + driving, 1e-5, 1e-6);
@@ -105,7 +106,7 @@ TEST(head_has_one_prescribed_node_and_published_sections_two) {
     for (int f = 0; f < 3; f++) {
         assert_int_equal(fish_n_prescribed(&fish[f]), n[f]);
         assert_int_equal(fish[f].has_clamp, has_clamp[f]);
-        NEAR(clamp_terms(&fish[f], 0.1, setup.state->y).energy, 0, has_clamp[f] ? INFINITY : 0, 0);
+        NEAR(rod_clamp_terms(&fish[f], 0.1, setup.state->y).energy, 0, has_clamp[f] ? INFINITY : 0, 0);
     }
 }
 
@@ -206,5 +207,5 @@ TEST(moment_of_a_tilt_is_that_of_half_a_cell) {
     const double angle = 0.1;
     y[fish->at.x + 1] = cos(angle) / 6;
     y[fish->at.y + 1] = sin(angle) / 6;
-    NEAR(clamp_terms(fish, 0, y).energy, stiffness / 2 * pow(2 * tan(angle / 2), 2), 0, 1e-12);
+    NEAR(rod_clamp_terms(fish, 0, y).energy, stiffness / 2 * pow(2 * tan(angle / 2), 2), 0, 1e-12);
 }
