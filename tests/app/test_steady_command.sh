@@ -197,7 +197,7 @@ time: {end: 1, shedding_interval: 0.05, output_interval: 0.1}
 contact: {action: warn}
 steady: {tolerance: 1e-2}
 fluid: {velocity: [1, 0]}
-defaults: {fish: {force: reactive, nodes: 7, sheet_points: 17, wave: {amplitude: 0}, motion: {prescribed: all, speed: 0, heave: 0.05, frequency: 1}}}
+defaults: {fish: {force: reactive, nodes: 7, sheet_points: 17, body: {thickness: 0.2}, wave: {amplitude: 0}, motion: {prescribed: all, speed: 0, heave: 0.05, frequency: 1}}}
 fish: [{name: upper, start: {position: [0, 0.16]}}, {name: lower, start: {position: [0, -0.16]}, motion: {phase: 180}}]
 end
 run steady touch.yaml -q --strict

@@ -106,7 +106,7 @@ format: 1
 time: {end: 0.04, shedding_interval: 0.02}
 fluid: {walls: [0.75]}
 defaults: {fish: {nodes: 5}}
-fish: [{start: {position: [0, 2]}}, {start: {position: [0, 4]}, body: {thickness: 0.1}}, {start: {position: [0, 6]}}]
+fish: [{start: {position: [0, 2]}}, {start: {position: [0, 4]}, body: {thickness: 0.15}}, {start: {position: [0, 6]}}]
 end
 run run above.yaml -q -o above.nc
 run view above.nc -q

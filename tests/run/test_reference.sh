@@ -3,7 +3,7 @@
 # and for two: single1 and pair1 use the published model, single3 and pair3 the reactive force and free sheets, single4 and
 # pair4 pressure of finite span, single5 and pair5 in addition cross-flow drag and the law course of slow motion. Each
 # tests/data/NAME.yaml runs at a tight tolerance and is compared with tests/data/NAME.json; at the default tolerance the
-# positions agree to a tenth of a millimetre. Forces, energies and powers are compared at the end; reactive_force includes
+# positions agree to 0.2 mm. Forces, energies and powers are compared at the end; reactive_force includes
 # the tail flux.
 #
 #   tests/run/test_reference.sh PROGRAM
@@ -88,7 +88,7 @@ for case in ["single1", "pair1", "single3", "pair3", "single4", "pair4", "single
     result = run(case)
     for f, fish in enumerate(want["fish"]):
         for name, place in places(result, f).items():
-            check(f"{case} fish {f} {name} at the default tolerance [m]", place, fish[name], 1e-4)
+            check(f"{case} fish {f} {name} at the default tolerance [m]", place, fish[name], 2e-4)
     result.close()
     # another set of defaults leaves a case unchanged that states every key
     if case.endswith(("4", "5")):

@@ -237,7 +237,7 @@ static void polygon(void) {
         5, 5, "amplitude: -1.3962634015954636, linear: 1, quadratic: -1, number: 6.283185307179586, phase: -90", -4);
     double curvature[3], turn = 0, side = 0;
     rod_curvature(simulation->school->fish, simulation->state->y, curvature);
-    for (int j = 0; j < 3; j++) turn = fmax(turn, fabs(2 * atan(curvature[j] / 2) - M_PI / 3));
+    for (int j = 0; j < 3; j++) turn = fmax(turn, fabs(2 * atan(curvature[j] / 4 / 2) - M_PI / 3));
     for (int k = 0; k < 4; k++) side = fmax(side, fabs(distance(simulation, k, k + 1) - 0.25));
     // at rest the equations hold to rounding; the remaining error is the end of the motion
     verify_zero("regular polygon: turning angles less a sixth of a turn, rad", source, turn, 1e-9);
@@ -277,7 +277,7 @@ static void natural_shape(void) {
         rod_curvature(simulation->school->fish, simulation->state->y, curvature);
         for (int j = 0; j < n - 2; j++) {
             const double natural = wave_curvature((j + 1.0) / (n - 1)) / (n - 1);
-            worst = fmax(worst, fabs(2 * atan(curvature[j] / 2) - natural));
+            worst = fmax(worst, fabs(2 * atan(curvature[j] / (n - 1) / 2) - natural));
         }
         error[level] = distance(simulation, 0, n - 1) - chord;
         verify_point("natural shape", "chord", n, fabs(error[level] / chord));

@@ -63,7 +63,8 @@ static void write_case(const struct view_point *view, double output_interval, ch
                  "%sformat: 1\nname: symmetry\n"
                  "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                  "fluid: {velocity: [%.17g, 0]}\nwake: {lifetime: 0.5, decay: 0.2}\n"
-                 "solver: {threads: %d, rtol: %.17g, order: %d}\ndefaults: {fish: {%swave: {ramp: %.17g}}}\nfish:\n",
+                 "solver: {threads: %d, rtol: %.17g, order: %d}\n"
+                 "defaults: {fish: {body: {depth: 0.25}, %swave: {ramp: %.17g}}}\nfish:\n",
                  view->second ? VERIFY_DEFAULTS : "", view->end, interval, output_interval, view->stream, view->threads,
                  view->rtol, view->integrator_order, view->second ? "nodes: 7, sheet_points: 21, " : "", view->ramp);
     for (int place = 0; place < N_FISH; place++) {
