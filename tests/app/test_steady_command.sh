@@ -209,13 +209,13 @@ check in_the_file_too /usr/bin/python3 -c 'import netCDF4; assert "upper and low
 
 run steady swim.yaml -q -o shallow.nc --force --set time.shedding_interval=0.1 --set wake.lifetime=1 --set steady.tolerance=1e-3 \
     --set 'fish[0]={nodes: 9, sheet_points: 51, force: pressure, body: {thickness: 0.2, depth: 0.1, modulus: 1e6}, drag: {normal: 0}, start: {speed: 0.4, heading: 170}}'
-check an_unstable_state_is_warned_of has err 'the steady state is unstable: a disturbance grows by the factor 1.1'
+check an_unstable_state_is_warned_of grep -qE 'state is unstable: a disturbance grows by the factor 1[.](0[5-9]|1)' err
 check and_so_is_a_circle grep -q 'swims in a circle: it turns by 0.[5-9][0-9]* degrees a beat (limit 0.5)' err
 check the_file_says_so /usr/bin/python3 -c 'import netCDF4
 lines = netCDF4.Dataset("shallow.nc").warnings.split("\n")
 assert len(lines) == 3 and "is unstable" in lines[0] and "in a circle" in lines[1] and "10 events" in lines[2], lines'
 run steady swim.yaml -q -o deep.nc --force --set time.shedding_interval=0.1 --set wake.lifetime=1 --set steady.tolerance=1e-3 \
-    --set 'fish[0]={nodes: 9, force: pressure, body: {thickness: 0.2, depth: 0.3, modulus: 1e6}, drag: {normal: 0}, start: {speed: 0.7}}'
+    --set 'fish[0]={nodes: 9, sheet_points: 25, force: pressure, body: {thickness: 0.2, depth: 0.3, modulus: 1e6}, drag: {normal: 0}, start: {speed: 0.7}}'
 check a_stable_state_is_not test "$code" = 0 -a "$(grep -cE 'unstable|circle' err)" = 0
 
 # ---- less than the errors of the integrator
