@@ -37,6 +37,20 @@ struct targets kernel_targets_part(const struct targets *all, struct range which
     return part;
 }
 
+struct targets kernel_targets(int n, const double *x, const double *y, double *const sum[KERNEL_SUMS]) {
+    return (struct targets){.n = n,
+                            .x = x,
+                            .y = y,
+                            .u = sum[0],
+                            .v = sum[1],
+                            .div = sum[2],
+                            .u_x = sum[3],
+                            .u_y = sum[4],
+                            .v_x = sum[5],
+                            .div_x = sum[6],
+                            .div_y = sum[7]};
+}
+
 // ---- velocity and divergence
 
 #if defined(__x86_64__)

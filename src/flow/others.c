@@ -6,7 +6,7 @@
 
 #include "flow/flow.h"
 
-enum { FAR = KERNEL_BLOCK, TIMES = 3, VALUES = 8 };
+enum { FAR = KERNEL_BLOCK, TIMES = 3, VALUES = KERNEL_SUMS };
 
 /* A body that has moved by more than this from the path of its last event, in lengths, has no far sources. */
 static const double most_drift = 4e-3;
@@ -261,18 +261,9 @@ static struct targets far_targets(int n, const double *x, const double *y, const
                                   int n_values) {
     double *sum[VALUES];
     for (int k = 0; k < VALUES; k++) sum[k] = value + (long)k * n_values;
-    return (struct targets){.n = n,
-                            .x = x,
-                            .y = y,
-                            .half = half,
-                            .u = sum[0],
-                            .v = sum[1],
-                            .div = sum[2],
-                            .u_x = sum[3],
-                            .u_y = sum[4],
-                            .v_x = sum[5],
-                            .div_x = sum[6],
-                            .div_y = sum[7]};
+    struct targets at = kernel_targets(n, x, y, sum);
+    at.half = half;
+    return at;
 }
 
 // the far points on the path of the event, tau later

@@ -59,9 +59,9 @@ struct tree {
     struct arena *arena;
     struct chebyshev chebyshev;
     struct node_tree from, to;
-    struct sources rings; /* sorted; leg holds h */
-    double *x, *y, *h;    /* targets, sorted                     (target_capacity) */
-    double *sum[8];       /* u, v, div and gradients, sorted     (target_capacity) */
+    struct sources rings;     /* sorted; leg holds h */
+    double *x, *y, *h;        /* targets, sorted                     (target_capacity) */
+    double *sum[KERNEL_SUMS]; /* u, v, div and gradients, sorted     (target_capacity) */
     int target_capacity;
     struct node_pair *pair, *sorted; /* (pair_capacity) */
     int n_pairs, pair_capacity;
@@ -529,20 +529,10 @@ static void pair_induce(const struct tree *tree, const struct kernel_pair *with,
     // points of a leaf
     if (pair->to[0] == 0) {
         const int first = to_points->first;
-        double *sum[8];
-        for (int i = 0; i < 8; i++) sum[i] = i < 3 || with_gradient ? tree->sum[i] + first : NULL;
-        const struct targets at = {.n = to_points->n,
-                                   .x = tree->x + first,
-                                   .y = tree->y + first,
-                                   .leg = tree->h + first,
-                                   .u = sum[0],
-                                   .v = sum[1],
-                                   .div = sum[2],
-                                   .u_x = sum[3],
-                                   .u_y = sum[4],
-                                   .v_x = sum[5],
-                                   .div_x = sum[6],
-                                   .div_y = sum[7]};
+        double *sum[KERNEL_SUMS];
+        for (int i = 0; i < KERNEL_SUMS; i++) sum[i] = i < 3 || with_gradient ? tree->sum[i] + first : NULL;
+        struct targets at = kernel_targets(to_points->n, tree->x + first, tree->y + first, sum);
+        at.leg = tree->h + first;
         kernel_induce(with, &rings, which, &at);
         return;
     }
@@ -658,7 +648,7 @@ static void targets_sort(struct tree *tree, const struct kernel_pair *pair, cons
     memcpy(tree->x, tree->to.boxes.x, size);
     memcpy(tree->y, tree->to.boxes.y, size);
     memcpy(tree->h, tree->to.boxes.weight, size);
-    for (int i = 0; i < 8; i++) memset(tree->sum[i], 0, size);
+    for (int i = 0; i < KERNEL_SUMS; i++) memset(tree->sum[i], 0, size);
     node_tree_enclose(&tree->to, at->u_x ? smallest_box * length : 0, NULL);
 }
 
@@ -709,7 +699,7 @@ void tree_induce(struct tree *tree, const struct kernel_pair *pair, const struct
     }
 
     double *const to[] = {at->u, at->v, at->div, at->u_x, at->u_y, at->v_x, at->div_x, at->div_y};
-    for (int k = 0; k < (with_gradient ? 8 : 3); k++) {
+    for (int k = 0; k < (with_gradient ? KERNEL_SUMS : 3); k++) {
         for (int i = 0; i < at->n && to[k]; i++) to[k][tree->to.boxes.index[i]] += tree->sum[k][i];
     }
 }

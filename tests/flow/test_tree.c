@@ -6,7 +6,7 @@
 #include "school.h"
 #include "third_kernel.h"
 
-enum { PER_WAKE = 300, MOST_FISH = 256, MOST = PER_WAKE * MOST_FISH, SUMS = 8 };
+enum { PER_WAKE = 300, MOST_FISH = 256, MOST = PER_WAKE * MOST_FISH, SUMS = KERNEL_SUMS };
 
 static uint64_t seed;
 
@@ -81,19 +81,10 @@ static struct targets targets_of(const struct sources *rings, int with_gradient,
     double *sum[SUMS];
     for (int i = 0; i < SUMS; i++) sum[i] = i < 3 || with_gradient ? sums->value[i] : NULL;
     memset(sums, 0, sizeof *sums);
-    return (struct targets){.n = rings->n,
-                            .x = rings->x,
-                            .y = rings->y,
-                            .half = rings->half,
-                            .leg = rings->leg,
-                            .u = sum[0],
-                            .v = sum[1],
-                            .div = sum[2],
-                            .u_x = sum[3],
-                            .u_y = sum[4],
-                            .v_x = sum[5],
-                            .div_x = sum[6],
-                            .div_y = sum[7]};
+    struct targets at = kernel_targets(rings->n, rings->x, rings->y, sum);
+    at.half = rings->half;
+    at.leg = rings->leg;
+    return at;
 }
 
 static double induce(const struct sources *rings, const struct kernel_pair *pair, double tolerance, int threads,
