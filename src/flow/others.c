@@ -116,10 +116,17 @@ bool others_are_selected(const struct flow *flow) {
 
 // ---- selection
 
+/* Error of the polynomial between the FAR points of a body, a power of two, over the value: 2 rho^-FAR. The smallest
+ * ellipse with foci at both ends of the body around the other place has this axis, (rho + 1/rho)/2, over the distance
+ * of the foci. */
+static double polynomial_error(double axis) {
+    double power = axis + sqrt(axis * axis - 1);
+    for (int k = FAR; k > 1; k /= 2) power *= power;
+    return 2 / power;
+}
+
 /* Whether a source of a kernel is far: the errors of the polynomial, of the gradient in place of the kernel, and for
- * wakes of the parabola in time. The smallest ellipse with foci at both ends of the body around the source gives the
- * error of the polynomial, of the order of rho^-FAR, and the distance from the body; source and body may approach in an
- * interval, and the body is bent. */
+ * wakes of the parabola in time. Source and body may approach in an interval, and the body is bent. */
 static bool is_far(const struct others_fish *to, double interval, const struct kernel_pair *pair,
                    const struct sources *sources, int i, double half, double speed, bool is_wake, double tolerance) {
     const double step = interval * (to->speed + speed);
@@ -134,9 +141,7 @@ static bool is_far(const struct others_fish *to, double interval, const struct k
     const double d = sqrt(sources->dx[i] * sources->dx[i] + sources->dy[i] * sources->dy[i]);
     const double size = pair->kernel->bound(pair, r2, low, fabs(sources->q[i]), d, to->chord);
     const double part = step / distance, in_time = is_wake ? 0.05 * part * part * part : 0;
-    double power = axis + sqrt(axis * axis - 1);
-    for (int k = FAR; k > 1; k /= 2) power *= power;
-    return size * (2 / power + to->aside * to->aside / r2 + in_time) <= tolerance;
+    return size * (polynomial_error(axis) + to->aside * to->aside / r2 + in_time) <= tolerance;
 }
 
 static void near_add(struct others *others, struct others_fish *of, int i, bool begins) {
@@ -211,8 +216,7 @@ static bool acts_from_few(const struct flow *flow, int f, int g, double toleranc
     const double distance = (least - from->chord) / 2, axis = least / from->chord;
     const double low = pair.factor * (to->half[0] + from->half[0]);
     const double size = pair.kernel->bound(&pair, distance * distance, low, q, d, from->chord);
-    return size * (2 * pow(axis + sqrt(axis * axis - 1), -FAR) + 2 * from->beside / distance) <=
-           tolerance * sqrt(body->n);
+    return size * (polynomial_error(axis) + 2 * from->beside / distance) <= tolerance * sqrt(body->n);
 }
 
 static void select_at(struct flow *flow, const struct state *state, int f, double n_sources) {
