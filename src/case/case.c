@@ -241,9 +241,7 @@ static enum status read_member(struct case_values *values, const struct case_val
         const int value = sweep_member_value(study, member, a);
         for (int k = 0; k < study->sweep[a].n_keys; k++) {
             struct text text = {.arena = *arena};
-            if (!*study->sweep[a].value[value * study->sweep[a].n_keys + k]) continue;
-            sweep_add_assignment(&text, &study->sweep[a], value, k);
-            assignments[n++] = text.text;
+            if (sweep_add_assignment(&text, &study->sweep[a], value, k)) assignments[n++] = text.text;
         }
     }
 

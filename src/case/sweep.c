@@ -70,8 +70,11 @@ int sweep_member_before(const struct case_values *study, int member) {
     return -1;
 }
 
-void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int value, int k) {
-    text_add(text, "%s=%s", axis->key[k].path, axis->value[value * axis->n_keys + k]);
+bool sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int value, int k) {
+    const char *const given = axis->value[value * axis->n_keys + k];
+    if (!*given) return false;
+    text_add(text, "%s%s=%s", text->length > 0 ? ", " : "", axis->key[k].path, given);
+    return true;
 }
 
 char *sweep_member_text(struct arena *arena, const struct case_values *study, int member) {
@@ -79,11 +82,7 @@ char *sweep_member_text(struct arena *arena, const struct case_values *study, in
     text_add(&list, "%s", "");
     for (int a = 0; a < study->n_axes; a++) {
         const int value = sweep_member_value(study, member, a);
-        for (int k = 0; k < study->sweep[a].n_keys; k++) {
-            if (!*study->sweep[a].value[value * study->sweep[a].n_keys + k]) continue;
-            if (list.length > 0) text_add(&list, ", ");
-            sweep_add_assignment(&list, &study->sweep[a], value, k);
-        }
+        for (int k = 0; k < study->sweep[a].n_keys; k++) sweep_add_assignment(&list, &study->sweep[a], value, k);
     }
     return list.text;
 }

@@ -49,8 +49,9 @@ int sweep_member_value(const struct case_values *study, int member, int axis);
 bool sweep_is_steady(const struct case_values *study);
 int sweep_member_before(const struct case_values *study, int member);
 
-/* Add "solver.rtol=1e-5": the assignment of this value to key k of an axis. */
-void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int value, int k);
+/* Add "solver.rtol=1e-5": the assignment of this value to key k of an axis; to a text that is not empty with a comma.
+ * Returns false, and adds nothing, for a value that is that of the case. */
+bool sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int value, int k);
 
 /* "solver.rtol=1e-5, fish[*].nodes=7": the assignments of one member, in an arena. Empty without a sweep. */
 char *sweep_member_text(struct arena *arena, const struct case_values *study, int member);
