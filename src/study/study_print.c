@@ -833,6 +833,30 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
 
 // ---- error.csv
 
+/* The place of a row of error.csv: a quantity of a fish at a point. */
+struct csv_row {
+    FILE *file;
+    const struct error_sweep *sweep;
+    const struct error_study *study;
+    int q, f;
+};
+static const char of_model[] = "a choice of the model, not in the sum";
+
+static void write_csv_row(const struct csv_row *row, const char *key, const char *levels, double value, double order,
+                          double error, const char *verdict) {
+    const struct error_study *const study = row->study;
+    const struct sweep_axis *const axis = &row->sweep->study.sweep[0];
+    const struct member_file_quantity *const quantity = member_file_quantity(study->quantity[row->q]);
+    fprintf(row->file, "\"%s\",%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,\"%s\"",
+            quantity->of_fish ? study->values->school.fish[row->f].name : "", quantity->name, quantity->unit, value,
+            key, levels, order, error, 100 * error / fabs(study->value[error_plan_place(study, row->q, row->f)]),
+            verdict);
+    for (int c = 0; c < row->sweep->n_swept; c++) {
+        fprintf(row->file, ",%s", axis->value[study->base * axis->n_keys + c]);
+    }
+    fputs("\n", row->file);
+}
+
 enum status study_print_csv(const struct error_sweep *sweep, const char *path) {
     const struct sweep_axis *const axis = &sweep->study.sweep[0];
     struct plain_file table;
@@ -844,41 +868,35 @@ enum status study_print_csv(const struct error_sweep *sweep, const char *path) {
 
     for (int p = 0; p < sweep->n_points; p++) {
         const struct error_study *const study = &sweep->point[p];
-        const int n_rows = study->n_keys + 3;  // the sum, the keys, the lowest and the highest value of other models
-        for (int i = 0; i < study->n_fish * study->n_asked * n_rows; i++) {
-            const int k = i % n_rows - 1, q = i / n_rows % study->n_asked, f = i / n_rows / study->n_asked;
-            const int place = error_plan_place(study, q, f);
-            const struct member_file_quantity *const quantity = member_file_quantity(study->quantity[q]);
-            const struct error_study_model *const model = k == study->n_keys  ? &study->lowest[place]
-                                                          : k > study->n_keys ? &study->highest[place]
-                                                                              : NULL;
-            const struct error_study_key *const key =
-                k < 0 || (model && model->key < 0) ? NULL : &study->key[model ? model->key : k];
-            if ((f > 0 && !quantity->of_fish) || (key && key->n_levels == 1)) continue;
-            if (model && !study->study->error->models) continue;
-            char levels[LEVEL_BYTES] = "", reason[CONVERGENCE_BYTES] = "";
-            if (key && !model) write_levels(study, key, levels);
-            if (key && !model) study_print_reason(study, key, place, reason);
-            if (key && model) {
-                snprintf(levels, LEVEL_BYTES, "%s %s", key->row->path, level_text(study, key, model->level));
+        for (int i = 0; i < study->n_fish * study->n_asked; i++) {
+            const int q = i % study->n_asked, f = i / study->n_asked, place = error_plan_place(study, q, f);
+            if (f > 0 && !member_file_quantity(study->quantity[q])->of_fish) continue;
+            const struct csv_row row = {file, sweep, study, q, f};
+            write_csv_row(&row, "sum", "", study->value[place], NAN, study->error[place], "");
+
+            char levels[LEVEL_BYTES], reason[CONVERGENCE_BYTES];
+            for (int k = 0; k < study->n_keys; k++) {
+                const struct error_study_key *const key = &study->key[k];
+                if (key->n_levels == 1) continue;
+                write_levels(study, key, levels);
+                study_print_reason(study, key, place, reason);
+                const char *const verdict = !report_is_error(key) ? of_model
+                                            : *reason             ? reason
+                                                                  : convergence_words(key->part[place].verdict);
+                write_csv_row(&row, key->row->path, levels, study->value[place], key->part[place].order,
+                              key->part[place].error, verdict);
             }
-            const char *const name = model ? (k == study->n_keys ? "lowest" : "highest") : key ? key->row->path : "sum";
-            const double value = model ? model->value : study->value[place];
-            const double error = model ? fabs(value - study->value[place])
-                                 : key ? key->part[place].error
-                                       : study->error[place];
-            const char *const verdict = !key && !model                   ? ""
-                                        : model || !report_is_error(key) ? "a choice of the model, not in the sum"
-                                        : *reason                        ? reason
-                                                                         : convergence_words(key->part[place].verdict);
-            fprintf(file, "\"%s\",%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,\"%s\"",
-                    quantity->of_fish ? study->values->school.fish[f].name : "", quantity->name, quantity->unit, value,
-                    name, levels, key && !model ? key->part[place].order : NAN, error,
-                    100 * error / fabs(study->value[place]), verdict);
-            for (int c = 0; c < sweep->n_swept; c++) {
-                fprintf(file, ",%s", axis->value[study->base * axis->n_keys + c]);
+
+            // the lowest and the highest value of other models
+            const struct error_study_model *const models[] = {&study->lowest[place], &study->highest[place]};
+            for (int m = 0; m < 2 && study->study->error->models; m++) {
+                const struct error_study_key *const key = models[m]->key < 0 ? NULL : &study->key[models[m]->key];
+                *levels = '\0';
+                if (key)
+                    snprintf(levels, LEVEL_BYTES, "%s %s", key->row->path, level_text(study, key, models[m]->level));
+                write_csv_row(&row, m == 0 ? "lowest" : "highest", levels, models[m]->value, NAN,
+                              fabs(models[m]->value - study->value[place]), of_model);
             }
-            fputs("\n", file);
         }
     }
 
