@@ -579,13 +579,13 @@ def coupling(bench):
             yield layout, f"{gap:g}", apart, coupled, apart_jacobians, coupled_jacobians, f"{times[1] / times[0]:.2f}"
 
 
-def lattice(n, spacing, end):
-    """n default fish in a square, with heading control."""
+def lattice(n, spacing, end, interval=0.01, output=None, fish="control: {law: heading}"):
+    """n fish in a square, default ones with heading control."""
     side = math.ceil(math.sqrt(n))
     places = [f"  - {{start: {{position: [{spacing[0] * (i % side):g}, {spacing[1] * (i // side):g}]}}}}"
               for i in range(n)]
-    return "\n".join(["format: 1", f"time: {{end: {end}, shedding_interval: 0.01, output_interval: {end}}}",
-                      "defaults: {fish: {control: {law: heading}}}", "fish:", *places, ""])
+    return "\n".join(["format: 1", f"time: {{end: {end}, shedding_interval: {interval}, output_interval: {output or end}}}",
+                      f"defaults: {{fish: {{{fish}}}}}", "fish:", *places, ""])
 
 
 @table("fish", "spacing [L]", "coupling distance [L]", *COUNTS)
@@ -610,11 +610,8 @@ def threads(bench):
 
 def swimmers(n, end, more=""):
     """n fish at cruising speed with the default body of the program before."""
-    side = math.ceil(math.sqrt(n))
     body = "body: {thickness: 0.2, depth: 0.25, modulus: 1e6}, drag: {normal: 0}"
-    fish = [f"  - {{start: {{position: [{2 * (i % side)}, {i // side}]}}}}" for i in range(n)]
-    return "\n".join(["format: 1", f"time: {{end: {end}, shedding_interval: 0.02, output_interval: 0.2}}",
-                      f"defaults: {{fish: {{start: {{speed: 0.79}}, {body}{more}}}}}", "fish:", *fish, ""])
+    return lattice(n, (2, 1), end, 0.02, 0.2, f"start: {{speed: 0.79}}, {body}{more}")
 
 
 @table("case", "simulated [s]", "CPU time before [s]", "CPU time over it, 1e-5", "3e-5", "error before", "1e-5", "3e-5")

@@ -8,6 +8,7 @@ A grey bar is the spread of the source, or 5 % where the source has one value.
 
 import csv
 import json
+import math
 import os
 import subprocess
 import sys
@@ -44,7 +45,7 @@ def lift_slope(depth):
                               capture_output=True, text=True, check=False)
         if done.returncode:
             sys.exit(f"validation.py: wing of depth {depth:g}: {done.stderr}")
-        return abs(json.loads(done.stdout)["steady_lift"][0]) / (0.5 * depth * 3.14159265 * 2 / 180)
+        return abs(json.loads(done.stdout)["steady_lift"][0]) / (0.5 * depth * math.radians(2))
 
 
 def draw(table, picture):

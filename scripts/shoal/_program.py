@@ -280,8 +280,7 @@ def error(case, of, within: float | None = None, models: bool = False, assignmen
             if row["key"] == "sum":
                 found[place] = Estimate(*place, float(row["value"]), float(row["error"]), row["unit"], [])
             elif row["key"] in ("lowest", "highest"):
-                models = (found[place].models or ()) + (float(row["value"]),)
-                found[place] = found[place]._replace(models=models)
+                found[place] = found[place]._replace(models=(found[place].models or ()) + (float(row["value"]),))
             elif row["verdict"] not in ("accepted", "differences are below the noise",
                                         "a choice of the model, not in the sum"):
                 found[place].flags.append(f"{row['key']}: {row['verdict']}")
