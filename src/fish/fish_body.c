@@ -113,7 +113,7 @@ static void body_fluid_set(struct fish *fish, const struct fish_parameters *from
         fish->displaced_mass[k] = reactive * density * M_PI * h * w / 4 * l;
         thickest = fmax(thickest, h);
 
-        // S of an ellipse by the trapezoid rule of its perimeter
+        // S of an ellipse by the midpoint rule for its perimeter
         enum { N_ANGLES = 32 };
         largest = fmax(largest, fmin(sqrt(h * w), 2 * h) / fish->length);
         for (int i = 0; i < N_ANGLES; i++) {

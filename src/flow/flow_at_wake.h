@@ -2,8 +2,8 @@
  * doc/model.md, sections 8, 9 and 18. Tested by tests/flow/test_flow.c, tests/flow/test_flow_at_markers.c.
  *
  * The velocity at markers and the force on bodies have the same sources, with the same smoothing for the same pair, so
- * that the impulse of bodies and wakes is conserved. The own body acts on markers with the tapered smoothing delta(d),
- * sheet.h; images are never tapered. */
+ * that the impulse of bodies and wakes is conserved. The body that shed the markers acts on them with the tapered
+ * smoothing delta(d), sheet.h; images are never tapered. */
 #ifndef FLOW_AT_WAKE_H
 #define FLOW_AT_WAKE_H
 

@@ -42,12 +42,12 @@ struct targets {
 };
 struct targets kernel_targets_part(const struct targets *all, struct range which);
 
-/* n places with u, v, div and the gradients u_x, u_y, v_x, div_x, div_y, in this order; without half, leg and square. */
+/* n places with the sums u, v, div, u_x, u_y, v_x, div_x, div_y, in this order; without half, leg and square. */
 enum { KERNEL_SUMS = 8 };
 struct targets kernel_targets(int n, const double *x, const double *y, double *const sum[KERNEL_SUMS]);
 
 /* Constants of all pairs of a sum: span: b in front of the kernel, m (infinite span: 1); factor: of both `half`, 1 in
- * the own strip, 4 outside; square: addend of e^2, m2. */
+ * the strip of the same fish, 4 outside; square: addend of e^2, m2. */
 struct kernel;
 struct kernel_pair {
     const struct kernel *kernel;

@@ -31,8 +31,7 @@ struct integrator_options {
 
 /* A family of methods. A solver advances y and yp of a state in place, and reads the wakes through the residual. */
 struct integrator {
-    /* Create a solver for the present state, which must be consistent; NULL without a history. Fails with
-     * STATUS_SOLVER. */
+    /* Create a solver for the present state, which must be consistent. Fails with STATUS_SOLVER. */
     enum status (*create)(struct arena *arena, void **solver, struct residual *residual, struct state *state,
                           const struct integrator_options *options);
 

@@ -180,8 +180,7 @@ static void warn_of_state(struct run *run) {
     if (found->residual > tolerance) {
         warn(run,
              "the beats of the result change by %.2g per beat, more than steady.tolerance, %g: the state is unstable, "
-             "or "
-             "the integrator restarts with this error: lower solver.rtol",
+             "or the integrator restarts with this error: lower solver.rtol",
              found->residual, tolerance);
     }
 
@@ -189,8 +188,7 @@ static void warn_of_state(struct run *run) {
     if (largest > 1) {
         warn(run,
              "the steady state is unstable: a disturbance grows by the factor %.4g a beat (limit 1), so that a run "
-             "leaves "
-             "it; %s",
+             "leaves it; %s",
              largest,
              school->n_fish > 1 ? "search from another place, or hold the places by control"
                                 : "a deeper body, cross-flow drag (drag.normal) or control.law: course stabilises it");
@@ -202,8 +200,7 @@ static void warn_of_state(struct run *run) {
         if (fish->control.law != CONTROL_NONE || fish->control.bias != 0 || !(fabs(turn) > most_turn)) continue;
         warn(run,
              "%s swims in a circle: it turns by %.3g degrees a beat (limit %g) without control, and its speed is that "
-             "on "
-             "the circle; a deeper body, cross-flow drag (drag.normal) or control.law: course keeps it straight",
+             "on the circle; a deeper body, cross-flow drag (drag.normal) or control.law: course keeps it straight",
              fish->name, turn, most_turn);
     }
 }

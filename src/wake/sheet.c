@@ -41,7 +41,7 @@ void sheet_newest(const struct wake *wake, double interval, double tau, const do
 
 // ---- points of stretches
 
-// s of a point of the wake at this distance from the own tail along the sheet, m2
+// s of a point of the wake at this distance from its tail along the sheet, m2
 static double sheet_leg(double depth, double distance) {
     if (!(depth > 0)) return 0;
     const double ratio = distance / (3 * depth), fourth = ratio * ratio * ratio * ratio;

@@ -11,8 +11,8 @@
  *
  * The sheet has three views:
  *
- *   graded     for the own control points: points of the newest stretches, graded towards the tail, and the middles of
- *              older stretches, with a smoothing that tapers to 0 at the tail
+ *   graded     for control points of the same fish: points of the newest stretches, graded towards the tail, and the
+ *              middles of older stretches, with a smoothing that tapers to 0 at the tail
  *   middles    for all other points of bodies: the middle of every stretch; or the queue and the nascent vortex
  *   markers    for markers: the markers, each with half of both adjacent stretches */
 #ifndef SHEET_H
@@ -23,17 +23,18 @@
 #include "wake/sources.h"
 #include "wake/wake.h"
 
-/* Points of the nascent stretch for the own control points: fraction xi of the way from the tail to the newest marker,
- * and fraction of the circulation. Gauss-Legendre in eta with xi = eta^2: exact for xi^(-1/2) times a polynomial. */
+/* Points of the nascent stretch for control points of the same fish: fraction xi of the way from the tail to the newest
+ * marker, and fraction of the circulation. Gauss-Legendre in eta with xi = eta^2: exact for xi^(-1/2) times a
+ * polynomial. */
 enum { SHEET_PANEL = 4 };
 
 /* Number of newest stretches with SHEET_PANEL points; age in stretches up to which a stretch has two points, each with
  * half of the circulation. Older stretches have one point, the middle. */
 enum { SHEET_GRADED = 1, SHEET_PAIRED = 4 };
 
-/* The older end of the nascent stretch for the own control points: the newest marker, or, if the tail has overtaken the
- * marker, a point beside the tail. This point moves with the tail along the tangent, and by by_turn per displacement
- * X'.n of the tangent vector along the normal. */
+/* The older end of the nascent stretch for control points of the same fish: the newest marker, or, if the tail has
+ * overtaken the marker, a point beside the tail. This point moves with the tail along the tangent, and by by_turn per
+ * displacement X'.n of the tangent vector along the normal. */
 struct nascent_end {
     int is_overtaken;
     double x[2]; /* m */
@@ -74,9 +75,9 @@ void sheet_build(struct sheet *sheet, const struct fish *fish, const struct scho
 void sheet_place(struct sheet *sheet, const struct school *school, const struct wake *wake, double t, double tau);
 
 /* Set the nascent points to the time tau with the tail position at this time; shed: total circulation shed by the fish,
- * m2 s-1. The stretch ends at the newest marker (tangent NULL), or for the own control points, with the direction of
- * the body at the tail, beside the tail if the tail has overtaken the marker. Returns the circulation of the nascent
- * stretch or vortex. */
+ * m2 s-1. The stretch ends at the newest marker (tangent NULL), or, for control points of the same fish, with the
+ * direction of the body at the tail, beside the tail if the tail has overtaken the marker. Returns the circulation of
+ * the nascent stretch or vortex. */
 double sheet_place_nascent(struct sheet_points *points, const struct school *school, const struct wake *wake, double t,
                            double tau, const double tail[2], const struct direction *tangent, double shed);
 
@@ -94,8 +95,8 @@ void sheet_markers(struct sources *sources, const struct fish *fish, const struc
 /* The newest marker tau after the event; the tail if there are no markers. */
 void sheet_newest(const struct wake *wake, double interval, double tau, const double tail[2], double point[2]);
 
-/* Smoothing of the velocity between a vortex of the wake and the own body, m; from_tail: position of the vortex
- * relative to the tail, m; tangent: direction of the body at the tail. */
+/* Smoothing of the velocity between a vortex of the wake and the body that shed it, m; from_tail: position of the
+ * vortex relative to the tail, m; tangent: direction of the body at the tail. */
 double sheet_taper(const struct fish *fish, const double from_tail[2], const double tangent[2]);
 
 #endif

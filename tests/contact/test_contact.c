@@ -138,7 +138,6 @@ TEST(walls_push_with_the_gradient_of_the_energy) {
     ABOVE(n, 5);
 }
 
-// doc/model.md, section 16: half of phi of every end of each edge above each wall
 TEST(a_wall_is_a_spring_that_stiffens) {
     // E = k r (1 - s)^3/s: E' = k (3 - 2 s - 1/s^2), E'' = 2 k/r (1/s^3 - 1), also where the last term decides
     static const double parts[] = {0.1, 0.5, 0.9, 0.99};
@@ -163,6 +162,7 @@ TEST(a_wall_is_a_spring_that_stiffens) {
     }
 }
 
+// doc/model.md, section 16: half of phi of every end of each edge above each wall
 TEST(the_energy_above_walls_is_that_of_all_ends) {
     struct setup setup =
         setup_stirred(TIME "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5}\nfish: [{sheet_points: 9}]\n");

@@ -279,8 +279,6 @@ TEST(mean_heading_is_the_trapezoidal_mean) {
     NEAR(diagnostics_mean_heading(&history), (0.5 + 2 + 4 + 8 + 2.5) / 4, 1e-15, 0);
 }
 
-/* Means of a force over five samples of a free fish that swims at the speed 1 towards -x: by the trapezoidal rule a
- * constant force is its own mean, and so is the middle of a force that grows at a constant rate. */
 TEST(separation_is_the_part_of_the_period_above_the_limit) {
     struct setup setup = setup_of(TIME "fish: [{}]\n");
     struct fish fish = *setup.school->fish;
@@ -299,6 +297,8 @@ TEST(separation_is_the_part_of_the_period_above_the_limit) {
     NEAR(of.separation_share, 3.5 / 4, 1e-15, 0);
 }
 
+/* Means of a force over five samples of a free fish that swims at the speed 1 towards -x: by the trapezoidal rule a
+ * constant force is its own mean, and so is the middle of a force that grows at a constant rate. */
 TEST(mean_forces_are_exact_for_forces_that_grow_evenly) {
     struct setup setup = setup_of(TIME "fish: [{}]\n");
     for (int i = 0; i < 2; i++) {
