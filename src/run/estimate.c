@@ -5,7 +5,6 @@
 #include <sys/resource.h>
 
 #include "base/parallel.h"
-#include "flow/tree.h"
 #include "run/event.h"
 
 /* A synthetic wake drifts away from the tail by `drift` body lengths per beat; the lateral amplitude is `width` body
@@ -26,10 +25,11 @@ static const double usual_bytes = 1900;
 enum { FIRST_WAKE = 64, MAX_WAKES = 24 };
 
 /* Costs of an event against the number of vortices per fish. Entry 0 is the cost with the actual wakes. Beyond the last
- * entry, the added time grows with this power of the number of vortices, and memory grows linearly. */
+ * entry, the added time grows as n^2 to the number of vortices from which the tree sums, then as n log n; memory grows
+ * linearly. */
 struct costs {
     int n;
-    double vortices[MAX_WAKES + 1], seconds[MAX_WAKES + 1], bytes[MAX_WAKES + 1], power;
+    double vortices[MAX_WAKES + 1], seconds[MAX_WAKES + 1], bytes[MAX_WAKES + 1], by_tree;
 };
 
 // peak memory of the program so far
@@ -147,7 +147,10 @@ static double event_added_cost(const struct costs *costs, double vortices) {
     int i = 0;
     while (i < costs->n - 1 && vortices > costs->vortices[i + 1]) i++;
     const double from = costs->seconds[i] - costs->seconds[0];
-    if (i == costs->n - 1) return fmax(0, from * pow(vortices / costs->vortices[i], costs->power));
+    if (i == costs->n - 1) {
+        const double last = costs->vortices[i], direct = fmax(last, fmin(vortices, costs->by_tree));
+        return fmax(0, from * pow(direct / last, 2) * pow(vortices / direct, 1.1));
+    }
     const double part = (vortices - costs->vortices[i]) / (costs->vortices[i + 1] - costs->vortices[i]);
     return fmax(0, from + part * (costs->seconds[i + 1] - costs->seconds[i]));
 }
@@ -158,19 +161,24 @@ enum status estimate_run(struct simulation *simulation, double patience, struct 
     struct costs costs = {.n = 1, .vortices = {1}};
     TRY(measure_first_events(simulation, patience / 2, estimate, &each, &evaluations));
 
-    // a synthetic wake does not match the body: a solver failure with this wake predicts no failure of the run
-    if (measure_synthetic_wakes(simulation, end, evaluations, &costs) == STATUS_MEMORY) return STATUS_MEMORY;
+    // a run that has ended has its longest wakes. A synthetic wake does not match the body: a solver failure with this
+    // wake predicts no failure of the run
+    const double most = wake_most(simulation->school, simulation->n_events);
+    if (estimate->n_events == simulation->n_events) {
+        costs.vortices[0] = most;
+    } else if (measure_synthetic_wakes(simulation, end, evaluations, &costs) == STATUS_MEMORY) {
+        return STATUS_MEMORY;
+    }
 
-    // the cost of the velocity sum grows as n log n by tree, else as n^2
+    // the number of vortices from which the tree is faster: tree_is_faster
     const struct school *const school = simulation->school;
-    const double n = fmin(costs.vortices[costs.n - 1] * school->n_fish, 1e9);
     const struct kernel *const kernel = simulation->residual->flow->kernel;
-    costs.power = tree_is_faster(kernel, (int)n, n * n, school->wake_tolerance) ? 1.1 : 2;
+    costs.by_tree = school->wake_tolerance > 0 ? fmax(kernel->tree_sources, sqrt(kernel->tree_interactions)) : INFINITY;
+    costs.by_tree /= school->n_fish;
 
     // sum over all events: panels of many events while the wakes grow, then events with constant wakes
     enum { PANELS = 2000 };
-    const double n_events = (double)simulation->n_events, most = wake_most(school, simulation->n_events);
-    const double growing = fmin(most, n_events);
+    const double n_events = (double)simulation->n_events, growing = fmin(most, n_events);
     double sum = 0;
     for (int i = 0; i < PANELS; i++) sum += event_added_cost(&costs, (i + 0.5) * growing / PANELS) * growing / PANELS;
     estimate->seconds = n_events * each + sum + (n_events - growing) * event_added_cost(&costs, most);
