@@ -10,6 +10,7 @@ cat >small.yaml <<'CASE'
 format: 1
 time: {end: 1, shedding_interval: 0.01, output_interval: 0.02}
 output: {wake_interval: 0.1}
+defaults: {fish: {body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}
 fish:
   - {name: a, force: reactive, nodes: 7, sheet_points: 21}
   - {name: b, force: reactive, nodes: 9, sheet_points: 21, start: {position: [0.2, 1.5]}, control: {law: heading, desired_heading: 170}}
@@ -187,7 +188,7 @@ wait_for test -s run.ckpt
 refused locked 4 "run.nc: another run writes this result: wait until" run small.yaml -o run.nc --force
 mkdir beside
 ln run.nc beside/run.nc
-cp run.ckpt beside/run.ckpt
+wait_for cp run.ckpt beside/run.ckpt  # which the run replaces all the time
 refused a_hard_link_has_the_same_lock 4 "beside/run.nc: another run writes this result" resume beside/run.ckpt --end 200
 refused for_a_new_run_too 4 "beside/run.nc: another run writes this result" run small.yaml -o beside/run.nc --force
 ln -sf ../run.nc beside/run.nc

@@ -44,7 +44,7 @@ check finished_members_are_passed_over test "$(changed small-study/member-0001.n
 check failed_members_run_again test "$(changed small-study/member-0002.nc)" != "$failed"
 
 # the same text of the case, but other defaults: a member of another version of the program
-sed -i 's/modulus: 1000000 /modulus: 2000000 /' small-study/member-0001.nc
+sed -i 's/modulus: 1500000 /modulus: 2000000 /' small-study/member-0001.nc
 finished=$(changed small-study/member-0001.nc)
 run study small.yaml
 check a_member_of_other_defaults_runs_again test "$(changed small-study/member-0001.nc)" != "$finished"
