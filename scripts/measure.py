@@ -207,14 +207,13 @@ def steady_states(bench):
                short(state["steady_residual"]), state["steady_beats"], f"{largest:.2f}")
 
 
-def turn_of(path):
-    """Settling time [beats] of the course within 5 degrees, and overshoot [degrees], of a member of step_response."""
+def turn_of(path, begin):
+    """Settling time [beats] of the course within 5 degrees, and overshoot [degrees], of a member with a turn to 90 degrees."""
     member = netCDF4.Dataset(path)
     time, place, beat = member["time"][:], member["com"][:, 0], 1 / float(member["frequency"][0])
     n = round(beat / (time[1] - time[0]))
-    way, begin, turn = place[n:] - place[:-n], 4.1, -90
-    course = np.degrees(np.unwrap(np.arctan2(way[:, 1], way[:, 0])))
-    error, time = course - course[0] - turn, time[n:]
+    way = place[n:] - place[:-n]
+    error, time = np.degrees(np.unwrap(np.arctan2(way[:, 1], way[:, 0]))) % 360 - 90, time[n:]
     return (time[np.abs(error) > 5].max() - begin) / beat, max(0, -error[time > begin].min())
 
 
@@ -225,10 +224,38 @@ def step_response(bench):
     bench.call("study", os.path.join(CASES, "studies/step_response.yaml"), "-q", "-o", folder)
     study = open_study(os.path.join(folder, "study.nc"))
     for first in range(0, study["member"].size, 5):
-        turns = [turn_of(os.path.join(folder, f"member-{first + i:04d}.nc")) for i in range(5)]
+        turns = [turn_of(os.path.join(folder, f"member-{first + i:04d}.nc"), 4.1) for i in range(5)]
         yield (power(study["fish_body_modulus"][first]),
                f"{study['fish_wave_frequency'][first]:g}, {study['fish_wave_amplitude'][first]:g}",
                *(f"{settling:.1f}, {overshoot:.0f}" for settling, overshoot in turns))
+
+
+@table("modulus [Pa]", "work [J], 0.04 s", "0.02", "0.01", "0.005", "settling, most [beats]", "overshoot [degree]",
+       "evaluations, 0.04 s", "0.02", "0.01", "0.005")
+def feedback(bench):
+    """course control over modulus and interval: work, a turn of 90 degrees, effort (a minute)"""
+    folder = os.path.join(bench.folder, "feedback")
+    bench.call("study", os.path.join(CASES, "studies/feedback.yaml"), "-q", "-o", folder)
+    study = open_study(os.path.join(folder, "study.nc"))
+    for first in range(0, study["member"].size, 4):
+        turns = [turn_of(os.path.join(folder, f"member-{first + i:04d}.nc"), 8.1) for i in range(4)]
+        of = slice(first, first + 4)
+        yield (power(study["fish_body_modulus"][first]), *(f"{work:.2f}" for work in study["actuation_work"][of, 0]),
+               *(f"{max(values):.1f}" for values in zip(*turns)),
+               *(int(count) for count in study["residual_evaluations"][of]))
+
+
+@table("depth [L]", "force", "span", "speed [m/s]", "cost [m/s2]", "largest multiplier")
+def depth(bench):
+    """steady speed, cost and stability over the depth of a stiff body, three forces (a minute)"""
+    folder = os.path.join(bench.folder, "depth")
+    bench.call("study", os.path.join(CASES, "studies/depth.yaml"), "-q", "-o", folder)
+    study = open_study(os.path.join(folder, "study.nc"))
+    names = strings(study["fish_force"]), strings(study["fish_pressure_span"])
+    for i in range(study["member"].size):
+        yield (f"{study['fish_body_depth'][i]:g}", names[0][i], "" if names[0][i] == "reactive" else names[1][i],
+               f"{study['steady_speed'][i, 0]:.4f}", f"{study['steady_cost_of_transport'][i, 0]:.4f}",
+               f"{math.exp(study['steady_growth'][i]):.3f}")
 
 
 def with_bar(value, bar):

@@ -46,6 +46,7 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"beat_time", 0, 0, "s", "wall time of a beat of the search for a steady state", 1},
     {"steady_stiffness", 0, 0, NULL, NULL, 1},
     {"steady_power", 1, 0, NULL, NULL, 1},
+    {"steady_growth", 0, 0, NULL, NULL, 1},
 };
 
 int sweep_quantity_find(const char *name, int n_known) {

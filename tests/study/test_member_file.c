@@ -73,7 +73,7 @@ TEST_WITH(a_steady_state_has_its_own_values, set_up, tear_down) {
     struct result_file *file;
     struct member_file member;
     struct steady_fish fish[N_FISH] = {{.drag = 3, .force = {4, 5}}, {.drag = 6, .force = {7, 8}}};
-    const struct steady_values values = {.stiffness = 0.5, .fish = fish};
+    const struct steady_values values = {.stiffness = 0.5, .growth = -0.25, .fish = fish};
     assert_int_equal(begin(f, false, true, &file), STATUS_OK);
     assert_int_equal(append(f, file, 0, 0), STATUS_OK);
     result_file_steady(file, f->school, &values);
@@ -83,6 +83,7 @@ TEST_WITH(a_steady_state_has_its_own_values, set_up, tear_down) {
     NEAR(value(&member, "steady_drag", 1, 0), 6, 0, 0);
     NEAR(value(&member, "steady_force", 0, 1), 5, 0, 0);
     NEAR(value(&member, "steady_stiffness", 0, 0), 0.5, 0, 0);
+    NEAR(value(&member, "steady_growth", 0, 0), -0.25, 0, 0);
     NEAR(value(&member, "speed", 1, 0), f->of_fish[1].speed, 0, 0);
     unlink(f->path);
     read_member(f, &member);
