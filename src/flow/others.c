@@ -11,6 +11,13 @@ enum { FAR = KERNEL_BLOCK, TIMES = 3, VALUES = KERNEL_SUMS };
 /* A body that has moved by more than this from the path of its last event, in lengths, has no far sources. */
 static const double most_drift = 4e-3;
 
+/* Neighbouring sources: a circle around the sources, and bounds of strengths, half spans, legs and speeds. */
+enum { GROUP = 16 };
+struct group {
+    struct range sources;
+    double x, y, radius, q, d, half, leg, speed;
+};
+
 /* The far points of a fish. */
 struct others_fish {
     bool is_used;       /* else no source is far: too few nodes, or a depth that varies */
@@ -30,6 +37,10 @@ struct others_fish {
     bool has_drifted;
     int n_near, near_capacity; /* ranges of near sources in wakes */
     struct range *near;
+    int n_groups, group_capacity;
+    struct group *group; /* the released wake of this fish, GROUP by GROUP */
+    struct group around; /* the body of this fish */
+    double q, d;         /* sums of the sizes of the strengths of the body */
 };
 
 /* What one fish is for another. */
@@ -125,21 +136,44 @@ static double polynomial_error(double axis) {
     return 2 / power;
 }
 
-/* Whether a source of a kernel is far: the errors of the polynomial, of the gradient in place of the kernel, and for
+/* The group of some sources of a wake (wake), or of the body of fish g (NULL). */
+static struct group group_of(const struct others *others, int g, const struct sources *sources, struct range which,
+                             const struct wake *wake) {
+    struct group group = {
+        .sources = which, .half = INFINITY, .leg = INFINITY, .speed = wake ? 0 : others->fish[g].speed};
+    const int last = which.first + which.n - 1;
+    group.x = (sources->x[which.first] + sources->x[last]) / 2;
+    group.y = (sources->y[which.first] + sources->y[last]) / 2;
+    for (int i = which.first; i <= last; i++) {
+        const double dx = sources->x[i] - group.x, dy = sources->y[i] - group.y;
+        const double d2 = sources->dx[i] * sources->dx[i] + sources->dy[i] * sources->dy[i];
+        if (which.n > 1) group.radius = fmax(group.radius, sqrt(dx * dx + dy * dy));
+        group.q = fmax(group.q, fabs(sources->q[i]));
+        group.d = fmax(group.d, sqrt(d2));
+        group.half = fmin(group.half, sources->half[i]);
+        group.leg = fmin(group.leg, sources->leg[i]);
+        if (!wake) continue;
+        const int marker = i < wake->n_vortex - 1 ? i + wake->has_markers : i;
+        const double speed2 = wake->u[marker] * wake->u[marker] + wake->v[marker] * wake->v[marker];
+        group.speed = fmax(group.speed, sqrt(speed2));
+    }
+    return group;
+}
+
+/* Whether every source of a group is far: the errors of the polynomial, of the gradient in place of the kernel, and for
  * wakes of the parabola in time. Source and body may approach in an interval, and the body is bent. */
 static bool is_far(const struct others_fish *to, double interval, const struct kernel_pair *pair,
-                   const struct sources *sources, int i, double half, double speed, bool is_wake, double tolerance) {
-    const double step = interval * (to->speed + speed);
-    double sum = -2 * (to->bend + step);
+                   const struct group *group, bool is_wake, double tolerance) {
+    const double step = interval * (to->speed + group->speed);
+    double sum = -2 * (to->bend + step + group->radius);
     for (int k = 0; k < 2; k++) {
-        const double r[2] = {sources->x[i] - to->end[k][0], sources->y[i] - to->end[k][1]};
+        const double r[2] = {group->x - to->end[k][0], group->y - to->end[k][1]};
         sum += sqrt(r[0] * r[0] + r[1] * r[1]);
     }
     if (!(sum > to->chord)) return false;
     const double distance = (sum - to->chord) / 2, r2 = distance * distance, axis = sum / to->chord;
-    const double low = pair->factor * (half + sources->half[i]) + sources->leg[i];
-    const double d = sqrt(sources->dx[i] * sources->dx[i] + sources->dy[i] * sources->dy[i]);
-    const double size = pair->kernel->bound(pair, r2, low, fabs(sources->q[i]), d, to->chord);
+    const double low = pair->factor * (to->half[0] + group->half) + group->leg;
+    const double size = pair->kernel->bound(pair, r2, low, group->q, group->d, to->chord);
     const double part = step / distance, in_time = is_wake ? 0.05 * part * part * part : 0;
     return size * (polynomial_error(axis) + to->aside * to->aside / r2 + in_time) <= tolerance;
 }
@@ -155,8 +189,8 @@ static void near_add(struct others *others, struct others_fish *of, int i, bool 
     of->near[of->n_near - 1].n++;
 }
 
-// the body of a fish at the event
-static void remember_body(struct flow *flow, int f) {
+// body and wake of a fish at the event
+static void remember_fish(struct flow *flow, const struct state *state, int f) {
     const struct fish *const fish = &flow->school->fish[f];
     struct others_fish *const of = &flow->others->fish[f];
     const double *const y = flow->others->past, *const x = y + fish->at.x, *const aside = y + fish->at.y;
@@ -169,6 +203,26 @@ static void remember_body(struct flow *flow, int f) {
         const double r[2] = {x[k] - x[0], aside[k] - aside[0]};
         of->bend = fmax(of->bend, fabs(r[0] * along[1] - r[1] * along[0]) / of->chord);
         of->speed = fmax(of->speed, hypot(y[fish->at.vx + k], y[fish->at.vy + k]));
+    }
+
+    // as sources
+    const struct sources *const body = &flow->fish[f].body;
+    const struct sheet_points *const wake = &flow->fish[f].wake.middles;
+    of->around = group_of(flow->others, f, body, (struct range){0, body->n}, NULL);
+    of->q = of->d = 0;
+    for (int c = 0; c < body->n; c++) {
+        of->q += fabs(body->q[c]);
+        of->d += sqrt(body->dx[c] * body->dx[c] + body->dy[c] * body->dy[c]);
+    }
+    of->n_groups = (wake->n_released + GROUP - 1) / GROUP;
+    if (of->n_groups > of->group_capacity) {
+        of->group_capacity = 2 * of->n_groups;
+        GROW(flow->others->arena, of->group, of->group_capacity);
+    }
+    for (int k = 0; k < of->n_groups; k++) {
+        const int first = k * GROUP, left = wake->n_released - first;
+        const struct range which = {first, left < GROUP ? left : GROUP};
+        of->group[k] = group_of(flow->others, f, &wake->sources, which, &state->wake[f]);
     }
     if (!of->is_used) return;
 
@@ -197,15 +251,10 @@ static void remember_body(struct flow *flow, int f) {
  * curve. */
 static bool acts_from_few(const struct flow *flow, int f, int g, double tolerance) {
     const struct others_fish *const from = &flow->others->fish[g];
-    const struct sources *const body = &flow->fish[g].body;
     if (!from->is_used || !flow->school->fish[g].integrals) return false;
     const struct kernel_pair pair = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
     const struct others_fish *const to = &flow->others->fish[f];
-    double q = 0, d = 0, least = INFINITY;
-    for (int c = 0; c < body->n; c++) {
-        q += fabs(body->q[c]);
-        d += sqrt(body->dx[c] * body->dx[c] + body->dy[c] * body->dy[c]);
-    }
+    double least = INFINITY;
     for (int i = 0; i < FAR; i++) {
         double sum = 0;
         for (int k = 0; k < 2; k++) sum += hypot(to->start[0][i] - from->end[k][0], to->start[1][i] - from->end[k][1]);
@@ -215,8 +264,8 @@ static bool acts_from_few(const struct flow *flow, int f, int g, double toleranc
     if (!(least > from->chord)) return false;
     const double distance = (least - from->chord) / 2, axis = least / from->chord;
     const double low = pair.factor * (to->half[0] + from->half[0]);
-    const double size = pair.kernel->bound(&pair, distance * distance, low, q, d, from->chord);
-    return size * (polynomial_error(axis) + 2 * from->beside / distance) <= tolerance * sqrt(body->n);
+    const double size = pair.kernel->bound(&pair, distance * distance, low, from->q, from->d, from->chord);
+    return size * (polynomial_error(axis) + 2 * from->beside / distance) <= tolerance * sqrt(flow->fish[g].body.n);
 }
 
 static void select_at(struct flow *flow, const struct state *state, int f, double n_sources) {
@@ -225,36 +274,40 @@ static void select_at(struct flow *flow, const struct state *state, int f, doubl
     const struct fish *const fish = &school->fish[f];
     struct others_fish *const of = &others->fish[f];
     const double tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish) / (4 * sqrt(n_sources));
-    const double half = flow->kernel->has_legs ? of->half[0] : 0, interval = school->interval;
+    const double interval = school->interval;
     of->n_near = 0;
     for (int g = 0; g < school->n_fish; g++) {
         struct others_pair *const pair = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
-        const struct flow_fish *const other = &flow->fish[g];
-        const struct wake *const wake = &state->wake[g];
-        const int n_released = other->wake.middles.n_released;
+        const struct others_fish *const from = &others->fish[g];
+        const struct sources *const wake = &flow->fish[g].wake.middles.sources, *const body = &flow->fish[g].body;
+        const int n_released = flow->fish[g].wake.middles.n_released;
         *pair = (struct others_pair){.first_near = of->n_near, .whole = {0, n_released}};
         if (g == f) continue;
 
         // runs of near sources in the wake
         const struct kernel_pair of_wake = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
-        bool was_near = false, newest_is_far = of->is_used;
-        for (int i = 0; i < n_released; i++) {
-            const int marker = i < wake->n_vortex - 1 ? i + wake->has_markers : i;
-            const double speed = sqrt(wake->u[marker] * wake->u[marker] + wake->v[marker] * wake->v[marker]);
-            const bool near = !of->is_used || !is_far(of, interval, &of_wake, &other->wake.middles.sources, i, half,
-                                                      speed, true, tolerance);
-            if (near) near_add(others, of, i, !was_near);
-            was_near = near;
-            newest_is_far = !near;
+        bool was_near = false;
+        for (int k = 0; k < from->n_groups; k++) {
+            const struct range which = from->group[k].sources;
+            const bool are_far = of->is_used && is_far(of, interval, &of_wake, &from->group[k], true, tolerance);
+            if (are_far) was_near = false;
+            for (int i = which.first; i < which.first + which.n && !are_far; i++) {
+                const struct group one = group_of(others, g, wake, (struct range){i, 1}, &state->wake[g]);
+                const bool near = !of->is_used || !is_far(of, interval, &of_wake, &one, true, tolerance);
+                if (near) near_add(others, of, i, !was_near);
+                was_near = near;
+            }
         }
         pair->n_near = of->n_near - pair->first_near;
 
         // the body, with the nascent point
         const struct kernel_pair of_body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
-        pair->is_far_body = of->is_used && newest_is_far && n_released > 0;
-        for (int c = 0; c < other->body.n && pair->is_far_body; c++) {
-            pair->is_far_body =
-                is_far(of, interval, &of_body, &other->body, c, half, others->fish[g].speed, false, tolerance);
+        pair->is_far_body = of->is_used && !was_near && n_released > 0;
+        if (pair->is_far_body && !is_far(of, interval, &of_body, &from->around, false, tolerance)) {
+            for (int c = 0; c < body->n && pair->is_far_body; c++) {
+                const struct group one = group_of(others, g, body, (struct range){c, 1}, NULL);
+                pair->is_far_body = is_far(of, interval, &of_body, &one, false, tolerance);
+            }
         }
         pair->by_few = pair->is_far_body && acts_from_few(flow, f, g, tolerance);
     }
@@ -385,7 +438,7 @@ void others_select(struct flow *flow, const struct state *state) {
     double n_sources = 1;
     for (int f = 0; f < school->n_fish; f++) {
         n_sources += flow->fish[f].wake.middles.n_released + flow->fish[f].body.n;
-        remember_body(flow, f);
+        remember_fish(flow, state, f);
     }
     for (int f = 0; f < school->n_fish; f++) select_at(flow, state, f, n_sources);
     others->is_by_tree =
