@@ -76,7 +76,7 @@ static int common_divisor(int a, int b) {
 
 static enum status check_case(struct checked *checked) {
     const struct case_values *const values = checked->values;
-    TRY(parallel_try_threads(values->school.threads));
+    TRY(parallel_start_threads(values->school.threads));
     if (!checked->is_study) {
         // an existing output file is no error of the case: only note
         const char *const path = record_path(checked->request->arena, values);

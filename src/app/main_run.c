@@ -60,7 +60,7 @@ static enum status with_case(const struct request *request,
 
 static enum status tell_begin(const struct case_values *values, const char *path, void *data) {
     struct teller *const teller = data;
-    TRY(parallel_try_threads(values->school.threads));
+    TRY(parallel_start_threads(values->school.threads));
     teller->path = arena_text(teller->arena, "%s", path);
     return STATUS_OK;
 }
@@ -166,7 +166,7 @@ static enum status find_steady_state(const struct case_values *values, const str
                                            .warn = tell_warning,
                                            .data = &teller,
                                            .stop = main_stop_signal()};
-    TRY(parallel_try_threads(values->school.threads));
+    TRY(parallel_start_threads(values->school.threads));
     if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
     main_catch_signals();
     say_progress_start(&teller.progress);

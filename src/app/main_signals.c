@@ -11,6 +11,8 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include "result/durable.h"
+
 static volatile sig_atomic_t stop_signal;
 static bool is_catching; /* the command catches signals */
 
@@ -95,6 +97,7 @@ static volatile sig_atomic_t is_guarded;
 
 static void on_exit_of_a_library(void) {
     if (!is_guarded) return;
+    durable_claim_give_up();
     fputs("shoal: error: a library ended the program: out of memory or too many threads\n", stderr);
     _exit(status_exit_code(STATUS_MEMORY));
 }

@@ -30,8 +30,8 @@ enum status main_limit_wall_time(const char *text);
 /* Request a stop after this CPU time [s]. */
 void main_limit_processor_time(double seconds);
 
-/* Turn a call of exit before main_exit into exit code 4 with a message: some libraries call exit if threads or memory
- * run out. main_exit returns the exit code of main. */
+/* Turn a call of exit before main_exit into exit code 4 with a message, and remove the part of a result: some libraries
+ * call exit if threads or memory run out. main_exit returns the exit code of main. */
 void main_guard_exit(void);
 int main_exit(int code);
 

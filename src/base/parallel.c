@@ -1,4 +1,4 @@
-/* parallel.c: a trial of starting threads; a clock. */
+/* parallel.c: the start of threads; a clock. */
 #include "base/parallel.h"
 
 #include <errno.h>
@@ -13,7 +13,7 @@ static void *thread_wait(void *lock) {
     return NULL;
 }
 
-enum status parallel_try_threads(int threads) {
+enum status parallel_start_threads(int threads) {
     pthread_t *const started = calloc((size_t)threads, sizeof *started);
     pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     pthread_mutex_lock(&lock);
@@ -27,11 +27,15 @@ enum status parallel_try_threads(int threads) {
     pthread_mutex_unlock(&lock);
     for (int i = 0; i < n; i++) pthread_join(started[i], NULL);
     free(started);
-    if (code == 0) return STATUS_OK;
+    if (code != 0) {
+        return status_fail(STATUS_MEMORY,
+                           "%d of %d threads can be started (%s): reduce --threads or raise the memory limit", n + 1,
+                           threads, strerror(code));
+    }
 
-    return status_fail(STATUS_MEMORY,
-                       "%d of %d threads can be started (%s): reduce --threads or raise the memory limit", n + 1,
-                       threads, strerror(code));
+#pragma omp parallel num_threads(threads)
+    {}
+    return STATUS_OK;
 }
 
 double clock_seconds(clockid_t clock) {

@@ -51,8 +51,9 @@ static inline int parallel_threads(int threads, int n, double work, double min_w
     return n > 1 && work >= min_work ? threads : 1;
 }
 
-/* Check that this number of threads can be started: OpenMP ends the program on failure. Fails with STATUS_MEMORY. */
-enum status parallel_try_threads(int threads);
+/* Start this number of threads, which OpenMP keeps, before rows are written: OpenMP ends the program on failure. Fails
+ * with STATUS_MEMORY if a trial fails. */
+enum status parallel_start_threads(int threads);
 
 /* The time of a clock, s: CLOCK_MONOTONIC, or CLOCK_THREAD_CPUTIME_ID for the CPU time of this thread. */
 double clock_seconds(clockid_t clock);

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -163,6 +164,9 @@ void durable_discard(const char *target) {
 
 // ---- the claim of a run
 
+// the claim that this process took last
+static struct durable_claim *_Atomic last_claim;
+
 enum status durable_claim_take(struct durable_claim *claim, const char *path) {
     *claim = (struct durable_claim){.descriptor = {-1, -1}, .process = getpid()};
     int code = part_name_of(path, claim->part) ? 0 : ENAMETOOLONG;
@@ -171,7 +175,10 @@ enum status durable_claim_take(struct durable_claim *claim, const char *path) {
     if (code == 0) {
         // a result that cannot be opened for writing has no writer
         code = open_locked(path, 0, 0, BYTE_OF_CLAIM, &claim->descriptor[1]);
-        if (code != EAGAIN) return STATUS_OK;
+        if (code != EAGAIN) {
+            last_claim = claim;
+            return STATUS_OK;
+        }
     }
 
     durable_claim_release(claim);
@@ -183,6 +190,8 @@ enum status durable_claim_take(struct durable_claim *claim, const char *path) {
 
 void durable_claim_release(struct durable_claim *claim) {
     if (claim->part[0] == '\0') return;
+    struct durable_claim *expected = claim;
+    atomic_compare_exchange_strong(&last_claim, &expected, NULL);
 
     // remove the name before unlocking
     const bool is_mine = claim->process == getpid();
@@ -193,6 +202,10 @@ void durable_claim_release(struct durable_claim *claim) {
         claim->descriptor[i] = -1;
     }
     claim->part[0] = '\0';
+}
+
+void durable_claim_give_up(void) {
+    if (last_claim) durable_claim_release(last_claim);
 }
 
 enum status durable_claim_hold(const char *path, enum status (*work)(void *data), void *data) {

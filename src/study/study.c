@@ -91,7 +91,7 @@ static enum status run_member(const struct study *study, const struct job *job) 
     const char *const path = study_folder_member(arena, folder, job->member, ".nc");
     struct case_values *values;
     TRY(study_folder_case(arena, &values, study->values, job->member));
-    TRY(parallel_try_threads(values->school.threads));
+    TRY(parallel_start_threads(values->school.threads));
 
     // a steady state starts from the steady state of the preceding member, if any
     if (sweep_is_steady(study->values)) {

@@ -654,6 +654,12 @@ static enum status test_completeness(const struct case_values *study, const stru
                        folder, study->error ? "error" : "study");
 }
 
+/* Let the streams of a report take the memory for all that was printed. */
+static enum status end_texts(FILE *stream, FILE *warnings) {
+    if (fflush(stream) == 0 && fflush(warnings) == 0) return STATUS_OK;
+    return status_fail(STATUS_MEMORY, "out of memory: text to print");
+}
+
 /* study_report with the memory of an arena. */
 static enum status report_folder(struct arena *arena, const struct case_values *study, const char *folder,
                                  const char *path, const char *command, bool strict, FILE *stream, FILE *warnings) {
@@ -662,24 +668,23 @@ static enum status report_folder(struct arena *arena, const struct case_values *
     TRY(study_folder_read_members(arena, &members, study, folder));
     compare_fill_errors(study, members);
 
-    // print all tables and write study.nc before a missed expectation ends the report
+    // all that needs memory precedes study.nc, which is there also after a missed expectation
     struct convergence_orders orders;
+    const char *const table = path ? path : study_folder_path(arena, folder, "study.nc");
+    const char *const csv = study_folder_path(arena, folder, "error.csv");
     convergence_orders_create(arena, &orders, study, members);
     print_members(arena, study, members, stream);
-    enum status status = study_file_write(arena, path ? path : study_folder_path(arena, folder, "study.nc"), study,
-                                          members, &orders, NULL, command);
-    if (status == STATUS_OK) {
-        status = print_expected(arena, study, members, &orders, stream);
+    enum status status = print_expected(arena, study, members, &orders, stream);
 
-        // the warnings of short runs in a comparison of methods concern the case
-        const int n = compare_is(study) ? 0 : study_print_warnings(arena, members, sweep_n_members(study), warnings);
-        if (strict && status == STATUS_OK && n > 0) {
-            status = status_fail(STATUS_MISSED, "%d warning%s about the members, with --strict", n, n > 1 ? "s" : "");
-        }
+    // the warnings of short runs in a comparison of methods concern the case
+    const int n = compare_is(study) ? 0 : study_print_warnings(arena, members, sweep_n_members(study), warnings);
+    if (strict && status == STATUS_OK && n > 0) {
+        status = status_fail(STATUS_MISSED, "%d warning%s about the members, with --strict", n, n > 1 ? "s" : "");
     }
+    TRY(end_texts(stream, warnings));
+    TRY(study_file_write(arena, table, study, members, &orders, NULL, command));
 
     // the table of an error study that the folder contained before
-    const char *const csv = study_folder_path(arena, folder, "error.csv");
     if (target_is(csv, TARGET_TABLE)) unlink(csv);
     return status == STATUS_OK ? test_completeness(study, members, folder) : status;
 }
@@ -773,10 +778,10 @@ static enum status refine_and_report(struct arena *arena, struct error_sweep *sw
         arena_free(round);
     }
 
-    // print the budget and write study.nc and error.csv before a missed bound ends the report
+    // all that needs memory precedes the files, which are there also after a missed bound
     const struct convergence_orders none = {0};
-    TRY(study_file_write(arena, study_folder_path(arena, folder, "study.nc"), study, members, &none, sweep, command));
-    TRY(study_print_csv(sweep, study_folder_path(arena, folder, "error.csv")));
+    const char *const table = study_folder_path(arena, folder, "study.nc");
+    const char *const csv = study_folder_path(arena, folder, "error.csv");
     enum status status = print_errors(sweep, members, stream);
 
     // expectations concern the cases of the points, which are the first members
@@ -791,12 +796,14 @@ static enum status refine_and_report(struct arena *arena, struct error_sweep *sw
     const bool is_one = sweep->n_swept == 0;
     const int n =
         study_print_warnings(arena, &members[is_one ? first->stated : 0], is_one ? 1 : sweep->n_points, warnings);
-    TRY(status);
-    if (strict && n > 0) {
-        return status_fail(STATUS_MISSED, "%d warning%s about the stated value%s, with --strict", n, n > 1 ? "s" : "",
-                           is_one ? "" : "s");
+    if (strict && n > 0 && status == STATUS_OK) {
+        status = status_fail(STATUS_MISSED, "%d warning%s about the stated value%s, with --strict", n, n > 1 ? "s" : "",
+                             is_one ? "" : "s");
     }
-    return test_completeness(study, members, folder);
+    TRY(end_texts(stream, warnings));
+    TRY(study_file_write(arena, table, study, members, &none, sweep, command));
+    TRY(study_print_csv(sweep, csv));
+    return status == STATUS_OK ? test_completeness(study, members, folder) : status;
 }
 
 static enum status run_errors(struct arena *arena, const struct case_values *values,

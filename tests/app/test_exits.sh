@@ -88,6 +88,7 @@ end
         with_threads $at run many.yaml -q -o many.nc --force --threads 4
         check "threads from $at on cannot be started: exit code 4" ended 4
         check "it says so ($at)" eval 'grep -q "shoal: error: .*threads" err'
+        check "no part stays ($at)" test ! -e many.nc.part
     done
     with_threads 7 run many.yaml -q -o many.nc --force --threads 4
     check enough_threads ended 0
@@ -95,6 +96,7 @@ end
         >study.yaml
     with_threads 4 study study.yaml -q -j 1 -o study
     check a_member_that_a_library_ends_has_a_reason eval 'ended 1 && has study/member-0000.failed "fewer threads"'
+    check its_part_is_gone test ! -e study/member-0000.nc.part
 fi
 
 # ---- names with control characters

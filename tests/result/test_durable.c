@@ -246,6 +246,29 @@ TEST(a_fork_does_not_release_a_claim) {
     assert_int_equal(n_files(), 0);
 }
 
+TEST(a_process_that_a_library_ends_gives_up_its_claim) {
+    struct durable_claim one, other;
+    ok(durable_claim_take(&one, path));
+    const pid_t child = fork();
+    if (child == 0) {
+        durable_claim_give_up();
+        _exit(0);
+    }
+    int outcome;
+    assert_int_equal(waitpid(child, &outcome, 0), child);
+    assert_int_equal(n_files(), 1);
+    durable_claim_give_up();
+    assert_int_equal(n_files(), 0);
+
+    // once only
+    durable_claim_give_up();
+    ok(durable_claim_take(&other, path));
+    durable_claim_release(&other);
+    ok(durable_claim_take(&other, path));
+    durable_claim_give_up();
+    assert_int_equal(n_files(), 0);
+}
+
 TEST(of_runs_that_race_one_has_the_claim_and_no_part_stays) {
     // each process takes the claim, publishes its file, and removes it again, as fast as it can
     enum { RIVALS = 4, ROUNDS = 300 };
