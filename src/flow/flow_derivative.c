@@ -107,29 +107,6 @@ static WIDE(void, add_places,
     }
 }
 
-// add the velocity of a control point by the strengths of all bound vortices of the fish, from column `strength` on;
-// around, before: circulation of the interval (NULL: none) and before the point (NULL: no legs), per circulation
-static WIDE(void, add_strengths,
-            (const struct influence_block *block, const struct fish *fish, int strength, int first, int n,
-             const struct unit_values *values, const double *around, double sign, const double *before,
-             const double line[2], int has_edge),
-            (block, fish, strength, first, n, values, around, sign, before, line, has_edge)) {
-    for (int j = 0; j < fish->n_sheet; j++) {
-        const struct column to = column_of(block, strength + j, first);
-        const double weight = fish->sheet_weight[j];
-        if (around) {
-            const double factor = sign * around[j * fish->n_control] * weight;
-            for (int i = 0; i < n; i++) {
-                to.u[i] += factor * values->unit_u[i];
-                to.v[i] += factor * values->unit_v[i];
-            }
-        }
-        if (!before) continue;
-        const double part = before[j * fish->n_control] * weight;
-        add_leg_to(&to, n, values, part * line[0], part * line[1], has_edge);
-    }
-}
-
 // context of the functions below
 struct pass {
     const struct flow *flow;
@@ -163,52 +140,142 @@ static void unit_of(const struct pass *pass, const struct moving *source, int fi
     }
 }
 
-/* Up to four sources that move with the same nodes: the derivatives by a node are read and written once for four. */
+/* Up to four neighbouring sources of a body: the derivatives by a node or strength are read and written once for four.
+ * Without a source the values and the weights are 0. */
+enum { FOUR = 4 };
 struct four {
     int n;
-    struct moving source[4];
-    struct unit_values values[4];
+    struct moving source[FOUR];
+    struct unit_values values[FOUR];
 };
+
+// whether the sources move with the same nodes, without a part in the edge force
+static bool four_move_together(const struct four *four, const struct influence_block *block) {
+    const struct stencil *const place = four->source[0].place, *const line = four->source[0].line;
+    bool together = !(block->edge && four->source[0].has_edge);
+    for (int k = 0; k < four->n; k++) {
+        const struct moving *const source = &four->source[k];
+        together &= source->place->node == place->node && source->place->n == place->n;
+        together &= !line || (source->line->node == place->node && source->line->n == place->n);
+    }
+    return together;
+}
 
 static WIDE(void, add_four_places,
             (const struct influence_block *block, const struct fish *other, const struct four *four, int first, int n),
             (block, other, four, first, n)) {
-    const double sign = four->source[0].image < 0 ? -1 : 1;
+    const struct moving *const source = four->source;
     const struct unit_values *const v = four->values;
-    for (int i = 0; i < four->source[0].place->n; i++) {
-        const int node = four->source[0].place->node[i];
+    const double sign = source[0].image < 0 ? -1 : 1;
+    for (int i = 0; i < source[0].place->n; i++) {
+        const int node = source[0].place->node[i];
         const struct column x = column_of(block, node, first), y = column_of(block, other->n_nodes + node, first);
-        double by[4];
-        for (int k = 0; k < 4; k++) by[k] = four->source[k].follows * four->source[k].place->weight[i];
-        for (int p = 0; p < n; p++) {
-            x.u[p] -= by[0] * v[0].u_x[p] + by[1] * v[1].u_x[p] + by[2] * v[2].u_x[p] + by[3] * v[3].u_x[p];
-            x.v[p] -= by[0] * v[0].v_x[p] + by[1] * v[1].v_x[p] + by[2] * v[2].v_x[p] + by[3] * v[3].v_x[p];
+        double *restrict const x_u = x.u, *restrict const x_v = x.v, *restrict const y_u = y.u,
+                               *restrict const y_v = y.v;
+        double by[FOUR] = {0}, along[FOUR] = {0};
+        for (int k = 0; k < four->n; k++) {
+            by[k] = source[k].follows * source[k].place->weight[i];
+            along[k] = source[k].line ? source[k].along * source[k].line->weight[i] : 0;
         }
-        for (int k = 0; k < 4; k++) by[k] *= sign;
+
+        // places
         for (int p = 0; p < n; p++) {
-            y.u[p] -= by[0] * v[0].u_y[p] + by[1] * v[1].u_y[p] + by[2] * v[2].u_y[p] + by[3] * v[3].u_y[p];
-            y.v[p] -= by[0] * v[0].v_y[p] + by[1] * v[1].v_y[p] + by[2] * v[2].v_y[p] + by[3] * v[3].v_y[p];
+            x_u[p] -= by[0] * v[0].u_x[p] + by[1] * v[1].u_x[p] + by[2] * v[2].u_x[p] + by[3] * v[3].u_x[p];
+            x_v[p] -= by[0] * v[0].v_x[p] + by[1] * v[1].v_x[p] + by[2] * v[2].v_x[p] + by[3] * v[3].v_x[p];
+        }
+        for (int k = 0; k < FOUR; k++) by[k] *= sign;
+        for (int p = 0; p < n; p++) {
+            y_u[p] -= by[0] * v[0].u_y[p] + by[1] * v[1].u_y[p] + by[2] * v[2].u_y[p] + by[3] * v[3].u_y[p];
+            y_v[p] -= by[0] * v[0].v_y[p] + by[1] * v[1].v_y[p] + by[2] * v[2].v_y[p] + by[3] * v[3].v_y[p];
+        }
+        if (!source[0].line) continue;
+
+        // legs; without legs div is 0
+        double *restrict const x_div = x.div, *restrict const y_div = y.div;
+        for (int p = 0; p < n; p++) {
+            const double leg =
+                along[0] * v[0].leg[p] + along[1] * v[1].leg[p] + along[2] * v[2].leg[p] + along[3] * v[3].leg[p];
+            x_v[p] += sign * leg;
+            y_u[p] -= leg;
+        }
+        for (int p = 0; p < n && y_div; p++) {
+            y_div[p] += along[0] * v[0].div_by_dy[p] + along[1] * v[1].div_by_dy[p] + along[2] * v[2].div_by_dy[p] +
+                        along[3] * v[3].div_by_dy[p];
+            y_div[p] -= by[0] * v[0].div_y[p] + by[1] * v[1].div_y[p] + by[2] * v[2].div_y[p] + by[3] * v[3].div_y[p];
+        }
+        for (int k = 0; k < FOUR; k++) {
+            by[k] *= sign;
+            along[k] *= sign;
+        }
+        for (int p = 0; p < n && x_div; p++) {
+            x_div[p] += along[0] * v[0].div_by_dx[p] + along[1] * v[1].div_by_dx[p] + along[2] * v[2].div_by_dx[p] +
+                        along[3] * v[3].div_by_dx[p];
+            x_div[p] -= by[0] * v[0].div_x[p] + by[1] * v[1].div_x[p] + by[2] * v[2].div_x[p] + by[3] * v[3].div_x[p];
         }
     }
 }
 
-static void four_finish(struct four *four, const struct influence_block *block, const struct fish *other, int first,
-                        int n) {
-    for (int k = 0; k < four->n; k++) add_places(block, other, &four->source[k], first, n, &four->values[k]);
-    four->n = 0;
+// add the velocity of four control points by the strengths of all bound vortices, from column `strength` on; around,
+// before: circulation of the interval (NULL: none) and before the point (NULL: no legs), per circulation; line: of the
+// points
+static WIDE(void, add_four_strengths,
+            (const struct influence_block *block, const struct fish *fish, int strength, int first, int n,
+             const struct four *four, const double *around, const double *before, double *const line[2], bool has_edge),
+            (block, fish, strength, first, n, four, around, before, line, has_edge)) {
+    const double sign = four->source[0].image < 0 ? -1 : 1;
+    const struct unit_values *const v = four->values;
+
+    // the legs of unit circulation
+    double u[FOUR][KERNEL_CHUNK] = {{0}}, w[FOUR][KERNEL_CHUNK] = {{0}}, div[FOUR][KERNEL_CHUNK] = {{0}};
+    double dx[FOUR] = {0}, dy[FOUR] = {0};
+    for (int k = 0; k < four->n && before; k++) {
+        dx[k] = sign * line[0][k];
+        dy[k] = line[1][k];
+        for (int p = 0; p < n; p++) {
+            u[k][p] = -v[k].leg[p] * dy[k];
+            w[k][p] = v[k].leg[p] * dx[k];
+            div[k][p] = v[k].div_by_dx[p] * dx[k] + v[k].div_by_dy[p] * dy[k];
+        }
+    }
+
+    for (int j = 0; j < fish->n_sheet; j++) {
+        const struct column to = column_of(block, strength + j, first);
+        double *restrict const to_u = to.u, *restrict const to_v = to.v, *restrict const to_div = to.div;
+        double part[FOUR] = {0};
+        for (int k = 0; k < four->n && around; k++)
+            part[k] = sign * around[j * fish->n_control + k] * fish->sheet_weight[j];
+        for (int p = 0; p < n && around; p++) {
+            to_u[p] += part[0] * v[0].unit_u[p] + part[1] * v[1].unit_u[p] + part[2] * v[2].unit_u[p] +
+                       part[3] * v[3].unit_u[p];
+            to_v[p] += part[0] * v[0].unit_v[p] + part[1] * v[1].unit_v[p] + part[2] * v[2].unit_v[p] +
+                       part[3] * v[3].unit_v[p];
+        }
+        if (!before) continue;
+
+        for (int k = 0; k < four->n; k++) part[k] = before[j * fish->n_control + k] * fish->sheet_weight[j];
+        for (int p = 0; p < n; p++) {
+            to_u[p] += part[0] * u[0][p] + part[1] * u[1][p] + part[2] * u[2][p] + part[3] * u[3][p];
+            to_v[p] += part[0] * w[0][p] + part[1] * w[1][p] + part[2] * w[2][p] + part[3] * w[3][p];
+        }
+        for (int p = 0; p < n && to_div; p++) {
+            to_div[p] += part[0] * div[0][p] + part[1] * div[1][p] + part[2] * div[2][p] + part[3] * div[3][p];
+        }
+        for (int k = 0; k < four->n && block->edge && has_edge; k++) {
+            for (int p = 0; p < n; p++) {
+                to.edge[0][p] += part[k] * dx[k] * v[k].edge[p];
+                to.edge[1][p] += part[k] * dy[k] * v[k].edge[p];
+            }
+        }
+    }
 }
 
-// add the source with the values number four->n, at once or with the next three
-static void four_add(struct four *four, const struct influence_block *block, const struct fish *other,
-                     const struct moving *source, int first, int n) {
-    four->source[four->n++] = *source;
-    const struct stencil *const one = four->source[0].place;
-    const int is_other = source->place->node != one->node || source->place->n != one->n;
-    if (block->div || block->edge || source->line || is_other) {
-        four_finish(four, block, other, first, n);
-    } else if (four->n == 4) {
-        add_four_places(block, other, four, first, n);
-        four->n = 0;
+// add the derivatives by places
+static void four_finish(struct four *four, const struct influence_block *block, const struct fish *other, int first,
+                        int n) {
+    const bool together = four_move_together(four, block);
+    if (together) add_four_places(block, other, four, first, n);
+    for (int k = 0; k < four->n && !together; k++) {
+        add_places(block, other, &four->source[k], first, n, &four->values[k]);
     }
 }
 
@@ -220,20 +287,22 @@ static void derive_bound(const struct pass *pass, struct range points, const str
 
     for (int first = points.first; first < end; first += KERNEL_CHUNK) {
         const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
-        struct four four = {.n = 0};
+        struct four four;
+        memset(&four, 0, sizeof four);
         for (int j = 0; j < fish->n_sheet; j++) {
-            const struct moving source = {.at = {.x = own->x[j], .y = own->y[j], .q = own->q[j], .half = own->half[j]},
-                                          .pair = *pair,
-                                          .place = &fish->sheet_point[j],
-                                          .follows = 1};
-
-            struct unit_values *const values = &four.values[four.n];
-            unit_of(pass, &source, first, n, values);
+            const int k = j % FOUR;
+            four.source[k] =
+                (struct moving){.at = {.x = own->x[j], .y = own->y[j], .q = own->q[j], .half = own->half[j]},
+                                .pair = *pair,
+                                .place = &fish->sheet_point[j],
+                                .follows = 1};
+            unit_of(pass, &four.source[k], first, n, &four.values[k]);
             const struct column to = column_of(pass->block, strength + j, first);
-            add_spanwise(&to, n, values, fish->sheet_weight[j]);
-            if (pass->with_places) four_add(&four, pass->block, fish, &source, first, n);
+            add_spanwise(&to, n, &four.values[k], fish->sheet_weight[j]);
+            four.n = k + 1;
+            const bool is_full = four.n == FOUR || j == fish->n_sheet - 1;
+            if (pass->with_places && is_full) four_finish(&four, pass->block, fish, first, n);
         }
-        four_finish(&four, pass->block, fish, first, n);
     }
 }
 
@@ -247,43 +316,47 @@ static void derive_body(const struct pass *pass, struct range points, const stru
 
     for (int first = points.first; first < end; first += KERNEL_CHUNK) {
         const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
-        struct four four = {.n = 0};
+        struct four four;
+        memset(&four, 0, sizeof four);
         for (int c = 0; c < of->body.n; c++) {
-            struct moving source = {.at = {.x = of->body.x[c],
-                                           .y = of->body.y[c],
-                                           .q = is_own ? 0 : of->body.q[c],
-                                           .dx = of->body.dx[c],
-                                           .dy = of->body.dy[c],
-                                           .half = of->body.half[c]},
-                                    .pair = *pair,
-                                    .image = image,
-                                    .place = fish->integrals ? &fish->control_point[c] : &fish->sheet_point[c],
-                                    .follows = 1,
-                                    .has_edge = is_own};
-            const double *const before = fish->integrals ? fish->integrals->circulation + c : NULL;
-            const double *const around = fish->integrals ? fish->integrals->strength + c : NULL;
+            const int k = c % FOUR;
+            four.source[k] = (struct moving){.at = {.x = of->body.x[c],
+                                                    .y = of->body.y[c],
+                                                    .q = is_own ? 0 : of->body.q[c],
+                                                    .dx = of->body.dx[c],
+                                                    .dy = of->body.dy[c],
+                                                    .half = of->body.half[c]},
+                                             .pair = *pair,
+                                             .image = image,
+                                             .place = fish->integrals ? &fish->control_point[c] : &fish->sheet_point[c],
+                                             .follows = 1,
+                                             .has_edge = is_own};
             if (has_legs) {
                 double along = 0;
-                for (int j = 0; j < fish->n_sheet; j++) along += before[j * fish->n_control] * of->own.q[j];
-                source.line = &fish->control_tangent[c].to;
-                source.along = along * fish->control_interval[c];
+                for (int j = 0; j < fish->n_sheet; j++) {
+                    along += fish->integrals->circulation[j * fish->n_control + c] * of->own.q[j];
+                }
+                four.source[k].line = &fish->control_tangent[c].to;
+                four.source[k].along = along * fish->control_interval[c];
             }
-
-            struct unit_values *const values = &four.values[four.n];
-            unit_of(pass, &source, first, n, values);
-
-            // by the strengths of the bound vortices
-            if (fish->integrals) {
-                const double line[2] = {has_legs ? sign * of->line[0][c] : 0, has_legs ? of->line[1][c] : 0};
-                add_strengths(pass->block, fish, strength, first, n, values, is_own ? NULL : around, sign,
-                              has_legs ? before : NULL, line, is_own);
-            } else {
+            unit_of(pass, &four.source[k], first, n, &four.values[k]);
+            four.n = k + 1;
+            if (!fish->integrals) {
                 const struct column to = column_of(pass->block, strength + c, first);
-                add_spanwise(&to, n, values, sign * fish->sheet_weight[c]);
+                add_spanwise(&to, n, &four.values[k], sign * fish->sheet_weight[c]);
             }
-            if (pass->with_places) four_add(&four, pass->block, fish, &source, first, n);
+            if (four.n < FOUR && c < of->body.n - 1) continue;
+
+            // by the strengths of the bound vortices, and by places
+            const int begin = c - k;
+            if (fish->integrals) {
+                double *const line[2] = {has_legs ? of->line[0] + begin : NULL, has_legs ? of->line[1] + begin : NULL};
+                add_four_strengths(pass->block, fish, strength, first, n, &four,
+                                   is_own ? NULL : fish->integrals->strength + begin,
+                                   has_legs ? fish->integrals->circulation + begin : NULL, line, is_own);
+            }
+            if (pass->with_places) four_finish(&four, pass->block, fish, first, n);
         }
-        four_finish(&four, pass->block, fish, first, n);
     }
 }
 
