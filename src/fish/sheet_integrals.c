@@ -178,24 +178,18 @@ void sheet_integrals_before(const struct sheet_integrals *integrals, const doubl
     wide_multiply(integrals->n_control, integrals->n_sheet, integrals->circulation, circulation, before);
 }
 
-// add P_kij x_i/c_k of one vortex or of a sum over vortices for all nodes k, except k = i
-static inline __attribute__((always_inline)) void add_node(int n, int i, double x, const double *part,
-                                                           const double *factor, const double *inverse,
-                                                           double *restrict to) {
-    const double *const a = part, *const b = part + n, *const over = inverse + n - 1 - i;
-    const double scale = factor[i] * x, shift = part[2 * n + i] - a[i], here = b[i];
-    for (int k = 0; k < n; k++) to[k] += scale * over[k] * (a[k] + shift - over[k] * (b[k] - here));
-}
-
 WIDE(void, sheet_integrals_columns,
      (int n, const double *part, const double *factor, const double *inverse, double *matrix),
      (n, part, factor, inverse, matrix)) {
+    const double *const a = part, *const b = part + n, *const e = part + 2 * n, *const own = part + 3 * n;
     for (int i = 0; i < n; i++) {
-        double *const column = matrix + (long)i * n;
-        for (int k = 0; k < n; k++) column[k] = 0;
-        add_node(n, i, 1, part, factor, inverse, column);
-        for (int k = 0; k < n; k++) column[k] *= factor[k];
-        column[i] = part[3 * n + i];
+        const double *const over = inverse + n - 1 - i;
+        const double scale = factor[i], shift = e[i] - a[i], here = b[i];
+        double *restrict const column = matrix + (long)i * n;
+        for (int k = 0; k < n; k++) {
+            column[k] = scale * factor[k] * over[k] * (a[k] + shift - over[k] * (b[k] - here));
+        }
+        column[i] = own[i];
     }
 }
 
@@ -206,15 +200,30 @@ void sheet_integrals_matrix(const struct sheet_integrals *integrals, const doubl
     sheet_integrals_columns(integrals->n_nodes, parts, integrals->factor, integrals->inverse, matrix);
 }
 
-WIDE(void, sheet_integrals_sum,
-     (int n, const double *part, const double *factor, const double *inverse, const double *x, double *product),
-     (n, part, factor, inverse, x, product)) {
-    for (int k = 0; k < n; k++) product[k] = 0;
-    for (int i = 0; i < n; i++) add_node(n, i, x[i], part, factor, inverse, product);
-    for (int k = 0; k < n; k++) product[k] = factor[k] * product[k] + part[3 * n + k] * x[k];
+WIDE(void, sheet_integrals_sums,
+     (int n, const double *part, const double *factor, const double *inverse, const double *x, const double *y,
+      double *restrict to_x, double *restrict to_y),
+     (n, part, factor, inverse, x, y, to_x, to_y)) {
+    const double *const a = part, *const b = part + n, *const e = part + 2 * n, *const own = part + 3 * n;
+    for (int k = 0; k < n; k++) to_x[k] = to_y[k] = 0;
+    for (int i = 0; i < n; i++) {
+        const double *const over = inverse + n - 1 - i;
+        const double scale_x = factor[i] * x[i], scale_y = factor[i] * y[i], shift = e[i] - a[i], here = b[i];
+        for (int k = 0; k < n; k++) {
+            const double value = over[k] * (a[k] + shift - over[k] * (b[k] - here));
+            to_x[k] += scale_x * value;
+            to_y[k] += scale_y * value;
+        }
+    }
+    for (int k = 0; k < n; k++) {
+        to_x[k] = factor[k] * to_x[k] + own[k] * x[k];
+        to_y[k] = factor[k] * to_y[k] + own[k] * y[k];
+    }
 }
 
-void sheet_integrals_product(const struct sheet_integrals *integrals, int j, const double *x, double *product) {
+void sheet_integrals_product(const struct sheet_integrals *integrals, int j, const double *x, const double *y,
+                             double *product_x, double *product_y) {
     const int n = integrals->n_nodes;
-    sheet_integrals_sum(n, integrals->part + (long)j * 4 * n, integrals->factor, integrals->inverse, x, product);
+    sheet_integrals_sums(n, integrals->part + (long)j * 4 * n, integrals->factor, integrals->inverse, x, y, product_x,
+                         product_y);
 }

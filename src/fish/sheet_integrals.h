@@ -39,7 +39,8 @@ void sheet_integrals_before(const struct sheet_integrals *integrals, const doubl
 void sheet_integrals_matrix(const struct sheet_integrals *integrals, const double *circulation, double *parts,
                             double *matrix);
 
-/* sum over i of P_kij x_i of vortex j for all nodes k (n_nodes). */
-void sheet_integrals_product(const struct sheet_integrals *integrals, int j, const double *x, double *product);
+/* sums over i of P_kij x_i and of P_kij y_i of vortex j for all nodes k (n_nodes). */
+void sheet_integrals_product(const struct sheet_integrals *integrals, int j, const double *x, const double *y,
+                             double *product_x, double *product_y);
 
 #endif

@@ -28,7 +28,7 @@ struct pressure *pressure_create(struct arena *arena, const struct fish *fish) {
         if (fish->n_sensors > 0) NEW(arena, new->sensor[i], fish->n_sensors);
     }
     NEW(arena, new->point, n_control);
-    NEW(arena, new->product, n);
+    NEW(arena, new->product, 2 * n);
     NEW(arena, new->parts, 4 * n);
     NEW(arena, new->at_points, N_AT_POINTS * n_control);
     NEW(arena, new->spread, 2 * n_control);
@@ -187,17 +187,13 @@ void pressure_residual(const struct pressure *p, double *residual) {
     residual[fish->at.ay] -= p->suction[1];
 }
 
-// sums over the nodes i of P_kij x_i, times the weight of vortex j, for all nodes k
-static void momentum_by_strength(const struct fish *fish, int j, const double *x, double *momentum) {
-    sheet_integrals_product(fish->integrals, j, x, momentum);
-    for (int k = 0; k < fish->n_nodes; k++) momentum[k] *= fish->sheet_weight[j];
-}
-
 void pressure_momentum_by_strength(const struct fish *fish, int j, const double *x, double *momentum) {
     const int n = fish->n_nodes;
-    momentum_by_strength(fish, j, x + n, momentum);
-    momentum_by_strength(fish, j, x, momentum + n);
-    for (int k = 0; k < n; k++) momentum[k] = -momentum[k];
+    sheet_integrals_product(fish->integrals, j, x, x + n, momentum + n, momentum);
+    for (int k = 0; k < n; k++) {
+        momentum[k] *= -fish->sheet_weight[j];
+        momentum[n + k] *= fish->sheet_weight[j];
+    }
 }
 
 void pressure_momentum_jacobian(struct pressure *p, int at_start, const double *y, struct sparse *jacobian) {
@@ -219,44 +215,11 @@ void pressure_momentum_jacobian(struct pressure *p, int at_start, const double *
 
     // by the strengths
     for (int j = 0; j < fish->n_sheet; j++) {
+        pressure_momentum_by_strength(fish, j, y + fish->at.x, p->product);
         for (int i = 0; i < 2; i++) {
-            momentum_by_strength(fish, j, y + fish->at.x + (1 - i) * n, p->product);
             for (int k = 0; k < n; k++) {
-                const double sign = (i == 0 ? 1 : -1) / fish->mass[k];
                 sparse_add(jacobian, pressure_momentum_row(fish, at_start, i, k), fish->at.gamma + j,
-                           sign * p->product[k]);
-            }
-        }
-    }
-}
-
-void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
-    const struct fish *fish = p->fish;
-    const struct direction *const first = &p->point[0].body;
-    const int n = fish->n_nodes;
-
-    for (int k = 0; k < n; k++) {
-        for (int m = 0; m < n; m++) {
-            // convection: n t of every control point; rotation: -E3
-            double sum[2][2] = {{0, p->matrix.value[m * n + k]}, {-p->matrix.value[m * n + k], 0}};
-            for (int c = 0; c < fish->n_control; c++) {
-                const double *const weight = fish->control_point[c].weight;
-                const struct direction *const body = &p->point[c].body;
-                const double factor = weight[k] * weight[m] * p->point[c].strength;
-                for (int i = 0; i < 2; i++) {
-                    for (int j = 0; j < 2; j++) sum[i][j] -= factor * body->n[i] * body->t[j];
-                }
-            }
-            // suction: tau
-            for (int i = 0; i < 2 && k == 0; i++) {
-                for (int j = 0; j < 2; j++) {
-                    sum[i][j] -= p->by_slip * p->nose.t[i] * first->t[j] * fish->control_point[0].weight[m];
-                }
-            }
-            for (int i = 0; i < 2; i++) {
-                for (int j = 0; j < 2; j++) {
-                    sparse_add(jacobian, fish->at.ax + i * n + k, fish->at.vx + j * n + m, sum[i][j] / fish->mass[k]);
-                }
+                           -p->product[i * n + k] / fish->mass[k]);
             }
         }
     }
@@ -267,6 +230,34 @@ static void spread_forces(const struct pressure *p, double *column) {
     const int n = p->fish->n_nodes, n_control = p->fish->n_control;
     wide_multiply(n, n_control, p->share, p->spread, column);
     wide_multiply(n, n_control, p->share, p->spread + n_control, column + n);
+}
+
+void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
+    const struct fish *fish = p->fish;
+    const struct direction *const first = &p->point[0].body;
+    const int n = fish->n_nodes, n_control = fish->n_control;
+    double *const column = p->parts;
+
+    for (int m = 0; m < 2 * n; m++) {
+        // convection: n t of every control point
+        const int j = m / n;
+        const double *const weight = fish->control_by_node[0] + (long)(m % n) * n_control;
+        for (int c = 0; c < n_control; c++) {
+            const struct direction *const body = &p->point[c].body;
+            const double factor = weight[c] * p->point[c].strength * body->t[j];
+            p->spread[c] = -factor * body->n[0];
+            p->spread[n_control + c] = -factor * body->n[1];
+        }
+        memset(column, 0, 2 * (size_t)n * sizeof *column);
+        spread_forces(p, column);
+
+        // rotation: -E3; suction: tau
+        const double *const rotation = p->matrix.value + (long)(m % n) * n;
+        for (int k = 0; k < n; k++) column[(1 - j) * n + k] += (j == 0 ? -1 : 1) * rotation[k] / fish->mass[k];
+        for (int i = 0; i < 2; i++)
+            column[i * n] -= p->by_slip * p->nose.t[i] * first->t[j] * weight[0] / fish->mass[0];
+        for (int i = 0; i < 2 * n; i++) sparse_add(jacobian, fish->at.ax + i, fish->at.vx + m, column[i]);
+    }
 }
 
 // by the positions of the nodes. Convection: the tangent turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|;
@@ -332,10 +323,8 @@ void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_
         }
         spread_forces(p, column);
 
-        momentum_by_strength(fish, j, y + fish->at.vy, p->product);
-        for (int k = 0; k < n; k++) column[k] += p->product[k] / fish->mass[k];
-        momentum_by_strength(fish, j, y + fish->at.vx, p->product);
-        for (int k = 0; k < n; k++) column[n + k] -= p->product[k] / fish->mass[k];
+        pressure_momentum_by_strength(fish, j, y + fish->at.vx, p->product);
+        for (int i = 0; i < 2 * n; i++) column[i] -= p->product[i] / fish->mass[i % n];
     }
 }
 

@@ -162,10 +162,10 @@ TEST(partial_fractions_are_the_products_of_weights_and_slopes) {
     for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
         const int n = sizes[s].n, n_sheet = sizes[s].n_sheet;
         const size_t n_nodes = (size_t)n, n_entries = n_nodes * n_nodes;
-        double *const memory = calloc(2 * n_entries + 8 * n_nodes + (size_t)n_sheet, sizeof *memory);
+        double *const memory = calloc(2 * n_entries + 10 * n_nodes + (size_t)n_sheet, sizeof *memory);
         assert_non_null(memory);
         double *const want = memory, *const got = want + n_entries, *const parts = got + n_entries,
-                      *const x = parts + 4 * n, *const product = x + n, *const sum = product + n,
+                      *const x = parts + 4 * n, *const product = x + 2 * n, *const sum = product + 2 * n,
                       *const density = sum + n, *const q = density + n;
         momentum_by_weights(n, n_sheet, sizes[s].vortex, want);
 
@@ -179,11 +179,14 @@ TEST(partial_fractions_are_the_products_of_weights_and_slopes) {
         for (int e = 0; e < n * n; e++) largest = fmax(largest, fabs(want[e]));
         NEAR_ARRAY(n * n, got, want, 1e-14 * largest, 0);
 
-        // the product with the matrix of one vortex
-        for (int i = 0; i < n; i++) x[i] = cos(i);
-        for (int e = 0; e < n * n; e++) sum[e % n] += want[e] * x[e / n];
-        sheet_integrals_product(integrals, sizes[s].vortex, x, product);
-        NEAR_ARRAY(n, product, sum, 1e-13 * largest, 0);
+        // the products with the matrix of one vortex
+        for (int i = 0; i < 2 * n; i++) x[i] = cos(i);
+        sheet_integrals_product(integrals, sizes[s].vortex, x, x + n, product, product + n);
+        for (int of_y = 0; of_y < 2; of_y++) {
+            for (int k = 0; k < n; k++) sum[k] = 0;
+            for (int e = 0; e < n * n; e++) sum[e % n] += want[e] * x[of_y * n + e / n];
+            NEAR_ARRAY(n, product + of_y * n, sum, 1e-13 * largest, 0);
+        }
         arena_free(arena);
         free(memory);
     }
