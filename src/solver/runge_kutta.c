@@ -198,6 +198,11 @@ static enum status runge_kutta_advance(void *data, double t, const volatile sig_
     const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
     double reached = state->t;
     solver->stop = stop;
+
+    // the event has changed the rates, which a method whose last stage is the next first one would take from before
+    if (ARKodeReset(solver->arkode, state->t, solver->y)) {
+        return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
+    }
     for (long steps = 0; reached < t; steps++) {
         if (steps == solver->options.max_steps) {
             return status_fail(STATUS_SOLVER,

@@ -70,6 +70,7 @@ typedef int SUNErrCode;
 #define ARKodeGetLastStep ARKStepGetLastStep
 #define ARKodeGetNumErrTestFails ARKStepGetNumErrTestFails
 #define ARKodeGetNumSteps ARKStepGetNumSteps
+#define ARKodeReset ARKStepReset
 #define ARKodeSVtolerances ARKStepSVtolerances
 #define ARKodeSetFixedStep ARKStepSetFixedStep
 #define ARKodeSetInterpolantType ARKStepSetInterpolantType
