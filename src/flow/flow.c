@@ -67,17 +67,14 @@ void flow_append_with_span(struct sources *many, const struct sources *sources, 
 
 // ---- creation
 
-// one class per length, in the order of the first fish of each length; consecutive points for each class
+// one class per length, which both smoothings are parts of, in the order of the first fish of each length; consecutive
+// points for each class
 static void flow_find_classes(struct flow *flow) {
     const struct school *const school = flow->school;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         int c = 0;
-        while (c < flow->n_classes && (fabs(flow->class[c].smoothing - fish->smoothing) > 0 ||
-                                       fabs(flow->class[c].sheet_smoothing - fish->sheet_smoothing) > 0)) {
-            c++;
-        }
-
+        while (c < flow->n_classes && fabs(flow->class[c].smoothing - fish->smoothing) > 0) c++;
         flow->class_of[f] = c;
         if (c < flow->n_classes) continue;
         flow->class[c] = (struct flow_class){.smoothing = fish->smoothing, .sheet_smoothing = fish->sheet_smoothing};

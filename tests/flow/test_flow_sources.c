@@ -594,6 +594,42 @@ TEST(large_schools_are_summed_by_the_tree_to_half_the_tolerance) {
     for (kind = 0; kind < N_KERNELS; kind++) check_large_schools_are_summed_by_the_tree_to_half_the_tolerance();
 }
 
+// bodies, wakes and the images of both have equal parts of half the tolerance, in lengths per beat
+TEST(sums_by_the_tree_have_equal_parts_of_half_the_tolerance) {
+    enum { MOST = 1000 };
+    kind = FINITE;
+    struct setup setup;
+    build_large(&setup, "1e-4", 1000);
+    struct flow *const flow = setup.residual->flow;
+    flow_velocity(flow, setup.state, setup.t, setup.state->y);
+    const struct flow_sum sum = {WAKE_AT_BODY, false};
+    struct sources many = {.arena = test_arena()};
+    struct kernel_pair pair = flow_pair_of(flow, 0, 0, &sum);
+    for (int f = 0; f < 4; f++) flow_append_with_span(&many, flow_sources(flow, f, &sum), pair.span);
+    pair.span = 1;
+
+    const struct fish *const fish = &setup.school->fish[0];
+    const struct range points = flow->class[0].points;
+    AT_MOST(points.n, MOST);
+    int n_other = 0;
+    for (double tolerance = 1e-3; tolerance > 1e-6; tolerance /= 2) {
+        const double half = tolerance * fish->length * fish_rate(setup.school, fish) / 2;
+        double value[3][KERNEL_SUMS][MOST] = {0};
+        setup.school->wake_tolerance = tolerance;
+        for (int k = 0; k < 3; k++) {
+            double *sums[KERNEL_SUMS];
+            for (int s = 0; s < KERNEL_SUMS; s++) sums[s] = value[k][s];
+            const struct targets at = kernel_targets(points.n, flow->x + points.first, flow->y + points.first, sums);
+            struct tree *const tree = tree_create(test_arena());
+            if (k == 0) flow_sum_by_tree(flow, 0, 0, &sum, 1, &at);
+            if (k > 0) tree_induce(tree, &pair, &many, fish->length, half / (k == 1 ? 4 : 2), 1, &at);
+        }
+        assert_memory_equal(value[0], value[1], sizeof value[0]);
+        n_other += memcmp(value[0], value[2], sizeof value[0]) != 0;
+    }
+    ABOVE(n_other, 0);
+}
+
 // ---- derivatives
 
 // velocity and div u at all points, with unknown i changed by step
@@ -609,10 +645,11 @@ static void values_at(struct setup *setup, int i, double step, double *value) {
     memcpy(value + 2 * n, flow->div, n * sizeof *value);
 }
 
-static void compare_derivatives(const char *fluid) {
+static void compare_derivatives(const char *fluid, bool is_steady) {
     struct setup setup;
     build(&setup, fluid, TWO);
     struct flow *flow = setup.residual->flow;
+    flow->is_steady = is_steady;
     struct influence_block *block = &setup.residual->jacobian_scratch[0].block;
     enum { MOST = 128 };
     static double value[4][3 * MOST];
@@ -639,7 +676,8 @@ static void compare_derivatives(const char *fluid) {
                         const int at = i * flow->n_points + flow->points[f].first + p;
                         const double want =
                             (value[0][at] - 8 * value[1][at] + 8 * value[2][at] - value[3][at]) / (12 * h);
-                        NEAR(got[p], want, 2e-5, 2e-5);
+                        // a steady wake has no source so near a control point
+                        NEAR(got[p], want, is_steady ? 2e-6 : 2e-5, 2e-5);
                     }
                 }
             }
@@ -649,9 +687,10 @@ static void compare_derivatives(const char *fluid) {
 
 TEST(derivatives_agree_with_differences) {
     for (kind = 0; kind < N_KERNELS; kind++) {
-        compare_derivatives("");
-        compare_derivatives("fluid: {walls: [-0.9]}\n");
-        compare_derivatives("fluid: {walls: [-0.9, 1.4]}\n");
+        compare_derivatives("", false);
+        compare_derivatives("fluid: {walls: [-0.9]}\n", false);
+        compare_derivatives("fluid: {walls: [-0.9, 1.4]}\n", false);
+        compare_derivatives("fluid: {velocity: [0.5, 0.1]}\n", true);
     }
 }
 

@@ -317,6 +317,39 @@ TEST(force_and_reaction_are_those_of_the_jump) {
     }
 }
 
+// a fish that is turned, or carried by a stream, swims as before
+TEST(forces_turn_with_the_fish_and_a_stream_carries_them) {
+    static const char *const spans[] = {"infinite", "finite"};
+    static const struct { double heading, stream; } frames[] = {{0, 0}, {137, 0}, {0, 0.3}};
+    for (int k = 0; k < 2; k++) {
+        double want[6];
+        for (int i = 0; i < 3; i++) {
+            const double a = frames[i].heading * pi / 180, stream = frames[i].stream;
+            struct simulation *const simulation = school_simulation_of(
+                SCHOOL_DEFAULTS
+                "time: {end: 1, shedding_interval: 0.01}\n"
+                "fluid: {velocity: [%g, 0]}\nsolver: {rtol: 1.0e-9}\n"
+                "fish: [{nodes: 7, sheet_points: 21, pressure: {span: %s}, start: {speed: %g, heading: %g}}]\n",
+                stream, spans[k], 0.8 + stream, frames[i].heading);
+            school_run(simulation, 0.1);
+            simulate_measure(simulation);
+            const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+            const double vector[3][2] = {{of->pressure.pressure[0], of->pressure.pressure[1]},
+                                         {of->pressure.suction[0], of->pressure.suction[1]},
+                                         {of->com_velocity[0] - stream, of->com_velocity[1]}};
+            for (int n = 0; n < 6; n++) {
+                const double *const of_frame = vector[n / 2];
+                const double part = n % 2 == 0 ? of_frame[0] * cos(a) + of_frame[1] * sin(a)
+                                               : of_frame[1] * cos(a) - of_frame[0] * sin(a);
+                if (i == 0) want[n] = part;
+                // rtol in the positions
+                NEAR(part, want[n], 1e-6 * hypot(want[n / 2 * 2], want[n / 2 * 2 + 1]), 0);
+            }
+            simulate_free(simulation);
+        }
+    }
+}
+
 // ---- the limit of the suction
 
 TEST(suction_law_has_its_limits_its_bound_and_its_derivatives) {
