@@ -357,41 +357,45 @@ def plot_budget(study, figure):
     )
 
 
-ACCURATE = 1e-4  # error of nose and tail at which methods are compared [m]
+ACCURATE, SAME_WORK = 1e-4, 1e-3  # errors at which methods are compared: of nose and tail [m], and relative of the work
 
 
 def reference_errors(study, x):
-    """How far nose or tail are from those of the most accurate implicit member with the same x [m]."""
-    errors = np.full(x.size, np.nan)
+    """How far nose or tail [m], and the work of the muscle, relative, are from those of the most accurate implicit member with
+    the same x. Both (member); the reference has infinite errors."""
+    places, works = np.full(x.size, np.nan), np.zeros(x.size)
     rtol = np.where((study["solver_method"] == "ida") & study.complete, study["solver_rtol"], np.inf)
+    work = np.asarray(study["actuation_work"])
     for value in np.unique(x):
         rows = np.flatnonzero(x == value)
         best = rows[np.argmin(rtol[rows])]
         for end in ("nose", "tail"):
             off = np.linalg.norm(study[end][rows] - study[end][best], axis=2).max(axis=1)
-            errors[rows] = np.fmax(errors[rows], off)
-        errors[best] = np.inf  # the reference itself does not compete
-    return errors
+            places[rows] = np.fmax(places[rows], off)
+        if (work[best] != 0).all():
+            works[rows] = np.abs(work[rows] / work[best] - 1).max(axis=1)
+        places[best] = np.inf  # the reference itself does not compete
+    return places, works
 
 
 def cheapest(study, over, errors):
     """Of each method, at each x, the accurate member with the fewest evaluations; printed as a table."""
-    x, method = study[over], study["solver_method"]
+    x, method, (places, works) = study[over], study["solver_method"], errors
     wall, evaluations = study["wall_time"], study["residual_evaluations"]
-    accurate = np.flatnonzero(study.complete & (errors <= ACCURATE))
+    accurate = np.flatnonzero(study.complete & (places <= ACCURATE) & (works <= SAME_WORK))
     chosen = []
-    print(f"| {study.label(over)} | method | setting | error [m] | evaluations | wall time [s] |")
-    print("|" + 6 * "--:|")
+    print(f"| {study.label(over)} | method | setting | error [m] | of the work | evaluations | wall time [s] |")
+    print("|" + 7 * "--:|")
     for value in np.unique(x):
         for word in dict.fromkeys(method):
             rows = [m for m in accurate if x[m] == value and method[m] == word]
             if not rows:
-                print(f"| {value:g} | {word} | none within {ACCURATE:g} m | | | |")
+                print(f"| {value:g} | {word} | none within {ACCURATE:g} m and {SAME_WORK:g} | | | | |")
                 continue
             m = min(rows, key=lambda row: evaluations[row])
             step, rtol = study["solver_step"][m], study["solver_rtol"][m]
             setting = f"step {step:g}" if step > 0 else f"rtol {rtol:g}"
-            print(f"| {value:g} | {word} | {setting} | {errors[m]:.1e} | {evaluations[m]:.0f} | {wall[m]:.2g} |")
+            print(f"| {value:g} | {word} | {setting} | {places[m]:.1e} | {works[m]:.1e} | {evaluations[m]:.0f} | {wall[m]:.2g} |")
             chosen.append(m)
     return np.isin(np.arange(x.size), chosen)
 
@@ -410,7 +414,7 @@ def plot_methods(study, over, figure):
             rows = (method == word) & shown
             if not rows.any():
                 continue
-            axes.loglog(x[rows], study[name][rows], label={"ida": "implicit (ida)"}.get(word, word), **style(i))
+            axes.loglog(x[rows], study[name][rows], label={"ida": "implicit (ida)", "imex": "splitting (imex)"}.get(word, word), **style(i))
         y = study[name][(method != "ida") & shown]
         if y.size:
             right = x.max() / 30

@@ -80,6 +80,8 @@ const struct method_properties methods_table[] = {
     {"dormand_prince", 5,    false,   true,  true, &dormand_prince, &dormand_prince, "method of Dormand and Prince"},
     {"implicit_euler", 1,    true,    true,  false, NULL,           NULL,            "Euler's implicit method"},
     {"trapezoid",      2,    true,    true,  false, NULL,           NULL,            "trapezoidal rule"},
+    {"imex",           2,    true,    true,  false, NULL,           NULL,            "BDF 2 for the body, extrapolated "
+                                                                                     "forces of the fluid"},
     {"verlet",         2,    false,   true,  false, NULL,           NULL,            "velocity Verlet, symplectic; rods "
                                                                                      "without fluid and damping only"},
 };

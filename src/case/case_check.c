@@ -126,12 +126,17 @@ static void check_swept_interval(const struct check *check, const char *path, do
     }
 }
 
-/* Refuse parts of the model that verlet cannot integrate: velocity-dependent forces, and unknowns besides positions. */
-static void check_verlet(const struct check *check) {
+/* Refuse parts of the model that a method cannot integrate. verlet: velocity-dependent forces, and unknowns besides
+ * positions; imex: forces in proportion to accelerations. */
+static void check_method(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
     const struct body_parameters *const body = &check->fish->body;
     static const char damps[] =
         "solver.method verlet cannot integrate damping: set the damping to 0, or choose another method";
+    complain_if(
+        check->values->solver.method == METHOD_IMEX && check->fish->force != FORCE_PRESSURE, check, "fish.force",
+        "solver.method imex would be unstable: it extrapolates the added mass, unless 'force: pressure'; choose "
+        "another method");
     if (check->values->solver.method != METHOD_VERLET) return;
 
     complain_if(check->index == 0 && school->fluid.density > 0, check, "solver.method",
@@ -675,7 +680,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
         check_cycles(&check, "fish.wave.frequency", fish->wave.frequency);
         check_cycles(&check, "fish.motion.frequency", fish->motion.frequency);
         check_derived(&check, true);
-        check_verlet(&check);
+        check_method(&check);
         check_body(&check);
         check_drag(&check);
         check_pressure(&check);

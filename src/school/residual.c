@@ -255,18 +255,9 @@ struct actuation residual_muscle(struct residual *residual, int f, double t, con
     return muscle;
 }
 
-void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
+void residual_forces(const struct residual *residual, int f, const double *y, double *value) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
-    for (int k = 0; k < fish->n_nodes; k++) {
-        value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
-        value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
-    }
-
-    // forces of the body, contacts and the fluid
-    const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
-    rod_residual(fish, &muscle, y, value);
-    rod_clamp_residual(fish, residual->flow->t, y, value);
     contact_residual(residual->contact, f, y, value);
     fluid_force_residual(fish, &flow, y, value);
     if (residual->pressure[f]) {
@@ -275,6 +266,26 @@ void residual_balance(const struct residual *residual, int f, const double *y, d
     }
     value[fish->at.ax + fish->n_nodes - 1] -= fish->load_tip[0];
     value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
+}
+
+void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
+    const struct fish *fish = &residual->school->fish[f];
+    for (int k = 0; k < fish->n_nodes; k++) {
+        value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
+        value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
+    }
+    const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
+    rod_residual(fish, &muscle, y, value);
+    rod_clamp_residual(fish, residual->flow->t, y, value);
+
+    const double *const given = residual->given_forces;
+    if (!given) {
+        residual_forces(residual, f, y, value);
+        return;
+    }
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    if (residual->pressure[f]) pressure_update(residual->pressure[f], &flow, y);
+    for (int i = fish->at.ax; i < fish->at.ax + 2 * fish->n_nodes; i++) value[i] -= given[i];
 }
 
 // the equations of fish f

@@ -93,6 +93,10 @@ struct residual {
     struct neighbours *neighbours;       /* workspace                                         (n_fish) */
     struct residual_couplings couplings; /* pairs of fish with a block in the Jacobian */
 
+    /* forces on the nodes besides those of the body, N, in the rows ax, ay, in place of those of contacts and fluid,
+     * for methods that extrapolate them; or NULL                                                      (n_unknowns) */
+    const double *given_forces;
+
     struct range *joints;    /* of each fish                                     (n_fish) */
     struct actuation muscle; /* actuation at the last evaluation                 (joints of all fish) */
     struct jacobian_scratch *jacobian_scratch; /* scratch of each thread                          (threads) */
@@ -118,6 +122,10 @@ struct actuation residual_muscle(struct residual *residual, int f, double t, con
 /* The rows ax, ay of fish f in N, without prescribed motion: m a minus all forces. Uses flow velocity, natural
  * curvature and contacts of the last evaluation. */
 void residual_balance(const struct residual *residual, int f, const double *y, double *value);
+
+/* Subtract the forces on fish f besides those of the body, N, from the rows ax, ay of value, as residual_balance does
+ * without given_forces. */
+void residual_forces(const struct residual *residual, int f, const double *y, double *value);
 
 /* The rows of residual_balance plus the rate of the added momentum, for the rates yp: the reactions of prescribed
  * nodes, N. */

@@ -22,9 +22,12 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
 
     flow_derivative(residual->flow, f, g, block);
 
-    fluid_force_flow_jacobian(fish, &flow, block, y, rows);
-    if (residual->pressure[f]) pressure_flow_jacobian(residual->pressure[f], block, rows);
-    if (residual->pressure[f] && f == g) pressure_own_jacobian(residual->pressure[f], y, rows);
+    if (!residual->given_forces) {
+        fluid_force_flow_jacobian(fish, &flow, block, y, rows);
+        if (residual->pressure[f]) pressure_flow_jacobian(residual->pressure[f], block, rows);
+        if (residual->pressure[f] && f == g) pressure_own_jacobian(residual->pressure[f], y, rows);
+        contact_jacobian(residual->contact, f, g, y, rows);
+    }
     bound_sheet_flow_jacobian(fish, block, y, rows);
     if (residual_sheet_law(residual) == BOUND_SHEET_RATE) {
         bound_sheet_kutta_flow_jacobian(fish, ramp_value(t, residual->school->kutta_ramp), block, y, rows);
@@ -86,11 +89,11 @@ static void fish_jacobian(struct residual *residual, int f, double t, double cj,
     rod_jacobian(fish, &muscle, y, own);
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     rod_clamp_jacobian(fish, t, y, own);
-    fluid_force_jacobian(fish, &flow, y, own);
+    if (!residual->given_forces) fluid_force_jacobian(fish, &flow, y, own);
     if (residual->pressure[f]) {
         pressure_update(residual->pressure[f], &flow, y);
         pressure_momentum_jacobian(residual->pressure[f], residual->at_start, y, own);
-        pressure_jacobian(residual->pressure[f], own);
+        if (!residual->given_forces) pressure_jacobian(residual->pressure[f], own);
     }
     bound_sheet_jacobian(fish, u, v, y, own);
     bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual), ramp_value(t, school->kutta_ramp), cj, u, v, y, own);
@@ -98,12 +101,10 @@ static void fish_jacobian(struct residual *residual, int f, double t, double cj,
 
     // dependence through the flow velocity: on the unknowns of this fish, then on the unknowns of coupled fish
     flow_jacobian(residual, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
-    contact_jacobian(residual->contact, f, f, y, &jacobian_scratch->rows);
     add_own_rows(residual, fish, &jacobian_scratch->rows, own);
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         struct jacobian_coupling *const coupling = &jacobian->coupling[i];
         flow_jacobian(residual, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
-        contact_jacobian(residual->contact, f, coupling->other, y, &coupling->rows);
     }
     jacobian_mask_couplings(jacobian, f);
     sparse_end(own);

@@ -56,14 +56,19 @@ extern const struct integrator ida_integrator;
  * tests/solver/test_runge_kutta.c. */
 extern const struct integrator runge_kutta_integrator;
 
-/* Implicit one-step methods of fixed step, for comparison: implicit Euler, trapezoidal rule. The equations F(t, y, y')
- * = 0 hold at the end of each step of h from y_n to y_n+1, with
+/* Implicit methods of fixed step, for comparison. The equations F(t, y, y') = 0 hold at the end of each step of h from
+ * y_n to y_n+1, with
  *
  *     implicit Euler      y'_n+1 = (y_n+1 - y_n) / h
  *     trapezoid           y'_n+1 = 2 (y_n+1 - y_n) / h - y'_n
+ *     imex                y'_n+1 = (3 y_n+1 - 4 y_n + y_n-1) / (2 h);  implicit Euler in the first step
  *
- * Newton's iteration with the Jacobian dF/dy + cj dF/dy', cj = 1/h or 2/h, solves for y_n+1; without convergence the
- * step fails with STATUS_SOLVER. Tested by tests/solver/test_one_step.c. */
+ * imex is an implicit-explicit splitting (SBDF2: Ascher, Ruuth and Wetton 1995): all forces on the nodes but those of
+ * the rod, R, are extrapolated as 2 R_n - R_n-1, in the first step R_n. The added mass belongs to the momenta, and
+ * remains implicit: with an explicit one a body lighter than its added mass is unstable at every step.
+ *
+ * Newton's iteration with the Jacobian dF/dy + cj dF/dy', cj = 1/h, 2/h or 3/(2h), solves for y_n+1; without
+ * convergence the step fails with STATUS_SOLVER. Tested by tests/solver/test_one_step.c. */
 extern const struct integrator one_step_integrator;
 
 /* Velocity Verlet, symplectic and of order 2, for rods under elastic forces and loads only (no fluid, damping,

@@ -1,4 +1,4 @@
-/* one_step.c: implicit Euler and the trapezoidal rule applied to the residual of the school, and Verlet's method. */
+/* one_step.c: implicit methods of fixed step applied to the residual of the school, and Verlet's method. */
 #include <math.h>
 #include <string.h>
 
@@ -32,6 +32,9 @@ struct one_step {
     double *kind, *tolerance;          /* kind and absolute tolerance of each unknown     (n_unknowns) */
     double *before, *rates;            /* unknowns and rates at the start of the step     (n_unknowns) */
     double *correction, *right_hand;   /* Newton's                                        (n_unknowns) */
+    double *older;                     /* imex: unknowns one step before `before`         (n_unknowns) */
+    double *forces[2], *given;         /* imex, rows ax, ay: R_n, R_n-1, extrapolated R, N (n_unknowns) */
+    int n_known;                       /* imex: how many of R_n, R_n-1 are known */
     struct integrator_rates *algebraic_rates;
     struct integrator_counts counts;
 };
@@ -49,8 +52,9 @@ static enum status one_step_create(struct arena *arena, void **created, struct r
     solver->counts.step_size = options->step;
     solver->counts.order = methods_table[options->method].order;
 
-    double **const arrays[] = {&solver->kind,  &solver->tolerance,  &solver->before,
-                               &solver->rates, &solver->correction, &solver->right_hand};
+    double **const arrays[] = {&solver->kind,       &solver->tolerance,  &solver->before, &solver->rates,
+                               &solver->correction, &solver->right_hand, &solver->older,  &solver->forces[0],
+                               &solver->forces[1],  &solver->given};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) NEW(arena, *arrays[i], n);
     residual_kinds(residual, solver->kind);
     for (int i = 0; i < n; i++) {
@@ -76,6 +80,7 @@ static void one_step_count(const void *data, struct integrator_counts *counts) {
 static enum status one_step_restart(void *data) {
     struct one_step *const solver = data;
     solver->cj = 0;
+    solver->n_known = 0;
     integrator_rates_begin(solver->algebraic_rates, solver->state);
     return STATUS_OK;
 }
@@ -85,19 +90,43 @@ static enum status one_step_restart(void *data) {
 /* The rates at the end of the step, from the unknowns there. */
 static void one_step_rates(struct one_step *solver, double h) {
     struct state *const state = solver->state;
-    const bool is_trapezoid = solver->options.method == METHOD_TRAPEZOID;
+    const bool is_trapezoid = solver->options.method == METHOD_TRAPEZOID, has_older = solver->n_known == 2;
     for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
         const double change = (state->y[i] - solver->before[i]) / h;
         // integrator_rates_step and state_find_rates replace the rates of algebraic unknowns that are used
-        state->yp[i] = is_trapezoid && solver->kind[i] > 0 ? 2 * change - solver->rates[i] : change;
+        state->yp[i] = is_trapezoid && solver->kind[i] > 0 ? 2 * change - solver->rates[i]
+                       : has_older ? 1.5 * change - 0.5 * (solver->before[i] - solver->older[i]) / h
+                                   : change;
     }
+}
+
+/* imex: move on to the step from t to t + h: find R_n, and extrapolate. */
+static enum status one_step_extrapolate(struct one_step *solver, double t) {
+    struct residual *const residual = solver->residual;
+    double *const older = solver->forces[1], *const known = solver->forces[0];
+    TRY(residual_evaluate(residual, t, solver->state->y, solver->state->yp, solver->right_hand));
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        const struct fish *const fish = &residual->school->fish[f];
+        for (int i = fish->at.ax; i < fish->at.ax + 2 * fish->n_nodes; i++) {
+            older[i] = known[i];
+            known[i] = 0;
+        }
+        residual_forces(residual, f, solver->state->y, known);
+        for (int i = fish->at.ax; i < fish->at.ax + 2 * fish->n_nodes; i++) {
+            known[i] *= -1;
+            solver->given[i] = solver->n_known > 0 ? 2 * known[i] - older[i] : known[i];
+        }
+    }
+    memcpy(solver->older, solver->before, (size_t)residual->school->n_unknowns * sizeof *solver->older);
+    solver->n_known = solver->n_known > 0 ? 2 : 1;
+    return STATUS_OK;
 }
 
 /* Newton's iteration, starting from the unknowns in the state. STATUS_RETRY: no convergence. */
 static enum status one_step_iterate(struct one_step *solver, double t, double h) {
     struct residual *const residual = solver->residual;
     struct state *const state = solver->state;
-    const double cj = solver->options.method == METHOD_TRAPEZOID ? 2 / h : 1 / h;
+    const double cj = (solver->options.method == METHOD_TRAPEZOID ? 2 : solver->n_known == 2 ? 1.5 : 1) / h;
     double before = 0;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         TRY(status_ask(solver->stop));
@@ -153,18 +182,25 @@ static enum status one_step_advance(void *data, double t, const volatile sig_ato
 
     const double h = solver->residual->school->interval / (double)n;
     const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
+    const bool is_split = solver->options.method == METHOD_IMEX;
     for (long i = 1; i <= n; i++) {
         const double end = i < n ? start + (double)i * h : t;
+        if (is_split) TRY(one_step_extrapolate(solver, end - h));
         memcpy(solver->before, state->y, size);
         memcpy(solver->rates, state->yp, size);
 
         // the second attempt has a new Jacobian
+        solver->residual->given_forces = is_split ? solver->given : NULL;
+        for (size_t k = 0; solver->n_known == 2 && k < size / sizeof *state->y; k++) {
+            state->y[k] += solver->before[k] - solver->older[k];
+        }
         enum status status = one_step_iterate(solver, end, h);
         if (status > 0) {
             solver->cj = 0;
             memcpy(state->y, solver->before, size);
             status = one_step_iterate(solver, end, h);
         }
+        solver->residual->given_forces = NULL;
         if (status > 0) {
             return status_fail(STATUS_SOLVER,
                                "integration failed at t = %.10g s: Newton's iteration did not converge with steps of "

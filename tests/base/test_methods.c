@@ -79,5 +79,6 @@ TEST(rows_are_in_the_order_of_their_names) {
     assert_string_equal(methods_table[METHOD_DORMAND_PRINCE].word, "dormand_prince");
     assert_string_equal(methods_table[METHOD_IMPLICIT_EULER].word, "implicit_euler");
     assert_string_equal(methods_table[METHOD_TRAPEZOID].word, "trapezoid");
+    assert_string_equal(methods_table[METHOD_IMEX].word, "imex");
     assert_string_equal(methods_table[METHOD_VERLET].word, "verlet");
 }
