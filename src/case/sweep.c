@@ -365,7 +365,7 @@ void sweep_read(struct case_values *values, const struct yaml_node *root, struct
     const int n_after = errors->n;
     for (int a = 0; a < values->n_axes && n_after == n_before; a++) {
         struct sweep_axis *const axis = &values->sweep[a];
-        if (axis->order_of == 0 && axis->order > 0) axis->order_of = standard;
+        if (axis->order_of == 0) axis->order_of = standard;
         for (int q = 0; q < SWEEP_N_ORDERS; q++) {
             if (!(axis->order_of & ~known & UINT64_C(1) << q)) continue;
             yaml_errors_add(errors, list->entry[a].value->mark, "sweep[%d].expect.of: %s is a quantity of %s", a,

@@ -29,7 +29,6 @@ static void hold_bodies(const struct simulation *simulation, const struct state 
     const size_t bytes = (size_t)school->n_unknowns * sizeof *state->y;
 
     memcpy(state->y, equilibrium->y, bytes);
-    memcpy(state->yp, equilibrium->yp, bytes);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         double position[2], velocity[2], acceleration[2];

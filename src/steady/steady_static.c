@@ -89,9 +89,8 @@ struct growth {
         school; /* school of the simulation with a part of the stream and loads; owns the array of fish only */
     struct residual *residual; /* of this school */
     struct equilibrium *equilibrium;
-    double *last, *before;         /* the last two solutions                                    (n_unknowns) */
-    double last_part, before_part; /* parts of the stream at the last two solutions */
-    int n_solutions;
+    double *last;                      /* the last solution                                          (n_unknowns) */
+    double last_part;                  /* of the stream at the last solution */
     struct equilibrium_stiffness rest; /* without stream and loads */
     double *kept; /* scratch                                                              (n_unknowns) */
 };
@@ -151,16 +150,11 @@ static enum status growth_solve(struct growth *growth, double part) {
         return is_fatal(status) ? status : STATUS_SOLVER;
     }
 
-    // shift the solutions
-    memcpy(growth->before, growth->last, bytes);
     memcpy(growth->last, state->y, bytes);
 
     // contact detection compares with the previous positions
     memcpy(state->closest->before, state->y, bytes);
-    growth->before_part = growth->last_part;
     growth->last_part = part;
-    growth->n_solutions++;
-
     return STATUS_OK;
 }
 
@@ -205,22 +199,10 @@ static enum status growth_from_rest(struct growth *growth) {
 
 // increase the stream from rest with adaptive steps
 static enum status growth_to_stream(struct growth *growth) {
-    const struct school *const school = growth->simulation->school;
-    double *const y = growth->simulation->state->y, step = 1, stiffness;
+    double step = 1, stiffness;
     char reason[512];
     while (growth->last_part < 1) {
-        // extrapolate linearly from the last two solutions
-        const double part = fmin(1, growth->last_part + step), last_step = growth->last_part - growth->before_part;
-        const bool is_near = growth->n_solutions >= 2 && part - growth->last_part <= 2 * last_step;
-        for (int f = 0; f < school->n_fish && is_near; f++) {
-            const struct layout *const at = &school->fish[f].at;
-            const double q = (part - growth->last_part) / last_step;
-            for (int i = at->x; i < at->phi0; i++) {
-                if (i < at->vx || i >= at->gamma) y[i] += q * (growth->last[i] - growth->before[i]);
-            }
-        }
-
-        const enum status status = growth_solve(growth, part);
+        const enum status status = growth_solve(growth, fmin(1, growth->last_part + step));
         if (is_fatal(status)) return status;
         step *= status == STATUS_OK ? 2 : 0.5;
         if (step >= least_step) continue;
@@ -262,7 +244,6 @@ static enum status find_solution(struct growth *growth, const char *from, struct
     struct arena *const arena = growth->arena;
     TRY(flow_check_steady(school));
     NEW(arena, growth->last, school->n_unknowns);
-    NEW(arena, growth->before, school->n_unknowns);
     NEW(arena, growth->kept, school->n_unknowns);
     growth->school = *school;
     NEW(arena, growth->school.fish, school->n_fish);

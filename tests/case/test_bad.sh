@@ -164,11 +164,13 @@ set_fails set_index_negative 'fish[-1].nodes: expects the number of a fish' 'fis
 set_fails set_index_missing 'fish.nodes: write fish[0].nodes for one fish, or fish[*].nodes for every fish' fish.nodes=7
 set_fails set_index_after_a_dot '--set fish.0.length=2: error: fish.0.length: write fish[0].length' fish.0.length=2
 set_fails set_index_for_a_key '--set fish.0=2: error: fish.0: write fish[0]' fish.0=2
+if grep -q 'for one fish' err; then fail set_index_needs_no_other "$(<err)"; else pass set_index_needs_no_other; fi
 set_fails set_star_after_a_dot 'fish.*.wave.phase: write fish[*].wave.phase' 'fish.*.wave.phase=2'
 set_fails set_in_another_section 'unknown key here; the key belongs to fish[0].wave or fish[0].motion' 'fish[0].body.frequency=2'
 set_fails set_in_one_other_section 'unknown key here; the key belongs to fish[0].body' 'fish[0].wave.modulus=2'
 set_fails set_viscosity "has no effect: all fish have 'drag.skin: quadratic' with the coefficient drag.tangential" 'fish[*].force=reactive' fluid.viscosity=1e-3
 set_fails set_reynolds 'the friction is set by drag.tangential of a fish, or by fluid.viscosity with' fluid.reynolds=1000
+set_fails set_a_letter_beside_mu 'fluid.u: unknown key; known keys: density' fluid.u=1
 set_fails set_index_open 'expects the number of a fish, as in fish[0]' 'fish[0=7'
 set_fails set_no_dot_after_index "fish[0]nodes: expects a '.' after the ']'" 'fish[0]nodes=7'
 set_fails set_below_a_value 'time.end.x: time.end is a value and has no keys' time.end.x=3

@@ -64,6 +64,16 @@ TEST(the_merged_text_is_the_complete_study) {
     case_free(&again);
 }
 
+TEST(a_sweep_is_shown_as_it_is_written) {
+    struct case_values study = parse(refined);
+    struct arena *const arena = arena_create(NULL, "a test");
+    const char *const text = case_show(arena, &study);
+    assert_non_null(strstr(text, "    expect: {order: 0.8, within: 0.2, of: [com, speed]}\n"));
+    assert_non_null(strstr(text, "    values: [1e-3, 1e-4, 1e-5]\n"));
+    arena_free(arena);
+    case_free(&study);
+}
+
 TEST(a_reference_is_given_for_all_fish_or_for_each) {
     struct case_values s = parse(refined);
     // quantities in the order of the table: nose, tail, com, speed, mean_heading

@@ -1260,6 +1260,28 @@ static void sweep(const char *text, const char *path, int least) {
     AT_LEAST(n, least);
 }
 
+TEST(a_change_that_lacks_memory_leaves_the_run_as_it_was) {
+    struct shoal *const run = opened_to_change(state, 0.2);
+    double x[18], v[18];
+    int code = SHOAL_MEMORY, n = 0;
+    assert_int_equal(shoal_state(run, 1, x, v), SHOAL_OK);
+    for (int i = 0; i < 18; i++) x[i] += 0.01;
+    for (; code != SHOAL_OK; n++) {
+        struct shoal *copy;
+        assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+        n_until_failure = n;
+        code = shoal_set_state(copy, 1, x, v);
+        n_until_failure = -1;
+        if (code != SHOAL_OK) {
+            assert_int_equal(code, SHOAL_MEMORY);
+            same_in_all(copy, run);
+        }
+        shoal_close(copy);
+    }
+    AT_LEAST(n, 10);
+    shoal_close(run);
+}
+
 #define MEMORY_CASE(solver, more)                                                                                    \
     "format: 1\ntime: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\nwake: {spare_vortices: 9}\nsolver: " \
     "{" solver "}\n" more

@@ -486,6 +486,18 @@ TEST_WITH(full_disk_keeps_the_rows_before, set_up, tear_down) {
     nc_close(file);
 }
 
+/* A checkpoint of few rows, then one of more, has the checksum of all rows. */
+TEST_WITH(a_checksum_goes_on_where_it_ended, set_up, tear_down) {
+    struct fixture *f = *state;
+    write_file(f, 3);
+    struct result_checksum in_parts = {0}, at_once = {0};
+    struct result_mark part, whole;
+    assert_int_equal(result_mark_take(f->path, 1, &in_parts, &part), STATUS_OK);
+    assert_int_equal(result_mark_take(f->path, 3, &in_parts, &part), STATUS_OK);
+    assert_int_equal(result_mark_take(f->path, 3, &at_once, &whole), STATUS_OK);
+    assert_int_equal(part.check, whole.check);
+}
+
 TEST_WITH(too_many_vortices_are_refused, set_up, tear_down) {
     struct fixture *f = *state;
     struct result_file *result = create(f);

@@ -467,6 +467,55 @@ TEST(what_can_have_no_steady_state_is_refused_with_the_reason) {
                        "2 of 2 fish swim at independent speeds");
 }
 
+TEST(fish_that_are_all_held_may_be_many) {
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE "defaults: {fish: {" FISH
+                                     ", motion: {prescribed: all, heave: 0.1, frequency: 1}}}\n"
+                                     "fish: [{}, {start: {position: [3, 0]}}]\n");
+    assert_int_equal(setup.problem.n_unknowns, 0);
+}
+
+// speeds of beats that repeat every three beats also repeat every six
+TEST(the_least_period_of_the_last_beats_is_said) {
+    static const int periods[] = {2, 3, 4};
+    for (int k = 0; k < 3; k++) {
+        struct steady_setup setup;
+        char words[64];
+        steady_setup_open(&setup, COARSE "steady: {beats: 40}\nfish: [{" FISH "}]\n");
+        setup.problem.map.n_beats = 40;
+        for (int i = 0; i < STEADY_RECENT; i++) {
+            setup.problem.recent[(40 - i) % STEADY_RECENT] = 0.5 + 0.1 * (i % periods[k] == 0);
+        }
+        assert_int_equal(steady_problem_beat(&setup.problem), STATUS_SOLVER);
+        snprintf(words, sizeof words, "the speed repeats every %d beats", periods[k]);
+        if (!strstr(status_message(), words)) fail_msg("%s: without %s", status_message(), words);
+    }
+}
+
+// the same fish in other units, on a circle: all slow quantities are searched together, in as many beats
+TEST(a_small_fish_is_found_like_a_large_one) {
+    double speed = 0;
+    int n_beats = 0;
+    for (int i = 0; i < 2; i++) {
+        const double length = i == 0 ? 1 : 0.2;
+        struct steady_setup setup;
+        char text[512];
+        snprintf(text, sizeof text,
+                 COARSE "fish: [{" FISH
+                        ", length: %g, body: {modulus: %g}, drag: {skin: quadratic}, start: {speed: %g},"
+                        " control: {bias: 0.1}}]\n",
+                 length, 3e6 * length * length, 0.5 * length);
+        steady_setup_open(&setup, text);
+        school_ok(steady_search_run(&setup.problem));
+        const double found = setup.problem.map.last[0].speed / length;
+        print_message("length %g: %g lengths per beat after %d beats\n", length, found, setup.problem.map.n_beats);
+        if (i == 1) NEAR(found, speed, 0, 1e-6);
+        if (i == 1) assert_int_equal(setup.problem.map.n_beats, n_beats);
+        speed = found;
+        n_beats = setup.problem.map.n_beats;
+    }
+}
+
 TEST(a_search_that_takes_too_long_says_how_far_it_came) {
     steady_setup_fails(COARSE "steady: {beats: 5}\nfish: [{" FISH "}]\n", STATUS_SOLVER,
                        "no steady state in 5 beats (steady.beats)");

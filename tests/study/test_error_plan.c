@@ -464,6 +464,24 @@ TEST(a_finer_level_is_never_cheaper) {
     close_study(&study);
 }
 
+/* The members of a run count a tenth of a second each, below which times are noise. */
+TEST(the_cost_of_a_finer_level_is_the_ratio_of_the_times) {
+    struct error_study study = open_study(UNIFORM, "{of: speed, keys: [shedding_interval]}");
+    struct member_file *const members = make_members(&study);
+    const struct error_study_key *const key = key_of(&study, "time.shedding_interval");
+    const double times[][3] = {{20, 60, 60.1 / 20.1}, {1e-4, 3e-4, 1.002}};
+    assert_int_equal(key->stated, 1);
+    for (int i = 0; i < 2; i++) {
+        set_value(&members[key->member[1]], "wall_time", times[i][0]);
+        set_value(&members[key->member[0]], "wall_time", times[i][1]);
+        convergence_study_judge(&study, members);
+        const struct error_study_next next = convergence_study_next(&study, members);
+        assert_true(next.is_member);
+        NEAR(next.cost, times[i][2], 0, 1e-5);
+    }
+    close_study(&study);
+}
+
 /* Follow a study to the end, as a run does; and again, with the members at that time. */
 static struct member_file *follow(struct error_study *study, int *n_rounds) {
     struct member_file *members = NULL;
