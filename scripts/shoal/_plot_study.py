@@ -415,12 +415,6 @@ def plot_methods(study, over, figure):
             if not rows.any():
                 continue
             axes.loglog(x[rows], study[name][rows], label={"ida": "implicit (ida)", "imex": "splitting (imex)"}.get(word, word), **style(i))
-        y = study[name][(method != "ida") & shown]
-        if y.size:
-            right = x.max() / 30
-            low = np.median(y)
-            axes.plot([right / 30, right], [low / 2, low / 2 * 30**0.5], color="#666666", lw=0.8)
-            axes.annotate("slope 1/2", (right, low / 2 * 30**0.5), (2, -4), textcoords="offset points", va="top", size=8)
         axes.set_xlabel(study.label(over))
         axes.set_ylabel(label)
         few_ticks(axes.yaxis)
