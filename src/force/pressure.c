@@ -69,6 +69,13 @@ static double slip_along(const struct pressure_point *point) {
     return edge_dot(point->slip, point->body.t);
 }
 
+// add forces at the control points, x then y, to the rows ax, ay of all nodes: forces per mass
+static void spread_forces(const struct pressure *p, double *column) {
+    const int n = p->fish->n_nodes, n_control = p->fish->n_control;
+    wide_multiply(n, n_control, p->share, p->spread, column);
+    wide_multiply(n, n_control, p->share, p->spread + n_control, column + n);
+}
+
 // forces at the control points, interpolated to the nodes: convection; with rings also the spanwise flow and the force
 // along the side edges (doc/model.md, sections 15 and 18)
 static void pressure_convect(struct pressure *p, const struct flow_at_body *flow, const double *y) {
@@ -86,10 +93,11 @@ static void pressure_convect(struct pressure *p, const struct flow_at_body *flow
         sheet_integrals_before(fish->integrals, p->matrix.circulation, at + BEFORE * n_control);
     }
 
+    double *const x = p->spread, *const z = p->spread + n_control;
     for (int c = 0; c < n_control; c++) {
         // slip, and circulation of the interval
         struct pressure_point *const point = &p->point[c];
-        const double *const weight = fish->control_point[c].weight, *const value = at + c;
+        const double *const value = at + c;
         point->body = fish_direction_of((const double[2]){value[LINE * n_control], value[(LINE + 1) * n_control]});
         point->slip[0] = flow->u[c] - value[VELOCITY * n_control];
         point->slip[1] = flow->v[c] - value[(VELOCITY + 1) * n_control];
@@ -98,27 +106,23 @@ static void pressure_convect(struct pressure *p, const struct flow_at_body *flow
 
         // convection: -rho w gamma tau n
         const double size = -point->strength * slip_along(point);
-        for (int k = 0; k < n; k++) {
-            p->force[k] += weight[k] * size * point->body.n[0];
-            p->force[n + k] += weight[k] * size * point->body.n[1];
-        }
-    }
+        x[c] = size * point->body.n[0];
+        z[c] = size * point->body.n[1];
+        if (!flow->div) continue;
 
-    for (int c = 0; flow->div && c < n_control; c++) {
-        struct pressure_point *const point = &p->point[c];
-        const double *const weight = fish->control_point[c].weight;
+        // force of the spanwise flow, and force along the side edges
         const double length = point->body.length * fish->control_interval[c];
         const double widening = fish->control_widening[c] * fish->control_interval[c];
         point->before = fish->control_density[c] * at[BEFORE * n_control + c];
         point->divergence = flow->div[c];
-
-        // force of the spanwise flow, and force along the side edges
-        for (int i = 0; i < 2; i++) {
-            point->edge[i] = widening * flow->edge[i * flow->edge_stride + c];
-            const double force = point->before * (point->edge[i] - point->divergence * length * point->body.n[i]);
-            for (int k = 0; k < n; k++) p->force[i * n + k] += weight[k] * force;
-        }
+        for (int i = 0; i < 2; i++) point->edge[i] = widening * flow->edge[i * flow->edge_stride + c];
+        x[c] += point->before * (point->edge[0] - point->divergence * length * point->body.n[0]);
+        z[c] += point->before * (point->edge[1] - point->divergence * length * point->body.n[1]);
     }
+
+    memset(p->parts, 0, 2 * (size_t)n * sizeof *p->parts);
+    spread_forces(p, p->parts);
+    for (int i = 0; i < 2 * n; i++) p->force[i] += fish->mass[i % n] * p->parts[i];
 }
 
 // f = full bound/(full^4 + bound^4)^(1/4), from the ratio of the smaller to the larger
@@ -223,13 +227,6 @@ void pressure_momentum_jacobian(struct pressure *p, int at_start, const double *
             }
         }
     }
-}
-
-// add forces at the control points, x then y, to the rows ax, ay of all nodes, in one column
-static void spread_forces(const struct pressure *p, double *column) {
-    const int n = p->fish->n_nodes, n_control = p->fish->n_control;
-    wide_multiply(n, n_control, p->share, p->spread, column);
-    wide_multiply(n, n_control, p->share, p->spread + n_control, column + n);
 }
 
 void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
