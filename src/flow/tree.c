@@ -14,9 +14,10 @@ enum {
     NODES = 8,   /* the largest number of nodes in x and in y; rows of nodes are padded to this length */
     LENGTHS = 3, /* the largest number of nodes in h */
     ALL_NODES = NODES * NODES * LENGTHS,
-    VALUES = 3,      /* at most: q, dx, dy at the nodes of sources; u, v, div at the nodes of targets */
-    LEAF = 128,      /* the largest number of points in a leaf */
-    CONVERSION = 300 /* cost of a change between the nodes of a box and the nodes of a pair, in interactions */
+    VALUES = 3,         /* at most: q, dx, dy at the nodes of sources; u, v, div at the nodes of targets */
+    LEAF = 128,         /* the largest number of points in a leaf */
+    LEAF_GRADIENT = 32, /* of targets of gradients: far points of a few bodies, each at some distance from the next */
+    CONVERSION = 300    /* cost of a change between the nodes of a box and the nodes of a pair, in interactions */
 };
 
 /* The bound of one pair and axis over the tolerance. The bound assumes that all rings of a box are at the nearest place
@@ -207,9 +208,9 @@ static WIDE(void, add_to_fine, (const struct node_matrix *matrix, int n_values, 
 
 // ---- boxes
 
-static void node_tree_fill(struct node_tree *nodes, int n, const double *x, const double *y, const double *h,
+static void node_tree_fill(struct node_tree *nodes, int n, const double *x, const double *y, const double *h, int leaf,
                            int threads) {
-    tree_boxes_fill(&nodes->boxes, n, x, y, h, LEAF, threads);
+    tree_boxes_fill(&nodes->boxes, n, x, y, h, leaf, threads);
     if (nodes->boxes.n_boxes <= nodes->capacity) return;
     nodes->capacity = nodes->boxes.n_boxes;
     GROW(nodes->boxes.arena, nodes->box, nodes->capacity);
@@ -619,7 +620,7 @@ static void sources_sort(struct tree *tree, const struct kernel_pair *pair, cons
     sorted->n = 0;
     sources_append(sorted, n);
     lengths(pair->factor, n, rings->half, rings->leg, sorted->leg);
-    node_tree_fill(&tree->from, n, rings->x, rings->y, sorted->leg, threads);
+    node_tree_fill(&tree->from, n, rings->x, rings->y, sorted->leg, LEAF, threads);
     const struct tree_boxes *const boxes = &tree->from.boxes;
     memcpy(sorted->leg, boxes->weight, (size_t)n * sizeof *sorted->leg);
     for (int i = 0; i < n; i++) {
@@ -644,7 +645,7 @@ static void targets_sort(struct tree *tree, const struct kernel_pair *pair, cons
         for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(tree->arena, *all[i], tree->target_capacity);
     }
     lengths(pair->factor, at->n, at->half, at->leg, tree->h);
-    node_tree_fill(&tree->to, at->n, at->x, at->y, tree->h, threads);
+    node_tree_fill(&tree->to, at->n, at->x, at->y, tree->h, at->u_x ? LEAF_GRADIENT : LEAF, threads);
     memcpy(tree->x, tree->to.boxes.x, size);
     memcpy(tree->y, tree->to.boxes.y, size);
     memcpy(tree->h, tree->to.boxes.weight, size);
