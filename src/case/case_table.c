@@ -251,7 +251,7 @@ const struct key case_table[] = {
     {"wake.tolerance", REAL, AT(school.wake.tolerance), NULL, FROM_TO(0, 0.01), "",
      .meaning = "estimated error allowed in the velocity that far vortices induce at the bodies, in body lengths per "
                 "beat; 0: direct summation",
-     .derived = "solver.rtol/100", .multiple = {0.01, "solver.rtol"}, .cause = "solver.rtol",
+     .derived = "solver.rtol/10", .multiple = {0.1, "solver.rtol"}, .cause = "solver.rtol",
      .synonyms = "accuracy theta"},
     {"wake.merge", REAL, AT(school.wake.merge), "0", FROM_TO(0, 0.1), "",
      .meaning = "error allowed in the velocity at the bodies due to merging of distant vortices, in body lengths per "
