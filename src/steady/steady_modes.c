@@ -26,9 +26,7 @@ static void set_growth(struct steady_values *found) {
 static void hold_bodies(const struct simulation *simulation, const struct state *equilibrium, double t) {
     const struct school *const school = simulation->school;
     struct state *const state = simulation->state;
-    const size_t bytes = (size_t)school->n_unknowns * sizeof *state->y;
-
-    memcpy(state->y, equilibrium->y, bytes);
+    memcpy(state->y, equilibrium->y, (size_t)school->n_unknowns * sizeof *state->y);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         double position[2], velocity[2], acceleration[2];

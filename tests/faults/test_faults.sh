@@ -26,6 +26,17 @@ sample() {  # name, script of tests/soak, arguments
 }
 sample "a sample of failing calls: whole rows, one message, exit code 0 or 4" faults.py 89
 
+# the flush of the note that a run is complete
+said=
+for ((i = 1; i < 20; i++)); do
+    code=0
+    ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0 LD_PRELOAD=$(dirname "$program")/files.so FAULT_PATH=last.nc \
+        FAULT_CALL=fsync FAULT_AT=$i FAULT_HOW=EIO "$program" run small.yaml -q --force -o last.nc >out 2>err || code=$?
+    ! grep -q 'last.nc: cannot be closed (Input/output error): the last rows may be missing' err ||
+        said+="$code $(ncdump -h last.nc | sed -n 's/.*:run_status = "\(.*\)" ;/\1/p')"
+done
+check "a result that cannot be closed says so" test "$said" = "4 failed: the last rows could not be written"
+
 # ---- standard files
 
 for closed in '<&-' '>&-' '2>&-' '<&- >&- 2>&-'; do

@@ -91,6 +91,81 @@ TEST(errors_are_below_the_tolerance) {
     }
 }
 
+// the largest error of velocity and divergence at fish 0 for the unknowns y at the event, over the tolerance
+static double error_of(struct simulation *simulation, const double *y) {
+    struct school *const school = simulation->school;
+    struct flow *const flow = simulation->residual->flow;
+    const struct state *const at = simulation->state;
+    const double tolerance = school->wake_tolerance;
+    double *sums[SUMS], worst = 0;
+    flow->kernel = kernel_of(flow, false);
+    flow_gradient(flow, at, at->t, y);
+    assert_true(others_are_selected(flow));
+    keep(flow, sums);
+    school->wake_tolerance = 0;
+    flow_gradient(flow, at, at->t, y);
+    school->wake_tolerance = tolerance;
+    for (int s = 0; s < 3; s++) {
+        for (int p = 0; p < flow->points[0].n; p++) {
+            const int i = flow->points[0].first + p;
+            worst = fmax(worst, fabs(kept[s][i] - sums[s][i]));
+        }
+    }
+    return worst / (tolerance * school->fish[0].length * fish_rate(school, &school->fish[0]));
+}
+
+/* Two straight fish far apart, at rest; the wake of the other one is put to a place, with labels that grow by this. */
+static struct simulation *beside(const char *tolerance, const double place[2], double circulation) {
+    struct simulation *const simulation =
+        school_simulation_of(SCHOOL_DEFAULTS
+                             "time: {end: 2, shedding_interval: 0.02}\nwake: {tolerance: %s}\n"
+                             "defaults: {fish: {nodes: 33, sheet_points: 65, wave: {amplitude: 0}}}\n"
+                             "fish: [{}, {start: {position: [0, 9]}}]\n",
+                             tolerance);
+    school_run(simulation, 0.1);
+    struct wake *const wake = &simulation->state->wake[1];
+    for (int i = 0; i < wake->n_vortex; i++) {
+        wake->x[i] = place[0] + 0.01 * i;
+        wake->y[i] = place[1];
+        wake->circulation[i] = circulation * i;
+    }
+    wake->version++;
+    return simulation;
+}
+
+// behind the middle of a horseshoe a vortex is far from both ends of the body, and near the body
+TEST(beside_a_bent_body_no_source_is_far) {
+    struct simulation *const simulation = beside("1.0e-4", (const double[]){0, 0}, 0.1);
+    const struct fish *const fish = &simulation->school->fish[0];
+    struct state *const at = simulation->state;
+    double *const x = at->y + fish->at.x, *const y = at->y + fish->at.y;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double angle = 2.6 * ((k + 0.5) / fish->n_edges - 0.5);
+        x[k + 1] = x[k] + fish->edge_length * cos(angle);
+        y[k + 1] = y[k] + fish->edge_length * sin(angle);
+    }
+    struct wake *const wake = &at->wake[1];
+    const double shift[2] = {x[16] - wake->x[0], y[16] - 0.15 - wake->y[0]};
+    for (int i = 0; i < wake->n_vortex; i++) wake->x[i] += shift[0], wake->y[i] += shift[1];
+    memcpy(at->past, at->y, sizeof *at->y * (size_t)simulation->school->n_unknowns);
+    const double error = error_of(simulation, at->y);
+    print_message("error over the tolerance: %g\n", error);
+    BELOW(error, 1);
+}
+
+// a straight body is displaced within the interval by 3e-4 lengths, beside strong vortices
+TEST(a_displaced_body_has_fewer_far_sources) {
+    struct simulation *const simulation = beside("1.0e-8", (const double[]){0.5, 1.2}, 5);
+    const struct fish *const fish = &simulation->school->fish[0];
+    double y[4096];
+    AT_MOST(simulation->school->n_unknowns, 4096);
+    memcpy(y, simulation->state->y, sizeof *y * (size_t)simulation->school->n_unknowns);
+    for (int k = 0; k < fish->n_nodes; k++) y[fish->at.y + k] += 3e-4 * fish->length;
+    const double error = error_of(simulation, y);
+    print_message("error over the tolerance: %g\n", error);
+    BELOW(error, 1);
+}
+
 TEST(a_body_elsewhere_feels_all_sources) {
     struct simulation *const simulation = swum("finite");
     struct school *const school = simulation->school;

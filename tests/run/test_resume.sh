@@ -72,6 +72,7 @@ stopped() {  # name, signals, arguments of run...
     check "$name: it says what to do" has err "continue with 'shoal resume run.ckpt'"
     run resume run.ckpt -q
     check "$name: resumed to the end" test "$code" = 0
+    check "$name: no part stays" test ! -e run.nc.part
     run run "$@" -q -o reference.nc --checkpoint-at "$(places run.nc)"
     check "$name: the bits of the run with the same checkpoints" same run.nc reference.nc
 }
