@@ -178,15 +178,11 @@ static bool is_far(const struct others_fish *to, double interval, const struct k
     return size * (polynomial_error(axis) + to->aside * to->aside / r2 + in_time) <= tolerance;
 }
 
-static void near_add(struct others *others, struct others_fish *of, int i, bool begins) {
-    if (begins) {
-        if (of->n_near == of->near_capacity) {
-            of->near_capacity = 2 * of->near_capacity + 16;
-            GROW(others->arena, of->near, of->near_capacity);
-        }
-        of->near[of->n_near++] = (struct range){i, 0};
-    }
-    of->near[of->n_near - 1].n++;
+// add source i to the near sources, to a new range (begins) or to the last one; beyond the capacity only count
+static void near_add(struct others_fish *of, int i, bool begins) {
+    if (begins && of->n_near < of->near_capacity) of->near[of->n_near] = (struct range){i, 0};
+    of->n_near += begins;
+    if (of->n_near <= of->near_capacity) of->near[of->n_near - 1].n++;
 }
 
 // body and wake of a fish at the event
@@ -213,11 +209,6 @@ static void remember_fish(struct flow *flow, const struct state *state, int f) {
     for (int c = 0; c < body->n; c++) {
         of->q += fabs(body->q[c]);
         of->d += sqrt(body->dx[c] * body->dx[c] + body->dy[c] * body->dy[c]);
-    }
-    of->n_groups = (wake->n_released + GROUP - 1) / GROUP;
-    if (of->n_groups > of->group_capacity) {
-        of->group_capacity = 2 * of->n_groups;
-        GROW(flow->others->arena, of->group, of->group_capacity);
     }
     for (int k = 0; k < of->n_groups; k++) {
         const int first = k * GROUP, left = wake->n_released - first;
@@ -294,7 +285,7 @@ static void select_at(struct flow *flow, const struct state *state, int f, doubl
             for (int i = which.first; i < which.first + which.n && !are_far; i++) {
                 const struct group one = group_of(others, g, wake, (struct range){i, 1}, &state->wake[g]);
                 const bool near = !of->is_used || !is_far(of, interval, &of_wake, &one, true, tolerance);
-                if (near) near_add(others, of, i, !was_near);
+                if (near) near_add(of, i, !was_near);
                 was_near = near;
             }
         }
@@ -437,10 +428,27 @@ void others_select(struct flow *flow, const struct state *state) {
     flow_place(flow, state, state->t, others->past);
     double n_sources = 1;
     for (int f = 0; f < school->n_fish; f++) {
+        struct others_fish *const of = &others->fish[f];
         n_sources += flow->fish[f].wake.middles.n_released + flow->fish[f].body.n;
-        remember_fish(flow, state, f);
+        of->n_groups = (flow->fish[f].wake.middles.n_released + GROUP - 1) / GROUP;
+        if (of->n_groups <= of->group_capacity) continue;
+        of->group_capacity = 2 * of->n_groups;
+        GROW(others->arena, of->group, of->group_capacity);
     }
+
+    // no parallel region requests memory: select again where the ranges are more than the memory has room for
+    const int sharing = parallel_threads(school->threads, school->n_fish, n_sources, PARALLEL_VORTICES);
+#pragma omp parallel for num_threads(sharing) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) remember_fish(flow, state, f);
+#pragma omp parallel for num_threads(sharing) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) select_at(flow, state, f, n_sources);
+    for (int f = 0; f < school->n_fish; f++) {
+        struct others_fish *const of = &others->fish[f];
+        if (of->n_near <= of->near_capacity) continue;
+        of->near_capacity = 2 * of->n_near;
+        GROW(others->arena, of->near, of->near_capacity);
+        select_at(flow, state, f, n_sources);
+    }
     others->is_by_tree =
         tree_is_faster(flow->kernel, (int)n_sources, 2 * FAR * school->n_fish * n_sources, school->wake_tolerance);
 
@@ -472,7 +480,8 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
     const double tau = flow->t - state->t, s = tau / school->interval;
     const double weight[TIMES] = {(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)};
 
-    // far points, and whether a body is elsewhere
+    // far points, whether a body is elsewhere, and the strengths of the body at its far points
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         struct others_fish *const of = &others->fish[f];
@@ -487,13 +496,9 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
             of->has_drifted =
                 of->has_drifted || !(dx * dx + dy * dy <= most_drift * most_drift * fish->length * fish->length);
         }
-    }
 
-    // the strengths of the body at its far points
-    for (int f = 0; f < school->n_fish; f++) {
-        struct others_fish *const of = &others->fish[f];
         const struct sources *const body = &flow->fish[f].body;
-        if (of->has_drifted || !school->fish[f].integrals) continue;
+        if (of->has_drifted || !fish->integrals) continue;
         for (int i = 0; i < FAR; i++) {
             const double *const part = of->to_points + (long)i * flow->points[f].n;
             double q = 0, dx = 0, dy = 0;
