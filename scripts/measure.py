@@ -24,6 +24,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 from itertools import zip_longest
 
 import netCDF4
@@ -676,6 +677,17 @@ def ratios(bench):
     shutil.rmtree(before.folder)
 
 
+@table("fish", "CPU time of one thread per simulated second", "wall time of two threads per simulated second")
+def real_time(bench):
+    """cost of a second of 1 to 64 default fish at cruising speed, shedding interval 0.02 s (minutes)"""
+    for n, end in ((1, 10), (4, 5), (16, 3), (64, 3.2)):
+        text = lattice(n, (2, 1), end, 0.02, 0.2, "start: {speed: 0.81}")
+        cpu = bench.seconds(text, "solver.threads=1")
+        begin = time.perf_counter()
+        bench.run(text, "solver.threads=2")
+        yield n, f"{cpu / end:.2g}", f"{(time.perf_counter() - begin) / end:.2g}"
+
+
 @table("force", "span", "CPU time over reactive", "of 16 fish", *COUNTS)
 def forces(bench):
     """cost of a default fish (10 s) and of 16 fish (2 s) with three forces, one thread (minutes)"""
@@ -765,7 +777,7 @@ def is_same_row(heads, shown, printed):
     if len(shown) != len(printed):
         return False
     for head, one, other in zip(heads, shown, printed):
-        if "CPU time" in head and NUMBER.fullmatch(one) and NUMBER.fullmatch(other) and float(other) > 0:
+        if re.search("(CPU|wall) time", head) and NUMBER.fullmatch(one) and NUMBER.fullmatch(other) and float(other) > 0:
             if not 0.5 <= float(one) / float(other) <= 2:
                 return False
         elif not is_same_line(one, other):

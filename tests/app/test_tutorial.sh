@@ -27,9 +27,8 @@ end
 shoal() {
     local short=()
     case $1 in
-        run | study) short=(-q --set time.end=1.2 --set 'fish[*].nodes=7' --set 'fish[*].sheet_points=11') ;;
-        steady) short=(-q --set 'fish[*].nodes=11' --set 'fish[*].sheet_points=31' --set time.shedding_interval=0.04
-            --set time.output_interval=0.2 --set steady.tolerance=5e-3) ;;
+        run | study) short=(-q --set time.end=1.2 --set 'fish[*].nodes=7' --set 'fish[*].sheet_points=31') ;;
+        steady) short=(-q --set 'fish[*].nodes=13' --set 'fish[*].sheet_points=31' --set time.shedding_interval=0.02) ;;
     esac
     timeout "$time_limit" "$program" "$@" "${short[@]}"
 }
@@ -51,7 +50,7 @@ for block in [0-9][0-9]-*; do
         check "$line" command_works "$line"
     done <"$block"
 done
-for made in alone.html pair.png steady.nc long.nc fine.nc longer.nc follower.png follower-study/study.nc; do
+for made in alone.html pair.png steady.nc fine.nc longer.nc reactive.nc follower.png follower-study/study.nc; do
     check "$made is there" test -s "$made"
 done
 members() { [[ $(find follower-study -name 'member-*.nc' | wc -l) == 5 ]]; }
