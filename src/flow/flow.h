@@ -81,19 +81,21 @@ struct flow {
     double *u_x, *u_y, *v_x; /* gradient, after flow_gradient, s-1                 (n_points) */
     /* div u, gradient of div u; a of the edge force, gradient of a, one component after the other       (n_points) */
     double *div, *div_x, *div_y, *edge, *edge_gradient;
-    double *image_u, *image_v, *image_div; /* of all images, after flow_images                  (n_points) */
-    double *legs[N_LEG_SUMS];              /* workspace: velocities of a fish's legs at its control points (n_points) */
+    /* of all images, after flow_images: velocity, div u, the part of legs in v                  (n_points) */
+    double *image_u, *image_v, *image_div, *image_leg_v;
+    double *legs[N_LEG_SUMS]; /* workspace: velocities of legs at control points (n_points) */
 
     struct flow_fish *fish; /* (n_fish) */
     int n_images;
     struct image *image; /* of every source in the walls                               (n_images) */
 
-    /* at markers or vortices of all wakes, after flow_at_wake: velocity and div u, of all sources, of images, of the
-     * own legs; rates of labels                                                                   (n_markers) */
+    /* at markers or vortices of all wakes, after flow_at_wake: velocity and div u, of all sources, of images, of legs
+     * of all fish; the part of legs in v of images; rates of labels                               (n_markers) */
     struct range *wake_range; /* of each fish                                                  (n_fish) */
     int n_markers, wake_capacity;
     double *wake_u, *wake_v, *wake_div, *wake_image_u, *wake_image_v, *wake_image_div;
-    double *wake_leg_u, *wake_leg_v, *wake_leg_div, *wake_rate;
+    double *wake_leg_u, *wake_leg_v, *wake_leg_div, *wake_image_leg_v, *wake_rate;
+    bool has_all_legs; /* unless sums at wakes are by the tree: then legs only of the own fish */
 
     /* sums of many fish by the tree: sources and targets of one sum; whether the sum of bodies or of wakes of one class
      * or of the images at another class is by the tree, in this evaluation (2, 2, n_classes, n_classes) */

@@ -11,8 +11,8 @@
 void flow_velocity(struct flow *flow, const struct state *state, double t, const double *y);
 void flow_gradient(struct flow *flow, const struct state *state, double t, const double *y);
 
-/* Set image_u, image_v, image_div to the velocity and div u of all images in walls at the points of all bodies, at the
- * event of the state. */
+/* Set image_u, image_v, image_div, image_leg_v to the velocity and div u of all images in walls, and the part of legs,
+ * at the points of all bodies, at the event of the state. */
 void flow_images(struct flow *flow, const struct state *state);
 
 /* The flow at one body, from the last sum. */

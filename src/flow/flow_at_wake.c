@@ -32,9 +32,9 @@ static void wakes_place(struct flow *flow, const struct state *state) {
 
     if (flow->n_markers <= flow->wake_capacity) return;
     flow->wake_capacity = flow->n_markers + flow->n_markers / 2;
-    double **const all[] = {&flow->wake_u,         &flow->wake_v,     &flow->wake_div,   &flow->wake_image_u,
-                            &flow->wake_image_v,   &flow->wake_leg_u, &flow->wake_leg_v, &flow->wake_leg_div,
-                            &flow->wake_image_div, &flow->wake_rate};
+    double **const all[] = {&flow->wake_u,         &flow->wake_v,     &flow->wake_div,        &flow->wake_image_u,
+                            &flow->wake_image_v,   &flow->wake_leg_u, &flow->wake_leg_v,      &flow->wake_leg_div,
+                            &flow->wake_image_div, &flow->wake_rate,  &flow->wake_image_leg_v};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(flow->arena, *all[i], flow->wake_capacity);
 }
 
@@ -124,15 +124,18 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
     }
 
     induce_own_body(flow, state, f, which, &at);
-    memcpy(flow->wake_leg_div + first, at.div, (size_t)which.n * sizeof *at.div);
+    if (!flow->has_all_legs) {
+        memcpy(flow->wake_leg_div + first, at.div, (size_t)which.n * sizeof *at.div);
+        at.leg_u = at.leg_v = NULL;
+    }
 
     // other fish
-    at.leg_u = at.leg_v = NULL;
     for (int g = 0; g < school->n_fish; g++) {
         const struct flow_sum body = {BODY_AT_WAKE, false}, wake = {WAKE_AT_WAKE, false};
         flow_induce_other(flow, f, g, &body, g == f, &at);
         if (g != f || !own_is_in_tree(flow, f)) flow_induce_other(flow, f, g, &wake, g == f, &at);
     }
+    if (flow->has_all_legs) memcpy(flow->wake_leg_div + first, at.div, (size_t)which.n * sizeof *at.div);
     if (school->walls.n == 0) return;
 
     // images
@@ -140,7 +143,9 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
     image.u = flow->wake_image_u + first;
     image.v = flow->wake_image_v + first;
     image.div = flow->wake_image_div + first;
-    for (int i = 0; i < which.n; i++) image.u[i] = image.v[i] = image.div[i] = 0;
+    image.leg_u = NULL;
+    image.leg_v = flow->wake_image_leg_v + first;
+    for (int i = 0; i < which.n; i++) image.u[i] = image.v[i] = image.div[i] = image.leg_v[i] = 0;
     for (int g = 0; g < school->n_fish; g++) {
         flow_induce_other(flow, f, g, &(struct flow_sum){BODY_AT_WAKE, true}, false, &image);
         flow_induce_other(flow, f, g, &(struct flow_sum){WAKE_AT_WAKE, true}, false, &image);
@@ -202,6 +207,8 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
     const double work = (double)flow->kernel->cost * flow->n_markers * flow->n_markers * (1 + flow->n_images);
     const int threads = parallel_threads(school->threads, n_chunks, work, PARALLEL_INTERACTIONS);
     flow_select_by_tree(flow, true, flow->wake_range);
+    flow->has_all_legs = true;
+    for (int i = 0; i < 4 * flow->n_classes * flow->n_classes; i++) flow->has_all_legs &= !flow->by_tree[i];
 
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
@@ -244,43 +251,50 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
 
 // ---- momentum
 
-// add the momentum rate of sources in the velocity of legs: sum of q E3 u + div E3 d, and its moment
+// add the momentum rate of sources in the velocity of legs: sum of q E3 u + div E3 d, and its moment; u NULL: of x only
 static void add_rate(const struct sources *sources, const double *u, const double *v, const double *div,
                      double rate[3]) {
     for (int i = 0; i < sources->n; i++) {
         const double x = -sources->q[i] * v[i] - div[i] * sources->dy[i];
-        const double y = sources->q[i] * u[i] + div[i] * sources->dx[i];
+        const double y = u ? sources->q[i] * u[i] + div[i] * sources->dx[i] : 0;
         rate[0] += x;
         rate[1] += y;
         rate[2] += sources->x[i] * y - sources->y[i] * x;
     }
 }
 
-void flow_leg_rate(const struct flow *flow, int f, double rate[3]) {
+void flow_leg_rate(const struct flow *flow, int f, double rate[3], double image[3]) {
     const struct fish *const fish = &flow->school->fish[f];
     const struct flow_fish *const of = &flow->fish[f];
     const struct kernel_pair exact = flow->kernel->own(fish->strip_depth, 0);
     const int wake = flow->wake_range[f].first, n = fish->n_control;
-    rate[0] = rate[1] = rate[2] = 0;
+    for (int i = 0; i < 3; i++) rate[i] = image[i] = 0;
     if (!flow->kernel->has_legs) return;
 
     // u and v contain all parts; only the parts of the legs are used
-    double *const *const sum = flow->legs;
-    const struct targets at = {.n = n,
-                               .x = of->body.x,
-                               .y = of->body.y,
-                               .half = of->body.half,
-                               .u = sum[0],
-                               .v = sum[1],
-                               .leg_u = sum[2],
-                               .leg_v = sum[3],
-                               .div = sum[4],
-                               .edge = fish->depth_varies ? sum[5] : NULL,
-                               .edge_stride = (int)(sum[6] - sum[5])};
+    double *sum[N_LEG_SUMS];
+    for (int i = 0; i < N_LEG_SUMS; i++) sum[i] = flow->legs[i] + flow->points[f].first;
+    struct targets at = {.n = n,
+                         .x = of->body.x,
+                         .y = of->body.y,
+                         .half = of->body.half,
+                         .u = sum[0],
+                         .v = sum[1],
+                         .leg_u = sum[2],
+                         .leg_v = sum[3],
+                         .div = sum[4],
+                         .edge = fish->depth_varies ? sum[5] : NULL,
+                         .edge_stride = (int)(sum[6] - sum[5])};
 
     for (int i = 0; i < N_LEG_SUMS; i++) memset(sum[i], 0, (size_t)n * sizeof(double));
     kernel_induce(&exact, &of->body, (struct range){0, of->body.n}, &at);
     kernel_induce(&exact, &of->markers, (struct range){0, of->markers.n}, &at);
+    at.edge = NULL;
+    for (int g = 0; g < flow->school->n_fish && flow->has_all_legs; g++) {
+        const struct kernel_pair other = flow->kernel->other(flow->school->fish[g].strip_depth, 0);
+        const struct sources *const all[] = {&flow->fish[g].body, &flow->fish[g].markers};
+        for (int i = 0; i < 2 && g != f; i++) kernel_induce(&other, all[i], (struct range){0, all[i]->n}, &at);
+    }
     add_rate(&of->body, at.leg_u, at.leg_v, at.div, rate);
     add_rate(&of->markers, flow->wake_leg_u + wake, flow->wake_leg_v + wake, flow->wake_leg_div + wake, rate);
 
@@ -293,4 +307,10 @@ void flow_leg_rate(const struct flow *flow, int f, double rate[3]) {
         rate[1] -= size * sum[6][c];
         rate[2] -= size * (of->body.x[c] * sum[6][c] - of->body.y[c] * sum[5][c]);
     }
+
+    // the part along walls in the legs of images
+    const int point = flow->points[f].first;
+    if (flow->school->walls.n == 0 || !flow->has_all_legs) return;
+    add_rate(&of->body, NULL, flow->image_leg_v + point, flow->image_div + point, image);
+    add_rate(&of->markers, NULL, flow->wake_image_leg_v + wake, flow->wake_image_div + wake, image);
 }

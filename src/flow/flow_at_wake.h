@@ -12,8 +12,10 @@
 /* Set wake_range, wake_u, wake_v and all arrays at markers for the event of the state. */
 void flow_at_wake(struct flow *flow, const struct state *state);
 
-/* Rate of momentum from the interaction of the legs of a fish at different lengths s, over density and depth: x, y,
- * about the origin; at the event of the state, after flow_at_wake. 0 without legs. */
-void flow_leg_rate(const struct flow *flow, int f, double rate[3]);
+/* Rate of momentum of a fish from the interaction of legs at different lengths s, over density and depth: x, y, about
+ * the origin; of legs of its own, of other fish, and the part along walls of those of images. Of its own only where a
+ * sum at wakes is by the tree. At the event of the state, after flow_at_wake, and with walls after flow_images. 0
+ * without legs. */
+void flow_leg_rate(const struct flow *flow, int f, double rate[3], double image[3]);
 
 #endif

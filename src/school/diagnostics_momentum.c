@@ -267,36 +267,36 @@ void diagnostics_momentum_event(struct residual *residual, struct state *state) 
     const double half = school->interval / 2;
     bool has_reaction = false;
 
-    // the momentum lost by legs of different lengths s, by trapezoids; from impulse to sums of circulation times x, y
-    // and |x|^2
-    for (int f = 0; f < school->n_fish; f++) {
-        struct momentum_balance *const momentum = &state->momentum[f];
-        if (!diagnostics_has_reaction(school, &school->fish[f])) continue;
-        has_reaction = true;
-        if (!flow->kernel->has_legs) continue;
-
-        double rate[3];
-        flow_leg_rate(flow, f, rate);
-        const double now[3] = {-rate[1], rate[0], -2 * rate[2]};
-        for (int i = 0; i < 3; i++) {
-            if (state->event > 0) momentum->lost[i] += half * (momentum->legs[i] + now[i]);
-            momentum->legs[i] = now[i];
-        }
-    }
+    for (int f = 0; f < school->n_fish; f++) has_reaction |= diagnostics_has_reaction(school, &school->fish[f]);
 
     // walls or a travelling gust, never both
     const bool has_walls = school->walls.n > 0, has_gust = school->gust_profile != GUST_UNIFORM;
-    if (!has_reaction || !(school->density > 0) || (!has_walls && !has_gust)) return;
+    if (!has_reaction || !(school->density > 0)) return;
     if (has_walls) flow_images(flow, state);
+    const double work = (double)flow->kernel->cost * flow->n_points * flow->n_markers;
+    const int threads = parallel_threads(school->threads, school->n_fish, work, PARALLEL_INTERACTIONS);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         if (!diagnostics_has_reaction(school, &school->fish[f])) continue;
 
-        // the force of images, or of a travelling gust, on the sheet and the wake of the fish
+        // the momentum lost by legs of different lengths s, by trapezoids; from impulse to sums of circulation times x,
+        // y and |x|^2
         struct momentum_balance *const momentum = &state->momentum[f];
+        double rate[3], image[3];
+        flow_leg_rate(flow, f, rate, image);
+        const double lost[3] = {-rate[1] - image[1], rate[0] + image[0], -2 * (rate[2] + image[2])};
+        for (int i = 0; i < 3 && flow->kernel->has_legs; i++) {
+            if (state->event > 0) momentum->lost[i] += half * (momentum->legs[i] + lost[i]);
+            momentum->legs[i] = lost[i];
+        }
+        if (!has_walls && !has_gust) continue;
+
+        // the force of images, or of a travelling gust, on the sheet and the wake of the fish
         const double factor = school->density * impulse_depth(&school->fish[f]);
         const struct sources *const all[] = {&flow->fish[f].body, &flow->fish[f].markers};
         const int point = flow->points[f].first, marker = flow->wake_range[f].first;
         double now[3] = {0};
+        for (int i = 0; i < 3; i++) now[i] = factor * image[i];
         if (has_walls) {
             add_force_on_sources(flow->image_u + point, flow->image_v + point, flow->image_div + point, all[0], factor,
                                  now);

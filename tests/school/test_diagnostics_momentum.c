@@ -163,6 +163,41 @@ TEST(legs_are_booked_by_the_trapezoidal_rule) {
     ABOVE(change, 0.01 * most);
 }
 
+// doc/model.md, section 18: between fish R is 1e-2 of the exchange
+TEST(legs_of_other_fish_are_booked) {
+    const struct balance worst = run(
+        SCHOOL_DEFAULTS TIME
+        "wake: {lifetime: 3, decay: 2}\n"
+        "defaults: {fish: {force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 33, wave: {ramp: 0.5},\n"
+        "                  drag: {skin: laminar}, body: {depth: 0.25}, start: {speed: 0.5}}}\n"
+        "fish: [{}, {start: {position: [0, 0.4]}, wave: {phase: 180}}]\n",
+        2);
+    print_message("a pair in antiphase: %.2g, angular %.2g\n", worst.momentum, worst.angular);
+    BELOW(worst.momentum, 1e-3);
+    BELOW(worst.angular, 1e-3);
+}
+
+// a wall without friction, the only external force, pushes across itself
+TEST(a_wall_pushes_across_itself) {
+    for (int walls = 1; walls <= 2; walls++) {
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS TIME
+                                 "wake: {lifetime: 3, decay: 2}\nfluid: {viscosity: 0, walls: [-0.25%s]}\n"
+                                 "defaults: {fish: {drag: {normal: 0, skin: laminar}, pressure: {span: finite, "
+                                 "suction_limit: 0}}}\n"
+                                 "fish: [{nodes: 9, sheet_points: 33, start: {speed: 0.5}},\n"
+                                 "       {nodes: 9, sheet_points: 33, start: {speed: 0.5, position: [0.4, 0.3]}}]\n",
+                                 walls == 2 ? ", 0.6" : "");
+        school_run(simulation, 2);
+        simulate_measure(simulation);
+        const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+        const double along = of[0].external_impulse[0] + of[1].external_impulse[0];
+        const double across = fmax(fabs(of[0].external_impulse[1]), fabs(of[1].external_impulse[1]));
+        print_message("%d walls: along %.2g, across %.2g N s\n", walls, along, across);
+        AT_MOST(along, 1e-3 * across);
+    }
+}
+
 TEST(forces_without_a_reaction_have_no_balance) {
     static const struct {
         const char *text;
