@@ -1,7 +1,8 @@
-/* test_mathematics.c: angles, smooth ramps, quadrature, boxes. */
+/* test_mathematics.c: angles, smooth ramps, quadrature, boxes; products of wide.h. */
 #include <math.h>
 
 #include "base/mathematics.h"
+#include "base/wide.h"
 #include "near.h"
 
 TEST(the_larger_and_the_smaller_number_keep_nan) {
@@ -176,5 +177,23 @@ TEST(the_gap_is_that_of_the_axis_along_which_they_are_apart) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         NEAR(box_gap(&a, &cases[i].other), cases[i].gap, 0, 0);
         NEAR(box_gap(&cases[i].other, &a), cases[i].gap, 0, 0);
+    }
+}
+
+// columns are added in order to every row, for any number of rows: the bits of plain sums
+TEST(a_product_of_matrix_and_vector_is_the_sum_of_columns) {
+    enum { ROWS = 70, COLUMNS = 9, BESIDE = 3 };
+    double matrix[ROWS * COLUMNS], vector[COLUMNS], got[ROWS + BESIDE], want[ROWS + BESIDE];
+    for (int i = 0; i < ROWS * COLUMNS; i++) matrix[i] = sin(i);
+    for (int c = 0; c < COLUMNS; c++) vector[c] = cos(c);
+    for (int n = 0; n <= ROWS; n++) {
+        for (int n_columns = 0; n_columns <= COLUMNS; n_columns++) {
+            for (int r = 0; r < ROWS + BESIDE; r++) got[r] = want[r] = r;
+            for (int c = 0; c < n_columns; c++) {
+                for (int r = 0; r < n; r++) want[r] += vector[c] * matrix[c * n + r];
+            }
+            wide_multiply(n, n_columns, matrix, vector, got);
+            assert_memory_equal(got, want, sizeof got);
+        }
     }
 }
