@@ -145,7 +145,7 @@ struct fish {
     struct tangent *control_tangent; /* direction of the body at the control points             (n_control) */
     struct tangent tail_tangent;     /* direction of the body at the tail */
     /* weights of the points above as full matrices, by columns: bound vortices (n_nodes, n_sheet); control points, and
-     * X' at the control points, 0 on a polygon (n_nodes, n_control) */
+     * tangents there, X' of a smooth curve (n_nodes, n_control) */
     double *sheet_by_node, *control_by_node[2];
     double *end_correction;       /* E_c of shedding: sheet, else 0, m-1              (n_control) */
     struct stencil heading_point; /* the body point at a third of the length */

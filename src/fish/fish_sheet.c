@@ -54,8 +54,8 @@ static enum status points_on_smooth_curve(struct fish *fish, bool is_chebyshev, 
 }
 
 // add the weights of a point to a matrix by columns
-static void weights_add(const struct stencil *point, int row, int n_rows, double *matrix) {
-    for (int i = 0; i < point->n; i++) matrix[(long)point->node[i] * n_rows + row] += point->weight[i];
+static void weights_add(const struct stencil *point, double factor, int row, int n_rows, double *matrix) {
+    for (int i = 0; i < point->n; i++) matrix[(long)point->node[i] * n_rows + row] += factor * point->weight[i];
 }
 
 // w at u, and dw/du: monotone cubics between edge midpoints, slope 0 at both ends, constant beyond
@@ -168,11 +168,12 @@ enum status fish_sheet_set(struct arena *arena, struct fish *fish, int f, const 
     // the same points as full matrices
     NEW(arena, fish->sheet_by_node, fish->n_nodes * n_sheet);
     for (int i = 0; i < 2; i++) NEW(arena, fish->control_by_node[i], fish->n_nodes * n_control);
-    for (int j = 0; j < n_sheet; j++) weights_add(&fish->sheet_point[j], j, n_sheet, fish->sheet_by_node);
+    for (int j = 0; j < n_sheet; j++) weights_add(&fish->sheet_point[j], 1, j, n_sheet, fish->sheet_by_node);
     for (int c = 0; c < n_control; c++) {
         const struct tangent *const tangent = &fish->control_tangent[c];
-        weights_add(&fish->control_point[c], c, n_control, fish->control_by_node[0]);
-        if (tangent->from.n == 0) weights_add(&tangent->to, c, n_control, fish->control_by_node[1]);
+        weights_add(&fish->control_point[c], 1, c, n_control, fish->control_by_node[0]);
+        weights_add(&tangent->to, 1, c, n_control, fish->control_by_node[1]);
+        weights_add(&tangent->from, -1, c, n_control, fish->control_by_node[1]);
     }
 
     // E_c, for a sheet with the vortex strength of the wake at the tail

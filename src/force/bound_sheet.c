@@ -2,6 +2,12 @@
 #include "force/bound_sheet.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "base/wide.h"
+
+/* Control points that are evaluated at once. */
+enum { CHUNK = 32 };
 
 // add the derivative of a row with respect to a tangent vector of the body, by the nodes of its two stencils
 static void bound_sheet_tangent_jacobian(const struct fish *fish, const struct tangent *tangent, int row,
@@ -43,18 +49,47 @@ double bound_sheet_end_correction(const struct fish *fish, int c, int j) {
     return (j == last ? -2 : 1) * fish->end_correction[c] * fish->sheet_weight[j];
 }
 
+// values at n <= CHUNK control points from the first on, by a matrix of fish.h
+static WIDE(void, at_control_points,
+            (const struct fish *fish, const double *matrix, const double *of_nodes, int first, int n,
+             double *restrict value),
+            (fish, matrix, of_nodes, first, n, value)) {
+    memset(value, 0, CHUNK * sizeof *value);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        const double *const weight = matrix + (long)k * fish->n_control + first;
+        for (int c = 0; c < n; c++) value[c] += weight[c] * of_nodes[k];
+    }
+}
+
+// normals at n <= CHUNK control points from the first on
+static void control_normals(const struct fish *fish, const double *y, int first, int n, double normal[2][CHUNK]) {
+    double along[2][CHUNK];
+    at_control_points(fish, fish->control_by_node[1], y + fish->at.x, first, n, along[0]);
+    at_control_points(fish, fish->control_by_node[1], y + fish->at.y, first, n, along[1]);
+    for (int c = 0; c < n; c++) {
+        const double length = sqrt(along[0][c] * along[0][c] + along[1][c] * along[1][c]);
+        normal[0][c] = -along[1][c] / length;
+        normal[1][c] = along[0][c] / length;
+    }
+}
+
 void bound_sheet_residual(const struct fish *fish, double removed, const double *u, const double *v, const double *y,
                           double *residual) {
     double *const row = residual + fish->at.gamma;
 
     // impermeability
-    for (int c = 0; c < fish->n_control; c++) {
-        const struct direction body = fish_direction(fish, &fish->control_tangent[c], y);
-        const double slip[2] = {u[c] - fish_mean(&fish->control_point[c], y + fish->at.vx),
-                                v[c] - fish_mean(&fish->control_point[c], y + fish->at.vy)};
-        row[c] = slip[0] * body.n[0] + slip[1] * body.n[1];
-        for (int j = fish->n_sheet - 2; j < fish->n_sheet; j++) {
-            row[c] += bound_sheet_end_correction(fish, c, j) * y[fish->at.gamma + j];
+    for (int first = 0; first < fish->n_control; first += CHUNK) {
+        const int n = fish->n_control - first < CHUNK ? fish->n_control - first : CHUNK;
+        double normal[2][CHUNK], vx[CHUNK], vy[CHUNK];
+        control_normals(fish, y, first, n, normal);
+        at_control_points(fish, fish->control_by_node[0], y + fish->at.vx, first, n, vx);
+        at_control_points(fish, fish->control_by_node[0], y + fish->at.vy, first, n, vy);
+        for (int c = 0; c < n; c++) {
+            double *const to = &row[first + c];
+            *to = (u[first + c] - vx[c]) * normal[0][c] + (v[first + c] - vy[c]) * normal[1][c];
+            for (int j = fish->n_sheet - 2; j < fish->n_sheet; j++) {
+                *to += bound_sheet_end_correction(fish, first + c, j) * y[fish->at.gamma + j];
+            }
         }
     }
 
@@ -93,21 +128,15 @@ void bound_sheet_jacobian(const struct fish *fish, const double *u, const double
 
 void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_block *block, const double *y,
                                struct coupling_block *rows) {
-    enum { CHUNK = 32 };  // normals per chunk, so that the loop over the normals is the inner loop
-    double normal_x[CHUNK], normal_y[CHUNK];
+    double normal[2][CHUNK];
     for (int first = 0; first < fish->n_control; first += CHUNK) {
         const int n = fish->n_control - first < CHUNK ? fish->n_control - first : CHUNK;
-        for (int c = 0; c < n; c++) {
-            const struct direction body = fish_direction(fish, &fish->control_tangent[first + c], y);
-            normal_x[c] = body.n[0];
-            normal_y[c] = body.n[1];
-        }
-
+        control_normals(fish, y, first, n, normal);
         for (int i = 0; i < block->n_columns; i++) {
             const double *const u = block->u + (long)i * block->n_points + first;
             const double *const v = block->v + (long)i * block->n_points + first;
             double *const row = rows->value + (long)i * rows->n_rows + (fish->at.gamma - fish->at.ax) + first;
-            for (int c = 0; c < n; c++) row[c] += normal_x[c] * u[c] + normal_y[c] * v[c];
+            for (int c = 0; c < n; c++) row[c] += normal[0][c] * u[c] + normal[1][c] * v[c];
         }
     }
 }
