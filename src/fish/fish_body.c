@@ -86,6 +86,12 @@ static void body_fluid_set(struct fish *fish, const struct fish_parameters *from
     fish->force = from->force;
     fish->has_cusp = from->body.profile == PROFILE_JOUKOWSKI && from->body.tail_thickness <= 0;
     fish->friction = drag->friction;
+    enum { N_ANGLES = 32 };
+    double cosine_square[N_ANGLES];
+    for (int i = 0; i < N_ANGLES; i++) {
+        const double along = cos(M_PI / 2 * (i + 0.5) / N_ANGLES);
+        cosine_square[i] = along * along;
+    }
 
     for (int k = 0; k < fish->n_edges; k++) {
         const double h = fish->thickness[k], w = fish->depth[k];
@@ -114,12 +120,10 @@ static void body_fluid_set(struct fish *fish, const struct fish_parameters *from
         thickest = fmax(thickest, h);
 
         // S of an ellipse by the midpoint rule for its perimeter
-        enum { N_ANGLES = 32 };
         largest = fmax(largest, fmin(sqrt(h * w), 2 * h) / fish->length);
         for (int i = 0; i < N_ANGLES; i++) {
-            const double along = cos(M_PI / 2 * (i + 0.5) / N_ANGLES), cosine_square = along * along;
             surface +=
-                M_PI / 2 * sqrt(cosine_square + h / w * (h / w) * (1 - cosine_square)) / N_ANGLES / fish->n_edges;
+                M_PI / 2 * sqrt(cosine_square[i] + h / w * (h / w) * (1 - cosine_square[i])) / N_ANGLES / fish->n_edges;
         }
     }
 

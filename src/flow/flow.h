@@ -64,9 +64,10 @@ struct flow {
     /* whether all circulation was shed infinitely long ago, in an equilibrium: legs from the tail to infinity; set from
      * outside */
     bool is_steady;
-    double t;              /* time of the sources, s */
-    unsigned long version; /* version of the wakes from which the sources were built */
-    bool has_sources;      /* whether the sources have been placed */
+    const volatile sig_atomic_t *stop; /* once *stop is not 0, flow_gradient leaves its sums; or NULL */
+    double t;                          /* time of the sources, s */
+    unsigned long version;             /* version of the wakes from which the sources were built */
+    bool has_sources;                  /* whether the sources have been placed */
 
     int n_classes;
     struct flow_class *class; /*                                                      (n_classes) */

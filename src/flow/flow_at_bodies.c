@@ -184,6 +184,7 @@ static void induce_near(const struct flow *flow, int f, int g, const struct targ
 }
 
 static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, int with_gradient) {
+    if (with_gradient && flow->stop && *flow->stop) return;
     const struct school *school = flow->school;
     const struct targets all = flow_targets(flow, with_gradient);
     const struct targets at = points_of(flow, &all, chunk->fish, chunk->at);

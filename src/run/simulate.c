@@ -170,7 +170,8 @@ enum status simulate_step(struct simulation *simulation) {
     const struct integrator *const integrator = simulation->integrator;
     struct state *const state = simulation->state;
 
-    // integrate to the next event
+    // integrate to the next event; the equations may be new
+    simulation->residual->stop = simulation->stop;
     const double next = fish_event_time(school, state->event + 1);
     enum status status = integrator->advance(simulation->solver, next, simulation->stop);
 

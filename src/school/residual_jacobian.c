@@ -117,6 +117,7 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
 
     TRY(contact_find(residual->contact, residual->state, t, y));
     jacobian->has_contacts = residual_couple_contacts(&residual->couplings, residual->contact);
+    residual->flow->stop = residual->stop;
     flow_gradient(residual->flow, residual->state, t, y);
     if (jacobian->pattern != residual->couplings.pattern) {
         jacobian_couple(jacobian, residual->couplings.coupled, residual->couplings.pattern);

@@ -290,6 +290,27 @@ static void stop_at_the_fifth(const struct simulate_progress *progress, void *da
     stop = progress->event >= 5;
 }
 
+// also after the equations were created again, at a checkpoint: within the sums of the gradients, which are then zero
+TEST(a_signal_ends_a_jacobian) {
+    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS
+                                                            "time: {end: 1, shedding_interval: 0.02}\n"
+                                                            "fish: [{}, {start: {position: [0, 1]}}]\n");
+    const struct school *const school = simulation->school;
+    stop = 0;
+    simulation->stop = &stop;
+    school_ok(simulate_renew(simulation));
+    school_ok(simulate_step(simulation));
+    struct residual *const residual = simulation->residual;
+    struct jacobian *const jacobian = jacobian_create(simulation->arena, school);
+    const double *const y = simulation->state->y, t = simulation->state->t;
+    school_ok(residual_jacobian(residual, t, 1, y, jacobian));
+    ABOVE(fabs(residual->flow->u_x[0]), 0);
+    stop = 1;
+    assert_int_equal(residual_jacobian(residual, t, 1, y, jacobian), STATUS_STOPPED);
+    for (int p = 0; p < residual->flow->n_points; p++) NEAR(residual->flow->u_x[p], 0, 0, 0);
+    stop = 0;
+}
+
 TEST(a_signal_stops_a_run_at_the_next_event) {
     const struct simulate_options options = {
         .path = *state, .overwrite = 1, .command = "test", .progress = stop_at_the_fifth, .stop = &stop};
