@@ -98,7 +98,7 @@ static enum status formation_value(void *data, const double *u, double *change) 
         struct state *const oldest = formation->late[0];
         memmove(formation->late, formation->late + 1, (COLUMN_BEATS - 1) * sizeof oldest);
         formation->late[COLUMN_BEATS - 1] = oldest;
-        TRY(steady_map_save(formation->arena, problem->map.simulation, &formation->late[COLUMN_BEATS - 1]));
+        steady_map_save(formation->arena, problem->map.simulation, &formation->late[COLUMN_BEATS - 1]);
         TRY(beat_from(formation, u, change));
         const double moved = largest_distance(n, formation->before, change);
         memcpy(formation->before, change, bytes);
@@ -136,7 +136,7 @@ static enum status formation_difference_jacobian(struct formation *formation) {
     const int n = problem->n_unknowns;
     memcpy(formation->held, formation->u, (size_t)n * sizeof *formation->held);
     memcpy(formation->made_at, formation->u, (size_t)n * sizeof *formation->made_at);
-    TRY(steady_map_save(formation->arena, simulation, &formation->reached));
+    steady_map_save(formation->arena, simulation, &formation->reached);
 
     for (int j = 0; j < n; j++) {
         double *const column = formation->matrix + j * n;
@@ -205,7 +205,7 @@ static enum status solve_or_follow(struct formation *formation) {
     struct steady_map *const map = &formation->problem->map;
     const int most_beats = formation->problem->settings->beats;
     formation->most_beats = (map->n_beats + most_beats) / 2;
-    TRY(steady_map_save(formation->arena, map->simulation, &formation->begun));
+    steady_map_save(formation->arena, map->simulation, &formation->begun);
     enum status status = formation_newton(formation);
     if (status != STATUS_SOLVER || formation->last_norm <= 0) return status;
     TRY(steady_map_return(map->simulation, formation->begun));

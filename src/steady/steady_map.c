@@ -259,10 +259,9 @@ enum status steady_map_add(struct steady_map *map, int n, const struct steady_un
     return STATUS_OK;
 }
 
-enum status steady_map_save(struct arena *arena, const struct simulation *simulation, struct state **state) {
+void steady_map_save(struct arena *arena, const struct simulation *simulation, struct state **state) {
     if (!*state) *state = state_create(arena, simulation->school);
     state_table_copy(*state, simulation->state, simulation->school, true);
-    return STATUS_OK;
 }
 
 enum status steady_map_return(struct simulation *simulation, const struct state *state) {

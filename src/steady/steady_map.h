@@ -82,7 +82,7 @@ enum status steady_map_add(struct steady_map *map, int n, const struct steady_un
 
 /* Save the state; return to a saved state and restart the integration. steady_map_save creates *state in the arena, a
  * child of the arena of the simulation, if NULL. steady_map_return fails with STATUS_SOLVER. */
-enum status steady_map_save(struct arena *arena, const struct simulation *simulation, struct state **state);
+void steady_map_save(struct arena *arena, const struct simulation *simulation, struct state **state);
 enum status steady_map_return(struct simulation *simulation, const struct state *state);
 
 #endif

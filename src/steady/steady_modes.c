@@ -59,7 +59,7 @@ enum status steady_modes_find(struct simulation *simulation, struct steady_value
     struct arena *const arena = arena_create(simulation->arena, "the modes of the bodies");
     struct state *kept = NULL;
     int jumped, n_most = STEADY_QUANTITIES * school->n_fish;
-    TRY(steady_map_save(arena, simulation, &kept));
+    steady_map_save(arena, simulation, &kept);
     simulation->residual->flow->is_steady = false;
     TRY(event_start(state, simulation->residual, simulation->consistent));
     hold_bodies(simulation, kept, state->t);
@@ -177,8 +177,8 @@ enum status steady_multipliers_find(struct steady_problem *problem, double *real
     NEW(arena, all.before, n * n * SLOW_BEATS);
     NEW(arena, all.after, n * n * SLOW_BEATS);
 
-    enum status status = steady_map_save(arena, simulation, &all.kept);
-    if (status == STATUS_OK) status = disturb_each_unknown(&all);
+    steady_map_save(arena, simulation, &all.kept);
+    enum status status = disturb_each_unknown(&all);
     if (status == STATUS_OK) {
         // change per beat without a disturbance, mean of the last beats; stored in add, which is free now
         const double *const last = all.base + BEATS * n, *const first = last - SLOW_BEATS * n;

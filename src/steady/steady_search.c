@@ -67,7 +67,7 @@ static enum status evaluate_change(const struct solution *solution, const double
 static enum status together_value(void *data, const double *u, double *change) {
     struct solution *const solution = data;
     const size_t bytes = (size_t)solution->n * sizeof *u;
-    TRY(steady_map_save(solution->arena, solution->problem->map.simulation, &solution->before));
+    steady_map_save(solution->arena, solution->problem->map.simulation, &solution->before);
     TRY(evaluate_change(solution, u, change));
     memcpy(solution->u, u, bytes);
     memcpy(solution->change, change, bytes);
@@ -82,7 +82,7 @@ static enum status together_jacobian(void *data, double *matrix) {
 
     // each column starts from the same state with an increment of one quantity
     if (!together->is_known || solution->n_steps == STEPS) {
-        TRY(steady_map_save(solution->arena, simulation, &solution->reached));
+        steady_map_save(solution->arena, simulation, &solution->reached);
         for (int j = 0; j < n; j++) {
             double *const column = together->matrix + j * n, u[STEADY_QUANTITIES];
             memcpy(u, solution->u, sizeof u);
@@ -129,9 +129,9 @@ static enum status together_solve(struct together *together, struct steady_probl
                                   .value = together_value,
                                   .jacobian = together_jacobian,
                                   .data = &solution};
-    enum status status = steady_map_save(arena, map->simulation, &solution.begun);
+    steady_map_save(arena, map->simulation, &solution.begun);
     search_read_all(&solution, u);
-    if (status == STATUS_OK) status = newton_solve(arena, &newton, u);
+    enum status status = newton_solve(arena, &newton, u);
     *is_done = status == STATUS_OK;
     if (status == STATUS_SOLVER && map->n_beats < problem->settings->beats) {
         together->is_known = false;
@@ -236,7 +236,7 @@ static enum status solve_speed(struct search *search) {
                                    .data = search};
     struct steady_map *const map = &search->problem->map;
     double speed = speed_now(search);
-    TRY(steady_map_save(map->simulation->arena, map->simulation, &search->begun));
+    steady_map_save(map->simulation->arena, map->simulation, &search->begun);
     const enum status status = newton_solve(map->simulation->arena, &problem, &speed);
     if (status != STATUS_SOLVER || map->n_beats >= settings->beats) return status;
 
@@ -299,7 +299,7 @@ static enum status run_search(struct search *search) {
     for (bool is_steady = false; !is_steady;) {
         if (problem->map.is_formation && problem->n_unknowns > 0) {
             TRY(steady_formation_solve(problem, search->margin * problem->settings->tolerance));
-            TRY(steady_map_save(map->simulation->arena, map->simulation, &search->found));
+            steady_map_save(map->simulation->arena, map->simulation, &search->found);
         } else if (problem->n_unknowns > 0) {
             TRY(solve_fish(search));
         }

@@ -103,7 +103,7 @@ static struct found find(const struct pair *pair, int n_fish, int is_stability_w
         verify_ok(steady_multipliers_find(&problem, real, imaginary, way, &n_beats));
         found.largest = hypot(real[0], imaginary[0]);
         struct state *kept = NULL;
-        verify_ok(steady_map_save(simulation->arena, simulation, &kept));
+        steady_map_save(simulation->arena, simulation, &kept);
         found.wander = wander(&problem);
         found.growth = growth(&problem, kept);
     }
