@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/wide.h"
 #include "flow/flow.h"
 
 enum { FAR = KERNEL_BLOCK, TIMES = 3, VALUES = KERNEL_SUMS };
@@ -554,30 +555,42 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
     }
 }
 
+// values of the polynomials with these values at the far points, at n <= FAR points; part: of each far point at the
+// points (FAR, stride)
+static WIDE(void, at_points, (int n, const double *part, int stride, const double from[FAR], double *restrict to),
+            (n, part, stride, from, to)) {
+    memset(to, 0, FAR * sizeof *to);
+    for (int i = 0; i < FAR; i++) {
+        for (int p = 0; p < n; p++) to[p] += part[(long)i * stride + p] * from[i];
+    }
+}
+
 void others_add(const struct flow *flow, int f, struct range which, const struct targets *at) {
     const struct others_fish *const of = &flow->others->fish[f];
-    if (of->has_drifted) return;
-    const int n_points = flow->points[f].n, first = which.first - flow->points[f].first;
-    for (int p = 0; p < which.n; p++) {
-        double value[VALUES] = {0}, x = 0, y = 0;
-        for (int i = 0; i < FAR; i++) {
-            const double part = of->to_points[i * n_points + first + p];
-            for (int k = 0; k < VALUES; k++) value[k] += part * of->now[k][i];
-            x += part * of->x[i];
-            y += part * of->y[i];
-        }
+    const int stride = flow->points[f].n, first = which.first - flow->points[f].first;
+    for (int begin = 0; begin < which.n && !of->has_drifted; begin += FAR) {
+        const int n = which.n - begin < FAR ? which.n - begin : FAR;
+        const double *const part = of->to_points + first + begin;
+        double value[VALUES][FAR], x[FAR], y[FAR];
+        for (int k = 0; k < VALUES; k++) at_points(n, part, stride, of->now[k], value[k]);
+        at_points(n, part, stride, of->x, x);
+        at_points(n, part, stride, of->y, y);
 
-        // the point beside the curve of the far points
-        const double dx = at->x[p] - x, dy = at->y[p] - y;
-        at->u[p] += value[0] + value[3] * dx + value[4] * dy;
-        at->v[p] += value[1] + value[5] * dx + (value[2] - value[3]) * dy;
-        if (flow->kernel->has_legs) at->div[p] += value[2] + value[6] * dx + value[7] * dy;
-        if (!at->u_x) continue;
-        at->u_x[p] += value[3];
-        at->u_y[p] += value[4];
-        at->v_x[p] += value[5];
-        if (!flow->kernel->has_legs) continue;
-        at->div_x[p] += value[6];
-        at->div_y[p] += value[7];
+        for (int p = 0; p < n; p++) {
+            // the point beside the curve of the far points
+            const int to = begin + p;
+            const double dx = at->x[to] - x[p], dy = at->y[to] - y[p];
+            const double v_y = value[2][p] - value[3][p];
+            at->u[to] += value[0][p] + value[3][p] * dx + value[4][p] * dy;
+            at->v[to] += value[1][p] + value[5][p] * dx + v_y * dy;
+            if (flow->kernel->has_legs) at->div[to] += value[2][p] + value[6][p] * dx + value[7][p] * dy;
+            if (!at->u_x) continue;
+            at->u_x[to] += value[3][p];
+            at->u_y[to] += value[4][p];
+            at->v_x[to] += value[5][p];
+            if (!flow->kernel->has_legs) continue;
+            at->div_x[to] += value[6][p];
+            at->div_y[to] += value[7][p];
+        }
     }
 }
