@@ -204,19 +204,19 @@ void fish_factors_prepare(struct fish_factors *factors) {
     rod->version = factors->version = block->version;
 }
 
-// y -= A x for n rows of a column, with or without gaps between the rows
+// y -= A x for the rows of a column: one by one up to the last gap between the rows, then together
 static inline __attribute__((always_inline)) void subtract_column(const struct sparse *block, int64_t start,
                                                                   int64_t end, int64_t first_row, double x,
                                                                   double *restrict y) {
     const int64_t *const row = block->row_index;
-    const double *const value = block->value + start;
-    const int64_t n = end - start;
-    if (n > 0 && row[end - 1] - row[start] == n - 1) {
-        double *const to = y + row[start] - first_row;
-        for (int64_t i = 0; i < n; i++) to[i] -= value[i] * x;
-        return;
+    for (; start < end && row[end - 1] - row[start] > end - 1 - start; start++) {
+        y[row[start] - first_row] -= block->value[start] * x;
     }
-    for (int64_t i = 0; i < n; i++) y[row[start + i] - first_row] -= value[i] * x;
+    if (start == end) return;
+
+    const double *const value = block->value + start;
+    double *const to = y + row[start] - first_row;
+    for (int64_t i = 0; i < end - start; i++) to[i] -= value[i] * x;
 }
 
 // subtract C x from the rows of the sheet, except n_left columns from first_left on; x: unknowns of the rod
