@@ -225,13 +225,14 @@ static enum status find_and_write(struct run *run) {
     if (options->from) TRY(target_refuse_input(options->path, options->from));
 
     // start from the initial values of the case, or from another steady state
-    if (options->from) {
-        struct case_values values = *run->values;
-        TRY(steady_start_read(run->arena, options->from, &run->values->school, &values.school.fish));
-        TRY(simulate_create(run->arena, &run->simulation, &values));
-    } else {
-        TRY(simulate_create(run->arena, &run->simulation, run->values));
+    struct case_values values = *run->values;
+    if (options->from) TRY(steady_start_read(run->arena, options->from, &run->values->school, &values.school.fish));
+    const enum status started = simulate_start(run->arena, &run->simulation, &values, options->stop);
+    if (started == STATUS_STOPPED) {
+        return status_fail(started, "stopped %s before the search: start the search again",
+                           simulate_stopped_by(options->stop));
     }
+    TRY(started);
     run->simulation->stop = options->stop;
     const struct school *const school = run->simulation->school;
     if (school->gust_profile != GUST_UNIFORM && fabs(school->gust[0]) + fabs(school->gust[1]) > 0) {
