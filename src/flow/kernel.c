@@ -376,7 +376,7 @@ static double bound_finite(const struct kernel_pair *pair, double r2, double low
 
 const struct kernel kernel_infinite = {.cost = 1,
                                        .tree_sources = 5000,
-                                       .far_sources = 1000,
+                                       .far_sources = 2000,
                                        .tree_interactions = 3e7,
                                        .bound = bound_infinite,
                                        .own = pair_infinite,
