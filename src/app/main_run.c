@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "app/main_commands.h"
-#include "app/main_signals.h"
 #include "app/say.h"
 #include "base/parallel.h"
 #include "base/version.h"

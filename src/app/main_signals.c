@@ -1,6 +1,4 @@
 /* main_signals.c: the handler stores the signal number; the integration polls the number. */
-#include "app/main_signals.h"
-
 #include <fcntl.h>
 #include <math.h>
 #include <poll.h>
@@ -11,6 +9,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include "app/main_commands.h"
 #include "result/durable.h"
 
 static volatile sig_atomic_t stop_signal;

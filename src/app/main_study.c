@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "app/main_commands.h"
-#include "app/main_signals.h"
 #include "app/say.h"
 #include "case/case.h"
 #include "case/sweep_error.h"

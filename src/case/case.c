@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "case/case_merge.h"
-#include "case/case_path.h"
 #include "case/case_table.h"
 #include "case/sweep.h"
 #include "case/sweep_error.h"

@@ -10,7 +10,6 @@
 #include <unistd.h>
 
 #include "base/version.h"
-#include "case/case_path.h"
 #include "case/case_table.h"
 
 enum { MAX_INCLUDES = 64, MAX_INCLUDE_DEPTH = 8 };

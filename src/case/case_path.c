@@ -1,12 +1,11 @@
 /* case_path.c: suggestions for an unknown word; a path word by word along the table of keys. */
-#include "case/case_path.h"
-
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
+#include "case/case_merge.h"
 #include "case/case_table.h"
 
 // ---- suggestions: the key of the table with the smallest edit distance

@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "case/case_path.h"
+#include "case/case_merge.h"
 #include "case/case_table.h"
 #include "case/sweep_error.h"
 

@@ -1,6 +1,6 @@
 /* flow.h: positions of the evaluation points of all bodies, and positions and strengths of the sources of the flow. The
- * velocities are in flow_at_bodies.h, flow_derivative.h and flow_at_wake.h. doc/model.md, sections 6 to 9, 17, 18.
- * Tested by tests/flow/test_flow.c.
+ * velocities at bodies are in flow_at_bodies.h and flow_derivative.h, those at wakes below. doc/model.md, sections 6 to
+ * 9, 17, 18. Tested by tests/flow/test_flow.c.
  *
  * The points of one fish, in this order:
  *
@@ -22,12 +22,11 @@
 
 #include "base/status.h"
 #include "fish/fish.h"
-#include "flow/flow_external.h"
-#include "flow/images.h"
 #include "flow/kernel.h"
 #include "flow/tree.h"
 #include "state/state.h"
 #include "wake/sheet.h"
+#include "wake/sources.h"
 
 enum { N_LEG_SUMS = 7 };
 
@@ -159,5 +158,56 @@ void flow_append_with_span(struct sources *many, const struct sources *sources, 
 /* Interpolate a quantity at the nodes of fish f to the points of fish f; of_points: values at the points of all fish
  * (n_points). */
 void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, double *of_points);
+
+// ---- flow_external.c: the external flow at time t: a stream with shear and gusts. doc/model.md, sections 8 and 9.
+// Tested by tests/flow/test_flow.c.
+
+/* flow_external_gust: the part of a travelling gust; flow_external_gradient: u_x, u_y, v_x, s-1 (v_y = -u_x). */
+void flow_external(const struct school *school, double t, double x, double y, double *u, double *v);
+void flow_external_gust(const struct school *school, double t, double x, double y, double *u, double *v);
+void flow_external_gradient(const struct school *school, double t, double x, double y, double gradient[3]);
+
+/* Acceleration Du/Dt of a particle of the external flow at time t, uniform in space, m s-2: without a travelling gust.
+ */
+void flow_external_acceleration(const struct school *school, double t, double acceleration[2]);
+
+// ---- flow_at_wake.c: the velocity of the fluid at the markers of free sheets, or at the released vortices, of all
+// fish. doc/model.md, sections 8, 9 and 18. Tested by tests/flow/test_flow.c, tests/flow/test_flow_at_markers.c.
+//
+// The velocity at markers and the force on bodies have the same sources, with the same smoothing for the same pair, so
+// that the impulse of bodies and wakes is conserved. The body that shed the markers acts on them with the tapered
+// smoothing delta(d), sheet.h; images are never tapered.
+
+/* Set wake_range, wake_u, wake_v and all arrays at markers for the event of the state. */
+void flow_at_wake(struct flow *flow, const struct state *state);
+
+/* Rate of momentum of a fish from the interaction of legs at different lengths s, over density and depth: x, y, about
+ * the origin; of legs of its own, of other fish, and the part along walls of those of images. Of its own only where a
+ * sum at wakes is by the tree. At the event of the state, after flow_at_wake, and with walls after flow_images. 0
+ * without legs. */
+void flow_leg_rate(const struct flow *flow, int f, double rate[3], double image[3]);
+
+// ---- images.c: the images of sources in impermeable straight walls along x. doc/model.md, section 17. Tested by
+// tests/flow/test_images.c.
+//
+// A source of strength q, d at (x, y) has in the wall y = h an image of -q, (-dx, dy) at (x, 2h - y). In a channel, h
+// < y < h + H, each image is mirrored again: images of the source itself at y + 2kH, and of the mirrored source at 2h
+// - y + 2kH, for every integer k.
+
+/* An image of every source: at (x, sign y + shift), with the fraction `weight` of the strength. sign = -1: mirrored in
+ * a wall, with reversed circulation and reversed legs along the wall. */
+struct image {
+    double sign, shift, weight;
+};
+
+/* Set *image to the images of sources of at most this depth [m] (infinite span: 0), and return the number of images, 0
+ * without walls. In a channel a Gauss rule replaces the infinite sums: the images k = 1, and all further images as
+ * weighted images at nodes between the places of the images. There are 36 images for depths up to 8 H, 32 more for each
+ * factor of 4, and at most 272; the error is at most 1e-8 of the velocity of a vortex at the distance H if source and
+ * target are less than 6 H apart. */
+int images_find(struct arena *arena, const struct walls *walls, double depth, struct image **image);
+
+/* Write all images of the sources, image after image, to *images, which is overwritten. */
+void images_write(const struct sources *sources, int n_images, const struct image *image, struct sources *images);
 
 #endif

@@ -1,9 +1,8 @@
 /* flow_at_wake.c: own wake in pairs, own body, other fish, images; by the tree for many markers. */
-#include "flow/flow_at_wake.h"
-
 #include <math.h>
 #include <string.h>
 
+#include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
 
 static const double two_pi = 6.28318530717958647692;

@@ -24,7 +24,7 @@ static struct column column_of(const struct influence_block *block, int c, int f
 struct moving {
     struct source at;
     struct kernel_pair pair;
-    double image;                 // sign of the images that are summed (images.h); 0: the source itself
+    double image;                 // sign of the images that are summed (images.c); 0: the source itself
     const struct stencil *place;  // nodes that move the source; follows: fraction of the motion
     double follows;
     const struct stencil *line;  // leg d = along times the vector along the body, or to the tail

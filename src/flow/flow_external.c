@@ -1,9 +1,8 @@
 /* flow_external.c: the stream with shear, and gusts. */
-#include "flow/flow_external.h"
-
 #include <math.h>
 
 #include "base/mathematics.h"
+#include "flow/flow.h"
 
 // distance ahead of the point of the gust that was at gust_position at the start, along the direction of travel, m
 static double gust_ahead(const struct school *school, double t, double x, double y) {

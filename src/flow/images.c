@@ -1,9 +1,8 @@
 /* images.c: the images of a wall, and Gauss rules in place of the infinite sums of a channel. */
-#include "flow/images.h"
-
 #include <string.h>
 
 #include "base/mathematics.h"
+#include "flow/flow.h"
 
 // ---- sums over k = 1, 2, .. of a function that is analytic for Re k > 0 and decays like 1/k^2
 

@@ -1,11 +1,10 @@
 /* sensor_pressure.c: rate of the potential at the control points; Bernoulli's equation on both sides at the sensors. */
-#include "force/sensor_pressure.h"
-
 #include <math.h>
 #include <stddef.h>
 
 #include "body/rod.h"
 #include "flow/flow_at_bodies.h"
+#include "force/pressure.h"
 
 /* One source: with the rate dC/dt of the circulation before the source, a dipole dC/dt dx. */
 struct sensor_source {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "body/rod.h"
-#include "force/sensor_pressure.h"
+#include "force/pressure.h"
 
 const double thwaites_separation = -0.09;
 

@@ -1,11 +1,9 @@
 /* estimate.c: cost of the first events and of events with synthetic wakes; extrapolation to the whole run. */
-#include "run/estimate.h"
-
 #include <math.h>
 #include <sys/resource.h>
 
 #include "base/parallel.h"
-#include "run/event.h"
+#include "run/simulate.h"
 
 /* A synthetic wake drifts away from the tail by `drift` body lengths per beat; the lateral amplitude is `width` body
  * lengths. */

@@ -1,20 +1,18 @@
 /* event.c: steps of the event between two intervals. */
-#include "run/event.h"
-
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 
 #include "contact/clearance.h"
+#include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
-#include "flow/flow_at_wake.h"
 #include "force/drag.h"
+#include "run/simulate.h"
 #include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
 #include "school/warnings.h"
-#include "state/impulse.h"
-#include "state/wake_merge.h"
+#include "state/state.h"
 
 // evaluate the equations; STATUS_RETRY is final, because an event has no step size
 static enum status event_evaluate(struct residual *residual, const struct state *state) {

@@ -11,7 +11,6 @@
 #include "fish/fish_school.h"
 #include "flow/flow_at_bodies.h"
 #include "result/result_table.h"
-#include "run/event.h"
 #include "solver/integrator.h"
 
 /* Set the highest order of ida. Default (doc/numerics.md, section 3): 2 if the stiffness of a body is not damped, 5 if

@@ -8,8 +8,10 @@
 #include "base/status.h"
 #include "case/case.h"
 #include "school/diagnostics.h"
+#include "school/residual.h"
 #include "solver/initial_conditions.h"
 #include "solver/integrator.h"
+#include "state/state.h"
 
 struct result_row; /* result/result_table.h */
 
@@ -68,5 +70,42 @@ void simulate_row(struct simulation *simulation, struct integrator_counts *count
 
 /* Wall time since the creation of the simulation, plus the wall time before the checkpoint of a resumed run, s. */
 double simulate_wall_time(const struct simulation *simulation);
+
+// ---- estimate.c: estimate of CPU time and memory of a run. The estimate measures the first events of the run, then
+// single events with synthetic wakes of doubling length, and extrapolates the cost to the longest wakes. The estimate
+// does not account for later changes of the motion, such as fish that approach each other or stop. Tested by
+// tests/run/test_estimate.c.
+
+struct estimate {
+    double seconds; /* CPU time of the whole run */
+    double bytes;   /* of memory */
+    long n_events;  /* events of the run that the estimate measured */
+};
+
+/* Estimate the cost of a run from a simulation at the start; the simulation can only be freed afterwards. The estimate
+ * takes at most `patience` [s] of CPU time, but completes the first two events: the first costs more than the others.
+ * If simulation->stop interrupts the first event, the estimate has no event and extrapolates from the completed part.
+ * Fails as simulate_step if one of the first events fails; the run then fails at the same event. */
+enum status estimate_run(struct simulation *simulation, double patience, struct estimate *estimate);
+
+// ---- event.c: event at the times t_n = n Dt: advance the wakes, release and remove vortices, evaluate the velocities
+// of the vortices, update the control. doc/model.md, sections 7 and 8. Tested by tests/run/test_event.c.
+//
+//     t_n-1 ---- integrator ----> t_n  | move, shed, remove, (consistent), velocities, control, samples |  ---> t_n+1
+
+/* Make the state at t = 0 consistent and perform the first event. Fails with STATUS_SOLVER. */
+enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial);
+
+/* Perform the next event; the unknowns are given at the time of the event. *jumped: the unknowns are discontinuous at
+ * the event, and the integrator has to restart. Fails with STATUS_SOLVER. */
+enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial, int *jumped);
+
+/* Account for bodies or wakes that a caller has changed at the event of the state: make the unknowns consistent, as at
+ * an event with a jump, and evaluate the velocities of all vortices again. The next interval advances the vortices
+ * with these velocities alone. velocities_are_given: the momenta follow from the velocities of the bodies, as at the
+ * start; else the velocities follow from the momenta. The integrator has to restart. Fails with
+ * STATUS_SOLVER. */
+enum status event_change(struct state *state, struct residual *residual, struct initial_conditions *initial,
+                         int velocities_are_given);
 
 #endif

@@ -15,7 +15,7 @@
 #include "force/bound_sheet.h"
 #include "force/drag.h"
 #include "force/fluid_force.h"
-#include "force/sensor_pressure.h"
+#include "force/pressure.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
 

@@ -10,9 +10,8 @@
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
-#include "flow/flow_at_wake.h"
 #include "force/fluid_force.h"
-#include "state/impulse.h"
+#include "state/state.h"
 
 // ---- forces of the fluid, of contacts, of constraints
 

@@ -1,10 +1,9 @@
 /* dense_factors.c: elimination by panels of columns; tiles of the remaining matrix stay in registers. */
-#include "solver/dense_factors.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "base/wide.h"
+#include "solver/fish_factors.h"
 
 /* Columns of a panel and rows of a tile; columns of a tile. */
 enum { PANEL = 16, TILE_COLUMNS = 8 };

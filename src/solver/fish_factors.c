@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "base/wide.h"
-#include "solver/dense_factors.h"
 
 /* A diagonal pivot keeps the factors sparse. Use a diagonal pivot of at least diagonal_tolerance (the default of KLU)
  * times the largest entry of the column. If the reciprocal pivot growth is then below min_growth, as in soft rods of

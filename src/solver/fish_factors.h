@@ -47,4 +47,25 @@ void fish_factors_solve(struct fish_factors *factors, double *x);
 /* Add the totals of KLU to counts. */
 void fish_factors_count(const struct fish_factors *factors, struct fish_factors_counts *counts);
 
+// ---- dense_factors.c: factors of a full matrix by Gaussian elimination with row pivoting. Every operation is rounded
+// as written: the same bits for any vector width. Tested by tests/solver/test_dense_factors.c.
+//
+// LAPACK without an optimised BLAS takes five times as long for the orders of one fish, 50 to 200, and the last bits of
+// LAPACK depend on the library.
+
+struct dense_factors {
+    int n, stride; /* order; distance of columns, a multiple of the rows of a tile */
+    double *value; /* by columns: the matrix, later L below the diagonal and U     (n, stride) */
+    int *pivot;    /* row that was swapped with each row                           (n) */
+};
+
+/* A matrix of zeros of order n. */
+struct dense_factors dense_factors_create(struct arena *arena, int n);
+
+/* Replace the matrix by the factors. Returns whether the matrix is regular. */
+int dense_factors_set_up(struct dense_factors *factors);
+
+/* Replace the right-hand side x (n) by the solution. */
+void dense_factors_solve(const struct dense_factors *factors, double *x);
+
 #endif

@@ -1,7 +1,7 @@
 /* impulse.c: moments of vortices, and lost moments. */
-#include "state/impulse.h"
-
 #include <math.h>
+
+#include "state/state.h"
 
 void impulse_add(struct impulse_moments *sum, double circulation, double x, double y) {
     sum->circulation += circulation;

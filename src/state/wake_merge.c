@@ -1,12 +1,10 @@
 /* wake_merge.c: circles around bodies, velocity change by a merged pair, and compaction of the queue. */
-#include "state/wake_merge.h"
-
 #include <limits.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/parallel.h"
-#include "state/impulse.h"
+#include "state/state.h"
 
 static const double two_pi = 6.28318530717958647692;
 

@@ -5,7 +5,7 @@
 #include "base/mathematics.h"
 #include "fish/fish_motion.h"
 #include "flow/flow.h"
-#include "run/event.h"
+#include "run/simulate.h"
 #include "solver/modes.h"
 #include "solver/newton.h"
 #include "state/state.h"

@@ -12,7 +12,7 @@
 #include "case/sweep.h"
 #include "result/durable.h"
 #include "result/target.h"
-#include "run/estimate.h"
+#include "run/simulate.h"
 #include "study/study_folder.h"
 
 // ---- members

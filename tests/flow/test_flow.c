@@ -6,7 +6,6 @@
 #include "base/mathematics.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
-#include "flow/flow_at_wake.h"
 #include "flow/flow_derivative.h"
 #include "school.h"
 

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
-#include "flow/flow_at_wake.h"
 #include "flow/flow_derivative.h"
 #include "school.h"
 #include "third_kernel.h"

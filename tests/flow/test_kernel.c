@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "flow/images.h"
+#include "flow/flow.h"
 #include "flow/kernel.h"
 #include "school.h"
 

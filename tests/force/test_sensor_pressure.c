@@ -1,7 +1,7 @@
 /* Tests of src/force/sensor_pressure.c: pressure on both sides of a body at the sensors. */
 #include <stdio.h>
 
-#include "force/sensor_pressure.h"
+#include "force/pressure.h"
 #include "school.h"
 
 static const double pi = 3.14159265358979323846;

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "school.h"
-#include "solver/dense_factors.h"
+#include "solver/fish_factors.h"
 
 struct cost {
     double steps, iterations, jacobians, failures; /* the last: convergence failures */

@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
-#include "run/estimate.h"
+#include "run/simulate.h"
 #include "school.h"
 
 /* The sanitizers change the cost of a loop by its memory, so that the parts of a run no longer add up. An emulator

@@ -7,7 +7,7 @@
 
 #include "school.h"
 #include "school/residual.h"
-#include "solver/dense_factors.h"
+#include "solver/fish_factors.h"
 #include "solver/linear.h"
 
 // stirred bodies may cross

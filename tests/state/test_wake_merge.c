@@ -4,7 +4,7 @@
 
 #include "flow/kernel.h"
 #include "school.h"
-#include "state/wake_merge.h"
+#include "state/state.h"
 #include "wake/sheet.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\n"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "run/event.h"
+#include "run/simulate.h"
 #include "verify.h"
 
 // final state of a run, for comparisons between two runs: positions in m, circulation in m2/s, fish after fish

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "flow/flow_at_wake.h"
+#include "flow/flow.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;
