@@ -2,6 +2,11 @@
 """pressure_cases.py PROGRAM [CASES [FIRST [BEATS]]]: fish with the force of the pressure in contact, then random legal
 schools; with an argument the schools only. Each run must end well, with finite numbers and no circulation in total. Half an hour.
 
+Swimmers: 60 schools of one to three fish with the default force and control of the course, of 1e6 to 1e10 Pa, .1 to .5
+lengths deep, for four beats: the momentum balance is below 1 % of the impulse that the fluid exchanges with the fish, the
+energy balance below 2 % of the work. Of 60 cases 52 are below .5 %, with solver.rtol 1e-6 59: one step per event is coarse for
+the power of stiff bodies.
+
 Contact: 60 schools side by side, 20 fish sent into a wall at 2 and 4 m/s, 20 pairs head on, all from soft to stiff, each
 with infinite and with finite span.
 
@@ -113,6 +118,18 @@ def draw_head_on(draw):
             f"speed: {draw.choice([0, speed])}}}, length: {draw.choice([1, 0.7])}}}]\n")
 
 
+def draw_swimmers(draw):
+    """One to three fish half a length apart, from rest or at speed."""
+    rate, fish = draw.choice([0.5, 1, 1, 2]), []
+    for k in range(draw.choice([1, 1, 2, 3])):
+        start = f"position: [{draw.uniform(-0.3, 0.3):.4f}, {0.5 * k:.4f}], heading: {draw.uniform(170, 190):.2f}"
+        fish.append(f"  - {{start: {{{start}, speed: {draw.choice([0, 0.8]) * rate}}}, control: {{law: course}},\n"
+                    f"     wave: {{frequency: {rate}, amplitude: {draw.uniform(0.2, 0.5):.3f}, phase: {draw.uniform(0, 360):.1f}}},\n"
+                    f"     body: {{depth: {draw.uniform(0.1, 0.5):.3f}, thickness: {draw.uniform(0.08, 0.2):.3f}, "
+                    f"modulus: {rate**2 * 10 ** draw.uniform(6, 10):.4g}}}}}\n")
+    return f"time: {{end: {4 / rate}, shedding_interval: {0.01 / rate}, output_interval: {0.1 / rate}}}\nfish:\n" + "".join(fish)
+
+
 def cases():
     """The number of each case, its text, its length and its rate."""
     contact = ((draw_dense_school, 60), (draw_wall, 20), (draw_head_on, 20)) if len(sys.argv) == 2 else ()
@@ -127,6 +144,8 @@ def cases():
                     chosen = text.replace("span: infinite", f"span: {span}")
                     yield f"{number} of {drawn.__name__[5:]}, {span}", chosen, 1, 1
             number += 1
+    for number in range(60 if contact else 0):
+        yield f"{number} of swimmers", "format: 1\n" + draw_swimmers(random.Random(number)), 1, 1
     for number in range(first, first + n_cases):
         yield (number, *draw_case(number))
 
@@ -140,6 +159,14 @@ def fault_of(path, length, rate):
         for name in ("com", "kinetic_energy", "shed_circulation", "energy_balance"):
             if not np.isfinite(data[name][...]).all():
                 return f"{name} is not finite", counts
+        if "law: course" in data.case_text:
+            work = np.abs(data["actuation_work"][-1]).sum()
+            energy = np.abs(data["energy_balance"][-1]).max() / work
+            impulse = np.abs(data["fluid_impulse"][...] - data["fluid_impulse"][0]).sum(axis=(1, 2)).max()
+            momentum = np.abs(data["momentum_balance"][...]).max() / impulse
+            print(f"energy {energy:.1e} of the work, momentum {momentum:.1e} of the exchange")
+            if energy > 2e-2 or momentum > 1e-2:
+                return "a balance is open", counts
         circulation = np.abs(data["total_circulation"][...]).max() / (length**2 * rate)
     return f"a total circulation of {circulation:.1e}" if circulation > MAX_CIRCULATION else None, counts
 

@@ -29,7 +29,10 @@ static struct swim steady_swim(const char *school, const char *keys) {
     return swim;
 }
 
-#define COARSE "time: {end: 1, shedding_interval: 0.02}\n"
+// the body for which the first version of the model was measured
+#define BODY "defaults: {fish: {body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
+#define FINE "solver: {rtol: 1e-5}\n" BODY "time: {end: 1}\n"
+#define COARSE "solver: {rtol: 1e-5}\n" BODY "time: {end: 1, shedding_interval: 0.02}\n"
 #define REACTIVE "force: reactive, "
 
 // ---- nodes
@@ -64,7 +67,7 @@ static void leave_out_the_wake(void) {
     const struct swim standard = steady_swim(COARSE, REACTIVE);
     static const double smoothing[] = {0.05, 0.4};
     for (int i = 0; i < 2; i++) {
-        char school[96];
+        char school[256];
         snprintf(school, sizeof school, COARSE "wake: {smoothing: %g}\n", smoothing[i]);
         verify_relative(verify_text("wake.smoothing %g: speed, m/s", smoothing[i]), "smoothing 0.1: not felt",
                         standard.speed, steady_swim(school, REACTIVE).speed, 1e-4);
@@ -73,13 +76,13 @@ static void leave_out_the_wake(void) {
 
 // the same swimming motion at another frequency: modulus proportional to the square
 static void scale(void) {
-    const struct swim standard = steady_swim("time: {end: 1}\n", REACTIVE);
+    const struct swim standard = steady_swim(FINE, REACTIVE);
     static const double frequency[] = {0.2, 4, 20};
     for (int i = 0; i < 3; i++) {
         const double f = frequency[i];
         char keys[96];
         snprintf(keys, sizeof keys, REACTIVE "wave: {frequency: %g}, body: {modulus: %.1f}", f, 1e6 * f * f);
-        const struct swim swim = steady_swim("time: {end: 1}\n", keys);
+        const struct swim swim = steady_swim(FINE, keys);
         verify_relative(verify_text("%g Hz: lengths per beat", f), "1 Hz", standard.speed, swim.speed / f, 1e-5);
         verify_relative(verify_text("%g Hz: cost over f^2, m", f), "1 Hz", standard.cost, swim.cost / (f * f), 1e-4);
     }
@@ -100,9 +103,10 @@ static void refine_all(void) {
 
 // the cost of the last of eight beats from rest
 static double cost_from_rest(double modulus, double rtol) {
-    struct simulation *const simulation = verify_open(
-        "format: 1\n" VERIFY_DEFAULTS "time: {end: 8}\nsolver: {rtol: %g}\nfish: [{" REACTIVE "body: {modulus: %g}}]\n",
-        rtol, modulus);
+    struct simulation *const simulation =
+        verify_open("format: 1\n" VERIFY_DEFAULTS BODY "time: {end: 8}\nsolver: {rtol: %g}\nfish: [{" REACTIVE
+                    "body: {modulus: %g}}]\n",
+                    rtol, modulus);
     verify_run(simulation, 8);
     simulate_measure(simulation);
     const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];

@@ -33,7 +33,7 @@ static struct simulation *open_run(const struct run *run) {
                        "solver: {rtol: 1.0e-6}\n"
                        "fluid: {viscosity: %g%s}\n"
                        "wake: {lifetime: %g, decay: %g}\n"
-                       "defaults: {fish: {sheet_points: %d}}\n"
+                       "defaults: {fish: {sheet_points: %d, body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
                        "fish: [%s]\n",
                        run->end, run->interval, run->interval, run->viscosity, run->fluid ? run->fluid : "",
                        run->decays ? 2.0 : 1000.0, run->decays ? 1.5 : 100.0, run->n_sheet, run->fish);

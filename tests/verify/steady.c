@@ -110,8 +110,8 @@ static const struct swimmer swimmers[] = {
     {"default fish", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.5}}]\n", true, 20, 30},
     {"stiff fish", VERIFY_DEFAULTS TIME "fish: [{body: {modulus: 1e7}}]\n", true, 20, 30},
     {"fish with pressure",
+     // with a wake of 8 beats a turn, which the run does not excite, decays more slowly than the speed
      VERIFY_DEFAULTS TIME
-     "wake: {lifetime: 8}\n"
      "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 0.5}, body: {depth: 1}}]\n",
      true, 20, 30},
     {"fish with the reactive force", VERIFY_DEFAULTS TIME "fish: [{force: reactive}]\n", true, 20, 30},

@@ -17,7 +17,7 @@ static struct simulation *still_water(double interval) {
     return verify_open(
         "format: 1\n"
         "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-        "wake: {smoothing: %.17g, lifetime: 1000}\n"
+        "wake: {smoothing: %.17g, lifetime: 1000, tolerance: 1e-8}\n"
         "defaults: {fish: {nodes: 4, sheet_points: 5, wave: {amplitude: 0}, motion: {prescribed: all, speed: 0}}}\n"
         "fish:\n"
         "  - start: {position: [1000, 0], speed: 0}\n"
