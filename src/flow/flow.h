@@ -95,7 +95,7 @@ struct flow {
     int n_markers, wake_capacity;
     double *wake_u, *wake_v, *wake_div, *wake_image_u, *wake_image_v, *wake_image_div;
     double *wake_leg_u, *wake_leg_v, *wake_leg_div, *wake_image_leg_v, *wake_rate;
-    bool has_all_legs; /* unless sums at wakes are by the tree: then legs only of the own fish */
+    bool has_all_legs; /* unless sums at wakes are by the tree: then only a fish's own legs */
 
     /* sums of many fish by the tree: sources and targets of one sum; whether the sum of bodies or of wakes of one class
      * or of the images at another class is by the tree, in this evaluation (2, 2, n_classes, n_classes) */

@@ -64,7 +64,7 @@ extern const struct integrator runge_kutta_integrator;
  *     imex                y'_n+1 = (3 y_n+1 - 4 y_n + y_n-1) / (2 h);  implicit Euler in the first step
  *
  * imex is an implicit-explicit splitting (SBDF2: Ascher, Ruuth and Wetton 1995): all forces on the nodes but those of
- * the rod, R, are extrapolated as 2 R_n - R_n-1, in the first step R_n. The added mass belongs to the momenta, and
+ * the body, R, are extrapolated as 2 R_n - R_n-1, in the first step R_n. The added mass belongs to the momenta, and
  * remains implicit: with an explicit one a body lighter than its added mass is unstable at every step.
  *
  * Newton's iteration with the Jacobian dF/dy + cj dF/dy', cj = 1/h, 2/h or 3/(2h), solves for y_n+1; without

@@ -76,7 +76,7 @@ static void one_step_count(const void *data, struct integrator_counts *counts) {
     *counts = ((const struct one_step *)data)->counts;
 }
 
-// the Jacobian is the only history of a one-step method
+// the history: the Jacobian, and of imex the forces and unknowns before
 static enum status one_step_restart(void *data) {
     struct one_step *const solver = data;
     solver->cj = 0;
@@ -104,6 +104,7 @@ static void one_step_rates(struct one_step *solver, double h) {
 static enum status one_step_extrapolate(struct one_step *solver, double t) {
     struct residual *const residual = solver->residual;
     double *const older = solver->forces[1], *const known = solver->forces[0];
+    solver->counts.residual_evaluations++;
     TRY(residual_evaluate(residual, t, solver->state->y, solver->state->yp, solver->right_hand));
     for (int f = 0; f < residual->school->n_fish; f++) {
         const struct fish *const fish = &residual->school->fish[f];
@@ -185,7 +186,11 @@ static enum status one_step_advance(void *data, double t, const volatile sig_ato
     const bool is_split = solver->options.method == METHOD_IMEX;
     for (long i = 1; i <= n; i++) {
         const double end = i < n ? start + (double)i * h : t;
-        if (is_split) TRY(one_step_extrapolate(solver, end - h));
+        const enum status extrapolated = is_split ? one_step_extrapolate(solver, end - h) : STATUS_OK;
+        if (extrapolated > 0) {
+            return status_fail(STATUS_SOLVER, "integration failed at t = %.10g s: %s", end - h, status_message());
+        }
+        TRY(extrapolated);
         memcpy(solver->before, state->y, size);
         memcpy(solver->rates, state->yp, size);
 
