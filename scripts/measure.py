@@ -122,6 +122,12 @@ class Bench:
         done = self.call("steady", self.case(text), "--force", "-q", "--json", "-o", "steady.nc", *sets, may_fail=True)
         return None if done is None else json.loads(done)
 
+    def study(self, name):
+        """Run a study of cases/studies: its folder, and its study.nc."""
+        folder = os.path.join(self.folder, name)
+        self.call("study", os.path.join(CASES, f"studies/{name}.yaml"), "-q", "-o", folder)
+        return folder, open_study(os.path.join(folder, "study.nc"))
+
     def seconds(self, text, *assignments):
         """CPU seconds of a run, the smallest of three."""
         times = []
@@ -221,9 +227,7 @@ def turn_of(path, begin):
 @table("modulus [Pa]", "beats per s, amplitude", "gain 2, damping 1", "1, 1", "1.5, 1", "1.5, 1.5", "1.25, 0.75")
 def step_response(bench):
     """settling time and overshoot of turns of 90 degrees (a quarter of an hour)"""
-    folder = os.path.join(bench.folder, "step_response")
-    bench.call("study", os.path.join(CASES, "studies/step_response.yaml"), "-q", "-o", folder)
-    study = open_study(os.path.join(folder, "study.nc"))
+    folder, study = bench.study("step_response")
     for first in range(0, study["member"].size, 5):
         turns = [turn_of(os.path.join(folder, f"member-{first + i:04d}.nc"), 4.1) for i in range(5)]
         yield (power(study["fish_body_modulus"][first]),
@@ -235,9 +239,7 @@ def step_response(bench):
        "evaluations, 0.04 s", "0.02", "0.01", "0.005")
 def feedback(bench):
     """course control over modulus and interval: work, a turn of 90 degrees, effort (a minute)"""
-    folder = os.path.join(bench.folder, "feedback")
-    bench.call("study", os.path.join(CASES, "studies/feedback.yaml"), "-q", "-o", folder)
-    study = open_study(os.path.join(folder, "study.nc"))
+    folder, study = bench.study("feedback")
     for first in range(0, study["member"].size, 4):
         turns = [turn_of(os.path.join(folder, f"member-{first + i:04d}.nc"), 8.1) for i in range(4)]
         of = slice(first, first + 4)
@@ -249,9 +251,7 @@ def feedback(bench):
 @table("depth [L]", "force", "span", "speed [m/s]", "cost [m/s2]", "largest multiplier")
 def depth(bench):
     """steady speed, cost and stability over the depth of a stiff body, three forces (a minute)"""
-    folder = os.path.join(bench.folder, "depth")
-    bench.call("study", os.path.join(CASES, "studies/depth.yaml"), "-q", "-o", folder)
-    study = open_study(os.path.join(folder, "study.nc"))
+    _, study = bench.study("depth")
     names = strings(study["fish_force"]), strings(study["fish_pressure_span"])
     for i in range(study["member"].size):
         yield (f"{study['fish_body_depth'][i]:g}", names[0][i], "" if names[0][i] == "reactive" else names[1][i],
