@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Draw the figure of doc/validation.md: the program beside an experiment, lifting surfaces and Navier-Stokes solutions.
+"""Draw the figure of doc/validation.md: the program beside experiments, lifting surfaces and Navier-Stokes solutions.
 
-    scripts/validation.py [TABLE] PICTURE      TABLE: of `build/verify/verify validation -o TABLE`, else run now
+    scripts/validation.py [TABLE ...] PICTURE      TABLE: of `build/verify/verify SECTION -o TABLE`, sections validation and
+                                                   tandem; run now if there is none
 
 A grey bar is the spread of the source, or 5 % where the source has one value.
 """
@@ -48,11 +49,13 @@ def lift_slope(depth):
         return abs(json.loads(done.stdout)["steady_lift"][0]) / (0.5 * depth * math.radians(2))
 
 
-def draw(table, picture):
-    with open(table, encoding="utf-8") as file:
-        lines = [line.rstrip("\n").split("\t") for line in file]
+def draw(tables, picture):
+    lines = []
+    for table in tables:
+        with open(table, encoding="utf-8") as file:
+            lines += [line.rstrip("\n").split("\t") for line in file]
     points = [(line[1], line[2], float(line[3]), float(line[4])) for line in lines if line[0] == "point"]
-    figure, axes = pyplot.subplots(2, 2, figsize=(7, 5.6), layout="constrained")
+    figure, axes = pyplot.subplots(3, 2, figsize=(7, 8.2), layout="constrained")
 
     # a foil: thrust and power over the Strouhal number
     for panel, name, label in ((axes[0, 0], "foil_thrust", "thrust coefficient"), (axes[0, 1], "foil_power", "power coefficient")):
@@ -88,19 +91,38 @@ def draw(table, picture):
     axes[1, 1].axvline(1, color="0.3", lw=0.6)
     axes[1, 1].set_yticks([-i - 1 for i in range(len(names))], names, size=6)
     axes[1, 1].set(xlabel="here / Navier-Stokes", xlim=(0, 2))
+
+    # trout of three lengths
+    for k, length in enumerate(("0.1", "0.2", "0.4")):
+        for word, style in (("measured", {"ls": "-"}), ("here", {"ls": "none", "marker": "os^"[k], "ms": 4})):
+            some = [(x, y) for figure_name, series, x, y in points if figure_name == "trout" and series == f"{word}, {length} m"]
+            axes[2, 0].plot(*zip(*some), color=LINES[k], label=f"{length} m" if word == "here" else None, **style)
+    axes[2, 0].set(xlabel="beat frequency [Hz]", ylabel="stride [lengths]", ylim=(0, None))
+    axes[2, 0].legend(loc="lower right", fontsize=7, title="line: measured\nmark: here", title_fontsize=7)
+
+    # a plate in the wake of another one
+    for series, label, style in (("published: integers", "integers", {"ls": ":", "color": "0.3"}),
+                                 ("exact: linear theory", "linear theory", {"ls": "-", "color": LINES[0]}),
+                                 ("in phase", "here, in phase", {"ls": "none", "marker": "o", "color": LINES[1]}),
+                                 ("follower ahead", "here, follower ahead", {"ls": "none", "marker": "s", "color": LINES[2]})):
+        some = [(x, y) for name, word, x, y in points if name == "tandem_places" and word == series]
+        axes[2, 1].plot(*zip(*some), label=label, ms=4, **style)
+    axes[2, 1].set(xlabel="number less the lead [beats]", ylabel="tail to nose [wavelengths]")
+    axes[2, 1].legend(loc="upper left", fontsize=7)
     paper(figure, 170)
     figure.savefig(picture)
 
 
 def main(arguments):
-    if len(arguments) not in (1, 2):
+    if not arguments or arguments[0] in ("-h", "--help"):
         sys.exit(__doc__)
     with tempfile.TemporaryDirectory() as folder, matplotlib.rc_context(STYLE):
-        table = arguments[0] if len(arguments) == 2 else os.path.join(folder, "table.tsv")
-        if len(arguments) == 1:
-            subprocess.run([os.path.join(HERE, "build/verify/verify"), "validation", "-o", table], cwd=HERE, check=False,
+        tables = arguments[:-1]
+        for section in () if tables else ("validation", "tandem"):
+            tables.append(os.path.join(folder, section))
+            subprocess.run([os.path.join(HERE, "build/verify/verify"), section, "-o", tables[-1]], cwd=HERE, check=False,
                            stdout=subprocess.DEVNULL)
-        draw(table, arguments[-1])
+        draw(tables, arguments[-1])
     print(arguments[-1])
 
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "steady/steady_problem.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;
@@ -250,6 +251,69 @@ static void swimmer(const struct table *table) {
     }
 }
 
+// ---- live fish
+
+/* Rainbow trout of any length that swim steadily: Webb, Kostecki and Stevens, "The effect of size and swimming speed on
+ * locomotor kinematics of rainbow trout", Journal of Experimental Biology 109 (1984) 77-95. Lengths in cm, s. */
+struct trout {
+    double wavelength, excursion,
+        depth;   /* of the body's wave; of the tail from side to side; of the tail: in lengths */
+    double slow; /* the beat frequency is slow + 1.29 V/L, Hz */
+};
+static struct trout trout_of(double length) {
+    return (struct trout){1.43 * pow(length, 0.83) / length, 0.36 * pow(length, 0.74) / length,
+                          0.18 * pow(length, 1.05) / length, 3.19 / cbrt(length)};
+}
+
+/* Lengths that a fish with this gait swims in a beat: the amplitude of the muscle's wave is the one that gives the
+ * excursion. The body is so stiff that it takes the muscle's curvature. */
+static double trout_stride(const struct trout *trout, double length, double frequency, double normal) {
+    double amplitude = 0.5, stride = NAN;
+    for (int i = 0; i < 3; i++) {
+        struct case_values values;
+        struct steady_problem problem;
+        char text[512];
+        snprintf(text, sizeof text,
+                 VERIFY_DEFAULTS
+                 "format: 1\ntime: {end: %.17g, shedding_interval: %.17g}\n"
+                 "fish: [{length: %.17g, start: {speed: %.17g}, drag: {normal: %g},\n"
+                 "  wave: {frequency: %.17g, wavelength: %.17g, amplitude: %.17g},\n"
+                 "  body: {modulus: 1e7, depth: %.17g}}]\n",
+                 1 / frequency, 0.02 / frequency, length, 0.6 * length * frequency, normal, frequency,
+                 trout->wavelength, amplitude, trout->depth);
+        struct simulation *const simulation = verify_open("%s", text);
+        verify_ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
+        verify_ok(steady_problem_create(&problem, &values.steady, simulation));
+        verify_ok(steady_search_run(&problem));
+        stride = problem.map.last[0].speed / (length * frequency);
+        amplitude *= trout->excursion / (simulation->diagnostics->fish[0].strouhal * stride);
+        simulate_free(simulation);
+        case_free(&values);
+    }
+    return stride;
+}
+
+static void live_fish(void) {
+    const double frequencies[] = {4, 5, 6.25}, lengths[] = {10, 20, 40};
+    for (int k = 0; k < 3; k++) {
+        const struct trout trout = trout_of(lengths[k]);
+        for (int i = 0; i < 3; i++) {
+            const double f = frequencies[i], measured = (f - trout.slow) / 1.29 / f;
+            const double stride = trout_stride(&trout, 0.01 * lengths[k], f, 1);
+            verify_ratio(verify_text("trout of %g m, %g Hz: stride, lengths a beat", 0.01 * lengths[k], f),
+                         "Webb et al. (1984), regression", measured, stride, 0.9, 1.3);
+            verify_point("trout", verify_text("measured, %g m", 0.01 * lengths[k]), f, measured);
+            verify_point("trout", verify_text("here, %g m", 0.01 * lengths[k]), f, stride);
+            if (k == 1) {
+                for (int c = 0; c <= 2; c += 2) {
+                    verify_show(verify_text("the same, drag.normal %d", c), "",
+                                trout_stride(&trout, 0.01 * lengths[k], f, c) / measured);
+                }
+            }
+        }
+    }
+}
+
 void verify_validation(void) {
     static struct table table;
     read_table("tests/verify/data/navier_stokes.csv", &table);
@@ -257,4 +321,5 @@ void verify_validation(void) {
     heave(&table);
     if (verify_is_fast()) return;
     swimmer(&table);
+    live_fish();
 }
