@@ -89,6 +89,19 @@ handles() {  # process, signal
     ((16#$caught >> ($(kill -l "$2") - 1) & 1))
 }
 
+# Run the program until it handles a signal and a command has succeeded, then send the signal; sets $code, and leaves the
+# files out and err.
+run_until() {  # signal, command, arguments...
+    env --default-signal="$1" "$program" "${@:3}" >out 2>err </dev/null &
+    pid=$!
+    wait_for handles "$pid" "$1"
+    wait_for eval "$2"
+    kill -s "$1" "$pid" 2>/dev/null
+    code=0
+    wait "$pid" || code=$?
+    pid=
+}
+
 has() {  # file, text
     grep -qF -- "$2" "$1" || { echo "'$2' is not in $1"; return 1; }
 }

@@ -239,14 +239,8 @@ printf '%s\n' 'format: 1' 'time: {end: 1}' 'fluid: {velocity: [1, 0]}' 'defaults
 refused fish_too_far_apart_for_a_wake_to_infinity 2 'a steady wake has at most 100000' steady far.yaml -q -o none.nc
 refused a_sweep_is_a_study 2 'shoal study' steady swim.yaml --set 'sweep=[{key: solver.rtol, values: [1e-4]}]'
 refused a_case_is_needed 2 'CASE is missing' steady
-env --default-signal=TERM "$program" steady swim.yaml -o stopped.nc --set steady.tolerance=1e-12 \
-    --set steady.beats=100000 --set time.shedding_interval=0.01 >out 2>err </dev/null &
-pid=$!
-wait_for has err 'beat '
-code=0
-kill -TERM "$pid"
-wait "$pid" || code=$?
-pid=
+run_until TERM "has err 'beat '" steady swim.yaml -o stopped.nc --set steady.tolerance=1e-12 --set steady.beats=100000 \
+    --set time.shedding_interval=0.01
 check a_signal_stops_it test "$code" = 75
 check and_it_says_so has err 'stopped by a signal in beat'
 

@@ -45,7 +45,19 @@ expect() {
 
 # ---- the table
 
-# Every case goes into a file and the message into another file, without the empty line before the next case.
+# An error shows the place in the file: of its line up to 100 characters, 50 before the place, and a mark below.
+excerpts() {  # case, messages
+    awk -v name="$1" 'NR == FNR { line[NR] = $0; next }
+        { print }
+        index($0, name ":") == 1 && split($0, part, ":") > 3 {
+            start = part[3] > 51 ? part[3] - 51 : 0
+            excerpt = substr(line[part[2]], start + 1, 100)
+            gsub(/\t/, " ", excerpt)
+            printf "%s\n%*s\n", excerpt, part[3] - start, "^"
+        }' "$1" "$2"
+}
+
+# Every case goes into a file and the messages into another file, without the empty line before the next case.
 awk '/^==== / { name = $2; file = name ".yaml"; print name >"names"; next }
      name != "" && /^----$/ { file = name ".expected"; next }
      file ~ /expected$/ && $0 == "" { next }
@@ -53,9 +65,9 @@ awk '/^==== / { name = $2; file = name ".yaml"; print name >"names"; next }
 [[ -z ${WRITE-} ]] || sed '/^==== /,$d' "$table" >written
 while read -r name; do
     run "$name.yaml"
-    [[ -z ${WRITE-} ]] || { echo "==== $name"; cat "$name.yaml"; echo ----; cat "$folder/err"; echo; } >>written
+    [[ -z ${WRITE-} ]] || { echo "==== $name"; cat "$name.yaml"; echo ----; awk -v name="$name.yaml:" 'n-- < 1; index($0, name) == 1 { n = 2 }' "$folder/err"; echo; } >>written
     ended_with "$name" 2 || continue
-    if diff "$name.expected" "$folder/err" >"$folder/difference"; then
+    if diff <(excerpts "$name.yaml" "$name.expected") "$folder/err" >"$folder/difference"; then
         pass "$name"
     else
         fail "$name" "$(<"$folder/difference")"

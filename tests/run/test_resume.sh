@@ -227,23 +227,16 @@ check the_other_message_too has err "with 'shoal resume 'it'\\''s a folder/run.c
 for method in "ida --set solver.rtol=1e-12 --set solver.max_steps=1000000000" "rk4 --set solver.step=1e-8"; do
     rm -f ./*.nc ./*.ckpt*
     # shellcheck disable=SC2086  # the method has options
-    env --default-signal=TERM "$program" run small.yaml -q --set time.shedding_interval=10 --set time.end=20 \
+    run_until TERM 'test -s run.nc' run small.yaml -q --set time.shedding_interval=10 --set time.end=20 \
         --set time.output_interval=10 --set output.wake_interval=10 --set wake.lifetime=20 --set solver.max_steps=1000000000 \
-        --set solver.method=$method -o run.nc >out 2>err </dev/null &
-    pid=$!
-    wait_for test -s run.nc
-    end TERM
+        --set solver.method=$method -o run.nc
     check "a_long_event_is_left: ${method%% *}" eval '((code == 75)) && has err "stopped by a signal at t = 0 s"'
 done
 
 # an event at t = 0 that takes seconds: there is no earlier event to return to
 rm -f ./*.nc ./*.ckpt*
 sed 's/nodes: [79], sheet_points: 21/nodes: 600, sheet_points: 600/' small.yaml >large.yaml
-env --default-signal=TERM "$program" run large.yaml -q -o run.nc >out 2>err </dev/null &
-pid=$!
-wait_for handles "$pid" TERM
-sleep 0.5
-end TERM
+run_until TERM 'sleep 0.5' run large.yaml -q -o run.nc
 check a_long_start_is_left eval '((code == 75)) && has err "stopped by a signal during the event at t = 0" &&
     test ! -e run.nc -a ! -e run.ckpt'
 
@@ -256,10 +249,7 @@ fish: [{}]
 sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.3]}]
 CASE
 run study study.yaml -j 1 -o whole
-env --default-signal=TERM "$program" study study.yaml -q -j 1 -o parts >out 2>err </dev/null &
-pid=$!
-wait_for test -s parts/member-0000.nc
-end TERM
+run_until TERM 'test -s parts/member-0000.nc' study study.yaml -q -j 1 -o parts
 check a_study_is_stopped test "$code" = 75 -a -e parts/member-0000.ckpt
 run study study.yaml -j 1 -o parts
 check the_study_goes_on test "$code" = 0

@@ -80,13 +80,7 @@ refused too_many_repeats 2 '--repeats: expects 1 to 99' compare case.yaml --repe
 refused limit_of_nothing 2 '--limit 0: expects a number above 0' compare case.yaml --limit 0
 refused a_sweep 2 'this case has a sweep of 1 axis' compare case.yaml --set 'sweep=[{key: solver.rtol, values: [1e-3]}]'
 
-env --default-signal=INT "$program" compare case.yaml --set time.end=40 --repeats 9 >out 2>err </dev/null &
-comparison=$!
-wait_for handles "$comparison" INT
-sleep 0.3
-kill -INT "$comparison"
-code=0
-wait "$comparison" || code=$?
+run_until INT 'sleep 0.3' compare case.yaml --set time.end=40 --repeats 9
 check a_signal_stops_a_comparison test "$code" = 75
 
 check its_folder_is_removed test ! -e "$(echo "$TMPDIR"/shoal-compare-*)"
