@@ -39,7 +39,7 @@ static void release(void *object) {
 }
 
 void school_build(struct setup *setup, const char *text) {
-    *setup = (struct setup){.arena = arena_create(test_arena(), "a school"), .seed = 1};
+    *setup = (struct setup){.arena = arena_create(test_arena(), "a school"), .mode = &residual_run, .seed = 1};
     struct owned *owned;
     NEW(setup->arena, owned, 1);
     arena_defer(setup->arena, release, owned);
@@ -163,7 +163,7 @@ void school_fill_wakes(struct setup *setup, int n) {
 }
 
 void school_flow(struct setup *setup, const double *y) {
-    flow_gradient(setup->residual->flow, setup->state, setup->t, y);
+    flow_gradient(setup->residual->flow, setup->state, setup->t, y, false);
 }
 
 struct jacobian_scratch *school_influence(struct setup *setup, int f, int g) {
@@ -306,7 +306,7 @@ void school_compare(struct setup *setup, school_value *value, school_jacobian *j
             jacobian(setup, cj, setup->state->y, setup->term);
             sparse_end(setup->term);
         } else {
-            school_ok(residual_jacobian(setup->residual, setup->t, cj, setup->state->y, setup->jacobian));
+            school_ok(residual_jacobian(setup->residual, setup->mode, setup->t, cj, setup->state->y, setup->jacobian));
         }
         double *const dense = jacobian ? school_dense(setup->term) : school_dense_jacobian(setup->jacobian);
         double *const expected = calloc(n * n, sizeof *expected), *const column = calloc(n, sizeof *column);

@@ -17,11 +17,12 @@ struct setup {
     struct school *school;
     struct state *state;
     struct residual *residual;
-    struct jacobian *jacobian; /* empty, rows of given motions masked */
-    struct sparse *term;       /* empty, of all unknowns: for the derivatives of one term */
-    double *value;             /* a residual                                        (n_unknowns) */
-    double t;                  /* time of the state; after school_stir in the middle of an interval, s */
-    uint64_t seed;             /* of the random numbers */
+    const struct residual_mode *mode; /* of school_compare: of a run */
+    struct jacobian *jacobian;        /* empty, rows of given motions masked */
+    struct sparse *term;              /* empty, of all unknowns: for the derivatives of one term */
+    double *value;                    /* a residual                                        (n_unknowns) */
+    double t;                         /* time of the state; after school_stir in the middle of an interval, s */
+    uint64_t seed;                    /* of the random numbers */
 };
 
 /* A text with this line has the defaults of the program, with a thicker body. */

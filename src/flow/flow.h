@@ -60,9 +60,7 @@ struct flow {
     struct arena *arena;
     const struct school *school;
     const struct kernel *kernel;
-    /* whether all circulation was shed infinitely long ago, in an equilibrium: legs from the tail to infinity; set from
-     * outside */
-    bool is_steady;
+    bool is_steady; /* all circulation was shed infinitely long ago, at the last sum: legs from the tail to infinity */
     const volatile sig_atomic_t *stop; /* once *stop is not 0, flow_gradient leaves its sums; or NULL */
     double t;                          /* time of the sources, s */
     unsigned long version;             /* version of the wakes from which the sources were built */
@@ -116,7 +114,7 @@ struct influence_block {
 
 struct flow *flow_create(struct arena *arena, const struct school *school);
 
-/* Fail with STATUS_CASE if a steady wake (is_steady) does not reach all fish: above 1e5 depths. */
+/* Fail with STATUS_CASE if a steady wake (an equilibrium) does not reach all fish: above 1e5 depths. */
 enum status flow_check_steady(const struct school *school);
 
 /* Number of points of a fish. */

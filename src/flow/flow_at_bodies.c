@@ -245,7 +245,9 @@ static void sum_many(struct flow *flow, int threads, int with_gradient) {
     }
 }
 
-static void flow_sum(struct flow *flow, const struct state *state, double t, const double *y, int with_gradient) {
+static void flow_sum(struct flow *flow, const struct state *state, double t, const double *y, bool is_steady,
+                     bool with_gradient) {
+    flow->is_steady = is_steady;
     if (!flow->others) flow->others = others_create(flow->arena, flow);
     others_select(flow, state);
     flow_place(flow, state, t, y);
@@ -267,12 +269,12 @@ static void flow_sum(struct flow *flow, const struct state *state, double t, con
     }
 }
 
-void flow_velocity(struct flow *flow, const struct state *state, double t, const double *y) {
-    flow_sum(flow, state, t, y, 0);
+void flow_velocity(struct flow *flow, const struct state *state, double t, const double *y, bool is_steady) {
+    flow_sum(flow, state, t, y, is_steady, false);
 }
 
-void flow_gradient(struct flow *flow, const struct state *state, double t, const double *y) {
-    flow_sum(flow, state, t, y, 1);
+void flow_gradient(struct flow *flow, const struct state *state, double t, const double *y, bool is_steady) {
+    flow_sum(flow, state, t, y, is_steady, true);
 }
 
 // ---- images alone; any points
@@ -304,9 +306,10 @@ void flow_images(struct flow *flow, const struct state *state) {
     }
 }
 
-void flow_field(struct flow *flow, const struct state *state, const struct targets *all) {
+void flow_field(struct flow *flow, const struct state *state, const struct targets *all, bool is_steady) {
     const struct school *const school = flow->school;
     const int n_chunks = parallel_n_chunks(all->n);
+    flow->is_steady = is_steady;
     flow_place(flow, state, state->t, state->y);
 #pragma omp parallel for num_threads(school->threads) schedule(static)
     for (int chunk = 0; chunk < n_chunks; chunk++) {

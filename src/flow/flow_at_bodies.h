@@ -7,9 +7,10 @@
 #include "flow/flow.h"
 
 /* Place all sources at time t (at or after the event of the state) for the unknowns y, and sum the velocity
- * (flow_gradient: velocity and gradient) at all points of all fish. */
-void flow_velocity(struct flow *flow, const struct state *state, double t, const double *y);
-void flow_gradient(struct flow *flow, const struct state *state, double t, const double *y);
+ * (flow_gradient: velocity and gradient) at all points of all fish. is_steady: all circulation was shed infinitely long
+ * ago, in an equilibrium. */
+void flow_velocity(struct flow *flow, const struct state *state, double t, const double *y, bool is_steady);
+void flow_gradient(struct flow *flow, const struct state *state, double t, const double *y, bool is_steady);
 
 /* Set image_u, image_v, image_div, image_leg_v to the velocity and div u of all images in walls, and the part of legs,
  * at the points of all bodies, at the event of the state. */
@@ -35,7 +36,7 @@ void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]);
 /* Set velocity and velocity gradient of the targets, any points, at the event of the state: external flow, and every
  * wake and every body with the full smoothing, as for another body; NaN beyond the walls. No result of the run depends
  * on this function. */
-void flow_field(struct flow *flow, const struct state *state, const struct targets *at);
+void flow_field(struct flow *flow, const struct state *state, const struct targets *at, bool is_steady);
 
 // ---- sums of one kind of sources of many fish, for flow_at_wake.c too
 

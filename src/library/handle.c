@@ -139,7 +139,8 @@ void handle_forget_row(struct shoal *run) {
 
 enum status handle_evaluate(const struct simulation *simulation) {
     const struct state *const state = simulation->state;
-    return residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch);
+    return residual_evaluate(simulation->residual, &residual_run, state->t, state->y, state->yp,
+                             simulation->residual->scratch);
 }
 
 static enum status renew_simulation(struct shoal *run, const void *data) {

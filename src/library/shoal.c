@@ -298,7 +298,7 @@ static enum status flow_at_points(struct shoal *run, int n, const double *points
         }
     }
 
-    flow_field(run->simulation->residual->flow, run->simulation->state, &at);
+    flow_field(run->simulation->residual->flow, run->simulation->state, &at, false);
     for (int i = 0; i < n; i++) {
         velocity[2 * i] = at.u[i];
         velocity[2 * i + 1] = at.v[i];

@@ -71,7 +71,7 @@ static enum status event_cost(struct simulation *simulation, double evaluations,
     *seconds = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start;
 
     start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-    TRY(residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch));
+    TRY(residual_evaluate(residual, &residual_run, state->t, state->y, state->yp, residual->scratch));
     *seconds += evaluations * (clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start);
     return STATUS_OK;
 }

@@ -16,7 +16,8 @@
 
 // evaluate the equations; STATUS_RETRY is final, because an event has no step size
 static enum status event_evaluate(struct residual *residual, const struct state *state) {
-    const enum status status = residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch);
+    const enum status status =
+        residual_evaluate(residual, &residual_run, state->t, state->y, state->yp, residual->scratch);
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
@@ -40,10 +41,8 @@ static enum status event_release_impulse(struct state *state, struct residual *r
     const struct school *school = residual->school;
     if (school->kutta == KUTTA_EDGE) {
         // circulation for a vanishing bound vortex at the tail
-        residual->shed_now = SHED_BY_IMPULSE;
-        const enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
-        residual->shed_now = SHED_BY_LAW;
-        TRY(status);
+        const struct residual_mode impulse = {.shed = SHED_BY_IMPULSE};
+        TRY(initial_conditions_solve(initial, &impulse, state->t, state->y, state->yp));
     } else {
         // shedding rate times the interval
         TRY(event_evaluate(residual, state));
@@ -163,7 +162,7 @@ static enum status event_finish(struct state *state, struct residual *residual, 
     const bool steered = event_control(state, residual);
     if (steered) {
         if (!jumps) diagnostics_before_jump(residual, state);
-        TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+        TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));
     }
 
     residual_couple(&residual->couplings, state->y);
@@ -172,48 +171,37 @@ static enum status event_finish(struct state *state, struct residual *residual, 
     return STATUS_OK;
 }
 
-// solve for the state at the start, with given velocities of the bodies
-static enum status event_start_bodies(struct state *state, struct residual *residual,
-                                      struct initial_conditions *initial) {
+enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
     const struct school *const school = residual->school;
     const bool is_sheet = school->shedding == SHEDDING_SHEET, has_vortices = school->n_vortices > 0;
-    enum status status = STATUS_OK;
+    struct residual_mode mode = {.velocities_are_given = true};
 
     // release the first markers, in the flow without shed circulation
     if (is_sheet) {
-        residual->shed_now = SHED_IS_GIVEN;
-        status = initial_conditions_solve(initial, state->t, state->y, state->yp);
-        if (status == STATUS_OK) event_release_markers(state, school);
+        mode.shed = SHED_IS_GIVEN;
+        TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
+        event_release_markers(state, school);
     }
 
     // the vortices of the case, in the wake of the first fish
-    for (int i = 0; i < school->n_vortices && status == STATUS_OK; i++) {
+    for (int i = 0; i < school->n_vortices; i++) {
         const double *const vortex = school->vortices + 3 * (long)i;
-        status = wake_add_vortex(&state->wake[0], school, state->t, vortex[0], vortex[1], vortex[2]);
+        TRY(wake_add_vortex(&state->wake[0], school, state->t, vortex[0], vortex[1], vortex[2]));
     }
 
-    if (status == STATUS_OK && (has_vortices || !is_sheet)) {
-        status = initial_conditions_solve(initial, state->t, state->y, state->yp);
-    }
-    if (status == STATUS_OK && (has_vortices || is_sheet)) event_wake_velocities(state, residual, ALL);
-    residual->shed_now = SHED_BY_LAW;
-    if (status == STATUS_OK && is_sheet) status = initial_conditions_solve(initial, state->t, state->y, state->yp);
-    return status;
-}
+    // solve with all vortices; then with the law of shedding, if the first markers had a given circulation
+    if (has_vortices || !is_sheet) TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
+    if (has_vortices || is_sheet) event_wake_velocities(state, residual, ALL);
+    mode.shed = SHED_BY_LAW;
+    if (is_sheet) TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
 
-enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
-    int jumped;
-    residual->at_start = 1;
-    const enum status started = event_start_bodies(state, residual, initial);
-    residual->at_start = 0;
-    TRY(started);
-
-    if (residual->school->shedding == SHEDDING_IMPULSIVE) {
+    if (school->shedding == SHEDDING_IMPULSIVE) {
         TRY(event_release_impulse(state, residual, initial));
-        TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+        TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));
         event_wake_velocities(state, residual, ALL);
     }
 
+    int jumped;
     TRY(event_finish(state, residual, initial, 1, &jumped));
     diagnostics_start(residual, state);
     return STATUS_OK;
@@ -260,17 +248,15 @@ enum status event_next(struct state *state, struct residual *residual, struct in
 
     wake_merge(school, state);
 
-    if (jumps) TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+    if (jumps) TRY(initial_conditions_solve(initial, &residual_run, state->t, state->y, state->yp));
     event_wake_velocities(state, residual, 1);
     return event_finish(state, residual, initial, jumps, jumped);
 }
 
 enum status event_change(struct state *state, struct residual *residual, struct initial_conditions *initial,
                          int velocities_are_given) {
-    residual->at_start = velocities_are_given;
-    const enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
-    residual->at_start = 0;
-    TRY(status);
+    const struct residual_mode mode = {.velocities_are_given = velocities_are_given};
+    TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
     event_wake_velocities(state, residual, ALL);
     TRY(event_flow(state, residual));
     residual_couple(&residual->couplings, state->y);

@@ -83,6 +83,8 @@ double residual_undamped(const struct school *school, int i) {
     return kind >= UNKNOWN_VX && kind <= UNKNOWN_PY ? 1.0 / 3000 : 1;
 }
 
+const struct residual_mode residual_run = {.shed = SHED_BY_LAW};
+
 // ---- neighbours by boxes, then by the distance of outlines
 
 void residual_couple(struct residual_couplings *couplings, const double *y) {
@@ -215,19 +217,18 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
     return new;
 }
 
-enum bound_sheet_law residual_sheet_law(const struct residual *residual) {
+enum bound_sheet_law residual_sheet_law(const struct residual *residual, const struct residual_mode *mode) {
     const struct school *school = residual->school;
-    if (residual->shed_now == SHED_IS_GIVEN) return BOUND_SHEET_FROZEN;
-    if (residual->shed_now == SHED_IS_FAR) return BOUND_SHEET_EDGE;
-    if (school->shedding == SHEDDING_IMPULSIVE &&
-        !(residual->shed_now == SHED_BY_IMPULSE && school->kutta == KUTTA_EDGE)) {
+    if (mode->shed == SHED_IS_GIVEN) return BOUND_SHEET_FROZEN;
+    if (mode->shed == SHED_IS_FAR) return BOUND_SHEET_EDGE;
+    if (school->shedding == SHEDDING_IMPULSIVE && !(mode->shed == SHED_BY_IMPULSE && school->kutta == KUTTA_EDGE)) {
         return BOUND_SHEET_FROZEN;
     }
     return school->kutta == KUTTA_EDGE ? BOUND_SHEET_EDGE : BOUND_SHEET_RATE;
 }
 
 int residual_shed_is_algebraic(const struct residual *residual) {
-    return residual_sheet_law(residual) == BOUND_SHEET_EDGE;
+    return residual_sheet_law(residual, &residual_run) == BOUND_SHEET_EDGE;
 }
 
 double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y) {
@@ -236,8 +237,9 @@ double residual_kutta_rate(const struct residual *residual, int f, double t, con
                                      residual->flow->u + first, residual->flow->v + first, y);
 }
 
-double residual_shed_rate(const struct residual *residual, int f, double t, const double *y) {
-    return residual_sheet_law(residual) == BOUND_SHEET_RATE ? residual_kutta_rate(residual, f, t, y) : 0;
+double residual_shed_rate(const struct residual *residual, const struct residual_mode *mode, int f, double t,
+                          const double *y) {
+    return residual_sheet_law(residual, mode) == BOUND_SHEET_RATE ? residual_kutta_rate(residual, f, t, y) : 0;
 }
 
 double residual_lost(const struct residual *residual, int f, double t) {
@@ -268,7 +270,8 @@ void residual_forces(const struct residual *residual, int f, const double *y, do
     value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
 }
 
-void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
+// the rows ax, ay without the forces of residual_forces
+static void residual_of_body(const struct residual *residual, int f, const double *y, double *value) {
     const struct fish *fish = &residual->school->fish[f];
     for (int k = 0; k < fish->n_nodes; k++) {
         value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
@@ -277,20 +280,16 @@ void residual_balance(const struct residual *residual, int f, const double *y, d
     const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
     rod_residual(fish, &muscle, y, value);
     rod_clamp_residual(fish, residual->flow->t, y, value);
+}
 
-    const double *const given = residual->given_forces;
-    if (!given) {
-        residual_forces(residual, f, y, value);
-        return;
-    }
-    const struct flow_at_body flow = flow_at_body(residual->flow, f);
-    if (residual->pressure[f]) pressure_update(residual->pressure[f], &flow, y);
-    for (int i = fish->at.ax; i < fish->at.ax + 2 * fish->n_nodes; i++) value[i] -= given[i];
+void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
+    residual_of_body(residual, f, y, value);
+    residual_forces(residual, f, y, value);
 }
 
 // the equations of fish f
-static void evaluate_fish(struct residual *residual, int f, double t, const double *y, const double *yp,
-                          double *value) {
+static void evaluate_fish(struct residual *residual, const struct residual_mode *mode, int f, double t, const double *y,
+                          const double *yp, double *value) {
     const struct school *school = residual->school;
     const struct state *state = residual->state;
     const struct fish *fish = &school->fish[f];
@@ -308,12 +307,19 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
 
     // equation of motion, divided by the node masses
     residual_muscle(residual, f, t, y);
-    residual_balance(residual, f, y, value);
+    residual_of_body(residual, f, y, value);
+    if (mode->forces) {
+        const struct flow_at_body flow = flow_at_body(residual->flow, f);
+        if (residual->pressure[f]) pressure_update(residual->pressure[f], &flow, y);
+        for (int i = fish->at.ax; i < fish->at.ax + 2 * fish->n_nodes; i++) value[i] -= mode->forces[i];
+    } else {
+        residual_forces(residual, f, y, value);
+    }
     for (int k = 0; k < fish->n_nodes; k++) {
         value[fish->at.ax + k] /= fish->mass[k];
         value[fish->at.ay + k] /= fish->mass[k];
     }
-    if (residual->pressure[f]) pressure_momentum_residual(residual->pressure[f], residual->at_start, y, value);
+    if (residual->pressure[f]) pressure_momentum_residual(residual->pressure[f], mode->velocities_are_given, y, value);
 
     // the rows of prescribed nodes: position, velocity and acceleration are given
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
@@ -330,23 +336,24 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
 
     // impermeability, Kelvin, Kutta
     bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, y, value);
-    bound_sheet_kutta_residual(fish, residual_sheet_law(residual), ramp_value(t, school->kutta_ramp), u, v, y, yp,
+    bound_sheet_kutta_residual(fish, residual_sheet_law(residual, mode), ramp_value(t, school->kutta_ramp), u, v, y, yp,
                                value);
 
     control_residual(fish, &state->control[f], t, t - state->t, y, value);
 }
 
-enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
+enum status residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t, const double *y,
+                              const double *yp, double *value) {
     TRY(contact_find(residual->contact, residual->state, t, y));
-    flow_velocity(residual->flow, residual->state, t, y);
+    flow_velocity(residual->flow, residual->state, t, y, mode->shed == SHED_IS_FAR);
 
     const struct school *school = residual->school;
     const int threads = fish_threads(school);
     if (threads == 1) {
-        for (int f = 0; f < school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
+        for (int f = 0; f < school->n_fish; f++) evaluate_fish(residual, mode, f, t, y, yp, value);
     } else {
 #pragma omp parallel for num_threads(threads) schedule(static)
-        for (int f = 0; f < school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
+        for (int f = 0; f < school->n_fish; f++) evaluate_fish(residual, mode, f, t, y, yp, value);
     }
 
     // name the first equation without a finite value
@@ -367,7 +374,7 @@ void residual_reaction(const struct residual *residual, int f, const double *y, 
     for (int i = 0; i < 2 * fish->n_nodes; i++) value[fish->at.ax + i] += pressure->momentum_rate[i];
 }
 
-void residual_kinds(const struct residual *residual, double *kind) {
+void residual_kinds(const struct residual *residual, const struct residual_mode *mode, double *kind) {
     for (int i = 0; i < residual->school->n_unknowns; i++) {
         const struct unknown_place place = residual_place(residual->school, i);
         const struct fish *fish = &residual->school->fish[place.fish];
@@ -379,10 +386,12 @@ void residual_kinds(const struct residual *residual, double *kind) {
             case UNKNOWN_X:
             case UNKNOWN_Y: is_differential = !is_given; break;
             case UNKNOWN_VX:
-            case UNKNOWN_VY: is_differential = !is_given && (!fish_has_momentum(fish) || residual->at_start); break;
+            case UNKNOWN_VY:
+                is_differential = !is_given && (!fish_has_momentum(fish) || mode->velocities_are_given);
+                break;
             case UNKNOWN_PX:
-            case UNKNOWN_PY: is_differential = !is_given && !residual->at_start; break;
-            case UNKNOWN_CIRCULATION: is_differential = !residual_shed_is_algebraic(residual); break;
+            case UNKNOWN_PY: is_differential = !is_given && !mode->velocities_are_given; break;
+            case UNKNOWN_CIRCULATION: is_differential = residual_sheet_law(residual, mode) != BOUND_SHEET_EDGE; break;
             default: break;
         }
         kind[i] = is_differential;

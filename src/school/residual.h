@@ -4,6 +4,7 @@
 #define RESIDUAL_H
 
 #include <signal.h>
+#include <stdbool.h>
 
 #include "base/status.h"
 #include "body/rod.h"
@@ -76,10 +77,19 @@ int residual_couple_more(struct residual_couplings *couplings, const double *y);
 /* Couple all fish in contact, for any reach; returns whether any fish are in contact. */
 int residual_couple_contacts(struct residual_couplings *couplings, const struct contact *contact);
 
-/* The equation for the circulation shed: the law of the case; the Kutta condition, during the solution of an impulsive
- * event; a given circulation, before the first marker of a free sheet; the Kutta condition with all shed circulation
- * infinitely far away (wake_leave_behind), in an equilibrium. */
-enum shed_now { SHED_BY_LAW, SHED_BY_IMPULSE, SHED_IS_GIVEN, SHED_IS_FAR };
+/* How the equations are evaluated: all zero in a run. */
+struct residual_mode {
+    /* The equation for the circulation shed: the law of the case; the Kutta condition, during the solution of an
+     * impulsive event; a given circulation, before the first marker of a free sheet; the Kutta condition with all shed
+     * circulation infinitely far away (wake_leave_behind), in an equilibrium. */
+    enum shed_now { SHED_BY_LAW, SHED_BY_IMPULSE, SHED_IS_GIVEN, SHED_IS_FAR } shed;
+    bool velocities_are_given; /* momenta are solved for */
+
+    /* forces on the nodes besides those of the body, N, in the rows ax, ay, in place of those of contacts and fluid,
+     * for methods that extrapolate them; or NULL                                                      (n_unknowns) */
+    const double *forces;
+};
+extern const struct residual_mode residual_run;
 
 /* Input of the equations besides the unknowns, and workspace; the workspace is not part of the state. */
 struct residual {
@@ -87,18 +97,11 @@ struct residual {
     const struct state *state; /* wakes, control memory, time of the last event */
     struct flow *flow;
     struct contact *contact;
-    enum shed_now shed_now;              /* equation for the circulation shed */
-    int at_start;                        /* whether velocities are given, and momenta are solved for */
     struct pressure **pressure;          /* of each fish; NULL unless force: pressure           (n_fish) */
     struct neighbours *neighbours;       /* workspace                                         (n_fish) */
     struct residual_couplings couplings; /* pairs of fish with a block in the Jacobian */
-
-    /* forces on the nodes besides those of the body, N, in the rows ax, ay, in place of those of contacts and fluid,
-     * for methods that extrapolate them; or NULL                                                      (n_unknowns) */
-    const double *given_forces;
-
-    struct range *joints;    /* of each fish                                     (n_fish) */
-    struct actuation muscle; /* actuation at the last evaluation                 (joints of all fish) */
+    struct range *joints;                /* of each fish                                     (n_fish) */
+    struct actuation muscle;             /* actuation at the last evaluation                 (joints of all fish) */
     struct jacobian_scratch *jacobian_scratch; /* scratch of each thread                          (threads) */
     double *scratch;                   /* scratch of diagnostics; fish f uses the slices of fish f     (n_unknowns) */
     const volatile sig_atomic_t *stop; /* residual_jacobian fails with STATUS_STOPPED once *stop is not 0; or NULL */
@@ -114,7 +117,8 @@ struct jacobian_scratch {
 struct residual *residual_create(struct arena *arena, const struct school *school, const struct state *state);
 
 /* value = F(t, y, yp). Returns STATUS_RETRY if a value is not finite, or if repelling bodies touch. */
-enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);
+enum status residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t, const double *y,
+                              const double *yp, double *value);
 
 /* Evaluate and return the actuation of the joints of fish f for the phi0 in y. */
 struct actuation residual_muscle(struct residual *residual, int f, double t, const double *y);
@@ -123,8 +127,8 @@ struct actuation residual_muscle(struct residual *residual, int f, double t, con
  * curvature and contacts of the last evaluation. */
 void residual_balance(const struct residual *residual, int f, const double *y, double *value);
 
-/* Subtract the forces on fish f besides those of the body, N, from the rows ax, ay of value, as residual_balance does
- * without given_forces. */
+/* Subtract the forces on fish f besides those of the body, N, from the rows ax, ay of value, as residual_balance does.
+ */
 void residual_forces(const struct residual *residual, int f, const double *y, double *value);
 
 /* The rows of residual_balance plus the rate of the added momentum, for the rates yp: the reactions of prescribed
@@ -136,24 +140,25 @@ void residual_reaction(const struct residual *residual, int f, const double *y, 
 double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y);
 
 /* The rate of the circulation shed by fish f as a differential unknown: residual_kutta_rate, or 0 between impulses. */
-double residual_shed_rate(const struct residual *residual, int f, double t, const double *y);
+double residual_shed_rate(const struct residual *residual, const struct residual_mode *mode, int f, double t,
+                          const double *y);
 
 /* Removed circulation that is dropped from the Kelvin equation of fish f, m2 s-1. */
 double residual_lost(const struct residual *residual, int f, double t);
 
 /* kind[i] = 1 if unknown i is differential, 0 if algebraic                                      (n_unknowns) */
-void residual_kinds(const struct residual *residual, double *kind);
+void residual_kinds(const struct residual *residual, const struct residual_mode *mode, double *kind);
 
-/* The present equation for the circulation shed, and whether this equation is algebraic. */
-enum bound_sheet_law residual_sheet_law(const struct residual *residual);
+/* The equation for the circulation shed, and whether this equation is algebraic in a run. */
+enum bound_sheet_law residual_sheet_law(const struct residual *residual, const struct residual_mode *mode);
 int residual_shed_is_algebraic(const struct residual *residual);
 
 // ---- residual_jacobian.c: the derivatives of the residual. doc/numerics.md, section 6.
 
 /* jacobian = dF/dy + cj dF/dyp, with the blocks of the coupled fish; fish in contact couple from this call on. Fails
  * as residual_evaluate if bodies touch. */
-enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
-                              struct jacobian *jacobian);
+enum status residual_jacobian(struct residual *residual, const struct residual_mode *mode, double t, double cj,
+                              const double *y, struct jacobian *jacobian);
 
 /* Set the derivatives of impermeability at the control points of every fish by the circulation shed by the same fish,
  * in the impermeability rows of value (n_unknowns); with force: pressure also the derivatives of the equation of

@@ -12,8 +12,8 @@
 #include "school/residual.h"
 
 // derivatives of the equations of fish f by the unknowns of fish g through the flow velocity
-static void flow_jacobian(const struct residual *residual, int f, int g, double t, const double *y,
-                          struct influence_block *block, struct coupling_block *rows) {
+static void flow_jacobian(const struct residual *residual, const struct residual_mode *mode, int f, int g, double t,
+                          const double *y, struct influence_block *block, struct coupling_block *rows) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     rows->n_rows = flow_n_rows(fish);
@@ -22,14 +22,14 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
 
     flow_derivative(residual->flow, f, g, block);
 
-    if (!residual->given_forces) {
+    if (!mode->forces) {
         fluid_force_flow_jacobian(fish, &flow, block, y, rows);
         if (residual->pressure[f]) pressure_flow_jacobian(residual->pressure[f], block, rows);
         if (residual->pressure[f] && f == g) pressure_own_jacobian(residual->pressure[f], y, rows);
         contact_jacobian(residual->contact, f, g, y, rows);
     }
     bound_sheet_flow_jacobian(fish, block, y, rows);
-    if (residual_sheet_law(residual) == BOUND_SHEET_RATE) {
+    if (residual_sheet_law(residual, mode) == BOUND_SHEET_RATE) {
         bound_sheet_kutta_flow_jacobian(fish, ramp_value(t, residual->school->kutta_ramp), block, y, rows);
     }
 }
@@ -38,10 +38,10 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
 // midpoint of an edge depends on the nodes of the edge and, with its wake, on the tail node and the circulation
 // shed through the nascent vortex; the flux at the tail depends on the nodes of the last two edges; with pressure, or
 // with images in walls, every row depends on every column.
-static void add_own_rows(const struct residual *residual, const struct fish *fish, const struct coupling_block *rows,
-                         struct sparse *own) {
+static void add_own_rows(const struct residual *residual, const struct residual_mode *mode, const struct fish *fish,
+                         const struct coupling_block *rows, struct sparse *own) {
     const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
-    const int rate = residual_sheet_law(residual) == BOUND_SHEET_RATE;
+    const int rate = residual_sheet_law(residual, mode) == BOUND_SHEET_RATE;
     const int felt_at_tail = n_nodes - (fish->tail_added_mass > 0 ? 3 : 2);
     for (int c = 0; c < rows->n_columns; c++) {
         const double *const value = rows->value + (long)c * rows->n_rows;
@@ -62,8 +62,8 @@ static void add_own_rows(const struct residual *residual, const struct fish *fis
 }
 
 // the derivatives of the equations of one fish, in the order of evaluate_fish
-static void fish_jacobian(struct residual *residual, int f, double t, double cj, const double *y,
-                          struct jacobian *jacobian) {
+static void fish_jacobian(struct residual *residual, const struct residual_mode *mode, int f, double t, double cj,
+                          const double *y, struct jacobian *jacobian) {
     if (residual->stop && *residual->stop) return;
     const struct school *school = residual->school;
     const struct fish *fish = &school->fish[f];
@@ -79,7 +79,8 @@ static void fish_jacobian(struct residual *residual, int f, double t, double cj,
         sparse_add(own, fish->at.x + i, fish->at.x + i, cj);
         sparse_add(own, fish->at.x + i, fish->at.vx + i, -1);
         // with momenta, the rows of prescribed components are the rows of pressure_momentum_row
-        if (!fish_has_momentum(fish) || pressure_momentum_row(fish, residual->at_start, i / n, i % n) != second + i) {
+        if (!fish_has_momentum(fish) ||
+            pressure_momentum_row(fish, mode->velocities_are_given, i / n, i % n) != second + i) {
             sparse_add(own, second + i, second + i, cj);
             sparse_add(own, second + i, fish->at.ax + i, -1);
         }
@@ -89,36 +90,37 @@ static void fish_jacobian(struct residual *residual, int f, double t, double cj,
     rod_jacobian(fish, &muscle, y, own);
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     rod_clamp_jacobian(fish, t, y, own);
-    if (!residual->given_forces) fluid_force_jacobian(fish, &flow, y, own);
+    if (!mode->forces) fluid_force_jacobian(fish, &flow, y, own);
     if (residual->pressure[f]) {
         pressure_update(residual->pressure[f], &flow, y);
-        pressure_momentum_jacobian(residual->pressure[f], residual->at_start, y, own);
-        if (!residual->given_forces) pressure_jacobian(residual->pressure[f], own);
+        pressure_momentum_jacobian(residual->pressure[f], mode->velocities_are_given, y, own);
+        if (!mode->forces) pressure_jacobian(residual->pressure[f], own);
     }
     bound_sheet_jacobian(fish, u, v, y, own);
-    bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual), ramp_value(t, school->kutta_ramp), cj, u, v, y, own);
+    bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual, mode), ramp_value(t, school->kutta_ramp), cj, u, v, y,
+                               own);
     control_jacobian(fish, &residual->state->control[f], t, t - residual->state->t, y, own);
 
     // dependence through the flow velocity: on the unknowns of this fish, then on the unknowns of coupled fish
-    flow_jacobian(residual, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
-    add_own_rows(residual, fish, &jacobian_scratch->rows, own);
+    flow_jacobian(residual, mode, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
+    add_own_rows(residual, mode, fish, &jacobian_scratch->rows, own);
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         struct jacobian_coupling *const coupling = &jacobian->coupling[i];
-        flow_jacobian(residual, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
+        flow_jacobian(residual, mode, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
     }
     jacobian_mask_couplings(jacobian, f);
     sparse_end(own);
 }
 
-enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
-                              struct jacobian *jacobian) {
+enum status residual_jacobian(struct residual *residual, const struct residual_mode *mode, double t, double cj,
+                              const double *y, struct jacobian *jacobian) {
     const struct school *school = residual->school;
     int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
 
     TRY(contact_find(residual->contact, residual->state, t, y));
     jacobian->has_contacts = residual_couple_contacts(&residual->couplings, residual->contact);
     residual->flow->stop = residual->stop;
-    flow_gradient(residual->flow, residual->state, t, y);
+    flow_gradient(residual->flow, residual->state, t, y, mode->shed == SHED_IS_FAR);
     if (jacobian->pattern != residual->couplings.pattern) {
         jacobian_couple(jacobian, residual->couplings.coupled, residual->couplings.pattern);
     }
@@ -128,10 +130,10 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
         if (jacobian->own[f]->recording) threads = 1;
     }
     if (threads == 1) {
-        for (int f = 0; f < school->n_fish; f++) fish_jacobian(residual, f, t, cj, y, jacobian);
+        for (int f = 0; f < school->n_fish; f++) fish_jacobian(residual, mode, f, t, cj, y, jacobian);
     } else {
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-        for (int f = 0; f < school->n_fish; f++) fish_jacobian(residual, f, t, cj, y, jacobian);
+        for (int f = 0; f < school->n_fish; f++) fish_jacobian(residual, mode, f, t, cj, y, jacobian);
     }
     return status_ask(residual->stop);
 }

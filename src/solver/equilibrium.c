@@ -21,12 +21,13 @@ enum { MAX_ITERATIONS = 16 };
 /* An eigenvalue is real if the imaginary part is below this fraction of the real part. */
 static const double nearly_real = 1e-3;
 
+const struct residual_mode equilibrium_mode = {.shed = SHED_IS_FAR};
+
 struct equilibrium {
     struct arena *arena;
     struct residual *residual;
     struct state *state;
     struct jacobian *jacobian;
-    double reach;                    /* of the couplings in a run */
     int n, n_places;                 /* unknowns: first the free positions of all bodies, then the sheets */
     int *unknown, *row;              /* indices of unknown and equation in the school                        (n) */
     int *number, *row_number;        /* inverse of unknown and row, or -1                               (n_unknowns) */
@@ -85,12 +86,11 @@ static void equilibrium_list(struct equilibrium *e) {
     }
 }
 
-struct equilibrium *equilibrium_create(struct arena *arena, struct residual *residual, struct state *state) {
-    const struct school *const school = residual->school;
+struct equilibrium *equilibrium_create(struct arena *arena, const struct school *school, struct state *state) {
     const int n = school->n_unknowns;
     struct equilibrium *e;
     NEW(arena, e, 1);
-    *e = (struct equilibrium){.arena = arena, .residual = residual, .state = state, .reach = residual->couplings.reach};
+    *e = (struct equilibrium){.arena = arena, .residual = residual_create(arena, school, state), .state = state};
     int **const counts[] = {&e->unknown, &e->row, &e->number, &e->row_number};
     double **const reals[] = {&e->scale, &e->row_scale, &e->one, &e->u, &e->value, &e->all};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) NEW(arena, *counts[i], n);
@@ -98,10 +98,8 @@ struct equilibrium *equilibrium_create(struct arena *arena, struct residual *res
     e->jacobian = jacobian_create(arena, school);
 
     // couple all bodies at any distance
-    residual->couplings.reach = 1e6 * school->fish[0].length;
-    residual->shed_now = SHED_IS_FAR;
-    residual->flow->is_steady = true;
-    residual_couple(&residual->couplings, state->y);
+    e->residual->couplings.reach = 1e6 * school->fish[0].length;
+    residual_couple(&e->residual->couplings, state->y);
 
     for (int i = 0; i < n; i++) {
         e->number[i] = e->row_number[i] = -1;
@@ -109,12 +107,6 @@ struct equilibrium *equilibrium_create(struct arena *arena, struct residual *res
     }
     equilibrium_list(e);
     return e;
-}
-
-void equilibrium_end(struct equilibrium *e) {
-    e->residual->shed_now = SHED_BY_LAW;
-    e->residual->flow->is_steady = false;
-    e->residual->couplings.reach = e->reach;
 }
 
 // ---- the equations
@@ -125,7 +117,7 @@ static enum status equilibrium_evaluate(struct equilibrium *e) {
     for (int f = 0; f < school->n_fish; f++) {
         wake_leave_behind(&state->wake[f], state->y[school->fish[f].at.circulation]);
     }
-    return residual_evaluate(e->residual, state->t, state->y, state->yp, e->all);
+    return residual_evaluate(e->residual, &equilibrium_mode, state->t, state->y, state->yp, e->all);
 }
 
 static enum status equilibrium_value_of(void *data, const double *u, double *value) {
@@ -139,7 +131,7 @@ static enum status equilibrium_value_of(void *data, const double *u, double *val
 static enum status equilibrium_jacobian_of(void *data, double *matrix) {
     struct equilibrium *const e = data;
     struct jacobian *const jacobian = e->jacobian;
-    TRY(residual_jacobian(e->residual, e->state->t, 0, e->state->y, jacobian));
+    TRY(residual_jacobian(e->residual, &equilibrium_mode, e->state->t, 0, e->state->y, jacobian));
     memset(matrix, 0, (size_t)e->n * (size_t)e->n * sizeof *matrix);
     jacobian_add(jacobian, 1, e->n, e->row_number, e->number, matrix);
     for (int j = 0; j < e->n; j++) {

@@ -10,11 +10,12 @@
 
 struct equilibrium;
 
-/* Create the problem for all bodies of a residual, each with the prescribed velocity of its first node; the wakes of
- * the state are discarded. Residual and state must outlive the problem. equilibrium_end restores the residual for a
- * run. */
-struct equilibrium *equilibrium_create(struct arena *arena, struct residual *residual, struct state *state);
-void equilibrium_end(struct equilibrium *equilibrium);
+/* The equations of an equilibrium. */
+extern const struct residual_mode equilibrium_mode;
+
+/* Create the problem for all bodies of a school, each with the prescribed velocity of its first node; the wakes of the
+ * state are discarded. School and state must outlive the problem. */
+struct equilibrium *equilibrium_create(struct arena *arena, const struct school *school, struct state *state);
 
 /* Newton's method from the positions and sheets in state->y; the solution replaces state->y, the rates state->yp, and
  * the residual is evaluated at the solution. Without convergence fails with STATUS_SOLVER or STATUS_RETRY (state->y is

@@ -58,8 +58,8 @@ static int residual_callback(sunrealtype t, N_Vector y, N_Vector yp, N_Vector va
     struct ida *const solver = data;
     solver->failure = status_ask(solver->stop);
     if (solver->failure == STATUS_OK) {
-        solver->failure = residual_evaluate(solver->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
-                                            N_VGetArrayPointer(value));
+        solver->failure = residual_evaluate(solver->residual, &residual_run, t, N_VGetArrayPointer(y),
+                                            N_VGetArrayPointer(yp), N_VGetArrayPointer(value));
     }
     return solver->failure;
 }
@@ -69,7 +69,8 @@ static int jacobian_callback(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector
     (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
     struct ida *const solver = data;
     solver->jacobians++;
-    solver->failure = residual_jacobian(solver->residual, t, cj, N_VGetArrayPointer(y), solver->jacobian);
+    solver->failure =
+        residual_jacobian(solver->residual, &residual_run, t, cj, N_VGetArrayPointer(y), solver->jacobian);
     return solver->failure;
 }
 
@@ -132,7 +133,7 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
     NEW(arena, solver->tolerance, n);
     NEW(arena, solver->weight, n);
     NEW(arena, solver->kind, n);
-    residual_kinds(residual, solver->kind);
+    residual_kinds(residual, &residual_run, solver->kind);
     for (int i = 0; i < n; i++) {
         solver->tolerance[i] = residual_scale(school, i) * options->rtol;
         solver->weight[i] = 1 / solver->tolerance[i];

@@ -31,6 +31,7 @@ struct initial_conditions {
     struct residual *residual;
     struct jacobian *jacobian;
     int n;
+    const struct residual_mode *mode;
     double t;
     /* unknowns, rates of zero, kinds, scales of the unknowns and of the equations in their rows, and inverses  (n) */
     double *y, *zero, *kind, *scale, *inverse_scale;
@@ -59,7 +60,7 @@ static int algebraic_value(N_Vector solution, N_Vector value, void *data) {
     double *const to = N_VGetArrayPointer(value);
     take_algebraic(c, N_VGetArrayPointer(solution), c->y);
     c->failure = status_ask(c->stop);
-    if (c->failure == STATUS_OK) c->failure = residual_evaluate(c->residual, c->t, c->y, c->zero, c->value);
+    if (c->failure == STATUS_OK) c->failure = residual_evaluate(c->residual, c->mode, c->t, c->y, c->zero, c->value);
     for (int i = 0; i < c->n; i++) to[i] = c->kind[i] > 0 ? 0 : c->value[i];
     return c->failure;
 }
@@ -69,7 +70,7 @@ static int algebraic_jacobian(N_Vector solution, N_Vector value, SUNMatrix matri
     (void)value, (void)matrix, (void)scratch1, (void)scratch2;
     struct initial_conditions *const c = data;
     take_algebraic(c, N_VGetArrayPointer(solution), c->y);
-    c->failure = residual_jacobian(c->residual, c->t, 0, c->y, c->jacobian);
+    c->failure = residual_jacobian(c->residual, c->mode, c->t, 0, c->y, c->jacobian);
     return c->failure;
 }
 
@@ -156,14 +157,16 @@ void initial_conditions_listen(struct initial_conditions *c, const volatile sig_
     c->stop = stop;
 }
 
-enum status initial_conditions_solve(struct initial_conditions *c, double t, double *y, double *yp) {
+enum status initial_conditions_solve(struct initial_conditions *c, const struct residual_mode *mode, double t,
+                                     double *y, double *yp) {
+    c->mode = mode;
     c->t = t;
     memcpy(c->y, y, (size_t)c->n * sizeof *y);
     memcpy(c->start, y, (size_t)c->n * sizeof *y);
 
     // kinds of unknowns may have changed since the last solution: mask the rows of the differential unknowns
     const struct school *const school = c->residual->school;
-    residual_kinds(c->residual, c->value);
+    residual_kinds(c->residual, c->mode, c->value);
     if (memcmp(c->value, c->kind, (size_t)c->n * sizeof *c->kind) != 0) {
         memcpy(c->kind, c->value, (size_t)c->n * sizeof *c->kind);
         residual_mask(c->residual, c->jacobian);
@@ -186,7 +189,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
     if (code < 0 && !is_rounded) return initial_failed(c, code);
     // rates and diagnostics need the velocity of the fluid at the solution
     take_algebraic(c, c->start, c->y);
-    c->failure = residual_evaluate(c->residual, t, c->y, c->zero, c->value);
+    c->failure = residual_evaluate(c->residual, c->mode, t, c->y, c->zero, c->value);
     if (c->failure != STATUS_OK) return initial_failed(c, code);
     memcpy(y, c->y, (size_t)c->n * sizeof *y);
 
@@ -196,7 +199,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
         for (int i = at->x; i < at->vx; i++) yp[i] = y[i + (at->vx - at->x)];
         const int second = fish_has_momentum(&school->fish[f]) ? at->px : at->vx;
         for (int i = second; i < at->ax; i++) yp[i] = y[i + (at->ax - second)];
-        if (c->kind[at->circulation] > 0) yp[at->circulation] = residual_shed_rate(c->residual, f, t, y);
+        if (c->kind[at->circulation] > 0) yp[at->circulation] = residual_shed_rate(c->residual, c->mode, f, t, y);
     }
     return STATUS_OK;
 }

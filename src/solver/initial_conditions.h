@@ -15,9 +15,10 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
                                       struct residual *residual);
 
 /* Solve for the algebraic unknowns of y at time t [s], and set the rates yp of the differential unknowns; both arrays
- * are (n_unknowns). The residual defines the kinds of the unknowns at each call. Fails with STATUS_SOLVER or
- * STATUS_STOPPED; y and yp are then unchanged. */
-enum status initial_conditions_solve(struct initial_conditions *solver, double t, double *y, double *yp);
+ * are (n_unknowns). The mode defines the kinds of the unknowns. Fails with STATUS_SOLVER or STATUS_STOPPED: y and yp
+ * are unchanged. */
+enum status initial_conditions_solve(struct initial_conditions *solver, const struct residual_mode *mode, double t,
+                                     double *y, double *yp);
 
 /* Let every later solution end once *stop is not 0; NULL: never. */
 void initial_conditions_listen(struct initial_conditions *solver, const volatile sig_atomic_t *stop);

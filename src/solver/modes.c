@@ -86,7 +86,8 @@ static enum status modes_evaluate(const struct modes *modes, double tau, double 
         fish_prescribed_node(fish, 0, state->t, position, velocity, acceleration);
         for (int i = 0; i < 2 * fish->n_nodes; i++) modes->y[fish->at.x + i] += tau * velocity[i / fish->n_nodes];
     }
-    const enum status status = residual_evaluate(modes->residual, state->t + tau, modes->y, state->yp, value);
+    const enum status status =
+        residual_evaluate(modes->residual, &residual_run, state->t + tau, modes->y, state->yp, value);
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
@@ -134,7 +135,7 @@ static enum status modes_linearise(const struct modes *modes, struct jacobian *j
         const double tau = point[p] * modes->residual->school->interval, t = modes->state->t + tau;
         TRY(modes_evaluate(modes, tau, modes->plain));
         for (int cj = 0; cj < 2; cj++) {
-            TRY(residual_jacobian(modes->residual, t, cj, modes->y, jacobian));
+            TRY(residual_jacobian(modes->residual, &residual_run, t, cj, modes->y, jacobian));
             jacobian_add(jacobian, 1.0 / N_POINTS, modes->n_all, modes->number, modes->number, cj ? by_rate : by_value);
         }
     }

@@ -156,7 +156,7 @@ static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
         d->no_sheets[fish->at.circulation] = state->wake[f].shed_before;
         memset(d->no_sheets + fish->at.vx, 0, (size_t)n_velocities(fish) * sizeof *y);
     }
-    flow_velocity(residual->flow, state, t, d->no_sheets);
+    flow_velocity(residual->flow, state, t, d->no_sheets, false);
     for (int i = 0; i < school->n_fish * school->n_fish; i++) {
         flow_influence(residual->flow, i / school->n_fish, i % school->n_fish, &d->influence[i]);
     }
@@ -277,7 +277,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
 
     // the velocity of rings has a divergence, which the influence omits
     const int has_legs = d->residual->flow->kernel->has_legs;
-    if (has_legs) flow_velocity(d->residual->flow, state, t, y);
+    if (has_legs) flow_velocity(d->residual->flow, state, t, y, false);
     if (!has_legs) add_sheets(d, y);
 
     memset(yp, 0, (size_t)school->n_unknowns * sizeof *yp);
@@ -295,7 +295,8 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
         TRY(find_accelerations(d, f, t, y));
         memcpy(yp + at->x, y + at->vx, size);
         memcpy(yp + (fish_has_momentum(fish) ? at->px : at->vx), y + at->ax, size);
-        yp[at->circulation] = residual_shed_is_algebraic(d->residual) ? 0 : residual_shed_rate(d->residual, f, t, y);
+        yp[at->circulation] =
+            residual_shed_is_algebraic(d->residual) ? 0 : residual_shed_rate(d->residual, &residual_run, f, t, y);
         if (!isfinite(y[at->ax]) || !isfinite(y[at->ay])) {
             return status_fail(STATUS_RETRY, "the nose of fish %s has no finite acceleration at t = %g s", fish->name,
                                t);

@@ -56,7 +56,7 @@ static enum status one_step_create(struct arena *arena, void **created, struct r
                                &solver->correction, &solver->right_hand, &solver->older,  &solver->forces[0],
                                &solver->forces[1],  &solver->given};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) NEW(arena, *arrays[i], n);
-    residual_kinds(residual, solver->kind);
+    residual_kinds(residual, &residual_run, solver->kind);
     for (int i = 0; i < n; i++) {
         // the errors of Newton's iteration in the velocities of a stiff body add up to a spurious momentum
         const double tolerance = options->rtol * residual_scale(residual->school, i);
@@ -105,7 +105,7 @@ static enum status one_step_extrapolate(struct one_step *solver, double t) {
     struct residual *const residual = solver->residual;
     double *const older = solver->forces[1], *const known = solver->forces[0];
     solver->counts.residual_evaluations++;
-    TRY(residual_evaluate(residual, t, solver->state->y, solver->state->yp, solver->right_hand));
+    TRY(residual_evaluate(residual, &residual_run, t, solver->state->y, solver->state->yp, solver->right_hand));
     for (int f = 0; f < residual->school->n_fish; f++) {
         const struct fish *const fish = &residual->school->fish[f];
         for (int i = fish->at.ax; i < fish->at.ax + 2 * fish->n_nodes; i++) {
@@ -124,7 +124,7 @@ static enum status one_step_extrapolate(struct one_step *solver, double t) {
 }
 
 /* Newton's iteration, starting from the unknowns in the state. STATUS_RETRY: no convergence. */
-static enum status one_step_iterate(struct one_step *solver, double t, double h) {
+static enum status one_step_iterate(struct one_step *solver, const struct residual_mode *mode, double t, double h) {
     struct residual *const residual = solver->residual;
     struct state *const state = solver->state;
     const double cj = (solver->options.method == METHOD_TRAPEZOID ? 2 : solver->n_known == 2 ? 1.5 : 1) / h;
@@ -137,7 +137,7 @@ static enum status one_step_iterate(struct one_step *solver, double t, double h)
             solver->pattern = residual->couplings.pattern;
             solver->counts.jacobian_evaluations++;
             solver->cj = 0;
-            TRY(residual_jacobian(residual, t, cj, state->y, solver->jacobian));
+            TRY(residual_jacobian(residual, mode, t, cj, state->y, solver->jacobian));
             const enum status status = linear_setup(solver->linear);
             if (status == STATUS_SOLVER) return status_fail(STATUS_RETRY, "the Jacobian is singular");
             TRY(status);
@@ -148,7 +148,7 @@ static enum status one_step_iterate(struct one_step *solver, double t, double h)
         one_step_rates(solver, h);
         solver->counts.residual_evaluations++;
         solver->counts.newton_iterations++;
-        TRY(residual_evaluate(residual, t, state->y, state->yp, solver->right_hand));
+        TRY(residual_evaluate(residual, mode, t, state->y, state->yp, solver->right_hand));
         TRY(linear_solve(solver->linear, solver->right_hand, solver->correction));
         double size = 0;
         for (int k = 0; k < residual->school->n_unknowns; k++) {
@@ -195,17 +195,16 @@ static enum status one_step_advance(void *data, double t, const volatile sig_ato
         memcpy(solver->rates, state->yp, size);
 
         // the second attempt has a new Jacobian
-        solver->residual->given_forces = is_split ? solver->given : NULL;
+        const struct residual_mode mode = {.forces = is_split ? solver->given : NULL};
         for (size_t k = 0; solver->n_known == 2 && k < size / sizeof *state->y; k++) {
             state->y[k] += solver->before[k] - solver->older[k];
         }
-        enum status status = one_step_iterate(solver, end, h);
+        enum status status = one_step_iterate(solver, &mode, end, h);
         if (status > 0) {
             solver->cj = 0;
             memcpy(state->y, solver->before, size);
-            status = one_step_iterate(solver, end, h);
+            status = one_step_iterate(solver, &mode, end, h);
         }
-        solver->residual->given_forces = NULL;
         if (status > 0) {
             return status_fail(STATUS_SOLVER,
                                "integration failed at t = %.10g s: Newton's iteration did not converge with steps of "

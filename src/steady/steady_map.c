@@ -188,7 +188,8 @@ static enum status renew_simulation(struct simulation *simulation) {
     TRY(simulate_renew(simulation));
     struct residual *const residual = simulation->residual;
     const struct state *const state = simulation->state;
-    const enum status status = residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch);
+    const enum status status =
+        residual_evaluate(residual, &residual_run, state->t, state->y, state->yp, residual->scratch);
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
@@ -248,10 +249,8 @@ enum status steady_map_add(struct steady_map *map, int n, const struct steady_un
     }
 
     // velocities are given, as at the start of a run: solve for the momenta
-    residual->at_start = 1;
-    const enum status status = initial_conditions_solve(simulation->consistent, state->t, state->y, state->yp);
-    residual->at_start = 0;
-    TRY(status);
+    const struct residual_mode start = {.velocities_are_given = true};
+    TRY(initial_conditions_solve(simulation->consistent, &start, state->t, state->y, state->yp));
 
     // the simulation has a new residual
     TRY(renew_simulation(simulation));

@@ -60,7 +60,6 @@ enum status steady_modes_find(struct simulation *simulation, struct steady_value
     struct state *kept = NULL;
     int jumped, n_most = STEADY_QUANTITIES * school->n_fish;
     steady_map_save(arena, simulation, &kept);
-    simulation->residual->flow->is_steady = false;
     TRY(event_start(state, simulation->residual, simulation->consistent));
     hold_bodies(simulation, kept, state->t);
     for (int i = 0; i < n_events; i++) {

@@ -87,7 +87,6 @@ struct growth {
     struct simulation *simulation;
     struct school
         school; /* school of the simulation with a part of the stream and loads; owns the array of fish only */
-    struct residual *residual; /* of this school */
     struct equilibrium *equilibrium;
     double *last;                      /* the last solution                                          (n_unknowns) */
     double last_part;                  /* of the stream at the last solution */
@@ -248,8 +247,7 @@ static enum status find_solution(struct growth *growth, const char *from, struct
     growth->school = *school;
     NEW(arena, growth->school.fish, school->n_fish);
     memcpy(growth->school.fish, school->fish, (size_t)school->n_fish * sizeof *school->fish);
-    growth->residual = residual_create(arena, &growth->school, state);
-    growth->equilibrium = equilibrium_create(arena, growth->residual, state);
+    growth->equilibrium = equilibrium_create(arena, &growth->school, state);
 
     bool is_found = false;
     TRY(growth_from_rest(growth));
@@ -268,13 +266,12 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
     const double *const y = state->y;
     growth.arena = arena_create(simulation->arena, "the equilibrium of the bodies");
     const enum status status = find_solution(&growth, from, found);
-    if (growth.equilibrium) equilibrium_end(growth.equilibrium);
     arena_free(growth.arena);
     TRY(status);
 
     // evaluate the full case, which the residual of the simulation describes
-    simulation->residual->flow->is_steady = true;
-    TRY(residual_evaluate(simulation->residual, state->t, y, state->yp, simulation->residual->scratch));
+    TRY(residual_evaluate(simulation->residual, &equilibrium_mode, state->t, y, state->yp,
+                          simulation->residual->scratch));
     diagnostics_remember(simulation->residual, state);
     diagnostics_after_jump(simulation->residual, state);
     diagnostics_restart(simulation->residual, state);

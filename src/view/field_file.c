@@ -100,9 +100,9 @@ static enum status field_sum(struct arena *arena, struct field *field, const str
     struct flow *const flow = flow_create(arena, field->row->school);
     int n_markers = 0;
     for (int f = 0; f < field->row->school->n_fish; f++) n_markers += field->row->state->wake[f].n_vortex;
-    flow->is_steady = n_markers == 0;
-    if (flow->is_steady) TRY(flow_check_steady(field->row->school));
-    flow_field(flow, field->row->state, at);
+    const bool is_steady = n_markers == 0;
+    if (is_steady) TRY(flow_check_steady(field->row->school));
+    flow_field(flow, field->row->state, at, is_steady);
     for (int i = 0; i < at->n; i++) field->vorticity[i] = at->v_x[i] - at->u_y[i];
     return STATUS_OK;
 }

@@ -73,8 +73,9 @@ static void add_time(int phase, double since) {
         return status;                                      \
     }
 TIMED(JACOBIAN, residual_jacobian,
-      (struct residual * residual, double t, double cj, const double *y, struct jacobian *jacobian),
-      (residual, t, cj, y, jacobian))
+      (struct residual * residual, const struct residual_mode *mode, double t, double cj, const double *y,
+       struct jacobian *jacobian),
+      (residual, mode, t, cj, y, jacobian))
 TIMED(LINEAR, linear_setup, (struct linear * linear), (linear))
 TIMED(LINEAR, linear_solve, (struct linear * linear, const double *b, double *x), (linear, b, x))
 
@@ -95,14 +96,14 @@ void __wrap_flow_at_wake(struct flow *flow, const struct state *state) {
     seen.interactions += n * (n + n_bound(flow->school) + flow->n_points);
 }
 
-enum status __real_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
-                                     double *value);
-enum status __wrap_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
-                                     double *value);
-enum status __wrap_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
-                                     double *value) {
+enum status __real_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
+                                     const double *y, const double *yp, double *value);
+enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
+                                     const double *y, const double *yp, double *value);
+enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
+                                     const double *y, const double *yp, double *value) {
     const double since = cpu_time();
-    const enum status status = __real_residual_evaluate(residual, t, y, yp, value);
+    const enum status status = __real_residual_evaluate(residual, mode, t, y, yp, value);
     add_time(RESIDUAL, since);
     seen.interactions += residual->flow->n_points * n_bound(residual->school);
     return status;

@@ -164,7 +164,7 @@ static double lowest_mode(int nodes) {
              nodes);
     struct setup setup = setup_of(text);
     const struct fish *fish = setup.school->fish;
-    school_ok(residual_jacobian(setup.residual, 0, 0, setup.state->y, setup.jacobian));
+    school_ok(residual_jacobian(setup.residual, &residual_run, 0, 0, setup.state->y, setup.jacobian));
     double *const dense = school_dense_jacobian(setup.jacobian);
     const int n = nodes - 1, all = setup.school->n_unknowns;
     double *const matrix = calloc((size_t)(n * n), sizeof *matrix), shape[64], square = 0;

@@ -47,7 +47,7 @@ static void add_fish(const struct setup *setup, int g, double x, double y, doubl
 TEST(every_point_feels_the_sources_that_the_model_says) {
     struct setup setup = setup_stirred(TWO);
     school_flow(&setup, setup.state->y);
-    flow_velocity(setup.residual->flow, setup.state, setup.t, setup.state->y);
+    flow_velocity(setup.residual->flow, setup.state, setup.t, setup.state->y, false);
     const struct flow *flow = setup.residual->flow;
     for (int f = 0; f < 2; f++) {
         const struct fish *fish = &setup.school->fish[f], *other = &setup.school->fish[1 - f];
@@ -171,7 +171,7 @@ static void velocity_at(struct setup *setup, int i, double step, double *velocit
     struct flow *flow = setup->residual->flow;
     const double here = setup->state->y[i];
     setup->state->y[i] = here + step;
-    flow_velocity(flow, setup->state, setup->t, setup->state->y);
+    flow_velocity(flow, setup->state, setup->t, setup->state->y, false);
     setup->state->y[i] = here;
     memcpy(velocity, flow->u, (size_t)flow->n_points * sizeof *velocity);
     memcpy(velocity + flow->n_points, flow->v, (size_t)flow->n_points * sizeof *velocity);
@@ -309,8 +309,8 @@ TEST(beside_a_wall_everything_feels_mirrored_fish) {
 
         free.t = wall.t;
         struct flow *const one = wall.residual->flow, *const other = free.residual->flow;
-        flow_velocity(one, wall.state, wall.t, wall.state->y);
-        flow_velocity(other, free.state, free.t, free.state->y);
+        flow_velocity(one, wall.state, wall.t, wall.state->y, false);
+        flow_velocity(other, free.state, free.t, free.state->y, false);
         for (int f = 0; f < 2; f++) same_velocities(one, other, f);
         school_flow(&wall, wall.state->y);
         school_flow(&free, free.state->y);
@@ -342,7 +342,7 @@ TEST(gradient_pass_leaves_the_velocity_as_it_is) {
     school_flow(&setup, setup.state->y);
     double with[64];
     memcpy(with, flow->u, (size_t)flow->n_points * sizeof *with);
-    flow_velocity(flow, setup.state, setup.t, setup.state->y);
+    flow_velocity(flow, setup.state, setup.t, setup.state->y, false);
 
     // the loops differ in the order of a division and a product
     NEAR_ARRAY(flow->n_points, flow->u, with, 1e-13, 1e-13);
@@ -353,11 +353,11 @@ TEST(threads_change_no_bit) {
     struct flow *flow = setup.residual->flow;
     double one[64];
     school_flow(&setup, setup.state->y);
-    flow_velocity(flow, setup.state, setup.t, setup.state->y);
+    flow_velocity(flow, setup.state, setup.t, setup.state->y, false);
     memcpy(one, flow->u, (size_t)flow->n_points * sizeof *one);
     for (int threads = 2; threads <= 5; threads++) {
         setup.school->threads = threads;
-        flow_velocity(flow, setup.state, setup.t, setup.state->y);
+        flow_velocity(flow, setup.state, setup.t, setup.state->y, false);
         assert_memory_equal(flow->u, one, (size_t)flow->n_points * sizeof *one);
     }
 

@@ -87,7 +87,7 @@ static void feel(struct setup *setup, int body, int wake, struct felt *felt) {
         state->wake[f].version++;
     }
 
-    flow_velocity(flow, state, state->t, state->y);
+    flow_velocity(flow, state, state->t, state->y, false);
     for (int f = 0; f < N_FISH; f++) {
         for (int c = 0; c < school->fish[f].n_control; c++) {
             felt->body_u[f][c] = flow->u[flow->points[f].first + c];

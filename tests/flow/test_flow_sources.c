@@ -172,7 +172,7 @@ static void add_body(struct felt *felt, const struct setup *setup, int f, int g,
 static void check_midpoints_feel_bodies_wakes_and_images(void) {
     struct setup setup;
     build(&setup, "fluid: {walls: [-0.9]}\n", TWO);
-    flow_velocity(setup.residual->flow, setup.state, setup.t, setup.state->y);
+    flow_velocity(setup.residual->flow, setup.state, setup.t, setup.state->y, false);
     const struct flow *const flow = setup.residual->flow;
     for (int f = 0; f < 2; f++) {
         const struct fish *const fish = &setup.school->fish[f];
@@ -209,7 +209,7 @@ static void check_control_points_feel_their_own_body_and_wake(void) {
     for (int i = 0; i < wake->n_vortex; i++) wake->x[i] += 50;
     wake->version++;
     y[fish->at.circulation] = label_of(&setup, wake, wake->n_vortex - 1, 0.008);
-    flow_velocity(setup.residual->flow, setup.state, setup.t, y);
+    flow_velocity(setup.residual->flow, setup.state, setup.t, y, false);
     const struct flow *const flow = setup.residual->flow;
     for (int p = 0; p < fish->n_control; p++) {
         struct felt felt = {0};
@@ -368,7 +368,7 @@ TEST(markers_are_stretched_and_a_wall_lets_nothing_through) {
     }
 
     const struct targets at = {.n = N, .x = x, .y = y, .u = u, .v = v, .u_x = u_x, .u_y = u_y, .v_x = v_x};
-    flow_field(flow, setup.state, &at);
+    flow_field(flow, setup.state, &at, false);
     for (int i = 0; i < N; i++) NEAR(v[i], 0, 1e-15, 0);
 }
 
@@ -551,8 +551,8 @@ static void check_large_schools_are_summed_by_the_tree_to_half_the_tolerance(voi
     build_large(&exact, "0", 1000);
     build_large(&fast, "1e-7", 1000);
     const struct flow *const a = exact.residual->flow, *const b = fast.residual->flow;
-    flow_gradient(exact.residual->flow, exact.state, exact.t, exact.state->y);
-    flow_gradient(fast.residual->flow, fast.state, fast.t, fast.state->y);
+    flow_gradient(exact.residual->flow, exact.state, exact.t, exact.state->y, false);
+    flow_gradient(fast.residual->flow, fast.state, fast.t, fast.state->y, false);
     ABOVE(tree_interactions(b->tree), 0);
     AT_MOST(tree_interactions(a->tree), 0);
     const double *const values[][2] = {{a->u, b->u}, {a->v, b->v}, {a->div, b->div}};
@@ -601,7 +601,7 @@ TEST(sums_by_the_tree_have_equal_parts_of_half_the_tolerance) {
     struct setup setup;
     build_large(&setup, "1e-4", 1000);
     struct flow *const flow = setup.residual->flow;
-    flow_velocity(flow, setup.state, setup.t, setup.state->y);
+    flow_velocity(flow, setup.state, setup.t, setup.state->y, false);
     const struct flow_sum sum = {WAKE_AT_BODY, false};
     struct sources many = {.arena = test_arena()};
     struct kernel_pair pair = flow_pair_of(flow, 0, 0, &sum);
@@ -638,7 +638,7 @@ static void values_at(struct setup *setup, int i, double step, double *value) {
     const double here = setup->state->y[i];
     const size_t n = (size_t)flow->n_points;
     setup->state->y[i] = here + step;
-    flow_velocity(flow, setup->state, setup->t, setup->state->y);
+    flow_velocity(flow, setup->state, setup->t, setup->state->y, flow->is_steady);
     setup->state->y[i] = here;
     memcpy(value, flow->u, n * sizeof *value);
     memcpy(value + n, flow->v, n * sizeof *value);
@@ -649,7 +649,6 @@ static void compare_derivatives(const char *fluid, bool is_steady) {
     struct setup setup;
     build(&setup, fluid, TWO);
     struct flow *flow = setup.residual->flow;
-    flow->is_steady = is_steady;
     struct influence_block *block = &setup.residual->jacobian_scratch[0].block;
     enum { MOST = 128 };
     static double value[4][3 * MOST];
@@ -658,7 +657,7 @@ static void compare_derivatives(const char *fluid, bool is_steady) {
     for (int f = 0; f < 2; f++) {
         for (int g = 0; g < 2; g++) {
             const struct fish *other = &setup.school->fish[g];
-            school_flow(&setup, setup.state->y);
+            flow_gradient(flow, setup.state, setup.t, setup.state->y, is_steady);
             flow_derivative(flow, f, g, block);
             assert_int_equal(block->n_points, flow->points[f].n);
             assert_int_equal(block->n_columns, flow_n_columns(other));
@@ -707,7 +706,7 @@ TEST(the_field_does_not_go_through_walls) {
             x[i] = 0.05 * i - 1;
             y[i] = i % 2 ? -0.9 : 1.9;
         }
-        flow_field(setup.residual->flow, setup.state, &at);
+        flow_field(setup.residual->flow, setup.state, &at, false);
         for (int i = 0; i < N; i++) {
             NEAR(v[i], 0, 1e-12, 0);
             NEAR(v_x[i], 0, 1e-11, 0);
@@ -717,7 +716,7 @@ TEST(the_field_does_not_go_through_walls) {
 
         // no fluid beyond the walls
         for (int i = 0; i < N; i++) y[i] = i % 3 == 0 ? -0.91 : i % 3 == 1 ? 1.91 : 0.2;
-        flow_field(setup.residual->flow, setup.state, &at);
+        flow_field(setup.residual->flow, setup.state, &at, false);
         for (int i = 0; i < N; i++) {
             assert_int_equal(isnan(u[i]) && isnan(v[i]) && isnan(u_x[i]) && isnan(u_y[i]) && isnan(v_x[i]), i % 3 != 2);
         }

@@ -67,7 +67,7 @@ TEST(errors_are_below_the_tolerance) {
             for (int exact = 0; exact < 2; exact++) {
                 const double tolerance = school->wake_tolerance;
                 school->wake_tolerance = exact ? 0 : tolerance;
-                flow_gradient(flow, at, at->t + tau, y);
+                flow_gradient(flow, at, at->t + tau, y, false);
                 assert_true(others_are_selected(flow) == !exact);
                 if (!exact) keep(flow, sums);
                 school->wake_tolerance = tolerance;
@@ -99,11 +99,11 @@ static double error_of(struct simulation *simulation, const double *y) {
     const double tolerance = school->wake_tolerance;
     double *sums[SUMS], worst = 0;
     flow->kernel = kernel_of(flow, false);
-    flow_gradient(flow, at, at->t, y);
+    flow_gradient(flow, at, at->t, y, false);
     assert_true(others_are_selected(flow));
     keep(flow, sums);
     school->wake_tolerance = 0;
-    flow_gradient(flow, at, at->t, y);
+    flow_gradient(flow, at, at->t, y, false);
     school->wake_tolerance = tolerance;
     for (int s = 0; s < 3; s++) {
         for (int p = 0; p < flow->points[0].n; p++) {
@@ -174,10 +174,10 @@ TEST(a_body_elsewhere_feels_all_sources) {
     const struct fish *const fish = &school->fish[0];
     for (int k = 0; k < fish->n_nodes; k++) at->y[fish->at.y + k] -= 0.3;
     double *sums[SUMS];
-    flow_gradient(flow, at, at->t, at->y);
+    flow_gradient(flow, at, at->t, at->y, false);
     keep(flow, sums);
     school->wake_tolerance = 0;
-    flow_gradient(flow, at, at->t, at->y);
+    flow_gradient(flow, at, at->t, at->y, false);
     // the order of the sources differs
     NEAR_ARRAY(flow->points[0].n, flow->u + flow->points[0].first, kept[0] + flow->points[0].first, 1e-13, 1e-13);
     NEAR_ARRAY(flow->points[0].n, flow->div + flow->points[0].first, kept[2] + flow->points[0].first, 1e-12, 1e-12);
@@ -194,13 +194,13 @@ TEST(bits_do_not_depend_on_threads_or_evaluations_before) {
         flow->kernel = kernel_of(flow, k == 1);
         double *sums[SUMS];
         at->wake[0].version++;
-        flow_gradient(flow, at, at->t + 0.007, at->y);
+        flow_gradient(flow, at, at->t + 0.007, at->y, false);
         keep(flow, sums);
         struct flow *const fresh = flow_create(test_arena(), school);
         fresh->kernel = flow->kernel;
         school->threads = 3;
-        flow_velocity(fresh, at, at->t + 0.011, at->y);
-        flow_gradient(fresh, at, at->t + 0.007, at->y);
+        flow_velocity(fresh, at, at->t + 0.011, at->y, false);
+        flow_gradient(fresh, at, at->t + 0.007, at->y, false);
         school->threads = 1;
         assert_memory_equal(fresh->u, kept[0], sizeof(double) * (size_t)flow->n_points);
         assert_memory_equal(fresh->u_x, kept[3], sizeof(double) * (size_t)flow->n_points);

@@ -88,7 +88,7 @@ static void solve_plate(const char *collocation, const char *kutta, int m, const
     struct setup setup = setup_of(text);
     struct initial_conditions *consistent;
     school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
-    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    school_ok(initial_conditions_solve(consistent, &residual_run, 0, setup.state->y, setup.state->yp));
     const struct fish *fish = setup.school->fish;
     for (int j = 0; j < m; j++) q[j] = fish->sheet_weight[j] * setup.state->y[fish->at.gamma + j];
 }
@@ -156,7 +156,7 @@ static double circulation_beside_a_vortex(int m) {
     wake_release(&setup.state->wake[0], 0.4, 0.3, 1, 0);
     struct initial_conditions *consistent;
     school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
-    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    school_ok(initial_conditions_solve(consistent, &residual_run, 0, setup.state->y, setup.state->yp));
     const double circulation = bound_sheet_circulation(setup.school->fish, setup.state->y);
     return circulation;
 }
@@ -197,7 +197,7 @@ static double circulation_of_a_bent_body(line *place, const char *curve, int n_n
 
     struct initial_conditions *consistent;
     school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
-    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    school_ok(initial_conditions_solve(consistent, &residual_run, 0, setup.state->y, setup.state->yp));
     const double circulation = bound_sheet_circulation(fish, setup.state->y);
     return circulation;
 }

@@ -44,10 +44,9 @@ static void added_momentum(struct setup *setup, const double *velocity, double *
     const struct fish *fish = setup->school->fish;
     for (int k = 0; k < fish->n_nodes; k++) setup->state->y[fish->at.vy + k] = velocity[k];
     struct initial_conditions *solver;
-    setup->residual->at_start = 1;
-    setup->residual->shed_now = SHED_IS_GIVEN;
+    const struct residual_mode start = {.shed = SHED_IS_GIVEN, .velocities_are_given = true};
     school_ok(initial_conditions_create(test_arena(), &solver, setup->residual));
-    school_ok(initial_conditions_solve(solver, 0, setup->state->y, setup->state->yp));
+    school_ok(initial_conditions_solve(solver, &start, 0, setup->state->y, setup->state->yp));
     for (int k = 0; k < fish->n_nodes; k++) momentum[k] = setup->residual->pressure[0]->momentum[fish->n_nodes + k];
 }
 
@@ -229,7 +228,7 @@ TEST(a_stream_that_starts_at_once_pushes_by_the_added_mass) {
 
     // as in still fluid
     for (int i = fish->at.px; i < fish->at.ax; i++) y[i] = 0;
-    school_ok(initial_conditions_solve(simulation->consistent, 0, y, simulation->state->yp));
+    school_ok(initial_conditions_solve(simulation->consistent, &residual_run, 0, y, simulation->state->yp));
     school_ok(simulation->integrator->restart(simulation->solver));
     school_run(simulation, 0.002);
     double velocity = 0;

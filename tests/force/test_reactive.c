@@ -299,7 +299,7 @@ TEST(reversing_the_wave_reverses_the_path) {
         gone = fmax(gone, fabs(y[fish->at.x + i] - start[i]));
     }
 
-    school_ok(initial_conditions_solve(back->consistent, 0, y, back->state->yp));
+    school_ok(initial_conditions_solve(back->consistent, &residual_run, 0, y, back->state->yp));
     school_ok(back->integrator->restart(back->solver));
     school_run(back, 1);
     print_message("distance %.3f m\n", gone);

@@ -23,16 +23,16 @@
 // A clock of the thread by which an evaluation of the residual takes 1 ms, and 1 us more for each vortex.
 static int counts_evaluations;
 static long counted, n_evaluations;
-enum status __real_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
-                                     double *value);
-enum status __wrap_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
-                                     double *value);
-enum status __wrap_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
-                                     double *value) {
+enum status __real_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
+                                     const double *y, const double *yp, double *value);
+enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
+                                     const double *y, const double *yp, double *value);
+enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
+                                     const double *y, const double *yp, double *value) {
     counted += 1000;
     n_evaluations++;
     for (int f = 0; f < residual->school->n_fish; f++) counted += residual->state->wake[f].n_vortex;
-    return __real_residual_evaluate(residual, t, y, yp, value);
+    return __real_residual_evaluate(residual, mode, t, y, yp, value);
 }
 
 int __real_clock_gettime(clockid_t clock, struct timespec *now);

@@ -303,10 +303,10 @@ TEST(a_signal_ends_a_jacobian) {
     struct residual *const residual = simulation->residual;
     struct jacobian *const jacobian = jacobian_create(simulation->arena, school);
     const double *const y = simulation->state->y, t = simulation->state->t;
-    school_ok(residual_jacobian(residual, t, 1, y, jacobian));
+    school_ok(residual_jacobian(residual, &residual_run, t, 1, y, jacobian));
     ABOVE(fabs(residual->flow->u_x[0]), 0);
     stop = 1;
-    assert_int_equal(residual_jacobian(residual, t, 1, y, jacobian), STATUS_STOPPED);
+    assert_int_equal(residual_jacobian(residual, &residual_run, t, 1, y, jacobian), STATUS_STOPPED);
     for (int p = 0; p < residual->flow->n_points; p++) NEAR(residual->flow->u_x[p], 0, 0, 0);
     stop = 0;
 }

@@ -712,7 +712,7 @@ TEST(vortices_inside_an_outline_are_counted) {
     diagnostics_remember(setup.residual, setup.state);
     struct diagnostics *diagnostics;
     diagnostics = diagnostics_create(test_arena(), setup.school);
-    school_ok(residual_evaluate(setup.residual, 0, setup.state->y, setup.state->yp, setup.value));
+    school_ok(residual_evaluate(setup.residual, &residual_run, 0, setup.state->y, setup.state->yp, setup.value));
     diagnostics_event(setup.residual, setup.state, diagnostics);
     NEAR(diagnostics->fish[0].swept_vortices, 3, 0, 0);
     // the newest own marker lies at the tail

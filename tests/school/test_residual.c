@@ -228,8 +228,10 @@ static const struct variant {
                                      "  - {nodes: 5, sheet_points: 7, start: {position: [0.2, 0.5]}}\n"},
 };
 
+static const struct residual_mode impulse = {.shed = SHED_BY_IMPULSE};
+
 static void value_of_school(struct setup *setup, const double *y, const double *yp, double *value) {
-    school_ok(residual_evaluate(setup->residual, setup->t, y, yp, value));
+    school_ok(residual_evaluate(setup->residual, setup->mode, setup->t, y, yp, value));
 }
 
 TEST(jacobian_agrees_with_differences_for_every_option) {
@@ -237,7 +239,7 @@ TEST(jacobian_agrees_with_differences_for_every_option) {
         struct setup setup = setup_stirred(variants[i].text);
         school_compare(&setup, value_of_school, NULL, variants[i].name);
         if (setup.school->shedding == SHEDDING_IMPULSIVE) {
-            setup.residual->shed_now = SHED_BY_IMPULSE;
+            setup.mode = &impulse;
             school_compare(&setup, value_of_school, NULL, variants[i].name);
         }
     }
@@ -310,7 +312,7 @@ TEST(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else) {
     const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
     const size_t n = (size_t)setup.school->n_unknowns;
     assert_int_equal(setup.residual->couplings.coupled[1], 0);
-    school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
+    school_ok(residual_jacobian(setup.residual, &residual_run, 0, 1, setup.state->y, setup.jacobian));
     double *dense = school_dense_jacobian(setup.jacobian);
     for (int row = a->x; row < a->end; row++) {
         for (int column = b->x; column < b->end; column++) NEAR(dense[(size_t)row * n + (size_t)column], 0, 0, 0);
@@ -323,7 +325,7 @@ TEST(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else) {
     assert_int_equal(setup.residual->couplings.pattern, pattern + 1);
     residual_couple(&setup.residual->couplings, setup.state->y);
     assert_int_equal(setup.residual->couplings.pattern, pattern + 1);
-    school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
+    school_ok(residual_jacobian(setup.residual, &residual_run, 0, 1, setup.state->y, setup.jacobian));
     dense = school_dense_jacobian(setup.jacobian);
     ABOVE(fabs(dense[(size_t)a->gamma * n + (size_t)b->gamma]), 1e-4);
     free(dense);
@@ -353,7 +355,7 @@ TEST(unknowns_have_names_kinds_and_scales) {
                 {b->circulation, 1, 0, "circulation", 0}};
     double kind[128];
     AT_MOST(setup.school->n_unknowns, 128);
-    residual_kinds(setup.residual, kind);
+    residual_kinds(setup.residual, &residual_run, kind);
     for (size_t k = 0; k < sizeof want / sizeof *want; k++) {
         const struct unknown_place place = residual_place(setup.school, want[k].i);
         assert_int_equal(place.fish, want[k].fish);
@@ -382,16 +384,17 @@ TEST(circulation_shed_is_differential_only_with_a_rate) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct setup setup = setup_of(cases[i].text);
         assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic);
-        setup.residual->shed_now = SHED_BY_IMPULSE;
-        assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic_at_impulse);
+        assert_int_equal(residual_sheet_law(setup.residual, &impulse) == BOUND_SHEET_EDGE,
+                         cases[i].algebraic_at_impulse);
     }
 }
 
 TEST(a_value_that_is_not_finite_asks_for_a_retry_and_says_where) {
     struct setup setup = setup_stirred(TIME FISH);
     setup.state->y[setup.school->fish[0].at.phi0] = INFINITY;
-    assert_int_equal(residual_evaluate(setup.residual, setup.t, setup.state->y, setup.state->yp, setup.value),
-                     STATUS_RETRY);
+    assert_int_equal(
+        residual_evaluate(setup.residual, &residual_run, setup.t, setup.state->y, setup.state->yp, setup.value),
+        STATUS_RETRY);
     assert_non_null(strstr(status_message(), "of fish fish1"));
 }
 
@@ -409,10 +412,10 @@ TEST(rows_of_prescribed_nodes_vanish_on_their_motion_only) {
         y[fish->at.ax + k] = acceleration[0];
         y[fish->at.ay + k] = acceleration[1];
     }
-    school_ok(residual_evaluate(setup.residual, setup.t, y, setup.state->yp, setup.value));
+    school_ok(residual_evaluate(setup.residual, &residual_run, setup.t, y, setup.state->yp, setup.value));
     for (int i = fish->at.x; i < fish->at.gamma; i++) NEAR(setup.value[i], 0, 0, 0);
     for (int i = fish->at.x; i < fish->at.gamma; i++) y[i] += 1e-3 * (i + 1);
-    school_ok(residual_evaluate(setup.residual, setup.t, y, setup.state->yp, setup.value));
+    school_ok(residual_evaluate(setup.residual, &residual_run, setup.t, y, setup.state->yp, setup.value));
     for (int i = fish->at.x; i < fish->at.gamma; i++) NEAR(setup.value[i], 1e-3 * (i + 1), 1e-13, 0);
 }
 
@@ -422,8 +425,8 @@ TEST(load_at_the_tip_accelerates_the_tail_only) {
     school_build(&without, TIME "fish: [{sheet_points: 9}]\n");
     school_stir(&with);
     school_stir(&without);
-    school_ok(residual_evaluate(with.residual, with.t, with.state->y, with.state->yp, with.value));
-    school_ok(residual_evaluate(without.residual, with.t, with.state->y, with.state->yp, without.value));
+    school_ok(residual_evaluate(with.residual, &residual_run, with.t, with.state->y, with.state->yp, with.value));
+    school_ok(residual_evaluate(without.residual, &residual_run, with.t, with.state->y, with.state->yp, without.value));
     const struct fish *fish = with.school->fish;
     without.value[fish->at.ax + 6] -= 3 / fish->mass[6];
     without.value[fish->at.ay + 6] += 2 / fish->mass[6];

@@ -44,10 +44,10 @@ static const char uncoupled[] = TIME
 
 static void check_residual(struct setup *setup, double t, const char *text) {
     const int n = setup->school->n_unknowns;
-    school_ok(residual_evaluate(setup->residual, t, setup->state->y, setup->state->yp, setup->value));
+    school_ok(residual_evaluate(setup->residual, &residual_run, t, setup->state->y, setup->state->yp, setup->value));
     double *const kind = calloc((size_t)n, sizeof *kind);
     assert_non_null(kind);
-    residual_kinds(setup->residual, kind);
+    residual_kinds(setup->residual, &residual_run, kind);
     for (int i = 0; i < n; i++) {
         const struct unknown_place place = residual_place(setup->school, i);
         // accelerations of stiff bodies are sums of large forces: relative to those
@@ -67,7 +67,7 @@ TEST(all_equations_hold_at_the_start_for_every_option) {
         struct setup setup = setup_of(texts[i]);
         struct initial_conditions *solver;
         school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-        school_ok(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp));
+        school_ok(initial_conditions_solve(solver, &residual_run, 0, setup.state->y, setup.state->yp));
         check_residual(&setup, 0, texts[i]);
     }
 }
@@ -77,7 +77,7 @@ TEST(blocks_left_out_of_the_jacobian_change_no_solution) {
     assert_int_equal(setup.residual->couplings.coupled[1], 0);
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-    school_ok(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp));
+    school_ok(initial_conditions_solve(solver, &residual_run, 0, setup.state->y, setup.state->yp));
     check_residual(&setup, 0, uncoupled);
 }
 
@@ -87,7 +87,7 @@ TEST(all_equations_hold_again_from_any_state) {
         // the solver moves prescribed nodes to their given motion: their positions and velocities are algebraic
         struct initial_conditions *solver;
         school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-        school_ok(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp));
+        school_ok(initial_conditions_solve(solver, &residual_run, setup.t, setup.state->y, setup.state->yp));
         // rates of algebraic unknowns appear in no equation
         check_residual(&setup, setup.t, texts[i]);
     }
@@ -100,10 +100,10 @@ TEST(differential_unknowns_stay_as_they_are) {
     assert_non_null(kind);
     assert_non_null(before);
     memcpy(before, setup.state->y, (size_t)setup.school->n_unknowns * sizeof *before);
-    residual_kinds(setup.residual, kind);
+    residual_kinds(setup.residual, &residual_run, kind);
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-    school_ok(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp));
+    school_ok(initial_conditions_solve(solver, &residual_run, setup.t, setup.state->y, setup.state->yp));
     int n_differential = 0;
     for (int i = 0; i < setup.school->n_unknowns; i++) {
         if (kind[i] > 0) NEAR(setup.state->y[i], before[i], 0, 0);
@@ -129,10 +129,9 @@ TEST(momenta_follow_at_the_start_and_velocities_later) {
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
     for (int start = 1; start >= 0; start--) {
-        setup.residual->at_start = start;
-        setup.residual->shed_now = start ? SHED_IS_GIVEN : SHED_BY_LAW;
+        const struct residual_mode mode = {.shed = start ? SHED_IS_GIVEN : SHED_BY_LAW, .velocities_are_given = start};
         for (int i = at->x; i < at->end; i++) before[i] = y[i];
-        school_ok(initial_conditions_solve(solver, setup.t, y, setup.state->yp));
+        school_ok(initial_conditions_solve(solver, &mode, setup.t, y, setup.state->yp));
         for (int k = fish_n_prescribed(setup.school->fish); k < 7; k++) {
             NEAR(y[at->y + k], before[at->y + k], 0, 0);
             NEAR(y[(start ? at->vy : at->py) + k], before[(start ? at->vy : at->py) + k], 0, 0);
@@ -179,11 +178,11 @@ TEST(a_second_solution_changes_nothing) {
     struct setup setup = setup_stirred(TIME FISH);
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-    school_ok(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp));
+    school_ok(initial_conditions_solve(solver, &residual_run, setup.t, setup.state->y, setup.state->yp));
     double *const before = calloc((size_t)setup.school->n_unknowns, sizeof *before);
     assert_non_null(before);
     memcpy(before, setup.state->y, (size_t)setup.school->n_unknowns * sizeof *before);
-    school_ok(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp));
+    school_ok(initial_conditions_solve(solver, &residual_run, setup.t, setup.state->y, setup.state->yp));
     // rounding of accelerations of a stiff body
     NEAR_ARRAY(setup.school->n_unknowns, setup.state->y, before, 1e-11, 1e-11);
     free(before);
@@ -196,7 +195,8 @@ TEST(a_state_that_is_not_a_number_is_refused_and_kept) {
     const struct fish *fish = setup.school->fish;
     setup.state->y[fish->at.x + 3] = NAN;
     const double before = setup.state->y[fish->at.ax];
-    assert_int_equal(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp), STATUS_SOLVER);
+    assert_int_equal(initial_conditions_solve(solver, &residual_run, setup.t, setup.state->y, setup.state->yp),
+                     STATUS_SOLVER);
     NEAR(setup.state->y[fish->at.ax], before, 0, 0);
     // it says when, and which equation
     assert_non_null(strstr(status_message(), "t = 0.208"));
@@ -214,7 +214,8 @@ TEST(a_singular_jacobian_is_named) {
     setup.state->y[fish->at.circulation] = 1;
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-    assert_int_equal(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp), STATUS_SOLVER);
+    assert_int_equal(initial_conditions_solve(solver, &residual_run, 0, setup.state->y, setup.state->yp),
+                     STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "the Jacobian of fish nemo is singular"));
 }
 
@@ -224,6 +225,6 @@ TEST(a_rate_that_is_not_a_number_does_not_matter) {
     setup.state->yp[fish->at.x + 1] = NAN;
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-    school_ok(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp));
+    school_ok(initial_conditions_solve(solver, &residual_run, 0, setup.state->y, setup.state->yp));
     NEAR(setup.state->yp[fish->at.x + 1], setup.state->y[fish->at.vx + 1], 0, 0);
 }

@@ -59,7 +59,7 @@ struct system {
 
 static void jacobian_at(struct system *system, double cj) {
     struct setup *const setup = &system->setup;
-    school_ok(residual_jacobian(setup->residual, setup->t, cj, setup->state->y, setup->jacobian));
+    school_ok(residual_jacobian(setup->residual, &residual_run, setup->t, cj, setup->state->y, setup->jacobian));
 }
 
 static void build(struct system *system, const char *text, double relative) {
@@ -329,7 +329,8 @@ TEST(the_column_of_the_circulation_shed_can_be_updated) {
         assert_non_null(by_shed);
         for (int i = 0; i < 2; i++) {
             setup->t += setup->school->interval / 4;
-            school_ok(residual_evaluate(setup->residual, setup->t, setup->state->y, setup->state->yp, setup->value));
+            school_ok(residual_evaluate(setup->residual, &residual_run, setup->t, setup->state->y, setup->state->yp,
+                                        setup->value));
             residual_by_shed(setup->residual, setup->state->y, by_shed);
             linear_update_shed(system.linear, by_shed);
         }

@@ -156,13 +156,13 @@ static void fails(const char *text, const char *message) {
 
 // one evaluation throws the nodes far away, from where Newton's iteration does not return, and the next one fails
 static int n_until_lost = -1;
-enum status __real_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
-                                     double *value);
-enum status __wrap_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
-                                     double *value);
-enum status __wrap_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
-                                     double *value) {
-    TRY(__real_residual_evaluate(residual, t, y, yp, value));
+enum status __real_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
+                                     const double *y, const double *yp, double *value);
+enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
+                                     const double *y, const double *yp, double *value);
+enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
+                                     const double *y, const double *yp, double *value) {
+    TRY(__real_residual_evaluate(residual, mode, t, y, yp, value));
     const bool is_lost = n_until_lost-- == 0;
     if (n_until_lost == 0) {
         for (int i = 0; i < residual->school->n_unknowns; i++) value[i] = 1e13 * sin(i);
@@ -262,7 +262,7 @@ TEST(all_equations_hold_at_events) {
     struct residual *const residual = simulation->residual;
     double value[256];
     assert_in_range(simulation->school->n_unknowns, 1, 256);
-    school_ok(residual_evaluate(residual, 1, simulation->state->y, simulation->state->yp, value));
+    school_ok(residual_evaluate(residual, &residual_run, 1, simulation->state->y, simulation->state->yp, value));
     // rounding of forces per mass of the order of 1e3 m s-2
     for (int i = 0; i < simulation->school->n_unknowns; i++) NEAR(value[i], 0, 1e-9, 0);
     struct integrator_counts counts;

@@ -42,9 +42,8 @@ static void added_momentum(struct simulation *simulation, const double *velocity
     const struct fish *fish = simulation->school->fish;
     double *const y = simulation->state->y;
     for (int k = 0; k < fish->n_nodes; k++) y[fish->at.vy + k] = velocity[k];
-    simulation->residual->at_start = 1;
-    simulation->residual->shed_now = SHED_IS_GIVEN;
-    verify_ok(initial_conditions_solve(simulation->consistent, 0, y, simulation->state->yp));
+    const struct residual_mode start = {.shed = SHED_IS_GIVEN, .velocities_are_given = true};
+    verify_ok(initial_conditions_solve(simulation->consistent, &start, 0, y, simulation->state->yp));
     memcpy(momentum, simulation->residual->pressure[0]->momentum + fish->n_nodes,
            (size_t)fish->n_nodes * sizeof *momentum);
 }
@@ -111,15 +110,14 @@ static double mean_velocity(const struct simulation *simulation) {
 }
 
 // the momenta are the momenta of still fluid; without shedding where stated
-static struct simulation *start_stream(const struct plate *plate, enum shed_now shed_now) {
+static struct simulation *start_stream(const struct plate *plate, enum shed_now shed) {
     struct simulation *const simulation = open_plate(plate);
     const struct fish *fish = simulation->school->fish;
     double *const y = simulation->state->y;
     for (int i = fish->at.px; i < fish->at.ax; i++) y[i] = 0;
-    simulation->residual->shed_now = shed_now;
-    if (shed_now == SHED_IS_GIVEN) y[fish->at.circulation] = 0;
-    verify_ok(initial_conditions_solve(simulation->consistent, 0, y, simulation->state->yp));
-    simulation->residual->shed_now = SHED_BY_LAW;
+    if (shed == SHED_IS_GIVEN) y[fish->at.circulation] = 0;
+    const struct residual_mode mode = {.shed = shed};
+    verify_ok(initial_conditions_solve(simulation->consistent, &mode, 0, y, simulation->state->yp));
     return simulation;
 }
 

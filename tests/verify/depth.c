@@ -80,10 +80,9 @@ static double added_mass_part(double depth, int n_sheet) {
     double *const y = simulation->state->y, mass = 0;
     for (int k = 0; k < fish->n_nodes; k++) y[fish->at.vy + k] = 1;
     struct initial_conditions *initial = NULL;
-    residual->at_start = 1;
-    residual->shed_now = SHED_IS_GIVEN;
+    const struct residual_mode start = {.shed = SHED_IS_GIVEN, .velocities_are_given = true};
     verify_ok(initial_conditions_create(simulation->arena, &initial, residual));
-    verify_ok(initial_conditions_solve(initial, 0, y, simulation->state->yp));
+    verify_ok(initial_conditions_solve(initial, &start, 0, y, simulation->state->yp));
     for (int k = 0; k < fish->n_nodes; k++) mass += residual->pressure[0]->momentum[fish->n_nodes + k];
     simulate_free(simulation);
     return mass / (pi / 4 * depth);
@@ -243,7 +242,7 @@ static void check_channel_fish(void) {
         y[i] = i % 2 == 0 ? -0.5 : 0.5;
     }
     const struct targets points = {.n = N, .x = x, .y = y, .u = u, .v = v, .u_x = u_x, .u_y = u_y, .v_x = v_x};
-    flow_field(one->residual->flow, one->state, &points);
+    flow_field(one->residual->flow, one->state, &points, false);
     for (int i = 0; i < N; i++) {
         through = fmax(through, fabs(v[i]));
         along = fmax(along, fabs(u[i]));

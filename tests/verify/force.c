@@ -133,7 +133,7 @@ static void reversal(void) {
         y[fish->at.vx + i] = -there->state->y[fish->at.vx + i];
         went = fmax(went, fabs(y[fish->at.x + i] - start[i]));
     }
-    if (initial_conditions_solve(back->consistent, 0, y, back->state->yp) != STATUS_OK ||
+    if (initial_conditions_solve(back->consistent, &residual_run, 0, y, back->state->yp) != STATUS_OK ||
         back->integrator->restart(back->solver) != STATUS_OK) {
         abort();
     }
@@ -170,7 +170,8 @@ static void force_on_plate(const char *motion, double t, double force[2], double
             y[edge_acceleration(fish, i, k)] = acceleration[i];
         }
     }
-    if (residual_evaluate(simulation->residual, 0, y, simulation->state->yp, value) != STATUS_OK) abort();
+    if (residual_evaluate(simulation->residual, &residual_run, 0, y, simulation->state->yp, value) != STATUS_OK)
+        abort();
     residual_balance(simulation->residual, 0, y, value);
     force[0] = force[1] = *moment = 0;
     for (int k = 0; k < fish->n_nodes; k++) {

@@ -131,7 +131,8 @@ static double *lateral_matrix(struct simulation *simulation, int *n) {
     double *const matrix = calloc((size_t)(*n * *n), sizeof *matrix);
     if (!matrix) abort();
     residual_mask(simulation->residual, jacobian);
-    if (residual_jacobian(simulation->residual, 0, 0, simulation->state->y, jacobian) != STATUS_OK) abort();
+    if (residual_jacobian(simulation->residual, &residual_run, 0, 0, simulation->state->y, jacobian) != STATUS_OK)
+        abort();
     const struct sparse *const own = jacobian->own[0];
     for (int j = 0; j < *n; j++) {
         const int column = fish->at.y + first + j;
@@ -314,7 +315,7 @@ static void strike(struct simulation *simulation) {
     const struct fish *const fish = simulation->school->fish;
     double *const y = simulation->state->y;
     for (int k = 0; k < fish->n_nodes; k++) y[fish->at.vy + k] = 2 * fish->arc[k] * fish->arc[k];
-    if (initial_conditions_solve(simulation->consistent, 0, y, simulation->state->yp) != STATUS_OK ||
+    if (initial_conditions_solve(simulation->consistent, &residual_run, 0, y, simulation->state->yp) != STATUS_OK ||
         simulation->integrator->restart(simulation->solver) != STATUS_OK) {
         abort();
     }

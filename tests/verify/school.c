@@ -385,11 +385,11 @@ static enum status runge_kutta_step(struct simulation *simulation, const double 
         for (int i = 0; s > 0 && i < n; i++) {
             if (kind[i] > 0) stage[i] = y[i] + node[s] * h * rate[i];
         }
-        TRY(initial_conditions_solve(simulation->consistent, t + node[s] * h, stage, rate));
+        TRY(initial_conditions_solve(simulation->consistent, &residual_run, t + node[s] * h, stage, rate));
         for (int i = 0; i < n; i++) sum[i] += weight[s] * rate[i];
     }
     for (int i = 0; i < n; i++) y[i] = kind[i] > 0 ? y[i] + h * sum[i] : stage[i];
-    return initial_conditions_solve(simulation->consistent, t + h, y, simulation->state->yp);
+    return initial_conditions_solve(simulation->consistent, &residual_run, t + h, y, simulation->state->yp);
 }
 
 static enum status runge_kutta_run(struct simulation *simulation, double end, int steps_per_event) {
@@ -398,7 +398,7 @@ static enum status runge_kutta_run(struct simulation *simulation, double end, in
     double *const scratch = calloc(4 * n, sizeof *scratch);
     if (!scratch) return status_fail(STATUS_MEMORY, "out of memory: the stages of %zu unknowns", n);
     enum status status = STATUS_OK;
-    residual_kinds(simulation->residual, scratch + 3 * n);
+    residual_kinds(simulation->residual, &residual_run, scratch + 3 * n);
     while (status == STATUS_OK && simulation->state->t < end - interval / 2) {
         const double t = simulation->state->t;
         for (int i = 0; i < steps_per_event && status == STATUS_OK; i++) {

@@ -93,7 +93,7 @@ static double norm(int n, const double *matrix, const double *weight, int of_inv
 static void rows(const struct probe *probe, enum closure closure, const double *y, double *row) {
     struct residual *const residual = probe->simulation->residual;
     double *const value = numbers(probe->simulation->school->n_unknowns);
-    if (residual_evaluate(residual, 0, y, probe->simulation->state->yp, value) != STATUS_OK) abort();
+    if (residual_evaluate(residual, &residual_run, 0, y, probe->simulation->state->yp, value) != STATUS_OK) abort();
     memcpy(row, value + probe->fish->at.gamma, (size_t)probe->n * sizeof *row);
     const int last = probe->n - 1;
     if (closure == STEADY_KUTTA) row[last] = probe->fish->sheet_weight[last] * y[probe->fish->at.gamma + last];

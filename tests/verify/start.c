@@ -119,15 +119,16 @@ static void copy_rows(const struct jacobian *jacobian, int f, const struct algeb
 }
 
 // the algebraic rows and columns of the Jacobian of a state
-static double *algebraic_matrix(struct simulation *simulation, int *n) {
+static double *algebraic_matrix(struct simulation *simulation, const struct residual_mode *mode, int *n) {
     const int n_unknowns = simulation->school->n_unknowns;
     double *const kind = allocate(n_unknowns, sizeof *kind);
     struct algebraic algebraic = {.place = allocate(n_unknowns, sizeof(int))};
     struct jacobian *const jacobian = jacobian_create(simulation->arena, simulation->school);
-    residual_kinds(simulation->residual, kind);
+    residual_kinds(simulation->residual, mode, kind);
     for (int i = 0; i < n_unknowns; i++) algebraic.place[i] = kind[i] > 0 ? -1 : algebraic.n++;
     residual_mask(simulation->residual, jacobian);
-    if (residual_jacobian(simulation->residual, simulation->state->t, 0, simulation->state->y, jacobian) != STATUS_OK) {
+    if (residual_jacobian(simulation->residual, mode, simulation->state->t, 0, simulation->state->y, jacobian) !=
+        STATUS_OK) {
         abort();
     }
     algebraic.matrix = allocate(algebraic.n * algebraic.n, sizeof(double));
@@ -138,9 +139,9 @@ static double *algebraic_matrix(struct simulation *simulation, int *n) {
     return algebraic.matrix;
 }
 
-static double condition_of(struct simulation *simulation) {
+static double condition_of(struct simulation *simulation, const struct residual_mode *mode) {
     int n;
-    double *const matrix = algebraic_matrix(simulation, &n);
+    double *const matrix = algebraic_matrix(simulation, mode, &n);
     const double reciprocal = reciprocal_condition(n, matrix);
     free(matrix);
     return reciprocal;
@@ -154,8 +155,8 @@ static struct value largest_value(struct simulation *simulation) {
     const int n = simulation->school->n_unknowns;
     double *const value = allocate(n, sizeof *value);
     struct value most = {0};
-    if (residual_evaluate(simulation->residual, simulation->state->t, simulation->state->y, simulation->state->yp,
-                          value) != STATUS_OK) {
+    if (residual_evaluate(simulation->residual, &residual_run, simulation->state->t, simulation->state->y,
+                          simulation->state->yp, value) != STATUS_OK) {
         abort();
     }
     for (int i = 0; i < n; i++) {
@@ -241,11 +242,11 @@ static void examine(struct simulation *simulation, struct worst *worst) {
     const struct value value = largest_value(simulation);
     worst->value = fmax(worst->value, value.plain);
     worst->scaled = fmax(worst->scaled, value.scaled);
-    worst->condition = fmin(worst->condition, condition_of(simulation));
+    worst->condition = fmin(worst->condition, condition_of(simulation, &residual_run));
     // an impulsive event with kutta: edge solves for the circulation shed, too
     if (school->shedding == SHEDDING_IMPULSIVE) {
-        simulation->residual->shed_now = SHED_BY_IMPULSE;
-        worst->impulse = fmin(worst->impulse, condition_of(simulation));
+        const struct residual_mode impulse = {.shed = SHED_BY_IMPULSE};
+        worst->impulse = fmin(worst->impulse, condition_of(simulation, &impulse));
     }
     worst->n++;
     simulate_free(simulation);
@@ -306,7 +307,7 @@ static void refinement(void) {
             "format: 1\ntime: {end: 1, shedding_interval: 0.01}\nsheet: {collocation: %s}\n"
             "fish:\n  - {nodes: %d, sheet_points: %d, control: {law: heading}}\n",
             rules[i / 4], (points[i % 4] + 1) / 2, points[i % 4]);
-        const double condition = 1 / condition_of(simulation);
+        const double condition = 1 / condition_of(simulation, &residual_run);
         verify_point("condition of the start", rules[i / 4], points[i % 4], condition);
         char name[80];
         snprintf(name, sizeof name, "condition number, %s, M = %d", rules[i / 4], points[i % 4]);
@@ -327,15 +328,16 @@ struct correction {
 
 static int value_callback(sunrealtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
     const struct correction *const correction = data;
-    return residual_evaluate(correction->simulation->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
-                             N_VGetArrayPointer(value));
+    return residual_evaluate(correction->simulation->residual, &residual_run, t, N_VGetArrayPointer(y),
+                             N_VGetArrayPointer(yp), N_VGetArrayPointer(value));
 }
 
 static int jacobian_callback(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector yp, N_Vector value, SUNMatrix matrix,
                              void *data, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
     (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
     struct correction *const correction = data;
-    return residual_jacobian(correction->simulation->residual, t, cj, N_VGetArrayPointer(y), correction->jacobian);
+    return residual_jacobian(correction->simulation->residual, &residual_run, t, cj, N_VGetArrayPointer(y),
+                             correction->jacobian);
 }
 
 // let IDACalcIC find the algebraic unknowns and the rates, y and yp, from the given values; return its code
@@ -373,7 +375,7 @@ static double disagreement(struct simulation *simulation) {
     const int n = simulation->school->n_unknowns;
     double *const work = allocate(4 * n, sizeof *work), *const y = work, *const yp = work + n;
     double *const kind = work + 2 * n, *const tolerance = work + 3 * n;
-    residual_kinds(simulation->residual, kind);
+    residual_kinds(simulation->residual, &residual_run, kind);
     for (int i = 0; i < n; i++) {
         // nodes need positions, also the nodes of a prescribed head
         const int given = kind[i] > 0 || residual_place(simulation->school, i).kind < UNKNOWN_AX;

@@ -57,7 +57,7 @@ static struct targets field_of(struct flow *flow, const struct state *state, str
                                .u_x = points->u_x,
                                .u_y = points->u_y,
                                .v_x = points->v_x};
-    flow_field(flow, state, &at);
+    flow_field(flow, state, &at, false);
     return at;
 }
 
@@ -147,7 +147,7 @@ TEST(at_a_tail_it_is_what_the_tail_feels) {
     struct simulation *const run = school_simulation(school_of("continuous"));
     school_run(run, 0.6);
     struct flow *const live = run->residual->flow;
-    flow_velocity(live, run->state, run->state->t, run->state->y);
+    flow_velocity(live, run->state, run->state->t, run->state->y, false);
     double felt[2][2];
     for (int f = 0; f < 2; f++) {
         const int tail = live->points[f].first + flow_tail(&run->school->fish[f]);
@@ -283,7 +283,8 @@ TEST(the_file_has_the_field_on_its_grid) {
             NEAR(y, grid.low[1] + (grid.high[1] - grid.low[1]) * (double)j / 4, 1e-14, 0);
             flow_field(
                 flow, row->state,
-                &(struct targets){.n = 1, .x = &x, .y = &y, .u = &u, .v = &v, .u_x = &u_x, .u_y = &u_y, .v_x = &v_x});
+                &(struct targets){.n = 1, .x = &x, .y = &y, .u = &u, .v = &v, .u_x = &u_x, .u_y = &u_y, .v_x = &v_x},
+                false);
             NEAR(value_of(file, "u", 0, j, i, 0), u, 1e-13, 0);
             NEAR(value_of(file, "v", 0, j, i, 0), v, 1e-13, 0);
             NEAR(value_of(file, "vorticity", 0, j, i, 0), v_x - u_y, 1e-11, 0);
