@@ -118,6 +118,8 @@ def parse(arguments):
     options["field"].add_argument("--no-streamlines", action="store_true", help="draw no streamlines")
     options["study"].add_argument("--of", metavar="QUANTITY", help="of a map (speed), or the only one of curves and refined axes")
     options["study"].add_argument("--relative", action="store_true", help="a map over the values of the first fish, in per cent")
+    options["study"].add_argument("--states", nargs="+", metavar="STEADY.nc",
+                                  help="mark steady formations in a map over places: filled if stable, else open")
     options["time"].add_argument(
         "--each", nargs="?", const="speed", metavar="VARIABLE", help="a panel per fish, of one variable (speed)"
     )

@@ -20,7 +20,7 @@ import ast
 from ._plot_style import (
     DASHES, GRID, MARKS, calm, colour_bar, few_ticks, matplotlib, number_text, scale_of, unit_text, with_unit,
 )
-from ._files import FileError, netCDF4, np
+from ._files import FileError, Results, netCDF4, np
 from ._library import CaseError, netcdf_path
 
 COLOURS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#aa4499", "#b06000", "#3366aa", "#666666"]  # all dark
@@ -543,6 +543,25 @@ def plot_relative(study, x, y, labels, quantity, figure):
     colour_bar(figure, matplotlib.cm.ScalarMappable(norm, colours), all_axes, f"{words}\nover {names[0]} [%]")
 
 
+def mark_states(figure, names, paths):
+    """The places of the fish in results of `shoal steady` (steady.formation) on a map over places with a panel per fish but the
+    first: filled marks for stable states, open ones for unstable states."""
+    panels = {axes.get_title(): axes for axes in figure.axes}
+    for path in paths:
+        state = Results(path)
+        place = state["steady_place"] if "steady_place" in state.data.variables else np.full((1, 2), np.nan)
+        if len(place) < 2 or not np.isfinite(place).all():
+            raise FileError(f"{path}: no formation in it: `shoal steady` with steady.formation finds one")
+        way = state["com"][-1, 0] - state["com"][0, 0]
+        ahead = (way[0] + 1j * way[1]) / np.hypot(*way)
+        for name, (x, y) in list(zip(state.names, place))[1:]:
+            if name not in names:
+                raise CaseError(f"{path}: {name} is not a fish of the study")
+            at = (x + 1j * y) * ahead
+            panels[name].plot(at.real, at.imag, ls="", marker="o", ms=6, mec="black", clip_on=False,
+                              mfc="gold" if state["steady_growth"] < 0 else "none")
+
+
 def is_known(study, name):
     """True if all complete members have a value of this name."""
     return name in study.data.variables and np.isfinite(study[name][study.complete]).all()
@@ -678,9 +697,9 @@ def own_words(study):
     return "an error budget" if "key_name" in study.data.variables else "a comparison of methods"
 
 
-def draw(path, figure, asked=None, relative=False):
+def draw(path, figure, asked=None, relative=False, states=()):
     """Draw what a file calls for on an empty figure; asked: the quantity of a map, or of lines over an axis; relative: a map
-    over the first fish."""
+    over the first fish; states: files of steady formations to mark in it."""
     study, quantity = Study(path), asked or "speed"
     drawn = study.data.variables.get(quantity)
     if drawn is None or drawn.dimensions[1:] != ("fish",) or not study.is_number(quantity):
@@ -688,8 +707,11 @@ def draw(path, figure, asked=None, relative=False):
     over = map_axes(study)
     if relative and not over:
         raise CaseError(f"--relative: only maps take it, and {path} has no two axes of numbers or places")
+    if states and not (over and over[2] is PLACE):
+        raise CaseError(f"--states: only maps over the places of a fish take it, and {path} is none")
     if over:
-        return (plot_relative if relative else plot_map)(study, *over, quantity, figure)
+        (plot_relative if relative else plot_map)(study, *over, quantity, figure)
+        return mark_states(figure, list(study["fish"]), states)
     has_own = study.is_comparison or any(name in study.data.variables for name in ("key_name", "solver_method"))
     if asked and has_own:
         raise CaseError(f"--of: only maps, curves and refined axes take it, and {path} is drawn as {own_words(study)}")

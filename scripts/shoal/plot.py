@@ -586,7 +586,7 @@ def plot_school(results, options):
 def plot_study(path, options):
     """Errors, costs or maps of a study.nc, or of a comparison of methods."""
     figure = pyplot.figure(figsize=(WIDTH, 3.4), layout="constrained")
-    plot_study_module.draw(path, figure, options.of, options.relative)
+    plot_study_module.draw(path, figure, options.of, options.relative, options.states or ())
     return figure
 
 
@@ -665,7 +665,8 @@ def field(source, speed: bool = False, streamlines: bool = True):
     return _axes("field", source, speed=speed, no_streamlines=not streamlines)
 
 
-def study(source, of: str | None = None, relative: bool = False):
+def study(source, of: str | None = None, relative: bool = False, states=()):
     """What a study or a comparison of methods calls for: orders, costs, curves, or a map of a quantity (None: the speed);
-    relative: over the values of the first fish, in per cent."""
-    return _axes("study", source, of=of, relative=relative)
+    relative: over the values of the first fish, in per cent; states: paths of steady formations, marked in a map over places
+    (filled: stable)."""
+    return _axes("study", source, of=of, relative=relative, states=states)

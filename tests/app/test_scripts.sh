@@ -163,6 +163,12 @@ refuses 2 "--of: refine/study.nc has no errors of energy_balance: see nose, tail
 draws plot.py study refine/study.nc --of speed -- refine_speed.png
 draws plot.py study refine/study.nc refine.png
 refuses 2 "--relative: only maps take it" plot.py study refine/study.nc --relative -- no.png
+"$program" steady "$root/cases/formation.yaml" -q --set 'fish[*].nodes=7' --set 'fish[*].sheet_points=13' -o formation.nc 2>/dev/null
+"$program" study "$root/cases/formation.yaml" -q --set 'fish[*].nodes=5' --set 'fish[*].sheet_points=9' --set time.end=0.2 -o places \
+    --set 'sweep=[{key: "fish[1].start.position", values: [[1.2, 0], [1.5, 0], [1.2, 0.3]]}]' >/dev/null 2>&1
+draws plot.py study places/study.nc --of shed_circulation --relative --states formation.nc -- places.png
+refuses 2 "--states: only maps over the places of a fish" plot.py study map/study.nc --states formation.nc -- no.png
+refuses 4 "run.nc: no formation in it" plot.py study places/study.nc --of shed_circulation --states run.nc -- no.png
 "$program" study refine.yaml -q -o nodes --set 'sweep=[{key: "fish[*].nodes", values: [5, 6, 7, 9], refine: true}]' \
     --set 'fish[0].sheet_points=17' >/dev/null 2>&1
 "$program" compare refine.yaml -q -o stiff.nc --set 'sweep=[]' --set solver.max_steps=60 --set 'fish[0].body.modulus=1e9' \
@@ -206,6 +212,12 @@ assert np.ptp([np.mean(line.get_ydata()) for line in turned.lines]) < 3, "182 an
 speed = plot.time("run.nc")[0]
 assert [text.get_text() for text in speed.texts] == ["constant: 0"], "rounding of a speed"
 assert all(np.all(line.get_ydata() == 0) for line in speed.lines)
+
+# a stable formation of fish that swim towards -x: its mark is filled, and where the follower is
+ahead, left = shoal_results.Results("formation.nc")["steady_place"][1]
+mark = plot.study("places/study.nc", of="shed_circulation", relative=True, states=["formation.nc"])[0].lines[-1]
+assert np.allclose([mark.get_xdata()[0], mark.get_ydata()[0]], [-ahead, -left], atol=1e-3) and ahead < -1, (ahead, left)
+assert mark.get_markerfacecolor() == "gold", mark.get_markerfacecolor()
 
 # every unit has raised exponents
 shown = [plot.time("run.nc", balance=True), plot.forces("run.nc"), plot.field("run-field.nc"), plot.study("map/study.nc"),
