@@ -70,28 +70,6 @@ static const struct option_help *option_of(int code) {
     return option;
 }
 
-/* Print a sentence in lines of at most 100 characters; indent all lines after the first. */
-static void print_wrapped(const char *sentence, FILE *stream) {
-    enum { COLUMN = 27, WIDTH = 100 };
-    int column = COLUMN;
-
-    while (*sentence) {
-        const int length = (int)strcspn(sentence, " ");
-        if (column > COLUMN && column + 1 + length > WIDTH) {
-            fprintf(stream, "\n%*s", COLUMN, "");
-            column = COLUMN;
-        } else if (column > COLUMN) {
-            fputc(' ', stream);
-            column++;
-        }
-        fprintf(stream, "%.*s", length, sentence);
-        column += length;
-        sentence += length + (sentence[length] == ' ');
-    }
-
-    fputc('\n', stream);
-}
-
 static const char *meaning_of(struct arena *arena, const struct command *command, const struct option_help *option) {
     struct text meaning = {.arena = arena};
     text_add(&meaning, "%s", option->meaning ? option->meaning : command->output);
@@ -111,7 +89,24 @@ void main_print_help(const struct command *command, FILE *stream) {
         if (option->code < OPTION_SET) names[1] = (char)option->code;
         fprintf(stream, "  %-24s ", names);
         struct arena *const arena = arena_create(NULL, "the meaning of an option");
-        print_wrapped(meaning_of(arena, command, option), stream);
+
+        // the meaning in lines of at most 100 characters; all lines after the first are indented
+        enum { COLUMN = 27, WIDTH = 100 };
+        int column = COLUMN;
+        for (const char *word = meaning_of(arena, command, option); *word; word += word[0] == ' ') {
+            const int length = (int)strcspn(word, " ");
+            if (column > COLUMN && column + 1 + length > WIDTH) {
+                fprintf(stream, "\n%*s", COLUMN, "");
+                column = COLUMN;
+            } else if (column > COLUMN) {
+                fputc(' ', stream);
+                column++;
+            }
+            fprintf(stream, "%.*s", length, word);
+            column += length;
+            word += length;
+        }
+        fputc('\n', stream);
         arena_free(arena);
     }
 }

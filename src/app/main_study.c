@@ -187,8 +187,17 @@ static enum status assign_errors(const struct case_values *values, const struct 
     return STATUS_OK;
 }
 
-/* Write the assignment of the key `sweep`: each --sweep KEY=LIST is an axis. */
-static enum status assign_sweep(const struct request *request, const char **assignment) {
+enum status main_error(const struct request *request) {
+    struct case_values values;
+    struct request with_errors = *request;
+    char *assignment = NULL;
+    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
+    enum status status = assign_errors(&values, request, &assignment);
+    case_free(&values);
+    TRY(status);
+    with_errors.assignments[with_errors.n_assignments++] = assignment;
+
+    // the assignment of the key `sweep`: each --sweep KEY=LIST is an axis
     const char *axes = "";
     for (int i = 0; i < request->n_sweeps; i++) {
         const char *const sweep = request->sweeps[i], *const list = strchr(sweep, '=');
@@ -199,22 +208,7 @@ static enum status assign_sweep(const struct request *request, const char **assi
         axes = arena_text(request->arena, "%s%s{key: \"%.*s\", values: %s%s%s}", axes, i > 0 ? ", " : "",
                           (int)(list - sweep), sweep, is_list ? "" : "[", list + 1, is_list ? "" : "]");
     }
-    *assignment = arena_text(request->arena, "sweep=[%s]", axes);
-    return STATUS_OK;
-}
-
-enum status main_error(const struct request *request) {
-    struct case_values values;
-    struct request with_errors = *request;
-    char *assignment = NULL;
-    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    enum status status = assign_errors(&values, request, &assignment);
-    case_free(&values);
-    TRY(status);
-    with_errors.assignments[with_errors.n_assignments++] = assignment;
-    if (request->n_sweeps > 0) {
-        TRY(assign_sweep(request, &with_errors.assignments[with_errors.n_assignments++]));
-    }
+    if (*axes) with_errors.assignments[with_errors.n_assignments++] = arena_text(request->arena, "sweep=[%s]", axes);
     status = case_read(&values, request->positional, with_errors.n_assignments, with_errors.assignments);
 
     if (status == STATUS_OK) {

@@ -23,7 +23,7 @@ struct edge edge_at(const struct fish *fish, int k, const double *y) {
 }
 
 struct bend edge_bend(const double before[2], const double after[2]) {
-    const double sine = before[0] * after[1] - before[1] * after[0];
+    const double sine = edge_cross(before, after);
     const double angle = atan2(sine, edge_dot(before, after));
     struct bend bend = {.curvature = 2 * tan(angle / 2), .slope = 2 / (1 + cos(angle))};
     bend.second = bend.slope * bend.curvature / 2;

@@ -28,6 +28,9 @@ struct edge edge_at(const struct fish *fish, int k, const double *y);
 static inline double edge_dot(const double a[2], const double b[2]) {
     return a[0] * b[0] + a[1] * b[1];
 }
+static inline double edge_cross(const double a[2], const double b[2]) {
+    return a[0] * b[1] - a[1] * b[0];
+}
 
 /* The rate at which the edge turns, rad s-1. */
 static inline double edge_turn_rate(const struct edge *edge) {

@@ -770,26 +770,6 @@ static const struct key *switching_key(const struct check *check, const struct k
     return cause;
 }
 
-/* Note each written key that switches derived defaults for the fish being checked, with these defaults. */
-static void note_switched(const struct check *check, const struct case_values *initial) {
-    for (int first = 0; first < case_table_n; first++) {
-        const struct key *const cause =
-            case_table[first].follows ? switching_key(check, &case_table[first], initial) : NULL;
-        if (!cause || cause == &case_table[first]) continue;
-
-        // list all keys with this cause; the same list of a later key is skipped
-        struct text list = {.arena = check->errors->arena};
-        for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
-            if (!key->follows || key == cause || switching_key(check, key, initial) != cause) continue;
-            const bool is_of_fish = case_table_is_of_fish(key);
-            const void *const base = is_of_fish ? (const void *)check->fish : (const void *)check->values;
-            text_add(&list, "%s%s ", list.text ? ", " : "", key->path);
-            case_value_write(&list, key, (const char *)base + key->offset);
-        }
-        complain_if(list.text != NULL, check, cause->path, "changes the defaults of other keys: %s", list.text);
-    }
-}
-
 void case_notes(const struct case_values *values, const struct case_values *initial, const struct case_tree *tree,
                 struct yaml_errors *notes) {
     struct check check = {.values = values, .tree = tree, .errors = notes, .is_of_notes = true};
@@ -806,6 +786,23 @@ void case_notes(const struct case_values *values, const struct case_values *init
     for (check.index = 0; check.index < values->school.n_fish; check.index++) {
         check.fish = &values->school.fish[check.index];
         note_fish(&check);
-        note_switched(&check, initial);
+
+        // each written key that switches derived defaults for this fish, with these defaults
+        for (int first = 0; first < case_table_n; first++) {
+            const struct key *const cause =
+                case_table[first].follows ? switching_key(&check, &case_table[first], initial) : NULL;
+            if (!cause || cause == &case_table[first]) continue;
+
+            // list all keys with this cause; the same list of a later key is skipped
+            struct text list = {.arena = notes->arena};
+            for (const struct key *key = case_table; key < case_table + case_table_n; key++) {
+                if (!key->follows || key == cause || switching_key(&check, key, initial) != cause) continue;
+                const bool is_of_fish = case_table_is_of_fish(key);
+                const void *const base = is_of_fish ? (const void *)check.fish : (const void *)values;
+                text_add(&list, "%s%s ", list.text ? ", " : "", key->path);
+                case_value_write(&list, key, (const char *)base + key->offset);
+            }
+            complain_if(list.text != NULL, &check, cause->path, "changes the defaults of other keys: %s", list.text);
+        }
     }
 }

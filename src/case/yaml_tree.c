@@ -418,26 +418,6 @@ static enum status check_source(const struct yaml_source *source, struct yaml_er
     return STATUS_OK;
 }
 
-/* Read the only document of the source. */
-static enum status read_document(struct reader *reader, struct yaml_node **root) {
-    bool has_begun = false, has_ended = false;
-    for (;;) {
-        TRY(next_event(reader));
-        switch (reader->event.type) {
-            case YAML_STREAM_END_EVENT: return STATUS_OK;
-            case YAML_DOCUMENT_START_EVENT:
-                has_begun = true;
-                if (!has_ended) break;
-                yaml_errors_add(reader->errors, mark_at(reader, reader->event.start_mark),
-                                "a second document ('---') begins here; keep one");
-                return STATUS_CASE;
-            case YAML_DOCUMENT_END_EVENT: has_ended = true; break;
-            default:
-                if (has_begun && !has_ended) TRY(read_node(reader, 0, root));
-        }
-    }
-}
-
 enum status yaml_tree_read(struct arena *arena, struct yaml_node **root, const struct yaml_source *source,
                            struct yaml_errors *errors) {
     *root = NULL;
@@ -455,7 +435,26 @@ enum status yaml_tree_read(struct arena *arena, struct yaml_node **root, const s
     yaml_parser_set_input_string(&reader->parser, (const unsigned char *)source->text + skipped,
                                  source->length - skipped);
 
-    read_document(reader, root);
+    // the only document of the source
+    enum status status = STATUS_OK;
+    bool has_begun = false, has_ended = false, is_at_end = false;
+    while (status == STATUS_OK && !is_at_end) {
+        status = next_event(reader);
+        if (status != STATUS_OK) break;
+        switch (reader->event.type) {
+            case YAML_STREAM_END_EVENT: is_at_end = true; break;
+            case YAML_DOCUMENT_START_EVENT:
+                has_begun = true;
+                if (!has_ended) break;
+                yaml_errors_add(errors, mark_at(reader, reader->event.start_mark),
+                                "a second document ('---') begins here; keep one");
+                status = STATUS_CASE;
+                break;
+            case YAML_DOCUMENT_END_EVENT: has_ended = true; break;
+            default:
+                if (has_begun && !has_ended) status = read_node(reader, 0, root);
+        }
+    }
     arena_free(of_reader);
     if (errors->n == n_errors) return STATUS_OK;
     *root = NULL;
@@ -505,19 +504,12 @@ static bool is_ordinary(char c) {
     return letter || (c >= '0' && c <= '9') || (c != '\0' && strchr("_./+-", c));
 }
 
-/* True if a string needs no quotes in YAML, also inside [ ] and { }. */
-static bool is_plain(const char *scalar) {
-    if (!is_ordinary(*scalar) || strcmp(scalar, "-") == 0 || strncmp(scalar, "- ", 2) == 0) return false;
-    if (strncmp(scalar, "---", 3) == 0 || strncmp(scalar, "...", 3) == 0) return false;
-    for (const char *c = scalar; *c; c++) {
-        const bool inner_blank = *c == ' ' && c[1] != '\0';
-        if (!is_ordinary(*c) && !inner_blank) return false;
-    }
-    return true;
-}
-
 void yaml_write_scalar(struct text *text, const char *scalar) {
-    if (is_plain(scalar)) {
+    // a string needs no quotes in YAML, also inside [ ] and { }
+    bool is_plain = is_ordinary(*scalar) && strcmp(scalar, "-") != 0 && strncmp(scalar, "- ", 2) != 0 &&
+                    strncmp(scalar, "---", 3) != 0 && strncmp(scalar, "...", 3) != 0;
+    for (const char *c = scalar; *c; c++) is_plain &= is_ordinary(*c) || (*c == ' ' && c[1] != '\0');
+    if (is_plain) {
         text_add(text, "%s", scalar);
         return;
     }

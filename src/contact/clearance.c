@@ -218,7 +218,7 @@ bool self_crossing(const struct fish *fish, const double *y, double *scratch) {
         // the inner side of a folded joint has length 0: the radius of curvature, length/(2 tan(turn/2)), is half the
         // thickness
         const struct edge after = edge_at(fish, k, y);
-        const double turn = atan2(before.t[0] * after.t[1] - before.t[1] * after.t[0], edge_dot(before.t, after.t));
+        const double turn = atan2(edge_cross(before.t, after.t), edge_dot(before.t, after.t));
         const double half = (fish->thickness[k - 1] + fish->thickness[k]) / 4;
         if (2 * half * fabs(tan(turn / 2)) > (before.length + after.length) / 2) return true;
         angle += turn;

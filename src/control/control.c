@@ -275,35 +275,26 @@ void control_advance(struct control_memory *memory, double interval) {
     memory->moment += interval * memory->moment_rate;
 }
 
-// Pass the waypoints within the acceptance radius; returns whether a waypoint was passed.
-static bool waypoints_pass(const struct fish *fish, struct control_memory *memory, const double *y) {
-    const struct control_law_data *control = &fish->control;
+bool control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
+                   const double *y) {
+    // pass the waypoints within the acceptance radius; after the last waypoint the course of the last leg is held
+    const struct control_law_data *const control = &fish->control;
     bool passed = false;
     for (; steers_to_waypoint(fish, memory); memory->waypoint++, passed = true) {
-        double away[2];
+        double away[2], from[2], to[2];
         waypoint_vector(fish, memory, y, away);
         if (hypot(away[0], away[1]) > control->acceptance_radius) break;
-
-        // after the last waypoint the course of the last leg is held
-        double from[2], to[2];
         waypoint_place(fish, memory, memory->waypoint - 1, from);
         waypoint_place(fish, memory, memory->waypoint, to);
         memory->held_heading = atan2(to[1] - from[1], to[0] - from[0]);
     }
 
-    return passed;
-}
-
-bool control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
-                   const double *y) {
-    const bool passed = waypoints_pass(fish, memory, y);
     // the moving mean approaches the newest value by filter_share of the difference, linearly until the next event
-    memory->moment_rate = fish->control.filter_share * (view->moment - memory->moment) / view->interval;
-    if (fish->control.law == CONTROL_NONE) return false;
-    if (fish->control.law == CONTROL_HEADING) return passed;
+    memory->moment_rate = control->filter_share * (view->moment - memory->moment) / view->interval;
+    if (control->law == CONTROL_NONE) return false;
+    if (control->law == CONTROL_HEADING) return passed;
 
     // target of an event-based law; phi0 is constant as long as there is no course
-    const struct control_law_data *const control = &fish->control;
     double target = memory->phi0;
     if (control->law == CONTROL_AVERAGED_HEADING) {
         const double feedforward = control->feedforward * (memory->moment + view->interval * memory->moment_rate);

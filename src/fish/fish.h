@@ -228,6 +228,11 @@ static inline double fish_event_time(const struct school *school, long event) {
     return (double)event * school->interval_ratio[0] / school->interval_ratio[1];
 }
 
+static inline void fish_tail(const struct fish *fish, const double *y, double place[2]) {
+    place[0] = y[fish->at.x + fish->n_nodes - 1];
+    place[1] = y[fish->at.y + fish->n_nodes - 1];
+}
+
 /* sum of weight * value over the nodes of the point. */
 static inline double fish_mean(const struct stencil *point, const double *value) {
     double mean = 0;

@@ -32,24 +32,6 @@ static void series_circulation(const struct series *series, double theta) {
     series_sum(series, theta / M_PI);
 }
 
-// the kink for a vortex strength equal to the position: g = sin(theta) (1 - cos(theta)) minus the series of g
-static void kink_fill(struct sheet_integrals *to) {
-    const int n = to->n_control;
-    const double h = M_PI / to->n_control, scale = sin(M_PI - h) * (1 - cos(M_PI - h)) * h;
-    for (int c = 0; c < to->n_control; c++) {
-        const double theta = h * (c + 0.5), place = 1 - cos(theta);
-        double strength = sin(theta) * place * h, circulation = place * place / 2;
-        for (int j = 1; j < to->n_control; j++) {
-            const double here = sin(j * h) * (1 - cos(j * h)) * h;
-            strength -= to->strength[j * n + c] * here;
-            circulation -= to->circulation[j * n + c] * here;
-        }
-
-        to->kink_strength[c] = strength / scale;
-        to->kink_circulation[c] = circulation / scale;
-    }
-}
-
 /* Add the momentum of one edge, in pieces of equal length in theta with these Gauss points. Partial fractions of b_k
  * b_i' with b_k = c_k/(D (u - k)) and the mean slope M = sum over k of b_k/(u - k), k != i:
  *
@@ -130,7 +112,20 @@ static enum status integrals_fill(struct sheet_integrals *to, struct arena *scra
         series_circulation(&series, theta);
         for (int j = 0; j < n; j++) to->circulation[j * n_control + c] = series.sum[j];
     }
-    kink_fill(to);
+
+    // the kink for a vortex strength equal to the position: g = sin(theta) (1 - cos(theta)) minus the series of g
+    const double h = M_PI / n_control, scale = sin(M_PI - h) * (1 - cos(M_PI - h)) * h;
+    for (int c = 0; c < n_control; c++) {
+        const double theta = h * (c + 0.5), place = 1 - cos(theta);
+        double strength = sin(theta) * place * h, circulation = place * place / 2;
+        for (int j = 1; j < n_control; j++) {
+            const double here = sin(j * h) * (1 - cos(j * h)) * h;
+            strength -= to->strength[j * n_control + c] * here;
+            circulation -= to->circulation[j * n_control + c] * here;
+        }
+        to->kink_strength[c] = strength / scale;
+        to->kink_circulation[c] = circulation / scale;
+    }
 
     // momentum
     curve_smooth_factors(n_nodes, to->factor);

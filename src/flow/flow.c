@@ -167,24 +167,6 @@ static void flow_place_wake(const struct flow *flow, const struct state *state, 
     sheet_place(sheet, flow->school, wake, state->t, flow->t - state->t);
 }
 
-// released points of the wakes at the time of the flow; select the points again if the wakes have changed
-static void flow_place_wakes(struct flow *flow, const struct state *state, bool is_new) {
-    const struct school *const school = flow->school;
-    int n_placed = 0;
-    for (int f = 0; f < school->n_fish; f++) {
-        n_placed += (is_new ? 4 : 2) * state->wake[f].n_vortex;
-        if (is_new) sheet_reserve(flow->arena, &flow->fish[f].wake, state->wake[f].n_vortex);
-    }
-
-    const int threads = parallel_threads(school->threads, school->n_fish, n_placed, PARALLEL_VORTICES);
-    if (threads == 1) {
-        for (int f = 0; f < school->n_fish; f++) flow_place_wake(flow, state, f, is_new);
-    } else {
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-        for (int f = 0; f < school->n_fish; f++) flow_place_wake(flow, state, f, is_new);
-    }
-}
-
 // points and bound vortices of a fish; legs and circulations of the control points
 static void flow_place_body(struct flow *flow, int f, const double *y) {
     const struct fish *const fish = &flow->school->fish[f];
@@ -224,16 +206,6 @@ static void flow_place_body(struct flow *flow, int f, const double *y) {
     memcpy(of->own.dy + n, of->body.dy, size);
 }
 
-// the direction of the stream relative to a body that is held at the first node
-static void flow_find_downstream(const struct flow *flow, const struct fish *fish, double along[2]) {
-    double place[2], velocity[2], acceleration[2], stream[2];
-    fish_prescribed_node(fish, 0, flow->t, place, velocity, acceleration);
-    flow_external(flow->school, flow->t, place[0], place[1], &stream[0], &stream[1]);
-    const double x = stream[0] - velocity[0], y = stream[1] - velocity[1], speed = hypot(x, y);
-    along[0] = speed > 0 ? x / speed : 0;
-    along[1] = speed > 0 ? y / speed : 0;
-}
-
 // the distance from the tail of a fish within which all other fish are
 static double flow_steady_reach(const struct school *school, const struct fish *fish) {
     double reach = 0;
@@ -260,45 +232,31 @@ enum status flow_check_steady(const struct school *school) {
     return STATUS_OK;
 }
 
-// nascent points and images of a fish
-static void flow_place_nascent(struct flow *flow, const struct state *state, int f, const double *y) {
-    const struct fish *const fish = &flow->school->fish[f];
-    const struct wake *const wake = &state->wake[f];
-    struct flow_fish *const of = &flow->fish[f];
-    struct sheet *const sheet = &of->wake;
-    const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
-    const double shed = y[fish->at.circulation], tau = flow->t - state->t;
-
-    if (flow->is_steady) {
-        flow_find_downstream(flow, fish, of->downstream);
-        const double reach = flow_steady_reach(flow->school, fish);
-        sheet_place_steady(sheet, &sheet->graded, fish, tail, of->downstream, shed, 0);
-        sheet_place_steady(sheet, &sheet->middles, fish, tail, of->downstream, shed, reach);
-        of->nascent = 0;
-    } else {
-        const struct direction tangent = fish_direction(fish, &fish->tail_tangent, y);
-        if (flow_has_free_sheets(flow)) {
-            sheet_place_nascent(&sheet->graded, flow->school, wake, state->t, tau, tail, &tangent, shed);
-        }
-        of->nascent = sheet_place_nascent(&sheet->middles, flow->school, wake, state->t, tau, tail, NULL, shed);
-    }
-    of->newest = shed - of->nascent;
-    images_write(&of->body, flow->n_images, flow->image, &of->body_image);
-    images_write(&sheet->middles.sources, flow->n_images, flow->image, &of->wake_image);
-}
-
 void flow_place_released(struct flow *flow, const struct state *state, double t) {
-    const unsigned long version = state_wake_version(state, flow->school);
+    const struct school *const school = flow->school;
+    const unsigned long version = state_wake_version(state, school);
     const bool is_new = !flow->has_sources || flow->version != version;
 
     // released points move on known paths: their positions at one time are independent of y
-    if (is_new || flow->t != t) {
-        flow->has_sources = false;
-        flow->version = version;
-        flow->t = t;
-        flow_place_wakes(flow, state, is_new);
-        flow->has_sources = !flow->is_steady;
+    if (!is_new && flow->t == t) return;
+    flow->has_sources = false;
+    flow->version = version;
+    flow->t = t;
+
+    // select the points again if the wakes have changed
+    int n_placed = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        n_placed += (is_new ? 4 : 2) * state->wake[f].n_vortex;
+        if (is_new) sheet_reserve(flow->arena, &flow->fish[f].wake, state->wake[f].n_vortex);
     }
+    const int threads = parallel_threads(school->threads, school->n_fish, n_placed, PARALLEL_VORTICES);
+    if (threads == 1) {
+        for (int f = 0; f < school->n_fish; f++) flow_place_wake(flow, state, f, is_new);
+    } else {
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+        for (int f = 0; f < school->n_fish; f++) flow_place_wake(flow, state, f, is_new);
+    }
+    flow->has_sources = !flow->is_steady;
 }
 
 void flow_place(struct flow *flow, const struct state *state, double t, const double *y) {
@@ -311,5 +269,36 @@ void flow_place(struct flow *flow, const struct state *state, double t, const do
 #pragma omp parallel for num_threads(threads) schedule(static)
         for (int f = 0; f < school->n_fish; f++) flow_place_body(flow, f, y);
     }
-    for (int f = 0; f < school->n_fish; f++) flow_place_nascent(flow, state, f, y);
+
+    // nascent points and images
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const struct wake *const wake = &state->wake[f];
+        struct flow_fish *const of = &flow->fish[f];
+        struct sheet *const sheet = &of->wake;
+        const double shed = y[fish->at.circulation], tau = t - state->t;
+        double tail[2];
+        fish_tail(fish, y, tail);
+        if (flow->is_steady) {
+            // the direction of the stream relative to the body, which is held at the first node
+            double place[2], velocity[2], acceleration[2], stream[2];
+            fish_prescribed_node(fish, 0, t, place, velocity, acceleration);
+            flow_external(school, t, place[0], place[1], &stream[0], &stream[1]);
+            for (int i = 0; i < 2; i++) stream[i] -= velocity[i];
+            const double speed = hypot(stream[0], stream[1]), reach = flow_steady_reach(school, fish);
+            for (int i = 0; i < 2; i++) of->downstream[i] = speed > 0 ? stream[i] / speed : 0;
+            sheet_place_steady(sheet, &sheet->graded, fish, tail, of->downstream, shed, 0);
+            sheet_place_steady(sheet, &sheet->middles, fish, tail, of->downstream, shed, reach);
+            of->nascent = 0;
+        } else {
+            const struct direction tangent = fish_direction(fish, &fish->tail_tangent, y);
+            if (flow_has_free_sheets(flow)) {
+                sheet_place_nascent(&sheet->graded, school, wake, state->t, tau, tail, &tangent, shed);
+            }
+            of->nascent = sheet_place_nascent(&sheet->middles, school, wake, state->t, tau, tail, NULL, shed);
+        }
+        of->newest = shed - of->nascent;
+        images_write(&of->body, flow->n_images, flow->image, &of->body_image);
+        images_write(&sheet->middles.sources, flow->n_images, flow->image, &of->wake_image);
+    }
 }

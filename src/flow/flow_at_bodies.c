@@ -212,16 +212,24 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, i
     }
 }
 
-static void flow_zero(const struct flow *flow, int with_gradient) {
+static void flow_sum(struct flow *flow, const struct state *state, double t, const double *y, bool is_steady,
+                     bool with_gradient) {
+    flow->is_steady = is_steady;
+    if (!flow->others) flow->others = others_create(flow->arena, flow);
+    others_select(flow, state);
+    flow_place(flow, state, t, y);
+    double n_sources = 0;
+    for (int f = 0; f < flow->school->n_fish; f++)
+        n_sources += flow->fish[f].body.n + flow->fish[f].wake.middles.sources.n;
+    const double work = flow->kernel->cost * (1.0 + flow->n_images) * flow->n_points * n_sources;
+    const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work, PARALLEL_INTERACTIONS);
+
+    // add bodies and wakes by the tree, by far points, then one by one
     const size_t size = (size_t)flow->n_points * sizeof(double);
     double *const sums[] = {flow->u, flow->v, flow->div, flow->u_x, flow->u_y, flow->v_x, flow->div_x, flow->div_y};
     for (int i = 0; i < (with_gradient ? 8 : 3); i++) memset(sums[i], 0, size);
     memset(flow->edge, 0, 2 * size);
     if (with_gradient) memset(flow->edge_gradient, 0, 4 * size);
-}
-
-// select the sums by the tree, and evaluate these sums
-static void sum_many(struct flow *flow, int threads, int with_gradient) {
     flow_select_by_tree(flow, false, flow->points);
     const struct targets all = flow_targets(flow, with_gradient);
     for (int c = 0; c < flow->n_classes; c++) {
@@ -243,22 +251,6 @@ static void sum_many(struct flow *flow, int threads, int with_gradient) {
             }
         }
     }
-}
-
-static void flow_sum(struct flow *flow, const struct state *state, double t, const double *y, bool is_steady,
-                     bool with_gradient) {
-    flow->is_steady = is_steady;
-    if (!flow->others) flow->others = others_create(flow->arena, flow);
-    others_select(flow, state);
-    flow_place(flow, state, t, y);
-    double n_sources = 0;
-    for (int f = 0; f < flow->school->n_fish; f++)
-        n_sources += flow->fish[f].body.n + flow->fish[f].wake.middles.sources.n;
-    const double work = flow->kernel->cost * (1.0 + flow->n_images) * flow->n_points * n_sources;
-    const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work, PARALLEL_INTERACTIONS);
-
-    flow_zero(flow, with_gradient);
-    sum_many(flow, threads, with_gradient);
     if (others_are_selected(flow)) others_sum(flow, state, y, threads);
 
     if (threads == 1) {

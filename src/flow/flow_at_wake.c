@@ -59,17 +59,6 @@ static bool own_is_in_tree(const struct flow *flow, int f) {
     return !flow->kernel->has_legs && flow_is_by_tree(flow, f, f, &sum);
 }
 
-// set the velocity at all markers of a fish induced by its wake
-static void induce_own_wake(const struct flow *flow, int f) {
-    const struct flow_class *const class = &flow->class[flow->class_of[f]];
-    const struct kernel_pair smooth =
-        flow->kernel->own(flow->school->fish[f].strip_depth, flow_square(flow, WAKE_AT_WAKE, class, class));
-    const struct targets at = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
-    double *const sums[] = {at.u, at.v, at.leg_u, at.leg_v, at.div};
-    for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) memset(sums[i], 0, (size_t)at.n * sizeof **sums);
-    if (!own_is_in_tree(flow, f)) kernel_induce_mutual(&smooth, &flow->fish[f].markers, &at);
-}
-
 // add the velocity induced by the body that shed the markers: with the smoothing of the sheet tapered near the tail; at
 // the newborn marker the velocity is evaluated h/(2 pi) behind the tail
 static void induce_own_body(const struct flow *flow, const struct state *state, int f, struct range which,
@@ -211,7 +200,15 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
 
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
-        if (flow->wake_range[f].n > 0) induce_own_wake(flow, f);
+        // set the velocity of its own wake at all markers of a fish
+        if (flow->wake_range[f].n == 0) continue;
+        const struct flow_class *const class = &flow->class[flow->class_of[f]];
+        const struct kernel_pair smooth =
+            flow->kernel->own(school->fish[f].strip_depth, flow_square(flow, WAKE_AT_WAKE, class, class));
+        const struct targets at = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
+        double *const sums[] = {at.u, at.v, at.leg_u, at.leg_v, at.div};
+        for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) memset(sums[i], 0, (size_t)at.n * sizeof **sums);
+        if (!own_is_in_tree(flow, f)) kernel_induce_mutual(&smooth, &flow->fish[f].markers, &at);
     }
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int chunk = 0; chunk < n_chunks; chunk++) {

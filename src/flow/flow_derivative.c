@@ -149,18 +149,6 @@ struct four {
     struct unit_values values[FOUR];
 };
 
-// whether the sources move with the same nodes, without a part in the edge force
-static bool four_move_together(const struct four *four, const struct influence_block *block) {
-    const struct stencil *const place = four->source[0].place, *const line = four->source[0].line;
-    bool together = !(block->edge && four->source[0].has_edge);
-    for (int k = 0; k < four->n; k++) {
-        const struct moving *const source = &four->source[k];
-        together &= source->place->node == place->node && source->place->n == place->n;
-        together &= !line || (source->line->node == place->node && source->line->n == place->n);
-    }
-    return together;
-}
-
 static WIDE(void, add_four_places,
             (const struct influence_block *block, const struct fish *other, const struct four *four, int first, int n),
             (block, other, four, first, n)) {
@@ -272,7 +260,14 @@ static WIDE(void, add_four_strengths,
 // add the derivatives by places
 static void four_finish(struct four *four, const struct influence_block *block, const struct fish *other, int first,
                         int n) {
-    const bool together = four_move_together(four, block);
+    // together: the sources move with the same nodes, without a part in the edge force
+    const struct stencil *const place = four->source[0].place, *const line = four->source[0].line;
+    bool together = !(block->edge && four->source[0].has_edge);
+    for (int k = 0; k < four->n; k++) {
+        const struct moving *const source = &four->source[k];
+        together &= source->place->node == place->node && source->place->n == place->n;
+        together &= !line || (source->line->node == place->node && source->line->n == place->n);
+    }
     if (together) add_four_places(block, other, four, first, n);
     for (int k = 0; k < four->n && !together; k++) {
         add_places(block, other, &four->source[k], first, n, &four->values[k]);

@@ -4,35 +4,25 @@
 #include "base/mathematics.h"
 #include "flow/flow.h"
 
-// distance ahead of the point of the gust that was at gust_position at the start, along the direction of travel, m
-static double gust_ahead(const struct school *school, double t, double x, double y) {
+// velocity of a travelling gust over the amplitude, and the derivative along the direction of travel, m-1
+static double gust_shape(const struct school *school, double t, double x, double y, double *slope) {
+    // distance ahead of the point of the gust that was at gust_position at the start
     const double along = school->gust_along[0] * x + school->gust_along[1] * y;
-    return along - school->gust_position - school->gust_speed * t;
-}
-
-// velocity of a travelling gust over the amplitude
-static double gust_shape(const struct school *school, double ahead) {
-    switch (school->gust_profile) {
-        case GUST_SINE: return sin(school->gust_number * ahead);
-        case GUST_STEP: return ramp_step(0.5 - ahead / school->gust_gradient_distance);
-        default: return 0;
+    const double ahead = along - school->gust_position - school->gust_speed * t;
+    const double number = school->gust_number, distance = school->gust_gradient_distance;
+    if (school->gust_profile == GUST_SINE) {
+        *slope = number * cos(number * ahead);
+        return sin(number * ahead);
     }
-}
-
-// derivative of gust_shape, m-1
-static double gust_slope(const struct school *school, double ahead) {
-    const double distance = school->gust_gradient_distance;
-    switch (school->gust_profile) {
-        case GUST_SINE: return school->gust_number * cos(school->gust_number * ahead);
-        case GUST_STEP: return -ramp_step_rate(0.5 - ahead / distance) / distance;
-        default: return 0;
-    }
+    *slope = -ramp_step_rate(0.5 - ahead / distance) / distance;
+    return ramp_step(0.5 - ahead / distance);
 }
 
 void flow_external_gust(const struct school *school, double t, double x, double y, double *u, double *v) {
     *u = *v = 0;
     if (school->gust_profile == GUST_UNIFORM) return;
-    const double shape = gust_shape(school, gust_ahead(school, t, x, y));
+    double slope;
+    const double shape = gust_shape(school, t, x, y, &slope);
     *u = shape * school->gust[0];
     *v = shape * school->gust[1];
 }
@@ -49,7 +39,8 @@ void flow_external_gradient(const struct school *school, double t, double x, dou
     gradient[0] = gradient[2] = 0;
     gradient[1] = school->shear;
     if (school->gust_profile == GUST_UNIFORM) return;
-    const double slope = gust_slope(school, gust_ahead(school, t, x, y));
+    double slope;
+    gust_shape(school, t, x, y, &slope);
     gradient[0] += slope * school->gust_along[0] * school->gust[0];
     gradient[1] += slope * school->gust_along[1] * school->gust[0];
     gradient[2] += slope * school->gust_along[0] * school->gust[1];

@@ -424,10 +424,6 @@ void pressure_of_edge(const struct pressure *p, int k, const double *y, const do
     }
 }
 
-static double pressure_moment_about(const double arm[2], const double vector[2]) {
-    return arm[0] * vector[1] - arm[1] * vector[0];
-}
-
 struct pressure_forces pressure_sum(const struct pressure *p, const double about[2], const double *y) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
@@ -445,11 +441,11 @@ struct pressure_forces pressure_sum(const struct pressure *p, const double about
             sum.momentum[i] += momentum[i];
         }
 
-        sum.pressure_moment += pressure_moment_about(arm, force);
-        sum.momentum_moment += pressure_moment_about(arm, momentum);
+        sum.pressure_moment += edge_cross(arm, force);
+        sum.momentum_moment += edge_cross(arm, momentum);
         sum.pressure_power += edge_dot(force, velocity);
         if (k > 0) continue;
-        sum.suction_moment = pressure_moment_about(arm, p->suction);
+        sum.suction_moment = edge_cross(arm, p->suction);
         sum.suction_power = edge_dot(p->suction, velocity);
         sum.separation_power = edge_dot(p->separation, velocity);
     }

@@ -94,27 +94,6 @@ static enum status info_print_table(const struct info *info) {
     return STATUS_OK;
 }
 
-static enum status print_rows(const struct info *info) {
-    const size_t n_missing = info->reader->n_missing;
-    if (n_missing > 0) {
-        fprintf(info->stream, "  missing     %zu of %zu rows: the file was cut off\n", n_missing,
-                info->n_rows + n_missing);
-    }
-
-    if (info->n_rows == 0) {
-        fprintf(info->stream, "  rows        %s\n", n_missing > 0 ? "none is whole" : "none yet");
-        return STATUS_OK;
-    }
-
-    double first, last, interval;
-    TRY(info_read(info, 0, NO_FISH, "time", &first));
-    TRY(info_read(info, (long)info->n_rows - 1, NO_FISH, "time", &last));
-    TRY(info_read(info, NO_ROW, NO_FISH, "shedding_interval", &interval));
-    fprintf(info->stream, "  rows        %zu, from t = %g s to %g s; a vortex every %g s\n", info->n_rows, first, last,
-            interval);
-    return STATUS_OK;
-}
-
 /* The school, the steady state, and the effort of the solver. */
 static enum status print_last_row(const struct info *info) {
     static const char *const totals[] = {"steps",
@@ -164,7 +143,23 @@ static enum status info_print_all(const struct netcdf_reader *reader, FILE *stre
     TRY(netcdf_read_length(reader, "fish", 1, CASE_MAX_FISH, &info.n_fish));
     TRY(netcdf_attribute(reader, "run_status", &text));
     fprintf(stream, "  status      %s\n", text);
-    TRY(print_rows(&info));
+
+    // the rows
+    const size_t n_missing = reader->n_missing;
+    if (n_missing > 0) {
+        fprintf(stream, "  missing     %zu of %zu rows: the file was cut off\n", n_missing, info.n_rows + n_missing);
+    }
+    if (info.n_rows == 0) {
+        fprintf(stream, "  rows        %s\n", n_missing > 0 ? "none is whole" : "none yet");
+    } else {
+        double first, last, interval;
+        TRY(info_read(&info, 0, NO_FISH, "time", &first));
+        TRY(info_read(&info, (long)info.n_rows - 1, NO_FISH, "time", &last));
+        TRY(info_read(&info, NO_ROW, NO_FISH, "shedding_interval", &interval));
+        fprintf(stream, "  rows        %zu, from t = %g s to %g s; a vortex every %g s\n", info.n_rows, first, last,
+                interval);
+    }
+
     TRY(info_print_table(&info));
     if (info.n_rows == 0) return STATUS_OK;
     TRY(print_last_row(&info));

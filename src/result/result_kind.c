@@ -64,17 +64,6 @@ enum status result_kind_info(struct arena *arena, int n_kinds, const struct resu
 
 // ---- the list of variables
 
-static void kind_print_json(const char *kind, const struct result_listed *listed, FILE *stream) {
-    fprintf(stream, "\n  {\"file\": \"%s\", \"name\": \"%s\", \"dimensions\": [", kind, listed->name);
-    for (const char *word = listed->dimensions; *word; word += strspn(word, ", ")) {
-        const int length = (int)strcspn(word, ",");
-        fprintf(stream, "%s\"%.*s\"", word == listed->dimensions ? "" : ", ", length, word);
-        word += length;
-    }
-    fprintf(stream, "], \"type\": \"%s\", \"unit\": \"%s\", \"meaning\": \"%s\"}", listed->type, listed->unit,
-            listed->meaning);
-}
-
 int result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_json, const char *word, FILE *stream) {
     struct result_listed listed;
     int n = 0;
@@ -101,7 +90,15 @@ int result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_j
             n_of_kind++;
             if (as_json) {
                 fputs(n == 0 ? "[" : ",", stream);
-                kind_print_json(kinds[k].name, &listed, stream);
+                fprintf(stream, "\n  {\"file\": \"%s\", \"name\": \"%s\", \"dimensions\": [", kinds[k].name,
+                        listed.name);
+                for (const char *name = listed.dimensions; *name; name += strspn(name, ", ")) {
+                    const int length_of_name = (int)strcspn(name, ",");
+                    fprintf(stream, "%s\"%.*s\"", name == listed.dimensions ? "" : ", ", length_of_name, name);
+                    name += length_of_name;
+                }
+                fprintf(stream, "], \"type\": \"%s\", \"unit\": \"%s\", \"meaning\": \"%s\"}", listed.type, listed.unit,
+                        listed.meaning);
             } else if (is_file) {
                 fprintf(stream, "%-20s  (%s)%*s  %-6s  %s\n", listed.name, listed.dimensions,
                         22 - (int)strlen(listed.dimensions), "", listed.unit, listed.meaning);

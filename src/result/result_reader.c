@@ -32,21 +32,6 @@ static enum status check_kind(const struct result_reader *reader) {
     return status_fail(STATUS_FILE, "%s: a NetCDF file, but not of shoal", file->path);
 }
 
-static enum status read_lengths(struct result_reader *reader) {
-    for (enum result_dimension d = TIME; d < MULTIPLIER; d++) {
-        TRY(netcdf_read_length(&reader->file, result_table_dimension(d), d == XY ? 2 : 0, d == XY ? 2 : MAX_LENGTH,
-                               &reader->length[d]));
-    }
-
-    if (reader->length[TIME] > 0 && reader->length[FISH] > 0) return STATUS_OK;
-    if (reader->file.n_missing > 0) {
-        return status_fail(STATUS_FILE, "%s: none of the %zu rows is complete: copy the file again", reader->file.path,
-                           reader->file.n_missing);
-    }
-
-    return status_fail(STATUS_FILE, "%s: the run has not written a row yet", reader->file.path);
-}
-
 /* The counts of a variable over the fish, each from min to max. */
 static enum status read_counts(struct arena *arena, const struct result_reader *reader, const char *name, size_t min,
                                size_t max, int **counts) {
@@ -71,7 +56,15 @@ enum status result_reader_open(struct arena *arena, struct result_reader **opene
     *opened = reader;
     TRY(netcdf_open(arena, &reader->file, path));
     TRY(check_kind(reader));
-    TRY(read_lengths(reader));
+    for (enum result_dimension d = TIME; d < MULTIPLIER; d++) {
+        TRY(netcdf_read_length(&reader->file, result_table_dimension(d), d == XY ? 2 : 0, d == XY ? 2 : MAX_LENGTH,
+                               &reader->length[d]));
+    }
+    const size_t n_missing = reader->file.n_missing;
+    if (reader->length[TIME] == 0 || reader->length[FISH] == 0) {
+        if (n_missing == 0) return status_fail(STATUS_FILE, "%s: the run has not written a row yet", path);
+        return status_fail(STATUS_FILE, "%s: none of the %zu rows is complete: copy the file again", path, n_missing);
+    }
     TRY(netcdf_attribute(&reader->file, "title", &reader->title));
     TRY(netcdf_attribute(&reader->file, "run_status", &reader->run_status));
 

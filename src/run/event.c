@@ -21,12 +21,6 @@ static enum status event_evaluate(struct residual *residual, const struct state 
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
-static void tail_position(const struct state *state, const struct fish *fish, double place[2]) {
-    const int last = fish->n_nodes - 1;
-    place[0] = state->y[fish->at.x + last];
-    place[1] = state->y[fish->at.y + last];
-}
-
 // release a vortex with the circulation shed since the last release
 static void event_release(struct state *state, const struct school *school, int f, const double place[2]) {
     struct wake *const wake = &state->wake[f];
@@ -54,7 +48,7 @@ static enum status event_release_impulse(struct state *state, struct residual *r
 
     for (int f = 0; f < school->n_fish; f++) {
         double tail[2];
-        tail_position(state, &school->fish[f], tail);
+        fish_tail(&school->fish[f], state->y, tail);
         event_release(state, school, f, tail);
     }
 
@@ -66,7 +60,7 @@ static void event_release_markers(struct state *state, const struct school *scho
     for (int f = 0; f < school->n_fish; f++) {
         struct wake *const wake = &state->wake[f];
         double tail[2];
-        tail_position(state, &school->fish[f], tail);
+        fish_tail(&school->fish[f], state->y, tail);
         wake->shed_before = state->y[school->fish[f].at.circulation];
         wake_release(wake, tail[0], tail[1], wake->shed_before, state->t);
     }
@@ -234,7 +228,7 @@ enum status event_next(struct state *state, struct residual *residual, struct in
         // continuous shedding: the nascent vortex, with its position and circulation
         for (int f = 0; f < school->n_fish; f++) {
             double tail[2], position[2];
-            tail_position(state, &school->fish[f], tail);
+            fish_tail(&school->fish[f], state->y, tail);
             wake_nascent(&state->wake[f], school->interval, tail, position);
             event_release(state, school, f, position);
         }

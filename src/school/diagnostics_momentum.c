@@ -119,11 +119,6 @@ static void given_momentum(const struct residual *residual, int f, const double 
     }
 }
 
-static void place_of_tail(const struct fish *fish, const double *y, double tail[2]) {
-    tail[0] = y[fish->at.x + fish->n_nodes - 1];
-    tail[1] = y[fish->at.y + fish->n_nodes - 1];
-}
-
 // add the nascent vortex, or stretch, of a fish
 static void add_nascent(struct impulse_moments *sum, const struct flow *flow, const struct state *state, int f,
                         double tau, const double tail[2]) {
@@ -146,7 +141,7 @@ static void impulse_of_fluid(const struct residual *residual, const struct state
     struct impulse_moments wake = impulse_of_wake(&state->wake[f], residual->school, state->t, 0), sheet = {0};
     double tail[2], of_sheet[3], total = 0;
 
-    place_of_tail(fish, state->y, tail);
+    fish_tail(fish, state->y, tail);
     add_nascent(&wake, residual->flow, state, f, 0, tail);
     impulse_of(&wake, factor, impulse);
 
@@ -187,7 +182,7 @@ static void add_stream(const struct residual *residual, int f, double t, const d
 
     // moments of free, nascent and bound vortices
     struct impulse_moments sum = impulse_of_wake(&state->wake[f], school, state->t, t - state->t);
-    place_of_tail(fish, y, tail);
+    fish_tail(fish, y, tail);
     add_nascent(&sum, flow, state, f, t - state->t, tail);
     const int first = flow->points[f].first;
     for (int c = 0; c < fish->n_control; c++) {
@@ -208,7 +203,7 @@ static void external_force(struct residual *residual, int f, double t, const dou
     const struct contact_terms contact = contact_terms(residual->contact, f, y);
 
     double tail[2];
-    place_of_tail(fish, y, tail);
+    fish_tail(fish, y, tail);
     for (int i = 0; i < 2; i++) force[i] = fluid.resistive[i] + contact.force[i];
     force[2] = fluid.resistive_moment + contact.moment + rod_clamp_terms(fish, t, y).moment;
     add_with_moment(force, tail[0], tail[1], fish->load_tip[0], fish->load_tip[1]);

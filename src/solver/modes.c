@@ -127,22 +127,6 @@ static enum status wake_column(const struct modes *modes, int f, double complex 
 
 // ---- the linear equations
 
-/* dF/dy and dF/dy', means over the interval. */
-static enum status modes_linearise(const struct modes *modes, struct jacobian *jacobian, double *by_value,
-                                   double *by_rate) {
-    const size_t size = (size_t)modes->n_all * (size_t)modes->n_all;
-    for (int p = 0; p < N_POINTS; p++) {
-        const double tau = point[p] * modes->residual->school->interval, t = modes->state->t + tau;
-        TRY(modes_evaluate(modes, tau, modes->plain));
-        for (int cj = 0; cj < 2; cj++) {
-            TRY(residual_jacobian(modes->residual, &residual_run, t, cj, modes->y, jacobian));
-            jacobian_add(jacobian, 1.0 / N_POINTS, modes->n_all, modes->number, modes->number, cj ? by_rate : by_value);
-        }
-    }
-    for (size_t i = 0; i < size; i++) by_rate[i] -= by_value[i];
-    return STATUS_OK;
-}
-
 /* List the unknowns that are not prescribed, first the unknowns with a rate in an equation. */
 static void modes_list(struct modes *modes, const struct jacobian *jacobian, const double *by_rate) {
     const struct school *const school = modes->residual->school;
@@ -428,7 +412,17 @@ static enum status modes_pose(struct modes *modes) {
     residual_couple(&modes->residual->couplings, modes->state->y);
     struct jacobian *const jacobian = jacobian_create(arena, modes->residual->school);
     residual_mask(modes->residual, jacobian);
-    TRY(modes_linearise(modes, jacobian, by_value, by_rate));
+
+    // dF/dy and dF/dy', means over the interval
+    for (int p = 0; p < N_POINTS; p++) {
+        const double tau = point[p] * modes->residual->school->interval, t = modes->state->t + tau;
+        TRY(modes_evaluate(modes, tau, modes->plain));
+        for (int cj = 0; cj < 2; cj++) {
+            TRY(residual_jacobian(modes->residual, &residual_run, t, cj, modes->y, jacobian));
+            jacobian_add(jacobian, 1.0 / N_POINTS, modes->n_all, modes->number, modes->number, cj ? by_rate : by_value);
+        }
+    }
+    for (size_t i = 0; i < n * n; i++) by_rate[i] -= by_value[i];
     modes_list(modes, jacobian, by_rate);
     return modes_reduce(modes, by_value, by_rate);
 }

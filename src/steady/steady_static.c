@@ -137,7 +137,7 @@ static enum status growth_solve(struct growth *growth, double part) {
         const struct fish *const fish = &simulation->school->fish[f];
         for (int k = 0; k < fish->n_edges; k++) {
             const struct edge a = edge_at(fish, k, growth->last), b = edge_at(fish, k, state->y);
-            turn = larger(turn, fabs(atan2(a.t[0] * b.t[1] - a.t[1] * b.t[0], edge_dot(a.t, b.t))));
+            turn = larger(turn, fabs(atan2(edge_cross(a.t, b.t), edge_dot(a.t, b.t))));
         }
     }
     if (status == STATUS_OK && !(turn <= most_turn)) {
@@ -293,7 +293,7 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
                                     .actuation_power = NAN,
                                     .damping_power = NAN,
                                     .constraint_power = now->constraint_power,
-                                    .deflection = way[0] * direction[1] - way[1] * direction[0],
+                                    .deflection = edge_cross(way, direction),
                                     .power = NAN,
                                     .cost_of_transport = NAN,
                                     .efficiency = NAN,
@@ -308,7 +308,7 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
         const double speed = hypot(stream[0], stream[1]);
         one->fluid_power = edge_dot(one->force, stream);
         one->drag = edge_dot(one->force, stream) / speed;
-        one->lift = (stream[0] * one->force[1] - stream[1] * one->force[0]) / speed;
+        one->lift = edge_cross(stream, one->force) / speed;
     }
 
     return STATUS_OK;

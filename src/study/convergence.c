@@ -446,23 +446,6 @@ static int find_worst(const struct error_study *study) {
     return worst;
 }
 
-/* Find the lowest and the highest value of a quantity with other choices of the model: the stated value plus the change
- * of the case by the choice. */
-static void find_models(struct error_study *study, const struct member_file *members, int q, int f) {
-    const int place = error_plan_place(study, q, f);
-    const double stated = study->value[place], base = value_of(study, members, study->base, q, f);
-    study->lowest[place] = study->highest[place] = (struct error_study_model){stated, -1, 0};
-    for (int k = 0; k < study->n_keys; k++) {
-        const struct error_study_key *const key = &study->key[k];
-        for (int i = 0; i < key->n_levels && key->n_levels > 1 && key->row->kind == SWEEP_MODEL; i++) {
-            const double value = stated + value_of(study, members, key->member[i], q, f) - base;
-            const struct error_study_model model = {value, k, i};
-            if (value < study->lowest[place].value) study->lowest[place] = model;
-            if (value > study->highest[place].value) study->highest[place] = model;
-        }
-    }
-}
-
 void convergence_study_judge(struct error_study *study, const struct member_file *members) {
     for (int k = 0; k < study->n_keys; k++) {
         struct error_study_key *const key = &study->key[k];
@@ -488,7 +471,20 @@ void convergence_study_judge(struct error_study *study, const struct member_file
             study->value[place] = value_of(study, members, study->stated, q, f);
             study->together[place] = n_moved > 1 ? fabs(study->value[place] - moved) : 0;
             study->error[place] = sum + study->together[place];
-            find_models(study, members, q, f);
+
+            // the lowest and the highest value with other choices of the model: the stated value plus the change of the
+            // case by the choice
+            const double stated = study->value[place], base = value_of(study, members, study->base, q, f);
+            study->lowest[place] = study->highest[place] = (struct error_study_model){stated, -1, 0};
+            for (int k = 0; k < study->n_keys; k++) {
+                const struct error_study_key *const key = &study->key[k];
+                for (int i = 0; i < key->n_levels && key->n_levels > 1 && key->row->kind == SWEEP_MODEL; i++) {
+                    const double value = stated + value_of(study, members, key->member[i], q, f) - base;
+                    const struct error_study_model model = {value, k, i};
+                    if (value < study->lowest[place].value) study->lowest[place] = model;
+                    if (value > study->highest[place].value) study->highest[place] = model;
+                }
+            }
         }
     }
 

@@ -198,18 +198,6 @@ static int n_running(const struct study *study) {
     return n;
 }
 
-static void show_progress(struct study *study) {
-    if (!study->options->progress) return;
-    struct study_progress *const progress = &study->progress;
-    progress->wall_time = clock_seconds(CLOCK_MONOTONIC) - study->started;
-    progress->n_running = n_running(study);
-    const double almost = 0.99;  // a member is done after the end of the process
-    double work = study->n_next - progress->n_running;
-    for (int j = 0; j < study->n_jobs; j++) work += study->job[j].process ? almost * study->job[j].report->part : 0;
-    progress->part = study->plan.n > 0 ? work / study->plan.n : 1;
-    study->options->progress(progress, study->options->data);
-}
-
 /* Start members until all members have ended. */
 static enum status run_until_all_end(struct study *study) {
     sigset_t ended;
@@ -241,7 +229,16 @@ static enum status run_until_all_end(struct study *study) {
             }
             if (!waits) status = member_start(study, &study->job[j]);
         }
-        show_progress(study);
+
+        // report the progress: a member is done after the end of the process
+        struct study_progress *const progress = &study->progress;
+        const double almost = 0.99;
+        progress->wall_time = clock_seconds(CLOCK_MONOTONIC) - study->started;
+        progress->n_running = n_running(study);
+        double work = study->n_next - progress->n_running;
+        for (int j = 0; j < study->n_jobs; j++) work += study->job[j].process ? almost * study->job[j].report->part : 0;
+        progress->part = study->plan.n > 0 ? work / study->plan.n : 1;
+        if (study->options->progress) study->options->progress(progress, study->options->data);
         if (n_running(study) == 0) return status;
 
         // collect ended processes

@@ -186,23 +186,6 @@ static enum status plan_member(struct arena *arena, struct study_plan *plan, con
     return STATUS_OK;
 }
 
-/* Remove results of other studies beyond the last member of this study. An error study with refinement adds members to
- * the initial ones, which belong to the study. */
-static enum status remove_surplus_members(struct arena *arena, const struct case_values *study, const char *folder,
-                                          bool force) {
-    for (int number = sweep_n_members(study);; number++) {
-        const char *const path = study_folder_member(arena, folder, number, ".nc");
-        if (access(path, F_OK) != 0) return STATUS_OK;
-        struct member_file member;
-        const bool is_member = study->error && member_file_read(arena, &member, path) == STATUS_OK &&
-                               strcmp(member.study, study->merged) == 0;
-        if (is_member || (force && target_is(path, TARGET_NETCDF) && unlink(path) == 0)) continue;
-        return status_fail(STATUS_FILE,
-                           "%s is a result of another study: choose another folder with -o, or remove the file%s", path,
-                           force ? "" : " with --force");
-    }
-}
-
 /* Refuse to replace a file of another program or, without force, a study.nc of another study; ignore an unreadable
  * study.nc. arena: scratch */
 static enum status check_study_file(struct arena *arena, const struct case_values *study, const char *folder,
@@ -245,7 +228,20 @@ enum status study_plan_create(struct arena *arena, struct study_plan *plan, cons
     if (is_part) return STATUS_OK;
     struct arena *const scratch = arena_create(arena, "the plan of a study");
     TRY(check_study_file(scratch, study, folder, force));
-    TRY(remove_surplus_members(scratch, study, folder, force));
+
+    // remove results of other studies beyond the last member; members that an error study with refinement has added
+    // belong to the study
+    for (int number = n;; number++) {
+        const char *const path = study_folder_member(scratch, folder, number, ".nc");
+        if (access(path, F_OK) != 0) break;
+        struct member_file member;
+        const bool is_member = study->error && member_file_read(scratch, &member, path) == STATUS_OK &&
+                               strcmp(member.study, study->merged) == 0;
+        if (is_member || (force && target_is(path, TARGET_NETCDF) && unlink(path) == 0)) continue;
+        return status_fail(STATUS_FILE,
+                           "%s is a result of another study: choose another folder with -o, or remove the file%s", path,
+                           force ? "" : " with --force");
+    }
     arena_free(scratch);
     return STATUS_OK;
 }

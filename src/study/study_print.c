@@ -260,26 +260,6 @@ bool study_expects_failure(const struct case_values *study, const struct member_
     return false;
 }
 
-/* Whether all members of an expectation have failed with the expected message. */
-static bool test_failures(const struct case_values *study, const struct member_file *members,
-                          const struct sweep_expectation *one, FILE *stream) {
-    int n = 0, wrong = -1;
-    for (int m = 0; m < sweep_n_members(study); m++) {
-        if (!sweep_expects_of(study, one, m)) continue;
-        n++;
-        if (!has_failed(&members[m], one->fails)) wrong = m;
-    }
-
-    fprintf(stream, "failures, %d member%s\n", n, n == 1 ? "" : "s");
-    if (wrong < 0) {
-        fprintf(stream, "  met      failed with '%s'\n", one->fails);
-    } else {
-        fprintf(stream, "  MISSED   member %d has not failed with '%s'\n", wrong, one->fails);
-    }
-
-    return wrong < 0;
-}
-
 enum status study_expect(const struct case_values *study, const struct member_file *members, FILE *stream) {
     int n_missed = 0, first = 0;
     const char *first_what = "";
@@ -289,7 +269,22 @@ enum status study_expect(const struct case_values *study, const struct member_fi
         // test all quantities, and keep the first that is missed
         const struct sweep_expectation *const one = &study->expect[i];
         const char *what = NULL;
-        if (one->fails && !test_failures(study, members, one, stream)) what = "failures";
+
+        // all members of an expectation of failures have failed with the expected message
+        int n_failures = 0, wrong = -1;
+        for (int m = 0; m < sweep_n_members(study) && one->fails; m++) {
+            if (!sweep_expects_of(study, one, m)) continue;
+            n_failures++;
+            if (!has_failed(&members[m], one->fails)) wrong = m;
+        }
+        if (one->fails) fprintf(stream, "failures, %d member%s\n", n_failures, n_failures == 1 ? "" : "s");
+        if (one->fails && wrong < 0) {
+            fprintf(stream, "  met      failed with '%s'\n", one->fails);
+        } else if (one->fails) {
+            fprintf(stream, "  MISSED   member %d has not failed with '%s'\n", wrong, one->fails);
+            what = "failures";
+        }
+
         for (int q = 0; q < SWEEP_N_QUANTITIES && !one->fails; q++) {
             if (!(one->of >> q & 1) || test_quantity(study, members, i, q, stream) || what) continue;
             what = sweep_quantities[q].name;
@@ -367,28 +362,6 @@ static void print_group(struct arena *arena, const struct case_values *study, co
     }
 }
 
-/* Test the expected order of all quantities of a group; STATUS_MISSED for another order. */
-static enum status test_orders(const struct case_values *study, const struct convergence_orders *orders, int group,
-                               FILE *stream) {
-    const struct sweep_axis *const axis = &study->sweep[orders->axis];
-    enum status status = STATUS_OK;
-    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-        if (!(axis->order_of >> q & 1) || !(axis->order > 0)) continue;
-        for (int f = 0; f < orders->n_fish; f++) {
-            const double order = orders->row[convergence_place(orders, group, q, f)].result.order;
-            const char *const fish = study->school.fish[f].name, *const quantity = sweep_quantities[q].name;
-            const bool is_met = fabs(order - axis->order) <= axis->within;
-            fprintf(stream, "%s: order of %s of %s is %.2f, expected %g +- %g\n", is_met ? "met" : "MISSED", quantity,
-                    fish, order, axis->order, axis->within);
-            if (is_met || status != STATUS_OK) continue;
-            status = status_fail(STATUS_MISSED, "%s of %s: observed order %.2f in %s, expected %g +- %g", quantity,
-                                 fish, order, axis->key[0].path, axis->order, axis->within);
-        }
-    }
-
-    return status;
-}
-
 enum status study_print_orders(struct arena *arena, const struct case_values *study,
                                const struct convergence_orders *orders, FILE *stream) {
     enum status status = STATUS_OK;
@@ -403,8 +376,21 @@ enum status study_print_orders(struct arena *arena, const struct case_values *st
                 "finest levels, Richardson's extrapolation, and the error of the finest level (doc/studies.md)\n",
                 axis->reference ? " (*: from the reference of the case)" : "");
         print_group(arena, study, orders, g, stream);
-        const enum status tested = test_orders(study, orders, g, stream);
-        if (status == STATUS_OK) status = tested;
+
+        // the expected order of all quantities
+        for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+            if (!(axis->order_of >> q & 1) || !(axis->order > 0)) continue;
+            for (int f = 0; f < orders->n_fish; f++) {
+                const double order = orders->row[convergence_place(orders, g, q, f)].result.order;
+                const char *const fish = study->school.fish[f].name, *const quantity = sweep_quantities[q].name;
+                const bool is_met = fabs(order - axis->order) <= axis->within;
+                fprintf(stream, "%s: order of %s of %s is %.2f, expected %g +- %g\n", is_met ? "met" : "MISSED",
+                        quantity, fish, order, axis->order, axis->within);
+                if (is_met || status != STATUS_OK) continue;
+                status = status_fail(STATUS_MISSED, "%s of %s: observed order %.2f in %s, expected %g +- %g", quantity,
+                                     fish, order, axis->key[0].path, axis->order, axis->within);
+            }
+        }
     }
 
     return status;

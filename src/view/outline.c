@@ -5,13 +5,6 @@
 
 #include "fish/shape.h"
 
-/* The cubic through values with the given slopes, between knot 0 and 1. */
-static double hermite(const double *knot, const double *value, const double *slope, double at) {
-    const double length = knot[1] - knot[0], q = (at - knot[0]) / length, p = 1 - q;
-    return (1 + 2 * q) * p * p * value[0] + q * p * p * length * slope[0] + q * q * (3 - 2 * q) * value[1] -
-           q * q * p * length * slope[1];
-}
-
 /* Half thickness at the points. As a function of the angle whose cosine is the coordinate along the body, the half
  * thickness of a blunt nose is as smooth as a sine. Interpolate the ratio of half thickness to sine, continued
  * symmetrically at both ends. knot, ratio and slope have room for n_nodes + 3. */
@@ -45,7 +38,12 @@ static void interpolate_half(const struct outline *outline, const double *thickn
     for (int i = 0, k = 1; i < OUTLINE_POINTS; i++) {
         const double angle = M_PI * i / (OUTLINE_POINTS - 1);
         while (k < n - 3 && angle > knot[k + 1]) k++;
-        outline->half[i] = fmax(0, sin(angle) * hermite(knot + k, ratio + k, slope + k, angle));
+
+        // the cubic between knots k and k + 1
+        const double length = knot[k + 1] - knot[k], q = (angle - knot[k]) / length, p = 1 - q;
+        const double at_angle = (1 + 2 * q) * p * p * ratio[k] + q * p * p * length * slope[k] +
+                                q * q * (3 - 2 * q) * ratio[k + 1] - q * q * p * length * slope[k + 1];
+        outline->half[i] = fmax(0, sin(angle) * at_angle);
     }
 
     outline->half[0] = outline->half[OUTLINE_POINTS - 1] = 0;

@@ -201,21 +201,6 @@ static void points_place(const struct sheet *sheet, const struct sheet_points *p
     }
 }
 
-// point_set of the middles of the oldest stretches
-static void place_middles(const struct sheet *sheet, const struct sources *sources) {
-    const double *const x = sheet->x[0], *const y = sheet->y[0], *const label = sheet->label;
-    double *restrict const to_x = sources->x, *restrict const to_y = sources->y, *restrict const q = sources->q;
-    double *restrict const dx = sources->dx, *restrict const dy = sources->dy;
-    for (int i = 0; i < sheet->n_single; i++) {
-        const double along = -(label[i + 1] + 0.5 * (label[i] - label[i + 1]));
-        to_x[i] = 0.5 * x[i + 1] + 0.5 * x[i];
-        to_y[i] = 0.5 * y[i + 1] + 0.5 * y[i];
-        q[i] = label[i + 1] - label[i];
-        dx[i] = along * (x[i] - x[i + 1]);
-        dy[i] = along * (y[i] - y[i + 1]);
-    }
-}
-
 void sheet_place(struct sheet *sheet, const struct school *school, const struct wake *wake, double t, double tau) {
     const double q = tau / school->interval;
     const struct sheet_points *const graded = &sheet->graded;
@@ -228,7 +213,19 @@ void sheet_place(struct sheet *sheet, const struct school *school, const struct 
 
     wake_places(wake, school->interval, tau, sheet->x[0], sheet->y[0]);
     wake_strengths(wake, school, t, tau, q, sheet->label);
-    place_middles(sheet, from);
+
+    // the middles of the oldest stretches
+    const double *const x = sheet->x[0], *const y = sheet->y[0], *const label = sheet->label;
+    double *restrict const to_x = from->x, *restrict const to_y = from->y, *restrict const strength = from->q;
+    double *restrict const dx = from->dx, *restrict const dy = from->dy;
+    for (int i = 0; i < sheet->n_single; i++) {
+        const double along = -(label[i + 1] + 0.5 * (label[i] - label[i + 1]));
+        to_x[i] = 0.5 * x[i + 1] + 0.5 * x[i];
+        to_y[i] = 0.5 * y[i + 1] + 0.5 * y[i];
+        strength[i] = label[i + 1] - label[i];
+        dx[i] = along * (x[i] - x[i + 1]);
+        dy[i] = along * (y[i] - y[i + 1]);
+    }
     for (int i = 0; i < sheet->n_single; i++) {
         const double smoothing = (1 - q) * graded->smoothing[0][i] + q * graded->smoothing[1][i];
         from->square[i] = smoothing * smoothing;
