@@ -12,7 +12,9 @@ for file in "$tests"/../cases/*.yaml "$tests"/../cases/studies/*.yaml; do
     cp "$file" "cases/$(basename "$(dirname "$file")")-$(basename "$file")"
 done
 # bad cases, without the messages
-awk '/^==== / { file = "cases/bad-" $2 ".yaml"; next } /^----$/ { file = "" } file { print >file }' "$tests/case/bad_cases.txt"
+awk '/^====? / { file = "cases/bad-" $2 ".yaml"; if ($1 == "===") print "format: 1\ntime: {end: 1}" >file; next }
+     /^----$/ { file = "" }
+     file { print >file }' "$tests/case/bad_cases.txt"
 cat >small.yaml <<'end'
 format: 1
 name: small
