@@ -1,4 +1,5 @@
 /* test_bending_mode.c: the slowest mode against the modes of uniform beams. */
+#include <lapacke.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,6 +36,32 @@ TEST(slowest_mode_of_a_uniform_body_is_that_of_the_beam) {
     // cosh b cos b = 1 and -1 (Timoshenko, Vibration problems in engineering); 81 nodes: errors of 1/N
     NEAR(slowest_mode(UNIFORM), analytic(4.730040745), 0, 0.01);
     NEAR(slowest_mode(UNIFORM ", motion: {prescribed: head}"), analytic(1.875104069), 0, 0.03);
+}
+
+TEST(slowest_mode_is_that_of_the_matrices) {
+    // the turn of a joint is the second difference of the nodes over the edge; the first edge of a held body is fixed
+    enum { N = 9 };
+    static const char *const motions[] = {"none", "head"};
+    for (int fixed = 0; fixed < 2; fixed++) {
+        char fish[128];
+        snprintf(fish, sizeof fish, "nodes: %d, motion: {prescribed: %s}", N, motions[fixed]);
+        struct setup setup = setup_of(arena_text(test_arena(), TIME "fish: [{%s}]\n", fish));
+        const struct fish *const of = setup.school->fish;
+        double stiffness[N][N] = {{0}}, mass[N][N] = {{0}}, square[N];
+        static const double turn[] = {1, -2, 1};
+        for (int i = 0; i < 9 * of->n_joints; i++) {
+            const int joint = i / 9, a = i / 3 % 3, b = i % 3;
+            stiffness[joint + a][joint + b] +=
+                turn[a] * turn[b] * of->bending_stiffness[joint] / pow(of->edge_length, 3);
+        }
+        for (int k = 0; k < N; k++) mass[k][k] = of->mass[k];
+        for (int i = 0; i < 2 * of->n_edges; i++) mass[(i + 1) / 2][(i + 1) / 2] += of->added_mass[i / 2] / 2;
+        const int n = N - 2 * fixed, first = fixed ? 2 : 0;
+        assert_int_equal(LAPACKE_dsygv(LAPACK_ROW_MAJOR, 1, 'N', 'U', n, &stiffness[first][first], N,
+                                       &mass[first][first], N, square),
+                         0);
+        NEAR(slowest_mode(fish), sqrt(square[fixed ? 0 : 2]) / (2 * M_PI), 0, 1e-9);
+    }
 }
 
 TEST(the_accelerated_fluid_makes_modes_slower) {

@@ -403,3 +403,22 @@ TEST(a_street_has_two_staggered_rows_along_the_stream) {
                  TIME "wake: {street: {vortices: 2, spacing: 2, circulation: 1}}\nfish: [{force: published}]\n");
     NEAR(setup.school->vortices[1] - setup.school->vortices[4], 2 * 0.28055, 1e-5, 0);
 }
+
+TEST(a_depth_that_grows_in_proportion_is_a_straight_edge) {
+    struct setup setup = setup_of(
+        TIME
+        "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+        "fish: [{nodes: 7, sheet_points: 41, force: pressure, pressure: {span: finite}, body: {profile: table, "
+        "thickness_table: [.1, .1, .1, .1, .1, .1], depth_table: [.2, .3, .4, .5, .6, .7]}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    int n = 0;
+    for (int c = 0; c < fish->n_control; c++) {
+        // between the middles of edges that have neighbours on both sides; the slope is 0 at nose and tail
+        const double u = fish->n_edges * (1 - cos(pi * (c + 0.5) / fish->n_control)) / 2, depth = 0.15 + 0.1 * u;
+        if (u < 1.5 || u > fish->n_edges - 1.5) continue;
+        NEAR(fish->point_half[c], depth * depth / 32, 0, 1e-13);
+        NEAR(fish->control_widening[c], depth * 0.1 / 16, 0, 1e-13);
+        n++;
+    }
+    ABOVE(n, 10);
+}

@@ -316,6 +316,33 @@ TEST(force_and_reaction_are_those_of_the_jump) {
     }
 }
 
+TEST(the_pressure_acts_on_the_depth_of_an_edge) {
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_DEFAULTS
+        "time: {end: 1, shedding_interval: 0.01}\n"
+        "fish: [{nodes: 5, sheet_points: 21, pressure: {span: infinite}, body: {profile: table, thickness_table: [.1, "
+        ".1, "
+        ".1, .1], depth_table: [.2, .3, .5, .4]}, motion: {prescribed: all, pitch: 5, frequency: 1}}]\n");
+    school_run(simulation, 0.1);
+    simulate_measure(simulation);
+    const struct fish *const fish = simulation->school->fish;
+    const struct pressure *const pressure = simulation->residual->pressure[0];
+    const double *const y = simulation->state->y, *const yp = simulation->state->yp;
+    double want[4][2] = {{0}};
+    for (int c = 0; c < fish->n_control; c++) {
+        const struct direction *const body = &pressure->point[c].body;
+        const int k = (int)(fish_mean(&fish->control_point[c], fish->arc) / fish->edge_length);
+        const double size =
+            fish->depth[k] * pressure_jump(pressure, c, y, yp) * body->length * fish->control_interval[c];
+        for (int i = 0; i < 2; i++) want[k][i] -= size * body->n[i];
+    }
+    for (int k = 0; k < fish->n_edges; k++) {
+        double force[2];
+        pressure_of_edge(pressure, k, y, yp, force);
+        NEAR_ARRAY(2, force, want[k], 1e-14, 1e-12);
+    }
+}
+
 // a fish that is turned, or carried by a stream, swims as before
 TEST(forces_turn_with_the_fish_and_a_stream_carries_them) {
     static const char *const spans[] = {"infinite", "finite"};

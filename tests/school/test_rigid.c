@@ -104,9 +104,19 @@ TEST(every_vector_of_the_past_turns_with_the_fish) {
     const int n = history->n;
     assert_in_range(n, 5, 16);
     for (int age = 1; age < n; age++) before[age] = *state_recall(history, age);
+    const struct wake *const wake = simulation->state->wake;
+    double *const markers[][2] = {{wake->u, wake->v}, {wake->u_before, wake->v_before}}, velocity[2][2][16];
+    assert_in_range(wake->n_vortex, 5, 16);
+    for (int i = 0; i < 4; i++)
+        memcpy(velocity[i / 2][i % 2], markers[i / 2][i % 2], (size_t)wake->n_vortex * sizeof(double));
     const struct rigid old = rigid_of(simulation->school->fish, simulation->state->y);
     const double c = cos(0.7), s = sin(0.7), way[] = {3, 1};
     rigid_change(simulation->school, simulation->state, 0, &(struct rigid){.place = {3, 1}, .heading = 0.7});
+    for (int i = 0; i < 2 * wake->n_vortex; i++) {
+        const int k = i % 2, at = i / 2;
+        NEAR(markers[k][0][at], c * velocity[k][0][at] - s * velocity[k][1][at], 1e-14, 1e-13);
+        NEAR(markers[k][1][at], s * velocity[k][0][at] + c * velocity[k][1][at], 1e-14, 1e-13);
+    }
     for (int age = 1; age < n; age++) {
         const struct sample *const was = &before[age], *const is = state_recall(history, age);
         const double *const places[][2] = {{was->com, is->com}, {was->tail, is->tail}},
