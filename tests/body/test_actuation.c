@@ -100,6 +100,7 @@ TEST(no_joint_turns_by_more_than_the_largest_turn) {
         struct setup setup = setup_of(text);
         const struct fish *const fish = setup.school->fish;
         const double largest = fish_largest_turn(fish, 1.5, 0.4);
+        NEAR(fish_largest_turn(fish, 1.5, -0.4), largest, 0, 0);
         double most = 0;
         for (int n = 0; n < 1000; n++) {
             const struct fish_gait gait = {.amplitude = 1.5, .angle = 6.28318530717958647692 * n / 1000};
