@@ -199,8 +199,9 @@ warnings() {
     check "study: no other line about it" test "$(grep -c 'touch or cross' err)" = 1
     run gather crossing-study
     check "gather: the warnings" grep -q "$warned" out
-    run gather crossing-study -q
+    run gather crossing-study -q --strict
     check "gather -q: no tables" test ! -s out
+    check "gather --strict: exit 3" ended 3
     run info crossing-study/study.nc
     check "info of a study: the warnings" grep -q "$warned" out
     run study crossing.yaml -q --force --set 'sweep=[{key: "fish[1].start.heading", values: [0, 180, 0, 1]}]'

@@ -43,6 +43,7 @@ refused "field: no integer" 2 "--grid 3.5,3: expects NX,NY, integers" field run.
 refused "field: a line" 2 "--grid 3,1: expects NX,NY, integers from 2 on" field run.nc --grid 3,1 -o a.nc
 refused "field: too many points" 2 "more than 10000000 points" field run.nc --grid 99999,99999 -o a.nc
 refused "field: a box upside down" 2 "--box 0,1,1,0: expects the lower left corner" field run.nc --box 0,1,1,0 -o a.nc
+refused "field: a box without an end" 2 "--box 0,0,1e999,1: expects X0,Y0,X1,Y1" field run.nc --box 0,0,1e999,1 -o a.nc
 refused "field: half a box" 2 "--box 0,1: expects X0,Y0,X1,Y1" field run.nc --box 0,1 -o a.nc
 refused "field of a field" 4 "not the result of a run" field run-field.nc -o a.nc
 refused "field of a case" 4 "case.yaml" field case.yaml -o a.nc

@@ -214,6 +214,9 @@ check and_so_is_a_circle grep -q 'swims in a circle: it turns by 0.[5-9][0-9]* d
 check the_file_says_so /usr/bin/python3 -c 'import netCDF4
 lines = netCDF4.Dataset("shallow.nc").warnings.split("\n")
 assert len(lines) == 3 and "is unstable" in lines[0] and "in a circle" in lines[1] and "10 events" in lines[2], lines'
+run steady swim.yaml -q -o turning.nc --set 'fish[0].control.bias=0.1' --set 'fish[0].nodes=9' --set time.shedding_interval=0.1 \
+    --set steady.multipliers=false
+check a_circle_is_no_surprise_with_a_bias eval '! grep circle err && [[ $(ncdump -v steady_turn turning.nc) == *"steady_turn = -"[1-9]* ]]'
 run steady swim.yaml -q -o deep.nc --force --set time.shedding_interval=0.1 --set wake.lifetime=1 --set steady.tolerance=1e-3 \
     --set 'fish[0]={nodes: 9, sheet_points: 25, force: pressure, body: {thickness: 0.2, depth: 0.3, modulus: 1e6}, drag: {normal: 0}, start: {speed: 0.7}}'
 check a_stable_state_is_not test "$code" = 0 -a "$(grep -cE 'unstable|circle' err)" = 0

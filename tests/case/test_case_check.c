@@ -310,6 +310,10 @@ TEST(limits_are_where_the_messages_say) {
         {SHORT "fish: [{}]\nsweep: [{key: time.shedding_interval, values: [0.01, 0.02]}]\n",
          SHORT "fish: [{}]\nsweep: [{key: time.shedding_interval, values: [0.01, 0.0200001]}]\n",
          "value 0.0200001 of time.shedding_interval does not divide time.end, 1 s"},
+        {SHORT "fish: [{}]\nsweep: [{keys: [time.shedding_interval, time.end], values: [[0.01, 1], [0.03, 0.9]]}]\n",
+         SHORT
+         "fish: [{}]\nsweep: [{keys: [time.shedding_interval, 'fish[0].nodes'], values: [[0.01, 9], [0.03, 9]]}]\n",
+         "{keys: [time.shedding_interval, time.end], values: [[0.03, 0.99], ...]}"},
         {SHORT
          "fish: [{nodes: 7, control: {bias: 2}, wave: {amplitude: 0.5, constant: 1, linear: 0, quadratic: 0, table: "
          "[[12.8, -1], [1, 1]]}}]\n",

@@ -484,11 +484,12 @@ class Words(unittest.TestCase):
 
     def test_a_bar_is_one_line_as_wide_as_the_terminal(self):
         code = ("import sys; sys.path.insert(0, sys.argv[1]); import shoal\n"
-                f"run = shoal.Run({PAIR!r}); run.advance(run.end, progress=True)\n")
+                f"run = shoal.Run({PAIR!r}); run.advance(0.1); run.advance(run.end, progress=True)\n")
         said = subprocess.run([sys.executable, "-c", code, os.path.dirname(os.path.dirname(shoal.__file__))], check=True,
                               capture_output=True, env={**os.environ, "COLUMNS": "60"}).stderr.decode()
         self.assertEqual((said.count("\n"), said[-1]), (1, "\n"))
         self.assertEqual({len(line) for line in said.strip("\n\r").split("\r")}, {59})
+        self.assertIn("  0 % t = 0.1 of 0.2 s", said)
         self.assertIn("100 % t = 0.2 of 0.2 s", said)
 
 

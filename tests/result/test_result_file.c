@@ -138,6 +138,12 @@ TEST_WITH(constants_are_those_of_the_fish, set_up, tear_down) {
     NEAR(value_at(file, "shedding_interval", 0, 0, 0, 0), 0.1, 0, 0);
     NEAR(value_at(file, "edge_thickness", 1, 2, 0, 0), f->school->fish[1].thickness[2], 0, 0);
     NEAR(value_at(file, "node_mass", 0, 4, 0, 0), f->school->fish[0].mass[4], 0, 0);
+    for (size_t k = 1; k < 4; k++) {
+        const double arc = (double)k * value_at(file, "edge_length", 0, 0, 0, 0);
+        NEAR(value_at(file, "node_arc", 0, k, 0, 0), arc, 0, 1e-15);
+        NEAR(value_at(file, "joint_arc", 0, k - 1, 0, 0), arc, 0, 1e-15);
+        NEAR(value_at(file, "edge_arc", 0, k, 0, 0), arc * ((double)k + 0.5) / (double)k, 0, 1e-15);
+    }
     NEAR(value_at(file, "sheet_arc", 1, 4, 0, 0), 2, 0, 1e-15);
     nc_close(file);
 }
