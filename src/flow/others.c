@@ -294,7 +294,7 @@ static void select_at(struct flow *flow, const struct state *state, int f, doubl
 
         // the body, with the nascent point
         const struct kernel_pair of_body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
-        pair->is_far_body = of->is_used && !was_near && n_released > 0;
+        pair->is_far_body = of->is_used && !was_near;
         if (pair->is_far_body && !is_far(of, interval, &of_body, &from->around, false, tolerance)) {
             for (int c = 0; c < body->n && pair->is_far_body; c++) {
                 const struct group one = group_of(others, g, body, (struct range){c, 1}, NULL);

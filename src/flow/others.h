@@ -28,7 +28,7 @@ struct targets;
 struct others *others_create(struct arena *arena, const struct flow *flow);
 
 /* Before a sum: if the last event or a wake has changed, select the far sources and sum the far wakes; places the flow
- * at the event. Without wake.tolerance, with a steady wake, or before the second event no source is far. */
+ * at the event. Without wake.tolerance, with a steady wake, or before the start no source is far. */
 void others_select(struct flow *flow, const struct state *state);
 
 /* Whether sums over other fish are by this file: never by the tree. */
