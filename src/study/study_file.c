@@ -22,23 +22,12 @@ static const char owner[] = "the report of a study"; /* of the arenas */
 
 // ---- the variables
 
-/* Dimensions; the dimension point exists in a sweep of errors only. */
-enum dimension {
-    NO_DIMENSION,
-    BY_MEMBER,
-    BY_FISH,
-    BY_XY,
-    BY_GROUP,
-    BY_LEVEL,
-    BY_POINT,
-    BY_KEY,
-    BY_KEY_LEVEL,
-    BY_TEXT,
-    N_DIMENSIONS
-};
-enum { MOST_DIMENSIONS = 4 /* of a variable */ };
-static const char *const dimension_names[N_DIMENSIONS] = {"",      "member", "fish", "xy",        "group",
-                                                          "level", "point",  "key",  "key_level", "text"};
+/* Dimensions, in the order of the dimensions of every variable, and as bits of a set, one or two letters each; the
+ * dimension point exists in a sweep of errors only. */
+enum dimension { BY_MEMBER, BY_GROUP, BY_POINT, BY_KEY, BY_KEY_LEVEL, BY_FISH, BY_XY, BY_LEVEL, BY_TEXT, N_DIMENSIONS };
+enum { M = 1, G = 2, P = 4, K = 8, KL = 16, F = 32, X = 64, L = 128, T = 256, MOST_DIMENSIONS = 4 /* of a variable */ };
+static const char *const dimension_names[N_DIMENSIONS] = {"member", "group", "point", "key", "key_level",
+                                                          "fish",   "xy",    "level", "text"};
 
 /* The rows of the table, in this order. */
 enum { MEMBER, STATUS, WARNINGS, FISH_NAME, SWEPT_KEY, QUANTITY, N_MEMBER_ROWS };
@@ -70,105 +59,45 @@ static const struct row {
     const char *name, *unit;
     enum netcdf_type type;
     enum existence existence;
-    enum dimension dimension[MOST_DIMENSIONS];
+    int dimensions; /* a set */
     const char *meaning;
 } rows[N_ROWS] = {
-    {"member", "1", NETCDF_INT, ALWAYS, {BY_MEMBER}, "number of the member"},
-    {"status", "", NETCDF_TEXT, ALWAYS, {BY_MEMBER, BY_TEXT}, "status of the member at the end"},
-    {"warnings",
-     "",
-     NETCDF_TEXT,
-     ALWAYS,
-     {BY_MEMBER, BY_TEXT},
-     "warnings about the result of the member, one per line"},
-    {"fish", "", NETCDF_TEXT, ALWAYS, {BY_FISH, BY_TEXT}, "name of the fish"},
-    {"%s", NULL, NETCDF_DOUBLE, BY_SWEPT_KEY, {BY_MEMBER}, "%s"},
-    {"%s", NULL, NETCDF_DOUBLE, BY_QUANTITY, {BY_MEMBER, BY_FISH, BY_XY}, "%s"},
-    {"level_value", of_key, NETCDF_DOUBLE, IN_ORDERS, {BY_LEVEL}, "value of the refined key, from coarse to fine"},
-    {"level_size", of_key, NETCDF_DOUBLE, IN_ORDERS, {BY_LEVEL}, "grid spacing: the value, or 1/(n - 1) of n points"},
-    {"group_member", "1", NETCDF_INT, IN_ORDERS, {BY_GROUP}, "first member of each group"},
-    {"group_design_order",
-     "1",
-     NETCDF_DOUBLE,
-     IN_ORDERS,
-     {BY_GROUP},
-     "order that the refined key has by design; NaN: none"},
-    {"difference_%s",
-     NULL,
-     NETCDF_DOUBLE,
-     BY_ORDER,
-     {BY_GROUP, BY_FISH, BY_LEVEL},
+    {"member", "1", NETCDF_INT, ALWAYS, M, "number of the member"},
+    {"status", "", NETCDF_TEXT, ALWAYS, M | T, "status of the member at the end"},
+    {"warnings", "", NETCDF_TEXT, ALWAYS, M | T, "warnings about the result of the member, one per line"},
+    {"fish", "", NETCDF_TEXT, ALWAYS, F | T, "name of the fish"},
+    {"%s", NULL, NETCDF_DOUBLE, BY_SWEPT_KEY, M, "%s"},
+    {"%s", NULL, NETCDF_DOUBLE, BY_QUANTITY, M | F | X, "%s"},
+    {"level_value", of_key, NETCDF_DOUBLE, IN_ORDERS, L, "value of the refined key, from coarse to fine"},
+    {"level_size", of_key, NETCDF_DOUBLE, IN_ORDERS, L, "grid spacing: the value, or 1/(n - 1) of n points"},
+    {"group_member", "1", NETCDF_INT, IN_ORDERS, G, "first member of each group"},
+    {"group_design_order", "1", NETCDF_DOUBLE, IN_ORDERS, G, "order that the refined key has by design; NaN: none"},
+    {"difference_%s", NULL, NETCDF_DOUBLE, BY_ORDER, G | F | L,
      "distance of %s from the finest level, or from the reference of the case"},
-    {"order_before_%s",
-     "1",
-     NETCDF_DOUBLE,
-     BY_ORDER,
-     {BY_GROUP, BY_FISH},
-     "observed order of %s of the next coarser levels"},
-    {"order_%s", "1", NETCDF_DOUBLE, BY_ORDER, {BY_GROUP, BY_FISH}, "observed order of %s of the finest levels"},
-    {"limit_%s",
-     NULL,
-     NETCDF_DOUBLE,
-     BY_ORDER,
-     {BY_GROUP, BY_FISH, BY_XY},
+    {"order_before_%s", "1", NETCDF_DOUBLE, BY_ORDER, G | F, "observed order of %s of the next coarser levels"},
+    {"order_%s", "1", NETCDF_DOUBLE, BY_ORDER, G | F, "observed order of %s of the finest levels"},
+    {"limit_%s", NULL, NETCDF_DOUBLE, BY_ORDER, G | F | X,
      "%s extrapolated to zero spacing by Richardson's method (xy: positions only)"},
-    {"error_%s",
-     NULL,
-     NETCDF_DOUBLE,
-     BY_ORDER,
-     {BY_GROUP, BY_FISH},
-     "error of %s at the finest level (doc/studies.md)"},
-    {"objection_%s",
-     "",
-     NETCDF_TEXT,
-     BY_ORDER,
-     {BY_GROUP, BY_FISH, BY_TEXT},
+    {"error_%s", NULL, NETCDF_DOUBLE, BY_ORDER, G | F, "error of %s at the finest level (doc/studies.md)"},
+    {"objection_%s", "", NETCDF_TEXT, BY_ORDER, G | F | T,
      "reason why the levels of %s have no order, and the error is a largest difference"},
-    {"point_member",
-     "1",
-     NETCDF_INT,
-     IN_POINTS,
-     {BY_POINT},
-     "member of the stated values of each point of a sweep with errors"},
-    {"key_name", "", NETCDF_TEXT, IN_ERRORS, {BY_KEY, BY_TEXT}, "numerical key that is varied alone"},
-    {"key_reason",
-     "",
-     NETCDF_TEXT,
-     IN_ERRORS,
-     {BY_POINT, BY_KEY, BY_TEXT},
-     "reason why the key is not varied, or empty"},
-    {"key_levels", "1", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY}, "levels of the key"},
-    {"key_stated", "1", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY}, "level of the stated value, from 0, the finest"},
-    {"key_is_choice", "1", NETCDF_INT, IN_ERRORS, {BY_KEY}, "1: choice of the model, not in the sum"},
-    {"key_design_order", "1", NETCDF_DOUBLE, IN_ERRORS, {BY_KEY}, "order that the key has by design; NaN: none"},
-    {"key_value",
-     of_key,
-     NETCDF_DOUBLE,
-     IN_ERRORS,
-     {BY_POINT, BY_KEY, BY_KEY_LEVEL},
-     "value of the key at each level, from fine to coarse"},
-    {"key_member", "1", NETCDF_INT, IN_ERRORS, {BY_POINT, BY_KEY, BY_KEY_LEVEL}, "member of each level; -1: none"},
-    {"stated_%s", NULL, NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_FISH}, "stated value of %s"},
-    {"bar_%s",
-     NULL,
-     NETCDF_DOUBLE,
-     BY_ERROR,
-     {BY_POINT, BY_FISH},
-     "error of the stated value of %s: the sum over the keys"},
-    {"lowest_%s", NULL, NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_FISH}, "lowest %s of other models; NaN: none"},
-    {"highest_%s", NULL, NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_FISH}, "highest %s of other models"},
-    {"part_%s",
-     NULL,
-     NETCDF_DOUBLE,
-     BY_ERROR,
-     {BY_POINT, BY_KEY, BY_FISH},
+    {"point_member", "1", NETCDF_INT, IN_POINTS, P, "member of the stated values of each point of a sweep with errors"},
+    {"key_name", "", NETCDF_TEXT, IN_ERRORS, K | T, "numerical key that is varied alone"},
+    {"key_reason", "", NETCDF_TEXT, IN_ERRORS, P | K | T, "reason why the key is not varied, or empty"},
+    {"key_levels", "1", NETCDF_INT, IN_ERRORS, P | K, "levels of the key"},
+    {"key_stated", "1", NETCDF_INT, IN_ERRORS, P | K, "level of the stated value, from 0, the finest"},
+    {"key_is_choice", "1", NETCDF_INT, IN_ERRORS, K, "1: choice of the model, not in the sum"},
+    {"key_design_order", "1", NETCDF_DOUBLE, IN_ERRORS, K, "order that the key has by design; NaN: none"},
+    {"key_value", of_key, NETCDF_DOUBLE, IN_ERRORS, P | K | KL, "value of the key at each level, from fine to coarse"},
+    {"key_member", "1", NETCDF_INT, IN_ERRORS, P | K | KL, "member of each level; -1: none"},
+    {"stated_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "stated value of %s"},
+    {"bar_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "error of the stated value of %s: the sum over the keys"},
+    {"lowest_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "lowest %s of other models; NaN: none"},
+    {"highest_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | F, "highest %s of other models"},
+    {"part_%s", NULL, NETCDF_DOUBLE, BY_ERROR, P | K | F,
      "error of %s by each key, or change by a choice of the model"},
-    {"key_order_%s", "1", NETCDF_DOUBLE, BY_ERROR, {BY_POINT, BY_KEY, BY_FISH}, "observed order of %s in each key"},
-    {"key_flag_%s",
-     "",
-     NETCDF_TEXT,
-     BY_ERROR,
-     {BY_POINT, BY_KEY, BY_FISH, BY_TEXT},
+    {"key_order_%s", "1", NETCDF_DOUBLE, BY_ERROR, P | K | F, "observed order of %s in each key"},
+    {"key_flag_%s", "", NETCDF_TEXT, BY_ERROR, P | K | F | T,
      "reason why the levels of each key give no order of %s, or empty"},
 };
 
@@ -229,13 +158,12 @@ static void add_variable(struct contents *contents, struct variable v) {
     v.name = fill_name(contents->arena, row->name, name);
     v.meaning = fill_name(contents->arena, row->meaning, meaning);
     v.unit = v.type == NETCDF_TEXT ? "1" : row->unit && row->unit != of_key ? row->unit : unit;
-    for (int i = 0; i < MOST_DIMENSIONS; i++) {
+    for (enum dimension d = BY_MEMBER; d < BY_TEXT; d++) {
         // a quantity without fish or directions lacks these dimensions, a case without a sweep the dimension of points
-        const enum dimension d = row->dimension[i];
         const bool is_of_quantity = v.row == QUANTITY || v.row == LIMIT;
         const bool is_missing = (d == BY_FISH && v.row == QUANTITY && !v.quantity->of_fish) ||
                                 (d == BY_XY && is_of_quantity && !v.quantity->of_xy);
-        if (d == NO_DIMENSION || d == BY_TEXT || is_missing || contents->length[d] == 0) continue;
+        if (!(row->dimensions >> d & 1) || is_missing || contents->length[d] == 0) continue;
         v.dimension[v.n_dimensions++] = d;
     }
     GROW(contents->arena, contents->variable, contents->n_variables + 1);
@@ -529,11 +457,10 @@ int study_file_listed(int i, struct result_listed *listed) {
                                                                        : "double",
                                      .meaning = r == QUANTITY ? quantity->long_name : meaning[r]};
     int length = 0;
-    for (int d = 0; d < MOST_DIMENSIONS; d++) {
-        const enum dimension by = row->dimension[d];
+    for (enum dimension by = BY_MEMBER; by < N_DIMENSIONS; by++) {
         const bool is_missing =
             r == QUANTITY && ((by == BY_FISH && !quantity->of_fish) || (by == BY_XY && !quantity->of_xy));
-        if (by == NO_DIMENSION || is_missing || (by == BY_POINT && r != POINT_MEMBER)) continue;
+        if (!(row->dimensions >> by & 1) || is_missing || (by == BY_POINT && r != POINT_MEMBER)) continue;
         length += snprintf(listed->dimensions + length, sizeof listed->dimensions - (size_t)length, "%s%s",
                            length > 0 ? ", " : "", dimension_names[by]);
     }
