@@ -1,8 +1,9 @@
-/* kernel.c: one root in single precision per pair, one division for two pairs; in mutual sums both serve both
- * directions. */
+/* kernel.c: finite span takes one root and one division per pair, in mutual sums for both directions; infinite span one
+ * division for two pairs. */
 #include "flow/kernel.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -51,7 +52,7 @@ struct targets kernel_targets(int n, const double *x, const double *y, double *c
                             .div_y = sum[7]};
 }
 
-// ---- velocity and divergence
+// ---- velocity, divergence and gradients
 
 #if defined(__x86_64__)
 
@@ -59,14 +60,14 @@ struct targets kernel_targets(int n, const double *x, const double *y, double *c
 #define TARGET __attribute__((target("avx512f")))
 #define lanes __m512d
 #define FUSED(a, b, c) _mm512_fmadd_pd(a, b, c)
-#define ONE_OVER_ROOT(a) _mm512_cvtps_pd(_mm256_div_ps(_mm256_set1_ps(1), _mm256_sqrt_ps(_mm512_cvtpd_ps(a))))
+#define ROOT(a) _mm512_sqrt_pd(a)
 #include "flow/kernel_loops.h"
 
 #define VARIANT(name) name##_avx2
 #define TARGET __attribute__((target("avx2,fma")))
 #define lanes __m256d
 #define FUSED(a, b, c) _mm256_fmadd_pd(a, b, c)
-#define ONE_OVER_ROOT(a) _mm256_cvtps_pd(_mm_div_ps(_mm_set1_ps(1), _mm_sqrt_ps(_mm256_cvtpd_ps(a))))
+#define ROOT(a) _mm256_sqrt_pd(a)
 #include "flow/kernel_loops.h"
 
 #elif defined(__aarch64__)
@@ -75,7 +76,7 @@ struct targets kernel_targets(int n, const double *x, const double *y, double *c
 #define TARGET
 #define lanes float64x2_t
 #define FUSED(a, b, c) vfmaq_f64(c, a, b)
-#define ONE_OVER_ROOT(a) vcvt_f64_f32(vdiv_f32(vdup_n_f32(1), vsqrt_f32(vcvt_f32_f64(a))))
+#define ROOT(a) vsqrtq_f64(a)
 #include "flow/kernel_loops.h"
 
 #endif
@@ -86,7 +87,7 @@ typedef double two __attribute__((vector_size(2 * sizeof(double))));
 #define TARGET
 #define lanes two
 #define FUSED(a, b, c) ((a) * (b) + (c))
-#define ONE_OVER_ROOT(a) ((two){1 / sqrtf((float)(a)[0]), 1 / sqrtf((float)(a)[1])})
+#define ROOT(a) ((two){sqrt((a)[0]), sqrt((a)[1])})
 #include "flow/kernel_loops.h"
 
 static const struct kernel_loops *loops_finite(int i) {
@@ -115,36 +116,6 @@ static const struct kernel_loops *loops_infinite(int i) {
     return i < n ? found[i] : NULL;
 }
 
-// ---- with gradients
-
-static WIDE(void, block_gradient, (struct kernel_block * at, const struct block_sources *from), (at, from)) {
-    const double scale = from->span * inverse_two_pi;
-    for (int n = 0; n < from->n; n++) {
-        const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, dx = from->dx[n] * scale;
-        const double dy = from->dy[n] * scale, half = from->factor * from->half[n] + from->leg[n];
-        const double square = from->square[n] + from->add;
-
-        for (int i = 0; i < KERNEL_BLOCK; i++) {
-            const double rx = at->x[i] - x, ry = at->y[i] - y, r2 = rx * rx + ry * ry;
-            const double r = r2 + (at->square[i] + square), t = r2 + (at->half[i] + half), root = sqrt(t);
-            const double inverse = 1 / (r * t * root), f = q * (inverse * t), g = inverse * r;
-            at->u[i] -= f * ry;
-            at->v[i] += f * rx;
-            at->leg_u[i] -= g * dy;
-            at->leg_v[i] += g * dx;
-            // 1/T^(5/2), and the slopes of f and g over r
-            const double fifth = g * g * root, by_f = -f * (2 * inverse * t * root + g * root), by_g = -3 * fifth;
-            const double across = ry * dx - rx * dy, h = by_g, k = 15 * fifth * g * root;
-            at->div[i] += h / 3 * across;
-            at->u_x[i] -= (ry * by_f + dy * by_g) * rx;
-            at->u_y[i] -= (ry * by_f + dy * by_g) * ry + f;
-            at->v_x[i] += (rx * by_f + dx * by_g) * rx + f;
-            at->div_x[i] += k * across * rx - h * dy;
-            at->div_y[i] += k * across * ry + h * dx;
-        }
-    }
-}
-
 static WIDE(void, block_edge, (struct kernel_block * at, const struct block_sources *from), (at, from)) {
     const double scale = from->span * inverse_two_pi;
     for (int n = 0; n < from->n; n++) {
@@ -163,27 +134,8 @@ static WIDE(void, block_edge, (struct kernel_block * at, const struct block_sour
     }
 }
 
-static WIDE(void, block_gradient_infinite, (struct kernel_block * at, const struct block_sources *from), (at, from)) {
-    const double scale = from->span * inverse_two_pi;
-    for (int n = 0; n < from->n; n++) {
-        const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, square = from->square[n] + from->add;
-        for (int i = 0; i < KERNEL_BLOCK; i++) {
-            const double rx = at->x[i] - x, ry = at->y[i] - y;
-            const double inverse = 1 / (rx * rx + (ry * ry + (at->square[i] + square)));
-            const double f = q * inverse, h = 2 * f * inverse;
-            at->u[i] -= f * ry;
-            at->v[i] += f * rx;
-            at->u_x[i] += h * rx * ry;
-            at->u_y[i] += h * ry * ry - f;
-            at->v_x[i] += f - h * rx * rx;
-        }
-    }
-}
-
 static void fill_block(struct kernel_block *block, const struct kernel_pair *pair, const struct targets *at, int first,
                        int n) {
-    // without gradients the loops set the sums
-    if (at->u_x) memset(block, 0, sizeof *block);
     if (at->edge) memset(block->edge, 0, sizeof block->edge + sizeof block->edge_gradient);
     block->has_squares = at->square != NULL;
     for (int i = 0; i < KERNEL_BLOCK; i++) {
@@ -246,12 +198,8 @@ void kernel_induce(const struct kernel_pair *pair, const struct sources *sources
         struct kernel_block block;
         fill_block(&block, pair, at, first, n);
 
-        if (at->u_x) {
-            pair->kernel->gradient(&block, &from);
-        } else {
-            pair->kernel->loops(0)->velocity(&block, &from);
-        }
-
+        const struct kernel_loops *const loops = pair->kernel->loops(0);
+        (at->u_x ? loops->gradient : loops->velocity)(&block, &from);
         if (at->edge && pair->kernel->edge) pair->kernel->edge(&block, &from);
         add_block(&block, pair, at, first, n);
     }
@@ -382,18 +330,16 @@ const struct kernel kernel_infinite = {.cost = 1,
                                        .own = pair_infinite,
                                        .other = pair_infinite,
                                        .loops = loops_infinite,
-                                       .gradient = block_gradient_infinite,
                                        .unit = unit_infinite};
 
 const struct kernel kernel_finite = {.has_legs = 1,
-                                     .cost = 6,
+                                     .cost = 4,
                                      .tree_sources = 1000,
                                      .tree_interactions = 1e6,
                                      .bound = bound_finite,
                                      .own = pair_own,
                                      .other = pair_other,
                                      .loops = loops_finite,
-                                     .gradient = block_gradient,
                                      .edge = block_edge,
                                      .unit = unit_finite};
 

@@ -16,8 +16,8 @@
  *
  * The sum at a target runs over the sources in array order, and every operation is rounded as written, with explicit
  * fused products on x86-64 with AVX2 and on arm64: the same bits on all processors of a family, for any vector width.
- * Targets are processed in blocks of 16. Targets i and i + 8 of a block share a division: the last bits of one target
- * depend on the other target. */
+ * Targets are processed in blocks of 16. With infinite span targets i and i + 8 of a block share a division: the last
+ * bits of one target depend on the other target. */
 #ifndef KERNEL_H
 #define KERNEL_H
 
@@ -114,10 +114,11 @@ struct block_lanes {
     double leg_u[KERNEL_BLOCK / 2], leg_v[KERNEL_BLOCK / 2], div[KERNEL_BLOCK / 2];
 };
 
-/* The loops of kernel_induce and kernel_induce_mutual for one vector width set u, v, and with legs leg_u, leg_v and a
- * third of div. mutual NULL: pairs are no faster (infinite span: 7 against 8 interactions per ns). */
+/* The loops of kernel_induce and kernel_induce_mutual for one vector width set u, v, with legs leg_u, leg_v and a third
+ * of div, and the gradients. mutual NULL: pairs are no faster (infinite span: 7 against 8 interactions per ns). */
 struct kernel_loops {
     void (*velocity)(struct kernel_block *at, const struct block_sources *from);
+    void (*gradient)(struct kernel_block *at, const struct block_sources *from);
     void (*mutual)(struct kernel_block *at, const struct block_mates *mates, const struct block_sources *from,
                    struct block_lanes *sums);
 };
@@ -138,8 +139,7 @@ struct kernel {
     /* bound of the velocity, and of length times div u, of sources with the sums q and d of the sizes of the strengths,
      * for squares of distances of at least r2 and h = b^2/2 + s of at least low */
     double (*bound)(const struct kernel_pair *pair, double r2, double low, double q, double d, double length);
-    /* add to the sums of a block with gradients; the edge force (NULL without legs); one source */
-    void (*gradient)(struct kernel_block *at, const struct block_sources *from);
+    /* add the edge force to a block (NULL without legs); one source */
     void (*edge)(struct kernel_block *at, const struct block_sources *from);
     void (*unit)(const struct kernel_pair *pair, const struct source *source, int n, const double *x, const double *y,
                  const double *half, struct unit_values *values);

@@ -238,6 +238,7 @@ TEST(fused_variants_round_identically) {
                                        .add = 1e-4};
     struct kernel_block first;
     memset(&first, 0, sizeof first);
+    first.has_squares = 1;
     for (int i = 0; i < KERNEL_BLOCK; i++) {
         first.x[i] = number(1000 + i);
         first.y[i] = number(2000 + i);
@@ -274,6 +275,12 @@ TEST(fused_variants_round_identically) {
             NEAR_ARRAY(KERNEL_BLOCK, other.leg_u, first.leg_u, rounding, rounding);
             NEAR_ARRAY(KERNEL_BLOCK, other.leg_v, first.leg_v, rounding, rounding);
             NEAR_ARRAY(KERNEL_BLOCK, other.div, first.div, 100 * rounding, rounding);
+            struct kernel_block slopes[2] = {targets, targets};
+            for (int i = 0; i < 2; i++) kernel->loops(i == 0 ? 0 : k)->gradient(&slopes[i], &from);
+            NEAR_ARRAY(KERNEL_BLOCK, slopes[0].u, first.u, 1e-12, 1e-12);
+            NEAR_ARRAY(KERNEL_BLOCK, slopes[1].u_y, slopes[0].u_y, 100 * rounding, rounding);
+            NEAR_ARRAY(KERNEL_BLOCK, slopes[1].v_x, slopes[0].v_x, 100 * rounding, rounding);
+            NEAR_ARRAY(KERNEL_BLOCK, slopes[1].div_x, slopes[0].div_x, 1e4 * rounding, rounding);
             if (!kernel->loops(k)->mutual) continue;
             kernel->loops(k)->mutual(&other, &mates, &from, others);
             NEAR_ARRAY(KERNEL_BLOCK, other.u, mutual.u, rounding, rounding);
