@@ -28,8 +28,10 @@ static const double linear_relative = 1e-4, linear_absolute = 0.1;
  * cuts every step that its estimate asks to reduce, however little, and then doubles it. Measured: doc/numerics.md. */
 static const double kept_from = 0.85, kept_to = 1.9;
 
-/* After a restart the order is one: the first step is this fraction of the last step. */
-static const double first_step = 0.3;
+/* At the start and after a restart the order is one. The first step is this fraction of the last step; at the start, of
+ * the interval, and at most this factor times the root of rtol, which the error of order one requires. IDA's own first
+ * step ignores the stiffness of the body, and is so small that 15 Jacobians follow. */
+static const double first_step = 0.3, first_by_root = 20;
 
 /* At least the number of vectors that IDA clones. */
 enum { N_CLONES = 32 };
@@ -105,10 +107,10 @@ static int couple_more(void *data) {
     return residual_couple_more(&solver->residual->couplings, solver->state->y);
 }
 
-// derive the first step from the last step: IDA's guess ignores the stiffness of the body
 static enum status ida_first_step(struct ida *solver) {
-    const double step = first_step * solver->before.step_size;
-    if (step > 0 && IDASetInitStep(solver->ida, step)) {
+    const double start = fmin(first_step, first_by_root * sqrt(solver->options.rtol));
+    const double last = solver->before.step_size;
+    if (IDASetInitStep(solver->ida, last > 0 ? first_step * last : start * solver->residual->school->interval)) {
         return status_fail(STATUS_SOLVER, "IDA cannot start: %s", status_message());
     }
     return STATUS_OK;
