@@ -139,6 +139,8 @@ expect three_hundred_keys 2 'keys.yaml:257:1: error: more than 256 keys in one m
 expect twenty_thousand_fish 2 'fish: more than 10000 fish' school.yaml
 { cat good.yaml; printf '    control: {law: heading, waypoints: ['; repeat '[1, 2], ' 20000; echo ']}'; } |
     sed 's/  - {name: b.*/  - name: b/' >waypoints.yaml
+{ cat good.yaml; printf '  - wave: {table: ['; repeat '[1, 2, 3, 4], ' 2501; echo ']}'; } >table.yaml
+expect ten_thousand_and_four_numbers 2 'fish[2].wave.table: more than 10000 values' table.yaml
 expect twenty_thousand_waypoints 2 'fish[1].control.waypoints: more than 10000 values' waypoints.yaml
 { echo 'format: 1'; echo 'time: {end: 1}'; echo 'fish: [{}]'; echo 'sweep:'
   for key in solver.order solver.max_steps; do echo "  - {key: $key, values: [$(repeat '1,' 50000)]}"; done

@@ -805,6 +805,27 @@ TEST(powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass) {
     }
 }
 
+TEST(powers_on_the_water_are_those_of_a_towed_body) {
+    double want[2];
+    for (int is_held = 0; is_held < 2; is_held++) {
+        const double heading = 137 * acos(-1) / 180, speed = 0.8;
+        struct simulation *const simulation = school_simulation_of(
+            SCHOOL_DEFAULTS
+            "time: {end: 1, shedding_interval: 0.02}\nsolver: {rtol: 1e-8}\nfluid: {velocity: [%.17g, %.17g]}\n"
+            "fish: [{nodes: 7, sheet_points: 21, start: {heading: 137, speed: %g}, motion: {prescribed: head, heave: "
+            "0.1, "
+            "frequency: 1, speed: %g}}]\n",
+            is_held * -speed * cos(heading), is_held * -speed * sin(heading), speed * !is_held, speed * !is_held);
+        school_run(simulation, 0.2);
+        simulate_measure(simulation);
+        const struct diagnostics_power power =
+            diagnostics_power(simulation->residual, 0, simulation->state->t, simulation->state->y);
+        if (!is_held) want[0] = power.on_water, want[1] = power.driving_on_water;
+        NEAR(power.on_water, want[0], 0, 1e-5);
+        NEAR(power.driving_on_water, want[1], 0, 1e-5);
+    }
+}
+
 TEST(balances_that_begin_again_are_closed) {
     struct simulation *const simulation = school_simulation(
         SCHOOL_DEFAULTS
