@@ -78,6 +78,19 @@ static void is_printed(const char *got, const char *want) {
     if (got[i] != want[i]) fail_msg("from \"%.60s\" on:\n%s", want + i, got);
 }
 
+TEST_WITH(thrust_is_told_of_a_school_with_a_held_body, set_up, tear_down) {
+    struct fixture *f = *state;
+    for (int held = -1; held < N_FISH; held++) {
+        for (int i = 0; i < N_FISH; i++) f->school->fish[i].motion.is_held = i == held;
+        f->of_fish[1].mean_thrust = 0.125;
+        write_file(f, 1);
+        enum status status;
+        const char *const text = info(f->path, 0, &status);
+        assert_int_equal(strstr(text, "  thrust") != NULL && strstr(text, "  0.125") != NULL, held >= 0);
+        unlink(f->path);
+    }
+}
+
 TEST_WITH(info_is_printed_whole, set_up, tear_down) {
     struct fixture *f = *state;
     for (int i = 0; i < N_FISH; i++) {
