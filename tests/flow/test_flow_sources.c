@@ -722,3 +722,26 @@ TEST(the_field_does_not_go_through_walls) {
         }
     }
 }
+
+TEST(a_steady_wake_is_fine_as_far_as_the_tail_of_a_long_fish) {
+    // a third fish without circulation lies far behind: the wake of the first is fine up to there
+    enum { MOST = 128 };
+    double v[2][MOST];
+    for (int n_fish = 2; n_fish <= 3; n_fish++) {
+        struct setup setup = setup_of(arena_text(
+            test_arena(),
+            SCHOOL_DEFAULTS
+            "time: {end: 1, shedding_interval: 0.01}\nfluid: {velocity: [1, 0]}\n"
+            "defaults: {fish: {nodes: 5, force: pressure, pressure: {span: finite}, motion: {prescribed: all}, "
+            "wave: {frequency: 0}}}\n"
+            "fish: [{length: 0.2, sheet_points: 61, body: {depth: 0.1}}, {sheet_points: 31, start: {position: "
+            "[0.4, 0.1]}}%s]\n",
+            n_fish == 2 ? "" : ", {sheet_points: 31, start: {position: [4, 0]}}"));
+        struct flow *const flow = setup.residual->flow;
+        setup.state->y[setup.school->fish[0].at.circulation] = 1;
+        flow_velocity(flow, setup.state, 0, setup.state->y, true);
+        assert_in_range(flow->points[1].n, 30, MOST);
+        memcpy(v[n_fish - 2], flow->v + flow->points[1].first, (size_t)flow->points[1].n * sizeof *flow->v);
+        if (n_fish == 3) NEAR_ARRAY(flow->points[1].n, v[0], v[1], 1e-7, 1e-5);
+    }
+}
