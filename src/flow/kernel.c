@@ -137,6 +137,7 @@ static WIDE(void, block_edge, (struct kernel_block * at, const struct block_sour
 static void fill_block(struct kernel_block *block, const struct kernel_pair *pair, const struct targets *at, int first,
                        int n) {
     if (at->edge) memset(block->edge, 0, sizeof block->edge + sizeof block->edge_gradient);
+    block->n = n;
     block->has_squares = at->square != NULL;
     for (int i = 0; i < KERNEL_BLOCK; i++) {
         // the padding has another position than the last target, so that no two targets of a division are at one source

@@ -91,7 +91,7 @@ void kernel_values_add(const struct kernel_pair *pair, const struct unit_values 
 /* A block of targets, with sums. */
 enum { KERNEL_BLOCK = 16 };
 struct kernel_block {
-    int has_squares; /* whether targets have squares of the smoothing */
+    int n, has_squares; /* targets; whether they have squares of the smoothing */
     double x[KERNEL_BLOCK], y[KERNEL_BLOCK], half[KERNEL_BLOCK], square[KERNEL_BLOCK];
     double u[KERNEL_BLOCK], v[KERNEL_BLOCK], leg_u[KERNEL_BLOCK], leg_v[KERNEL_BLOCK], div[KERNEL_BLOCK];
     double u_x[KERNEL_BLOCK], u_y[KERNEL_BLOCK], v_x[KERNEL_BLOCK], div_x[KERNEL_BLOCK], div_y[KERNEL_BLOCK];

@@ -26,7 +26,7 @@ static inline __attribute__((always_inline)) TARGET void VARIANT(rings)(struct k
                                                                         const struct block_sources *from,
                                                                         bool with_gradient) {
     const double scale = from->span * inverse_two_pi;
-    for (int i = 0; i < KERNEL_BLOCK; i += VARIANT(width)) {
+    for (int i = 0; i < at->n; i += VARIANT(width)) {
         const lanes x = VARIANT(get)(at->x + i), y = VARIANT(get)(at->y + i);
         const lanes half = VARIANT(get)(at->half + i), square = VARIANT(get)(at->square + i);
         lanes u = {0}, v = {0}, leg_u = {0}, leg_v = {0}, div = {0};
@@ -196,7 +196,7 @@ static TARGET void VARIANT(velocity_infinite)(struct kernel_block *at, const str
 
 static TARGET void VARIANT(gradient_infinite)(struct kernel_block *at, const struct block_sources *from) {
     const double scale = from->span * inverse_two_pi;
-    for (int i = 0; i < KERNEL_BLOCK; i += VARIANT(width)) {
+    for (int i = 0; i < at->n; i += VARIANT(width)) {
         const lanes x = VARIANT(get)(at->x + i), y = VARIANT(get)(at->y + i), square = VARIANT(get)(at->square + i);
         lanes u = {0}, v = {0}, u_x = {0}, u_y = {0}, v_x = {0};
         for (int n = 0; n < from->n; n++) {

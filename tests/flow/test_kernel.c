@@ -238,6 +238,7 @@ TEST(fused_variants_round_identically) {
                                        .add = 1e-4};
     struct kernel_block first;
     memset(&first, 0, sizeof first);
+    first.n = KERNEL_BLOCK;
     first.has_squares = 1;
     for (int i = 0; i < KERNEL_BLOCK; i++) {
         first.x[i] = number(1000 + i);
