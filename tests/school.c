@@ -144,9 +144,9 @@ void school_stir(struct setup *setup) {
         state->control[f].moment_rate = -0.7;
         // half way to what has been set from outside
         const double ramp = fish->control.ramp, t = setup->t - ramp / 2;
-        if (fish->amplitude > 0) control_set_amplitude(fish, &state->control[f], t, 0.8 * fish->amplitude);
-        control_set_frequency(fish, &state->control[f], t, fish->frequency + 0.2);
-        control_set_bias(fish, &state->control[f], t, fish->control.bias + 0.1);
+        if (fish->amplitude > 0) control_set(fish, &state->control[f], CONTROL_SET_AMPLITUDE, t, 0.8 * fish->amplitude);
+        control_set(fish, &state->control[f], CONTROL_SET_FREQUENCY, t, fish->frequency + 0.2);
+        control_set(fish, &state->control[f], CONTROL_SET_BIAS, t, fish->control.bias + 0.1);
     }
     residual_couple(&setup->residual->couplings, state->y);
 }

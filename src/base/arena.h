@@ -28,6 +28,13 @@ struct arena;
 struct arena *arena_create(struct arena *parent, const char *name);
 void arena_free(struct arena *arena); /* accepts NULL */
 
+/* An arena that is freed when this function returns; before a MEMORY_BOUNDARY of the function. */
+#define ARENA(new, parent, name) \
+    __attribute__((cleanup(arena_leave))) struct arena *const new = arena_create(parent, name)
+static inline void arena_leave(struct arena *const *arena) {
+    arena_free(*arena);
+}
+
 /* Let the pointer, of any type, point to n zeroed elements, never NULL. */
 #define NEW(arena, pointer, n) ((pointer) = arena_new(arena, (size_t)(n), sizeof *(pointer)))
 

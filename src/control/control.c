@@ -330,29 +330,25 @@ struct fish_gait control_gait(const struct fish *fish, const struct control_memo
     return gait;
 }
 
-void control_set_amplitude(const struct fish *fish, struct control_memory *memory, double t, double amplitude) {
-    lead_change(&memory->amplitude, t, fish->control.ramp, amplitude / fish->amplitude - 1);
-}
-
-void control_set_frequency(const struct fish *fish, struct control_memory *memory, double t, double frequency) {
-    lead_change(&memory->frequency, t, fish->control.ramp, frequency - fish->omega / (2 * M_PI));
-}
-
-void control_set_bias(const struct fish *fish, struct control_memory *memory, double t, double bias) {
-    lead_change(&memory->bias, t, fish->control.ramp, bias - fish->control.bias);
-}
-
-void control_set_heading(const struct fish *fish, struct control_memory *memory, double t, double heading) {
+void control_set(const struct fish *fish, struct control_memory *memory, enum control_set which, double t,
+                 double value) {
     const double ramp = fish->control.ramp;
-    if (memory->has_heading) {
-        const double now = memory->heading.target;
-        lead_change(&memory->heading, t, ramp, now + angle_wrap(heading - now));
-        return;
+    switch (which) {
+        case CONTROL_SET_AMPLITUDE: lead_change(&memory->amplitude, t, ramp, value / fish->amplitude - 1); return;
+        case CONTROL_SET_FREQUENCY: lead_change(&memory->frequency, t, ramp, value - fish->omega / (2 * M_PI)); return;
+        case CONTROL_SET_BIAS: lead_change(&memory->bias, t, ramp, value - fish->control.bias); return;
+        case CONTROL_SET_HEADING: break;
     }
 
+    // the shorter turn from the heading set before, or from the table
+    if (memory->has_heading) {
+        const double now = memory->heading.target;
+        lead_change(&memory->heading, t, ramp, now + angle_wrap(value - now));
+        return;
+    }
     double rate;
     const double now = table_heading(&fish->control, t, &rate);
-    lead_begin(&memory->heading, t, ramp, now, rate, now + angle_wrap(heading - now));
+    lead_begin(&memory->heading, t, ramp, now, rate, now + angle_wrap(value - now));
     memory->has_heading = 1;
 }
 

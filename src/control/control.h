@@ -82,10 +82,9 @@ struct fish_gait control_gait(const struct fish *fish, const struct control_memo
 /* Set a value from outside, at the event at time t; the value changes within fish->control.ramp with three continuous
  * derivatives. Amplitude: in the unit of the case, the amplitude of the case is not 0; frequency: Hz; bias: of law
  * none; desired heading: rad, by the shorter turn, without waypoints only. */
-void control_set_amplitude(const struct fish *fish, struct control_memory *memory, double t, double amplitude);
-void control_set_frequency(const struct fish *fish, struct control_memory *memory, double t, double frequency);
-void control_set_bias(const struct fish *fish, struct control_memory *memory, double t, double bias);
-void control_set_heading(const struct fish *fish, struct control_memory *memory, double t, double heading);
+enum control_set { CONTROL_SET_AMPLITUDE, CONTROL_SET_FREQUENCY, CONTROL_SET_BIAS, CONTROL_SET_HEADING };
+void control_set(const struct fish *fish, struct control_memory *memory, enum control_set which, double t,
+                 double value);
 
 /* Set 1 to CONTROL_MAX_WAYPOINTS waypoints (n, 2), m, to replace all remaining waypoints; for event-based laws. */
 void control_set_waypoints(const struct fish *fish, struct control_memory *memory, int n, const double *waypoints,

@@ -202,19 +202,19 @@ static enum status change_memory(const struct fish *fish, const struct state *st
                 return status_fail(STATUS_CASE, "%s: the amplitude of %s in the case is 0: give an initial amplitude",
                                    key, name);
             }
-            control_set_amplitude(fish, memory, state->t, values[0]);
+            control_set(fish, memory, CONTROL_SET_AMPLITUDE, state->t, values[0]);
             break;
         case FREQUENCY:
             if (values[0] < 0) {
                 return status_fail(STATUS_CASE, "%s: %g Hz: a frequency cannot be negative", key, values[0]);
             }
-            control_set_frequency(fish, memory, state->t, values[0]);
+            control_set(fish, memory, CONTROL_SET_FREQUENCY, state->t, values[0]);
             break;
         case BIAS:
             if (law != CONTROL_NONE) {
                 return status_fail(STATUS_CASE, "%s: the control law of %s sets the bias: use 'law: none'", key, name);
             }
-            control_set_bias(fish, memory, state->t, values[0]);
+            control_set(fish, memory, CONTROL_SET_BIAS, state->t, values[0]);
             break;
         case DESIRED_HEADING:
             if (law == CONTROL_NONE) {
@@ -223,7 +223,7 @@ static enum status change_memory(const struct fish *fish, const struct state *st
             if (control_n_waypoints(fish, memory) > 0) {
                 return status_fail(STATUS_CASE, "%s: %s follows waypoints", key, name);
             }
-            control_set_heading(fish, memory, state->t, angle_radians(values[0]));
+            control_set(fish, memory, CONTROL_SET_HEADING, state->t, angle_radians(values[0]));
             break;
         default:
             if (law != CONTROL_COURSE && law != CONTROL_AVERAGED_HEADING) {

@@ -193,21 +193,19 @@ enum status equilibrium_stiffness(struct equilibrium *e, struct equilibrium_stif
     const int n = e->n, p = e->n_places, m = n - p;
     *stiffness = (struct equilibrium_stiffness){.n_negative = 0};
     if (p == 0) return STATUS_OK;
-    struct arena *const scratch = arena_create(e->arena, "the static stiffness");
+    ARENA(scratch, e->arena, "the static stiffness");
     double *matrix, *real, *imaginary;
     lapack_int *pivot;
     NEW(scratch, matrix, (size_t)n * (size_t)n);
     NEW(scratch, real, n);
     NEW(scratch, imaginary, n);
     NEW(scratch, pivot, n);
-    enum status status = equilibrium_jacobian_of(e, matrix);
-    if (status != STATUS_OK) goto end;
+    TRY(equilibrium_jacobian_of(e, matrix));
 
     // replace A by A - B D^-1 C in [A B; C D], A: block of the positions
     double *const right = matrix + (size_t)n * (size_t)p, *const below = matrix + p;
     if (LAPACKE_dgesv(LAPACK_COL_MAJOR, m, p, right + p, n, pivot, below, n) != 0) {
-        status = status_fail(STATUS_SOLVER, "the positions of the bodies do not determine the sheets");
-        goto end;
+        return status_fail(STATUS_SOLVER, "the positions of the bodies do not determine the sheets");
     }
     for (int j = 0; j < p; j++) {
         double *const column = matrix + (size_t)n * (size_t)j;
@@ -219,14 +217,11 @@ enum status equilibrium_stiffness(struct equilibrium *e, struct equilibrium_stif
     }
 
     if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', p, matrix, n, real, imaginary, NULL, 1, NULL, 1) != 0) {
-        status = status_fail(STATUS_SOLVER, "the eigenvalues of the static stiffness do not converge");
-        goto end;
+        return status_fail(STATUS_SOLVER, "the eigenvalues of the static stiffness do not converge");
     }
     for (int i = 0; i < p; i++) {
         stiffness->log_determinant += log(hypot(real[i], imaginary[i]));
         stiffness->n_negative += real[i] < 0 && fabs(imaginary[i]) <= nearly_real * fabs(real[i]);
     }
-end:
-    arena_free(scratch);
-    return status;
+    return STATUS_OK;
 }

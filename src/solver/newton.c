@@ -31,7 +31,7 @@ static int newton_jacobian_of(N_Vector u, N_Vector value, SUNMatrix matrix, void
 }
 
 enum status newton_solve(struct arena *arena, const struct newton *problem, double *u) {
-    struct arena *const scratch = arena_create(arena, "Newton's method");
+    ARENA(scratch, arena, "Newton's method");
     struct solver *solver;
     double *inverse;
     NEW(scratch, solver, 1);
@@ -47,7 +47,6 @@ enum status newton_solve(struct arena *arena, const struct newton *problem, doub
         sundials_context_own(context, OWNED_LINEAR, SUNLinSol_Dense(unknowns, matrix, context->context));
     sundials_context_reserve(context, 12);  // KINSOL clones 5
     void *const kinsol = sundials_context_own(context, OWNED_KINSOL, KINCreate(context->context));
-    enum status status = STATUS_OK;
 
     // small steps do not end the iteration
     if (KINSetErrHandlerFn(kinsol, sundials_context_message, &solver->failure) || KINSetUserData(kinsol, solver) ||
@@ -55,8 +54,7 @@ enum status newton_solve(struct arena *arena, const struct newton *problem, doub
         KINSetJacFn(kinsol, newton_jacobian_of) || KINSetMaxSetupCalls(kinsol, problem->reuse) ||
         KINSetFuncNormTol(kinsol, problem->tolerance) || KINSetScaledStepTol(kinsol, 1e-14) ||
         KINSetNumMaxIters(kinsol, problem->max_iterations) || KINSetMaxNewtonStep(kinsol, problem->max_step)) {
-        status = status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
-        goto end;
+        return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
     }
 
     // five longest steps in a row are no reason to stop
@@ -67,21 +65,18 @@ enum status newton_solve(struct arena *arena, const struct newton *problem, doub
         KINGetNumNonlinSolvIters(kinsol, &n);
         n_iterations += n;
     }
-    status = solver->failure;
-    if (status != STATUS_OK || code >= 0) goto end;
+    TRY(solver->failure);
+    if (code >= 0) return STATUS_OK;
 
     char cause[512];
     snprintf(cause, sizeof cause, "%s", status_message());
     const bool is_slow = code == KIN_MXNEWT_5X_EXCEEDED || code == KIN_MAXITER_REACHED;
     const bool is_singular = code == KIN_LSETUP_FAIL || code == KIN_LSOLVE_FAIL;
-    status = status_fail(STATUS_SOLVER, "%s (%s)",
-                         is_slow       ? "Newton's method did not converge"
-                         : is_singular ? "the Jacobian is singular"
-                                       : "KINSOL failed",
-                         cause);
-end:
-    arena_free(scratch);
-    return status;
+    return status_fail(STATUS_SOLVER, "%s (%s)",
+                       is_slow       ? "Newton's method did not converge"
+                       : is_singular ? "the Jacobian is singular"
+                                     : "KINSOL failed",
+                       cause);
 }
 
 // ---- least squares and eigenvalues of LAPACK
@@ -95,7 +90,8 @@ static const double dead_multiplier = 1e-10;
 
 enum status newton_multipliers(struct arena *arena, int n, int n_columns, const double *before, const double *after,
                                const double *change, double *real, double *imaginary, double *way) {
-    struct arena *const scratch = arena_create(arena, "multipliers");
+    ARENA(scratch, arena, "multipliers");
+    static const char not_apart[] = "the multipliers cannot be told apart";
     const int m = n_columns;
     double *matrix, *images;
     lapack_int *pivot, rank = 0;
@@ -111,8 +107,8 @@ enum status newton_multipliers(struct arena *arena, int n, int n_columns, const 
             images[j + m * i] = after[i + n * j];
         }
     }
-    int failed = LAPACKE_dgelsd(LAPACK_COL_MAJOR, m, n, n, matrix, m, images, m, real, least_singular, &rank);
-    if (failed != 0 || rank < 1) goto end;
+    const int failed = LAPACKE_dgelsd(LAPACK_COL_MAJOR, m, n, n, matrix, m, images, m, real, least_singular, &rank);
+    if (failed != 0 || rank < 1) return status_fail(STATUS_SOLVER, not_apart);
 
     // (I - A) way = change
     for (int i = 0; i < n; i++) {
@@ -121,8 +117,9 @@ enum status newton_multipliers(struct arena *arena, int n, int n_columns, const 
     memcpy(way, change, (size_t)n * sizeof *way);
     if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, matrix, n, pivot, way, n) != 0) memset(way, 0, (size_t)n * sizeof *way);
 
-    failed = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, images, m, real, imaginary, NULL, 1, NULL, 1);
-    if (failed != 0) goto end;
+    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, images, m, real, imaginary, NULL, 1, NULL, 1) != 0) {
+        return status_fail(STATUS_SOLVER, not_apart);
+    }
 
     // sort by absolute value; both values of a complex pair have the same modulus up to rounding
     for (int i = 0; i < n; i++) {
@@ -139,7 +136,5 @@ enum status newton_multipliers(struct arena *arena, int n, int n_columns, const 
         real[place] = re;
         imaginary[place] = im;
     }
-end:
-    arena_free(scratch);
-    return failed == 0 && rank > 0 ? STATUS_OK : status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
+    return STATUS_OK;
 }

@@ -201,28 +201,9 @@ static enum status formation_newton(struct formation *formation) {
     return newton_solve(formation->arena, &newton, u);
 }
 
-static enum status solve_or_follow(struct formation *formation) {
-    struct steady_map *const map = &formation->problem->map;
-    const int most_beats = formation->problem->settings->beats;
-    formation->most_beats = (map->n_beats + most_beats) / 2;
-    steady_map_save(formation->arena, map->simulation, &formation->begun);
-    enum status status = formation_newton(formation);
-    if (status != STATUS_SOLVER || formation->last_norm <= 0) return status;
-    TRY(steady_map_return(map->simulation, formation->begun));
-    if (map->n_beats < most_beats) {
-        formation->follows = true;
-        formation->has_matrix = false;
-        status = formation_newton(formation);
-        if (status != STATUS_SOLVER) return status;
-        // the motion from the start explains more than the motion from the last iterate
-        TRY(steady_map_return(map->simulation, formation->begun));
-    }
-
-    return map->n_beats < most_beats ? steady_reason_find(formation->problem) : status;
-}
-
 enum status steady_formation_solve(struct steady_problem *problem, double tolerance) {
-    struct arena *const owner = problem->map.simulation->arena, *const arena = arena_create(owner, "a formation");
+    struct arena *const owner = problem->map.simulation->arena;
+    ARENA(arena, owner, "a formation");
     const int n = problem->n_unknowns;
     const bool is_new = !problem->jacobian;
     if (is_new) NEW(owner, problem->jacobian, (size_t)n * (size_t)n);
@@ -235,7 +216,23 @@ enum status steady_formation_solve(struct steady_problem *problem, double tolera
     NEW(arena, formation.held, n);
     NEW(arena, formation.step, n);
     NEW(arena, formation.made_at, n);
-    const enum status status = solve_or_follow(&formation);
-    arena_free(arena);
-    return status;
+
+    struct steady_map *const map = &problem->map;
+    const int most_beats = problem->settings->beats;
+    formation.most_beats = (map->n_beats + most_beats) / 2;
+    steady_map_save(arena, map->simulation, &formation.begun);
+    enum status status = formation_newton(&formation);
+    if (status != STATUS_SOLVER || formation.last_norm <= 0) return status;
+
+    // follow the solution from the start
+    TRY(steady_map_return(map->simulation, formation.begun));
+    if (map->n_beats < most_beats) {
+        formation.follows = true;
+        formation.has_matrix = false;
+        status = formation_newton(&formation);
+        if (status != STATUS_SOLVER) return status;
+        // the motion from the start explains more than the motion from the last iterate
+        TRY(steady_map_return(map->simulation, formation.begun));
+    }
+    return map->n_beats < most_beats ? steady_reason_find(problem) : status;
 }

@@ -587,9 +587,9 @@ static enum status end_texts(FILE *stream, FILE *warnings) {
     return status_fail(STATUS_MEMORY, "out of memory: text to print");
 }
 
-/* study_report with the memory of an arena. */
-static enum status report_folder(struct arena *arena, const struct case_values *study, const char *folder,
-                                 const char *path, const char *command, bool strict, FILE *stream, FILE *warnings) {
+enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
+                         bool strict, FILE *stream, FILE *warnings) {
+    ARENA(arena, NULL, owner);
     MEMORY_BOUNDARY(STATUS_MEMORY);
     struct member_file *members;
     TRY(study_folder_read_members(arena, &members, study, folder));
@@ -614,14 +614,6 @@ static enum status report_folder(struct arena *arena, const struct case_values *
     // the table of an error study that the folder contained before
     if (target_is(csv, TARGET_TABLE)) unlink(csv);
     return status == STATUS_OK ? test_completeness(study, members, folder) : status;
-}
-
-enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
-                         bool strict, FILE *stream, FILE *warnings) {
-    struct arena *const arena = arena_create(NULL, owner);
-    const enum status status = report_folder(arena, study, folder, path, command, strict, stream, warnings);
-    arena_free(arena);
-    return status;
 }
 
 // ---- the run and the report of a comparison
@@ -733,9 +725,9 @@ static enum status refine_and_report(struct arena *arena, struct error_sweep *sw
     return status == STATUS_OK ? test_completeness(study, members, folder) : status;
 }
 
-static enum status run_errors(struct arena *arena, const struct case_values *values,
-                              const struct study_options *options, int plan, bool strict, FILE *stream,
-                              FILE *warnings) {
+enum status study_errors(const struct case_values *values, const struct study_options *options, int plan, bool strict,
+                         FILE *stream, FILE *warnings) {
+    ARENA(arena, NULL, owner);
     MEMORY_BOUNDARY(STATUS_MEMORY);
     struct error_sweep *sweep;
     TRY(error_plan_create(arena, &sweep, values));
@@ -748,34 +740,19 @@ static enum status run_errors(struct arena *arena, const struct case_values *val
     return refine_and_report(arena, sweep, options->folder, options, options->command, strict, stream, warnings);
 }
 
-enum status study_errors(const struct case_values *values, const struct study_options *options, int plan, bool strict,
-                         FILE *stream, FILE *warnings) {
-    struct arena *const arena = arena_create(NULL, owner);
-    const enum status status = run_errors(arena, values, options, plan, strict, stream, warnings);
-    arena_free(arena);
-    return status;
-}
-
 // ---- gather and info
 
-static enum status gather(struct arena *arena, const char *folder, const char *command, bool strict, FILE *stream,
-                          FILE *warnings) {
+enum status study_gather(const char *folder, const char *command, bool strict, FILE *stream, FILE *warnings) {
+    ARENA(arena, NULL, owner);
     MEMORY_BOUNDARY(STATUS_MEMORY);
     const char *text;
     struct case_values *study;
     TRY(study_folder_find_study(arena, folder, &text));
     TRY(study_folder_parse(arena, &study, text, folder, 0, NULL));
-    if (!study->error) return report_folder(arena, study, folder, NULL, command, strict, stream, warnings);
+    if (!study->error) return study_report(study, folder, NULL, command, strict, stream, warnings);
     struct error_sweep *sweep;
     TRY(error_plan_create(arena, &sweep, study));
     return refine_and_report(arena, sweep, folder, NULL, command, strict, stream, warnings);
-}
-
-enum status study_gather(const char *folder, const char *command, bool strict, FILE *stream, FILE *warnings) {
-    struct arena *const arena = arena_create(NULL, owner);
-    const enum status status = gather(arena, folder, command, strict, stream, warnings);
-    arena_free(arena);
-    return status;
 }
 
 /* Print the errors of a study.nc: refine up to the members of the file. */
@@ -794,7 +771,8 @@ static enum status info_errors(struct arena *arena, const struct case_values *st
     return print_errors(sweep, members, stream);
 }
 
-static enum status info(struct arena *arena, const char *path, FILE *stream) {
+enum status study_info(struct arena *parent, const char *path, FILE *stream) {
+    ARENA(arena, parent, owner);
     MEMORY_BOUNDARY(STATUS_MEMORY);
     struct case_values *study;
     struct member_file *members;
@@ -825,11 +803,4 @@ static enum status info(struct arena *arena, const char *path, FILE *stream) {
     if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());
     if (!study->error && !compare_is(study)) study_print_warnings(arena, members, n, stream);
     return status == STATUS_MISSED ? STATUS_OK : status;
-}
-
-enum status study_info(struct arena *parent, const char *path, FILE *stream) {
-    struct arena *const arena = arena_create(parent, owner);
-    const enum status status = info(arena, path, stream);
-    arena_free(arena);
-    return status;
 }

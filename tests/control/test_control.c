@@ -412,9 +412,9 @@ TEST(values_that_are_set_are_reached_after_the_ramp) {
         setup_of(TIME "fish: [{wave: {amplitude: 0.8, frequency: 1.5}, control: {bias: 0.2, ramp: 0.5}}]\n");
     const struct fish *const fish = setup.school->fish;
     struct control_memory *const memory = &setup.state->control[0];
-    control_set_amplitude(fish, memory, 3, 0.6);
-    control_set_frequency(fish, memory, 3, 2);
-    control_set_bias(fish, memory, 3, -0.1);
+    control_set(fish, memory, CONTROL_SET_AMPLITUDE, 3, 0.6);
+    control_set(fish, memory, CONTROL_SET_FREQUENCY, 3, 2);
+    control_set(fish, memory, CONTROL_SET_BIAS, 3, -0.1);
     const struct fish_gait before = control_gait(fish, memory, 3), half = control_gait(fish, memory, 3.25),
                            after = control_gait(fish, memory, 3.5), later = control_gait(fish, memory, 3.7);
     // parts of wave.amplitude
@@ -440,8 +440,8 @@ TEST(rates_of_a_gait_that_changes_are_those_of_its_values) {
     struct setup setup = setup_of(TIME "fish: [{wave: {amplitude: 0.8, ramp: 6}, control: {ramp: 0.5}}]\n");
     const struct fish *const fish = setup.school->fish;
     struct control_memory *const memory = &setup.state->control[0];
-    control_set_amplitude(fish, memory, 3, 0.4);
-    control_set_frequency(fish, memory, 3, 2);
+    control_set(fish, memory, CONTROL_SET_AMPLITUDE, 3, 0.4);
+    control_set(fish, memory, CONTROL_SET_FREQUENCY, 3, 2);
     const double h = 1e-5;
     const struct fish_gait left = control_gait(fish, memory, 3.2 - h), right = control_gait(fish, memory, 3.2 + h),
                            gait = control_gait(fish, memory, 3.2);
@@ -459,12 +459,12 @@ TEST(a_heading_that_is_set_is_reached_the_short_way) {
     struct control_memory *const memory = &setup.state->control[0];
     const double *const y = setup.state->y, degree = pi / 180;
     // 120 degrees at 2 s, 10 degrees per second
-    control_set_heading(fish, memory, 2, -80 * degree);
+    control_set(fish, memory, CONTROL_SET_HEADING, 2, -80 * degree);
     NEAR(control_desired_heading(fish, memory, 2, y), 120 * degree, 1e-13, 0);
     NEAR((control_desired_heading(fish, memory, 2 + 1e-6, y) - 120 * degree) / 1e-6, 10 * degree, 1e-4, 0);
     NEAR(control_desired_heading(fish, memory, 2.5, y), 280 * degree, 1e-13, 0);
     // from there to 30 degrees, over 360
-    control_set_heading(fish, memory, 3, 30 * degree);
+    control_set(fish, memory, CONTROL_SET_HEADING, 3, 30 * degree);
     NEAR(control_desired_heading(fish, memory, 3.25, y), 335 * degree, 1e-13, 0);
     NEAR(control_desired_heading(fish, memory, 4, y), 390 * degree, 1e-13, 0);
     NEAR(control_largest_bias(fish, memory), 0.3, 0, 0);
