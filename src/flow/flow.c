@@ -51,17 +51,18 @@ struct kernel_pair flow_pair_of(const struct flow *flow, int f, int g, const str
     return flow->kernel->other(flow->school->fish[g].strip_depth, square);
 }
 
-void flow_append_with_span(struct sources *many, const struct sources *sources, double span) {
+void flow_append_with_span(struct sources *many, const struct sources *sources, struct range which, double span) {
     const int first = many->n;
-    sources_append(many, sources->n);
-    for (int i = 0; i < sources->n; i++) {
-        many->x[first + i] = sources->x[i];
-        many->y[first + i] = sources->y[i];
-        many->q[first + i] = span * sources->q[i];
-        many->dx[first + i] = span * sources->dx[i];
-        many->dy[first + i] = span * sources->dy[i];
-        many->half[first + i] = sources->half[i];
-        many->leg[first + i] = sources->leg[i];
+    sources_append(many, which.n);
+    for (int i = 0; i < which.n; i++) {
+        const int from = which.first + i;
+        many->x[first + i] = sources->x[from];
+        many->y[first + i] = sources->y[from];
+        many->q[first + i] = span * sources->q[from];
+        many->dx[first + i] = span * sources->dx[from];
+        many->dy[first + i] = span * sources->dy[from];
+        many->half[first + i] = sources->half[from];
+        many->leg[first + i] = sources->leg[from];
     }
 }
 

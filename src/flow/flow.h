@@ -151,7 +151,7 @@ const struct sources *flow_sources(const struct flow *flow, int g, const struct 
 struct kernel_pair flow_pair_of(const struct flow *flow, int f, int g, const struct flow_sum *sum);
 
 /* Append sources with their span in the strengths. */
-void flow_append_with_span(struct sources *many, const struct sources *sources, double span);
+void flow_append_with_span(struct sources *many, const struct sources *sources, struct range which, double span);
 
 /* Interpolate a quantity at the nodes of fish f to the points of fish f; of_points: values at the points of all fish
  * (n_points). */

@@ -81,7 +81,8 @@ void flow_sum_by_tree(struct flow *flow, int c, int k, const struct flow_sum *su
     for (int g = 0; g < school->n_fish; g++) {
         if (flow->class_of[g] != k) continue;
         pair = flow_pair_of(flow, f, g, sum);
-        flow_append_with_span(&flow->many, flow_sources(flow, g, sum), pair.span);
+        const struct sources *const sources = flow_sources(flow, g, sum);
+        flow_append_with_span(&flow->many, sources, (struct range){0, sources->n}, pair.span);
     }
 
     // half of wake.tolerance, in lengths per beat, shared by bodies, wakes and images

@@ -58,6 +58,7 @@ struct others {
     struct others_fish *fish;     /*                        (n_fish) */
     struct others_pair *pair;     /* targets, then sources  (n_fish, n_fish) */
     bool is_selected, is_by_tree; /* the far wakes */
+    bool bodies_by_tree;          /* now */
     struct sources points;        /* far points of a class, for the tree */
     double *value;                /* at these points      (VALUES, FAR n_fish) */
     double t;
@@ -323,10 +324,17 @@ static void far_places(const struct others_fish *of, double tau, double *x, doub
     }
 }
 
-// all released sources of all fish at the far points of all fish, class by class, with all wakes placed at this time
+/* Whether the body of fish g is in the sum of bodies by the tree. */
+static bool acts_by_tree(const struct flow *flow, int g) {
+    return !flow->others->fish[g].has_drifted && flow->school->fish[g].integrals;
+}
+
+// add sources of all fish at the far points of all fish, class by class: all released sources, with all wakes placed at
+// this time; or (time == TIMES) all bodies now, from their far points, and their nascent points
 static void sum_by_tree(struct flow *flow, int time, int threads) {
     struct others *const others = flow->others;
     const struct school *const school = flow->school;
+    const bool is_now = time == TIMES;
     for (int c = 0; c < flow->n_classes; c++) {
         struct sources *const points = &others->points, *const many = &flow->many;
         int n = 0, first = 0;
@@ -335,10 +343,13 @@ static void sum_by_tree(struct flow *flow, int time, int threads) {
         sources_append(points, n);
         n = 0;
         for (int f = 0; f < school->n_fish; f++) {
-            if (flow->class_of[f] != c || !others->fish[f].is_used) continue;
+            const struct others_fish *const of = &others->fish[f];
+            if (flow->class_of[f] != c || !of->is_used) continue;
             if (n == 0) first = f;
-            far_places(&others->fish[f], time * school->interval / 2, points->x + n, points->y + n);
-            memcpy(points->half + n, others->fish[f].half, sizeof others->fish[f].half);
+            if (!is_now) far_places(of, time * school->interval / 2, points->x + n, points->y + n);
+            if (is_now) memcpy(points->x + n, of->x, sizeof of->x);
+            if (is_now) memcpy(points->y + n, of->y, sizeof of->y);
+            memcpy(points->half + n, of->half, sizeof of->half);
             n += FAR;
         }
         if (n == 0) continue;
@@ -349,15 +360,22 @@ static void sum_by_tree(struct flow *flow, int time, int threads) {
             school->wake_tolerance * fish->length * fish_rate(school, fish) / (8 * flow->n_classes);
         const struct targets at = far_targets(n, points->x, points->y, points->half, others->value, n);
         memset(others->value, 0, VALUES * (size_t)n * sizeof *others->value);
-        for (int k = 0; k < flow->n_classes; k++) {
+        for (int k = 0; k < (1 + is_now) * flow->n_classes; k++) {
             struct kernel_pair pair = {0};
+            const bool is_body = k >= flow->n_classes;
             many->n = 0;
             for (int g = 0; g < school->n_fish; g++) {
-                if (flow->class_of[g] != k) continue;
+                if (flow->class_of[g] != k % flow->n_classes) continue;
                 const struct sheet_points *const middles = &flow->fish[g].wake.middles;
-                pair = flow_pair_of(flow, first, g, &(struct flow_sum){WAKE_AT_BODY, false});
-                flow_append_with_span(many, &middles->sources, pair.span);
-                many->n -= middles->n_nascent;
+                pair = flow_pair_of(flow, first, g, &(struct flow_sum){is_body ? BODY_AT_BODY : WAKE_AT_BODY, false});
+                if (is_now && !acts_by_tree(flow, g)) continue;
+                if (is_body) {
+                    flow_append_with_span(many, &others->fish[g].body, (struct range){0, FAR}, pair.span);
+                } else {
+                    const struct range nascent = {middles->n_released, 1};
+                    const struct range released = {0, middles->n_released};
+                    flow_append_with_span(many, &middles->sources, is_now ? nascent : released, pair.span);
+                }
             }
             pair.span = 1;
             tree_induce(flow->tree, &pair, many, fish->length, tolerance, threads, &at);
@@ -365,9 +383,11 @@ static void sum_by_tree(struct flow *flow, int time, int threads) {
 
         int done = 0;
         for (int f = 0; f < school->n_fish; f++) {
-            if (flow->class_of[f] != c || !others->fish[f].is_used) continue;
+            struct others_fish *const of = &others->fish[f];
+            if (flow->class_of[f] != c || !of->is_used) continue;
             for (int k = 0; k < VALUES; k++) {
-                memcpy(others->fish[f].wake[time][k], others->value + (long)k * n + done, FAR * sizeof *others->value);
+                double *const to = is_now ? of->now[k] : of->wake[time][k];
+                for (int i = 0; i < FAR; i++) to[i] += others->value[(long)k * n + done + i];
             }
             done += FAR;
         }
@@ -380,7 +400,6 @@ static void sum_wakes(struct flow *flow, int f, int time) {
     struct others_fish *const of = &others->fish[f];
     double x[FAR], y[FAR];
     if (!of->is_used) return;
-    if (!others->is_by_tree) memset(of->wake[time], 0, sizeof of->wake[time]);
     far_places(of, time * flow->school->interval / 2, x, y);
 
     const double *const half = flow->kernel->has_legs ? of->half : NULL;
@@ -457,6 +476,8 @@ void others_select(struct flow *flow, const struct state *state) {
         parallel_threads(school->threads, school->n_fish, n_sources * school->n_fish * FAR, PARALLEL_INTERACTIONS);
     for (int time = 0; time < TIMES; time++) {
         flow_place_released(flow, state, state->t + time * school->interval / 2);
+        for (int f = 0; f < school->n_fish; f++)
+            memset(others->fish[f].wake[time], 0, sizeof others->fish[f].wake[time]);
         if (others->is_by_tree) sum_by_tree(flow, time, school->threads);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
         for (int f = 0; f < school->n_fish; f++) sum_wakes(flow, f, time);
@@ -516,6 +537,8 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
         }
     }
 
+    const int n_far = FAR * school->n_fish;
+    others->bodies_by_tree = tree_is_faster(flow->kernel, n_far, (double)n_far * n_far, school->wake_tolerance);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         struct others_fish *const of = &others->fish[f];
@@ -539,20 +562,27 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
             of->now[2][i] += of->now[6][i] * dx + of->now[7][i] * dy;
         }
 
-        // far bodies
+        // far bodies; -1: subtract what the sum by the tree includes
         const double *const half = flow->kernel->has_legs ? of->half : NULL;
         const struct targets at = far_targets(FAR, of->x, of->y, half, of->now[0], FAR);
         for (int g = 0; g < school->n_fish; g++) {
             const struct others_pair *const pair = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
-            if (!pair->is_far_body || others->fish[g].has_drifted) continue;
+            const bool is_far = pair->is_far_body && !others->fish[g].has_drifted;
+            const bool is_in_tree = others->bodies_by_tree && acts_by_tree(flow, g);
+            const int by_few = (is_far && pair->by_few) - is_in_tree, by_all = is_far && !pair->by_few;
+            if (!by_few && !by_all && is_far == is_in_tree) continue;
             const struct flow_fish *const other = &flow->fish[g];
-            const struct kernel_pair body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
-            const struct kernel_pair wake = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
-            const struct sources *const from = pair->by_few ? &others->fish[g].body : &other->body;
-            kernel_induce(&body, from, (struct range){0, from->n}, &at);
-            kernel_induce(&wake, &other->wake.middles.sources, (struct range){other->wake.middles.n_released, 1}, &at);
+            struct kernel_pair body = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
+            struct kernel_pair wake = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
+            if (by_all) kernel_induce(&body, &other->body, (struct range){0, other->body.n}, &at);
+            body.span *= by_few;
+            wake.span *= is_far - is_in_tree;
+            if (by_few) kernel_induce(&body, &others->fish[g].body, (struct range){0, FAR}, &at);
+            const struct range nascent = {other->wake.middles.n_released, is_far != is_in_tree};
+            kernel_induce(&wake, &other->wake.middles.sources, nascent, &at);
         }
     }
+    if (others->bodies_by_tree) sum_by_tree(flow, TIMES, threads);
 }
 
 // values of the polynomials with these values at the far points, at n <= FAR points; part: of each far point at the

@@ -6,7 +6,8 @@
  *     far wakes      summed at the start, in the middle and at the end of an interval, at far points that move with the
  *                    velocity of the last event; in between a parabola in time, and the gradient times the displacement
  *     far bodies     summed at every evaluation, with the nascent point of the wake; distant ones from their own far
- *                    points, whose strengths have the moments of the body along its curve
+ *                    points, whose strengths have the moments of the body along its curve; of many fish by the tree,
+ *                    less the bodies that are not distant
  *     near sources   are left to the sum of flow_at_bodies.c
  *
  * Which sources are far is decided at each event, from the state alone: the bits do not depend on threads or on a

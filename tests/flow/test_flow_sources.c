@@ -605,7 +605,10 @@ TEST(sums_by_the_tree_have_equal_parts_of_half_the_tolerance) {
     const struct flow_sum sum = {WAKE_AT_BODY, false};
     struct sources many = {.arena = test_arena()};
     struct kernel_pair pair = flow_pair_of(flow, 0, 0, &sum);
-    for (int f = 0; f < 4; f++) flow_append_with_span(&many, flow_sources(flow, f, &sum), pair.span);
+    for (int f = 0; f < 4; f++) {
+        const struct sources *const sources = flow_sources(flow, f, &sum);
+        flow_append_with_span(&many, sources, (struct range){0, sources->n}, pair.span);
+    }
     pair.span = 1;
 
     const struct fish *const fish = &setup.school->fish[0];

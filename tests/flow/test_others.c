@@ -33,7 +33,7 @@ static const struct kernel *kernel_of(const struct flow *flow, bool by_tree) {
     return &always;
 }
 
-enum { SUMS = 8, MOST_POINTS = 512 };
+enum { SUMS = 8, MOST_POINTS = 2048 };
 static double kept[SUMS][MOST_POINTS];
 static void keep(struct flow *flow, double *sums[SUMS]) {
     double *const all[SUMS] = {flow->u, flow->v, flow->div, flow->u_x, flow->u_y, flow->v_x, flow->div_x, flow->div_y};
@@ -93,13 +93,13 @@ TEST(errors_are_below_the_tolerance) {
 }
 
 // the largest error of velocity and divergence at fish 0 for the unknowns y at the event, over the tolerance
-static double error_of(struct simulation *simulation, const double *y) {
+static double error_of(struct simulation *simulation, const double *y, bool by_tree) {
     struct school *const school = simulation->school;
     struct flow *const flow = simulation->residual->flow;
     const struct state *const at = simulation->state;
     const double tolerance = school->wake_tolerance;
     double *sums[SUMS], worst = 0;
-    flow->kernel = kernel_of(flow, false);
+    flow->kernel = kernel_of(flow, by_tree);
     flow_gradient(flow, at, at->t, y, false);
     assert_true(others_are_selected(flow));
     keep(flow, sums);
@@ -134,6 +134,32 @@ static struct simulation *beside(const char *tolerance, const double place[2], d
     return simulation;
 }
 
+// the tree includes near bodies, which are subtracted
+TEST(bodies_of_many_fish_act_by_the_tree) {
+    for (int finite = 0; finite < 2; finite++) {
+        char text[4096];
+        int end = snprintf(text, sizeof text,
+                           TIME
+                           "defaults: {fish: {nodes: 9, sheet_points: 21, start: {speed: 0.8}, pressure: {span: "
+                           "%s}}}\nfish:\n",
+                           finite ? "finite" : "infinite");
+        // the first one in the middle
+        for (int i = 0; i < 36; i++) {
+            const int place = (i + 14) % 36;
+            end += snprintf(text + end, sizeof text - (size_t)end, "  - {start: {position: [%d, %d]}}\n",
+                            2 * (place % 6), place / 6);
+        }
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 0.1);
+        double *const y = simulation->state->y;
+        const double errors[] = {error_of(simulation, y, true), error_of(simulation, y, false)};
+        print_message("errors over the tolerance: by the tree %g, by sums %g\n", errors[0], errors[1]);
+        BELOW(errors[0], 1);
+        ABOVE(fabs(errors[0] - errors[1]), 1e-4);
+        simulate_free(simulation);
+    }
+}
+
 // behind the middle of a horseshoe a vortex is far from both ends of the body, and near the body
 TEST(beside_a_bent_body_no_source_is_far) {
     struct simulation *const simulation = beside("1.0e-4", (const double[]){0, 0}, 0.1);
@@ -149,7 +175,7 @@ TEST(beside_a_bent_body_no_source_is_far) {
     const double shift[2] = {x[16] - wake->x[0], y[16] - 0.15 - wake->y[0]};
     for (int i = 0; i < wake->n_vortex; i++) wake->x[i] += shift[0], wake->y[i] += shift[1];
     memcpy(at->past, at->y, sizeof *at->y * (size_t)simulation->school->n_unknowns);
-    const double error = error_of(simulation, at->y);
+    const double error = error_of(simulation, at->y, false);
     print_message("error over the tolerance: %g\n", error);
     BELOW(error, 1);
 }
@@ -162,7 +188,7 @@ TEST(a_displaced_body_has_fewer_far_sources) {
     AT_MOST(simulation->school->n_unknowns, 4096);
     memcpy(y, simulation->state->y, sizeof *y * (size_t)simulation->school->n_unknowns);
     for (int k = 0; k < fish->n_nodes; k++) y[fish->at.y + k] += 3e-4 * fish->length;
-    const double error = error_of(simulation, y);
+    const double error = error_of(simulation, y, false);
     print_message("error over the tolerance: %g\n", error);
     BELOW(error, 1);
 }
