@@ -29,7 +29,9 @@ from itertools import zip_longest
 
 import netCDF4
 from documents import NUMBER, is_same_line
+from matplotlib import pyplot
 from shoal._files import Results, np
+from shoal._plot_style import LINES, STYLE
 
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CASES = os.path.join(HERE, "cases")
@@ -128,10 +130,10 @@ class Bench:
         self.call("study", os.path.join(CASES, f"studies/{name}.yaml"), "-q", "-o", folder)
         return folder, open_study(os.path.join(folder, "study.nc"))
 
-    def seconds(self, text, *assignments):
-        """CPU seconds of a run, the smallest of three."""
+    def seconds(self, text, *assignments, repeats=3):
+        """CPU seconds of a run, the smallest of some repeats."""
         times = []
-        for _ in range(3):
+        for _ in range(repeats):
             before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
             self.run(text, *assignments)
             times.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
@@ -677,15 +679,36 @@ def ratios(bench):
     shutil.rmtree(before.folder)
 
 
-@table("fish", "CPU time of one thread per simulated second", "wall time of two threads per simulated second")
+@table("fish", "CPU time before", "CPU time", "wall time, two threads")
 def real_time(bench):
-    """cost of a second of 1 to 64 default fish at cruising speed, shedding interval 0.02 s (minutes)"""
-    for n, end in ((1, 10), (4, 5), (16, 3), (64, 3.2)):
-        text = lattice(n, (2, 1), end, 0.02, 0.2, "start: {speed: 0.81}")
-        cpu = bench.seconds(text, "solver.threads=1")
+    """time per simulated second of 1 to 256 default fish at cruising speed over 3.2 s, also of the program before (--before;
+    a quarter of an hour)"""
+    before = Bench(bench.before, bench.verbose)
+    for n in (1, 4, 16, 64, 256):
+        text = lattice(n, (2, 1), 3.2, 0.02, 0.2, "start: {speed: 0.81}")
+        repeats = 3 if n < 64 else 1
+        old = before.seconds(text, "solver.threads=1", repeats=repeats) / 3.2 if n < 256 else math.nan
+        new = bench.seconds(text, "solver.threads=1", repeats=repeats) / 3.2
         begin = time.perf_counter()
         bench.run(text, "solver.threads=2")
-        yield n, f"{cpu / end:.2g}", f"{(time.perf_counter() - begin) / end:.2g}"
+        yield n, "" if math.isnan(old) else f"{old:.2g}", f"{new:.2g}", f"{(time.perf_counter() - begin) / 3.2:.2g}"
+    shutil.rmtree(before.folder)
+
+
+def draw_real_time(rows, path):
+    """The table real_time as a figure."""
+    with pyplot.rc_context(STYLE):
+        figure, axes = pyplot.subplots(figsize=(4.5, 3), layout="constrained")
+        for k, label in enumerate(("before, one thread", "one thread", "two threads"), start=1):
+            x, y = zip(*((int(row[0]), float(row[k])) for row in rows if row[k]))
+            axes.loglog(x, y, marker="os^"[k - 1], ms=4, color=LINES[k - 1], label=label)
+        axes.axhline(1, color="0.3", lw=0.8, ls=":")
+        axes.annotate("real time", (1, 1), (0, 2), textcoords="offset points", size=7)
+        axes.set(xlabel="fish", ylabel="seconds per simulated second")
+        axes.set_xticks([int(row[0]) for row in rows], [row[0] for row in rows])
+        axes.minorticks_off()
+        axes.legend(fontsize=7)
+        figure.savefig(path)
 
 
 @table("force", "span", "CPU time over reactive", "of 16 fish", *COUNTS)
@@ -843,6 +866,7 @@ def main():
     parser.add_argument("--compare", action="store_true", help="NAMEs are documents")
     parser.add_argument("--write", action="store_true", help="NAMEs are documents, to be changed")
     parser.add_argument("--list", action="store_true", help="list the tables")
+    parser.add_argument("--picture", metavar="FILE", help="draw the table real_time, too")
     parser.add_argument("--program", default=os.path.join(HERE, "build", "shoal"), help="default: build/shoal")
     parser.add_argument("--before", default=os.path.join(HERE, "build", "before", "build", "shoal"),
                         help="the program before, of `make bench`; default: build/before/build/shoal")
@@ -860,7 +884,10 @@ def main():
                 n_different += compare(bench, name, options.write)
             elif name in TABLES:
                 heads, rows = TABLES[name]
-                print(markdown(list(heads), [list(row) for row in rows(bench)]), end="")
+                table_rows = [list(row) for row in rows(bench)]
+                print(markdown(list(heads), table_rows), end="")
+                if options.picture and name == "real_time":
+                    draw_real_time(table_rows, options.picture)
             else:
                 parser.error(f"there is no table {name}: {', '.join(TABLES)}")
     finally:
