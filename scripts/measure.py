@@ -695,6 +695,22 @@ def real_time(bench):
     shutil.rmtree(before.folder)
 
 
+@table("fish", "CPU time of 20 events from the start [s]", "exponent", "memory [MB]", "exponent")
+def growth(bench):
+    """CPU time and memory over the number of default fish at cruising speed, one thread (two minutes)"""
+    last = None
+    for n in (16, 64, 256, 1024):
+        with open(os.path.join(bench.folder, "case.yaml"), "w", encoding="utf-8") as file:
+            file.write(lattice(n, (2, 1), 0.4, 0.02, 0.4, "start: {speed: 0.81}"))
+        command = [bench.program, "run", "case.yaml", "-q", "--force", "--set", "solver.threads=1"]
+        run = subprocess.Popen(command, cwd=bench.folder, stderr=subprocess.DEVNULL)
+        used = os.wait4(run.pid, 0)[2]
+        now = used.ru_utime, used.ru_maxrss / 1000
+        orders = [f"{math.log(a / b) / math.log(4):.2f}" for a, b in zip(now, last)] if last else ["", ""]
+        yield n, f"{now[0]:.2g}", orders[0], f"{now[1]:.0f}", orders[1]
+        last = now
+
+
 def draw_real_time(rows, path):
     """The table real_time as a figure."""
     with pyplot.rc_context(STYLE):

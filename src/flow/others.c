@@ -247,18 +247,30 @@ static bool acts_from_few(const struct flow *flow, int f, int g, double toleranc
     if (!from->is_used || !flow->school->fish[g].integrals) return false;
     const struct kernel_pair pair = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
     const struct others_fish *const to = &flow->others->fish[f];
-    double least = INFINITY;
-    for (int i = 0; i < FAR; i++) {
-        double sum = 0;
-        for (int k = 0; k < 2; k++) sum += hypot(to->start[0][i] - from->end[k][0], to->start[1][i] - from->end[k][1]);
-        least = fmin(least, sum);
-    }
-    least -= 2 * (from->bend + flow->school->interval * (to->speed + from->speed));
-    if (!(least > from->chord)) return false;
-    const double distance = (least - from->chord) / 2, axis = least / from->chord;
     const double low = pair.factor * (to->half[0] + from->half[0]);
-    const double size = pair.kernel->bound(&pair, distance * distance, low, from->q, from->d, from->chord);
-    return size * (polynomial_error(axis) + 2 * from->beside / distance) <= tolerance * sqrt(flow->fish[g].body.n);
+    const double moved = from->bend + flow->school->interval * (to->speed + from->speed);
+
+    // sum of the distances of a far point from both ends: at least twice the distance of the middles less half of the
+    // body of f; where that does not suffice, the least one of all far points
+    const double x = (to->end[0][0] + to->end[1][0] - from->end[0][0] - from->end[1][0]) / 2;
+    const double y = (to->end[0][1] + to->end[1][1] - from->end[0][1] - from->end[1][1]) / 2;
+    double least = 2 * (sqrt(x * x + y * y) - to->chord / 2 - to->bend);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < FAR && pass == 1; i++) {
+            double sum = 0;
+            for (int k = 0; k < 2; k++) {
+                const double r[2] = {to->start[0][i] - from->end[k][0], to->start[1][i] - from->end[k][1]};
+                sum += sqrt(r[0] * r[0] + r[1] * r[1]);
+            }
+            least = i == 0 ? sum : fmin(least, sum);
+        }
+        const double axis = (least - 2 * moved) / from->chord, distance = (axis - 1) * from->chord / 2;
+        if (!(distance > 0)) continue;
+        const double size = pair.kernel->bound(&pair, distance * distance, low, from->q, from->d, from->chord);
+        const double error = size * (polynomial_error(axis) + 2 * from->beside / distance);
+        if (error <= tolerance * sqrt(flow->fish[g].body.n)) return true;
+    }
+    return false;
 }
 
 static void select_at(struct flow *flow, const struct state *state, int f, double n_sources) {
