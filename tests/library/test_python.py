@@ -166,6 +166,8 @@ class Runs(unittest.TestCase):
         run, alone = shoal.Run(case), shoal.Run(case)
         for one in run, alone:
             one.step(3)
+            one.step(0)
+            self.assertAlmostEqual(one.time, 0.06)
         position, velocity = run.state("b")
         self.assertEqual((position.shape, velocity.shape), ((9, 2), (9, 2)))
         np.testing.assert_array_equal(position, run["x"][1])
@@ -429,8 +431,9 @@ class Words(unittest.TestCase):
         self.assertFalse(os.path.exists("shown.html"))
 
     def test_progress_is_reported(self):
-        run, seen = shoal.Run({**PAIR, "time": {**PAIR["time"], "end": 4}}), []
+        run, seen, started = shoal.Run({**PAIR, "time": {**PAIR["time"], "end": 4}}), [], time.monotonic()
         run.advance(3.99, progress=lambda time, end: seen.append((time, end)))
+        self.assertLessEqual(len(seen), 2 + (time.monotonic() - started) / shoal._progress.EVERY)
         self.assertEqual((seen[0], seen[-1][0]), ((0.0, 3.99), run.time))
         self.assertEqual([time for time, _ in seen], sorted(time for time, _ in seen))
         self.assertAlmostEqual(run.time, 4)
