@@ -419,6 +419,18 @@ static void print_report(struct error_study *study, const struct member_file *me
     fclose(stream);
 }
 
+/* The beginning of error.csv. */
+static void read_csv(const struct error_study *study, size_t n, char *csv) {
+    char path[] = "/tmp/test_error_XXXXXX";
+    close(mkstemp(path));
+    unlink(path);
+    assert_int_equal(study_print_csv(study->sweep, path), STATUS_OK);
+    FILE *const file = fopen(path, "r");
+    csv[fread(csv, 1, n - 1, file)] = '\0';
+    fclose(file);
+    unlink(path);
+}
+
 static void contains(const char *text, const char *part) {
     if (!strstr(text, part)) fail_msg("no \"%s\" in\n%s", part, text);
 }
@@ -665,6 +677,14 @@ TEST(other_models_bound_the_value) {
     assert_non_null(strstr(text, "other models: from 0.5 m s-1 (drag.transition 0) to 2.5 m s-1 (force reactive)\n"));
     assert_non_null(strstr(text, "fish.force ([pressure] reactive) "));
     free(text);
+    char csv[16384], change[80];
+    read_csv(&study, sizeof csv, csv);
+    for (int i = 0; i < 2; i++) {
+        snprintf(change, sizeof change,
+                 i == 0 ? ",lowest,fish.drag.transition 0,nan,%.3g," : ",highest,fish.force reactive,nan,%.3g,",
+                 i == 0 ? study.value[0] - 0.5 : 2.5 - study.value[0]);
+        contains(csv, change);
+    }
 
     // without a model that failed, and without another value
     set_value(&members[force->member[0]], "steady_speed", NAN);
@@ -709,14 +729,8 @@ TEST(a_report_is_printed_whole) {
                "choices, not in the sum: wake.smoothing ([0.1] 0.05) 6.2 %; wake.taper ([0.6] 0.3) 1.9 %\n");
     free(text);
 
-    char path[] = "/tmp/test_error_XXXXXX", csv[4096] = "";
-    close(mkstemp(path));
-    unlink(path);
-    assert_int_equal(study_print_csv(study.sweep, path), STATUS_OK);
-    FILE *const file = fopen(path, "r");
-    ABOVE(fread(csv, 1, sizeof csv - 1, file), 0);
-    fclose(file);
-    unlink(path);
+    char csv[4096];
+    read_csv(&study, sizeof csv, csv);
     static const char rows[] =
         "fish,quantity,unit,value,key,levels,order,error,percent,verdict\n"
         "\"fish1\",steady_speed,m s-1,1.50597917,sum,,nan,0.00626,0.415,\"\"\n"
@@ -729,5 +743,14 @@ TEST(a_report_is_printed_whole) {
         "in the sum\"\n";
     csv[sizeof rows - 1] = '\0';
     is_printed(csv, rows);
+
+    // a value of the other sign has the same error
+    for (int m = 0; m < sweep_n_members(study.study); m++) {
+        set_value(&members[m], "steady_speed", -member_file_number(&members[m], "steady_speed", 0));
+    }
+    convergence_study_judge(&study, members);
+    print_report(&study, members, &text);
+    contains(text, "steady_speed of fish1: -1.5060 +- 0.0063 m s-1 (0.42 %)\n");
+    free(text);
     close_study(&study);
 }
