@@ -259,5 +259,8 @@ check a_stopped_member_is_resumed test -n "$place"
 run run member.yaml -q --set "fish[0].wave.amplitude=0.2" --checkpoint-at "$place" -o member.nc
 check its_bits_are_the_bits_of_the_run_with_the_same_checkpoint same parts/member-0000.nc member.nc
 check the_other_member_has_the_same_bits same parts/member-0001.nc whole/member-0001.nc
+run study study.yaml -q --members 1 -o longer --set time.end=0.1 --set time.checkpoint_interval=0.1
+run resume longer/member-0001.ckpt -q --end 0.2
+check a_member_with_another_end_keeps_its_number eval '((code == 0)) && ncdump -h longer/member-0001.nc | grep ":study_member = 1 ;"'
 
 finish

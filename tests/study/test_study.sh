@@ -117,6 +117,10 @@ refused another_study_is_refused 4 'small-study/member-0000.nc is a result of an
     study small.yaml --set fish[0].nodes=13 -o small-study
 check nothing_was_changed test "$(changed small-study/member-0001.nc)" = "$finished"
 sed 's/0.2, 0.3/0.2/' small.yaml >shorter.yaml
+mkdir surplus
+cp small-study/member-0003.nc surplus
+refused a_member_of_no_study_is_refused 4 'choose another folder with -o, or remove the file with --force' \
+    study shorter.yaml -q -o surplus
 run study shorter.yaml -o small-study --force
 check force_replaces_it has out 'euler'
 check force_removes_the_rest test ! -e small-study/member-0003.nc
