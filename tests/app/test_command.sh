@@ -35,6 +35,7 @@ help_and_versions() {
     for command in run check show keys field info demo; do
         run "$command" --help
         check "$command --help ends with 0" ended 0
+        check "$command --help: lines of at most 100 characters" test -z "$(sed 1d out | grep '.\{101\}')"
         check "$command --help shows its usage" grep -q "^Usage: shoal $command" out
     done
     run --version
@@ -331,11 +332,14 @@ drawn = [part for line in lines.split("\n") for part in line.split("\r") if prog
 assert drawn, lines  # a fast machine draws few
 assert max(map(len, drawn)) < int(sys.argv[1]), drawn
 assert max(map(len, drawn)) > int(sys.argv[1]) // 2, drawn
+# the time and the percentage take 19 columns: all but the last
+assert int(sys.argv[1]) != 20 or max(map(len, drawn)) == 19, drawn
 # one line, redrawn: no line of progress ends with a line feed
 assert not any(progress.match(line.split("\r")[-1]) for line in lines.split("\n")), lines
 EOF
     check "a run draws one line within 60 columns" /usr/bin/python3 terminal.py 60 "$program" run "$demo" --force -o drawn.nc --set time.end=20
     check "a run draws one line within 35 columns" /usr/bin/python3 terminal.py 35 "$program" run "$demo" --force -o drawn.nc --set time.end=20
+    check "and one within 20 columns" /usr/bin/python3 terminal.py 20 "$program" run "$demo" --force -o drawn.nc --set time.end=5
     check "so does a study" /usr/bin/python3 terminal.py 60 "$program" study other.yaml -o drawn -j 1 --set time.end=5
     printf '%s\n' 'format: 1' 'time: {end: 3, shedding_interval: 0.05, output_interval: 0.1}' \
         'fish: [{name: a, force: pressure, pressure: {span: infinite}}]' >search.yaml

@@ -81,6 +81,7 @@ for row, one in enumerate(bodies):
     assert jump.min() <= on_body.min() and on_body.max() <= jump.max() and (row == 0 or np.ptp(on_body) > 0)
     arc = file["control_arc"][1][: jump.size]
     same("pressure", pressure[21:54], np.interp(file["sheet_arc"][1, :33], arc, jump), 1e-9)
+    same("pressure of the outline", pressure[148:], np.interp(along, arc, jump), 1e-9)
     same("fish", array(data.GetCellData(), "fish"), np.array([0, 1, 0, 1]))
     same("kind", array(data.GetCellData(), "outline"), np.array([0, 0, 1, 1]))
     same("heading", array(data.GetCellData(), "heading"), np.tile(file["heading"][row], 2))

@@ -18,6 +18,7 @@ check a_search_succeeds test "$code" = 0 -a ! -s out -a ! -s err -a -s swim.nc
 refused an_existing_file_is_kept 4 'exists' steady swim.yaml
 run info swim.nc
 check info_knows_it_is_steady has out 'steady state after'
+check one_fish_has_no_place test -z "$(grep '^place' out)"
 check and_whether_it_is_stable grep -qE 'multipliers in 32 more beats: .* stable$' out
 cat >look.py <<'end'
 """What is in the file of a steady state: its rows are the last two beats, its values those of the last."""

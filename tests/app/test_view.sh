@@ -17,8 +17,8 @@ wake: {lifetime: 0.8, decay: 0.08}
 output: {wake_interval: 0.2}
 defaults: {fish: {nodes: 9, wave: {ramp: 0.5}}}
 fish:
-  - {name: leader}
-  - {name: </script>, length: 0.7, nodes: 7, start: {position: [1.4, 0.4]}}
+  - {name: leader, start: {heading: 90}}
+  - {name: </script>, length: 0.7, nodes: 7, start: {position: [0.4, -1.4], heading: 90}}
 end
 run run pair.yaml -q -o pair.nc
 check a_short_run test "$code" = 0

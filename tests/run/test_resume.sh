@@ -96,6 +96,12 @@ check extended test "$code" = 0
 run run small.yaml --set solver.method=dormand_prince --set time.checkpoint_interval=0.25 --set time.end=1.2 -q \
     -o reference.nc --checkpoint-at "$(places run.nc)" --force
 check an_extended_run_is_the_longer_run same run.nc reference.nc
+# a checkpoint between two rows, behind a row with a wake
+between=(--force -q --set time.checkpoint_interval=0.05 --set output.wake_interval=0.02)
+run run small.yaml "${between[@]}" -o between.nc --set time.end=0.06
+run resume between.ckpt -q --end 0.12
+run run small.yaml "${between[@]}" -o reference.nc --set time.end=0.12
+check with_all_wakes_before_the_checkpoint same between.nc reference.nc
 refused no_checkpoint 4 'nothing.ckpt: cannot be read' resume nothing.ckpt
 refused a_result 4 'run.nc: cannot be used: not a checkpoint of shoal' resume run.nc
 refused no_event 2 "--checkpoint-at: '0.333' is not the time of an event" run small.yaml --checkpoint-at 0.3,0.333
