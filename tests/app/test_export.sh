@@ -11,7 +11,7 @@ time: {end: 0.6, shedding_interval: 0.02, output_interval: 0.1}
 wake: {lifetime: 0.4, decay: 0.04}
 output: {wake_interval: 0.2}
 defaults: {fish: {wave: {ramp: 0.2}}}
-fish: [{force: reactive, nodes: 9, sheet_points: 21}, {force: pressure, pressure: {span: infinite}, length: 0.7, nodes: 7, sheet_points: 33, start: {position: [1.4, 0.4]}}]
+fish: [{force: reactive, nodes: 9, sheet_points: 41}, {force: pressure, pressure: {span: infinite}, length: 0.7, nodes: 7, sheet_points: 33, start: {position: [1.4, 0.4]}}]
 end
 run run pair.yaml -q -o 'a <pair>.nc'
 run export 'a <pair>.nc' --vtk out_of_it
@@ -58,36 +58,36 @@ same("times", np.array([float(one["timestep"]) for one in bodies]), times, 1e-9)
 for row, one in enumerate(bodies):
     data = read(one["file"])
     points = vtk_to_numpy(data.GetPoints().GetData())
-    assert (data.GetNumberOfLines(), data.GetNumberOfPolys(), data.GetNumberOfPoints()) == (2, 2, 21 + 33 + 2 * 94)
-    sheet = np.concatenate([file["sheet_x"][row, 0, :21], file["sheet_x"][row, 1, :33]])
-    same("sheets", points[:54, :2], sheet)
-    strength = np.concatenate([file["sheet_strength"][row, 0, :21], file["sheet_strength"][row, 1, :33]])
-    same("strengths", array(data.GetPointData(), "sheet_strength")[:54], strength)
+    assert (data.GetNumberOfLines(), data.GetNumberOfPolys(), data.GetNumberOfPoints()) == (2, 2, 41 + 33 + 2 * 94)
+    sheet = np.concatenate([file["sheet_x"][row, 0, :41], file["sheet_x"][row, 1, :33]])
+    same("sheets", points[:74, :2], sheet)
+    strength = np.concatenate([file["sheet_strength"][row, 0, :41], file["sheet_strength"][row, 1, :33]])
+    same("strengths", array(data.GetPointData(), "sheet_strength")[:74], strength)
     # outlines begin in the nose, and have the tail half way
     for f, n in enumerate((9, 7)):
-        outline = points[54 + 94 * f : 54 + 94 * (f + 1), :2]
+        outline = points[74 + 94 * f : 74 + 94 * (f + 1), :2]
         same("nose", outline[0], file["x"][row, f, 0], 1e-12)
         same("tail", outline[47], file["x"][row, f, n - 1], 1e-12)
-        on_outline = array(data.GetPointData(), "sheet_strength")[54 + 94 * f : 54 + 94 * (f + 1)]
-        inside = strength[:21] if f == 0 else strength[21:]
+        on_outline = array(data.GetPointData(), "sheet_strength")[74 + 94 * f : 74 + 94 * (f + 1)]
+        inside = strength[:41] if f == 0 else strength[41:]
         # cosine points along the body, there and back
         arc = file["sheet_arc"][f, : inside.size]
         along = (1 - np.cos(np.pi * np.minimum(np.arange(94), 94 - np.arange(94)) / 47)) / 2 * arc[-1]
         same("strength of the outline", on_outline, np.interp(along, arc, inside), 1e-12)
     pressure, jump = array(data.GetPointData(), "pressure"), file["pressure"][row, 1]
     jump = jump[np.isfinite(jump)]
-    assert np.isnan(pressure[:21]).all() and np.isnan(pressure[54:148]).all(), "a fish without pressure"
-    on_body = np.concatenate([pressure[21:54], pressure[148:]])
+    assert np.isnan(pressure[:41]).all() and np.isnan(pressure[74:168]).all(), "a fish without pressure"
+    on_body = np.concatenate([pressure[41:74], pressure[168:]])
     assert jump.min() <= on_body.min() and on_body.max() <= jump.max() and (row == 0 or np.ptp(on_body) > 0)
     arc = file["control_arc"][1][: jump.size]
-    same("pressure", pressure[21:54], np.interp(file["sheet_arc"][1, :33], arc, jump), 1e-9)
-    same("pressure of the outline", pressure[148:], np.interp(along, arc, jump), 1e-9)
+    same("pressure", pressure[41:74], np.interp(file["sheet_arc"][1, :33], arc, jump), 1e-9)
+    same("pressure of the outline", pressure[168:], np.interp(along, arc, jump), 1e-9)
     same("fish", array(data.GetCellData(), "fish"), np.array([0, 1, 0, 1]))
     same("kind", array(data.GetCellData(), "outline"), np.array([0, 0, 1, 1]))
     same("heading", array(data.GetCellData(), "heading"), np.tile(file["heading"][row], 2))
     # the cells are closed over the points of the cell
     cell = data.GetCell(3)
-    assert [cell.GetPointId(i) for i in (0, 93)] == [54 + 94, 54 + 187], "cells"
+    assert [cell.GetPointId(i) for i in (0, 93)] == [74 + 94, 74 + 187], "cells"
 for one in wakes:
     data, row = read(one["file"]), int(np.argmin(abs(times - float(one["timestep"]))))
     count = file["wake_count"][row]
