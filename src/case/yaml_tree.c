@@ -224,8 +224,12 @@ static struct yaml_mark mark_at(const struct reader *reader, yaml_mark_t mark) {
     return (struct yaml_mark){reader->source, (int)mark.line + 1, (int)mark.column + 1};
 }
 
-/* Add the error of libyaml to the list, with a remedy for the most frequent ones. */
-static enum status report_parser(struct reader *reader) {
+/* Replace the event by the next one, or add the error of libyaml to the list, with a remedy for the most frequent ones.
+ */
+static enum status next_event(struct reader *reader) {
+    yaml_event_delete(&reader->event);
+    if (yaml_parser_parse(&reader->parser, &reader->event)) return STATUS_OK;
+
     static const char *const remedies[][2] = {
         {"did not find expected key",
          "the indentation of this line differs from the lines above, or a quote or bracket is open"},
@@ -268,12 +272,6 @@ static enum status report_parser(struct reader *reader) {
     if (strcmp(problem, "found unexpected end of stream") == 0) mark = begin;
     yaml_errors_add(reader->errors, mark, "%s (%s, line %d: %s)", remedy, parser->context, begin.line, problem);
     return STATUS_CASE;
-}
-
-/* Replace the event by the next one. */
-static enum status next_event(struct reader *reader) {
-    yaml_event_delete(&reader->event);
-    return yaml_parser_parse(&reader->parser, &reader->event) ? STATUS_OK : report_parser(reader);
 }
 
 // ---- from events to nodes

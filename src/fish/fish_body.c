@@ -5,35 +5,6 @@
 #include "fish/fish_school.h"
 #include "fish/shape.h"
 
-// thickness and depth of the edges of fish f in an array of fish
-static void body_shape(struct fish *fish, int f, const struct fish_parameters *from) {
-    fish->has_mean_section = from->body.section == SECTION_MEAN;
-    for (int k = 0; k < fish->n_nodes; k++) fish->arc[k] = k * fish->edge_length;
-
-    // copy from one of the last fish with the same Joukowski outline
-    const double outline[] = {from->length, from->body.thickness, from->body.depth, from->body.tail_thickness};
-    for (int back = 1; back <= f && back <= FISH_SHARED && from->body.profile == PROFILE_JOUKOWSKI; back++) {
-        const struct fish_parameters *const other = from - back;
-        const double same[] = {other->length, other->body.thickness, other->body.depth, other->body.tail_thickness};
-        if (other->body.profile != PROFILE_JOUKOWSKI || other->nodes != from->nodes) continue;
-        if (other->body.section != from->body.section || memcmp(outline, same, sizeof outline) != 0) continue;
-        const size_t size = (size_t)fish->n_edges * sizeof *fish->thickness;
-        memcpy(fish->thickness, fish[-back].thickness, size);
-        memcpy(fish->depth, fish[-back].depth, size);
-        memcpy(fish->square, fish[-back].square, size);
-        memcpy(fish->cube, fish[-back].cube, size);
-        return;
-    }
-
-    for (int k = 0; k < fish->n_edges; k++) {
-        const struct profile_edge edge = profile_edge(from, k);
-        fish->thickness[k] = edge.h;
-        fish->depth[k] = edge.w;
-        fish->square[k] = edge.square;
-        fish->cube[k] = edge.cube;
-    }
-}
-
 // masses, stiffnesses and damping: doc/model.md, sections 1 and 3
 static void body_weigh(struct fish *fish, const struct fish_parameters *from) {
     const struct body_parameters *const body = &from->body;
@@ -155,7 +126,28 @@ void fish_body_set(struct arena *arena, struct fish *fish, int f, const struct f
     NEW(arena, fish->mass, fish->n_nodes);
     NEW(arena, fish->bending_stiffness, fish->n_joints);
     NEW(arena, fish->bending_damping, fish->n_joints);
-    body_shape(fish, f, from);
+    fish->has_mean_section = from->body.section == SECTION_MEAN;
+    for (int k = 0; k < fish->n_nodes; k++) fish->arc[k] = k * fish->edge_length;
+
+    // thickness and depth of the edges: of one of the last fish with the same Joukowski outline, or of the profile
+    const struct fish *same = NULL;
+    const double outline[] = {from->length, from->body.thickness, from->body.depth, from->body.tail_thickness};
+    for (int back = 1; back <= f && back <= FISH_SHARED && !same; back++) {
+        const struct fish_parameters *const other = from - back;
+        const double its[] = {other->length, other->body.thickness, other->body.depth, other->body.tail_thickness};
+        const bool are_joukowski = from->body.profile == PROFILE_JOUKOWSKI && other->body.profile == PROFILE_JOUKOWSKI;
+        if (!are_joukowski || other->nodes != from->nodes || other->body.section != from->body.section) continue;
+        if (memcmp(outline, its, sizeof outline) == 0) same = fish - back;
+    }
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct profile_edge edge =
+            same ? (struct profile_edge){.h = same->thickness[k], same->depth[k], same->square[k], same->cube[k]}
+                 : profile_edge(from, k);
+        fish->thickness[k] = edge.h;
+        fish->depth[k] = edge.w;
+        fish->square[k] = edge.square;
+        fish->cube[k] = edge.cube;
+    }
     body_weigh(fish, from);
     body_fluid_set(fish, from, fluid);
 }

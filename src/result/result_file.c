@@ -216,32 +216,6 @@ static void file_define_variable(struct result_file *result, int i, const int *d
     }
 }
 
-static void file_define_all(struct result_file *result, const struct case_values *values, const char *effective) {
-    struct netcdf_writer *const writer = &result->writer;
-    int dimension_number[RESULT_N_DIMENSIONS] = {0};
-    for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++) {
-        if ((d == MULTIPLIER && !result->is_steady) || (d != TIME && result->length[d] == 0)) continue;
-        dimension_number[d] =
-            netcdf_define_dimension(writer, result_table_dimension(d), d == TIME ? 0 : result->length[d]);
-    }
-
-    for (int i = 0; i < result_table_n; i++) {
-        if (!file_is_written(result, &result_table[i])) continue;
-        file_define_variable(result, i, dimension_number, values->output.precision);
-    }
-
-    // the attributes; the text of the case makes a result repeatable
-    netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_schema", RESULT_SCHEMA);
-    for (int i = 0; i < N_NOTES; i++) result_file_note(result, (enum result_note)i, i == RESULT_STATUS ? running : "");
-    netcdf_write_string(writer, NETCDF_GLOBAL, "case_text", values->text);
-    if (values->study) {
-        netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", values->study);
-        netcdf_write_integer(writer, NETCDF_GLOBAL, "study_member", values->member);
-    }
-    netcdf_write_string(writer, NETCDF_GLOBAL, "case_effective", effective);
-    netcdf_end_definitions(writer);
-}
-
 // ---- values
 
 /* Write the whole of a constant, or the next row of a variable with time. */
@@ -356,7 +330,32 @@ enum status result_file_create(struct arena *arena, struct result_file **result,
     enum status status = netcdf_create(&new->writer, origin->path, origin->values->name, origin->command);
 
     if (status == STATUS_OK) {
-        file_define_all(new, origin->values, origin->effective);
+        // the dimensions and the variables
+        struct netcdf_writer *const writer = &new->writer;
+        int dimension_number[RESULT_N_DIMENSIONS] = {0};
+        for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++) {
+            if ((d == MULTIPLIER && !new->is_steady) || (d != TIME && new->length[d] == 0)) continue;
+            dimension_number[d] =
+                netcdf_define_dimension(writer, result_table_dimension(d), d == TIME ? 0 : new->length[d]);
+        }
+        for (int i = 0; i < result_table_n; i++) {
+            if (!file_is_written(new, &result_table[i])) continue;
+            file_define_variable(new, i, dimension_number, origin->values->output.precision);
+        }
+
+        // the attributes; the text of the case makes a result repeatable
+        const struct case_values *const values = origin->values;
+        netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_schema", RESULT_SCHEMA);
+        for (int i = 0; i < N_NOTES; i++) result_file_note(new, (enum result_note)i, i == RESULT_STATUS ? running : "");
+        netcdf_write_string(writer, NETCDF_GLOBAL, "case_text", values->text);
+        if (values->study) {
+            netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", values->study);
+            netcdf_write_integer(writer, NETCDF_GLOBAL, "study_member", values->member);
+        }
+        netcdf_write_string(writer, NETCDF_GLOBAL, "case_effective", origin->effective);
+        netcdf_end_definitions(writer);
+
+        // the constants
         write_variables(new, false, &(struct result_row){.school = origin->school});
         netcdf_sync(&new->writer, true);
         const int code = new->writer.code;

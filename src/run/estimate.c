@@ -37,29 +37,6 @@ static double bytes_so_far(void) {
     return 1024.0 * (double)usage.ru_maxrss;
 }
 
-// replace the wake of a fish by a synthetic wake of n vortices, the newest vortex at the tail
-static void synthetic_wake(const struct school *school, struct state *state, int f, int n) {
-    const struct fish *const fish = &school->fish[f];
-    struct wake *const wake = &state->wake[f];
-    const int last = fish->n_nodes - 1;
-    const double *const x = state->y + fish->at.x, *const y = state->y + fish->at.y;
-    const double along[2] = {(x[last] - x[0]) / fish->length, (y[last] - y[0]) / fish->length};
-    const double rate = fish_rate(school, fish), spacing = drift * fish->length * rate * school->interval;
-
-    wake_resize(wake, n);
-    wake->version++;
-    for (int i = 0; i < n; i++) {
-        const double age = (n - 1 - i) * school->interval, phase = 2 * M_PI * rate * age;
-        const double behind = (n - 1 - i) * spacing, beside = width * fish->length * sin(phase);
-        wake->x[i] = x[last] + behind * along[0] - beside * along[1];
-        wake->y[i] = y[last] + behind * along[1] + beside * along[0];
-        wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
-        wake->rate[i] = wake->rate_before[i] = 0;
-        wake->circulation[i] = 0.01 * fish->length * fish->length * rate * cos(phase);
-        wake->birth[i] = state->t - age;
-    }
-}
-
 // cost of one event and of a number of residual evaluations with the present wakes
 static enum status event_cost(struct simulation *simulation, double evaluations, double *seconds) {
     struct state *const state = simulation->state;
@@ -130,7 +107,28 @@ static enum status measure_synthetic_wakes(struct simulation *simulation, double
         const double left = simulation->stop && *simulation->stop ? 0 : end - clock_seconds(CLOCK_THREAD_CPUTIME_ID);
         if (!(left > 4 * costs->seconds[costs->n - 1])) break;
         n = (int)fmin(most, fmax(FIRST_WAKE, 2.0 * n));
-        for (int f = 0; f < school->n_fish; f++) synthetic_wake(school, state, f, n);
+
+        // replace the wakes by synthetic wakes of n vortices, the newest vortex at the tail
+        for (int f = 0; f < school->n_fish; f++) {
+            const struct fish *const fish = &school->fish[f];
+            struct wake *const wake = &state->wake[f];
+            const int last = fish->n_nodes - 1;
+            const double *const x = state->y + fish->at.x, *const y = state->y + fish->at.y;
+            const double along[2] = {(x[last] - x[0]) / fish->length, (y[last] - y[0]) / fish->length};
+            const double rate = fish_rate(school, fish), spacing = drift * fish->length * rate * school->interval;
+            wake_resize(wake, n);
+            wake->version++;
+            for (int i = 0; i < n; i++) {
+                const double age = (n - 1 - i) * school->interval, phase = 2 * M_PI * rate * age;
+                const double behind = (n - 1 - i) * spacing, beside = width * fish->length * sin(phase);
+                wake->x[i] = x[last] + behind * along[0] - beside * along[1];
+                wake->y[i] = y[last] + behind * along[1] + beside * along[0];
+                wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
+                wake->rate[i] = wake->rate_before[i] = 0;
+                wake->circulation[i] = 0.01 * fish->length * fish->length * rate * cos(phase);
+                wake->birth[i] = state->t - age;
+            }
+        }
         costs->vortices[costs->n] = n;
         TRY(event_cost(simulation, evaluations, &costs->seconds[costs->n]));
         costs->bytes[costs->n] = bytes_so_far();

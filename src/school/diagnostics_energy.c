@@ -52,28 +52,6 @@ static struct rod_strains find_strains(struct residual *residual, int f, const s
     return (struct rod_strains){balance->strain, by_places.rate, balance->stress};
 }
 
-// integrate strains and stresses of fish f to the end of a step at time t
-static void advance_strains(struct residual *residual, struct state *state, int f, double t, const double *y) {
-    const struct fish *fish = &residual->school->fish[f];
-    struct energy_balance *const balance = &state->balance[f];
-    const double h = t - balance->t[0], g = balance->n > 1 ? balance->t[0] - balance->t[1] : 0;
-    if (fish->damping == DAMPING_CURVATURE || h <= 0) return;
-
-    // stresses by the positions, corrected by the momentum balance
-    double *const scratch = residual->scratch, *const stress = scratch + fish->at.vx;
-    const struct rod_strains by_places = {scratch + fish->at.x, scratch + fish->at.ax, stress};
-    const struct actuation muscle = residual_muscle(residual, f, t, y);
-    rod_strains(fish, &muscle, y, &by_places);
-    residual_balance(residual, f, y, scratch);
-    rod_stress_balance(fish, scratch, y, stress);
-
-    rod_stress_creep(fish, h, g, balance->stress_before, balance->stress, stress, balance->strain);
-
-    const size_t size = (size_t)rod_n_strains(fish) * sizeof *stress;
-    memcpy(balance->stress_before, balance->stress, size);
-    memcpy(balance->stress, stress, size);
-}
-
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
@@ -147,8 +125,24 @@ static void gather_powers(const struct diagnostics_power *power, double *of) {
 
 // the works of fish f up to the end of a step
 static void add_works(struct residual *residual, struct state *state, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
     struct energy_balance *const balance = &state->balance[f];
-    advance_strains(residual, state, f, t, y);
+
+    // integrate strains and stresses to the end of the step: stresses by the positions, corrected by the momentum
+    // balance
+    const double h = t - balance->t[0], g = balance->n > 1 ? balance->t[0] - balance->t[1] : 0;
+    if (fish->damping != DAMPING_CURVATURE && h > 0) {
+        double *const scratch = residual->scratch, *const stress = scratch + fish->at.vx;
+        const struct rod_strains by_places = {scratch + fish->at.x, scratch + fish->at.ax, stress};
+        const struct actuation muscle = residual_muscle(residual, f, t, y);
+        rod_strains(fish, &muscle, y, &by_places);
+        residual_balance(residual, f, y, scratch);
+        rod_stress_balance(fish, scratch, y, stress);
+        rod_stress_creep(fish, h, g, balance->stress_before, balance->stress, stress, balance->strain);
+        const size_t size = (size_t)rod_n_strains(fish) * sizeof *stress;
+        memcpy(balance->stress_before, balance->stress, size);
+        memcpy(balance->stress, stress, size);
+    }
 
     const struct diagnostics_power now = diagnostics_power(residual, f, t, y);
     const double times[3] = {t, balance->t[0], balance->t[1]};
@@ -204,7 +198,7 @@ void diagnostics_after_jump(struct residual *residual, struct state *state) {
     state_begin_rates(state, residual->school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) {
-        // strains and stresses of a consistent state: initial values of advance_strains
+        // strains and stresses of a consistent state: initial values of add_works
         const struct fish *fish = &residual->school->fish[f];
         struct energy_balance *const balance = &state->balance[f];
         const struct actuation muscle = residual_muscle(residual, f, state->t, state->y);

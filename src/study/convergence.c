@@ -587,33 +587,6 @@ struct error_study_next convergence_study_next(struct error_study *study, const 
     return next;
 }
 
-/* Move to the next finer level, or insert a finer level; then find or add the member with all refined keys at the
- * stated levels. Returns the number of new members. */
-static int take_step(struct error_study *study, const struct error_study_next *next) {
-    struct error_study_key *const refined = &study->key[next->key];
-    int n_new = 0;
-    if (next->is_member) {
-        refined->stated--;
-    } else {
-        error_plan_insert(refined, next->value);
-        refined->n_added++;
-        // more nodes need more sheet points at all levels
-        const bool are_nodes = strcmp(refined->row->path, "fish.nodes") == 0;
-        for (int i = 0; i < refined->n_levels && are_nodes; i++) refined->member[i] = -1;
-        n_new = error_plan_members(study);
-    }
-
-    struct error_plan_change changes[SWEEP_N_ERROR_KEYS];
-    int n = 0;
-    bool is_new = false;
-    for (int k = 0; k < study->n_keys; k++) {
-        const struct error_study_key *const key = &study->key[k];
-        if (key->stated != key->first_stated) changes[n++] = (struct error_plan_change){k, key->value[key->stated]};
-    }
-    if (n > 0) study->stated = error_plan_member(study, n, changes, study->stated, &is_new);
-    return n_new + is_new;
-}
-
 int convergence_study_refine(struct error_study *study, const struct member_file *members, int most_members) {
     while (!study->is_reached) {
         const struct error_study_next next = convergence_study_next(study, members);
@@ -621,7 +594,32 @@ int convergence_study_refine(struct error_study *study, const struct member_file
         if (!is_useful || study->cost * next.cost > study->study->error->most) return 0;
         const int n_before = study->study->sweep[0].n_values, stated = study->stated;
         const struct error_study_key before = study->key[next.key];
-        const int n_new = take_step(study, &next);
+
+        // move to the next finer level, or insert a finer level
+        struct error_study_key *const refined = &study->key[next.key];
+        int n_new = 0;
+        if (next.is_member) {
+            refined->stated--;
+        } else {
+            error_plan_insert(refined, next.value);
+            refined->n_added++;
+            // more nodes need more sheet points at all levels
+            const bool are_nodes = strcmp(refined->row->path, "fish.nodes") == 0;
+            for (int i = 0; i < refined->n_levels && are_nodes; i++) refined->member[i] = -1;
+            n_new = error_plan_members(study);
+        }
+
+        // find or add the member with all refined keys at the stated levels
+        struct error_plan_change changes[SWEEP_N_ERROR_KEYS];
+        int n = 0;
+        bool is_new = false;
+        for (int k = 0; k < study->n_keys; k++) {
+            const struct error_study_key *const key = &study->key[k];
+            if (key->stated != key->first_stated) changes[n++] = (struct error_plan_change){k, key->value[key->stated]};
+        }
+        if (n > 0) study->stated = error_plan_member(study, n, changes, study->stated, &is_new);
+        n_new += is_new;
+
         if (study->study->sweep[0].n_values > most_members) {
             error_plan_shorten(study, n_before);
             study->stated = stated;

@@ -86,40 +86,37 @@ void study_folder_set_reason(struct arena *arena, const char *folder, int member
     if (code == ENOMEM) arena_lack(arena, 0);
 }
 
-/* Read the final values and the status of one member. */
-static enum status folder_read_member(struct arena *arena, struct member_file *member, const struct case_values *study,
-                                      const char *folder, int number) {
-    const char *const path = study_folder_member(arena, folder, number, ".nc");
-    if (access(path, F_OK) != 0) {
-        member->status = "missing";
-    } else {
-        const enum status status = member_file_read(arena, member, path);
-        if (status == STATUS_FILE) member->status = arena_text(arena, "failed: %s", status_message());
-        if (status != STATUS_FILE) TRY(status);
-        if (status == STATUS_OK && (strcmp(member->study, study->merged) != 0 || member->number != number ||
-                                    member->n_fish != study->school.n_fish)) {
-            return status_fail(STATUS_FILE, "%s is a result of another study than the first file in the folder", path);
-        }
-    }
-
-    // the reason of a failed member replaces the status
-    if (member_file_is_complete(member)) return STATUS_OK;
-    const int file = open(study_folder_member(arena, folder, number, ".failed"), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) return STATUS_OK;
-    char reason[2048];
-    const ssize_t length = read(file, reason, sizeof reason - 1);
-    close(file);
-    if (length < 0) return STATUS_OK;
-    reason[length] = '\0';
-    member->status = arena_text(arena, "failed: %.*s", (int)strcspn(reason, "\n"), reason);
-    return STATUS_OK;
-}
-
 enum status study_folder_read_members(struct arena *arena, struct member_file **members,
                                       const struct case_values *study, const char *folder) {
     const int n = sweep_n_members(study);
     NEW(arena, *members, n);
-    for (int m = 0; m < n; m++) TRY(folder_read_member(arena, &(*members)[m], study, folder, m));
+    for (int m = 0; m < n; m++) {
+        struct member_file *const member = &(*members)[m];
+        const char *const path = study_folder_member(arena, folder, m, ".nc");
+        if (access(path, F_OK) != 0) {
+            member->status = "missing";
+        } else {
+            const enum status status = member_file_read(arena, member, path);
+            if (status == STATUS_FILE) member->status = arena_text(arena, "failed: %s", status_message());
+            if (status != STATUS_FILE) TRY(status);
+            if (status == STATUS_OK && (strcmp(member->study, study->merged) != 0 || member->number != m ||
+                                        member->n_fish != study->school.n_fish)) {
+                return status_fail(STATUS_FILE, "%s is a result of another study than the first file in the folder",
+                                   path);
+            }
+        }
+
+        // the reason of a failed member replaces the status
+        if (member_file_is_complete(member)) continue;
+        const int file = open(study_folder_member(arena, folder, m, ".failed"), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+        if (file < 0) continue;
+        char reason[2048];
+        const ssize_t length = read(file, reason, sizeof reason - 1);
+        close(file);
+        if (length < 0) continue;
+        reason[length] = '\0';
+        member->status = arena_text(arena, "failed: %.*s", (int)strcspn(reason, "\n"), reason);
+    }
     return STATUS_OK;
 }
 
