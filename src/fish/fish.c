@@ -55,7 +55,8 @@ static double point_to_segment(const double p[2], const double a[2], const doubl
     const double square = e[0] * e[0] + e[1] * e[1];
     double q = square > 0 ? (r[0] * e[0] + r[1] * e[1]) / square : 0;
     q = fmin(1, fmax(0, q));
-    return hypot(r[0] - q * e[0], r[1] - q * e[1]);
+    const double d[2] = {r[0] - q * e[0], r[1] - q * e[1]};
+    return sqrt(d[0] * d[0] + d[1] * d[1]);
 }
 
 double fish_point_distance(const struct fish *fish, const double *y, const double p[2]) {
@@ -111,7 +112,7 @@ double fish_distance(const struct fish *a, const struct fish *b, const double *y
             const double thickness = (a->thickness[i] + b->thickness[j]) / 2;
 
             // every point of an edge is within the edge length of the first node
-            const double reach = min + thickness + length + fabs(s[0] - r[0]) + fabs(s[1] - r[1]);
+            const double reach = fmin(min, limit) + thickness + length + fabs(s[0] - r[0]) + fabs(s[1] - r[1]);
             const double dx = r[0] - p[0], dy = r[1] - p[1];
             if (dx * dx + dy * dy > reach * reach) continue;
             const double apart = fmin(fmin(point_to_segment(p, r, s), point_to_segment(q, r, s)),

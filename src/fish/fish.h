@@ -284,7 +284,7 @@ double fish_point_distance(const struct fish *fish, const double *y, const doubl
 double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y, int *wall);
 
 /* Distance between the outlines of two bodies at the node positions in y, 0 at contact, m. A distance above the limit
- * may be returned as INFINITY: edges are compared only if the gap of the boxes of both bodies is below the limit. */
+ * may be returned as a larger one or INFINITY: edges are compared only if their distance can be below the limit. */
 double fish_distance(const struct fish *a, const struct fish *b, const double *y, double limit);
 
 #endif
