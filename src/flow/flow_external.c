@@ -28,7 +28,7 @@ void flow_external_gust(const struct school *school, double t, double x, double 
 }
 
 void flow_external(const struct school *school, double t, double x, double y, double *u, double *v) {
-    const double gust = sin(school->gust_omega * t);
+    const double gust = fabs(school->gust[0]) + fabs(school->gust[1]) > 0 ? sin(school->gust_omega * t) : 0;
     double travelling[2];
     flow_external_gust(school, t, x, y, &travelling[0], &travelling[1]);
     *u = school->velocity[0] + school->shear * y + gust * school->gust[0] + travelling[0];
