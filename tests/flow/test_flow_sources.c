@@ -22,6 +22,14 @@ static const double two_pi = 6.28318530717958647692;
 /* The kernel of the program, or with finite span a kernel with b doubled. */
 static enum { INFINITE, FINITE, THIRD, N_KERNELS } kind;
 
+/* A test of every kernel. */
+#define TEST_OF_KERNELS(name)                                        \
+    static void of_kernel_##name(void);                              \
+    TEST(name) {                                                     \
+        for (kind = 0; kind < N_KERNELS; kind++) of_kernel_##name(); \
+    }                                                                \
+    static void of_kernel_##name(void)
+
 static void build(struct setup *setup, const char *fluid, const char *fish) {
     char text[1024], all[2048];
     snprintf(all, sizeof all, TIME "%s%s", fluid, fish);
@@ -169,7 +177,7 @@ static void add_body(struct felt *felt, const struct setup *setup, int f, int g,
     }
 }
 
-static void check_midpoints_feel_bodies_wakes_and_images(void) {
+TEST_OF_KERNELS(midpoints_feel_bodies_wakes_and_images) {
     struct setup setup;
     build(&setup, "fluid: {walls: [-0.9]}\n", TWO);
     flow_velocity(setup.residual->flow, setup.state, setup.t, setup.state->y, false);
@@ -195,12 +203,8 @@ static void check_midpoints_feel_bodies_wakes_and_images(void) {
     }
 }
 
-TEST(midpoints_feel_bodies_wakes_and_images) {
-    for (kind = 0; kind < N_KERNELS; kind++) check_midpoints_feel_bodies_wakes_and_images();
-}
-
 // graded points of the newest stretches and tapered smoothing have a small effect for a wake far from the body
-static void check_control_points_feel_their_own_body_and_wake(void) {
+TEST_OF_KERNELS(control_points_feel_their_own_body_and_wake) {
     struct setup setup;
     build(&setup, "", ONE);
     const struct fish *const fish = setup.school->fish;
@@ -252,12 +256,8 @@ static void check_control_points_feel_their_own_body_and_wake(void) {
     }
 }
 
-TEST(control_points_feel_their_own_body_and_wake) {
-    for (kind = 0; kind < N_KERNELS; kind++) check_control_points_feel_their_own_body_and_wake();
-}
-
 // for the own control points the nascent stretch ends beside the tail, for all others at the marker
-static void check_a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it(void) {
+TEST_OF_KERNELS(a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it) {
     struct setup setup;
     build(&setup, "", ONE);
     const struct fish *const fish = setup.school->fish;
@@ -297,13 +297,8 @@ static void check_a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stre
     }
 }
 
-TEST(a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it) {
-    for (kind = 0; kind < N_KERNELS; kind++)
-        check_a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it();
-}
-
 // the newborn marker has the velocity of the own body at h/(2 pi) behind the tail, without smoothing
-static void check_the_newborn_marker_feels_its_body_behind_the_tail(void) {
+TEST_OF_KERNELS(the_newborn_marker_feels_its_body_behind_the_tail) {
     struct setup setup;
     build(&setup, "", ONE);
     setup.t = setup.state->t;
@@ -335,10 +330,6 @@ static void check_the_newborn_marker_feels_its_body_behind_the_tail(void) {
         NEAR(flow->wake_u[newest], felt.u, 1e-13, 1e-11);
         NEAR(flow->wake_v[newest], felt.v, 1e-13, 1e-11);
     }
-}
-
-TEST(the_newborn_marker_feels_its_body_behind_the_tail) {
-    for (kind = 0; kind < N_KERNELS; kind++) check_the_newborn_marker_feels_its_body_behind_the_tail();
 }
 
 // no flow through the wall; the labels change with the divergence at markers
@@ -427,7 +418,7 @@ static void add_at_marker(struct felt *felt, const struct setup *setup, int f, i
     }
 }
 
-static void check_markers_feel_all_bodies_all_markers_and_all_images(void) {
+TEST_OF_KERNELS(markers_feel_all_bodies_all_markers_and_all_images) {
     struct setup setup;
     build(&setup, "fluid: {velocity: [0.1, 0], shear: 0.3, walls: [-0.9]}\n", TWO);
     setup.t = setup.state->t;
@@ -463,10 +454,6 @@ static void check_markers_feel_all_bodies_all_markers_and_all_images(void) {
             NEAR(flow->wake_div[n], all.div + images.div, 1e-12, 1e-11);
         }
     }
-}
-
-TEST(markers_feel_all_bodies_all_markers_and_all_images) {
-    for (kind = 0; kind < N_KERNELS; kind++) check_markers_feel_all_bodies_all_markers_and_all_images();
 }
 
 // the points of a graded sheet: s by the length of the sheet between tail and point, at both ends of the interval
@@ -546,7 +533,7 @@ static double largest_difference(int n, const double *one, const double *other) 
 }
 
 // velocity and div u in lengths (1 m) per beat (1 s); the tolerance is 1e-7
-static void check_large_schools_are_summed_by_the_tree_to_half_the_tolerance(void) {
+TEST_OF_KERNELS(large_schools_are_summed_by_the_tree_to_half_the_tolerance) {
     struct setup exact, fast;
     build_large(&exact, "0", 1000);
     build_large(&fast, "1e-7", 1000);
@@ -588,10 +575,6 @@ static void check_large_schools_are_summed_by_the_tree_to_half_the_tolerance(voi
     threads.school->threads = n_threads;
     assert_memory_equal(threads.residual->flow->wake_u, d->wake_u, (size_t)d->n_markers * sizeof(double));
     assert_memory_equal(threads.residual->flow->wake_rate, d->wake_rate, (size_t)d->n_markers * sizeof(double));
-}
-
-TEST(large_schools_are_summed_by_the_tree_to_half_the_tolerance) {
-    for (kind = 0; kind < N_KERNELS; kind++) check_large_schools_are_summed_by_the_tree_to_half_the_tolerance();
 }
 
 // bodies, wakes and the images of both have equal parts of half the tolerance, in lengths per beat
