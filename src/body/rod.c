@@ -23,11 +23,10 @@ struct edge edge_at(const struct fish *fish, int k, const double *y) {
 }
 
 struct bend edge_bend(const double before[2], const double after[2]) {
-    const double sine = edge_cross(before, after);
-    const double angle = atan2(sine, edge_dot(before, after));
-    struct bend bend = {.curvature = 2 * tan(angle / 2), .slope = 2 / (1 + cos(angle))};
-    bend.second = bend.slope * bend.curvature / 2;
-    return bend;
+    const double sine = edge_cross(before, after), cosine = edge_dot(before, after);
+    const double half_tangent = cosine > 0 ? sine / (1 + cosine) : (1 - cosine) / sine;
+    const double slope = 1 + half_tangent * half_tangent;
+    return (struct bend){.curvature = 2 * half_tangent, .slope = slope, .second = slope * half_tangent};
 }
 
 // ---- phibar = a(t) A (lbar/l_ref) (c0 + c1 sigma + c2 sigma^2) (sin(beta sigma + omega t + phase) + phi0), or
