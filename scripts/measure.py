@@ -711,8 +711,11 @@ def growth(bench):
         last = now
 
 
-def draw_real_time(rows, path):
-    """The table real_time as a figure."""
+def draw_real_time(path):
+    """The table real_time of doc/performance.md as a figure."""
+    with open(os.path.join(HERE, "doc/performance.md"), encoding="utf-8") as file:
+        lines = file.read().split("`scripts/measure.py real_time`", 1)[1].split("\n\n", 2)[1]
+    rows = rows_of(lines.split("\n"))
     with pyplot.rc_context(STYLE):
         figure, axes = pyplot.subplots(figsize=(4.5, 3), layout="constrained")
         for k, label in enumerate(("before, one thread", "one thread", "two threads"), start=1):
@@ -882,7 +885,7 @@ def main():
     parser.add_argument("--compare", action="store_true", help="NAMEs are documents")
     parser.add_argument("--write", action="store_true", help="NAMEs are documents, to be changed")
     parser.add_argument("--list", action="store_true", help="list the tables")
-    parser.add_argument("--picture", metavar="FILE", help="draw the table real_time, too")
+    parser.add_argument("--picture", metavar="FILE", help="draw the table real_time of doc/performance.md")
     parser.add_argument("--program", default=os.path.join(HERE, "build", "shoal"), help="default: build/shoal")
     parser.add_argument("--before", default=os.path.join(HERE, "build", "before", "build", "shoal"),
                         help="the program before, of `make bench`; default: build/before/build/shoal")
@@ -892,6 +895,8 @@ def main():
         for name, (_, rows) in TABLES.items():
             print(f"{name:14s} {rows.__doc__}")
         return
+    if options.picture:
+        return draw_real_time(options.picture)
     bench = Bench(os.path.abspath(options.program), options.verbose, os.path.abspath(options.before))
     n_different = 0
     try:
@@ -900,10 +905,7 @@ def main():
                 n_different += compare(bench, name, options.write)
             elif name in TABLES:
                 heads, rows = TABLES[name]
-                table_rows = [list(row) for row in rows(bench)]
-                print(markdown(list(heads), table_rows), end="")
-                if options.picture and name == "real_time":
-                    draw_real_time(table_rows, options.picture)
+                print(markdown(list(heads), [list(row) for row in rows(bench)]), end="")
             else:
                 parser.error(f"there is no table {name}: {', '.join(TABLES)}")
     finally:
