@@ -126,7 +126,7 @@ class Copy:
         programs = ["build/" + path[:-2] for path in map(path_of_test, tests) if path.endswith(".c")]
         compiler = ["CC=ccache gcc"] if shutil.which("ccache") else []
         # unused code of a mutant is no error
-        return self.run("make", "-s", *compiler, "CFLAGS=-O3 -g -Wno-error", "build/shoal", *programs)
+        return self.run("make", "-s", *compiler, "CFLAGS=-O3 -g -Wno-error", "all", *programs)
 
     def test(self, name):
         path = path_of_test(name)
