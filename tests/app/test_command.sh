@@ -32,7 +32,7 @@ help_and_versions() {
     check "--help ends with 0" ended 0
     check "--help lists the commands on standard output" grep -q '^  run  ' out
     check "--help says nothing on standard error" test ! -s err
-    for command in run check show keys field info demo; do
+    for command in run steady study check show keys field info demo; do
         run "$command" --help
         check "$command --help ends with 0" ended 0
         check "$command --help: lines of at most 100 characters" test -z "$(sed 1d out | grep '.\{101\}')"
@@ -139,10 +139,10 @@ output_paths() {
     run run "$demo" --set "$short" -o log.nc
     check "progress in a log: one line per 10 %" test "$(grep -c ' x real time' err)" = 10
     check "the name of the result on standard output" grep -qx log.nc out
-    run run "$demo" --set time.end=60 -o log.nc --force
+    run run "$demo" --set time.end=120 -o log.nc --force
     # the rest of the run at the speed so far, which is printed with three digits
     check "the seconds left are the time left over the speed" awk '
-        / s left / { left = (60 - $2) / $9; n += left > 1.5; if (($6 - left) ^ 2 > (0.6 + left / 50) ^ 2) exit wrong = 1 }
+        / s left / { left = (120 - $2) / $9; n += left > 1.5; if (($6 - left) ^ 2 > (0.6 + left / 50) ^ 2) exit wrong = 1 }
         END { exit wrong || n == 0 }' err
 }
 
