@@ -1,7 +1,10 @@
 # Configuration of the documentation site (make site): Sphinx with MyST; scripts/site/make-site.sh collects the pages.
 import os
 import sys
+import warnings
 
+# NumPy silences this notice about modules of other versions, and Sphinx undoes that
+warnings.filterwarnings("ignore", message="numpy.ndarray size changed")
 sys.path.insert(0, os.environ["SHOAL_SCRIPTS"])
 
 project = "Shoal"
