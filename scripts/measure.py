@@ -527,7 +527,7 @@ def order(bench):
 
 @table("from", "to [periods]", "nose [L]", "order", "tail [L]", "order")
 def interval(bench):
-    """change of a fish with the own wake (force: pressure) from one shedding interval to the next (a minute)"""
+    """change of a fish that feels its own wake (force: pressure) from one shedding interval to the next (a minute)"""
     sizes = (0.04, 0.02, 0.01, 0.005, 0.0025)
     points = [1 + round(32 * math.sqrt(sizes[0] / size)) for size in sizes]
     keys = ("time.end=1.6", "time.output_interval=0.04", "solver.rtol=1e-8", "fish[*].force=pressure", "fish[*].nodes=17",

@@ -83,7 +83,7 @@ does not continue the order. In the limit 3/2 would be expected of a polygon, wh
 half an edge ahead of the tail; this is a conjecture. In M only shed circulation is checked on the default fish: the
 changes of nose and wake are smaller and irregular."""),
     "interval": ("Shedding interval of one fish", """\
-One soft fish (E = 1e5 Pa, N = 7), from rest and from 1 m/s, with a force that depends on the own wake: the pressure of the
+One soft fish (E = 1e5 Pa, N = 7), from rest and from 1 m/s, with a force that depends on its own wake: the pressure of the
 bound sheet with *sheet*, the published force with *continuous*. All other keys have defaults. The run ends at 1.5 s;
 vortices decay from an age of 0.8 s to 1 s, so a part of the wake is lost, which Kelvin's theorem retains or drops
 (`removed_circulation`). The interval is halved from 0.02 s to 0.00125 s. The sheet points increase with the refinement, M
