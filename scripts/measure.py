@@ -679,6 +679,22 @@ def ratios(bench):
     shutil.rmtree(before.folder)
 
 
+@table("the article's diamond, 5 s", "nose or tail [L]", *COUNTS, "evaluations", "CPU time [s]")
+def peers(bench):
+    """counts and time of the article's diamond: its own scheme, and the converged model by implicit and explicit methods (a minute)"""
+    with open(bench.case("diamond"), encoding="utf-8") as file:
+        converged = file.read().replace("include/article.yaml", f"{CASES}/include/article.yaml")
+    own = re.sub("(?m)^include:.*$", "preset: published", converged)
+    right = nose_and_tail(bench.run(converged, "time.end=5", "solver.rtol=1e-9", "solver.max_steps=100000"))
+    for name, text, *keys in (("the article's scheme, ida, rtol 1e-6", own, "solver.rtol=1e-6"), ("converged, ida", converged),
+                              *((f"converged, {method}", converged, f"solver.method={method}")
+                                for method in ("heun", "rk4", "dormand_prince"))):
+        run = bench.run(text, "time.end=5", "solver.max_steps=100000", *keys)
+        error = max(float(np.linalg.norm(np.subtract(a, b))) for a, b in zip(nose_and_tail(run), right))
+        yield (name, short(error) if text is converged else "", *per_event(run), f"{run['residual_evaluations'][-1] / n_events(run):.1f}",
+               f"{bench.seconds(text, 'time.end=5', 'solver.max_steps=100000', 'solver.threads=1', *keys, repeats=1):.2f}")
+
+
 @table("fish", "CPU time before", "CPU time", "wall time, two threads")
 def real_time(bench):
     """time per simulated second of 1 to 256 default fish at cruising speed over 3.2 s, also of the program before (--before;
