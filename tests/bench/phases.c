@@ -96,10 +96,7 @@ void __wrap_flow_at_wake(struct flow *flow, const struct state *state) {
     seen.interactions += n * (n + n_bound(flow->school) + flow->n_points);
 }
 
-enum status __real_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
-                                     const double *y, const double *yp, double *value);
-enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
-                                     const double *y, const double *yp, double *value);
+__typeof__(residual_evaluate) __real_residual_evaluate, __wrap_residual_evaluate;
 enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
                                      const double *y, const double *yp, double *value) {
     const double since = cpu_time();

@@ -23,10 +23,7 @@
 // A clock of the thread by which an evaluation of the residual takes 1 ms, and 1 us more for each vortex.
 static int counts_evaluations;
 static long counted, n_evaluations;
-enum status __real_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
-                                     const double *y, const double *yp, double *value);
-enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
-                                     const double *y, const double *yp, double *value);
+__typeof__(residual_evaluate) __real_residual_evaluate, __wrap_residual_evaluate;
 enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
                                      const double *y, const double *yp, double *value) {
     counted += 1000;

@@ -156,10 +156,7 @@ static void fails(const char *text, const char *message) {
 
 // one evaluation throws the nodes far away, from where Newton's iteration does not return, and the next one fails
 static int n_until_lost = -1;
-enum status __real_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
-                                     const double *y, const double *yp, double *value);
-enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
-                                     const double *y, const double *yp, double *value);
+__typeof__(residual_evaluate) __real_residual_evaluate, __wrap_residual_evaluate;
 enum status __wrap_residual_evaluate(struct residual *residual, const struct residual_mode *mode, double t,
                                      const double *y, const double *yp, double *value) {
     TRY(__real_residual_evaluate(residual, mode, t, y, yp, value));
