@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "steady/steady_problem.h"
 #include "verify.h"
 
 struct swim {
@@ -16,16 +15,13 @@ struct swim {
 static struct swim steady_swim(const char *school, const char *keys) {
     char text[512];
     snprintf(text, sizeof text, "format: 1\n" VERIFY_DEFAULTS "%sfish: [{%s}]\n", school, keys);
-    struct case_values values;
-    struct steady_problem problem;
-    struct simulation *const simulation = verify_open("%s", text);
-    verify_ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
-    verify_ok(steady_problem_create(&problem, &values.steady, simulation));
-    verify_ok(steady_search_run(&problem));
-    const struct steady_beat *const beat = &problem.map.last[0];
-    const struct swim swim = {beat->speed, beat->actuation / simulation->school->fish[0].total_mass / beat->speed};
-    simulate_free(simulation);
-    case_free(&values);
+    struct verify_search search;
+    verify_search_open(&search, text);
+    verify_ok(steady_search_run(&search.problem));
+    const struct steady_beat *const beat = &search.problem.map.last[0];
+    const double mass = search.simulation->school->fish[0].total_mass;
+    const struct swim swim = {beat->speed, beat->actuation / mass / beat->speed};
+    verify_search_close(&search);
     return swim;
 }
 

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "steady/steady_problem.h"
 #include "verify.h"
 
 // ---- one fish, against a run of two hundred beats
@@ -30,24 +29,21 @@ static void note_speed(const struct steady_problem *problem, void *data) {
 
 static struct found search_for(const char *text) {
     struct found found = {.n_beats = 0};
-    struct case_values values;
-    struct steady_problem problem;
+    struct verify_search search;
     double real[STEADY_QUANTITIES], imaginary[STEADY_QUANTITIES], way[STEADY_QUANTITIES];
     int n_beats;
-    struct simulation *const simulation = verify_open("%s", text);
-    verify_ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
-    verify_ok(steady_problem_create(&problem, &values.steady, simulation));
-    problem.progress = note_speed;
-    problem.data = &found;
-    verify_ok(steady_search_run(&problem));
-    found.n_beats = problem.map.n_beats;
-    found.speed = problem.map.last[0].speed;
-    found.strouhal = simulation->diagnostics->fish[0].strouhal;
-    found.cost = problem.map.last[0].actuation + problem.map.last[0].driving;
-    verify_ok(steady_multipliers_find(&problem, real, imaginary, way, &n_beats));
+    verify_search_open(&search, text);
+    struct steady_problem *const problem = &search.problem;
+    problem->progress = note_speed;
+    problem->data = &found;
+    verify_ok(steady_search_run(problem));
+    found.n_beats = problem->map.n_beats;
+    found.speed = problem->map.last[0].speed;
+    found.strouhal = search.simulation->diagnostics->fish[0].strouhal;
+    found.cost = problem->map.last[0].actuation + problem->map.last[0].driving;
+    verify_ok(steady_multipliers_find(problem, real, imaginary, way, &n_beats));
     found.multiplier = hypot(real[0], imaginary[0]);
-    simulate_free(simulation);
-    case_free(&values);
+    verify_search_close(&search);
     return found;
 }
 
@@ -127,43 +123,26 @@ static const struct swimmer swimmers[] = {
 
 // ---- a fish that is steered, and two that swim freely
 
-struct steered {
-    struct case_values values;
-    struct simulation *simulation;
-    struct steady_problem problem;
-    double multiplier;
-};
-
-static void open_steered(struct steered *steered, const char *text) {
-    steered->simulation = verify_open("%s", text);
-    verify_ok(case_parse(&steered->values, text, strlen(text), "verify", ".", 0, NULL));
-    verify_ok(steady_problem_create(&steered->problem, &steered->values.steady, steered->simulation));
-}
-
-static void let_run(struct steered *steered, int n_beats) {
+static void let_run(struct verify_search *steered, int n_beats) {
     for (int i = 0; i < n_beats; i++) verify_ok(steady_map_beat(&steered->problem.map, NULL, NULL));
 }
 
-static void find_steered(struct steered *steered, const char *text) {
+// the largest multiplier
+static double find_steered(struct verify_search *steered, const char *text) {
     double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES], way[2 * STEADY_QUANTITIES];
     int n_beats;
-    open_steered(steered, text);
+    verify_search_open(steered, text);
     verify_ok(steady_search_run(&steered->problem));
     verify_ok(steady_multipliers_find(&steered->problem, real, imaginary, way, &n_beats));
-    steered->multiplier = hypot(real[0], imaginary[0]);
     // the last beat was one of a disturbance
     let_run(steered, 1);
-}
-
-static void close_steered(struct steered *steered) {
-    simulate_free(steered->simulation);
-    case_free(&steered->values);
+    return hypot(real[0], imaginary[0]);
 }
 
 static void circle(const char *name, const char *text) {
-    struct steered found, run;
+    struct verify_search found, run;
     find_steered(&found, text);
-    open_steered(&run, text);
+    verify_search_open(&run, text);
     let_run(&run, BRUTE_BEATS);
     const struct steady_beat *const last = found.problem.map.last, *const reference = run.problem.map.last;
     static const char source[] = "a run of 200 beats";
@@ -173,8 +152,8 @@ static void circle(const char *name, const char *text) {
     // one more beat has been taken for the means
     verify_zero(verify_text("%s: beats of the search", name), "about a tenth of the run's",
                 found.problem.map.n_beats - 1, 24);
-    close_steered(&run);
-    close_steered(&found);
+    verify_search_close(&run);
+    verify_search_close(&found);
 }
 
 static void circles(void) {
@@ -192,20 +171,20 @@ static void circles(void) {
         "defaults: {fish: {force: reactive, start: {speed: 0.8}, control: {law: heading, desired_heading: 180}}}\n"
 
 static void formation(void) {
-    struct steered found, run;
-    find_steered(&found, PAIR "fish: [{}, {start: {position: [1.5, 0]}}]\n");
-    open_steered(&run, PAIR "fish: [{}, {start: {position: [1.7, 0.1]}}]\n");
+    struct verify_search found, run;
+    const double multiplier = find_steered(&found, PAIR "fish: [{}, {start: {position: [1.5, 0]}}]\n");
+    verify_search_open(&run, PAIR "fish: [{}, {start: {position: [1.7, 0.1]}}]\n");
     let_run(&run, 150);
     const struct steady_beat *const last = found.problem.map.last, *const reference = run.problem.map.last;
     static const char source[] = "a run of 150 beats from 0.2 L behind, 0.1 L aside";
     verify_relative("two free fish: place of the second, m", source, reference[1].place[0], last[1].place[0], 1e-3);
     verify_value("two free fish: to the side, m", source, reference[1].place[1], last[1].place[1], 1e-3);
     verify_relative("two free fish: speed, m/s", source, reference[1].speed, last[1].speed, 3e-4);
-    verify_zero("two free fish: largest multiplier", "stable: below 1", found.multiplier, 1);
+    verify_zero("two free fish: largest multiplier", "stable: below 1", multiplier, 1);
     verify_show("two free fish: beats of the search", "speeds, slips, turns, headings, a place",
                 found.problem.map.n_beats);
-    close_steered(&run);
-    close_steered(&found);
+    verify_search_close(&run);
+    verify_search_close(&found);
 }
 
 void verify_steady(void) {

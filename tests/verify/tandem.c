@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "linear_theory.h"
-#include "steady/steady_problem.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;
@@ -85,30 +84,27 @@ static double growth(struct steady_problem *problem, const struct state *kept) {
 }
 
 static struct found find(const struct pair *pair, int n_fish, int is_stability_wanted) {
-    struct case_values values;
-    struct steady_problem problem;
+    struct verify_search search;
     struct found found = {.largest = NAN};
     double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES], way[2 * STEADY_QUANTITIES];
     int n_beats;
     char text[1024];
     text_of(pair, n_fish, "surge: free", sizeof text, text);
-    struct simulation *const simulation = verify_open("%s", text);
-    verify_ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
-    verify_ok(steady_problem_create(&problem, &values.steady, simulation));
-    verify_ok(steady_search_run(&problem));
-    found.speed = problem.map.last[0].speed;
-    if (n_fish > 1) found.place = (-problem.map.last[1].place[0] - pair->length) / found.speed;
-    found.n_beats = problem.map.n_beats;
+    verify_search_open(&search, text);
+    struct steady_problem *const problem = &search.problem;
+    verify_ok(steady_search_run(problem));
+    found.speed = problem->map.last[0].speed;
+    if (n_fish > 1) found.place = (-problem->map.last[1].place[0] - pair->length) / found.speed;
+    found.n_beats = problem->map.n_beats;
     if (is_stability_wanted) {
-        verify_ok(steady_multipliers_find(&problem, real, imaginary, way, &n_beats));
+        verify_ok(steady_multipliers_find(problem, real, imaginary, way, &n_beats));
         found.largest = hypot(real[0], imaginary[0]);
         struct state *kept = NULL;
-        steady_map_save(simulation->arena, simulation, &kept);
-        found.wander = wander(&problem);
-        found.growth = growth(&problem, kept);
+        steady_map_save(search.simulation->arena, search.simulation, &kept);
+        found.wander = wander(problem);
+        found.growth = growth(problem, kept);
     }
-    simulate_free(simulation);
-    case_free(&values);
+    verify_search_close(&search);
     return found;
 }
 

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "steady/steady_problem.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;
@@ -270,8 +269,7 @@ static struct trout trout_of(double length) {
 static double trout_stride(const struct trout *trout, double length, double frequency, double normal) {
     double amplitude = 0.5, stride = NAN;
     for (int i = 0; i < 3; i++) {
-        struct case_values values;
-        struct steady_problem problem;
+        struct verify_search search;
         char text[512];
         snprintf(text, sizeof text,
                  VERIFY_DEFAULTS
@@ -281,14 +279,11 @@ static double trout_stride(const struct trout *trout, double length, double freq
                  "  body: {modulus: 1e7, depth: %.17g}}]\n",
                  1 / frequency, 0.02 / frequency, length, 0.6 * length * frequency, normal, frequency,
                  trout->wavelength, amplitude, trout->depth);
-        struct simulation *const simulation = verify_open("%s", text);
-        verify_ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
-        verify_ok(steady_problem_create(&problem, &values.steady, simulation));
-        verify_ok(steady_search_run(&problem));
-        stride = problem.map.last[0].speed / (length * frequency);
-        amplitude *= trout->excursion / (simulation->diagnostics->fish[0].strouhal * stride);
-        simulate_free(simulation);
-        case_free(&values);
+        verify_search_open(&search, text);
+        verify_ok(steady_search_run(&search.problem));
+        stride = search.problem.map.last[0].speed / (length * frequency);
+        amplitude *= trout->excursion / (search.simulation->diagnostics->fish[0].strouhal * stride);
+        verify_search_close(&search);
     }
     return stride;
 }

@@ -183,6 +183,17 @@ struct simulation *verify_open_case(const char *name, int n, const char *const *
     return simulation;
 }
 
+void verify_search_open(struct verify_search *search, const char *text) {
+    search->simulation = verify_open("%s", text);
+    verify_ok(case_parse(&search->values, text, strlen(text), "verify", ".", 0, NULL));
+    verify_ok(steady_problem_create(&search->problem, &search->values.steady, search->simulation));
+}
+
+void verify_search_close(struct verify_search *search) {
+    simulate_free(search->simulation);
+    case_free(&search->values);
+}
+
 void verify_run(struct simulation *simulation, double t) {
     while (simulation->state->t < t - simulation->school->interval / 2) {
         if (simulate_step(simulation) != STATUS_OK) give_up();

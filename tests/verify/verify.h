@@ -7,7 +7,7 @@
 #ifndef VERIFY_H
 #define VERIFY_H
 
-#include "run/simulate.h"
+#include "steady/steady_problem.h"
 
 /* The sections, in the order of doc/verification.md; one file each. */
 void verify_theory(void);
@@ -84,6 +84,17 @@ struct simulation *verify_open(const char *format, ...) __attribute__((format(pr
 
 /* Open a case of cases/, with n assignments "path=value". */
 struct simulation *verify_open_case(const char *name, int n, const char *const *assignments);
+
+/* A search for the steady state of a case. */
+struct verify_search {
+    struct case_values values;
+    struct simulation *simulation;
+    struct steady_problem problem;
+};
+
+/* Open a case given as text, as verify_open, for steady_search_run. */
+void verify_search_open(struct verify_search *search, const char *text);
+void verify_search_close(struct verify_search *search);
 
 /* The section ends with the message unless the status is STATUS_OK. */
 void verify_ok(enum status status);
