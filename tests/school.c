@@ -327,7 +327,7 @@ struct simulation *school_simulation(const char *text) {
     struct case_values values;
     school_settings(&values, text);
     struct simulation *simulation;
-    school_ok(simulate_create(test_arena(), &simulation, &values));
+    school_ok(simulate_start(test_arena(), &simulation, &values, NULL));
     case_free(&values);
     return simulation;
 }

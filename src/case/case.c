@@ -178,7 +178,7 @@ static void keep_texts(const struct reading *reading) {
     struct reading of_initial = {&initial, {.arena = tree->arena}, {.arena = tree->arena}};
     const char *const least = arena_text(tree->arena, "{format: 1, preset: %s, time: {end: 1}, fish: [{}]}",
                                          case_table_word(case_table_row("preset"), (int)values->preset));
-    case_merge_read_text(&of_initial.tree, least, strlen(least), "default", NULL, &of_initial.errors);
+    case_merge_read(&of_initial.tree, "default", least, strlen(least), NULL, &of_initial.errors);
     read_values(&of_initial);
     struct yaml_errors notes = {.arena = tree->arena};
     case_notes(values, &initial, tree, &notes);
@@ -192,11 +192,7 @@ static enum status read_case(struct case_values *values, const char *origin, con
     values->arena = arena_create(NULL, "the case");
     struct arena *const arena = arena_create(values->arena, "reading the case");
     struct reading reading = {values, {.arena = arena}, {.arena = arena}};
-    if (text) {
-        case_merge_read_text(&reading.tree, text, length, origin, folder, &reading.errors);
-    } else {
-        TRY(case_merge_read_file(&reading.tree, origin, &reading.errors));
-    }
+    TRY(case_merge_read(&reading.tree, origin, text, length, folder, &reading.errors));
 
     if (reading.tree.root) {
         for (int i = 0; i < n_assignments; i++) case_merge_assign(&reading.tree, assignments[i], &reading.errors);

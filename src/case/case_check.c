@@ -348,11 +348,6 @@ static void check_body(const struct check *check) {
                 "the wave turns a joint by up to %.3g rad; the maximum is 3.14", turn);
 }
 
-/* True if amplitude sin(2 pi frequency t + phase) is 0 at all times for a nonzero amplitude. */
-static bool is_idle(double amplitude, double frequency, double phase) {
-    return fabs(amplitude) > 0 && frequency == 0 && remainder(phase, 180) == 0;
-}
-
 static void check_motion(const struct check *check) {
     const struct motion_parameters *const motion = &check->fish->motion;
     static const char not_prescribed[] =
@@ -380,8 +375,13 @@ static void check_motion(const struct check *check) {
     const double heading = check->fish->start_heading, phase = motion->phase + motion->pitch_phase;
     complain_if(motion->surge == SURGE_FREE && fabs(remainder(heading, 180)) > 0, check, "fish.motion.surge",
                 "free needs a start.heading along x, 0 or 180 degrees, not %g", heading);
-    complain_if(is_idle(motion->heave, motion->frequency, motion->phase), check, "fish.motion.heave", constant);
-    complain_if(is_idle(motion->pitch, motion->frequency, phase), check, "fish.motion.pitch", constant);
+
+    // without a frequency, sin(phase) is 0 at all times for a phase of 0 or 180 degrees
+    const bool is_constant = motion->frequency == 0;
+    complain_if(is_constant && fabs(motion->heave) > 0 && remainder(motion->phase, 180) == 0, check,
+                "fish.motion.heave", constant);
+    complain_if(is_constant && fabs(motion->pitch) > 0 && remainder(phase, 180) == 0, check, "fish.motion.pitch",
+                constant);
 }
 
 // ---- forces

@@ -144,29 +144,24 @@ static struct yaml_node *read_source(struct case_tree *tree, const struct yaml_s
     return base;
 }
 
-enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors) {
-    struct yaml_source *const source = add_source(tree, path);
-    struct open_file self = {0};
-    if (read_file(tree, source, &self) != STATUS_OK) {
-        return status_fail(STATUS_FILE, "%s: error: the case file %s", path, status_message());
-    }
-    struct yaml_node *const root = read_source(tree, source, path, &self, errors);
-    tree->root = errors->n == 0 ? root : NULL;
-    return STATUS_OK;
-}
-
-void case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
-                          const char *folder, struct yaml_errors *errors) {
+enum status case_merge_read(struct case_tree *tree, const char *origin, const char *text, size_t length,
+                            const char *folder, struct yaml_errors *errors) {
     struct yaml_source *const source = add_source(tree, origin);
-    char *copy;
-    NEW(tree->arena, copy, length + 1);
-    memcpy(copy, text, length);
-    source->text = copy;
-    source->length = length;
-    const struct open_file self = {0};
-    const char *const place = arena_text(tree->arena, "%s%s", folder ? folder : "", folder && *folder ? "/" : "");
+    struct open_file self = {0};
+    const char *place = origin;
+    if (text) {
+        char *copy;
+        NEW(tree->arena, copy, length + 1);
+        memcpy(copy, text, length);
+        source->text = copy;
+        source->length = length;
+        place = arena_text(tree->arena, "%s%s", folder ? folder : "", folder && *folder ? "/" : "");
+    } else if (read_file(tree, source, &self) != STATUS_OK) {
+        return status_fail(STATUS_FILE, "%s: error: the case file %s", origin, status_message());
+    }
     struct yaml_node *const root = read_source(tree, source, place, &self, errors);
     tree->root = errors->n == 0 ? root : NULL;
+    return STATUS_OK;
 }
 
 // ---- assignments
@@ -187,7 +182,8 @@ static void put_at(struct arena *arena, struct yaml_node **node, const char *pat
         yaml_tree_put(arena, *node, key, mark, value);
         return;
     }
-    if (!yaml_tree_entry(*node, key, length)) yaml_tree_put(arena, *node, key, mark, yaml_tree_map(arena, mark));
+    if (!yaml_tree_entry(*node, key, length))
+        yaml_tree_put(arena, *node, key, mark, yaml_tree_node(arena, YAML_MAP, mark));
     put_at(arena, &yaml_tree_entry(*node, key, length)->value, path + length + 1, mark, value);
 }
 

@@ -18,12 +18,12 @@ struct case_tree {
     struct yaml_source **source; /* the case file first */
 };
 
-/* Read a case from a file, or from a string, into a tree that has an arena only. origin: the name of the string in
- * messages; folder: the folder of the includes (NULL or "": the working directory). Defects of the case are added to
- * errors, and tree->root is then NULL. Fails with STATUS_FILE if the case file cannot be read. */
-enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors);
-void case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
-                          const char *folder, struct yaml_errors *errors);
+/* Read a case from the file origin or, with a text, from the text, into a tree that has an arena only. origin: also the
+ * name of the text in messages; folder: the folder of the includes of a text (NULL or "": the working directory).
+ * Defects of the case are added to errors, and tree->root is then NULL. Fails with STATUS_FILE if the case file cannot
+ * be read. */
+enum status case_merge_read(struct case_tree *tree, const char *origin, const char *text, size_t length,
+                            const char *folder, struct yaml_errors *errors);
 
 /* Apply an assignment "fish[0].nodes=9" to the tree. */
 void case_merge_assign(struct case_tree *tree, const char *assignment, struct yaml_errors *errors);

@@ -118,13 +118,6 @@ static void show_axis(struct text *text, const struct case_values *values, int a
     text_add(text, "}\n");
 }
 
-/* Add a bound of an expectation. */
-static void show_bound(struct text *text, const char *name, double bound) {
-    if (isnan(bound)) return;
-    text_add(text, ", %s: ", name);
-    text_add_number(text, bound);
-}
-
 static void show_expectation(struct text *text, const struct case_values *values, const struct sweep_expectation *one) {
     text_add(text, one->fails ? "  - {fails: " : "  - {of: ");
     if (one->fails) {
@@ -145,13 +138,15 @@ static void show_expectation(struct text *text, const struct case_values *values
     }
 
     if (one->n_where > 0) text_add(text, "]");
-    if (!one->fails) {
-        show_bound(text, "least", one->min);
-        show_bound(text, "most", one->max);
-        show_bound(text, "spread", one->spread);
-        show_bound(text, "ratio", one->ratio);
+    const struct {
+        const char *name;
+        double value;
+    } bounds[] = {{"least", one->min}, {"most", one->max}, {"spread", one->spread}, {"ratio", one->ratio}};
+    for (int b = 0; b < 4 && !one->fails; b++) {
+        if (isnan(bounds[b].value)) continue;
+        text_add(text, ", %s: ", bounds[b].name);
+        text_add_number(text, bounds[b].value);
     }
-
     text_add(text, "}\n");
 }
 

@@ -88,15 +88,10 @@ static void derive_gust(const struct key_place *at) {
     if (fluid->gust_profile == GUST_STEP) set_default(&fluid->gust_gradient_distance, length / 5);
 }
 
-// the ratio of a street without linear growth of disturbances: cosh^2(pi h/a) = 2
-static void derive_row_distance(const struct key_place *at) {
-    struct street_parameters *const street = &at->values->school.wake.street;
-    if (street->n > 0) set_default(&street->row_distance, acosh(sqrt(2)) / M_PI * street->spacing);
-}
-
-/* Set lifetime and decay, in seconds and in beats of the slowest fish. */
-static void derive_lifetime(const struct key_place *at) {
+/* Set lifetime and decay, in seconds and in beats of the slowest fish, and the distance of the rows of a street. */
+static void derive_wake(const struct key_place *at) {
     struct wake_parameters *const wake = &at->values->school.wake;
+    struct street_parameters *const street = &wake->street;
     double period = 0;
     for (int f = 0; f < at->values->school.n_fish; f++) {
         const double frequency = beat_frequency(&at->values->school.fish[f]);
@@ -109,61 +104,49 @@ static void derive_lifetime(const struct key_place *at) {
     if (isnan(wake->decay.seconds) && period > 0) set_default(&wake->decay.beats, 0.75 * wake->lifetime.beats);
     set_default(&wake->decay.seconds, wake->decay.beats * period);
     set_default(&wake->decay.seconds, 0.75 * wake->lifetime.seconds);
+
+    // the ratio of a street without linear growth of disturbances: cosh^2(pi h/a) = 2
+    if (street->n > 0) set_default(&street->row_distance, acosh(sqrt(2)) / M_PI * street->spacing);
 }
 
-static void derive_fish_name(const struct key_place *at) {
-    if (at->fish->name) return;
-    at->fish->name = arena_text(at->values->arena, "fish%d", (int)(at->fish - at->values->school.fish) + 1);
-}
-
-static void derive_force(const struct key_place *at) {
+/* Set the defaults of a fish that follow from other keys. */
+static void derive_fish(const struct key_place *at) {
     const struct school_parameters *const school = &at->values->school;
+    struct fish_parameters *const fish = at->fish;
+    if (!fish->name) fish->name = arena_text(at->values->arena, "fish%d", (int)(fish - school->fish) + 1);
+
+    // the model of the force, and the points that the span needs
     const bool is_possible = school->wake.shedding == SHEDDING_SHEET && school->sheet.curve == BODY_LINE_SMOOTH;
-    if ((int)at->fish->force < 0) at->fish->force = is_possible ? FORCE_PRESSURE : FORCE_REACTIVE;
-}
+    if ((int)fish->force < 0) fish->force = is_possible ? FORCE_PRESSURE : FORCE_REACTIVE;
+    if ((int)fish->span < 0) fish->span = fish->force == FORCE_PRESSURE ? SPAN_FINITE : SPAN_INFINITE;
+    const int usual = fish->nodes > 17 ? 2 * fish->nodes - 1 : 33, of_depth = fish_sheet_least(fish);
+    if (fish->sheet_points <= 0) fish->sheet_points = usual > of_depth ? usual : of_depth;
 
-static void derive_sheet_points(const struct key_place *at) {
-    if (at->fish->sheet_points > 0) return;
-    const int usual = at->fish->nodes > 17 ? 2 * at->fish->nodes - 1 : 33, of_depth = fish_sheet_least(at->fish);
-    at->fish->sheet_points = usual > of_depth ? usual : of_depth;
-}
+    // cross-flow separates from a free body; the flow of a held plate and of two dimensions is attached
+    const bool is_held = (int)fish->motion.prescribed > PRESCRIBED_NONE;
+    set_default(&fish->drag.normal, fish->force != FORCE_PRESSURE || (fish_is_strip(fish) && !is_held));
 
-/* Cross-flow separates from a free body; the flow of a held plate and of two dimensions is attached. */
-static void derive_normal_drag(const struct key_place *at) {
-    const bool is_held = (int)at->fish->motion.prescribed > PRESCRIBED_NONE;
-    set_default(&at->fish->drag.normal, at->fish->force != FORCE_PRESSURE || (fish_is_strip(at->fish) && !is_held));
-}
-
-/* Set the times in beats: relaxation of the body, ramp of the wave, filters and ramp of the control. */
-static void derive_periods(const struct key_place *at) {
-    const double beat = beat_frequency(at->fish), frequency = at->fish->wave.frequency;
+    // times in beats
+    const double beat = beat_frequency(fish), frequency = fish->wave.frequency;
     const double period = frequency > 0 ? 1 / frequency : 0;
-    set_default(&at->fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
-    set_default(&at->fish->wave.ramp, period);
-    set_default(&at->fish->control.filter, period);
-    set_default(&at->fish->control.course_filter, period / 4);
-    set_default(&at->fish->control.ramp, period > 0 ? period / 2 : 1);
-}
+    set_default(&fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
+    set_default(&fish->wave.ramp, period);
+    set_default(&fish->control.filter, period);
+    set_default(&fish->control.course_filter, period / 4);
+    set_default(&fish->control.ramp, period > 0 ? period / 2 : 1);
 
-/* The wavelength is another form of wave.number; the table has the default of wave.number. */
-static void derive_wavelength(const struct key_place *at) {
-    struct wave_parameters *const wave = &at->fish->wave;
-    if (!isnan(wave->wavelength)) wave->number = -2 * M_PI / wave->wavelength;
-    wave->wavelength = NAN;
-}
+    // the wavelength is another form of wave.number; the table has the default of wave.number
+    if (!isnan(fish->wave.wavelength)) fish->wave.number = -2 * M_PI / fish->wave.wavelength;
+    fish->wave.wavelength = NAN;
 
-/* The law, and the gain of the law: doc/model.md, section 11, cases/studies/step_response.yaml. */
-static void derive_control_law(const struct key_place *at) {
-    struct control_parameters *const control = &at->fish->control;
+    // steering; the gain of the law: doc/model.md, section 11, cases/studies/step_response.yaml
+    struct control_parameters *const control = &fish->control;
     if ((int)control->law < 0) control->law = control->waypoints.n > 0 ? CONTROL_COURSE : CONTROL_NONE;
-}
-
-static void derive_desired_heading(const struct key_place *at) {
-    struct number_list *const heading = &at->fish->control.desired_heading;
-    if (heading->n > 0) return;
-    NEW(at->values->arena, heading->value, 2);
-    heading->value[1] = at->fish->start_heading;
-    heading->n = 1;
+    if (control->desired_heading.n == 0) {
+        NEW(at->values->arena, control->desired_heading.value, 2);
+        control->desired_heading.value[1] = fish->start_heading;
+        control->desired_heading.n = 1;
+    }
 }
 
 // ---- the table
@@ -236,11 +219,11 @@ const struct key case_table[] = {
      .choice = {"wake.shedding", "sheet", 0.07, 0}, .follows = WORDS("wake.shedding")},
     {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
      .meaning = "age at which a vortex is removed, in s or in beats of the slowest fish, such as '3 beats'",
-     .derived = "3 beats; 2 s if no fish beats", .derive = derive_lifetime, .cause = "fish.wave.frequency",
+     .derived = "3 beats; 2 s if no fish beats", .derive = derive_wake, .cause = "fish.wave.frequency",
      .published = "2", .synonyms = "life max_age age"},
     {"wake.decay", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
      .meaning = "last part of the lifetime, in which the circulation decays to 0", .derived = "3/4 of the lifetime",
-     .derive = derive_lifetime, .cause = "wake.lifetime", .published = "0"},
+     .derive = derive_wake, .cause = "wake.lifetime", .published = "0"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "sheet", ANY, "",
      .meaning = "sheet: a vortex sheet grows from the tail; continuous: a vortex grows between events; impulsive: a "
                 "vortex appears at each event",
@@ -273,7 +256,7 @@ const struct key case_table[] = {
      .meaning = "distance of neighbouring vortices of a row"},
     {"wake.street.row_distance", REAL, AT(school.wake.street.row_distance), NULL, FROM(0), "m",
      .meaning = "distance of the two rows", .derived = "0.2805 spacing, the stable street of von Karman",
-     .derive = derive_row_distance, .cause = "wake.street.spacing", .synonyms = "width"},
+     .derive = derive_wake, .cause = "wake.street.spacing", .synonyms = "width"},
     {"wake.street.circulation", REAL, AT(school.wake.street.circulation), "0", ANY, "m2 s-1",
      .meaning = "circulation of a vortex to the right of the stream; the row to the left has the opposite: positive "
                 "behind a body with drag, negative behind a swimmer"},
@@ -352,7 +335,7 @@ const struct key case_table[] = {
      .meaning = "defaults: {fish: {...}}: values for every fish without the key", .synonyms = "default common shared"},
 
     {"fish.name", STRING, IN_FISH(name), NULL, FROM_TO(1, NAME_BYTES), "",
-     .meaning = "name of the fish, unique in the school", .derived = "fish1, fish2, ...", .derive = derive_fish_name},
+     .meaning = "name of the fish, unique in the school", .derived = "fish1, fish2, ...", .derive = derive_fish},
     {"fish.length", REAL, IN_FISH(length), "1", ABOVE(0), "m", .meaning = "body length L", .synonyms = "size chord"},
 
     {"fish.force", CHOICE, IN_FISH(force), NULL, ANY, "",
@@ -360,13 +343,13 @@ const struct key case_table[] = {
          "force of the fluid besides drag; pressure: pressure jump across the bound sheet; reactive: "
          "accelerated fluid of a slender body, with the flux at the tail; published: added mass across each edge",
      .words = WORDS("reactive", "published", "pressure"), .published = "published",
-     .derived = "pressure with wake.shedding sheet and sheet.curve smooth, else reactive", .derive = derive_force,
+     .derived = "pressure with wake.shedding sheet and sheet.curve smooth, else reactive", .derive = derive_fish,
      .follows = WORDS("wake.shedding", "sheet.curve")},
     {"fish.pressure.span", CHOICE, IN_FISH(span), NULL, ANY, "",
      .meaning = "force pressure: span of the sheets; finite: the depth of the body, with vortex rings; infinite: "
                 "two-dimensional flow",
-     .words = WORDS("finite", "infinite"), .derived = "finite with force pressure",
-     .choice = {"fish.force", "pressure", SPAN_FINITE, SPAN_INFINITE}, .follows = WORDS("fish.force")},
+     .words = WORDS("finite", "infinite"), .derived = "finite with force pressure", .derive = derive_fish,
+     .follows = WORDS("fish.force")},
     {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
      .meaning = "force pressure: fraction of the leading-edge suction that acts on the body"},
     {"fish.pressure.suction_limit", REAL, IN_FISH(suction_limit), "0.18", FROM(0), "",
@@ -386,7 +369,7 @@ const struct key case_table[] = {
     {"fish.sheet_points", INTEGER, IN_FISH(sheet_points), NULL, FROM_TO(5, MAX_NODES), "",
      .meaning = "number of vortices of the bound sheet", .synonyms = "vortices panels bound_vortices",
      .published = "21", .derived = "2 nodes - 1, at least 33; with pressure.span finite at least 1 + 5 L/w",
-     .derive = derive_sheet_points, .cause = "fish.body.depth"},
+     .derive = derive_fish, .cause = "fish.body.depth"},
 
     {"fish.body.profile", CHOICE, IN_FISH(body.profile), "joukowski", ANY, "",
      .meaning = "thickness along the body: a Joukowski foil, uniform, or the lists thickness_table and depth_table",
@@ -422,9 +405,8 @@ const struct key case_table[] = {
      .published = "1"},
     {"fish.body.relaxation_time", REAL, IN_FISH(body.relaxation_time), NULL, FROM(0), "s",
      .meaning = "Kelvin-Voigt damping: ratio of damping to stiffness", .published = "0",
-     .derived = "1/50 of the period of the beat or of the prescribed motion (0 without a beat)",
-     .derive = derive_periods, .cause = "fish.wave.frequency",
-     .follows = WORDS("fish.wave.frequency", "fish.motion.frequency")},
+     .derived = "1/50 of the period of the beat or of the prescribed motion (0 without a beat)", .derive = derive_fish,
+     .cause = "fish.wave.frequency", .follows = WORDS("fish.wave.frequency", "fish.motion.frequency")},
     {"fish.body.damping", CHOICE, IN_FISH(body.damping), "strain", ANY, "",
      .meaning = "internal damping of bending; strain: of the curvature minus the natural curvature; curvature: of the "
                 "total curvature",
@@ -444,7 +426,7 @@ const struct key case_table[] = {
      .synonyms = "beta wavenumber wave_number k"},
     {"fish.wave.wavelength", REAL, IN_FISH(wave.wavelength), NULL, FROM(1e-5), "",
      .meaning = "wavelength in body lengths of a wave from head to tail; sets number to -2 pi/wavelength",
-     .derived = "from wave.number", .derive = derive_wavelength, .synonyms = "lambda"},
+     .derived = "from wave.number", .derive = derive_fish, .synonyms = "lambda"},
     {"fish.wave.table", ROWS, IN_FISH(wave.table), "[]", ANY, "",
      .meaning = "natural curvature times body length in place of the wave: rows at equal distances from nose to tail, "
                 "of values at equal phases of one period",
@@ -454,7 +436,7 @@ const struct key case_table[] = {
     {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANGLE, "degree", .meaning = "phase at time 0"},
     {"fish.wave.ramp", REAL, IN_FISH(wave.ramp), NULL, FROM(0), "s",
      .meaning = "time over which the amplitude is ramped up", .derived = "one period, 1/frequency (0 for frequency 0)",
-     .derive = derive_periods, .cause = "fish.wave.frequency", .published = "0"},
+     .derive = derive_fish, .cause = "fish.wave.frequency", .published = "0"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},
@@ -478,7 +460,7 @@ const struct key case_table[] = {
     {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "",
      .meaning = "coefficient of the drag across the body: with force pressure, of the separated cross-flow",
      .synonyms = "c_d cd lateral", .published = "0.5",
-     .derived = "1, or 0 with force pressure and span infinite or a prescribed motion", .derive = derive_normal_drag,
+     .derived = "1, or 0 with force pressure and span infinite or a prescribed motion", .derive = derive_fish,
      .follows = WORDS("fish.force", "fish.pressure.span", "fish.motion.prescribed")},
     {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "",
      .meaning = "dependence of both drag forces on the velocity v: v |v|, or v (V1 + |v|)", .published = "quadratic",
@@ -530,13 +512,12 @@ const struct key case_table[] = {
      .meaning = "law of the steering bias; none: the key bias; heading: error of the heading; averaged_heading: of its "
                 "mean over a period; course: of the course over the last period",
      .words = WORDS("none", "heading", "averaged_heading", "course"), .synonyms = "controller type",
-     .derived = "course with waypoints, else none", .derive = derive_control_law,
-     .follows = WORDS("fish.control.waypoints")},
+     .derived = "course with waypoints, else none", .derive = derive_fish, .follows = WORDS("fish.control.waypoints")},
     {"fish.control.bias", REAL, IN_FISH(control.bias), "0", ANY, "",
      .meaning = "law none: the steering bias; positive turns right", .synonyms = "phi0 offset"},
     {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANGLE, "degree",
      .meaning = "desired heading: a number, or a list of [time in s, angle] with linear interpolation",
-     .derived = "start.heading", .derive = derive_desired_heading, .synonyms = "target h_des target_heading"},
+     .derived = "start.heading", .derive = derive_fish, .synonyms = "target h_des target_heading"},
     {"fish.control.waypoints", PAIRS, IN_FISH(control.waypoints), "[]", ANY, "m",
      .meaning = "points to visit in order; the next point sets the desired heading", .synonyms = "route points"},
     {"fish.control.acceptance_radius", REAL, IN_FISH(control.acceptance_radius), "0.5", ABOVE(0), "",
@@ -552,7 +533,7 @@ const struct key case_table[] = {
      .meaning = "course: speed in body lengths per period below which the course has less weight"},
     {"fish.control.course_filter", REAL, IN_FISH(control.course_filter), NULL, FROM(0), "s",
      .meaning = "course: time constant of the filter of the rate of change of the course; 0: no filter",
-     .derived = "a quarter of a period, 0.25/wave.frequency (0 for frequency 0)", .derive = derive_periods,
+     .derived = "a quarter of a period, 0.25/wave.frequency (0 for frequency 0)", .derive = derive_fish,
      .cause = "fish.wave.frequency"},
     {"fish.control.limit", REAL, IN_FISH(control.limit), "0.5", ABOVE(0), "",
      .meaning = "maximum of the steering bias"},
@@ -560,13 +541,13 @@ const struct key case_table[] = {
      .meaning = "weight of the feedforward: the filtered moment of the flow; 0 with force: pressure", .published = "1"},
     {"fish.control.filter", REAL, IN_FISH(control.filter), NULL, FROM(0), "s",
      .meaning = "time constant of the filter of feedforward; 0: the moment at the last event",
-     .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_periods,
+     .derived = "one period, 1/wave.frequency (0 for frequency 0)", .derive = derive_fish,
      .cause = "fish.wave.frequency"},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading, course: maximum rate of change of the steering bias"},
     {"fish.control.ramp", REAL, IN_FISH(control.ramp), NULL, ABOVE(0), "s",
      .meaning = "duration of a change by a program (doc/python.md)",
-     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_periods,
+     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)", .derive = derive_fish,
      .cause = "fish.wave.frequency"},
 
     {"sweep", AXES, 0, "[]", ANY, "",

@@ -106,16 +106,12 @@ enum status yaml_errors_status(const struct yaml_errors *errors) {
 
 // ---- the tree
 
-static struct yaml_node *create_node(struct arena *arena, enum yaml_kind kind, struct yaml_mark mark) {
+struct yaml_node *yaml_tree_node(struct arena *arena, enum yaml_kind kind, struct yaml_mark mark) {
     struct yaml_node *node;
     NEW(arena, node, 1);
     node->kind = kind;
     node->mark = mark;
     return node;
-}
-
-struct yaml_node *yaml_tree_map(struct arena *arena, struct yaml_mark mark) {
-    return create_node(arena, YAML_MAP, mark);
 }
 
 /* Append an entry with a copy of the key (NULL in a list). */
@@ -129,7 +125,7 @@ static void append_node(struct arena *arena, struct yaml_node *node, const char 
 }
 
 struct yaml_node *yaml_tree_copy(struct arena *arena, const struct yaml_node *node) {
-    struct yaml_node *const copy = create_node(arena, node->kind, node->mark);
+    struct yaml_node *const copy = yaml_tree_node(arena, node->kind, node->mark);
     copy->text = node->text ? arena_text(arena, "%s", node->text) : NULL;
     for (int i = 0; i < node->n; i++) {
         append_node(arena, copy, node->entry[i].key, node->entry[i].mark, yaml_tree_copy(arena, node->entry[i].value));
@@ -289,7 +285,7 @@ static void refuse_extras(struct reader *reader, const unsigned char *anchor, co
 static struct yaml_node *read_scalar(struct reader *reader) {
     const yaml_event_t *const event = &reader->event;
     const char *const text = (const char *)event->data.scalar.value;
-    struct yaml_node *const node = create_node(reader->arena, YAML_SCALAR, mark_at(reader, event->start_mark));
+    struct yaml_node *const node = yaml_tree_node(reader->arena, YAML_SCALAR, mark_at(reader, event->start_mark));
     refuse_extras(reader, event->data.scalar.anchor, event->data.scalar.tag);
     if (strlen(text) != event->data.scalar.length) {
         yaml_errors_add(reader->errors, node->mark, "a string cannot contain a zero byte");
@@ -350,7 +346,7 @@ static enum status read_node(struct reader *reader, int depth, struct yaml_node 
     }
 
     const bool is_map = event->type == YAML_MAPPING_START_EVENT;
-    *node = create_node(reader->arena, is_map ? YAML_MAP : YAML_LIST, mark);
+    *node = yaml_tree_node(reader->arena, is_map ? YAML_MAP : YAML_LIST, mark);
     if (is_map) {
         refuse_extras(reader, event->data.mapping_start.anchor, event->data.mapping_start.tag);
     } else {
@@ -496,18 +492,14 @@ double yaml_tree_positive(const struct yaml_node *map, const char *path, const c
 
 // ---- writing
 
-/* True for the characters that are never special in YAML. */
-static bool is_ordinary(char c) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-    return letter || (c >= '0' && c <= '9') || (c != '\0' && strchr("_./+-", c));
-}
-
 void yaml_write_scalar(struct text *text, const char *scalar) {
-    // a string needs no quotes in YAML, also inside [ ] and { }
-    bool is_plain = is_ordinary(*scalar) && strcmp(scalar, "-") != 0 && strncmp(scalar, "- ", 2) != 0 &&
-                    strncmp(scalar, "---", 3) != 0 && strncmp(scalar, "...", 3) != 0;
-    for (const char *c = scalar; *c; c++) is_plain &= is_ordinary(*c) || (*c == ' ' && c[1] != '\0');
-    if (is_plain) {
+    // a string of ordinary characters needs no quotes in YAML, also inside [ ] and { }
+    static const char ordinary[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+- ";
+    const size_t length = strlen(scalar);
+    const bool is_indicator = strcmp(scalar, "-") == 0 || strncmp(scalar, "- ", 2) == 0 ||
+                              strncmp(scalar, "---", 3) == 0 || strncmp(scalar, "...", 3) == 0;
+    if (length > 0 && strspn(scalar, ordinary) == length && *scalar != ' ' && scalar[length - 1] != ' ' &&
+        !is_indicator) {
         text_add(text, "%s", scalar);
         return;
     }

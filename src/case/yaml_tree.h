@@ -87,8 +87,8 @@ struct yaml_entry {
 enum status yaml_tree_read(struct arena *arena, struct yaml_node **root, const struct yaml_source *source,
                            struct yaml_errors *errors);
 
-/* An empty map, and a copy of a tree. */
-struct yaml_node *yaml_tree_map(struct arena *arena, struct yaml_mark mark);
+/* A node without entries or text, and a copy of a tree. */
+struct yaml_node *yaml_tree_node(struct arena *arena, enum yaml_kind kind, struct yaml_mark mark);
 struct yaml_node *yaml_tree_copy(struct arena *arena, const struct yaml_node *node);
 
 /* The entry of a map under a key of length bytes; NULL if there is none or the node is NULL or no map. */

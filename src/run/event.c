@@ -21,12 +21,20 @@ static enum status event_evaluate(struct residual *residual, const struct state 
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
-// release a vortex with the circulation shed since the last release
-static void event_release(struct state *state, const struct school *school, int f, const double place[2]) {
-    struct wake *const wake = &state->wake[f];
-    const double circulation = state->y[school->fish[f].at.circulation];
-    wake_release(wake, place[0], place[1], circulation - wake->shed_before, state->t);
-    wake->shed_before = circulation;
+// release a vortex of every fish, with the circulation shed since the last release; the marker of a free sheet has the
+// circulation of the body
+static void event_release(struct state *state, const struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) {
+        struct wake *const wake = &state->wake[f];
+        double tail[2], nascent[2];
+        fish_tail(&school->fish[f], state->y, tail);
+        const bool is_nascent = school->shedding == SHEDDING_CONTINUOUS, is_marker = school->shedding == SHEDDING_SHEET;
+        if (is_nascent) wake_nascent(wake, school->interval, tail, nascent);
+        const double *const place = is_nascent ? nascent : tail;
+        const double circulation = state->y[school->fish[f].at.circulation];
+        wake_release(wake, place[0], place[1], is_marker ? circulation : circulation - wake->shed_before, state->t);
+        wake->shed_before = circulation;
+    }
 }
 
 // impulsive shedding: a vortex appears at the tail
@@ -46,24 +54,8 @@ static enum status event_release_impulse(struct state *state, struct residual *r
         }
     }
 
-    for (int f = 0; f < school->n_fish; f++) {
-        double tail[2];
-        fish_tail(&school->fish[f], state->y, tail);
-        event_release(state, school, f, tail);
-    }
-
+    event_release(state, school);
     return STATUS_OK;
-}
-
-// a free sheet: a marker is born at the tail
-static void event_release_markers(struct state *state, const struct school *school) {
-    for (int f = 0; f < school->n_fish; f++) {
-        struct wake *const wake = &state->wake[f];
-        double tail[2];
-        fish_tail(&school->fish[f], state->y, tail);
-        wake->shed_before = state->y[school->fish[f].at.circulation];
-        wake_release(wake, tail[0], tail[1], wake->shed_before, state->t);
-    }
 }
 
 enum { ALL = -1 };
@@ -174,7 +166,7 @@ enum status event_start(struct state *state, struct residual *residual, struct i
     if (is_sheet) {
         mode.shed = SHED_IS_GIVEN;
         TRY(initial_conditions_solve(initial, &mode, state->t, state->y, state->yp));
-        event_release_markers(state, school);
+        event_release(state, school);
     }
 
     // the vortices of the case, in the wake of the first fish
@@ -222,16 +214,8 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     if (jumps) diagnostics_before_jump(residual, state);
     if (jumps) {
         TRY(event_release_impulse(state, residual, initial));
-    } else if (school->shedding == SHEDDING_SHEET) {
-        event_release_markers(state, school);
     } else {
-        // continuous shedding: the nascent vortex, with its position and circulation
-        for (int f = 0; f < school->n_fish; f++) {
-            double tail[2], position[2];
-            fish_tail(&school->fish[f], state->y, tail);
-            wake_nascent(&state->wake[f], school->interval, tail, position);
-            event_release(state, school, f, position);
-        }
+        event_release(state, school);
     }
 
 #pragma omp parallel for num_threads(threads) schedule(static)

@@ -84,10 +84,6 @@ enum status simulate_start(struct arena *parent, struct simulation **started, co
                                           simulation->state, &simulation->options);
 }
 
-enum status simulate_create(struct arena *parent, struct simulation **simulation, const struct case_values *values) {
-    return simulate_start(parent, simulation, values, NULL);
-}
-
 const char *simulate_stopped_by(const volatile sig_atomic_t *stop) {
     return *stop == SIGALRM ? "after --max-wall" : "by a signal";
 }

@@ -35,13 +35,12 @@ struct simulation {
 
 /* Create a simulation and perform the event at t = 0; stop when *stop is not 0. stop may be NULL. The simulation is an
  * arena of its own, released with the parent (NULL: none) or by simulate_free. Fails with STATUS_CASE, STATUS_SOLVER or
- * STATUS_STOPPED; the simulation can then only be freed. simulate_create is simulate_start without stop. */
+ * STATUS_STOPPED; the simulation can then only be freed. */
 enum status simulate_start(struct arena *parent, struct simulation **simulation, const struct case_values *values,
                            const volatile sig_atomic_t *stop);
-enum status simulate_create(struct arena *parent, struct simulation **simulation, const struct case_values *values);
 
 /* Create a simulation from a state at an event, with given totals; the run continues as after simulate_renew. The
- * simulation takes ownership of school and state, also on failure. Fails as simulate_create. */
+ * simulation takes ownership of school and state, also on failure. Fails as simulate_start. */
 enum status simulate_take_up(struct arena *parent, struct simulation **simulation, const struct case_values *values,
                              struct school *school, struct state *state, const struct integrator_counts *totals);
 

@@ -49,14 +49,6 @@ static enum status run_checkpoint_if_due(struct run *run) {
     return simulation->state->event < simulation->n_events ? simulate_renew(simulation) : STATUS_OK;
 }
 
-// stop at an event, with a checkpoint
-static enum status run_stop(struct run *run) {
-    const double t = run->simulation->state->t;
-    TRY(checkpoints_write(&run->checkpoints, run->simulation, &run->record));
-    return status_fail(STATUS_STOPPED, "stopped %s at t = %.10g s: continue with 'shoal resume %s'",
-                       simulate_stopped_by(run->options->stop), t, run->checkpoints.word);
-}
-
 static enum status run_loop(struct run *run) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct simulate_options *const options = run->options;
@@ -65,13 +57,15 @@ static enum status run_loop(struct run *run) {
     if (simulation->stop) run->before = state_create(simulation->arena, simulation->school);
 
     while (simulation->state->event < simulation->n_events) {
-        // advance to the next event, or restore the state at the last event and stop
-        if (options->stop && *options->stop) return run_stop(run);
+        // advance to the next event, or stop at the last event, with a checkpoint of the state there
         if (run->before) state_table_copy(run->before, simulation->state, simulation->school, false);
-        const enum status status = simulate_step(simulation);
+        const enum status status = options->stop && *options->stop ? STATUS_STOPPED : simulate_step(simulation);
         if (status == STATUS_STOPPED) {
             state_table_copy(simulation->state, run->before, simulation->school, false);
-            return run_stop(run);
+            const double t = simulation->state->t;
+            TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
+            return status_fail(STATUS_STOPPED, "stopped %s at t = %.10g s: continue with 'shoal resume %s'",
+                               simulate_stopped_by(options->stop), t, run->checkpoints.word);
         }
         TRY(status);
 
@@ -106,31 +100,25 @@ static enum status run_finish(struct run *run, enum status status) {
     return record_close(&run->record, status);
 }
 
-static void run_release(struct run *run) {
-    arena_free(run->arena);
-}
-
 // ---- a new run
-
-/* The rows tell the run: their wall times differ from run to run. */
-static bool result_is_unfinished(struct arena *arena, const char *result, const char *path, const char *effective,
-                                 double *t) {
-    struct checkpoint checkpoint;
-    struct result_checksum checksum;
-    bool is_complete;
-    if (checkpoint_read(arena, &checkpoint, path) != STATUS_OK) return false;
-    *t = checkpoint.t;
-    return checkpoint_check_program(&checkpoint) == STATUS_OK &&
-           result_mark_check(arena, result, &checkpoint.rows, effective, &checksum, &is_complete) == STATUS_OK &&
-           !is_complete;
-}
 
 bool simulate_can_resume(struct arena *arena, const char *result, const char *checkpoint, const char *effective,
                          double *t) {
     struct arena *const scratch = arena_create(arena, checkpoint);
-    const char *const previous = arena_text(scratch, "%s" CHECKPOINTS_PREVIOUS, checkpoint);
-    const bool is_possible = result_is_unfinished(scratch, result, checkpoint, effective, t) ||
-                             result_is_unfinished(scratch, result, previous, effective, t);
+    const char *const paths[] = {checkpoint, arena_text(scratch, "%s" CHECKPOINTS_PREVIOUS, checkpoint)};
+    bool is_possible = false;
+    for (int i = 0; i < 2 && !is_possible; i++) {
+        struct checkpoint read;
+        struct result_checksum checksum;
+        bool is_complete;
+        if (checkpoint_read(scratch, &read, paths[i]) != STATUS_OK) continue;
+
+        // the rows tell the run: their wall times differ from run to run
+        *t = read.t;
+        is_possible = checkpoint_check_program(&read) == STATUS_OK &&
+                      result_mark_check(scratch, result, &read.rows, effective, &checksum, &is_complete) == STATUS_OK &&
+                      !is_complete;
+    }
     arena_free(scratch);
     return is_possible;
 }
@@ -181,7 +169,7 @@ static enum status run_start(struct run *run) {
 static enum status run_all(void *data) {
     struct run *const run = data;
     const enum status status = run_start(run);
-    run_release(run);
+    arena_free(run->arena);
     return status;
 }
 
@@ -354,7 +342,7 @@ enum status simulate_resume(const char *checkpoint, const struct simulate_change
                             const struct simulate_options *options) {
     struct resume resume = {.run = {.options = options}};
     const enum status status = resume_start(&resume, checkpoint, changes);
-    run_release(&resume.run);
+    arena_free(resume.run.arena);
     if (resume.run.values) case_free(&resume.values);
     durable_claim_release(&resume.claim);
     return status;

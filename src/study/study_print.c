@@ -455,7 +455,7 @@ static enum status estimate_member(const struct error_sweep *sweep, int m, doubl
         values->time.end = beats * first->beat;
     }
 
-    enum status status = simulate_create(scratch, &simulation, values);
+    enum status status = simulate_start(scratch, &simulation, values, NULL);
     if (status == STATUS_OK) status = estimate_run(simulation, seconds, &estimate);
     *duration = status == STATUS_OK ? estimate.seconds : NAN;
     arena_free(scratch);

@@ -34,7 +34,7 @@ enum status study_print_orders(struct arena *arena, const struct case_values *st
 // ---- an error study: doc/studies.md, "Error bars"
 
 /* Print keys, levels and number of members; estimate the time of n_processes simultaneous members from a few events of
- * each member. Fails as simulate_create. */
+ * each member. Fails as simulate_start. */
 enum status study_print_plan(const struct error_sweep *sweep, int n_processes, FILE *stream);
 
 /* Print the values with the errors of one point and, for each fish, the share of each key. Fails with STATUS_MISSED and

@@ -253,7 +253,7 @@ static void school_begin(struct school_run *run, int n_fish, int is_finite, int 
     char *const text = school_text(n_fish, is_finite);
     read_case(&run->values, text, threads);
     free(text);
-    must(simulate_create(NULL, &run->simulation, &run->values));
+    must(simulate_start(NULL, &run->simulation, &run->values, NULL));
     const long full = lround(run->values.school.wake.lifetime.seconds / run->values.school.shedding_interval);
     while (run->simulation->state->event < full) must(simulate_step(run->simulation));
     run->megabytes = memory() - before;

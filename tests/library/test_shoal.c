@@ -99,7 +99,7 @@ TEST(bodies_and_wakes_are_those_of_the_simulation) {
     struct case_values values;
     struct simulation *simulation;
     school_ok(case_read(&values, *state, 0, NULL));
-    school_ok(simulate_create(NULL, &simulation, &values));
+    school_ok(simulate_start(NULL, &simulation, &values, NULL));
     struct shoal *const run = opened(*state, 0, NULL);
     for (int i = 0; i < 5; i++) {
         school_ok(simulate_step(simulation));

@@ -541,7 +541,7 @@ static int order_of(const char *solver, const char *fish) {
     struct case_values values;
     school_ok(case_parse(&values, text, strlen(text), "test", NULL, 0, NULL));
     struct simulation *simulation;
-    school_ok(simulate_create(NULL, &simulation, &values));
+    school_ok(simulate_start(NULL, &simulation, &values, NULL));
     case_free(&values);
     const int order = simulation->options.order;
     simulate_free(simulation);

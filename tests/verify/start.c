@@ -236,7 +236,7 @@ static struct simulation *open_second(const int *choice) {
         word[0], word[1], choice[0] == 2 ? "midpoint" : "chebyshev", word[2], word[3], word[4], word[5], word[6]);
 }
 
-// the state after simulate_create; frees the simulation
+// the state after simulate_start; frees the simulation
 static void examine(struct simulation *simulation, struct worst *worst) {
     const struct school *const school = simulation->school;
     const struct value value = largest_value(simulation);

@@ -167,7 +167,7 @@ struct simulation *verify_open(const char *format, ...) {
     struct case_values values;
     struct simulation *simulation;
     if (case_parse(&values, text, (size_t)length, "verify", is_case ? "cases" : ".", 0, NULL) != STATUS_OK) give_up();
-    if (simulate_create(NULL, &simulation, &values) != STATUS_OK) give_up();
+    if (simulate_start(NULL, &simulation, &values, NULL) != STATUS_OK) give_up();
     case_free(&values);
     return simulation;
 }
@@ -178,7 +178,7 @@ struct simulation *verify_open_case(const char *name, int n, const char *const *
     struct simulation *simulation;
     snprintf(path, sizeof path, "cases/%s", name);
     if (case_read(&values, path, n, assignments) != STATUS_OK) give_up();
-    if (simulate_create(NULL, &simulation, &values) != STATUS_OK) give_up();
+    if (simulate_start(NULL, &simulation, &values, NULL) != STATUS_OK) give_up();
     case_free(&values);
     return simulation;
 }
