@@ -252,22 +252,17 @@ static void swimmer(const struct table *table) {
 
 // ---- live fish
 
-/* Rainbow trout of any length that swim steadily: Webb, Kostecki and Stevens, "The effect of size and swimming speed on
- * locomotor kinematics of rainbow trout", Journal of Experimental Biology 109 (1984) 77-95. Lengths in cm, s. */
-struct trout {
-    double wavelength, excursion,
-        depth;   /* of the body's wave; of the tail from side to side; of the tail: in lengths */
-    double slow; /* the beat frequency is slow + 1.29 V/L, Hz */
+/* How a fish swims: length of its wave, excursion of the tail from side to side and depth of the body in body lengths,
+ * and keys of the envelope of the curvature. */
+struct gait {
+    double wavelength, excursion, depth;
+    const char *envelope;
 };
-static struct trout trout_of(double length) {
-    return (struct trout){1.43 * pow(length, 0.83) / length, 0.36 * pow(length, 0.74) / length,
-                          0.18 * pow(length, 1.05) / length, 3.19 / cbrt(length)};
-}
 
 /* Lengths that a fish with this gait swims in a beat: the amplitude of the muscle's wave is the one that gives the
  * excursion. The body is so stiff that it takes the muscle's curvature. */
-static double trout_stride(const struct trout *trout, double length, double frequency, double normal) {
-    double amplitude = 0.5, stride = NAN;
+static double gait_stride(const struct gait *gait, double length, double frequency, double normal) {
+    double amplitude = 2.6 * gait->excursion / (gait->wavelength * gait->wavelength), stride = NAN;
     for (int i = 0; i < 3; i++) {
         struct verify_search search;
         char text[512];
@@ -275,36 +270,79 @@ static double trout_stride(const struct trout *trout, double length, double freq
                  VERIFY_DEFAULTS
                  "format: 1\ntime: {end: %.17g, shedding_interval: %.17g}\n"
                  "fish: [{length: %.17g, start: {speed: %.17g}, drag: {normal: %g},\n"
-                 "  wave: {frequency: %.17g, wavelength: %.17g, amplitude: %.17g},\n"
+                 "  wave: {frequency: %.17g, wavelength: %.17g, amplitude: %.17g, %s},\n"
                  "  body: {modulus: 1e7, depth: %.17g}}]\n",
-                 1 / frequency, 0.02 / frequency, length, 0.6 * length * frequency, normal, frequency,
-                 trout->wavelength, amplitude, trout->depth);
+                 1 / frequency, 0.02 / frequency, length, 0.6 * length * frequency, normal, frequency, gait->wavelength,
+                 amplitude, gait->envelope, gait->depth);
         verify_search_open(&search, text);
         verify_ok(steady_search_run(&search.problem));
         stride = search.problem.map.last[0].speed / (length * frequency);
-        amplitude *= trout->excursion / (search.simulation->diagnostics->fish[0].strouhal * stride);
+        amplitude *= gait->excursion / (search.simulation->diagnostics->fish[0].strouhal * stride);
         verify_search_close(&search);
     }
     return stride;
 }
 
-static void live_fish(void) {
+/* Rainbow trout of any length that swim steadily: Webb, Kostecki and Stevens, "The effect of size and swimming speed on
+ * locomotor kinematics of rainbow trout", Journal of Experimental Biology 109 (1984) 77-95. Lengths in cm, s. The body
+ * bends by the default envelope. */
+static void trout(void) {
     const double frequencies[] = {4, 5, 6.25}, lengths[] = {10, 20, 40};
     for (int k = 0; k < 3; k++) {
-        const struct trout trout = trout_of(lengths[k]);
+        const double length = lengths[k], slow = 3.19 / cbrt(length); /* the beat frequency is slow + 1.29 V/L, Hz */
+        const struct gait gait = {1.43 * pow(length, 0.83) / length, 0.36 * pow(length, 0.74) / length,
+                                  0.18 * pow(length, 1.05) / length, "linear: 1, quadratic: 0.2"};
         for (int i = 0; i < 3; i++) {
-            const double f = frequencies[i], measured = (f - trout.slow) / 1.29 / f;
-            const double stride = trout_stride(&trout, 0.01 * lengths[k], f, 1);
-            verify_ratio(verify_text("trout of %g m, %g Hz: stride, lengths a beat", 0.01 * lengths[k], f),
+            const double f = frequencies[i], measured = (f - slow) / 1.29 / f;
+            const double stride = gait_stride(&gait, 0.01 * length, f, 1);
+            verify_ratio(verify_text("trout of %g m, %g Hz: stride, lengths a beat", 0.01 * length, f),
                          "Webb et al. (1984), regression", measured, stride, 0.9, 1.3);
-            verify_point("trout", verify_text("measured, %g m", 0.01 * lengths[k]), f, measured);
-            verify_point("trout", verify_text("here, %g m", 0.01 * lengths[k]), f, stride);
+            verify_point("trout", verify_text("measured, %g m", 0.01 * length), f, measured);
+            verify_point("trout", verify_text("here, %g m", 0.01 * length), f, stride);
             if (k == 1) {
                 for (int c = 0; c <= 2; c += 2) {
                     verify_show(verify_text("the same, drag.normal %d", c), "",
-                                trout_stride(&trout, 0.01 * lengths[k], f, c) / measured);
+                                gait_stride(&gait, 0.01 * length, f, c) / measured);
                 }
             }
+        }
+    }
+}
+
+/* Mackerel and lamprey, by the waves that Navier-Stokes studies of them prescribe: Borazjani and Sotiropoulos,
+ * Journal of Experimental Biology 211 (2008) 1541-1558 and 212 (2009) 576-592, whose abstracts give the Strouhal
+ * number at which such fish swim in nature. Excursions along the body, in lengths on each side: mackerel 0.02 -
+ * 0.0825 q + 0.1625 q^2 (Videler and Hess 1984), lamprey 0.1 exp(2.18 (q - 1)) (Hultmark et al. 2007); the
+ * envelopes of curvature are those of these waves, the mackerel's without the turning of its head. The stride is
+ * the excursion over the Strouhal number. */
+static void mackerel_and_lamprey(void) {
+    static const struct {
+        const char *name, *source;
+        struct gait gait;
+        double length, frequency, strouhal;
+    } fish[] = {
+        {"mackerel",
+         "St 0.25 (Borazjani and Sotiropoulos 2008)",
+         {0.95, 0.2, 0.2, "linear: 0, quadratic: 1"},
+         0.3,
+         5,
+         0.25},
+        {"lamprey",
+         "St 0.45 (Borazjani and Sotiropoulos 2009)",
+         {0.642, 0.2, 0.08, "constant: 0.11, linear: 0, quadratic: 0.89"},
+         0.25,
+         3,
+         0.45},
+    };
+    for (int i = 0; i < 2; i++) {
+        struct gait gait = fish[i].gait;
+        const double measured = gait.excursion / fish[i].strouhal;
+        verify_ratio(verify_text("%s: stride, lengths a beat", fish[i].name), fish[i].source, measured,
+                     gait_stride(&gait, fish[i].length, fish[i].frequency, 1), 0.8, 1.1);
+        for (int k = -1; k <= 1; k += 2) {
+            gait.depth = (1 + 0.25 * k) * fish[i].gait.depth;
+            verify_show(verify_text("the same, depth %g of its length", gait.depth), "",
+                        gait_stride(&gait, fish[i].length, fish[i].frequency, 1) / measured);
         }
     }
 }
@@ -316,5 +354,6 @@ void verify_validation(void) {
     heave(&table);
     if (verify_is_fast()) return;
     swimmer(&table);
-    live_fish();
+    trout();
+    mackerel_and_lamprey();
 }
