@@ -79,30 +79,6 @@ static struct joint joint_at(const struct fish *fish, const struct actuation *mu
     return joint;
 }
 
-// second derivative of the turning angle; the second derivative of an edge direction is -(n t + t n)/l^2
-static void joint_hessian(const struct joint *joint, double hessian[N_LOCAL][N_LOCAL]) {
-    const struct edge *const edges[2] = {&joint->before, &joint->after};
-    for (int i = 0; i < N_LOCAL; i++) {
-        for (int k = 0; k < N_LOCAL; k++) hessian[i][k] = 0;
-    }
-
-    for (int side = 0; side < 2; side++) {
-        const struct edge *edge = edges[side];
-        const double sign = side == 0 ? 1 : -1;
-        for (int i = 0; i < 2; i++) {
-            for (int k = 0; k < 2; k++) {
-                const double h =
-                    sign * (edge->n[i] * edge->t[k] + edge->t[i] * edge->n[k]) / (edge->length * edge->length);
-                const int first = 2 * side, last = 2 * side + 2;
-                hessian[first + i][first + k] += h;
-                hessian[last + i][last + k] += h;
-                hessian[first + i][last + k] -= h;
-                hessian[last + i][first + k] -= h;
-            }
-        }
-    }
-}
-
 void rod_curvature(const struct fish *fish, const double *y, double *curvature) {
     struct edge before = edge_at(fish, 0, y);
     for (int j = 0; j < fish->n_joints; j++) {
@@ -137,8 +113,26 @@ void rod_residual(const struct fish *fish, const struct actuation *muscle, const
 static void joint_jacobian(const struct fish *fish, int j, const struct actuation *muscle, const double *y,
                            struct sparse *jacobian) {
     const struct joint joint = joint_at(fish, muscle, j, y);
-    double hessian[N_LOCAL][N_LOCAL], turned[N_LOCAL];
-    joint_hessian(&joint, hessian);
+    double hessian[N_LOCAL][N_LOCAL] = {{0}}, turned[N_LOCAL];
+
+    // second derivative of the turning angle; the second derivative of an edge direction is -(n t + t n)/l^2
+    for (int side = 0; side < 2; side++) {
+        const struct edge *const edge = side == 0 ? &joint.before : &joint.after;
+        const double sign = side == 0 ? 1 : -1;
+        const int first = 2 * side, last = 2 * side + 2;
+        for (int i = 0; i < 2; i++) {
+            for (int k = 0; k < 2; k++) {
+                const double h =
+                    sign * (edge->n[i] * edge->t[k] + edge->t[i] * edge->n[k]) / (edge->length * edge->length);
+                hessian[first + i][first + k] += h;
+                hessian[last + i][last + k] += h;
+                hessian[first + i][last + k] -= h;
+                hessian[last + i][first + k] -= h;
+            }
+        }
+    }
+
+    // moment plus damping, and derivatives by the turning angle, by the rate of the angle, and by phi0
     const double stiffness = fish->bending_stiffness[j] / fish->edge_length, d = fish->bending_damping[j];
     const double moment = joint.moment, undamped = joint.undamped;
     const double first = moment * joint.bend.slope + d * joint.bend.slope * joint.bend.slope * joint.angle_rate -

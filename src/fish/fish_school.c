@@ -118,23 +118,6 @@ static void wake_set(struct school *school, const struct school_parameters *para
 
 // ---- fish
 
-// the slices of a fish after the unknowns of the fish before
-static struct layout layout_after(int first, int n_nodes, int n_momenta, int n_sheet) {
-    struct layout at = {.x = first};
-    at.y = at.x + n_nodes;
-    at.vx = at.y + n_nodes;
-    at.vy = at.vx + n_nodes;
-    at.px = at.vy + n_nodes;
-    at.py = at.px + n_momenta;
-    at.ax = at.py + n_momenta;
-    at.ay = at.ax + n_nodes;
-    at.gamma = at.ay + n_nodes;
-    at.circulation = at.gamma + n_sheet;
-    at.phi0 = at.circulation + 1;
-    at.end = at.phi0 + 1;
-    return at;
-}
-
 // the control law: doc/model.md, section 11
 static void control_set(struct arena *arena, struct fish *fish, const struct fish_parameters *from,
                         const struct school_parameters *parameters) {
@@ -174,8 +157,8 @@ static void control_set(struct arena *arena, struct fish *fish, const struct fis
                        beat_speed * beat_speed;
 }
 
-// everything but the sheet of fish f: sizes, body, gait, motion, control, sensors, unknowns
-static void fish_fill(struct school *school, int f, const struct school_parameters *parameters) {
+// everything but the sheet and the unknowns of fish f: sizes, body, gait, motion, control, sensors
+static void fish_fill(const struct school *school, int f, const struct school_parameters *parameters) {
     struct arena *const arena = school->arena;
     struct fish *const fish = &school->fish[f];
     const struct fish_parameters *const from = &parameters->fish[f];
@@ -225,10 +208,6 @@ static void fish_fill(struct school *school, int f, const struct school_paramete
     fish->friction_speed = 1e-4 * fish->length * rate;
     fish->waving = !isnan(from->drag.waving) ? from->drag.waving : fish_has_wave(fish) ? 1.5 : 1;
     fish->contact_strength = fish->total_mass * fish->length * rate * rate;
-
-    const int n_momenta = fish->force == FORCE_PRESSURE ? fish->n_nodes : 0;
-    fish->at = layout_after(school->n_unknowns, fish->n_nodes, n_momenta, fish->n_sheet);
-    school->n_unknowns = fish->at.end;
 }
 
 // ---- overlaps at the start
@@ -307,6 +286,25 @@ enum status fish_school_create(struct arena *parent, struct school **school,
     fluid_set(new, parameters);
     wake_set(new, parameters);
     for (int f = 0; f < new->n_fish; f++) fish_fill(new, f, parameters);
+
+    // the slices of the unknowns, fish after fish
+    for (int f = 0; f < new->n_fish; f++) {
+        const struct fish *const fish = &new->fish[f];
+        const int n = fish->n_nodes, n_momenta = fish->force == FORCE_PRESSURE ? n : 0;
+        struct layout *const at = &new->fish[f].at;
+        at->x = new->n_unknowns;
+        at->y = at->x + n;
+        at->vx = at->y + n;
+        at->vy = at->vx + n;
+        at->px = at->vy + n;
+        at->py = at->px + n_momenta;
+        at->ax = at->py + n_momenta;
+        at->ay = at->ax + n;
+        at->gamma = at->ay + n;
+        at->circulation = at->gamma + fish->n_sheet;
+        at->phi0 = at->circulation + 1;
+        at->end = new->n_unknowns = at->phi0 + 1;
+    }
 
     struct arena *const scratch = arena_create(arena, "the start of a school");
     enum status status = refuse_overlap(new, scratch);

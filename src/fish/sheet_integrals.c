@@ -18,18 +18,14 @@ struct series {
     int n;
     double *cosine; /* (n, n - 1) by columns */
     double *term;   /* coefficients of the terms (n - 1) */
-    double *sum;    /* of all vortices j, from the last call of series_circulation or series_strength (n) */
+    double *sum;    /* of all vortices j (n) */
 };
-
-static void series_sum(const struct series *series, double constant) {
-    for (int j = 0; j < series->n; j++) series->sum[j] = constant;
-    wide_multiply(series->n, series->n - 1, series->cosine, series->term, series->sum);
-}
 
 // C_j of all vortices j at theta
 static void series_circulation(const struct series *series, double theta) {
     for (int m = 1; m < series->n; m++) series->term[m - 1] = 2 / M_PI * sin(m * theta) / m;
-    series_sum(series, theta / M_PI);
+    for (int j = 0; j < series->n; j++) series->sum[j] = theta / M_PI;
+    wide_multiply(series->n, series->n - 1, series->cosine, series->term, series->sum);
 }
 
 /* Add the momentum of one edge, in pieces of equal length in theta with these Gauss points. Partial fractions of b_k
@@ -107,7 +103,8 @@ static enum status integrals_fill(struct sheet_integrals *to, struct arena *scra
         TRY(status_ask(stop));
         const double theta = M_PI * (c + 0.5) / n_control;
         for (int m = 1; m < n; m++) series.term[m - 1] = 2 * cos(m * theta) / (n - 1);
-        series_sum(&series, 1.0 / (n - 1));
+        for (int j = 0; j < n; j++) series.sum[j] = 1.0 / (n - 1);
+        wide_multiply(n, n - 1, series.cosine, series.term, series.sum);
         for (int j = 0; j < n; j++) to->strength[j * n_control + c] = series.sum[j];
         series_circulation(&series, theta);
         for (int j = 0; j < n; j++) to->circulation[j * n_control + c] = series.sum[j];
@@ -173,12 +170,16 @@ void sheet_integrals_before(const struct sheet_integrals *integrals, const doubl
     wide_multiply(integrals->n_control, integrals->n_sheet, integrals->circulation, circulation, before);
 }
 
-WIDE(void, sheet_integrals_columns,
-     (int n, const double *part, const double *factor, const double *inverse, double *matrix),
-     (n, part, factor, inverse, matrix)) {
-    const double *const a = part, *const b = part + n, *const e = part + 2 * n, *const own = part + 3 * n;
+WIDE(void, sheet_integrals_matrix,
+     (const struct sheet_integrals *integrals, const double *circulation, double *parts, double *matrix),
+     (integrals, circulation, parts, matrix)) {
+    const int n = integrals->n_nodes;
+    memset(parts, 0, 4 * (size_t)n * sizeof *parts);
+    wide_multiply(4 * n, integrals->n_sheet, integrals->part, circulation, parts);
+    const double *const a = parts, *const b = parts + n, *const e = parts + 2 * n, *const own = parts + 3 * n;
+    const double *const factor = integrals->factor;
     for (int i = 0; i < n; i++) {
-        const double *const over = inverse + n - 1 - i;
+        const double *const over = integrals->inverse + n - 1 - i;
         const double scale = factor[i], shift = e[i] - a[i], here = b[i];
         double *restrict const column = matrix + (long)i * n;
         for (int k = 0; k < n; k++) {
@@ -188,21 +189,16 @@ WIDE(void, sheet_integrals_columns,
     }
 }
 
-void sheet_integrals_matrix(const struct sheet_integrals *integrals, const double *circulation, double *parts,
-                            double *matrix) {
-    memset(parts, 0, 4 * (size_t)integrals->n_nodes * sizeof *parts);
-    wide_multiply(4 * integrals->n_nodes, integrals->n_sheet, integrals->part, circulation, parts);
-    sheet_integrals_columns(integrals->n_nodes, parts, integrals->factor, integrals->inverse, matrix);
-}
-
-WIDE(void, sheet_integrals_sums,
-     (int n, const double *part, const double *factor, const double *inverse, const double *x, const double *y,
-      double *restrict to_x, double *restrict to_y),
-     (n, part, factor, inverse, x, y, to_x, to_y)) {
-    const double *const a = part, *const b = part + n, *const e = part + 2 * n, *const own = part + 3 * n;
+WIDE(void, sheet_integrals_product,
+     (const struct sheet_integrals *integrals, int j, const double *x, const double *y, double *restrict to_x,
+      double *restrict to_y),
+     (integrals, j, x, y, to_x, to_y)) {
+    const int n = integrals->n_nodes;
+    const double *const a = integrals->part + (long)j * 4 * n, *const b = a + n, *const e = b + n, *const own = e + n;
+    const double *const factor = integrals->factor;
     for (int k = 0; k < n; k++) to_x[k] = to_y[k] = 0;
     for (int i = 0; i < n; i++) {
-        const double *const over = inverse + n - 1 - i;
+        const double *const over = integrals->inverse + n - 1 - i;
         const double scale_x = factor[i] * x[i], scale_y = factor[i] * y[i], shift = e[i] - a[i], here = b[i];
         for (int k = 0; k < n; k++) {
             const double value = over[k] * (a[k] + shift - over[k] * (b[k] - here));
@@ -214,11 +210,4 @@ WIDE(void, sheet_integrals_sums,
         to_x[k] = factor[k] * to_x[k] + own[k] * x[k];
         to_y[k] = factor[k] * to_y[k] + own[k] * y[k];
     }
-}
-
-void sheet_integrals_product(const struct sheet_integrals *integrals, int j, const double *x, const double *y,
-                             double *product_x, double *product_y) {
-    const int n = integrals->n_nodes;
-    sheet_integrals_sums(n, integrals->part + (long)j * 4 * n, integrals->factor, integrals->inverse, x, y, product_x,
-                         product_y);
 }

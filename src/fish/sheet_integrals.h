@@ -41,6 +41,6 @@ void sheet_integrals_matrix(const struct sheet_integrals *integrals, const doubl
 
 /* sums over i of P_kij x_i and of P_kij y_i of vortex j for all nodes k (n_nodes). */
 void sheet_integrals_product(const struct sheet_integrals *integrals, int j, const double *x, const double *y,
-                             double *product_x, double *product_y);
+                             double *to_x, double *to_y);
 
 #endif
