@@ -81,19 +81,7 @@ static inline __attribute__((always_inline)) void subtract_tile(const struct den
     for (int c = 0; c < n_columns; c++) memcpy(to + c * stride, &sum[c], sizeof sum[c]);
 }
 
-// all rows and columns behind a panel of PANEL columns; the rows up to the stride are 0
-static WIDE(void, subtract_panel, (const struct dense_factors *of, int first), (of, first)) {
-    const int end = first + PANEL;
-    for (int row = end; row < of->stride; row += 8) {
-        int column = end;
-        for (; column + TILE_COLUMNS <= of->n; column += TILE_COLUMNS) {
-            subtract_tile(of, first, row, column, TILE_COLUMNS);
-        }
-        for (; column < of->n; column++) subtract_tile(of, first, row, column, 1);
-    }
-}
-
-int dense_factors_set_up(struct dense_factors *factors) {
+WIDE(int, dense_factors_set_up, (struct dense_factors * factors), (factors)) {
     const int n = factors->n;
     for (int first = 0; first < n; first += PANEL) {
         const int end = first + PANEL < n ? first + PANEL : n;
@@ -101,29 +89,34 @@ int dense_factors_set_up(struct dense_factors *factors) {
         for (int j = 0; j < n; j++) {
             if (j < first || j >= end) apply_panel(factors, first, end, j);
         }
-        if (end < n) subtract_panel(factors, first);
+
+        // all rows and columns behind a panel of PANEL columns; the rows up to the stride are 0
+        for (int row = end; end < n && row < factors->stride; row += 8) {
+            int column = end;
+            for (; column + TILE_COLUMNS <= n; column += TILE_COLUMNS) {
+                subtract_tile(factors, first, row, column, TILE_COLUMNS);
+            }
+            for (; column < n; column++) subtract_tile(factors, first, row, column, 1);
+        }
     }
     return 1;
 }
 
-static WIDE(void, substitute, (const struct dense_factors *of, double *restrict x), (of, x)) {
-    const int n = of->n;
+WIDE(void, dense_factors_solve, (const struct dense_factors *factors, double *restrict x), (factors, x)) {
+    const int n = factors->n;
     for (int k = 0; k < n; k++) {
-        const double *const column = of->value + (long)k * of->stride, factor = x[k];
-        for (int r = k + 1; r < n; r++) x[r] -= factor * column[r];
-    }
-    for (int k = n - 1; k >= 0; k--) {
-        const double *const column = of->value + (long)k * of->stride, factor = x[k] / column[k];
-        x[k] = factor;
-        for (int r = 0; r < k; r++) x[r] -= factor * column[r];
-    }
-}
-
-void dense_factors_solve(const struct dense_factors *factors, double *x) {
-    for (int k = 0; k < factors->n; k++) {
         const double swapped = x[k];
         x[k] = x[factors->pivot[k]];
         x[factors->pivot[k]] = swapped;
     }
-    substitute(factors, x);
+
+    for (int k = 0; k < n; k++) {
+        const double *const column = factors->value + (long)k * factors->stride, factor = x[k];
+        for (int r = k + 1; r < n; r++) x[r] -= factor * column[r];
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        const double *const column = factors->value + (long)k * factors->stride, factor = x[k] / column[k];
+        x[k] = factor;
+        for (int r = 0; r < k; r++) x[r] -= factor * column[r];
+    }
 }

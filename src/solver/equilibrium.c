@@ -48,9 +48,27 @@ static void equilibrium_list_one(struct equilibrium *e, int unknown, int row, do
     e->row_number[row] = i;
 }
 
-// the free positions of all bodies, then the sheets
-static void equilibrium_list(struct equilibrium *e) {
-    const struct school *const school = e->residual->school;
+struct equilibrium *equilibrium_create(struct arena *arena, const struct school *school, struct state *state) {
+    const int n = school->n_unknowns;
+    struct equilibrium *e;
+    NEW(arena, e, 1);
+    *e = (struct equilibrium){.arena = arena, .residual = residual_create(arena, school, state), .state = state};
+    int **const counts[] = {&e->unknown, &e->row, &e->number, &e->row_number};
+    double **const reals[] = {&e->scale, &e->row_scale, &e->one, &e->u, &e->value, &e->all};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) NEW(arena, *counts[i], n);
+    for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) NEW(arena, *reals[i], n);
+    e->jacobian = jacobian_create(arena, school);
+
+    // couple all bodies at any distance
+    e->residual->couplings.reach = 1e6 * school->fish[0].length;
+    residual_couple(&e->residual->couplings, state->y);
+
+    for (int i = 0; i < n; i++) {
+        e->number[i] = e->row_number[i] = -1;
+        e->one[i] = 1;
+    }
+
+    // the free positions of all bodies
     for (int f = 0; f < school->n_fish; f++) {
         // scale: the force that bends the body by its length, plus the force of the stream, plus rounding
         const struct fish *const fish = &school->fish[f];
@@ -74,6 +92,7 @@ static void equilibrium_list(struct equilibrium *e) {
     }
     e->n_places = e->n;
 
+    // the sheets
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         const double speed = fish->length * fish_rate(school, fish), circulation = speed * fish->length;
@@ -84,28 +103,6 @@ static void equilibrium_list(struct equilibrium *e) {
         }
         equilibrium_list_one(e, fish->at.circulation, fish->at.circulation, circulation, circulation);
     }
-}
-
-struct equilibrium *equilibrium_create(struct arena *arena, const struct school *school, struct state *state) {
-    const int n = school->n_unknowns;
-    struct equilibrium *e;
-    NEW(arena, e, 1);
-    *e = (struct equilibrium){.arena = arena, .residual = residual_create(arena, school, state), .state = state};
-    int **const counts[] = {&e->unknown, &e->row, &e->number, &e->row_number};
-    double **const reals[] = {&e->scale, &e->row_scale, &e->one, &e->u, &e->value, &e->all};
-    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) NEW(arena, *counts[i], n);
-    for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) NEW(arena, *reals[i], n);
-    e->jacobian = jacobian_create(arena, school);
-
-    // couple all bodies at any distance
-    e->residual->couplings.reach = 1e6 * school->fish[0].length;
-    residual_couple(&e->residual->couplings, state->y);
-
-    for (int i = 0; i < n; i++) {
-        e->number[i] = e->row_number[i] = -1;
-        e->one[i] = 1;
-    }
-    equilibrium_list(e);
     return e;
 }
 

@@ -212,21 +212,21 @@ static enum status ida_restart(void *data) {
     return ida_first_step(solver);
 }
 
-static const char *ida_reason(int code) {
-    switch (code) {
-        case IDA_TOO_MUCH_WORK: return "more steps between two events than solver.max_steps: raise it, or solver.rtol";
-        case IDA_TOO_MUCH_ACC: return "the tolerance is below rounding errors: raise solver.rtol";
-        case IDA_ERR_FAIL: return "the error test failed too often, or with the minimum step: lower solver.rtol";
-        case IDA_CONV_FAIL:
-            return "Newton's iteration did not converge, down to the minimum step: lower solver.rtol or "
-                   "time.shedding_interval, and check that the motion at that time is physical";
-        case IDA_LSETUP_FAIL: return "the Jacobian is singular: check the units of the body";
-        case IDA_REP_RES_ERR:
-            return "the equations had no finite value, down to the minimum step: check that the motion at that time is "
-                   "physical";
-        default: return "see the message of IDA";
-    }
-}
+static const struct {
+    int code;
+    const char *text;
+} reasons[] = {
+    {IDA_TOO_MUCH_WORK, "more steps between two events than solver.max_steps: raise it, or solver.rtol"},
+    {IDA_TOO_MUCH_ACC, "the tolerance is below rounding errors: raise solver.rtol"},
+    {IDA_ERR_FAIL, "the error test failed too often, or with the minimum step: lower solver.rtol"},
+    {IDA_CONV_FAIL,
+     "Newton's iteration did not converge, down to the minimum step: lower solver.rtol or "
+     "time.shedding_interval, and check that the motion at that time is physical"},
+    {IDA_LSETUP_FAIL, "the Jacobian is singular: check the units of the body"},
+    {IDA_REP_RES_ERR,
+     "the equations had no finite value, down to the minimum step: check that the motion at that time "
+     "is physical"},
+};
 
 static enum status ida_failed(const struct ida *solver, int code, long steps) {
     const struct school *school = solver->residual->school;
@@ -234,6 +234,11 @@ static enum status ida_failed(const struct ida *solver, int code, long steps) {
     double now = 0, step = 0;
     IDAGetCurrentTime(solver->ida, &now);
     IDAGetCurrentStep(solver->ida, &step);
+    const char *reason = "see the message of IDA";
+    for (size_t i = 0; i < sizeof reasons / sizeof *reasons; i++) {
+        if (reasons[i].code == code) reason = reasons[i].text;
+    }
+
     // the limit of steps is not IDA's, so IDA has no message
     char message[512] = "", error[256] = "", last[64] = "", seen[256] = "";
     if (code != IDA_TOO_MUCH_WORK) snprintf(message, sizeof message, "; %s", status_message());
@@ -281,7 +286,7 @@ static enum status ida_failed(const struct ida *solver, int code, long steps) {
     return status_fail(STATUS_SOLVER,
                        "integration failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
                        "event%s%s",
-                       now, ida_reason(code), seen, error, solver->options.order, steps, last, message);
+                       now, reason, seen, error, solver->options.order, steps, last, message);
 }
 
 static enum status ida_advance(void *data, double t, const volatile sig_atomic_t *stop) {

@@ -92,10 +92,6 @@ static int newton_iterate(struct ida_newton *newton, N_Vector total, N_Vector we
     }
 }
 
-static bool jacobian_complete(const struct ida_newton *newton) {
-    return newton->rules.complete && newton->rules.complete(newton->rules.data);
-}
-
 /* The start is the last total correction. With a period, for example of two steps, it is the total correction of one
  * period before, plus the change from the period before: doc/numerics.md. The period is the lag with the least
  * difference. */
@@ -132,15 +128,16 @@ static void newton_start(const struct ida_newton *newton, N_Vector weights, N_Ve
 static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
                         sunrealtype tolerance, sunbooleantype evaluate, void *ida) {
     struct ida_newton *const newton = solver->content;
+    const struct ida_newton_rules *const rules = &newton->rules;
     newton->iterations = newton->failures = 0;
     // stale: the last solution cost as much as the mean solution with this Jacobian, including the cost of the Jacobian
-    const bool is_stale = newton->n_last * newton->n_solutions >= newton->n_iterations + newton->rules.jacobian_cost;
+    const bool is_stale = newton->n_last * newton->n_solutions >= newton->n_iterations + rules->jacobian_cost;
     if (newton->is_incomplete || is_stale) evaluate = SUNTRUE;
     newton->is_incomplete = false;
     if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
 
     // total corrections of another step size are not alike
-    const double coefficient = newton->rules.leading_coefficient(newton->rules.data);
+    const double coefficient = rules->leading_coefficient(rules->data);
     if (!(fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient)) newton->n_past = 0;
     newton->coefficient = coefficient;
     newton_start(newton, weights, total);
@@ -154,10 +151,10 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
             if (code != 0) return code;
             corotation_set_reference(newton->corotation, N_VGetArrayPointer(predicted));
             newton->n_solutions = newton->n_iterations = 0;
-        } else if (newton->rules.update) {
-            newton->rules.update(newton->rules.data);
+        } else if (rules->update) {
+            rules->update(rules->data);
         }
-        newton->most = evaluate ? newton->rules.max_with_new : newton->rules.max_iterations;
+        newton->most = evaluate ? rules->max_with_new : rules->max_iterations;
         code = newton_iterate(newton, total, weights, tolerance, ida);
         if (code == 0) {
             N_Vector const oldest = newton->past[N_PAST - 1];
@@ -168,13 +165,13 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
             newton->n_solutions++;
             newton->n_last = newton->done;
             newton->n_iterations += newton->done;
-            if (evaluate && newton->done > newton->rules.max_iterations) {
-                newton->is_incomplete = jacobian_complete(newton);
-            }
+            newton->is_incomplete =
+                evaluate && newton->done > rules->max_iterations && rules->complete && rules->complete(rules->data);
             return 0;
         }
         newton->failures++;
-        if (code < 0 || (evaluate && !jacobian_complete(newton))) return code;
+        if (code < 0) return code;
+        if (evaluate && !(rules->complete && rules->complete(rules->data))) return code;
         // try again with a new Jacobian
         evaluate = SUNTRUE;
         N_VConst(0, total);

@@ -260,45 +260,12 @@ static enum status verlet_unstable(const struct verlet *solver, double t) {
         t, solver->options.step);
 }
 
-// to[i] += h rate[i] for x and y of all nodes
-static void verlet_move(const struct fish *fish, double h, const double *rate, double *to) {
-    for (int i = 0; i < 2 * fish->n_nodes; i++) to[i] += h * rate[i];
-}
-
-/* One step of h to time t. */
-static enum status verlet_step(struct verlet *solver, double t, double h) {
-    const struct school *school = solver->residual->school;
-    double *const y = solver->state->y;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *fish = &school->fish[f];
-        verlet_move(fish, h / 2, y + fish->at.ax, y + fish->at.vx);
-        verlet_move(fish, h, y + fish->at.vx, y + fish->at.x);
-    }
-    const enum status status = contact_find(solver->residual->contact, solver->state, t, y);
-    if (status > 0) return verlet_unstable(solver, t);
-    TRY(status);
-    double *const value = solver->residual->scratch;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *fish = &school->fish[f];
-        residual_muscle(solver->residual, f, t, y);
-        // without acceleration the balance is minus the forces
-        memset(y + fish->at.ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
-        residual_balance(solver->residual, f, y, value);
-        for (int k = 0; k < fish->n_nodes; k++) {
-            y[fish->at.ax + k] = -value[fish->at.ax + k] / fish->mass[k];
-            y[fish->at.ay + k] = -value[fish->at.ay + k] / fish->mass[k];
-        }
-        verlet_move(fish, h / 2, y + fish->at.ax, y + fish->at.vx);
-    }
-    solver->counts.steps++;
-    solver->counts.residual_evaluations++;
-    return STATUS_OK;
-}
-
 static enum status verlet_advance(void *data, double t, const volatile sig_atomic_t *stop) {
     struct verlet *const solver = data;
+    struct residual *const residual = solver->residual;
     struct state *const state = solver->state;
-    const struct school *school = solver->residual->school;
+    const struct school *school = residual->school;
+    double *const y = state->y, *const value = residual->scratch;
     const double start = state->t;
     const long n = lround(school->interval / solver->options.step);
     const double h = school->interval / (double)n;
@@ -311,14 +278,39 @@ static enum status verlet_advance(void *data, double t, const volatile sig_atomi
     for (long i = 1; i <= n; i++) {
         TRY(status_ask(stop));
         const double now = i < n ? start + (double)i * h : t;
-        TRY(verlet_step(solver, now, h));
-        if (i == n) {
-            // the sheets and the rates of the differential unknowns
-            const enum status status = ode_rhs_rates(solver->rhs, t, state->y, state->yp);
-            if (status > 0) return verlet_unstable(solver, t);
-            TRY(status);
+
+        // half a kick, and the drift
+        for (int f = 0; f < school->n_fish; f++) {
+            const struct layout *const at = &school->fish[f].at;
+            for (int k = 0; k < 2 * school->fish[f].n_nodes; k++) {
+                y[at->vx + k] += h / 2 * y[at->ax + k];
+                y[at->x + k] += h * y[at->vx + k];
+            }
         }
-        diagnostics_step(solver->residual, state, now, state->y);
+        enum status status = contact_find(residual->contact, state, now, y);
+        if (status > 0) return verlet_unstable(solver, now);
+        TRY(status);
+
+        // the accelerations, and the other half of the kick; without acceleration the balance is minus the forces
+        for (int f = 0; f < school->n_fish; f++) {
+            const struct fish *const fish = &school->fish[f];
+            const struct layout *const at = &fish->at;
+            residual_muscle(residual, f, now, y);
+            memset(y + at->ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
+            residual_balance(residual, f, y, value);
+            for (int k = 0; k < 2 * fish->n_nodes; k++) {
+                y[at->ax + k] = -value[at->ax + k] / fish->mass[k % fish->n_nodes];
+                y[at->vx + k] += h / 2 * y[at->ax + k];
+            }
+        }
+        solver->counts.steps++;
+        solver->counts.residual_evaluations++;
+
+        // at the event also the sheets and the rates of the differential unknowns
+        status = i == n ? ode_rhs_rates(solver->rhs, t, y, state->yp) : STATUS_OK;
+        if (status > 0) return verlet_unstable(solver, t);
+        TRY(status);
+        diagnostics_step(residual, state, now, y);
     }
     return STATUS_OK;
 }

@@ -71,23 +71,6 @@ static int rates_callback(sunrealtype t, N_Vector y, N_Vector rates, void *data)
     return solver->failure;
 }
 
-static ARKodeButcherTable tableau_of(enum method method, int adaptive) {
-    const struct method_properties *const properties = &methods_table[method];
-    const struct butcher_tableau *const t = adaptive ? properties->adaptive : properties->fixed;
-    const ARKodeButcherTable table = ARKodeButcherTable_Alloc(t->n_stages, t->embedded != NULL);
-    if (!table) return NULL;
-
-    table->q = t->order;
-    table->p = t->embedded_order;
-    for (int i = 0; i < t->n_stages; i++) {
-        table->c[i] = t->c[i];
-        table->b[i] = t->b[i];
-        if (t->embedded) table->d[i] = t->embedded[i];
-        for (int j = 0; j < t->n_stages; j++) table->A[i][j] = t->a[i * t->n_stages + j];
-    }
-    return table;
-}
-
 static enum status runge_kutta_create(struct arena *arena, void **created, struct residual *residual,
                                       struct state *state, const struct integrator_options *options) {
     const struct school *const school = residual->school;
@@ -117,8 +100,22 @@ static enum status runge_kutta_create(struct arena *arena, void **created, struc
     solver->tolerances = sundials_context_vector(&solver->context, solver->tolerance);
     sundials_context_reserve(&solver->context, 32);  // more than ARKODE clones for seven stages
     struct sundials_context *const context = &solver->context;
+
+    // the tableau of the method
+    const struct method_properties *const properties = &methods_table[options->method];
+    const struct butcher_tableau *const tableau = step > 0 ? properties->fixed : properties->adaptive;
+    const int n_stages = tableau->n_stages;
     const ARKodeButcherTable table =
-        sundials_context_own(context, OWNED_TABLEAU, tableau_of(options->method, step <= 0));
+        sundials_context_own(context, OWNED_TABLEAU, ARKodeButcherTable_Alloc(n_stages, tableau->embedded != NULL));
+    table->q = tableau->order;
+    table->p = tableau->embedded_order;
+    for (int i = 0; i < n_stages; i++) {
+        table->c[i] = tableau->c[i];
+        table->b[i] = tableau->b[i];
+        if (tableau->embedded) table->d[i] = tableau->embedded[i];
+        for (int j = 0; j < n_stages; j++) table->A[i][j] = tableau->a[i * n_stages + j];
+    }
+
     void *const arkode = solver->arkode = sundials_context_own(
         context, OWNED_ARKODE, ARKStepCreate(rates_callback, NULL, state->t, solver->y, context->context));
     // 6.4 interpolates at the stop time, for order one by a constant: Hermite's interpolant is the mean of both ends of
