@@ -128,45 +128,42 @@ static enum status formation_value(void *data, const double *u, double *change) 
 
 // ---- the Jacobian
 
-// each column repeats the last beats of the evaluation with an increment of one quantity; every place must change the
-// beat
-static enum status formation_difference_jacobian(struct formation *formation) {
+static enum status formation_jacobian(void *data, double *matrix) {
+    struct formation *const formation = data;
     struct steady_problem *const problem = formation->problem;
     struct simulation *const simulation = problem->map.simulation;
     const int n = problem->n_unknowns;
-    memcpy(formation->held, formation->u, (size_t)n * sizeof *formation->held);
-    memcpy(formation->made_at, formation->u, (size_t)n * sizeof *formation->made_at);
-    steady_map_save(formation->arena, simulation, &formation->reached);
+    const double now = euclidean_norm(n, formation->change);
 
-    for (int j = 0; j < n; j++) {
-        double *const column = formation->matrix + j * n;
-        TRY(steady_map_return(simulation, formation->late[0]));
-        formation->held[j] += difference;
-        for (int i = 0; i < COLUMN_BEATS; i++) TRY(beat_from(formation, formation->held, column));
-        formation->held[j] = formation->u[j];
-        for (int i = 0; i < n; i++) column[i] = (column[i] - formation->change[i]) / difference;
+    // keep a Jacobian with progress
+    formation->n_slow = now > least_progress * formation->last_norm ? formation->n_slow + 1 : 0;
+    const bool is_elsewhere = largest_distance(n, formation->made_at, formation->u) > telling_step;
+    const bool is_new = !formation->has_matrix || (formation->n_slow >= SLOW_STEPS && is_elsewhere);
+
+    // each column repeats the last beats of the evaluation with an increment of one quantity
+    if (is_new) {
+        memcpy(formation->held, formation->u, (size_t)n * sizeof *formation->held);
+        memcpy(formation->made_at, formation->u, (size_t)n * sizeof *formation->made_at);
+        steady_map_save(formation->arena, simulation, &formation->reached);
+        for (int j = 0; j < n; j++) {
+            double *const column = formation->matrix + j * n;
+            TRY(steady_map_return(simulation, formation->late[0]));
+            formation->held[j] += difference;
+            for (int i = 0; i < COLUMN_BEATS; i++) TRY(beat_from(formation, formation->held, column));
+            formation->held[j] = formation->u[j];
+            for (int i = 0; i < n; i++) column[i] = (column[i] - formation->change[i]) / difference;
+        }
+        formation->has_matrix = true;
+        formation->n_slow = 0;
+        TRY(steady_map_return(simulation, formation->reached));
     }
 
-    formation->has_matrix = true;
-    formation->n_slow = 0;
-    TRY(steady_map_return(simulation, formation->reached));
-    for (int j = 0; j < n; j++) {
+    // every place must change the beat
+    for (int j = 0; j < n && is_new; j++) {
         const enum steady_quantity quantity = problem->unknown[j].quantity;
         if (quantity != STEADY_AHEAD && quantity != STEADY_ASIDE) continue;
         TRY(steady_reason_check(problem, euclidean_norm(n, formation->matrix + j * n)));
     }
-    return STATUS_OK;
-}
-
-static enum status formation_jacobian(void *data, double *matrix) {
-    struct formation *const formation = data;
-    const int n = formation->problem->n_unknowns;
-    const double now = euclidean_norm(n, formation->change);
-
-    formation->n_slow = now > least_progress * formation->last_norm ? formation->n_slow + 1 : 0;
-    const bool is_elsewhere = largest_distance(n, formation->made_at, formation->u) > telling_step;
-    if (!formation->has_matrix || (formation->n_slow >= SLOW_STEPS && is_elsewhere))
-        TRY(formation_difference_jacobian(formation));
     formation->last_norm = now;
     memcpy(matrix, formation->matrix, (size_t)n * (size_t)n * sizeof *matrix);
 

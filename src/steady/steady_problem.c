@@ -175,23 +175,45 @@ static const double clear = 3;
 /* Displacement, in lengths, that must change the beat by more than the tolerance. */
 static const double longest_place = 0.25;
 
-// displacement in the frame of the first fish, ahead and to the left, lengths per beat
-static void fish_drift(const struct steady_map *map, int f, double drift[2]) {
-    const double length = map->simulation->school->fish[f].length;
-    for (int i = 0; i < 2; i++) drift[i] = (map->last[f].place[i] - map->before[f].place[i]) / length;
-}
+enum status steady_reason_find(struct steady_problem *problem) {
+    struct steady_map *const map = &problem->map;
+    struct simulation *const simulation = map->simulation;
+    const struct fish *const fish = simulation->school->fish;
+    const int n_beats = map->n_beats;
+    char first[64];
+    snprintf(first, sizeof first, "no steady state in %d beats%s", n_beats,
+             n_beats >= problem->settings->beats ? " (steady.beats)" : " near the start");
 
-static enum status report_drift(const struct steady_problem *problem, const char *first) {
-    const struct steady_map *const map = &problem->map;
-    const struct school *const school = map->simulation->school;
+    // release the fish, until two of them collide
+    enum status status = STATUS_OK;
+    int beat = 0;
+    diagnostics_restart(simulation->residual, simulation->state);
+    for (; beat < BEATS && status == STATUS_OK; beat++) {
+        status = steady_map_beat(map, NULL, NULL);
+        if (simulation->state->closest->distance < simulation->school->contact_range) break;
+    }
+    map->n_beats = n_beats;
+    TRY(status);
+    if (beat < BEATS) {
+        const struct closest *const closest = simulation->state->closest;
+        return status_fail(
+            STATUS_SOLVER,
+            "%s: collision: after release, %s and %s approach to %.2g m in beat %d, within contact.range", first,
+            fish[closest->fish[0]].name, fish[closest->fish[1]].name, closest->distance, beat + 1);
+    }
+
+    // the fastest drift in the frame of the first fish, ahead and to the left, lengths per beat
     int fastest = 0;
-    double most = 0, drift[2];
-
-    for (int f = 1; f < school->n_fish; f++) {
-        fish_drift(map, f, drift);
-        if (hypot(drift[0], drift[1]) <= most) continue;
-        most = hypot(drift[0], drift[1]);
+    double most = 0, drift[2] = {0, 0};
+    for (int f = 1; f < simulation->school->n_fish; f++) {
+        const struct steady_beat *const last = &map->last[f], *const before = &map->before[f];
+        const double ahead = (last->place[0] - before->place[0]) / fish[f].length;
+        const double aside = (last->place[1] - before->place[1]) / fish[f].length;
+        if (hypot(ahead, aside) <= most) continue;
+        most = hypot(ahead, aside);
         fastest = f;
+        drift[0] = ahead;
+        drift[1] = aside;
     }
 
     const double change = steady_map_residual(map), tolerance = problem->settings->tolerance;
@@ -205,41 +227,14 @@ static enum status report_drift(const struct steady_problem *problem, const char
                                               : "");
     }
 
-    fish_drift(map, fastest, drift);
-    const bool is_along = fabs(drift[0]) >= fabs(drift[1]);
-    const char *const ahead = drift[0] > 0 ? "ahead" : "back", *const aside =
-                                                                   drift[1] > 0 ? "to the left" : "to the right";
+    const char *const along = drift[0] > 0 ? "ahead" : "back";
+    const char *const across = drift[1] > 0 ? "to the left" : "to the right";
     return status_fail(STATUS_SOLVER,
                        "%s: drift: after release, %s drifts %s relative to %s by %.2g lengths per beat, %.2g m/s, from "
                        "the place (%.3g, %.3g) m, ahead and to the left",
-                       first, school->fish[fastest].name, is_along ? ahead : aside, school->fish[0].name, most,
-                       most * school->fish[fastest].length / map->period, map->last[fastest].place[0],
+                       first, fish[fastest].name, fabs(drift[0]) >= fabs(drift[1]) ? along : across, fish[0].name, most,
+                       most * fish[fastest].length / map->period, map->last[fastest].place[0],
                        map->last[fastest].place[1]);
-}
-
-enum status steady_reason_find(struct steady_problem *problem) {
-    struct simulation *const simulation = problem->map.simulation;
-    const int n_beats = problem->map.n_beats;
-    char first[64];
-    snprintf(first, sizeof first, "no steady state in %d beats%s", n_beats,
-             n_beats >= problem->settings->beats ? " (steady.beats)" : " near the start");
-
-    // release the fish
-    enum status status = STATUS_OK;
-    int i = 0;
-    diagnostics_restart(simulation->residual, simulation->state);
-    for (; i < BEATS && status == STATUS_OK; i++) {
-        status = steady_map_beat(&problem->map, NULL, NULL);
-        if (simulation->state->closest->distance < simulation->school->contact_range) break;
-    }
-    problem->map.n_beats = n_beats;
-    TRY(status);
-    if (i == BEATS) return report_drift(problem, first);
-    const struct closest *const closest = simulation->state->closest;
-    const struct fish *const fish = simulation->school->fish;
-    return status_fail(STATUS_SOLVER,
-                       "%s: collision: after release, %s and %s approach to %.2g m in beat %d, within contact.range",
-                       first, fish[closest->fish[0]].name, fish[closest->fish[1]].name, closest->distance, i + 1);
 }
 
 enum status steady_reason_check(const struct steady_problem *problem, double in_a_length) {

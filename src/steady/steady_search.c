@@ -100,47 +100,6 @@ static enum status together_jacobian(void *data, double *matrix) {
     return STATUS_OK;
 }
 
-/* Solve for slow quantities of the only fish that one beat changes by at most the tolerance. Evaluate the Jacobian
- * unless is_known. *is_done: success; otherwise no convergence, and the simulation is restored. Fails after
- * steady.beats as steady_problem_beat, or with STATUS_MEMORY. */
-static enum status together_solve(struct together *together, struct steady_problem *problem, double tolerance,
-                                  bool *is_done) {
-    const struct steady_map *const map = &problem->map;
-    struct arena *const arena = arena_create(map->simulation->arena, "the slow quantities of a fish");
-    struct solution solution = {.arena = arena, .together = together, .problem = problem, .n = problem->n_unknowns};
-
-    // the slow quantities and, if removed circulation is retained, the shed circulation
-    memcpy(solution.unknown, problem->unknown, (size_t)solution.n * sizeof *solution.unknown);
-    if (map->simulation->school->removed == REMOVED_RETAINED) {
-        solution.unknown[solution.n++] = (struct steady_unknown){0, STEADY_SHED};
-    }
-    double scale[STEADY_QUANTITIES], u[STEADY_QUANTITIES];
-    for (int i = 0; i < solution.n; i++) {
-        solution.unit[i] = steady_map_scale(map, solution.unknown[i]);
-        scale[i] = longest_together;
-    }
-
-    const struct newton newton = {.n = solution.n,
-                                  .scale = scale,
-                                  .tolerance = tolerance / longest_together,
-                                  .max_step = 1,
-                                  .reuse = 1,
-                                  .max_iterations = ITERATIONS,
-                                  .value = together_value,
-                                  .jacobian = together_jacobian,
-                                  .data = &solution};
-    steady_map_save(arena, map->simulation, &solution.begun);
-    search_read_all(&solution, u);
-    enum status status = newton_solve(arena, &newton, u);
-    *is_done = status == STATUS_OK;
-    if (status == STATUS_SOLVER && map->n_beats < problem->settings->beats) {
-        together->is_known = false;
-        status = steady_map_return(map->simulation, solution.begun);
-    }
-    arena_free(arena);
-    return status;
-}
-
 // ---- the search
 
 /* Largest change of the speed in one Newton step, in lengths per beat. After a step with a beat that fails, the search
@@ -247,13 +206,48 @@ static enum status solve_speed(struct search *search) {
     return steady_map_return(map->simulation, search->begun);
 }
 
+// solve for the speed of the only fish, later for all slow quantities
 static enum status solve_fish(struct search *search) {
     if (search->n_tries-- > 0) return solve_speed(search);
     if (search->n_together-- <= 0) return STATUS_OK;
-    bool is_done;
-    TRY(together_solve(&search->together, search->problem, ROUGH * search->problem->settings->tolerance, &is_done));
-    if (!is_done) search->n_together = 0;
-    return STATUS_OK;
+    struct steady_problem *const problem = search->problem;
+    const struct steady_map *const map = &problem->map;
+    struct arena *const arena = arena_create(map->simulation->arena, "the slow quantities of a fish");
+    struct solution solution = {
+        .arena = arena, .together = &search->together, .problem = problem, .n = problem->n_unknowns};
+
+    // the slow quantities and, if removed circulation is retained, the shed circulation
+    memcpy(solution.unknown, problem->unknown, (size_t)solution.n * sizeof *solution.unknown);
+    if (map->simulation->school->removed == REMOVED_RETAINED) {
+        solution.unknown[solution.n++] = (struct steady_unknown){0, STEADY_SHED};
+    }
+    double scale[STEADY_QUANTITIES], u[STEADY_QUANTITIES];
+    for (int i = 0; i < solution.n; i++) {
+        solution.unit[i] = steady_map_scale(map, solution.unknown[i]);
+        scale[i] = longest_together;
+    }
+
+    const struct newton newton = {.n = solution.n,
+                                  .scale = scale,
+                                  .tolerance = ROUGH * problem->settings->tolerance / longest_together,
+                                  .max_step = 1,
+                                  .reuse = 1,
+                                  .max_iterations = ITERATIONS,
+                                  .value = together_value,
+                                  .jacobian = together_jacobian,
+                                  .data = &solution};
+    steady_map_save(arena, map->simulation, &solution.begun);
+    search_read_all(&solution, u);
+    enum status status = newton_solve(arena, &newton, u);
+
+    // without convergence return to the start; the fish then swims until the state is steady
+    if (status == STATUS_SOLVER && map->n_beats < problem->settings->beats) {
+        search->together.is_known = false;
+        search->n_together = 0;
+        status = steady_map_return(map->simulation, solution.begun);
+    }
+    arena_free(arena);
+    return status;
 }
 
 // simulate beats without increments until the changes of the last two beats meet the tolerance

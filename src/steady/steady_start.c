@@ -77,41 +77,30 @@ enum status steady_start_read(struct arena *arena, const char *path, const struc
 
 // ---- shapes
 
-// read the node positions of a body, x and y interleaved                                           (2 n_nodes)
-static enum status read_nodes(const struct reading *reading, size_t f, const struct fish *fish, double *places) {
-    const size_t n_nodes = (size_t)fish->n_nodes;
-    size_t n = 0;
-    const struct netcdf_slice slice[] = {
-        {"time", reading->last, 1}, {"fish", f, 1}, {"node", 0, n_nodes}, {"xy", 0, 2}, {NULL}};
-
-    TRY(netcdf_read_length(&reading->reader, "node", 2, INT_MAX, &n));
-    if (n >= n_nodes) TRY(netcdf_read_doubles(&reading->reader, "x", slice, places));
-
-    // a body with fewer nodes is padded with NaN
-    bool is_other = n < n_nodes;
-    for (size_t i = 0; i < 2 * n_nodes && !is_other; i++) is_other = !isfinite(places[i]);
-    if (!is_other && n > n_nodes) {
-        double beyond[2];
-        const struct netcdf_slice next[] = {
-            {"time", reading->last, 1}, {"fish", f, 1}, {"node", n_nodes, 1}, {"xy", 0, 2}, {NULL}};
-        TRY(netcdf_read_doubles(&reading->reader, "x", next, beyond));
-        is_other = isfinite(beyond[0]);
-    }
-
-    if (!is_other) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: %s does not have %d nodes in this file", reading->reader.path, fish->name,
-                       fish->n_nodes);
-}
-
 enum status steady_start_shapes(struct arena *arena, const char *path, const struct school *school, double *y) {
     struct arena *const scratch = arena_create(arena, path);
     struct reading *reading;
+    size_t n = 0;
     TRY(start_open(scratch, &reading, path, school->n_fish));
+    TRY(netcdf_read_length(&reading->reader, "node", 2, INT_MAX, &n));
     for (int f = 0; f < school->n_fish; f++) {
+        // the node positions of a body, x and y interleaved; a body with fewer nodes is padded with NaN
         const struct fish *const fish = &school->fish[f];
-        double *places, direction[2], rate;
-        NEW(scratch, places, 2 * fish->n_nodes);
-        TRY(read_nodes(reading, (size_t)f, fish, places));
+        const size_t n_nodes = (size_t)fish->n_nodes;
+        const struct netcdf_slice slice[] = {
+            {"time", reading->last, 1}, {"fish", (size_t)f, 1}, {"node", 0, n_nodes}, {"xy", 0, 2}, {NULL}};
+        const struct netcdf_slice next[] = {
+            {"time", reading->last, 1}, {"fish", (size_t)f, 1}, {"node", n_nodes, 1}, {"xy", 0, 2}, {NULL}};
+        double *places, beyond[2] = {NAN, NAN}, direction[2], rate;
+        NEW(scratch, places, 2 * n_nodes);
+        if (n >= n_nodes) TRY(netcdf_read_doubles(&reading->reader, "x", slice, places));
+        if (n > n_nodes) TRY(netcdf_read_doubles(&reading->reader, "x", next, beyond));
+        bool is_other = n < n_nodes || isfinite(beyond[0]);
+        for (size_t i = 0; i < 2 * n_nodes; i++) is_other |= !isfinite(places[i]);
+        if (is_other) {
+            return status_fail(STATUS_FILE, "%s: %s does not have %d nodes in this file", path, fish->name,
+                               fish->n_nodes);
+        }
 
         // rotate and scale the shape so that edge 0 coincides with edge 0 of a straight body at the nose
         fish_prescribe(fish, 1, 0, y);

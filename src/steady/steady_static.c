@@ -23,15 +23,10 @@ bool steady_static_applies(const struct school *school) {
 
 // ---- cases without an equilibrium
 
-static void velocity_of(const struct fish *fish, double velocity[2]) {
-    double position[2], acceleration[2];
-    fish_prescribed_node(fish, 0, 0, position, velocity, acceleration);
-}
-
 enum status steady_static_refuse(const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
-        double velocity[2], first[2];
+        double position[2], velocity[2], acceleration[2], first[2];
         if (fish->motion.prescribed == PRESCRIBED_NONE || fish->motion.surge == SURGE_FREE) {
             return status_fail(STATUS_CASE,
                                "%s neither beats nor is held, so the stream carries the body away: hold the body with "
@@ -48,8 +43,8 @@ enum status steady_static_refuse(const struct school *school) {
                                fish->name, fish->ramp);
         }
 
-        velocity_of(fish, velocity);
-        velocity_of(&school->fish[0], first);
+        fish_prescribed_node(&school->fish[0], 0, 0, position, first, acceleration);
+        fish_prescribed_node(fish, 0, 0, position, velocity, acceleration);
         if (fabs(velocity[0] - first[0]) + fabs(velocity[1] - first[1]) > 0) {
             return status_fail(STATUS_CASE,
                                "%s and %s move at different velocities: give both fish the same motion.speed",
@@ -91,7 +86,6 @@ struct growth {
     double *last;                      /* the last solution                                          (n_unknowns) */
     double last_part;                  /* of the stream at the last solution */
     struct equilibrium_stiffness rest; /* without stream and loads */
-    double *kept; /* scratch                                                              (n_unknowns) */
 };
 
 /* Largest rotation of an edge between two successive solutions of one branch. */
@@ -219,41 +213,37 @@ static enum status growth_to_stream(struct growth *growth) {
     return STATUS_OK;
 }
 
-// solve for the full stream from the shapes in a file; *found: a solution exists
-static enum status growth_from_file(struct growth *growth, const char *from, bool *found) {
-    struct state *const state = growth->simulation->state;
-    const size_t bytes = (size_t)growth->simulation->school->n_unknowns * sizeof *state->y;
-    memcpy(growth->kept, growth->last, bytes);
-    enum status status = steady_start_shapes(growth->arena, from, growth->simulation->school, state->y);
-    if (status == STATUS_OK) {
-        memcpy(growth->last, state->y, bytes);
-        status = growth_solve(growth, 1);
-    }
-
-    *found = status == STATUS_OK;
-    if (!*found) memcpy(growth->last, growth->kept, bytes);
-    memcpy(state->y, growth->last, bytes);
-
-    return is_fatal(status) ? status : STATUS_OK;
-}
-
 static enum status find_solution(struct growth *growth, const char *from, struct steady_values *found) {
     const struct school *const school = growth->simulation->school;
     struct state *const state = growth->simulation->state;
     struct arena *const arena = growth->arena;
+    const size_t bytes = (size_t)school->n_unknowns * sizeof *state->y;
+    double *rest;
     TRY(flow_check_steady(school));
     NEW(arena, growth->last, school->n_unknowns);
-    NEW(arena, growth->kept, school->n_unknowns);
+    NEW(arena, rest, school->n_unknowns);
     growth->school = *school;
     NEW(arena, growth->school.fish, school->n_fish);
     memcpy(growth->school.fish, school->fish, (size_t)school->n_fish * sizeof *school->fish);
     growth->equilibrium = equilibrium_create(arena, &growth->school, state);
 
-    bool is_found = false;
     TRY(growth_from_rest(growth));
     TRY(equilibrium_stiffness(growth->equilibrium, &growth->rest));
-    if (from) TRY(growth_from_file(growth, from, &is_found));
-    if (!is_found) TRY(growth_to_stream(growth));
+
+    // the full stream from the shapes in a file; without a solution continue from rest
+    enum status status = STATUS_SOLVER;
+    if (from) {
+        memcpy(rest, growth->last, bytes);
+        status = steady_start_shapes(arena, from, school, state->y);
+        if (status == STATUS_OK) {
+            memcpy(growth->last, state->y, bytes);
+            status = growth_solve(growth, 1);
+        }
+        if (is_fatal(status)) return status;
+        if (status != STATUS_OK) memcpy(growth->last, rest, bytes);
+        memcpy(state->y, growth->last, bytes);
+    }
+    if (status != STATUS_OK) TRY(growth_to_stream(growth));
     TRY(find_stiffness(growth, &found->stiffness));
     found->residual = equilibrium_residual(growth->equilibrium);
     return STATUS_OK;
