@@ -133,9 +133,10 @@ static void print_findings(const struct checked *checked) {
     // of the members that were not examined, as many are expected to fail as of the examined members
     char duration[TEXT_DURATION_BYTES];
     const int n_examined = checked->n_estimated + checked->n_failed;
+    const double megabytes = 1e-6 * checked->bytes;
     text_duration(duration, checked->seconds * checked->n_members / n_examined);
-    printf("    %s about %s and %.2g MB on this machine%s: estimated from a few events",
-           checked->is_study ? "the runs take" : "the run takes", duration, 1e-6 * checked->bytes,
+    printf("    %s about %s and %.*f MB on this machine%s: estimated from a few events",
+           checked->is_study ? "the runs take" : "the run takes", duration, megabytes < 10, megabytes,
            checked->is_study ? ", one after the other" : "");
     if (n_examined < checked->n_members)
         printf(" of %d member%s", checked->n_estimated, checked->n_estimated == 1 ? "" : "s");

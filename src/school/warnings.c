@@ -118,15 +118,16 @@ static double resolution_warning(enum warning warning, const struct subject *sub
     switch (warning) {
         case WARNING_BEATS:
             snprintf(line, WARNING_BYTES,
-                     "the run has %.3g beats of %s: means and powers are not those of a cycle; increase time.end to at "
-                     "least %.4g s",
-                     t / period, who, 2 * period);
+                     "the run has %.3g beat%s of %s: means and powers are not those of a cycle; increase time.end to "
+                     "at least %.4g s",
+                     t / period, fabs(t / period - 1) < 0.005 ? "" : "s", who, 2 * period);
             return (has_wave || has_motion) && t > 0 ? rounded * 2 * period / t : 0;
 
         case WARNING_EVENTS:
             snprintf(line, WARNING_BYTES,
-                     "a beat of %s has only %.3g events: reduce time.shedding_interval to %.3g s for %d events", who,
-                     period / interval, period / MIN_EVENTS, MIN_EVENTS);
+                     "a beat of %s has only %.3g event%s: reduce time.shedding_interval to %.3g s for %d events", who,
+                     period / interval, fabs(period / interval - 1) < 0.005 ? "" : "s", period / MIN_EVENTS,
+                     MIN_EVENTS);
             return period > 0 ? rounded * MIN_EVENTS * interval / period : 0;
 
         case WARNING_SHEET:
