@@ -222,9 +222,7 @@ static enum status main_choose(int argc, char **argv, struct arena **arena) {
 }
 
 int main(int argc, char **argv) {
-    main_open_standard();
-    main_reset_signals();
-    main_guard_exit();
+    main_prepare();
     struct arena *arena = NULL;
     enum status status = main_choose(argc, argv, &arena);
     arena_free(arena);

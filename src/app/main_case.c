@@ -32,10 +32,6 @@ static const struct result_kind kinds[] = {
 };
 enum { N_LISTS = sizeof kinds / sizeof *kinds, N_KINDS = N_LISTS - 1 };
 
-void main_print_notes(const struct request *request, const struct case_values *values) {
-    if (!request->quiet && *values->notes) say_line(stderr, "%s\n", values->notes);
-}
-
 enum status main_show(const struct request *request) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));

@@ -153,7 +153,7 @@ enum status main_check(const struct request *request) {
                               .n_members = values.n_axes > 0 ? sweep_n_members(&values) : 1};
     const enum status status = check_case(&checked);
     if (status == STATUS_OK) {
-        main_print_notes(request, &values);
+        if (!request->quiet && *values.notes) say_line(stderr, "%s\n", values.notes);
         print_findings(&checked);
     }
     case_free(&values);

@@ -32,23 +32,19 @@ enum status main_info(const struct request *request);
 enum status main_view(const struct request *request);
 enum status main_export(const struct request *request);
 
-/* Print the notes on a case to stderr, unless the request is quiet. */
-void main_print_notes(const struct request *request, const struct case_values *values);
-
 /* Print a summary of a file of shoal, or only the case in the file. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status main_print_info(struct arena *arena, const char *path, int case_only);
 
 // ---- main_signals.c: stop requests by signals and time limits; exits of libraries. Tested by
 // tests/app/test_command.sh and tests/study/test_study.sh.
 
-/* Open /dev/null for each of standard input, output and error that is closed: otherwise the next file would get the
- * descriptor, and printed text would go into that file. */
-void main_open_standard(void);
-
-/* For all commands: restore the default action of SIGCHLD, because waiting for child processes fails if the parent
- * process ignores SIGCHLD; ignore SIGXFSZ and SIGPIPE, so that a write beyond the limit of a file size, or to a closed
- * pipe, is an error of the write. */
-void main_reset_signals(void);
+/* Prepare the process. Open /dev/null for each of standard input, output and error that is closed: otherwise the next
+ * file would get the descriptor, and printed text would go into that file. Restore the default action of SIGCHLD.
+ * Ignore SIGXFSZ and SIGPIPE, so that a write beyond the limit of a file size, or to a closed pipe, is an error of it.
+ * Turn a call of exit before main_exit into exit code 4 with a message, and remove the part of a result: some libraries
+ * call exit if threads or memory run out. main_exit returns the exit code of main. */
+void main_prepare(void);
+int main_exit(int code);
 
 /* Let SIGPIPE end the program, as usual, if standard output is a closed pipe; not after main_catch_signals, where a
  * closed pipe is an error. */
@@ -63,11 +59,6 @@ enum status main_limit_wall_time(const char *text);
 
 /* Request a stop after this CPU time [s]. */
 void main_limit_processor_time(double seconds);
-
-/* Turn a call of exit before main_exit into exit code 4 with a message, and remove the part of a result: some libraries
- * call exit if threads or memory run out. main_exit returns the exit code of main. */
-void main_guard_exit(void);
-int main_exit(int code);
 
 /* The number of the last stop signal; SIGALRM or SIGPROF after a time limit; 0 without a stop request. */
 const volatile sig_atomic_t *main_stop_signal(void);

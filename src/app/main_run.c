@@ -47,7 +47,7 @@ static enum status with_case(const struct request *request,
                                                  const char *path)) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    main_print_notes(request, &values);
+    if (!request->quiet && *values.notes) say_line(stderr, "%s\n", values.notes);
     enum status status = sweep_refuse(&values);
     const char *const path = request->output ? request->output : record_path(request->arena, &values);
     if (status == STATUS_OK) status = make(&values, request, path);
@@ -109,22 +109,23 @@ enum status main_resume(const struct request *request) {
 
 // ---- demo
 
-static enum status check_demo_target(const char *path, enum target_kind kind, int force) {
-    if (!force && access(path, F_OK) == 0) {
-        return status_fail(STATUS_FILE, "%s exists: replace it with --force, or change to another folder", path);
-    }
-    return target_check(path, kind, true);
-}
-
 enum status main_demo(const struct request *request) {
+    static const struct {
+        const char *path;
+        enum target_kind kind;
+    } targets[] = {{"demo.nc", TARGET_NETCDF}, {"demo.png", TARGET_PICTURE}, {"demo.html", TARGET_PAGE}};
     char share[PATH_MAX], path[PATH_MAX + 32], script[PATH_MAX + 32];
     if (!version_share(share)) {
         return status_fail(STATUS_FILE,
                            "cases/demo.yaml is neither in the source tree nor in share/shoal of the program");
     }
-    TRY(check_demo_target("demo.nc", TARGET_NETCDF, request->force));
-    TRY(check_demo_target("demo.png", TARGET_PICTURE, request->force));
-    TRY(check_demo_target("demo.html", TARGET_PAGE, request->force));
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        if (!request->force && access(targets[i].path, F_OK) == 0) {
+            return status_fail(STATUS_FILE, "%s exists: replace it with --force, or change to another folder",
+                               targets[i].path);
+        }
+        TRY(target_check(targets[i].path, targets[i].kind, true));
+    }
     snprintf(path, sizeof path, "%s/cases/demo.yaml", share);
     struct request demo = *request;
     demo.positional = path;

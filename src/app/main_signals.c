@@ -32,23 +32,6 @@ static const struct {
     {.number = SIGXCPU},
 };
 
-void main_open_standard(void) {
-    // open standard output for reading, so that writing still fails
-    for (int file = 0; file <= STDERR_FILENO; file++) {
-        if (fcntl(file, F_GETFD) < 0) open("/dev/null", file == STDERR_FILENO ? O_WRONLY : O_RDONLY);
-    }
-}
-
-void main_reset_signals(void) {
-    signal(SIGCHLD, SIG_DFL);
-
-    // report a file size limit as an error of the write; the default action kills
-    signal(SIGXFSZ, SIG_IGN);
-
-    // a closed pipe for messages ends no command
-    signal(SIGPIPE, SIG_IGN);
-}
-
 void main_end_by_pipe(void) {
     struct pollfd output = {.fd = STDOUT_FILENO};
     if (is_catching || poll(&output, 1, 0) != 1 || !(output.revents & POLLERR)) return;
@@ -101,7 +84,20 @@ static void on_exit_of_a_library(void) {
     _exit(status_exit_code(STATUS_MEMORY));
 }
 
-void main_guard_exit(void) {
+void main_prepare(void) {
+    // open standard output for reading, so that writing still fails
+    for (int file = 0; file <= STDERR_FILENO; file++) {
+        if (fcntl(file, F_GETFD) < 0) open("/dev/null", file == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+    }
+
+    // waiting for child processes fails if the parent process ignores the signal
+    signal(SIGCHLD, SIG_DFL);
+
+    // report a file size limit as an error of the write; the default action kills
+    signal(SIGXFSZ, SIG_IGN);
+
+    // a closed pipe for messages ends no command
+    signal(SIGPIPE, SIG_IGN);
     is_guarded = atexit(on_exit_of_a_library) == 0;
 }
 

@@ -141,7 +141,7 @@ static enum status study_run_in_folder(const struct case_values *values, const s
                       *const dot = strrchr(file, '.');
     snprintf(folder, sizeof folder, "%.*s%s", (int)(dot && dot > file ? dot - file : (long)strlen(file)), file, ending);
     const char *const place = request->output ? request->output : folder;
-    main_print_notes(request, values);
+    if (!request->quiet && *values->notes) say_line(stderr, "%s\n", values->notes);
     int bundle = 0;
     if (request->bundle) TRY(read_count("--bundle", request->bundle, &bundle));
     if (values->error) return run_errors(values, request, place, bundle);

@@ -51,33 +51,28 @@ void sparse_begin(struct sparse *matrix) {
     }
 }
 
-static bool is_kept(const struct sparse *matrix, int64_t entry) {
-    return entry < matrix->n_masked || !sparse_is_masked(matrix, matrix->entry_row[entry]);
-}
-
 // sort the indices of the entries of unmasked rows by column, then row, by two counting sorts; returns the number of
 // entries
 static int64_t entries_sort(const struct sparse *matrix, int64_t *order, int64_t *by_row, int64_t *count) {
     const int64_t n = matrix->n;
-    int64_t n_sorted = 0;
+    int64_t n_kept = 0;
     memset(count, 0, (size_t)(n + 1) * sizeof *count);
     for (int64_t i = 0; i < matrix->n_entries; i++) count[matrix->entry_row[i] - matrix->first + 1]++;
     for (int64_t r = 0; r < n; r++) count[r + 1] += count[r];
     for (int64_t i = 0; i < matrix->n_entries; i++) by_row[count[matrix->entry_row[i] - matrix->first]++] = i;
+    for (int64_t i = 0; i < matrix->n_entries; i++) {
+        const int64_t entry = by_row[i];
+        const bool is_kept = entry < matrix->n_masked || !sparse_is_masked(matrix, matrix->entry_row[entry]);
+        if (is_kept) by_row[n_kept++] = entry;
+    }
+
     memset(count, 0, (size_t)(n + 1) * sizeof *count);
-
-    for (int64_t i = 0; i < matrix->n_entries; i++) {
-        if (is_kept(matrix, i)) count[matrix->entry_column[i] - matrix->first + 1]++;
-    }
-
+    for (int64_t i = 0; i < n_kept; i++) count[matrix->entry_column[by_row[i]] - matrix->first + 1]++;
     for (int64_t c = 0; c < n; c++) count[c + 1] += count[c];
-    for (int64_t i = 0; i < matrix->n_entries; i++) {
-        if (!is_kept(matrix, by_row[i])) continue;
+    for (int64_t i = 0; i < n_kept; i++) {
         order[count[matrix->entry_column[by_row[i]] - matrix->first]++] = by_row[i];
-        n_sorted++;
     }
-
-    return n_sorted;
+    return n_kept;
 }
 
 void sparse_end(struct sparse *matrix) {

@@ -122,27 +122,17 @@ void text_add_word(struct text *text, const char *word) {
     text_add(text, "'");
 }
 
-/* Skip decimal digits and count them. */
-static int skip_digits(const char **text) {
-    int n = 0;
-    for (; **text >= '0' && **text <= '9'; (*text)++) n++;
-    return n;
-}
-
 bool text_number(const char *text, double *number) {
     // an optional sign, digits with at most one point, and an optional exponent
-    const char *at = text;
-    if (*at == '+' || *at == '-') at++;
-    int n = skip_digits(&at);
-    if (*at == '.') {
-        at++;
-        n += skip_digits(&at);
-    }
-    if (n == 0) return false;
+    static const char digits[] = "0123456789";
+    const char *at = text + (*text == '+' || *text == '-');
+    const size_t n = strspn(at, digits), n_after = at[n] == '.' ? strspn(at + n + 1, digits) : 0;
+    at += n + (at[n] == '.') + n_after;
+    if (n + n_after == 0) return false;
     if (*at == 'e' || *at == 'E') {
-        at++;
-        if (*at == '+' || *at == '-') at++;
-        if (skip_digits(&at) == 0) return false;
+        at += 1 + (at[1] == '+' || at[1] == '-');
+        if (strspn(at, digits) == 0) return false;
+        at += strspn(at, digits);
     }
     if (*at != '\0') return false;
 

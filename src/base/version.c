@@ -47,31 +47,26 @@ void version_libraries(char text[VERSION_LENGTH]) {
              (int)lapack[0], (int)lapack[1], (int)lapack[2], netcdf_length, netcdf, yaml_get_version_string());
 }
 
-/* The folder with cases/demo.yaml near a program or library. */
-static bool share_near(const char *binary, char share[PATH_MAX]) {
+bool version_share(char share[PATH_MAX]) {
     static const char *const places[] = {"..", "../share/shoal", "../../share/shoal"};
-    const char *const slash = strrchr(binary, '/');
-    if (!slash) return false;
+    const char *binaries[2] = {NULL, NULL};
 
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+    // the program, and the library in another program
+    char program[PATH_MAX];
+    Dl_info library;
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[length > 0 ? length : 0] = '\0';
+    binaries[0] = program;
+    if (dladdr((const void *)version_short, &library) != 0) binaries[1] = library.dli_fname;
+
+    // the folder with cases/demo.yaml near one of them
+    for (int i = 0; i < 6; i++) {
         char folder[PATH_MAX], file[PATH_MAX];
-        if (snprintf(folder, sizeof folder, "%.*s/%s", (int)(slash - binary), binary, places[i]) >= PATH_MAX) continue;
-        if (snprintf(file, sizeof file, "%s/cases/demo.yaml", folder) >= PATH_MAX) continue;
+        const char *const binary = binaries[i / 3], *const slash = binary ? strrchr(binary, '/') : NULL;
+        if (!slash) continue;
+        const int n = snprintf(folder, sizeof folder, "%.*s/%s", (int)(slash - binary), binary, places[i % 3]);
+        if (n >= PATH_MAX || snprintf(file, sizeof file, "%s/cases/demo.yaml", folder) >= PATH_MAX) continue;
         if (access(file, R_OK) == 0 && realpath(folder, share)) return true;
     }
     return false;
-}
-
-bool version_share(char share[PATH_MAX]) {
-    char program[PATH_MAX];
-    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length > 0) {
-        program[length] = '\0';
-        if (share_near(program, share)) return true;
-    }
-
-    // the library in another program
-    Dl_info library;
-    return dladdr((const void *)version_short, &library) != 0 && library.dli_fname &&
-           share_near(library.dli_fname, share);
 }

@@ -162,16 +162,21 @@ enum status handle_renew(struct shoal *run) {
     return status;
 }
 
-enum status handle_take_up(struct shoal *run,
-                           enum status (*fill)(struct state *state, const struct school *school, const void *from),
-                           const void *from, const struct integrator_counts *totals) {
+enum status handle_restore(struct shoal *run, const void *state) {
+    state_table_copy(run->simulation->state, state, run->simulation->school, true);
+    return handle_renew(run);
+}
+
+enum status handle_take_up(struct shoal *run, const struct state *from, const struct checkpoint *checkpoint,
+                           const struct integrator_counts *totals) {
     const struct case_values *const values = &run->shared->values;
     struct school_parameters parameters = values->school;
     parameters.stop = handle_stop;
     struct school *school;
     TRY(fish_school_create(run->arena, &school, &parameters));
     struct state *const state = state_create(run->arena, school);
-    TRY(fill(state, school, from));
+    if (from) state_table_copy(state, from, school, true);
+    if (checkpoint) TRY(checkpoint_set_state(checkpoint, state, school));
 
     // the simulation owns school and state
     TRY(simulate_take_up(run->arena, &run->simulation, values, school, state, totals));

@@ -14,6 +14,7 @@
 
 #include "base/arena.h"
 #include "case/case.h"
+#include "result/checkpoint.h"
 #include "result/durable.h"
 #include "result/result_file.h"
 #include "run/checkpoints.h"
@@ -91,10 +92,13 @@ enum status handle_evaluate(const struct simulation *simulation);
 /* Restart the integrator. On failure the run is marked as failed. */
 enum status handle_renew(struct shoal *run);
 
-/* Create the simulation of a run from a new state, which fill sets. Fails as simulate_take_up or fill. */
-enum status handle_take_up(struct shoal *run,
-                           enum status (*fill)(struct state *state, const struct school *school, const void *from),
-                           const void *from, const struct integrator_counts *totals);
+/* Copy a state, of a run with the same case, into the run and restart the integrator: a part for handle_call. */
+enum status handle_restore(struct shoal *run, const void *state);
+
+/* Create the simulation of a run from a copy of a state, or from a checkpoint. Fails as simulate_take_up or
+ * checkpoint_set_state. */
+enum status handle_take_up(struct shoal *run, const struct state *from, const struct checkpoint *checkpoint,
+                           const struct integrator_counts *totals);
 
 /* Change gait or goal of a fish at an event (doc/model.md, section 11): set the value of a key: "wave.amplitude",
  * "wave.frequency", "control.bias", "control.desired_heading" (one number, in the unit of the case file) or

@@ -73,8 +73,9 @@ int shoal_open_text(struct shoal **run, const char *text, const char *folder, in
 
 // ---- the result file of a run
 
-// release checkpoints and claim of a closed result file
+// forget a closed result file; release its checkpoints and claim
 static void release_record(struct shoal *run) {
+    run->record = (struct record){0};
     run->record_path = NULL;
     arena_free(run->checkpoints.arena);
     run->checkpoints.arena = NULL;
@@ -89,14 +90,13 @@ static enum status check_process(struct shoal *run, const char *function) {
                 run->record_path, (long)run->claim.process);
 
     result_file_abandon(run->record.file);
-    run->record = (struct record){0};
     release_record(run);
     return STATUS_FILE;
 }
 
-// a status in the file: of the whole run
-static enum status close_record(struct shoal *run, const void *data) {
-    (void)data;
+// close the file with the status of the whole run, or with a failure of writing
+static enum status close_record(struct shoal *run, const void *failure) {
+    if (failure) return record_close(&run->record, *(const enum status *)failure);
     const bool has_ended = run->simulation->state->event >= run->simulation->n_events;
     enum status status = has_ended ? STATUS_OK : STATUS_STOPPED;
     if (run->has_failed) status = status_fail(STATUS_SOLVER, "%s", run->failure);
@@ -107,16 +107,17 @@ static enum status close_record(struct shoal *run, const void *data) {
     return closed == status ? STATUS_OK : closed;
 }
 
-static enum status end_record(struct shoal *run) {
-    const enum status status = handle_with_netcdf(run, close_record, NULL);
-    run->record = (struct record){0};
+/* Close the file, if there is one; returns the failure, if not NULL. The run continues without the file. */
+static enum status end_record(struct shoal *run, const enum status *failure) {
+    enum status status = failure ? *failure : STATUS_OK;
+    if (run->record.file) status = handle_with_netcdf(run, close_record, failure);
     release_record(run);
     return status;
 }
 
 void shoal_close(struct shoal *run) {
     if (!run) return;
-    if (check_process(run, __func__) == STATUS_OK && run->record.file) end_record(run);
+    if (check_process(run, __func__) == STATUS_OK && run->record.file) end_record(run, NULL);
     handle_release(run);
 }
 
@@ -125,18 +126,6 @@ static enum status write_row(struct shoal *run, const void *data) {
     if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
     struct result_row row = *handle_row(run);
     return record_row(&run->record, &row);
-}
-
-static enum status close_failed(struct shoal *run, const void *status) {
-    return record_close(&run->record, *(const enum status *)status);
-}
-
-/* Close the file after a failure; returns the failure. The run continues without the file. */
-static enum status drop_record(struct shoal *run, enum status failure) {
-    if (run->record.file) failure = handle_with_netcdf(run, close_failed, &failure);
-    run->record = (struct record){0};
-    release_record(run);
-    return failure;
 }
 
 static enum status replace_checkpoint(struct shoal *run, const void *data) {
@@ -173,7 +162,7 @@ int shoal_step(struct shoal *run) {
     // a row that is due
     TRY(check_process(run, __func__));
     status = handle_with_netcdf(run, write_row, NULL);
-    if (status != STATUS_OK) status = drop_record(run, status);
+    if (status != STATUS_OK) status = end_record(run, &status);
     if (status == STATUS_SOLVER) handle_fail(run);
     TRY(status);
 
@@ -412,7 +401,7 @@ int shoal_write(struct shoal *run, const char *path, int overwrite) {
     }
 
     const enum status status = handle_call(run, begin_record, &(struct target){path, overwrite});
-    return status == STATUS_OK ? STATUS_OK : drop_record(run, status);
+    return status == STATUS_OK ? STATUS_OK : end_record(run, &status);
 }
 
 int shoal_checkpoint(struct shoal *run) {
@@ -426,7 +415,7 @@ int shoal_checkpoint(struct shoal *run) {
 int shoal_write_end(struct shoal *run) {
     TRY(handle_need(run, __func__, "run"));
     TRY(check_process(run, __func__));
-    return run->record.file ? end_record(run) : STATUS_OK;
+    return run->record.file ? end_record(run, NULL) : STATUS_OK;
 }
 
 // ---- the library

@@ -140,11 +140,6 @@ static enum status change_make(struct shoal *run, const void *data) {
     return handle_renew(run);
 }
 
-static enum status restore_state(struct shoal *run, const void *kept) {
-    state_table_copy(run->simulation->state, kept, run->simulation->school, true);
-    return handle_renew(run);
-}
-
 /* Change a run; after a failure restore the state before the change. */
 static enum status change_run(struct shoal *run, const struct change *change) {
     TRY(handle_renew(run));
@@ -158,7 +153,7 @@ static enum status change_run(struct shoal *run, const struct change *change) {
         char reason[sizeof run->failure];
         snprintf(reason, sizeof reason, "%s", status_message());
         handle_forget_row(run);
-        if (handle_call(run, restore_state, kept) != STATUS_OK) handle_fail(run);
+        if (handle_call(run, handle_restore, kept) != STATUS_OK) handle_fail(run);
         status_fail(status, "%s", reason);
     }
 

@@ -8,15 +8,10 @@
 #include "run/record.h"
 #include "state/state.h"
 
-static enum status copy_state(struct state *state, const struct school *school, const void *from) {
-    state_table_copy(state, from, school, true);
-    return STATUS_OK;
-}
-
 static enum status clone_run(struct shoal *copy, const void *data) {
     const struct shoal *const run = data;
     copy->result_path = arena_text(copy->arena, "%s", run->result_path);
-    TRY(handle_take_up(copy, copy_state, run->simulation->state, &run->simulation->totals));
+    TRY(handle_take_up(copy, run->simulation->state, NULL, &run->simulation->totals));
     copy->when_reached = run->when_reached;
     return STATUS_OK;
 }
@@ -27,12 +22,6 @@ int shoal_clone(struct shoal **copy, struct shoal *run) {
     TRY(handle_check_alive(run, __func__));
     TRY(handle_renew(run));
     return handle_create(copy, run, clone_run, run);
-}
-
-static enum status restore_run(struct shoal *run, const void *data) {
-    const struct shoal *const from = data;
-    state_table_copy(run->simulation->state, from->simulation->state, run->simulation->school, true);
-    return handle_renew(run);
 }
 
 int shoal_restore(struct shoal *run, struct shoal *from) {
@@ -51,7 +40,7 @@ int shoal_restore(struct shoal *run, struct shoal *from) {
 
     handle_forget_row(run);
     run->simulation->totals = from->simulation->totals;
-    const enum status status = handle_call(run, restore_run, from);
+    const enum status status = handle_call(run, handle_restore, from->simulation->state);
     run->when_reached = from->when_reached;
     run->has_failed = false;
     if (status != STATUS_OK) handle_fail(run);
@@ -77,10 +66,6 @@ int shoal_save(struct shoal *run, const char *path) {
     return checkpoint_write(run->arena, path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
 }
 
-static enum status load_state(struct state *state, const struct school *school, const void *from) {
-    return checkpoint_set_state(from, state, school);
-}
-
 static enum status load_run(struct shoal *run, const void *data) {
     const char *const path = data;
     struct arena *const arena = arena_create(run->arena, path);
@@ -89,7 +74,7 @@ static enum status load_run(struct shoal *run, const void *data) {
     const char *const text = checkpoint.effective;
     enum status status = checkpoint_check_program(&checkpoint);
     if (status == STATUS_OK) status = case_parse(&run->shared->values, text, strlen(text), "case", NULL, 0, NULL);
-    if (status == STATUS_OK) status = handle_take_up(run, load_state, &checkpoint, &checkpoint.totals);
+    if (status == STATUS_OK) status = handle_take_up(run, NULL, &checkpoint, &checkpoint.totals);
     if (status == STATUS_FILE) return status_fail(status, "%s: %s", path, status_message());
     TRY(status);
     run->result_path = record_path(run->arena, &run->shared->values);

@@ -50,17 +50,7 @@ static bool netcdf_has_memory(void) {
     return needed != NULL;
 }
 
-static enum status netcdf_failed(const char *path, int code) {
-    return target_failed(path, code == NC_ENOMEM ? ENOMEM : code, nc_strerror(code));
-}
-
 // ---- definitions
-
-/* Initialise a writer without a file. */
-static void writer_begin(struct netcdf_writer *writer, const char *path) {
-    *writer = (struct netcdf_writer){.path = path, .part.descriptor = -1, .file = -1, .last_fsync = -INFINITY};
-    if (!netcdf_has_memory()) writer->code = ENOMEM;
-}
 
 /* Whether all went well; a writer that is not open is closed. The path of the writer is now a part of the writer. */
 static enum status opened(struct netcdf_writer *writer, const char *path) {
@@ -68,13 +58,14 @@ static enum status opened(struct netcdf_writer *writer, const char *path) {
     writer->path = writer->part.target + (path[0] == '/' ? 0 : strlen("./"));
     if (code == NC_NOERR) return STATUS_OK;
     netcdf_finish(writer);
-    return netcdf_failed(path, code);
+    return target_failed(path, code == NC_ENOMEM ? ENOMEM : code, nc_strerror(code));
 }
 
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command) {
     char local[PATH_MAX], libraries[VERSION_LENGTH], source[2 * VERSION_LENGTH], date[32];
     size_t buffer_bytes = BUFFER_BYTES;
-    writer_begin(writer, path);
+    *writer = (struct netcdf_writer){.path = path, .part.descriptor = -1, .file = -1, .last_fsync = -INFINITY};
+    if (!netcdf_has_memory()) writer->code = ENOMEM;
     CALL(writer, netcdf_local_path(path, local));
     CALL(writer, durable_begin(&writer->part, local, 0666));
     CALL(writer, nc__create(writer->part.name, NC_CLOBBER | NC_64BIT_DATA, 0, &buffer_bytes, &writer->file));
@@ -100,7 +91,8 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
 
 enum status netcdf_continue(struct netcdf_writer *writer, const char *path) {
     size_t buffer_bytes = BUFFER_BYTES;
-    writer_begin(writer, path);
+    *writer = (struct netcdf_writer){.path = path, .part.descriptor = -1, .file = -1, .last_fsync = -INFINITY};
+    if (!netcdf_has_memory()) writer->code = ENOMEM;
     CALL(writer, netcdf_local_path(path, writer->part.target));
     CALL(writer, nc__open(writer->part.target, NC_WRITE, &buffer_bytes, &writer->file));
     CALL(writer, nc_set_fill(writer->file, NC_NOFILL, NULL));
@@ -226,7 +218,9 @@ enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite) {
     if (writer->code == NC_NOERR) TRY(target_check(writer->path, TARGET_NETCDF, overwrite));
     CALL(writer, durable_publish(&writer->part, overwrite));
     writer->last_fsync = clock_seconds(CLOCK_MONOTONIC);
-    return writer->code == NC_NOERR ? STATUS_OK : netcdf_failed(writer->path, writer->code);
+    const int code = writer->code;
+    if (code == NC_NOERR) return STATUS_OK;
+    return target_failed(writer->path, code == NC_ENOMEM ? ENOMEM : code, nc_strerror(code));
 }
 
 void netcdf_reopen(struct netcdf_writer *writer) {
@@ -295,13 +289,9 @@ static uint64_t header_number(struct header *header, int n_bytes, uint64_t most)
     return header->is_damaged ? 0 : number;
 }
 
-static uint64_t fill_up(uint64_t n) {
-    return (n + 3) / 4 * 4;
-}
-
 /* Skip as many bytes as the next number tells, at most `most`, times the size of a value, and the padding. */
 static void header_skip(struct header *header, uint64_t most, uint64_t size) {
-    const uint64_t n = fill_up(size * header_number(header, header->n_bytes, most));
+    const uint64_t n = (size * header_number(header, header->n_bytes, most) + 3) / 4 * 4;
     const off_t place = ftello(header->file);
     header->is_damaged |= place < 0 || (uint64_t)place > header->size || n > header->size - (uint64_t)place;
     if (!header->is_damaged) fseeko(header->file, (off_t)n, SEEK_CUR);
@@ -374,7 +364,7 @@ static void header_read(struct header *header, int version, struct netcdf_rows *
         if (begin < rows->begin_of_rows) rows->begin_of_rows = begin;
         n_growing++;
         last_bytes = bytes;
-        rows->bytes += fill_up(bytes);
+        rows->bytes += (bytes + 3) / 4 * 4;
         header->is_damaged |= rows->bytes > max_size;
     }
 

@@ -218,22 +218,19 @@ static void file_define_variable(struct result_file *result, int i, const int *d
 
 // ---- values
 
-/* Write the whole of a constant, or the next row of a variable with time. */
-static void write_variable(struct result_file *result, int i, const struct result_row *row) {
-    const struct result_variable *variable = &result_table[i];
-    result_values_fill(variable, result->length, row, result->buffer);
-    size_t start[RESULT_MAX_DIMENSIONS] = {0}, count[RESULT_MAX_DIMENSIONS];
-    for (int d = 0; variable->dimension[d] != NONE; d++) count[d] = result->length[variable->dimension[d]];
-    if (result_table_has(variable, TIME)) start[0] = result->n_rows;
-    netcdf_write(&result->writer, result->number[i], start, count, result->buffer);
-}
+/* Which variables are written: the constants, the values of a row, or the values of a steady state. */
+enum part_of_file { CONSTANTS, ROW, STEADY };
 
-/* Write all constants, or all of a row. */
-static void write_variables(struct result_file *result, bool with_time, const struct result_row *row) {
+/* Write the whole of each constant, or the next row of each variable with time. */
+static void write_variables(struct result_file *result, enum part_of_file part, const struct result_row *row) {
     for (int i = 0; i < result_table_n; i++) {
         const struct result_variable *const variable = &result_table[i];
-        if (!file_is_written(result, variable) || result_table_has(variable, TIME) != with_time) continue;
-        write_variable(result, i, row);
+        if (!file_is_written(result, variable) || result_table_has(variable, TIME) != (part == ROW)) continue;
+        if (part == STEADY && !variable->of_steady) continue;
+        result_values_fill(variable, result->length, row, result->buffer);
+        size_t start[RESULT_MAX_DIMENSIONS] = {part == ROW ? result->n_rows : 0}, count[RESULT_MAX_DIMENSIONS];
+        for (int d = 0; variable->dimension[d] != NONE; d++) count[d] = result->length[variable->dimension[d]];
+        netcdf_write(&result->writer, result->number[i], start, count, result->buffer);
     }
 }
 
@@ -356,7 +353,7 @@ enum status result_file_create(struct arena *arena, struct result_file **result,
         netcdf_end_definitions(writer);
 
         // the constants
-        write_variables(new, false, &(struct result_row){.school = origin->school});
+        write_variables(new, CONSTANTS, &(struct result_row){.school = origin->school});
         netcdf_sync(&new->writer, true);
         const int code = new->writer.code;
         if (code != 0) status = target_failed(origin->path, code, netcdf_reason(code));
@@ -372,10 +369,7 @@ enum status result_file_create(struct arena *arena, struct result_file **result,
 }
 
 void result_file_steady(struct result_file *result, const struct school *school, const struct steady_values *steady) {
-    const struct result_row row = {.school = school, .steady = steady};
-    for (int i = 0; i < result_table_n; i++) {
-        if (result_table[i].of_steady) write_variable(result, i, &row);
-    }
+    write_variables(result, STEADY, &(struct result_row){.school = school, .steady = steady});
 }
 
 enum status result_file_publish(struct result_file *result, const char *run_status) {
@@ -425,7 +419,7 @@ enum status result_file_row(struct result_file *result, const struct result_row 
         if ((size_t)row->state->wake[f].n_vortex > result->length[VORTEX])
             return status_fail(STATUS_FILE, "%s: %d vortices of %s at t = %g s, but the file has room for %zu", path,
                                row->state->wake[f].n_vortex, row->school->fish[f].name, t, result->length[VORTEX]);
-    write_variables(result, true, row);
+    write_variables(result, ROW, row);
     result->n_rows++;
     netcdf_sync(&result->writer, false);
     if (result->writer.code == 0) return STATUS_OK;

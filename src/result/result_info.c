@@ -134,7 +134,7 @@ static enum status print_last_row(const struct info *info) {
     return STATUS_OK;
 }
 
-static enum status info_print_all(const struct netcdf_reader *reader, FILE *stream) {
+enum status result_info(const struct netcdf_reader *reader, FILE *stream) {
     static const char *const notes[][2] = {
         {"closest_approach", "closest approach"}, {"merged_vortices", "merged vortices"}, {"warnings", "warning"}};
     struct info info = {.reader = reader, .stream = stream};
@@ -172,10 +172,6 @@ static enum status info_print_all(const struct netcdf_reader *reader, FILE *stre
             fprintf(stream, "  %-20s  %s\n", notes[i][1], line);
     }
     return STATUS_OK;
-}
-
-enum status result_info(struct arena *arena, const char *path, FILE *stream) {
-    return netcdf_print(arena, path, info_print_all, stream);
 }
 
 // ---- steady states

@@ -8,13 +8,12 @@
 #include "base/status.h"
 #include "result/netcdf.h"
 
-/* Print the status of a run, the last values of every fish, and the effort of the solver. arena: for scratch. Fails
- * with STATUS_FILE. */
-enum status result_info(struct arena *arena, const char *path, FILE *stream);
+/* Print the status of a run, the last values of every fish, and the effort of the solver. These functions request
+ * memory of the arena of the reader (netcdf_print). Fails with STATUS_FILE. */
+enum status result_info(const struct netcdf_reader *reader, FILE *stream);
 
 /* Print the steady state of a result file: effort, residual, multipliers, and a table of the fish; nothing for a file
- * without a steady state. These functions request memory of the arena of the reader (netcdf_print). Fails with
- * STATUS_FILE. */
+ * without a steady state. Fails with STATUS_FILE. */
 enum status result_info_steady(const struct netcdf_reader *reader, FILE *stream);
 
 /* Print the steady state of a result file as a JSON object with "file", "fish", and every variable steady_... as a

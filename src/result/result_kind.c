@@ -56,10 +56,11 @@ enum status result_kind_info(struct arena *arena, int n_kinds, const struct resu
         struct stat facts;
         const double bytes = stat(path, &facts) == 0 ? (double)facts.st_size : 0;
         fprintf(stream, "  size        %.1f %s\n", bytes < 1e6 ? bytes / 1e3 : bytes / 1e6, bytes < 1e6 ? "kB" : "MB");
+        TRY(kind->info(reader, stream));
     }
 
     arena_free(scratch);
-    return form == RESULT_INFO_TEXT ? kind->info(arena, path, stream) : STATUS_OK;
+    return STATUS_OK;
 }
 
 // ---- the list of variables

@@ -8,6 +8,7 @@
 
 #include "base/arena.h"
 #include "base/status.h"
+#include "result/netcdf.h"
 
 /* A row of the list of variables. */
 struct result_listed {
@@ -22,8 +23,8 @@ struct result_kind {
     int schema;              /* the schema that this program reads */
     const char *case_name;   /* the attribute that holds the case */
 
-    /* Print the summary of this kind, after the common part. arena: for scratch. Fails with STATUS_FILE. */
-    enum status (*info)(struct arena *arena, const char *path, FILE *stream);
+    /* Print the summary of this kind, after the common part. Fails with STATUS_FILE. */
+    enum status (*info)(const struct netcdf_reader *reader, FILE *stream);
 
     /* Row i, from 0, of the list of variables; 0 beyond the last. */
     int (*listed)(int i, struct result_listed *listed);

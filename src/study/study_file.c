@@ -473,15 +473,16 @@ enum { MAX_MEMBERS = 100000 };
 
 /* An open study.nc. */
 struct reading {
-    struct netcdf_reader reader;
+    const struct netcdf_reader *reader;
     struct case_values *study;
     struct member_file *member;
     size_t n_members, n_text; /* lengths of dimensions */
 };
 
-static enum status study_file_read_members(struct arena *arena, struct reading *reading) {
+static enum status study_file_read_members(struct reading *reading) {
     const int n_fish = reading->study->school.n_fish;
-    const struct netcdf_reader *const reader = &reading->reader;
+    const struct netcdf_reader *const reader = reading->reader;
+    struct arena *const arena = reader->arena;
     size_t length;
 
     // an error study with refinement has a variable number of members
@@ -530,18 +531,16 @@ static enum status study_file_read_members(struct arena *arena, struct reading *
     return STATUS_OK;
 }
 
-enum status study_file_read(struct arena *arena, const char *path, struct case_values **study,
+enum status study_file_read(const struct netcdf_reader *reader, struct case_values **study,
                             struct member_file **members, int *n_members) {
-    struct reading *reading;
+    struct reading reading = {.reader = reader};
     char *text;
-    NEW(arena, reading, 1);
-    enum status status = netcdf_open(arena, &reading->reader, path);
-    if (status == STATUS_OK) status = netcdf_attribute(&reading->reader, "study_case", &text);
-    if (status == STATUS_OK) status = study_folder_parse(arena, &reading->study, text, path, 0, NULL);
-    if (status == STATUS_OK) status = study_file_read_members(arena, reading);
-    *study = reading->study;
-    *members = reading->member;
-    *n_members = (int)reading->n_members;
+    enum status status = netcdf_attribute(reader, "study_case", &text);
+    if (status == STATUS_OK) status = study_folder_parse(reader->arena, &reading.study, text, reader->path, 0, NULL);
+    if (status == STATUS_OK) status = study_file_read_members(&reading);
+    *study = reading.study;
+    *members = reading.member;
+    *n_members = (int)reading.n_members;
     if (status == STATUS_OK || status == STATUS_MEMORY) return status;
     return status_fail(STATUS_FILE, "%s; write study.nc again with `shoal gather`", status_message());
 }
@@ -771,13 +770,12 @@ static enum status info_errors(struct arena *arena, const struct case_values *st
     return print_errors(sweep, members, stream);
 }
 
-enum status study_info(struct arena *parent, const char *path, FILE *stream) {
-    ARENA(arena, parent, owner);
-    MEMORY_BOUNDARY(STATUS_MEMORY);
+enum status study_info(const struct netcdf_reader *reader, FILE *stream) {
+    struct arena *const arena = reader->arena;
     struct case_values *study;
     struct member_file *members;
     int n, n_complete = 0;
-    TRY(study_file_read(arena, path, &study, &members, &n));
+    TRY(study_file_read(reader, &study, &members, &n));
 
     // the number of members, the number of complete members and the axes
     for (int m = 0; m < n; m++) n_complete += member_file_is_complete(&members[m]);

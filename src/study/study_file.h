@@ -24,9 +24,9 @@ enum status study_file_write(struct arena *arena, const char *path, const struct
                              const struct member_file *member, const struct convergence_orders *orders,
                              const struct error_sweep *errors, const char *command);
 
-/* Read study.nc into the arena: the study and the *n_members members, without the effective cases. Fails with
- * STATUS_FILE. */
-enum status study_file_read(struct arena *arena, const char *path, struct case_values **study,
+/* Read study.nc into the arena of the reader: the study and the *n_members members, without the effective cases. Fails
+ * with STATUS_FILE. */
+enum status study_file_read(const struct netcdf_reader *reader, struct case_values **study,
                             struct member_file **members, int *n_members);
 
 /* Row i, from 0, of the list of variables; 0 beyond the last row. */
@@ -57,6 +57,6 @@ enum status study_compare(const struct case_values *values, const struct compare
 enum status study_gather(const char *folder, const char *command, bool strict, FILE *stream, FILE *warnings);
 
 /* Print the contents of a study.nc: axes, members and orders. Fails with STATUS_FILE or STATUS_MEMORY. */
-enum status study_info(struct arena *arena, const char *path, FILE *stream);
+enum status study_info(const struct netcdf_reader *reader, FILE *stream);
 
 #endif

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/mathematics.h"
 #include "flow/flow.h"
 #include "flow/flow_at_bodies.h"
 #include "result/netcdf.h"
@@ -109,32 +110,21 @@ static enum status field_sum(struct arena *arena, struct field *field, const str
 
 // ---- the box
 
-static void include(double low[2], double high[2], int n, const double *x, const double *y) {
-    for (int i = 0; i < n; i++) {
-        low[0] = fmin(low[0], x[i]);
-        low[1] = fmin(low[1], y[i]);
-        high[0] = fmax(high[0], x[i]);
-        high[1] = fmax(high[1], y[i]);
-    }
-}
-
 void field_file_box(const struct field_row *row, double low[2], double high[2]) {
+    struct box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
     double margin = 0;
-    low[0] = low[1] = INFINITY;
-    high[0] = high[1] = -INFINITY;
-
     for (int f = 0; f < row->school->n_fish; f++) {
         const struct fish *const fish = &row->school->fish[f];
         const struct wake *const wake = &row->state->wake[f];
-        include(low, high, fish->n_nodes, row->state->y + fish->at.x, row->state->y + fish->at.y);
-        include(low, high, wake->n_vortex, wake->x, wake->y);
+        const double *const y = row->state->y;
+        box = box_union(box, box_around(fish->n_nodes, y + fish->at.x, y + fish->at.y));
+        box = box_union(box, box_around(wake->n_vortex, wake->x, wake->y));
         margin = fmax(margin, fish->length / 2);
     }
 
-    for (int i = 0; i < 2; i++) {
-        low[i] -= margin;
-        high[i] += margin;
-    }
+    box = box_widen(box, margin);
+    memcpy(low, box.low, sizeof box.low);
+    memcpy(high, box.high, sizeof box.high);
 }
 
 // ---- writing
@@ -238,7 +228,7 @@ enum status field_file_write(struct arena *arena, const char *path, int overwrit
 
 // ---- info
 
-static enum status grid_print_all(const struct netcdf_reader *file, FILE *stream) {
+enum status field_file_info(const struct netcdf_reader *file, FILE *stream) {
     static const char *const axes[] = {"x", "y"};
     double time;
     char *text;
@@ -260,8 +250,4 @@ static enum status grid_print_all(const struct netcdf_reader *file, FILE *stream
     TRY(netcdf_attribute(file, "comment", &text));
     fprintf(stream, "  it is       %s\n", text);
     return STATUS_OK;
-}
-
-enum status field_file_info(struct arena *arena, const char *path, FILE *stream) {
-    return netcdf_print(arena, path, grid_print_all, stream);
 }

@@ -50,8 +50,8 @@ void field_file_box(const struct field_row *row, double low[2], double high[2]);
 enum status field_file_write(struct arena *arena, const char *path, int overwrite, const char *run, const char *command,
                              const struct field_row *row, const struct field_grid *grid);
 
-/* Print time, grid and range of such a file. arena: for scratch. Fails with STATUS_FILE. */
-enum status field_file_info(struct arena *arena, const char *path, FILE *stream);
+/* Print time, grid and range of such a file. Fails with STATUS_FILE. */
+enum status field_file_info(const struct netcdf_reader *file, FILE *stream);
 
 /* Row i, from 0, of the list of variables; 0 beyond the last. */
 int field_file_listed(int i, struct result_listed *listed);

@@ -59,17 +59,13 @@ static void page_write_array(FILE *stream, const char *name, size_t bytes, const
 
 // ---- how much of the run
 
-static size_t at_least_1(double stride) {
-    return stride > 1 ? (size_t)stride : 1;
-}
-
 /* Choose which rows and vortices are left out. */
 static enum status page_choose(struct page *page) {
     const double per_byte = 4.0 / 3, rows = (double)page->n_rows, fish = (double)page->n_fish;
     const double bodies = rows * ((double)page->n_nodes * 2 * sizeof(uint16_t) + 4 * sizeof(double)) * per_byte;
     const double series = rows * (3 * fish * sizeof(float) + sizeof(double)) * per_byte;
-    page->body_stride = at_least_1(ceil(bodies / body_bytes));
-    page->series_stride = at_least_1(ceil(series / series_bytes));
+    page->body_stride = (size_t)fmax(1, ceil(bodies / body_bytes));
+    page->series_stride = (size_t)fmax(1, ceil(series / series_bytes));
     if (page->n_rows > 1 && (page->body_stride >= page->n_rows || page->series_stride >= page->n_rows))
         return status_fail(STATUS_FILE, "%s: a school of %zu fish with %zu nodes is too large for a page of 8 MB",
                            page->reader->file.path, page->n_fish, page->n_nodes);
@@ -91,8 +87,8 @@ static enum status page_choose(struct page *page) {
                           (double)page->n_wake_rows * (4 * sizeof(double) + 2 * fish * sizeof(int32_t))) *
                          per_byte;
     const double fraction = ceil(wakes / wake_bytes);
-    page->wake_stride = at_least_1(fmin(fraction, floor((double)page->n_wake_rows / MIN_WAKES)));
-    page->vortex_stride = at_least_1(ceil(fraction / (double)page->wake_stride));
+    page->wake_stride = (size_t)fmax(1, fmin(fraction, floor((double)page->n_wake_rows / MIN_WAKES)));
+    page->vortex_stride = (size_t)fmax(1, ceil(fraction / (double)page->wake_stride));
     return STATUS_OK;
 }
 

@@ -29,13 +29,14 @@ struct export {
 // ---- XML
 
 /* Write one array in base 64: the number of bytes, then the bytes. */
-static void vtk_write_array(FILE *stream, const char *type, const char *name, int components, size_t bytes,
+static void vtk_write_array(FILE *stream, const char *type, const char *name, int components, size_t n_values,
                             const void *values) {
     fprintf(stream, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"binary\">", type, name,
             components);
 
     // the number and the values are one sequence of bytes; 3 bytes make 4 letters, so groups of 24 need no padding
-    const uint64_t n = bytes;
+    const uint64_t n = n_values * sizeof(double);
+    const size_t bytes = n_values * sizeof(double);
     unsigned char head[24];
     const size_t in_head = bytes < sizeof head - sizeof n ? bytes : sizeof head - sizeof n;
     memcpy(head, &n, sizeof n);
@@ -43,14 +44,6 @@ static void vtk_write_array(FILE *stream, const char *type, const char *name, in
     text_print_base64(stream, sizeof n + in_head, head);
     text_print_base64(stream, bytes - in_head, (const char *)values + in_head);
     fputs("</DataArray>\n", stream);
-}
-
-static void write_doubles(FILE *stream, const char *name, size_t n, const double *values) {
-    vtk_write_array(stream, "Float64", name, 1, n * sizeof *values, values);
-}
-
-static void write_integers(FILE *stream, const char *name, size_t n, const int64_t *values) {
-    vtk_write_array(stream, "Int64", name, 1, n * sizeof *values, values);
 }
 
 static void begin_piece(FILE *stream, size_t n_points, size_t n_verts, size_t n_lines, size_t n_polys) {
@@ -74,7 +67,7 @@ static void write_points(struct arena *arena, FILE *stream, size_t n, const doub
     }
 
     fputs("<Points>\n", stream);
-    vtk_write_array(stream, "Float64", "Points", 3, 3 * n * sizeof *points, points);
+    vtk_write_array(stream, "Float64", "Points", 3, 3 * n, points);
     fputs("</Points>\n", stream);
 }
 
@@ -89,8 +82,8 @@ static void write_cells(struct arena *arena, FILE *stream, const char *kind, siz
     for (size_t i = 0; i < n; i++) numbers[i] = (int64_t)(first + i);
     for (size_t i = 0; i < n_cells; i++) offsets[i] = end += (int64_t)sizes[i];
     fprintf(stream, "<%s>\n", kind);
-    write_integers(stream, "connectivity", n, numbers);
-    write_integers(stream, "offsets", n_cells, offsets);
+    vtk_write_array(stream, "Int64", "connectivity", 1, n, numbers);
+    vtk_write_array(stream, "Int64", "offsets", 1, n_cells, offsets);
     fprintf(stream, "</%s>\n", kind);
 }
 
@@ -174,15 +167,15 @@ static enum status vtk_write_bodies(const struct export *export, struct arena *a
 
     begin_piece(stream, export->n_points, 0, n_fish, n_fish);
     fputs("<PointData Scalars=\"sheet_strength\">\n", stream);
-    write_doubles(stream, "sheet_strength", export->n_points, bodies.value);
-    if (export->control_arc) write_doubles(stream, "pressure", export->n_points, bodies.pressure_at);
+    vtk_write_array(stream, "Float64", "sheet_strength", 1, export->n_points, bodies.value);
+    if (export->control_arc) vtk_write_array(stream, "Float64", "pressure", 1, export->n_points, bodies.pressure_at);
     fputs("</PointData>\n<CellData>\n", stream);
-    write_integers(stream, "fish", n_cells, bodies.fish);
-    write_integers(stream, "outline", n_cells, bodies.is_outline);
+    vtk_write_array(stream, "Int64", "fish", 1, n_cells, bodies.fish);
+    vtk_write_array(stream, "Int64", "outline", 1, n_cells, bodies.is_outline);
     for (int i = 0; i < 2; i++) {
         // a value of each fish as one of each cell
         for (size_t c = 0; c < n_cells; c++) bodies.cell[c] = of_fish[i][c % n_fish];
-        write_doubles(stream, names[i], n_cells, bodies.cell);
+        vtk_write_array(stream, "Float64", names[i], 1, n_cells, bodies.cell);
     }
     fputs("</CellData>\n", stream);
     write_points(arena, stream, export->n_points, bodies.xy);
@@ -221,9 +214,9 @@ static enum status vtk_write_wakes(const struct export *export, struct arena *ar
 
     begin_piece(stream, n, n, 0, 0);
     fputs("<PointData Scalars=\"circulation\">\n", stream);
-    write_doubles(stream, "circulation", n, circulation);
-    write_doubles(stream, "age", n, age);
-    write_integers(stream, "fish", n, fish);
+    vtk_write_array(stream, "Float64", "circulation", 1, n, circulation);
+    vtk_write_array(stream, "Float64", "age", 1, n, age);
+    vtk_write_array(stream, "Int64", "fish", 1, n, fish);
     fputs("</PointData>\n", stream);
     write_points(arena, stream, n, x);
     write_cells(arena, stream, "Verts", n, size, 0);

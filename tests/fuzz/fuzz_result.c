@@ -54,9 +54,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n) {
     if (!nowhere) abort();
     write_file(bytes, n);
     struct arena *const arena = arena_create(NULL, "a test");
-    demand_file(result_info(arena, path, nowhere));
-    demand_file(study_info(arena, path, nowhere));
-    demand_file(field_file_info(arena, path, nowhere));
+    demand_file(netcdf_print(arena, path, result_info, nowhere));
+    demand_file(netcdf_print(arena, path, study_info, nowhere));
+    demand_file(netcdf_print(arena, path, field_file_info, nowhere));
     struct member_file member;
     demand_file(member_file_read(arena, &member, path));
     arena_free(arena);

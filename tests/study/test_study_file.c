@@ -65,6 +65,13 @@ static double value_of(int file, const char *name, size_t i, size_t j, size_t k)
     return value;
 }
 
+static enum status read_study(const char *path, struct case_values **study, struct member_file **members) {
+    struct netcdf_reader *reader;
+    NEW(test_arena(), reader, 1);
+    TRY(netcdf_open(test_arena(), reader, path));
+    return study_file_read(reader, study, members, &(int){0});
+}
+
 TEST(orders_are_kept_in_study_nc) {
     struct case_values study, *again;
     assert_int_equal(case_parse(&study, refined, strlen(refined), "refined.yaml", NULL, 0, NULL), STATUS_OK);
@@ -105,7 +112,7 @@ TEST(orders_are_kept_in_study_nc) {
     assert_string_equal(unit, "W");
     nc_close(file);
 
-    assert_int_equal(study_file_read(test_arena(), path, &again, &read, &(int){0}), STATUS_OK);
+    assert_int_equal(read_study(path, &again, &read), STATUS_OK);
     assert_string_equal(again->merged, study.merged);
     for (int m = 0; m < 6; m++) {
         assert_string_equal(read[m].status, "complete");
@@ -120,7 +127,7 @@ TEST(orders_are_kept_in_study_nc) {
     nc_close(file);
     struct case_values *none;
     struct member_file *nobody;
-    assert_int_equal(study_file_read(test_arena(), path, &none, &nobody, &(int){0}), STATUS_FILE);
+    assert_int_equal(read_study(path, &none, &nobody), STATUS_FILE);
     assert_non_null(strstr(status_message(), "write study.nc again"));
     unlink(path);
     arena_free(arena);
@@ -150,7 +157,7 @@ TEST(a_study_nc_that_does_not_fit_is_refused) {
             for (int q = 0; member_file_quantity(q) && how != MISSING; q++) {
                 is_read = is_read || strcmp(member_file_quantity(q)->name, name) == 0;
             }
-            const enum status status = study_file_read(test_arena(), path, &again, &read, &(int){0});
+            const enum status status = read_study(path, &again, &read);
             if (is_read && status != STATUS_FILE) fail_msg("%s, %d: not refused", name, how);
             if (status == STATUS_FILE) {
                 assert_non_null(strstr(status_message(), path));
