@@ -10,8 +10,8 @@ INTRODUCTION = """\
 
 <!-- Written by `make docs` from the tables in src/result/result_table.c and src/school/warnings.c and the text in scripts/make-output-doc.py. -->
 
-`shoal run CASE` writes one NetCDF file in the classic format with 64-bit sizes (CDF-5), which every NetCDF library since
-4.4 reads. A killed run keeps all rows written before.
+`shoal run CASE` writes one NetCDF file in the classic format with 64-bit sizes (CDF-5), which every NetCDF library
+since 4.4 reads.
 
 ## Opening
 
@@ -49,19 +49,19 @@ for ParaView. Figures and films: [gallery.md](gallery.md).
 | `wall` | 1, or 2 for a channel; only with `fluid.walls`, like `wall_y` |
 | `multiplier` | six for each fish; only in files of `shoal steady`, like the variables `steady_...` ([steady.md](steady.md)) |
 
-A fish with fewer points uses the first `n_nodes`, `n_edges`, `n_joints`, `n_sheet` slots. All other slots, and undefined
-quantities such as a mean in the first beat, are NaN, also the `_FillValue`.
+A fish with fewer points uses the first `n_nodes`, `n_edges`, `n_joints`, `n_sheet` slots. All other slots, and
+undefined quantities such as a mean in the first beat, are NaN.
 
 *Wake.* A fish has `wake_count` free vortices in the first slots, oldest first; `wake_birth` identifies a vortex. Rows
-between two records of the wake (`output.wake_interval`) hold NaN in `wake_x`, `wake_circulation` and `wake_birth`.
-`wake_circulation` has no decay (doc/model.md, section 8). The vortex that grows at the tail has no slot before the
-release.
+between two records of the wake (`output.wake_interval`) hold NaN there. The vortex that grows at the tail has no slot
+before the release.
 
 `output.precision: single` stores the variables marked *single* below as float, which halves the file.
 
 ## Reading during a run
 
-Readers can open the file at any time, and again to see new rows. The attribute `run_status` is the state of the run:
+Readers can open the file at any time, and again to see new rows. A killed run keeps all rows. The attribute
+`run_status` is the state of the run:
 
 | `run_status` | meaning |
 |---|---|
@@ -87,15 +87,14 @@ Attribute `case_effective` is the complete case, after includes, preset and `--s
     shoal run again.yaml
 
 reproduces the numbers, with the same program to the bit except `wall_time` and `history`. A run that was stopped and
-resumed also needs the times of the stops: `--checkpoint-at` with the attribute `checkpoint_at`.
+resumed also needs `--checkpoint-at` with the attribute `checkpoint_at`, the times of checkpoints besides
+`time.checkpoint_interval`.
 
 ## Attributes
 
-Besides the attributes above a file has `Conventions` (CF-1.10), `title` (the name of the case), `merged_vortices`,
-`checkpoint_at` (times of checkpoints besides `time.checkpoint_interval`, in the format of `--checkpoint-at`: `0.3,1.25`)
-and `shoal_schema` (1; a program with another number cannot read the file). Every variable has `long_name` and, except
-strings, `units`. `fish`, `xy`, `node_arc`, `edge_arc`, `joint_arc`, `sheet_arc` and `control_arc` are coordinates.
-"""
+Besides the attributes above a file has `Conventions` (CF-1.10), `title` (the name of the case), `merged_vortices` and
+`shoal_schema` (1; a program with another number cannot read the file). Every variable has `long_name` and, except
+strings, `units`. `fish`, `xy`, `node_arc`, `edge_arc`, `joint_arc`, `sheet_arc` and `control_arc` are coordinates. """
 
 # Title of a section, and the test on the dimensions of its variables.
 SECTIONS = [
@@ -111,11 +110,11 @@ OTHERS = {
     "study": """
 ## The file of a study
 
-`shoal study` and `shoal gather` make `study.nc` from the files of the members. Attribute `study_case` is the case
-with the sweep, `shoal_study` is 1. Each swept key is a variable over `member`, named like the key with `_` for `.`
-and without brackets; `long_name` is the path, `axis` the number of the axis, and `refine` is 1 on a refined axis. The
-last row of every variable over (time), (time, fish) or (time, fish, xy) is included, with `member` for `time`; for
-steady states also `steady_...`. A member without rows has NaN.
+`shoal study` and `shoal gather` make `study.nc` from the files of the members. Attribute `study_case` is the case with
+the sweep, `shoal_study` is 1. Each swept key is a variable over `member`, named like the key with `_` for `.` and
+without brackets; `long_name` is the path, `axis` the number of the axis, and `refine` is 1 on a refined axis. The last
+row of every variable over (time), (time, fish) or (time, fish, xy) is included, with `member` for `time`; for steady
+states also `steady_...`.
 
 A refined axis adds the variables over `level` and `group` (members that differ in the refined key only), for each
 quantity Q with orders ([cases.md](cases.md)): the order of the nose is `order_nose`. `error` adds the variables over
