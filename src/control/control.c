@@ -8,13 +8,11 @@
 // ---- Hermite interpolation between value and three derivatives at the start and the target with zero derivatives
 // at the end
 
-enum { N_GIVEN = 4 }; /* value and three derivatives */
-
 // value and derivatives by q, up to the third
-static void lead_derivatives(const struct lead *lead, double q, double given[N_GIVEN]) {
+static void lead_derivatives(const struct lead *lead, double q, double given[LEAD_GIVEN]) {
     double series[LEAD_TERMS];
     for (int i = 0; i < LEAD_TERMS; i++) series[i] = lead->series[i];
-    for (int k = 0; k < N_GIVEN; k++) {
+    for (int k = 0; k < LEAD_GIVEN; k++) {
         given[k] = 0;
         for (int i = LEAD_TERMS - 1; i >= 0; i--) given[k] = given[k] * q + series[i];
         for (int i = 0; i + 1 < LEAD_TERMS; i++) series[i] = (i + 1) * series[i + 1];
@@ -30,7 +28,7 @@ static double lead_progress(const struct lead *lead, double t) {
 double lead_value(const struct lead *lead, double t) {
     const double q = lead_progress(lead, t);
     if (q >= 1) return lead->target;
-    double given[N_GIVEN];
+    double given[LEAD_GIVEN];
     lead_derivatives(lead, q, given);
     return given[0];
 }
@@ -38,7 +36,7 @@ double lead_value(const struct lead *lead, double t) {
 double lead_rate(const struct lead *lead, double t) {
     const double q = lead_progress(lead, t);
     if (q >= 1) return 0;
-    double given[N_GIVEN];
+    double given[LEAD_GIVEN];
     lead_derivatives(lead, q, given);
     return given[1] / lead->ramp;
 }
@@ -54,17 +52,16 @@ double lead_integral(const struct lead *lead, double t) {
     return lead->integral + integral;
 }
 
-// start a change from given derivatives by q, over a ramp
-static void lead_start(struct lead *lead, double t, double ramp, const double given[N_GIVEN], double target) {
+void lead_begin(struct lead *lead, double t, double ramp, const double given[LEAD_GIVEN], double target) {
     lead->integral = lead_integral(lead, t);
-    const double from_target[N_GIVEN] = {given[0] - target, given[1], given[2], given[3]};
+    const double from_target[LEAD_GIVEN] = {given[0] - target, given[1], given[2], given[3]};
 
     // the sum over k of from_target[k] q^k/k! (1 - q)^4 (1 + 4 q + 10 q^2 + 20 q^3, truncated at q^(3-k)): given
     // derivatives at q = 0, zero derivatives at q = 1
     static const double fall[] = {1, -4, 6, -4, 1}, rise[] = {1, 4, 10, 20}, factorial[] = {1, 1, 2, 6};
     for (int i = 0; i < LEAD_TERMS; i++) lead->series[i] = 0;
-    for (int k = 0; k < N_GIVEN; k++) {
-        for (int j = 0; j + k < N_GIVEN; j++) {
+    for (int k = 0; k < LEAD_GIVEN; k++) {
+        for (int j = 0; j + k < LEAD_GIVEN; j++) {
             for (int i = 0; i < 5; i++) lead->series[k + j + i] += from_target[k] / factorial[k] * rise[j] * fall[i];
         }
     }
@@ -77,23 +74,18 @@ static void lead_start(struct lead *lead, double t, double ramp, const double gi
 
 void lead_change(struct lead *lead, double t, double ramp, double target) {
     if (lead->target == target) return;
-    double given[N_GIVEN] = {lead->target, 0, 0, 0};
+    double given[LEAD_GIVEN] = {lead->target, 0, 0, 0};
     const double q = lead_progress(lead, t);
     if (q < 1) lead_derivatives(lead, q, given);
 
     // derivatives by q of the new ramp
     double ratio = 1;
-    for (int k = 1; k < N_GIVEN; k++) {
+    for (int k = 1; k < LEAD_GIVEN; k++) {
         if (q < 1) ratio *= ramp / lead->ramp;
         given[k] *= ratio;
     }
 
-    lead_start(lead, t, ramp, given, target);
-}
-
-void lead_begin(struct lead *lead, double t, double ramp, double value, double rate, double target) {
-    const double given[N_GIVEN] = {value, rate * ramp, 0, 0};
-    lead_start(lead, t, ramp, given, target);
+    lead_begin(lead, t, ramp, given, target);
 }
 
 // ---- headings and laws
@@ -172,22 +164,17 @@ double control_desired_heading(const struct fish *fish, const struct control_mem
     return atan2(away[1], away[0]);
 }
 
-// argument of the hyperbolic tangent of the laws
-static double law_argument(const struct fish *fish, const struct control_memory *memory, double t, double direction,
-                           double more, const double *y) {
-    return fish->control.gain * angle_wrap(direction - control_desired_heading(fish, memory, t, y)) + more;
-}
-
 double control_law(const struct fish *fish, const struct control_memory *memory, double t, double direction,
                    double more, const double *y) {
-    return fish->control.limit * tanh(law_argument(fish, memory, t, direction, more, y));
+    const double error = angle_wrap(direction - control_desired_heading(fish, memory, t, y));
+    return fish->control.limit * tanh(fish->control.gain * error + more);
 }
 
-// law heading, between two events
+// argument of the hyperbolic tangent of law heading, between two events
 static double heading_argument(const struct fish *fish, const struct control_memory *memory, double t, double since,
                                const double *y) {
-    const double feedforward = fish->control.feedforward * (memory->moment + since * memory->moment_rate);
-    return law_argument(fish, memory, t, control_heading(fish, y), feedforward, y);
+    const double error = angle_wrap(control_heading(fish, y) - control_desired_heading(fish, memory, t, y));
+    return fish->control.gain * error + fish->control.feedforward * (memory->moment + since * memory->moment_rate);
 }
 
 void control_residual(const struct fish *fish, const struct control_memory *memory, double t, double since,
@@ -348,7 +335,7 @@ void control_set(const struct fish *fish, struct control_memory *memory, enum co
     }
     double rate;
     const double now = table_heading(&fish->control, t, &rate);
-    lead_begin(&memory->heading, t, ramp, now, rate, now + angle_wrap(value - now));
+    lead_begin(&memory->heading, t, ramp, (const double[]){now, rate * ramp, 0, 0}, now + angle_wrap(value - now));
     memory->has_heading = 1;
 }
 

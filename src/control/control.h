@@ -31,8 +31,10 @@ double lead_integral(const struct lead *lead, double t);
  * of base/mathematics.h. No-op for the present target. */
 void lead_change(struct lead *lead, double t, double ramp, double target);
 
-/* The same from a given value and rate, for a quantity that the lead did not describe before time t. */
-void lead_begin(struct lead *lead, double t, double ramp, double value, double rate, double target);
+/* The same from a given value and its first three derivatives by q of the ramp, for a quantity that the lead did not
+ * describe before time t. */
+enum { LEAD_GIVEN = 4 };
+void lead_begin(struct lead *lead, double t, double ramp, const double given[LEAD_GIVEN], double target);
 
 /* Largest number of waypoints that can be set during a run. */
 enum { CONTROL_MAX_WAYPOINTS = 32 };

@@ -45,14 +45,10 @@ static struct drag_at drag_tangential(const struct fish *fish, int k, double wav
     return (struct drag_at){resistance * speed, resistance + 2 * resistance_slope * speed * speed};
 }
 
-static struct drag_at drag_normal(const struct fish *fish, int k, double speed) {
-    return drag_speed_law(fish, fish->drag_normal[k], speed);
-}
-
 void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2],
                 double friction[2]) {
     const double along = drag_tangential(fish, k, fish->waving, edge_dot(w, s->t)).force;
-    const double across = drag_normal(fish, k, edge_dot(w, s->n)).force;
+    const double across = drag_speed_law(fish, fish->drag_normal[k], edge_dot(w, s->n)).force;
     for (int i = 0; i < 2; i++) {
         force[i] = -along * s->t[i] - across * s->n[i];
         friction[i] = -along * s->t[i];
@@ -62,7 +58,8 @@ void drag_force(const struct fish *fish, int k, const struct edge *s, const doub
 void drag_slope(const struct fish *fish, int k, const struct edge *s, const double w[2], double by_velocity[2][2],
                 double by_turn[2]) {
     const double wt = edge_dot(w, s->t), wn = edge_dot(w, s->n);
-    const struct drag_at along = drag_tangential(fish, k, fish->waving, wt), across = drag_normal(fish, k, wn);
+    const struct drag_at along = drag_tangential(fish, k, fish->waving, wt);
+    const struct drag_at across = drag_speed_law(fish, fish->drag_normal[k], wn);
 
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) {

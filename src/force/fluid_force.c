@@ -39,27 +39,25 @@ void fluid_force_residual(const struct fish *fish, const struct flow_at_body *fl
     }
 }
 
-static double fluid_force_moment_about(const double place[2], const double about[2], const double force[2]) {
-    return (place[0] - about[0]) * force[1] - (place[1] - about[1]) * force[0];
-}
-
 struct fluid_forces fluid_force_of_edge(const struct fish *fish, const struct flow_at_body *flow, int k,
                                         const double about[2], const double *y) {
     const struct edge_forces on = forces_of_edge(fish, flow, k, y);
+    const double arm[2] = {on.edge.middle[0] - about[0], on.edge.middle[1] - about[1]};
     struct fluid_forces forces = {.resistive = {on.drag[0], on.drag[1]},
                                   .friction = {on.friction[0], on.friction[1]},
-                                  .resistive_moment = fluid_force_moment_about(on.edge.middle, about, on.drag),
-                                  .friction_moment = fluid_force_moment_about(on.edge.middle, about, on.friction)};
+                                  .resistive_moment = edge_cross(arm, on.drag),
+                                  .friction_moment = edge_cross(arm, on.friction)};
 
     for (int end = 0; end < 2; end++) {
-        const double node[2] = {y[edge_place(fish, 0, k + end)], y[edge_place(fish, 1, k + end)]};
+        const double arm_of_node[2] = {y[edge_place(fish, 0, k + end)] - about[0],
+                                       y[edge_place(fish, 1, k + end)] - about[1]};
         double force[2];
         for (int i = 0; i < 2; i++) {
             force[i] = on.reactive[end][i] + (end == 1 ? on.tail[i] : 0);
             forces.reactive[i] += force[i];
         }
 
-        forces.reactive_moment += fluid_force_moment_about(node, about, force);
+        forces.reactive_moment += edge_cross(arm_of_node, force);
     }
 
     return forces;

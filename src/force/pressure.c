@@ -257,12 +257,13 @@ void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
     }
 }
 
-// by the positions of the nodes. Convection: the tangent turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|;
-// spanwise flow: E3 dx_c is linear in the positions
-static void forces_by_places(const struct pressure *p, struct coupling_block *rows) {
+void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_block *rows) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes, n_control = fish->n_control;
-    double *const x = p->spread, *const y = p->spread + n_control;
+    double *const force[2] = {p->spread, p->spread + n_control};
+
+    // by the positions. Convection: the tangent turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|; spanwise
+    // flow: E3 dx_c is linear in the positions
     for (int m = 0; m < 2 * n; m++) {
         const int i = m / n;
         const double *const slope = fish->control_by_node[1] + (long)(m % n) * n_control;
@@ -271,21 +272,15 @@ static void forces_by_places(const struct pressure *p, struct coupling_block *ro
             const struct direction *const body = &point->body;
             const double across = edge_dot(point->slip, body->n), tau = slip_along(point);
             const double turn = point->strength / body->length * body->n[i] * slope[c];
-            x[c] = turn * (across * body->n[0] - tau * body->t[0]);
-            y[c] = turn * (across * body->n[1] - tau * body->t[1]);
+            force[0][c] = turn * (across * body->n[0] - tau * body->t[0]);
+            force[1][c] = turn * (across * body->n[1] - tau * body->t[1]);
             if (!(fish->strip_depth > 0)) continue;
             const double span = point->before * point->divergence * fish->control_interval[c] * slope[c];
-            x[c] -= i == 1 ? span : 0;
-            y[c] += i == 0 ? span : 0;
+            force[0][c] -= i == 1 ? span : 0;
+            force[1][c] += i == 0 ? span : 0;
         }
         spread_forces(p, rows->value + (long)m * rows->n_rows);
     }
-}
-
-void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_block *rows) {
-    const struct fish *fish = p->fish;
-    const int n = fish->n_nodes;
-    forces_by_places(p, rows);
 
     // suction by strength and tangent at the nose, and through tau by the tangent at control point 0
     const struct direction *const nose = &p->nose, *const first = &p->point[0].body;
@@ -302,18 +297,17 @@ void pressure_own_jacobian(struct pressure *p, const double *y, struct coupling_
     }
 
     // by the strengths: convection and spanwise flow, then rotation of the momentum
-    double *const force[2] = {p->spread, p->spread + fish->n_control};
     for (int j = 0; j < fish->n_sheet; j++) {
         double *const column = rows->value + (long)(2 * n + j) * rows->n_rows;
-        for (int c = 0; c < fish->n_control; c++) {
+        for (int c = 0; c < n_control; c++) {
             const struct pressure_point *const point = &p->point[c];
-            const double size = fish->control_density[c] * fish->integrals->strength[(long)j * fish->n_control + c] *
+            const double size = fish->control_density[c] * fish->integrals->strength[(long)j * n_control + c] *
                                 fish->sheet_weight[j] * slip_along(point);
             force[0][c] = size * point->body.n[0];
             force[1][c] = size * point->body.n[1];
             if (!(fish->strip_depth > 0)) continue;
             const double before = fish->control_density[c] * fish->sheet_weight[j] *
-                                  fish->integrals->circulation[(long)j * fish->n_control + c];
+                                  fish->integrals->circulation[(long)j * n_control + c];
             const double across = before * point->divergence * point->body.length * fish->control_interval[c];
             force[0][c] += across * point->body.n[0] - before * point->edge[0];
             force[1][c] += across * point->body.n[1] - before * point->edge[1];

@@ -52,13 +52,6 @@ static struct tail tail_at(const struct fish *fish, const struct flow_at_body *f
     return tail;
 }
 
-static void tail_force(const struct fish *fish, const struct tail *tail, double force[2]) {
-    const double leaving = fmin(tail->wt, 0), wn = tail->wn;
-    for (int i = 0; i < 2; i++) {
-        force[i] = fish->tail_added_mass * (leaving * wn * tail->n[i] - wn * wn / 2 * tail->t[i]);
-    }
-}
-
 // derivatives of the force: by w [component][component of w], and by a rotation of the tail (dt = n, dn = -t)
 static void tail_slope(const struct fish *fish, const struct tail *tail, double by_velocity[2][2], double by_turn[2]) {
     const double *const t = tail->t, *const n = tail->n, mass = fish->tail_added_mass;
@@ -76,7 +69,10 @@ void tail_flux_force(const struct fish *fish, const struct flow_at_body *flow, c
     force[0] = force[1] = 0;
     if (!(fish->tail_added_mass > 0)) return;
     const struct tail tail = tail_at(fish, flow, y);
-    tail_force(fish, &tail, force);
+    const double leaving = fmin(tail.wt, 0), wn = tail.wn;
+    for (int i = 0; i < 2; i++) {
+        force[i] = fish->tail_added_mass * (leaving * wn * tail.n[i] - wn * wn / 2 * tail.t[i]);
+    }
 }
 
 void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow, const double *y,
@@ -126,9 +122,8 @@ void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body 
 
 double tail_flux_power(const struct fish *fish, const struct flow_at_body *flow, const double *y) {
     if (!(fish->tail_added_mass > 0)) return 0;
-    const struct tail tail = tail_at(fish, flow, y);
     double force[2];
-    tail_force(fish, &tail, force);
+    tail_flux_force(fish, flow, y, force);
     return force[0] * y[fish->at.vx + fish->n_nodes - 1] + force[1] * y[fish->at.vy + fish->n_nodes - 1];
 }
 

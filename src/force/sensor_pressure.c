@@ -23,11 +23,6 @@ struct sensor_targets {
     struct pressure *pressure;
 };
 
-static void sensor_velocity(const struct sensor_targets *at, int c, double v[2]) {
-    v[0] = at->at.u[c] - at->pressure->point[c].slip[0];
-    v[1] = at->at.v[c] - at->pressure->point[c].slip[1];
-}
-
 // add one source at all control points: K . (q (v - V) + dC/dt dx), and g (v - V) x d of the legs
 static void sensor_add(const struct sensor_targets *at, const struct kernel_pair *pair,
                        const struct sensor_source *source) {
@@ -38,13 +33,12 @@ static void sensor_add(const struct sensor_targets *at, const struct kernel_pair
         kernel_unit(pair, &source->at, n, at->x + first, at->y + first, has_legs ? at->fish->point_half + first : NULL,
                     &unit);
         for (int i = 0; i < n; i++) {
-            double v[2];
-            sensor_velocity(at, first + i, v);
+            struct pressure_point *const point = &at->pressure->point[first + i];
+            const double v[2] = {at->at.u[first + i] - point->slip[0], at->at.v[first + i] - point->slip[1]};
             const double slip[2] = {v[0] - source->velocity[0], v[1] - source->velocity[1]};
             const double of_legs = has_legs ? unit.leg[i] * (slip[1] * source->at.dx - slip[0] * source->at.dy) : 0;
-            at->pressure->point[first + i].potential_rate +=
-                unit.unit_u[i] * (source->at.q * slip[0] + source->dipole[0]) +
-                unit.unit_v[i] * (source->at.q * slip[1] + source->dipole[1]) + of_legs;
+            point->potential_rate += unit.unit_u[i] * (source->at.q * slip[0] + source->dipole[0]) +
+                                     unit.unit_v[i] * (source->at.q * slip[1] + source->dipole[1]) + of_legs;
         }
     }
 }
@@ -200,58 +194,49 @@ int sensor_weights(const struct fish *fish, double fraction, double weight[4]) {
     return c - 1;
 }
 
-// pressure on the side of the normal and on the other side, at the fraction s/L of the length: interpolation of values
-// that are smooth in theta up to the nose
-static void sensor_pressure(const struct sensor_targets *of, double fraction, double side[2]) {
-    const struct fish *const fish = of->fish;
-    double weight[4], mean = 0, jump = 0, slip = 0, strength = 0;
-    const int first = sensor_weights(fish, fraction, weight);
-    for (int i = 0; i < 4; i++) {
-        // |v - u_ext|^2/2 - Phi, m2 s-2
-        const int c = first + i;
-        double stream[2], v[2];
-        flow_external(of->flow->school, of->state->t, of->x[c], of->y[c], &stream[0], &stream[1]);
-        sensor_velocity(of, c, v);
-        const double square = (v[0] - stream[0]) * (v[0] - stream[0]) + (v[1] - stream[1]) * (v[1] - stream[1]);
-        mean += weight[i] * (square / 2 - of->pressure->point[c].potential_rate);
-
-        // dC/dt, with legs + C div u, m2 s-2; w_t, m s-1; gamma sqrt(s), m3/2 s-1
-        const struct pressure_sheet sheet = pressure_sheet_at(of->pressure, c, of->state->y, of->state->yp);
-        const double factor = fish->strip_depth > 0 ? fish->strip_depth / pressure_strip_depth_at(fish, c) : 1;
-        jump += weight[i] * (factor * (sheet.rate + sheet.spanwise));
-        slip += weight[i] * sheet.slip;
-        strength += weight[i] * (factor * sheet.strength * sqrt(fish_mean(&fish->control_point[c], fish->arc)));
-    }
-
-    // velocity at the surface of a round nose
-    const double s = fraction * fish->length, below = sqrt(s + fish->nose_radius / 2);
-    for (int i = 0; i < 2; i++) {
-        const double sign = i == 0 ? 1 : -1;
-        const double speed = (slip * sqrt(s) - sign * strength / 2) / below;
-        side[i] = fish->fluid_density * (mean + sign * jump / 2 - speed * speed / 2);
-    }
-}
-
 void sensor_pressure_update(const struct flow *flow, const struct state *state, int f, struct pressure *pressure) {
     const struct school *const school = flow->school;
-    const int first = flow->points[f].first;
+    const struct fish *const fish = &school->fish[f];
     const struct sensor_targets at = {.flow = flow,
                                       .state = state,
-                                      .fish = &school->fish[f],
-                                      .x = flow->x + first,
-                                      .y = flow->y + first,
+                                      .fish = fish,
+                                      .x = flow->x + flow->points[f].first,
+                                      .y = flow->y + flow->points[f].first,
                                       .at = flow_at_body(flow, f),
                                       .pressure = pressure};
-    if (at.fish->n_sensors == 0) return;
+    if (fish->n_sensors == 0) return;
 
     // rate of the potential
-    for (int c = 0; c < at.fish->n_control; c++) pressure->point[c].potential_rate = 0;
+    for (int c = 0; c < fish->n_control; c++) pressure->point[c].potential_rate = 0;
     for (int g = 0; g < school->n_fish; g++) sensor_add_fish(&at, f, g);
 
-    for (int i = 0; i < at.fish->n_sensors; i++) {
-        // the side of the normal is the right side of the fish
-        double side[2];
-        sensor_pressure(&at, at.fish->sensor[i], side);
-        for (int k = 0; k < 2; k++) pressure->sensor[1 - k][i] = side[k];
+    for (int i = 0; i < fish->n_sensors; i++) {
+        // interpolate values that are smooth in theta up to the nose
+        double weight[4], mean = 0, jump = 0, slip = 0, strength = 0;
+        const int first = sensor_weights(fish, fish->sensor[i], weight);
+        for (int k = 0; k < 4; k++) {
+            // |v - u_ext|^2/2 - Phi, m2 s-2
+            const int c = first + k;
+            const struct pressure_point *const point = &pressure->point[c];
+            double stream[2];
+            flow_external(school, state->t, at.x[c], at.y[c], &stream[0], &stream[1]);
+            const double v[2] = {at.at.u[c] - point->slip[0], at.at.v[c] - point->slip[1]};
+            const double square = (v[0] - stream[0]) * (v[0] - stream[0]) + (v[1] - stream[1]) * (v[1] - stream[1]);
+            mean += weight[k] * (square / 2 - point->potential_rate);
+
+            // dC/dt, with legs + C div u, m2 s-2; w_t, m s-1; gamma sqrt(s), m3/2 s-1
+            const struct pressure_sheet sheet = pressure_sheet_at(pressure, c, state->y, state->yp);
+            const double factor = fish->strip_depth > 0 ? fish->strip_depth / pressure_strip_depth_at(fish, c) : 1;
+            jump += weight[k] * (factor * (sheet.rate + sheet.spanwise));
+            slip += weight[k] * sheet.slip;
+            strength += weight[k] * (factor * sheet.strength * sqrt(fish_mean(&fish->control_point[c], fish->arc)));
+        }
+
+        // velocity at the surface of a round nose; the side of the normal is the right side of the fish
+        const double s = fish->sensor[i] * fish->length, below = sqrt(s + fish->nose_radius / 2);
+        for (int side = 0; side < 2; side++) {
+            const double sign = side == 0 ? -1 : 1, speed = (slip * sqrt(s) - sign * strength / 2) / below;
+            pressure->sensor[side][i] = fish->fluid_density * (mean + sign * jump / 2 - speed * speed / 2);
+        }
     }
 }

@@ -54,17 +54,9 @@ void state_free(struct state *state) {
     if (state) arena_free(state->arena);
 }
 
-// the newest row of past
-static void state_keep_past(struct state *state, const struct school *school) {
-    const size_t n = (size_t)school->n_unknowns, size = sizeof *state->past;
-    memmove(state->past + n, state->past, (STATE_PAST - 1) * n * size);
-    memcpy(state->past, state->y, n * size);
-    if (state->n_past < STATE_PAST) state->n_past++;
-}
-
 void state_begin_rates(struct state *state, const struct school *school) {
-    state->n_past = 0;
-    state_keep_past(state, school);
+    memcpy(state->past, state->y, (size_t)school->n_unknowns * sizeof *state->past);
+    state->n_past = 1;
 }
 
 void state_find_rates(struct state *state, const struct school *school, int shed_is_algebraic) {
@@ -85,7 +77,11 @@ void state_find_rates(struct state *state, const struct school *school, int shed
         }
     }
 
-    state_keep_past(state, school);
+    // keep the unknowns as the newest row
+    const size_t row = (size_t)n * sizeof *state->past;
+    memmove(state->past + n, state->past, (STATE_PAST - 1) * row);
+    memcpy(state->past, state->y, row);
+    if (state->n_past < STATE_PAST) state->n_past++;
 }
 
 unsigned long state_wake_version(const struct state *state, const struct school *school) {
@@ -101,15 +97,11 @@ static void history_resize(struct arena *arena, struct history *history, int n_s
     history->n_slots = n_slots;
 }
 
-// one slot more than samples: a new sample leaves the sample that it drops in place
-static int history_next(const struct history *history) {
-    return history->last < history->capacity ? history->last + 1 : 0;
-}
-
 void state_reserve(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         struct history *const history = &state->history[f];
-        const int next = history_next(history), most = history->capacity + 1;
+        // one slot more than samples: a new sample leaves the sample that it drops in place
+        const int next = history->last < history->capacity ? history->last + 1 : 0, most = history->capacity + 1;
         if (next < history->n_slots) continue;
         const int twice = history->n_slots > most / 2 ? most : 2 * history->n_slots;
         history_resize(state->arena, history, twice > next ? twice : next + 1);
@@ -123,7 +115,7 @@ void state_forget_newest(struct history *history) {
 }
 
 void state_remember(struct history *history, const struct sample *sample) {
-    history->last = history_next(history);
+    history->last = history->last < history->capacity ? history->last + 1 : 0;
     history->sample[history->last] = *sample;
     if (history->n < history->capacity) history->n++;
 }

@@ -399,7 +399,7 @@ TEST(changes_at_every_event_do_not_run_away) {
 
 TEST(it_can_begin_with_a_value_and_a_rate) {
     struct lead lead = {.start = 0};
-    lead_begin(&lead, 2, 0.5, 0.3, -1.5, 1);
+    lead_begin(&lead, 2, 0.5, (const double[]){0.3, -1.5 * 0.5, 0, 0}, 1);
     NEAR(lead_value(&lead, 2), 0.3, 1e-15, 0);
     NEAR(lead_rate(&lead, 2), -1.5, 1e-14, 0);
     NEAR(lead_value(&lead, 2.5), 1, 0, 0);
