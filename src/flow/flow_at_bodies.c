@@ -204,7 +204,9 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, i
     induce_own(flow, chunk, &all, with_gradient);
     const bool by_far_points = others_are_selected(flow);
     if (by_far_points) others_add(flow, chunk->fish, chunk->at, &at);
-    for (int g = 0; g < school->n_fish; g++) {
+    const bool is_every = !by_far_points || school->walls.n > 0;
+    for (int g = is_every ? 0 : others_next(flow, chunk->fish, -1, false); g < school->n_fish;
+         g = is_every ? g + 1 : others_next(flow, chunk->fish, g, false)) {
         if (by_far_points && g != chunk->fish) induce_near(flow, chunk->fish, g, &at);
         for (int i = by_far_points ? 2 : 0; i < (school->walls.n > 0 ? 4 : 2); i++) {
             const struct flow_sum sum = {i % 2 == 0 ? BODY_AT_BODY : WAKE_AT_BODY, i >= 2};

@@ -1,6 +1,7 @@
 /* others.c: selection by a bound for every source, sums at far points, polynomials to the points of the body. */
 #include "flow/others.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -19,6 +20,13 @@ struct group {
     double x, y, radius, q, d, half, leg, speed;
 };
 
+/* A body at the event: distance of its ends; distances of the body from the chord, and of the control points from the
+ * curve of the far points; the largest speed of a node, m s-1; sums of the sizes of the strengths; sources. */
+struct others_body {
+    double chord, bend, beside, speed, q, d, half;
+    int n;
+};
+
 /* The far points of a fish. */
 struct others_fish {
     bool is_used;       /* else no source is far: too few nodes, or a depth that varies */
@@ -27,10 +35,11 @@ struct others_fish {
     double half[FAR];
     /* at the event: position, velocity and acceleration of the far points */
     double start[2][FAR], velocity[2][FAR], acceleration[2][FAR];
-    /* at the event: ends of the body and their distance; distances of the body from the chord, and of all points and of
-     * the control points from the curve of the far points */
-    double end[2][2], chord, bend, aside, beside;
-    double speed;        /* the largest of a node, m s-1 */
+    /* at the event: ends of the body and their middle; the distance of all points from the curve of the far points */
+    double end[2][2], middle[2], aside;
+    struct others_body at_event;
+    double radius;       /* of the circle around the middle that encloses body and released wake */
+    double reach;        /* distance from the middle beyond which all sources are far, and bodies act from few points */
     struct sources body; /* the body, by sources at its far points             (FAR) */
     /* u, v, div, u_x, u_y, v_x, div_x, div_y at the far points: of far wakes at three times, of all far sources now */
     double wake[TIMES][VALUES][FAR], now[VALUES][FAR];
@@ -41,7 +50,8 @@ struct others_fish {
     int n_groups, group_capacity;
     struct group *group; /* the released wake of this fish, GROUP by GROUP */
     struct group around; /* the body of this fish */
-    double q, d;         /* sums of the sizes of the strengths of the body */
+    struct range whole;  /* its released sources */
+    int first;           /* fish of others_next */
 };
 
 /* What one fish is for another. */
@@ -49,14 +59,18 @@ struct others_pair {
     bool is_far_body;       /* with the nascent point */
     bool by_few;            /* the body acts from its far points */
     int first_near, n_near; /* among the near ranges of the fish */
-    struct range whole;     /* the released sources */
+    int next;               /* fish of others_next */
 };
 
 struct others {
     struct arena *arena;
     int n_fish;
-    struct others_fish *fish;     /*                        (n_fish) */
-    struct others_pair *pair;     /* targets, then sources  (n_fish, n_fish) */
+    struct others_fish *fish;  /*                        (n_fish) */
+    struct others_pair *pair;  /* targets, then sources  (n_fish, n_fish) */
+    struct kernel_pair widest; /* bounds of all pairs, sources and bodies */
+    struct group strongest;
+    struct others_body largest;
+    bool have_drifted;            /* some fish */
     bool is_selected, is_by_tree; /* the far wakes */
     bool bodies_by_tree;          /* now */
     struct sources points;        /* far points of a class, for the tree */
@@ -142,7 +156,7 @@ static double polynomial_error(double axis) {
 static struct group group_of(const struct others *others, int g, const struct sources *sources, struct range which,
                              const struct wake *wake) {
     struct group group = {
-        .sources = which, .half = INFINITY, .leg = INFINITY, .speed = wake ? 0 : others->fish[g].speed};
+        .sources = which, .half = INFINITY, .leg = INFINITY, .speed = wake ? 0 : others->fish[g].at_event.speed};
     const int last = which.first + which.n - 1;
     group.x = (sources->x[which.first] + sources->x[last]) / 2;
     group.y = (sources->y[which.first] + sources->y[last]) / 2;
@@ -162,20 +176,27 @@ static struct group group_of(const struct others *others, int g, const struct so
     return group;
 }
 
+/* Whether a circle is beyond the reach of a body. */
+static bool is_beyond(const struct others_fish *to, double x, double y, double radius) {
+    const double dx = x - to->middle[0], dy = y - to->middle[1], least = to->reach + radius;
+    return dx * dx + dy * dy > least * least;
+}
+
 /* Whether every source of a group is far: the errors of the polynomial, of the gradient in place of the kernel, and for
  * wakes of the parabola in time. Source and body may approach in an interval, and the body is bent. */
 static bool is_far(const struct others_fish *to, double interval, const struct kernel_pair *pair,
                    const struct group *group, bool is_wake, double tolerance) {
-    const double step = interval * (to->speed + group->speed);
-    double sum = -2 * (to->bend + step + group->radius);
+    const double chord = to->at_event.chord, step = interval * (to->at_event.speed + group->speed);
+    if (is_beyond(to, group->x, group->y, group->radius)) return true;
+    double sum = -2 * (to->at_event.bend + step + group->radius);
     for (int k = 0; k < 2; k++) {
         const double r[2] = {group->x - to->end[k][0], group->y - to->end[k][1]};
         sum += sqrt(r[0] * r[0] + r[1] * r[1]);
     }
-    if (!(sum > to->chord)) return false;
-    const double distance = (sum - to->chord) / 2, r2 = distance * distance, axis = sum / to->chord;
+    if (!(sum > chord)) return false;
+    const double distance = (sum - chord) / 2, r2 = distance * distance, axis = sum / chord;
     const double low = pair->factor * (to->half[0] + group->half) + group->leg;
-    const double size = pair->kernel->bound(pair, r2, low, group->q, group->d, to->chord);
+    const double size = pair->kernel->bound(pair, r2, low, group->q, group->d, chord);
     const double part = step / distance, in_time = is_wake ? 0.05 * part * part * part : 0;
     return size * (polynomial_error(axis) + to->aside * to->aside / r2 + in_time) <= tolerance;
 }
@@ -193,30 +214,39 @@ static void remember_fish(struct flow *flow, const struct state *state, int f) {
     struct others_fish *const of = &flow->others->fish[f];
     const double *const y = flow->others->past, *const x = y + fish->at.x, *const aside = y + fish->at.y;
     const int last = fish->n_nodes - 1;
-    of->speed = of->bend = 0;
+    struct others_body *const at = &of->at_event;
+    *at = (struct others_body){.half = of->half[0], .n = flow->fish[f].body.n};
     memcpy(of->end, (const double[2][2]){{x[0], aside[0]}, {x[last], aside[last]}}, sizeof of->end);
     const double along[2] = {x[last] - x[0], aside[last] - aside[0]};
-    of->chord = hypot(along[0], along[1]);
+    of->middle[0] = (x[0] + x[last]) / 2;
+    of->middle[1] = (aside[0] + aside[last]) / 2;
+    at->chord = hypot(along[0], along[1]);
     for (int k = 0; k <= last; k++) {
         const double r[2] = {x[k] - x[0], aside[k] - aside[0]};
-        of->bend = fmax(of->bend, fabs(r[0] * along[1] - r[1] * along[0]) / of->chord);
-        of->speed = fmax(of->speed, hypot(y[fish->at.vx + k], y[fish->at.vy + k]));
+        at->bend = fmax(at->bend, fabs(r[0] * along[1] - r[1] * along[0]) / at->chord);
+        at->speed = fmax(at->speed, hypot(y[fish->at.vx + k], y[fish->at.vy + k]));
     }
 
     // as sources
     const struct sources *const body = &flow->fish[f].body;
     const struct sheet_points *const wake = &flow->fish[f].wake.middles;
     of->around = group_of(flow->others, f, body, (struct range){0, body->n}, NULL);
-    of->q = of->d = 0;
     for (int c = 0; c < body->n; c++) {
-        of->q += fabs(body->q[c]);
-        of->d += sqrt(body->dx[c] * body->dx[c] + body->dy[c] * body->dy[c]);
+        at->q += fabs(body->q[c]);
+        at->d += sqrt(body->dx[c] * body->dx[c] + body->dy[c] * body->dy[c]);
     }
     for (int k = 0; k < of->n_groups; k++) {
         const int first = k * GROUP, left = wake->n_released - first;
         const struct range which = {first, left < GROUP ? left : GROUP};
         of->group[k] = group_of(flow->others, f, &wake->sources, which, &state->wake[f]);
     }
+    of->whole = (struct range){0, wake->n_released};
+    of->radius = 0;
+    for (int k = 0; k <= of->n_groups; k++) {
+        const struct group *const group = k < of->n_groups ? &of->group[k] : &of->around;
+        of->radius = fmax(of->radius, hypot(group->x - of->middle[0], group->y - of->middle[1]) + group->radius);
+    }
+    of->reach = INFINITY;
     if (!of->is_used) return;
 
     const int slices[] = {fish->at.x, fish->at.y, fish->at.vx, fish->at.vy, fish->at.ax, fish->at.ay};
@@ -225,7 +255,6 @@ static void remember_fish(struct flow *flow, const struct state *state, int f) {
     for (int i = 0; i < 6; i++) fish_of_nodes(FAR, fish->n_nodes, of->from_nodes, y + slices[i], to[i]);
 
     // the points that the body has at the event
-    of->beside = 0;
     of->aside = 3e-4 * fish->length; /* displacements within an interval */
     for (int p = 0; p < flow->points[f].n; p++) {
         double r[2] = {flow->x[flow->points[f].first + p], flow->y[flow->points[f].first + p]};
@@ -235,42 +264,96 @@ static void remember_fish(struct flow *flow, const struct state *state, int f) {
             r[1] -= part * of->start[1][i];
         }
         of->aside = fmax(of->aside, hypot(r[0], r[1]));
-        if (p < fish->n_control) of->beside = fmax(of->beside, hypot(r[0], r[1]));
+        if (p < fish->n_control) at->beside = fmax(at->beside, hypot(r[0], r[1]));
     }
 }
 
-/* Whether the body of fish g acts on fish f from the far points of g. A polynomial of the velocity along the source,
- * with the ellipse around its body, gives the strengths at the far points; the points of the body may lie beside their
- * curve. */
-static bool acts_from_few(const struct flow *flow, int f, int g, double tolerance) {
-    const struct others_fish *const from = &flow->others->fish[g];
-    if (!from->is_used || !flow->school->fish[g].integrals) return false;
-    const struct kernel_pair pair = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
-    const struct others_fish *const to = &flow->others->fish[f];
-    const double low = pair.factor * (to->half[0] + from->half[0]);
-    const double moved = from->bend + flow->school->interval * (to->speed + from->speed);
+/* Whether a body (from) acts on another one from its far points. A polynomial of the velocity along the source, with
+ * the ellipse around its body, gives the strengths at the far points; the points of the body may lie beside their
+ * curve. least: sum of the distances of the other body from both ends, m. */
+static bool act_few(const struct others_body *from, const struct others_body *to, double least, double interval,
+                    const struct kernel_pair *pair, double tolerance) {
+    const double moved = from->bend + interval * (to->speed + from->speed);
+    const double axis = (least - 2 * moved) / from->chord, distance = (axis - 1) * from->chord / 2;
+    if (!(distance > 0)) return false;
+    const double low = pair->factor * (to->half + from->half);
+    const double size = pair->kernel->bound(pair, distance * distance, low, from->q, from->d, from->chord);
+    const double error = size * (polynomial_error(axis) + 2 * from->beside / distance);
+    return error <= tolerance * sqrt(from->n);
+}
 
-    // sum of the distances of a far point from both ends: at least twice the distance of the middles less half of the
-    // body of f; where that does not suffice, the least one of all far points
-    const double x = (to->end[0][0] + to->end[1][0] - from->end[0][0] - from->end[1][0]) / 2;
-    const double y = (to->end[0][1] + to->end[1][1] - from->end[0][1] - from->end[1][1]) / 2;
-    double least = 2 * (sqrt(x * x + y * y) - to->chord / 2 - to->bend);
-    for (int pass = 0; pass < 2; pass++) {
-        for (int i = 0; i < FAR && pass == 1; i++) {
-            double sum = 0;
-            for (int k = 0; k < 2; k++) {
-                const double r[2] = {to->start[0][i] - from->end[k][0], to->start[1][i] - from->end[k][1]};
-                sum += sqrt(r[0] * r[0] + r[1] * r[1]);
-            }
-            least = i == 0 ? sum : fmin(least, sum);
+/* Whether a body has strengths at its far points. */
+static bool has_few(const struct flow *flow, int g) {
+    return flow->others->fish[g].is_used && flow->school->fish[g].integrals;
+}
+
+static bool acts_from_few(const struct flow *flow, int f, int g, double tolerance) {
+    const struct others_fish *const from = &flow->others->fish[g], *const to = &flow->others->fish[f];
+    double least = INFINITY;
+    for (int i = 0; i < FAR; i++) {
+        double sum = 0;
+        for (int k = 0; k < 2; k++) {
+            const double r[2] = {to->start[0][i] - from->end[k][0], to->start[1][i] - from->end[k][1]};
+            sum += sqrt(r[0] * r[0] + r[1] * r[1]);
         }
-        const double axis = (least - 2 * moved) / from->chord, distance = (axis - 1) * from->chord / 2;
-        if (!(distance > 0)) continue;
-        const double size = pair.kernel->bound(&pair, distance * distance, low, from->q, from->d, from->chord);
-        const double error = size * (polynomial_error(axis) + 2 * from->beside / distance);
-        if (error <= tolerance * sqrt(flow->fish[g].body.n)) return true;
+        least = fmin(least, sum);
     }
-    return false;
+    const struct kernel_pair pair = flow_pair_of(flow, f, g, &(struct flow_sum){BODY_AT_BODY, false});
+    return act_few(&from->at_event, &to->at_event, least, flow->school->interval, &pair, tolerance);
+}
+
+/* The widest pair, the strongest source and the largest body of all: every bound of an error is below theirs. */
+static void find_strongest(struct flow *flow) {
+    struct others *const others = flow->others;
+    struct group *const most = &others->strongest;
+    struct others_body *const largest = &others->largest;
+    others->widest = flow_pair_of(flow, 0, 0, &(struct flow_sum){BODY_AT_BODY, false});
+    others->widest.square = 0;
+    *most = (struct group){.half = INFINITY, .leg = INFINITY};
+    *largest = (struct others_body){.half = INFINITY, .n = INT_MAX};
+    for (int g = 0; g < others->n_fish; g++) {
+        const struct others_fish *const of = &others->fish[g];
+        const struct others_body *const body = &of->at_event;
+        const struct kernel_pair pair = flow_pair_of(flow, 0, g, &(struct flow_sum){BODY_AT_BODY, false});
+        others->widest.span = fmax(others->widest.span, pair.span);
+        for (int k = 0; k <= of->n_groups; k++) {
+            const struct group *const group = k < of->n_groups ? &of->group[k] : &of->around;
+            most->q = fmax(most->q, group->q);
+            most->d = fmax(most->d, group->d);
+            most->speed = fmax(most->speed, group->speed);
+            most->half = fmin(most->half, group->half);
+            most->leg = fmin(most->leg, group->leg);
+        }
+        if (!has_few(flow, g)) continue;
+        largest->chord = fmax(largest->chord, body->chord);
+        largest->bend = fmax(largest->bend, body->bend);
+        largest->beside = fmax(largest->beside, body->beside);
+        largest->speed = fmax(largest->speed, body->speed);
+        largest->q = fmax(largest->q, body->q);
+        largest->d = fmax(largest->d, body->d);
+        largest->half = fmin(largest->half, body->half);
+        largest->n = body->n < largest->n ? body->n : largest->n;
+    }
+}
+
+/* The reach of a body, for the strongest source and the largest body on the line through its ends, where a source is
+ * nearest to both: errors fall with the distance, which grows by a tenth until they are below the tolerance. */
+static double reach_of(const struct flow *flow, int f, double tolerance) {
+    const struct others *const others = flow->others;
+    const struct others_fish *const to = &others->fish[f];
+    const struct others_body *const at = &to->at_event;
+    const double interval = flow->school->interval;
+    struct group source = others->strongest;
+    for (double reach = at->chord; reach < 1e4 * at->chord; reach *= 1.1) {
+        source.x = to->middle[0] + reach * (to->end[1][0] - to->end[0][0]) / at->chord;
+        source.y = to->middle[1] + reach * (to->end[1][1] - to->end[0][1]) / at->chord;
+        const double least = 2 * (reach - at->chord / 2 - at->bend);
+        if (is_far(to, interval, &others->widest, &source, true, tolerance) &&
+            act_few(&others->largest, at, least, interval, &others->widest, tolerance)) {
+            return 1.001 * reach; /* a margin for rounding */
+        }
+    }
+    return INFINITY;
 }
 
 static void select_at(struct flow *flow, const struct state *state, int f, double n_sources) {
@@ -280,13 +363,20 @@ static void select_at(struct flow *flow, const struct state *state, int f, doubl
     struct others_fish *const of = &others->fish[f];
     const double tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish) / (4 * sqrt(n_sources));
     const double interval = school->interval;
+    int *next = &of->first;
     of->n_near = 0;
+    of->reach = of->is_used ? reach_of(flow, f, tolerance) : INFINITY;
     for (int g = 0; g < school->n_fish; g++) {
         struct others_pair *const pair = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
         const struct others_fish *const from = &others->fish[g];
         const struct sources *const wake = &flow->fish[g].wake.middles.sources, *const body = &flow->fish[g].body;
-        const int n_released = flow->fish[g].wake.middles.n_released;
-        *pair = (struct others_pair){.first_near = of->n_near, .whole = {0, n_released}};
+        if (has_few(flow, g) && is_beyond(of, from->middle[0], from->middle[1], from->radius)) {
+            *pair = (struct others_pair){.is_far_body = true, .by_few = true};
+            continue;
+        }
+        *next = g;
+        next = &pair->next;
+        *pair = (struct others_pair){.first_near = of->n_near};
         if (g == f) continue;
 
         // runs of near sources in the wake
@@ -314,8 +404,9 @@ static void select_at(struct flow *flow, const struct state *state, int f, doubl
                 pair->is_far_body = is_far(of, interval, &of_body, &one, false, tolerance);
             }
         }
-        pair->by_few = pair->is_far_body && acts_from_few(flow, f, g, tolerance);
+        pair->by_few = pair->is_far_body && has_few(flow, g) && acts_from_few(flow, f, g, tolerance);
     }
+    *next = school->n_fish;
 }
 
 // far points as targets, with an array of n_values for each sum
@@ -416,20 +507,21 @@ static void sum_wakes(struct flow *flow, int f, int time) {
 
     const double *const half = flow->kernel->has_legs ? of->half : NULL;
     const struct targets at = far_targets(FAR, x, y, half, of->wake[time][0], FAR);
-    for (int g = 0; g < others->n_fish; g++) {
+    for (int g = others_next(flow, f, -1, !others->is_by_tree); g < others->n_fish;
+         g = others_next(flow, f, g, !others->is_by_tree)) {
         const struct sources *const sources = &flow->fish[g].wake.middles.sources;
         const struct others_pair *const near = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
         const struct range *const range = of->near + near->first_near;
         struct kernel_pair pair = flow_pair_of(flow, f, g, &(struct flow_sum){WAKE_AT_BODY, false});
         if (others->is_by_tree) {
             pair.span = -pair.span;
-            if (g == f) kernel_induce(&pair, sources, near->whole, &at);
+            if (g == f) kernel_induce(&pair, sources, others->fish[g].whole, &at);
             for (int i = 0; i < near->n_near; i++) kernel_induce(&pair, sources, range[i], &at);
             continue;
         }
 
         for (int i = 0, first = 0; i <= near->n_near && g != f; i++) {
-            const int end = i < near->n_near ? range[i].first : near->whole.n;
+            const int end = i < near->n_near ? range[i].first : others->fish[g].whole.n;
             kernel_induce(&pair, sources, (struct range){first, end - first}, &at);
             first = i < near->n_near ? end + range[i].n : end;
         }
@@ -472,6 +564,7 @@ void others_select(struct flow *flow, const struct state *state) {
     const int sharing = parallel_threads(school->threads, school->n_fish, n_sources, PARALLEL_VORTICES);
 #pragma omp parallel for num_threads(sharing) schedule(static)
     for (int f = 0; f < school->n_fish; f++) remember_fish(flow, state, f);
+    find_strongest(flow);
 #pragma omp parallel for num_threads(sharing) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) select_at(flow, state, f, n_sources);
     for (int f = 0; f < school->n_fish; f++) {
@@ -498,13 +591,19 @@ void others_select(struct flow *flow, const struct state *state) {
 
 // ---- sums
 
+int others_next(const struct flow *flow, int f, int g, bool is_every) {
+    const struct others *const others = flow->others;
+    if (is_every || others->have_drifted) return g + 1;
+    return g < 0 ? others->fish[f].first : others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g].next;
+}
+
 struct others_near others_near(const struct flow *flow, int f, int g) {
     const struct others *const others = flow->others;
     const struct others_pair *const pair = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
     const bool has_drifted = others->fish[f].has_drifted;
     const bool is_far_body = pair->is_far_body && !has_drifted && !others->fish[g].has_drifted;
     return (struct others_near){.body = {0, is_far_body ? 0 : flow->fish[g].body.n},
-                                .wake = has_drifted ? &pair->whole : others->fish[f].near + pair->first_near,
+                                .wake = has_drifted ? &others->fish[g].whole : others->fish[f].near + pair->first_near,
                                 .n_wake = has_drifted ? 1 : pair->n_near};
 }
 
@@ -549,6 +648,11 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
         }
     }
 
+    others->have_drifted = false;
+    for (int f = 0; f < school->n_fish; f++) {
+        others->have_drifted = others->have_drifted || others->fish[f].has_drifted;
+    }
+
     const int n_far = FAR * school->n_fish;
     others->bodies_by_tree = tree_is_faster(flow->kernel, n_far, (double)n_far * n_far, school->wake_tolerance);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
@@ -577,7 +681,8 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
         // far bodies; -1: subtract what the sum by the tree includes
         const double *const half = flow->kernel->has_legs ? of->half : NULL;
         const struct targets at = far_targets(FAR, of->x, of->y, half, of->now[0], FAR);
-        for (int g = 0; g < school->n_fish; g++) {
+        const bool is_every = !others->bodies_by_tree;
+        for (int g = others_next(flow, f, -1, is_every); g < school->n_fish; g = others_next(flow, f, g, is_every)) {
             const struct others_pair *const pair = &others->pair[(size_t)f * (size_t)others->n_fish + (size_t)g];
             const bool is_far = pair->is_far_body && !others->fish[g].has_drifted;
             const bool is_in_tree = others->bodies_by_tree && acts_by_tree(flow, g);

@@ -9,6 +9,8 @@
  *                    points, whose strengths have the moments of the body along its curve; of many fish by the tree,
  *                    less the bodies that are not distant
  *     near sources   are left to the sum of flow_at_bodies.c
+ *     reach          of a body: distance beyond which the strongest source of the school is far, and the largest body
+ *                    distant; pairs of fish beyond it need no test of their sources, and no loop visits them
  *
  * Which sources are far is decided at each event, from the state alone: the bits do not depend on threads or on a
  * resumed run. Images, and the body and wake of the same fish, are never far. */
@@ -40,6 +42,10 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
 
 /* Add the far sources at a range of the points of fish f; at: the targets of this range. */
 void others_add(const struct flow *flow, int f, struct range which, const struct targets *at);
+
+/* The next fish after g, or the first one (g: -1), of which some source is near or the body does not act from few
+ * points, or which is fish f; n_fish after the last one. Every fish, if is_every or if one has drifted. */
+int others_next(const struct flow *flow, int f, int g, bool is_every);
 
 /* The near sources of fish g at fish f: of the body, and with the body the nascent point; of the released wake. */
 struct others_near {
