@@ -97,13 +97,6 @@ static enum status sweep_add_method(struct text *sweep, const char *word, const 
     return STATUS_OK;
 }
 
-static struct text *text_create(struct arena *arena) {
-    struct text *text;
-    NEW(arena, text, 1);
-    text->arena = arena;
-    return text;
-}
-
 enum status compare_create(struct arena *arena, struct case_values **study, const struct case_values *values,
                            const struct compare_options *options) {
     if (options->repeats < 1 || options->repeats > MAX_REPEATS) {
@@ -111,34 +104,33 @@ enum status compare_create(struct arena *arena, struct case_values **study, cons
     }
 
     TRY(sweep_refuse(values));
-    struct text *const sweep = text_create(arena), *const rtol = text_create(arena), *const end = text_create(arena),
-                       *const standard = text_create(arena);
-    text_add_number(rtol, values->solver.rtol);
-    text_add_number(end, values->time.end);
+    struct text sweep = {.arena = arena}, rtol = {.arena = arena}, end = {.arena = arena}, standard = {.arena = arena};
+    text_add_number(&rtol, values->solver.rtol);
+    text_add_number(&end, values->time.end);
 
     // all methods with adaptive steps
-    text_add(standard, "ida2,ida%d", methods_table[METHOD_IDA].order);
+    text_add(&standard, "ida2,ida%d", methods_table[METHOD_IDA].order);
     for (int i = 0; i < methods_n; i++) {
-        if (i != METHOD_IDA && methods_table[i].has_adaptive_steps) text_add(standard, ",%s", methods_table[i].word);
+        if (i != METHOD_IDA && methods_table[i].has_adaptive_steps) text_add(&standard, ",%s", methods_table[i].word);
     }
 
     // the reference, and a second reference with ten times the tolerance
-    text_add(sweep, "sweep=[{keys: [solver.method, solver.order, solver.rtol, solver.step], values: [");
+    text_add(&sweep, "sweep=[{keys: [solver.method, solver.order, solver.rtol, solver.step], values: [");
     for (int i = 0; i < COMPARE_N_REFERENCES; i++) {
-        struct text *const number = text_create(arena);
-        text_add_number(number, (i == 0 ? 1 : 10) * options->reference_rtol);
-        sweep_add_member(sweep, METHOD_IDA, methods_table[METHOD_IDA].order, arena_take(arena, number->text), "0");
+        struct text number = {.arena = arena};
+        text_add_number(&number, (i == 0 ? 1 : 10) * options->reference_rtol);
+        sweep_add_member(&sweep, METHOD_IDA, methods_table[METHOD_IDA].order, number.text, "0");
     }
 
     for (int repeat = 0; repeat < options->repeats; repeat++) {
         char word[WORD_BYTES];
-        const char *methods = options->methods ? options->methods : arena_take(arena, standard->text);
-        while (list_next_word(&methods, word)) TRY(sweep_add_method(sweep, word, options, rtol->text));
+        const char *methods = options->methods ? options->methods : standard.text;
+        while (list_next_word(&methods, word)) TRY(sweep_add_method(&sweep, word, options, rtol.text));
     }
-    text_add(sweep, "]}]");
+    text_add(&sweep, "]}]");
 
-    const char *const assignments[] = {sweep->text, arena_text(arena, "time.output_interval=%s", end->text),
-                                       arena_text(arena, "output.wake_interval=%s", end->text)};
+    const char *const assignments[] = {sweep.text, arena_text(arena, "time.output_interval=%s", end.text),
+                                       arena_text(arena, "output.wake_interval=%s", end.text)};
     TRY(study_folder_parse(arena, study, values->merged, values->name, 3, assignments));
     if (compare_is(*study)) return STATUS_OK;
     return status_fail(STATUS_CASE, "nothing to compare: --methods, --rtol and --steps are lists");
@@ -146,31 +138,30 @@ enum status compare_create(struct arena *arena, struct case_values **study, cons
 
 // ---- errors
 
-/* The distance of a point of a fish from the same point in the reference, in body lengths. */
-static double point_error(const struct case_values *study, const struct member_file *members, int m, const char *point,
-                          int f) {
-    const int q = member_file_quantity_number(point);
-    const double x = member_file_value(&members[m], q, f, 0) - member_file_value(&members[0], q, f, 0);
-    const double y = member_file_value(&members[m], q, f, 1) - member_file_value(&members[0], q, f, 1);
-    return hypot(x, y) / study->school.fish[f].length;
-}
-
 void compare_fill_errors(const struct case_values *study, const struct member_file *members) {
+    static const char *const points[] = {"nose", "tail"}, *const errors[] = {"nose_error", "tail_error"};
     if (!compare_is(study)) return;
-    const int nose = member_file_quantity_number("nose_error"), tail = member_file_quantity_number("tail_error"),
-              power = member_file_quantity_number("power_error");
+    const int power = member_file_quantity_number("power_error");
+    const struct member_file *const reference = &members[0];
     for (int m = 0; m < sweep_n_members(study); m++) {
-        const bool are_known = member_file_is_complete(&members[m]) && member_file_is_complete(&members[0]);
-        for (int f = 0; f < members[m].n_fish; f++) {
-            *member_file_place(&members[m], nose, f, 0) = are_known ? point_error(study, members, m, "nose", f) : NAN;
-            *member_file_place(&members[m], tail, f, 0) = are_known ? point_error(study, members, m, "tail", f) : NAN;
+        const struct member_file *const member = &members[m];
+        const bool are_known = member_file_is_complete(member) && member_file_is_complete(reference);
+        for (int f = 0; f < member->n_fish; f++) {
+            // the distance of nose and tail from the reference, in body lengths
+            for (int p = 0; p < 2; p++) {
+                const int q = member_file_quantity_number(points[p]), error = member_file_quantity_number(errors[p]);
+                const double x = member_file_value(member, q, f, 0) - member_file_value(reference, q, f, 0);
+                const double y = member_file_value(member, q, f, 1) - member_file_value(reference, q, f, 1);
+                const double distance = hypot(x, y) / study->school.fish[f].length;
+                *member_file_place(member, error, f, 0) = are_known ? distance : NAN;
+            }
 
             // the work of the muscle, or without a muscle the mean power into the water
-            const bool has_muscle = fabs(member_file_number(&members[0], "actuation_work", f)) > 0;
+            const bool has_muscle = fabs(member_file_number(reference, "actuation_work", f)) > 0;
             const char *const name = has_muscle ? "actuation_work" : "mean_power";
-            const double reference = member_file_number(&members[0], name, f);
-            *member_file_place(&members[m], power, f, 0) =
-                are_known && fabs(reference) > 0 ? fabs(member_file_number(&members[m], name, f) / reference - 1) : NAN;
+            const double work = member_file_number(reference, name, f);
+            *member_file_place(member, power, f, 0) =
+                are_known && fabs(work) > 0 ? fabs(member_file_number(member, name, f) / work - 1) : NAN;
         }
     }
 }
@@ -191,18 +182,14 @@ static const char *set_to(const struct case_values *study, int m, int key) {
     return study->sweep[0].value[m * N_KEYS + key];
 }
 
-static bool are_repeats(const struct case_values *study, int m, int other) {
-    for (int k = 0; k < N_KEYS; k++) {
-        if (strcmp(set_to(study, m, k), set_to(study, other, k)) != 0) return false;
-    }
-    return true;
-}
-
-/* The first of the repeats of member m. */
+/* The first of the repeats of member m, which have the same settings. */
 static int first_repeat(const struct case_values *study, int m) {
-    int first = COMPARE_N_REFERENCES;
-    while (!are_repeats(study, m, first)) first++;
-    return first;
+    for (int first = COMPARE_N_REFERENCES; first < m; first++) {
+        bool is_same = true;
+        for (int k = 0; k < N_KEYS; k++) is_same &= strcmp(set_to(study, m, k), set_to(study, first, k)) == 0;
+        if (is_same) return first;
+    }
+    return m;
 }
 
 static int compare_numbers(const void *a, const void *b) {
@@ -215,12 +202,12 @@ struct wall_time {
     double median, spread;
 };
 
-/* buffer: (members) */
+/* m: the first of its repeats; buffer: (members) */
 static struct wall_time wall_time_of(const struct case_values *study, const struct member_file *members, int m,
                                      double *buffer) {
     int n = 0;
     for (int i = m; i < sweep_n_members(study); i++) {
-        if (!are_repeats(study, i, m) || !member_file_is_complete(&members[i])) continue;
+        if (first_repeat(study, i) != m || !member_file_is_complete(&members[i])) continue;
         buffer[n++] = member_file_number(&members[i], "wall_time", 0);
     }
     if (n == 0) return (struct wall_time){NAN, NAN};
@@ -267,22 +254,18 @@ static bool is_same_method(const struct case_values *study, int m, int other) {
            has_step(study, m) == has_step(study, other);
 }
 
-static bool is_first_of_method(const struct case_values *study, int m) {
-    for (int i = COMPARE_N_REFERENCES; i < m; i++) {
-        if (is_same_method(study, i, m)) return false;
-    }
-    return true;
-}
-
 static int compare_errors(const void *a, const void *b) {
     const struct point *const one = a, *const other = b;
     return (one->error > other->error) - (one->error < other->error);
 }
 
-/* The complete settings of the method of member m, by increasing error. */
+/* The complete settings of the method of member m, by increasing error; none if an earlier member has the method. */
 static int collect_points(const struct case_values *study, const struct member_file *members, int m, double *buffer,
                           struct point *point) {
     int n = 0;
+    for (int i = COMPARE_N_REFERENCES; i < m; i++) {
+        if (is_same_method(study, i, m)) return 0;
+    }
     for (int i = m; i < sweep_n_members(study); i++) {
         if (!is_same_method(study, i, m) || first_repeat(study, i) != i || !member_file_is_complete(&members[i]))
             continue;
@@ -364,7 +347,7 @@ static void print_costs(struct arena *arena, const struct case_values *study, co
     const double unsure = error_of(study, &members[1]);
     double worst = 10 * unsure;
     for (int m = COMPARE_N_REFERENCES; m < n; m++) {
-        const int n_points = is_first_of_method(study, m) ? collect_points(study, members, m, buffer, point) : 0;
+        const int n_points = collect_points(study, members, m, buffer, point);
         if (n_points > 0) worst = fmax(worst, point[0].error);
     }
     const double error = pow(10, ceil(log10(worst) - 1e-9));
@@ -372,7 +355,7 @@ static void print_costs(struct arena *arena, const struct case_values *study, co
     int n_methods = 0;
     for (int c = 0; c < 6; c++) table_column(table, heads[c], NULL);
     for (int m = COMPARE_N_REFERENCES; m < n; m++) {
-        const int n_points = is_first_of_method(study, m) ? collect_points(study, members, m, buffer, point) : 0;
+        const int n_points = collect_points(study, members, m, buffer, point);
         if (n_points == 0) continue;
         cost_row(table, study, n_points, point, error, unsure);
         n_methods++;

@@ -369,13 +369,19 @@ struct convergence_levels convergence_study_levels(const struct error_study *stu
                                        .objection = key->objection};
 }
 
-/* Object to an interval for which the sheet has too few points: doc/model.md, section 8. */
-static void object_to_interval(const struct error_study *study, const struct member_file *members,
-                               struct error_study_key *key) {
+/* Judge each requested quantity of each fish by the finest levels of a key; a choice of the model by the largest
+ * change. */
+static void judge_key(struct error_study *study, const struct member_file *members, struct error_study_key *key) {
     const struct case_values *const values = study->values;
-    if (strcmp(key->row->path, "time.shedding_interval") != 0 || values->school.wake.shedding != SHEDDING_SHEET) return;
-    *key->objection = '\0';
-    for (int f = 0; f < study->n_fish && !*key->objection; f++) {
+    double size[ERROR_STUDY_LEVELS], value[ERROR_STUDY_LEVELS][2] = {{0}};
+    const struct convergence_levels levels = convergence_study_levels(study, key, size);
+    const int stated = key->member[key->stated];
+
+    // object to an interval for which the sheet has too few points: doc/model.md, section 8
+    const bool is_interval = strcmp(key->row->path, "time.shedding_interval") == 0;
+    const bool has_sheet = is_interval && values->school.wake.shedding == SHEDDING_SHEET;
+    if (has_sheet) *key->objection = '\0';
+    for (int f = 0; f < study->n_fish && has_sheet && !*key->objection; f++) {
         const struct fish_parameters *const fish = &values->school.fish[f];
         const double speed = member_file_number(&members[study->base], "speed", f);
         const double needed = 1 + 3.2 / sqrt(fabs(speed) * values->school.shedding_interval / fish->length);
@@ -384,14 +390,8 @@ static void object_to_interval(const struct error_study *study, const struct mem
         snprintf(key->objection, CONVERGENCE_BYTES, "%.60s needs %.0f sheet_points for this interval", fish->name,
                  ceil(needed));
     }
-}
 
-/* Judge each requested quantity of each fish by the finest levels of a key; a choice of the model by the largest
- * change. */
-static void judge_key(struct error_study *study, const struct member_file *members, struct error_study_key *key) {
-    double size[ERROR_STUDY_LEVELS], value[ERROR_STUDY_LEVELS][2] = {{0}};
-    const struct convergence_levels levels = convergence_study_levels(study, key, size);
-    const int stated = key->member[key->stated];
+    // a numerical key by the finest levels, a choice of the model by the largest change
     for (int q = 0; q < study->n_asked; q++) {
         for (int f = 0; f < study->n_fish; f++) {
             struct convergence_result *const part = &key->part[error_plan_place(study, q, f)];
@@ -450,7 +450,6 @@ void convergence_study_judge(struct error_study *study, const struct member_file
     for (int k = 0; k < study->n_keys; k++) {
         struct error_study_key *const key = &study->key[k];
         if (key->n_levels == 1) continue;
-        object_to_interval(study, members, key);
         judge_key(study, members, key);
     }
 
@@ -621,7 +620,7 @@ int convergence_study_refine(struct error_study *study, const struct member_file
         n_new += is_new;
 
         if (study->study->sweep[0].n_values > most_members) {
-            error_plan_shorten(study, n_before);
+            study->study->sweep[0].n_values = n_before;
             study->stated = stated;
             study->key[next.key] = before;
             return 0;

@@ -206,10 +206,6 @@ int error_plan_member(struct error_study *study, int n, const struct error_plan_
     return row_append(study->sweep, row.value, before);
 }
 
-void error_plan_shorten(struct error_study *study, int n_members) {
-    study->study->sweep[0].n_values = n_members;
-}
-
 /* Whether a level of a key is a valid case. */
 static bool is_valid_level(struct error_study *study, int k, double value) {
     struct arena *const scratch = arena_create(study->sweep->arena, "a level of an error study");
@@ -218,7 +214,7 @@ static bool is_valid_level(struct error_study *study, int k, double value) {
     const int member = row_append(study->sweep, row.value, -1);
     const enum status status = study_folder_case(scratch, &values, study->study, member);
     if (status == STATUS_MEMORY) arena_lack(scratch, 0);
-    error_plan_shorten(study, member);
+    study->study->sweep[0].n_values = member;
     arena_free(scratch);
     return status == STATUS_OK;
 }

@@ -106,13 +106,12 @@ void error_plan_insert(struct error_study_key *key, double value);
 int error_plan_members(struct error_study *study);
 
 /* Find the member with some changes of the case. If no such member exists (*is_new), add a member whose search starts
- * from the state of the member before. error_plan_shorten removes the last members. */
+ * from the state of the member before. */
 struct error_plan_change {
     int key;
     double value; /* of the first fish; the values of the other fish change in proportion */
 };
 int error_plan_member(struct error_study *study, int n, const struct error_plan_change *changes, int before,
                       bool *is_new);
-void error_plan_shorten(struct error_study *study, int n_members);
 
 #endif

@@ -192,12 +192,6 @@ static void member_finish(struct study *study, struct job *job, int outcome) {
     study_folder_set_reason(study->arena, study->options->folder, job->member, job->report->reason);
 }
 
-static int n_running(const struct study *study) {
-    int n = 0;
-    for (int j = 0; j < study->n_jobs; j++) n += study->job[j].process != 0;
-    return n;
-}
-
 /* Start members until all members have ended. */
 static enum status run_until_all_end(struct study *study) {
     sigset_t ended;
@@ -234,12 +228,16 @@ static enum status run_until_all_end(struct study *study) {
         struct study_progress *const progress = &study->progress;
         const double almost = 0.99;
         progress->wall_time = clock_seconds(CLOCK_MONOTONIC) - study->started;
-        progress->n_running = n_running(study);
-        double work = study->n_next - progress->n_running;
-        for (int j = 0; j < study->n_jobs; j++) work += study->job[j].process ? almost * study->job[j].report->part : 0;
+        progress->n_running = 0;
+        double work = study->n_next;
+        for (int j = 0; j < study->n_jobs; j++) {
+            if (!study->job[j].process) continue;
+            progress->n_running++;
+            work += almost * study->job[j].report->part - 1;
+        }
         progress->part = study->plan.n > 0 ? work / study->plan.n : 1;
         if (study->options->progress) study->options->progress(progress, study->options->data);
-        if (n_running(study) == 0) return status;
+        if (progress->n_running == 0) return status;
 
         // collect ended processes
         sigtimedwait(&ended, NULL, &patience);

@@ -547,15 +547,6 @@ enum status study_file_read(const struct netcdf_reader *reader, struct case_valu
 
 // ---- the report of a study
 
-static void print_members(struct arena *arena, const struct case_values *study, const struct member_file *members,
-                          FILE *stream) {
-    if (compare_is(study)) {
-        compare_print(arena, study, members, stream);
-    } else {
-        study_print(arena, study, members, stream);
-    }
-}
-
 /* Print orders and expectations; the first failure counts. */
 static enum status print_expected(struct arena *arena, const struct case_values *study,
                                   const struct member_file *members, const struct convergence_orders *orders,
@@ -599,7 +590,7 @@ enum status study_report(const struct case_values *study, const char *folder, co
     const char *const table = path ? path : study_folder_path(arena, folder, "study.nc");
     const char *const csv = study_folder_path(arena, folder, "error.csv");
     convergence_orders_create(arena, &orders, study, members);
-    print_members(arena, study, members, stream);
+    (compare_is(study) ? compare_print : study_print)(arena, study, members, stream);
     enum status status = print_expected(arena, study, members, &orders, stream);
 
     // the warnings of short runs in a comparison of methods concern the case
@@ -665,13 +656,6 @@ enum status study_compare(const struct case_values *values, const struct compare
 
 // ---- the report of errors
 
-/* Print the budget, or the points of a sweep. */
-static enum status print_errors(struct error_sweep *sweep, const struct member_file *members, FILE *stream) {
-    if (sweep->n_swept == 0) return study_print_errors(&sweep->point[0], members, stream);
-    study_print_points(sweep, members, stream);
-    return STATUS_OK;
-}
-
 /* Read and judge the members in a folder, add the members required by the error bound, and repeat; then report. Unless
  * options is NULL, run new members first. */
 static enum status refine_and_report(struct arena *arena, struct error_sweep *sweep, const char *folder,
@@ -700,7 +684,7 @@ static enum status refine_and_report(struct arena *arena, struct error_sweep *sw
     const struct convergence_orders none = {0};
     const char *const table = study_folder_path(arena, folder, "study.nc");
     const char *const csv = study_folder_path(arena, folder, "error.csv");
-    enum status status = print_errors(sweep, members, stream);
+    enum status status = study_print_errors(first, members, stream);
 
     // expectations concern the cases of the points, which are the first members
     struct sweep_axis axis = *study->sweep;
@@ -767,7 +751,7 @@ static enum status info_errors(struct arena *arena, const struct case_values *st
     do {
         convergence_sweep_judge(sweep, members);
     } while (convergence_study_refine(&sweep->point[0], members, n) > 0);
-    return print_errors(sweep, members, stream);
+    return study_print_errors(&sweep->point[0], members, stream);
 }
 
 enum status study_info(const struct netcdf_reader *reader, FILE *stream) {
@@ -795,7 +779,7 @@ enum status study_info(const struct netcdf_reader *reader, FILE *stream) {
     } else {
         struct convergence_orders orders;
         convergence_orders_create(arena, &orders, study, members);
-        print_members(arena, study, members, stream);
+        (compare_is(study) ? compare_print : study_print)(arena, study, members, stream);
         status = print_expected(arena, study, members, &orders, stream);
     }
     if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());

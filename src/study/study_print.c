@@ -131,24 +131,11 @@ static bool warnings_agree(const char *a, int n, const char *b, int m) {
 
 /* A warning of several members. */
 struct warning_group {
-    const char *line;  /* of the first member, without the line break */
-    int length, shown; /* and its number */
-    int first, last, n;
-    bool differs;  /* the numbers of another member are others */
-    char *members; /* "0-2, 5" up to the last range, which is first to last; NULL: no earlier range */
-    int members_length;
+    const char *line; /* of the first member, without the line break */
+    int length, n;
+    bool differs; /* the numbers of another member are others */
+    int *member;  /* ascending                                         (n) */
 };
-
-static void group_add_range(struct arena *arena, struct warning_group *group) {
-    char range[32];
-    int length = snprintf(range, sizeof range, "%s%d", group->members ? ", " : "", group->first);
-    if (group->last > group->first) {
-        length += snprintf(range + length, sizeof range - (size_t)length, "-%d", group->last);
-    }
-    GROW(arena, group->members, group->members_length + length + 1);
-    memcpy(group->members + group->members_length, range, (size_t)length);
-    group->members_length += length;
-}
 
 int study_print_warnings(struct arena *arena, const struct member_file *members, int n, FILE *stream) {
     struct warning_group *groups = NULL;
@@ -164,27 +151,28 @@ int study_print_warnings(struct arena *arena, const struct member_file *members,
             while (g < n_groups && !warnings_agree(groups[g].line, groups[g].length, line, length)) g++;
             if (g == n_groups) {
                 GROW(arena, groups, ++n_groups);
-                groups[g] =
-                    (struct warning_group){.line = line, .length = length, .shown = m, .first = m, .last = m, .n = 1};
-                continue;
+                groups[g] = (struct warning_group){.line = line, .length = length};
             }
             struct warning_group *const group = &groups[g];
             group->differs |= length != group->length || memcmp(group->line, line, (size_t)length) != 0;
-            if (m > group->last + 1) {
-                group_add_range(arena, group);
-                group->first = m;
-            }
-            group->last = m;
-            group->n++;
+            GROW(arena, group->member, group->n + 1);
+            group->member[group->n++] = m;
         }
     }
 
     for (int g = 0; g < n_groups && g < MAX_WARNINGS_SHOWN; g++) {
-        struct warning_group *const group = &groups[g];
-        group_add_range(arena, group);
-        fprintf(stream, "member%s %s: warning: %.*s", group->n > 1 ? "s" : "", group->members, group->length,
-                group->line);
-        if (group->differs) fprintf(stream, " (numbers of member %d)", group->shown);
+        const struct warning_group *const group = &groups[g];
+
+        // "0-2, 5": ranges of members
+        fprintf(stream, "member%s ", group->n > 1 ? "s" : "");
+        for (int i = 0, first = 0; i < group->n; i++) {
+            if (i + 1 < group->n && group->member[i + 1] <= group->member[i] + 1) continue;
+            fprintf(stream, "%s%d", first > 0 ? ", " : "", group->member[first]);
+            if (group->member[i] > group->member[first]) fprintf(stream, "-%d", group->member[i]);
+            first = i + 1;
+        }
+        fprintf(stream, ": warning: %.*s", group->length, group->line);
+        if (group->differs) fprintf(stream, " (numbers of member %d)", group->member[0]);
         fprintf(stream, "\n");
     }
 
@@ -194,15 +182,6 @@ int study_print_warnings(struct arena *arena, const struct member_file *members,
 }
 
 // ---- expectations
-
-/* Print a value and the bound; true if the bound is met or NaN (no bound). */
-static bool test_bound(const char *what, double value, const char *word, double bound, FILE *stream) {
-    if (isnan(bound)) return true;
-    const bool is_lower = strcmp(word, "least") == 0;
-    const bool is_met = is_lower ? value >= bound : value <= bound;
-    fprintf(stream, "  %-8s %s %.9g, expected at %s %.9g\n", is_met ? "met" : "MISSED", what, value, word, bound);
-    return is_met;
-}
 
 /* Test the bounds of an expectation on one quantity. */
 static bool test_quantity(const struct case_values *study, const struct member_file *members, int number, int q,
@@ -240,12 +219,23 @@ static bool test_quantity(const struct case_values *study, const struct member_f
     const double width = max[0] - min[0], height = what->of_xy ? max[1] - min[1] : 0;
     const double ratio = min[0] > 0 ? max[0] / min[0] : max[0] < 0 ? min[0] / max[0] : INFINITY;
 
-    // no short circuit: print every bound
-    const int n_met = test_bound("the smallest is", min[0], "least", one->min, stream) +
-                      test_bound("the largest is", max[0], "most", one->max, stream) +
-                      test_bound("the spread is", hypot(width, height), "most", one->spread, stream) +
-                      test_bound("the ratio is", ratio, "most", one->ratio, stream);
-    return n_met == 4;
+    const struct {
+        const char *what, *word;
+        double value, bound; /* NaN: no bound */
+    } tests[] = {{"the smallest is", "least", min[0], one->min},
+                 {"the largest is", "most", max[0], one->max},
+                 {"the spread is", "most", hypot(width, height), one->spread},
+                 {"the ratio is", "most", ratio, one->ratio}};
+    bool are_met = true;
+    for (int t = 0; t < 4; t++) {
+        const double value = tests[t].value, bound = tests[t].bound;
+        if (isnan(bound)) continue;
+        const bool is_met = t == 0 ? value >= bound : value <= bound;
+        fprintf(stream, "  %-8s %s %.9g, expected at %s %.9g\n", is_met ? "met" : "MISSED", tests[t].what, value,
+                tests[t].word, bound);
+        are_met &= is_met;
+    }
+    return are_met;
 }
 
 static bool has_failed(const struct member_file *member, const char *words) {
@@ -404,21 +394,14 @@ enum { OF_QUANTITY = 4 /* columns */, LEVEL_BYTES = 160 };
  * wall time of the events simulated for an estimate, s. */
 static const double beats_from_start = 14, beats_from_neighbour = 11, beats_of_multipliers = 32, patience = 2;
 
-static const char *name_of(const struct error_study *study, int q) {
-    return member_file_quantity(study->quantity[q])->name;
+static const struct member_file_quantity *quantity_of(const struct error_study *study, int q) {
+    return member_file_quantity(study->quantity[q]);
 }
 
-/* Without "steady_". */
+/* The name of a quantity without "steady_". */
 static const char *short_name_of(const struct error_study *study, int q) {
-    return name_of(study, q) + (strncmp(name_of(study, q), "steady_", 7) == 0 ? 7 : 0);
-}
-
-static bool report_of_fish(const struct error_study *study, int q) {
-    return member_file_quantity(study->quantity[q])->of_fish;
-}
-
-static bool report_is_error(const struct error_study_key *key) {
-    return key->row->kind != SWEEP_MODEL;
+    const char *const name = quantity_of(study, q)->name;
+    return name + (strncmp(name, "steady_", 7) == 0 ? 7 : 0);
 }
 
 /* The value of a level: "17", or a word. */
@@ -531,11 +514,11 @@ static int decimals_for(double number) {
 static void print_value(const struct error_study *study, int q, int f, FILE *stream) {
     const int place = error_plan_place(study, q, f);
     const double value = study->value[place], error = study->error[place];
-    const char *const own_unit = member_file_quantity(study->quantity[q])->unit;
+    const char *const own_unit = quantity_of(study, q)->unit;
     const char *const unit = strcmp(own_unit, "1") == 0 ? "" : own_unit, *const blank = *unit ? " " : "";
 
-    fprintf(stream, "%s", name_of(study, q));
-    if (report_of_fish(study, q)) fprintf(stream, " of %s", study->study->school.fish[f].name);
+    fprintf(stream, "%s", quantity_of(study, q)->name);
+    if (quantity_of(study, q)->of_fish) fprintf(stream, " of %s", study->study->school.fish[f].name);
     if (isnan(value)) {
         fprintf(stream, ": unknown\n");
     } else if (isnan(error)) {
@@ -597,7 +580,7 @@ static void sum_row(struct table *table, const struct error_study *study, const 
     table_cell(table, "%s", "");
     for (int q = 0; q < study->n_asked; q++) {
         const int place = error_plan_place(study, q, f);
-        const bool is_shown = f == 0 || report_of_fish(study, q);
+        const bool is_shown = f == 0 || quantity_of(study, q)->of_fish;
         for (int c = 0; c < OF_QUANTITY; c++) {
             if (is_shown && c == 0) {
                 part_cell(table, value[place], study->error[place]);
@@ -627,7 +610,7 @@ static void print_shares(const struct error_study *study, const struct error_stu
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
         n_moved += key->stated != key->first_stated;
-        if (!report_is_error(key)) continue;
+        if (key->row->kind == SWEEP_MODEL) continue;
         char levels[LEVEL_BYTES];
         write_levels(study, key, levels);
         table_cell(table, "%s", key->row->path);
@@ -635,8 +618,8 @@ static void print_shares(const struct error_study *study, const struct error_stu
         for (int q = 0; q < study->n_asked; q++) {
             const int place = error_plan_place(study, q, f);
             const struct convergence_result *const part = &key->part[place];
-            if (key->n_levels == 1 || (f > 0 && !report_of_fish(study, q))) {
-                const bool is_said = f == 0 || report_of_fish(study, q);
+            if (key->n_levels == 1 || (f > 0 && !quantity_of(study, q)->of_fish)) {
+                const bool is_said = f == 0 || quantity_of(study, q)->of_fish;
                 for (int c = 0; c < OF_QUANTITY; c++) table_cell(table, "%s", is_said && c == 1 ? "not varied" : "");
                 continue;
             }
@@ -667,7 +650,7 @@ static void print_choices(const struct error_study *study, FILE *stream) {
     int n = 0;
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
-        if (report_is_error(key) || key->n_levels == 1) continue;
+        if (key->row->kind != SWEEP_MODEL || key->n_levels == 1) continue;
         double most = 0;
         bool is_none = true;
         for (int place = 0; place < study->n_asked * study->n_fish; place++) {
@@ -692,7 +675,7 @@ static void print_reasons(const struct error_study *study, const struct member_f
     for (int k = 0; k < study->n_keys; k++) {
         const struct error_study_key *const key = &study->key[k];
         if (key->n_levels == 1) fprintf(stream, "not varied: %s: %s\n", key->row->path, key->objection);
-        if (key->n_levels == 1 || !report_is_error(key)) continue;
+        if (key->n_levels == 1 || key->row->kind == SWEEP_MODEL) continue;
         for (int place = 0; place < study->n_asked * study->n_fish; place++) {
             const int q = place / study->n_fish, f = place % study->n_fish;
             const struct convergence_result *const part = &key->part[place];
@@ -704,7 +687,8 @@ static void print_reasons(const struct error_study *study, const struct member_f
             study_print_reason(study, key, place, reason);
             fprintf(stream, "flagged: %s: ", key->row->path);
             if (!is_objection) fprintf(stream, "%s", short_name_of(study, q));
-            if (!is_objection && report_of_fish(study, q)) fprintf(stream, " of %s", study->study->school.fish[f].name);
+            if (!is_objection && quantity_of(study, q)->of_fish)
+                fprintf(stream, " of %s", study->study->school.fish[f].name);
             fprintf(stream, "%s%s\n", is_objection ? "" : ": ", reason);
             if (is_objection) break;
         }
@@ -714,36 +698,8 @@ static void print_reasons(const struct error_study *study, const struct member_f
     }
 }
 
-enum status study_print_errors(struct error_study *study, const struct member_file *members, FILE *stream) {
-    const struct error_study_next next = convergence_study_next(study, members);
-    const int n_shown = study->n_fish < MAX_FISH_SHOWN ? study->n_fish : MAX_FISH_SHOWN;
-    for (int f = 0; f < n_shown; f++) {
-        for (int q = 0; q < study->n_asked; q++) {
-            if (f == 0 || report_of_fish(study, q)) print_value(study, q, f, stream);
-        }
-        print_shares(study, &next, f, stream);
-        if (f + 1 < n_shown) fprintf(stream, "\n");
-    }
-
-    if (n_shown < study->n_fish) {
-        fprintf(stream, "The first %d of %d fish; error.csv and study.nc have all.\n", n_shown, study->n_fish);
-    }
-
-    fprintf(stream, "noise of a value, of integrator and search: %.1e\n", study->noise);
-    print_choices(study, stream);
-    print_reasons(study, members, stream);
-    if (study->stated > 0) fprintf(stream, "the stated value takes %.2g times the time of the case\n", study->cost);
-    if (study->is_reached) return STATUS_OK;
-    char words[CONVERGENCE_BYTES];
-    convergence_study_say_cost(study, words);
-
-    return status_fail(STATUS_MISSED, "the errors are not within %.3g %% of the values; %s",
-                       100 * study->study->error->within, words);
-}
-
-// ---- points of a sweep
-
-void study_print_points(const struct error_sweep *sweep, const struct member_file *members, FILE *stream) {
+/* Print a row of values and errors for each point of a sweep. */
+static void print_points(const struct error_sweep *sweep, const struct member_file *members, FILE *stream) {
     const struct error_study *const first = &sweep->point[0];
     const struct sweep_axis *const axis = &sweep->study.sweep[0];
     const int n_shown = first->n_fish < MAX_FISH_SHOWN ? first->n_fish : MAX_FISH_SHOWN;
@@ -753,7 +709,7 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
     for (int c = 0; c < sweep->n_swept; c++) add_key_column(table, &axis->key[c]);
     if (n_shown > 1) table_column(table, "fish", NULL);
     for (int q = 0; q < first->n_asked; q++) {
-        const char *const unit = member_file_quantity(first->quantity[q])->unit;
+        const char *const unit = quantity_of(first, q)->unit;
         table_column(table, short_name_of(first, q), strcmp(unit, "1") == 0 ? "" : unit);
         table_column(table, "error", NULL);
         table_column(table, "%", NULL);
@@ -770,7 +726,7 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
             }
             if (n_shown > 1) table_cell(table, "%s", point->values->school.fish[f].name);
             for (int q = 0; q < point->n_asked; q++) {
-                const int place = error_plan_place(point, q, report_of_fish(point, q) ? f : 0);
+                const int place = error_plan_place(point, q, quantity_of(point, q)->of_fish ? f : 0);
                 const double value = point->value[place], error = point->error[place];
                 const int decimals = decimals_for(error);
                 if (isnan(value) || isnan(error)) {
@@ -790,9 +746,9 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
             for (int k = 0; k < point->n_keys; k++) {
                 bool is_flagged = false;
                 for (int q = 0; q < point->n_asked; q++) {
-                    const int place = error_plan_place(point, q, report_of_fish(point, q) ? f : 0);
+                    const int place = error_plan_place(point, q, quantity_of(point, q)->of_fish ? f : 0);
                     const struct convergence_result *const part = &point->key[k].part[place];
-                    is_flagged |= point->key[k].n_levels > 1 && report_is_error(&point->key[k]) &&
+                    is_flagged |= point->key[k].n_levels > 1 && point->key[k].row->kind != SWEEP_MODEL &&
                                   convergence_is_flagged(part->verdict) && !(part->error < 0.01 * point->error[place]);
                 }
                 const char *const name = strrchr(point->key[k].row->path, '.') + 1;
@@ -817,6 +773,38 @@ void study_print_points(const struct error_sweep *sweep, const struct member_fil
     }
 }
 
+enum status study_print_errors(struct error_study *study, const struct member_file *members, FILE *stream) {
+    if (study->sweep->n_swept > 0) {
+        print_points(study->sweep, members, stream);
+        return STATUS_OK;
+    }
+
+    const struct error_study_next next = convergence_study_next(study, members);
+    const int n_shown = study->n_fish < MAX_FISH_SHOWN ? study->n_fish : MAX_FISH_SHOWN;
+    for (int f = 0; f < n_shown; f++) {
+        for (int q = 0; q < study->n_asked; q++) {
+            if (f == 0 || quantity_of(study, q)->of_fish) print_value(study, q, f, stream);
+        }
+        print_shares(study, &next, f, stream);
+        if (f + 1 < n_shown) fprintf(stream, "\n");
+    }
+
+    if (n_shown < study->n_fish) {
+        fprintf(stream, "The first %d of %d fish; error.csv and study.nc have all.\n", n_shown, study->n_fish);
+    }
+
+    fprintf(stream, "noise of a value, of integrator and search: %.1e\n", study->noise);
+    print_choices(study, stream);
+    print_reasons(study, members, stream);
+    if (study->stated > 0) fprintf(stream, "the stated value takes %.2g times the time of the case\n", study->cost);
+    if (study->is_reached) return STATUS_OK;
+    char words[CONVERGENCE_BYTES];
+    convergence_study_say_cost(study, words);
+
+    return status_fail(STATUS_MISSED, "the errors are not within %.3g %% of the values; %s",
+                       100 * study->study->error->within, words);
+}
+
 // ---- error.csv
 
 /* The place of a row of error.csv: a quantity of a fish at a point. */
@@ -832,7 +820,7 @@ static void write_csv_row(const struct csv_row *row, const char *key, const char
                           double error, const char *verdict) {
     const struct error_study *const study = row->study;
     const struct sweep_axis *const axis = &row->sweep->study.sweep[0];
-    const struct member_file_quantity *const quantity = member_file_quantity(study->quantity[row->q]);
+    const struct member_file_quantity *const quantity = quantity_of(study, row->q);
     fprintf(row->file, "\"%s\",%s,%s,%.9g,%s,%s,%.3g,%.3g,%.3g,\"%s\"",
             quantity->of_fish ? study->values->school.fish[row->f].name : "", quantity->name, quantity->unit, value,
             key, levels, order, error, 100 * error / fabs(study->value[error_plan_place(study, row->q, row->f)]),
@@ -856,7 +844,7 @@ enum status study_print_csv(const struct error_sweep *sweep, const char *path) {
         const struct error_study *const study = &sweep->point[p];
         for (int i = 0; i < study->n_fish * study->n_asked; i++) {
             const int q = i % study->n_asked, f = i / study->n_asked, place = error_plan_place(study, q, f);
-            if (f > 0 && !member_file_quantity(study->quantity[q])->of_fish) continue;
+            if (f > 0 && !quantity_of(study, q)->of_fish) continue;
             const struct csv_row row = {file, sweep, study, q, f};
             write_csv_row(&row, "sum", "", study->value[place], NAN, study->error[place], "");
 
@@ -866,9 +854,9 @@ enum status study_print_csv(const struct error_sweep *sweep, const char *path) {
                 if (key->n_levels == 1) continue;
                 write_levels(study, key, levels);
                 study_print_reason(study, key, place, reason);
-                const char *const verdict = !report_is_error(key) ? of_model
-                                            : *reason             ? reason
-                                                                  : convergence_words(key->part[place].verdict);
+                const char *const verdict = key->row->kind == SWEEP_MODEL ? of_model
+                                            : *reason                     ? reason
+                                                                          : convergence_words(key->part[place].verdict);
                 write_csv_row(&row, key->row->path, levels, study->value[place], key->part[place].order,
                               key->part[place].error, verdict);
             }

@@ -37,12 +37,10 @@ enum status study_print_orders(struct arena *arena, const struct case_values *st
  * each member. Fails as simulate_start. */
 enum status study_print_plan(const struct error_sweep *sweep, int n_processes, FILE *stream);
 
-/* Print the values with the errors of one point and, for each fish, the share of each key. Fails with STATUS_MISSED and
- * an estimate of the required refinement if the errors exceed the bound of the case. */
+/* Print the values with the errors of one point and, for each fish, the share of each key; in a sweep, a row of values
+ * and errors for each point. Fails with STATUS_MISSED and an estimate of the required refinement if the errors of one
+ * point exceed the bound of the case. */
 enum status study_print_errors(struct error_study *study, const struct member_file *members, FILE *stream);
-
-/* Print a row of values and errors for each point. */
-void study_print_points(const struct error_sweep *sweep, const struct member_file *members, FILE *stream);
 
 /* Write values, errors and shares of all points as a table of comma-separated values. Fails with STATUS_FILE. */
 enum status study_print_csv(const struct error_sweep *sweep, const char *path);
