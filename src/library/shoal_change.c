@@ -21,35 +21,6 @@ int shoal_state(struct shoal *run, int fish, double *position, double *velocity)
     return STATUS_OK;
 }
 
-// ---- checks of the new body
-
-// edge lengths within a factor 2 of the length at rest, and turns of joints below the singularity of the curvature
-static enum status change_check_shape(const struct fish *fish, const double *position) {
-    static const double least = 0.5, most = 2, largest_turn = 3;
-    double angle = 0;
-    for (int k = 0; k < fish->n_edges; k++) {
-        const double along[2] = {position[2 * k + 2] - position[2 * k], position[2 * k + 3] - position[2 * k + 1]};
-        const double length = hypot(along[0], along[1]), at_rest = fish->length / fish->n_edges;
-        if (!(length > least * at_rest && length < most * at_rest)) {
-            return status_fail(
-                STATUS_CASE,
-                "shoal_set_state: edge %d of %s would be %.3g m long, length at rest %.3g m: the ratio must be "
-                "between 0.5 and 2",
-                k, fish->name, length, at_rest);
-        }
-
-        // turn of the joint between the previous edge and this edge
-        const double before = angle;
-        angle = atan2(along[1], along[0]);
-        const double turn = remainder(angle - before, 2 * M_PI);
-        if (k > 0 && fabs(turn) > largest_turn) {
-            return status_fail(STATUS_CASE, "shoal_set_state: joint %d of %s would turn by %.3g rad, limit %g rad",
-                               k - 1, fish->name, turn, largest_turn);
-        }
-    }
-    return STATUS_OK;
-}
-
 // ---- the change: complete, or no change on failure
 
 struct change {
@@ -174,7 +145,29 @@ int shoal_set_state(struct shoal *run, int fish, const double *position, const d
         return status_fail(STATUS_CASE, "%s: the %s of node %d, %g, is not finite", __func__,
                            which == 0 ? "position" : "velocity", k / 2, given[which][k]);
     }
-    if (position) TRY(change_check_shape(of, position));
+
+    // edge lengths within a factor 2 of the length at rest, and turns of joints below the singularity of the curvature
+    static const double least = 0.5, most = 2, largest_turn = 3;
+    double angle = 0;
+    for (int k = 0; k < of->n_edges && position; k++) {
+        const double along[2] = {position[2 * k + 2] - position[2 * k], position[2 * k + 3] - position[2 * k + 1]};
+        const double length = hypot(along[0], along[1]), at_rest = of->length / of->n_edges;
+        if (!(length > least * at_rest && length < most * at_rest)) {
+            return status_fail(STATUS_CASE,
+                               "%s: edge %d of %s would be %.3g m long, length at rest %.3g m: the ratio must be "
+                               "between 0.5 and 2",
+                               __func__, k, of->name, length, at_rest);
+        }
+
+        // turn of the joint between the previous edge and this edge
+        const double before = angle;
+        angle = atan2(along[1], along[0]);
+        const double turn = remainder(angle - before, 2 * M_PI);
+        if (k > 0 && fabs(turn) > largest_turn) {
+            return status_fail(STATUS_CASE, "%s: joint %d of %s would turn by %.3g rad, limit %g rad", __func__, k - 1,
+                               of->name, turn, largest_turn);
+        }
+    }
     if (!position && !velocity) return STATUS_OK;
     return change_run(run, &(struct change){.fish = fish, .position = position, .velocity = velocity});
 }

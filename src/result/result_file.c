@@ -236,38 +236,12 @@ static void write_variables(struct result_file *result, enum part_of_file part, 
 
 // ---- rows of another file, with another number of vortices
 
-/* Copy a row of variable i. length: of the dimensions of the source; values: room for the row there. */
-static enum status copy_variable(struct result_file *result, const struct netcdf_reader *reader, int i, size_t row,
-                                 const size_t *length, bool drop, double *values) {
-    const struct result_variable *const variable = &result_table[i];
-    struct netcdf_slice slice[RESULT_MAX_DIMENSIONS + 1] = {0};
-    size_t start[RESULT_MAX_DIMENSIONS] = {row}, count[RESULT_MAX_DIMENSIONS];
-    for (int d = 0; variable->dimension[d] != NONE; d++) {
-        const enum result_dimension dimension = variable->dimension[d];
-        const size_t first = dimension == TIME ? row : 0;
-        slice[d] = (struct netcdf_slice){result_table_dimension(dimension), first, length[dimension]};
-        count[d] = result->length[dimension];
-    }
-    TRY(netcdf_read_doubles(reader, variable->name, slice, values));
-
-    const size_t n_fish = result_table_has(variable, FISH) ? length[FISH] : 1;
-    const size_t from = result_values_n(variable, length) / n_fish;
-    const size_t to = result_values_n(variable, result->length) / n_fish;
-    for (size_t k = 0; k < n_fish * to; k++) result->buffer[k] = NAN;
-    for (size_t f = 0; f < n_fish && !drop; f++) {
-        memcpy(result->buffer + f * to, values + f * from, (from < to ? from : to) * sizeof *values);
-    }
-
-    netcdf_write_doubles(&result->writer, result->number[i], start, count, result->buffer);
-    return STATUS_OK;
-}
-
 /* Copy all rows. Fails with STATUS_FILE if rows cannot be read; the writer stores failures of writing. */
 static enum status copy_rows(struct result_file *result, const struct result_source *source) {
     struct arena *const scratch = arena_create(result->arena, source->path);
     struct netcdf_reader *reader;
     double *values;
-    size_t length[RESULT_N_DIMENSIONS], most = 1;
+    size_t length[RESULT_N_DIMENSIONS], most = 1; /* of the source */
     NEW(scratch, reader, 1);
     TRY(netcdf_open(scratch, reader, source->path));
     memcpy(length, result->length, sizeof length);
@@ -279,12 +253,32 @@ static enum status copy_rows(struct result_file *result, const struct result_sou
     NEW(scratch, values, most);
 
     for (; result->n_rows < (size_t)source->n_rows; result->n_rows++) {
-        const bool is_last = result->n_rows + 1 == (size_t)source->n_rows;
+        const size_t row = result->n_rows;
         for (int i = 0; i < result_table_n; i++) {
+            // read the row of a variable
             const struct result_variable *const variable = &result_table[i];
             if (!file_is_written(result, variable) || !result_table_has(variable, TIME)) continue;
-            const bool drop = source->drop_last_wake && is_last && result_table_has(variable, VORTEX);
-            TRY(copy_variable(result, reader, i, result->n_rows, length, drop, values));
+            struct netcdf_slice slice[RESULT_MAX_DIMENSIONS + 1] = {0};
+            size_t start[RESULT_MAX_DIMENSIONS] = {row}, count[RESULT_MAX_DIMENSIONS];
+            for (int d = 0; variable->dimension[d] != NONE; d++) {
+                const enum result_dimension dimension = variable->dimension[d];
+                const size_t first = dimension == TIME ? row : 0;
+                slice[d] = (struct netcdf_slice){result_table_dimension(dimension), first, length[dimension]};
+                count[d] = result->length[dimension];
+            }
+            TRY(netcdf_read_doubles(reader, variable->name, slice, values));
+
+            // the slots of each fish; the last wake may be left out
+            const bool is_last = row + 1 == (size_t)source->n_rows;
+            const bool is_dropped = source->drop_last_wake && is_last && result_table_has(variable, VORTEX);
+            const size_t n_fish = result_table_has(variable, FISH) ? length[FISH] : 1;
+            const size_t from = result_values_n(variable, length) / n_fish;
+            const size_t to = result_values_n(variable, result->length) / n_fish;
+            for (size_t k = 0; k < n_fish * to; k++) result->buffer[k] = NAN;
+            for (size_t f = 0; f < n_fish && !is_dropped; f++) {
+                memcpy(result->buffer + f * to, values + f * from, (from < to ? from : to) * sizeof *values);
+            }
+            netcdf_write_doubles(&result->writer, result->number[i], start, count, result->buffer);
         }
     }
 
@@ -377,8 +371,8 @@ enum status result_file_publish(struct result_file *result, const char *run_stat
     return netcdf_publish(&result->writer, result->overwrite);
 }
 
-enum status result_file_continue(struct arena *arena, struct result_file **result, const struct result_origin *origin,
-                                 const struct result_mark *mark, const struct result_checksum *checksum) {
+enum status result_file_continue(struct arena *arena, struct result_file **result, const struct result_origin *origin) {
+    const struct result_mark *const mark = origin->mark;
     struct netcdf_rows rows;
     *result = NULL;
     TRY(netcdf_read_rows(origin->path, &rows));
@@ -389,7 +383,7 @@ enum status result_file_continue(struct arena *arena, struct result_file **resul
 
     struct result_file *const new = result_allocate(arena, origin);
     new->n_rows = (size_t)mark->n_rows;
-    new->checksum = *checksum;
+    new->checksum = *origin->checksum;
     enum status status = netcdf_continue(&new->writer, origin->path);
 
     if (status == STATUS_OK) {

@@ -75,6 +75,8 @@ struct result_origin {
     long n_events;                      /* of the whole run, without the one at the start */
     bool is_steady;                     /* with the variables of a steady state */
     const struct result_source *source; /* the first rows, of a shorter or longer run of the same case; NULL: none */
+    const struct result_mark *mark;     /* of a file that is continued, with its checksum; NULL: a new file */
+    const struct result_checksum *checksum;
 };
 
 /* Begin a file, with the constants of the school and the rows of the source. The file appears at the path with
@@ -89,10 +91,9 @@ void result_file_steady(struct result_file *result, const struct school *school,
  * STATUS_FILE or STATUS_MEMORY; a file that existed at the path is then unchanged. */
 enum status result_file_publish(struct result_file *result, const char *run_status);
 
-/* Continue the file of origin->path, made for this case, behind the rows of a mark with this checksum; later rows are
- * removed. run_status is "running" again. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
-enum status result_file_continue(struct arena *arena, struct result_file **result, const struct result_origin *origin,
-                                 const struct result_mark *mark, const struct result_checksum *checksum);
+/* Continue the file of origin->path, made for this case, behind the rows of origin->mark; later rows are removed.
+ * run_status is "running" again. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
+enum status result_file_continue(struct arena *arena, struct result_file **result, const struct result_origin *origin);
 
 /* Flush all rows to disk, and mark the rows. Fails with STATUS_FILE. */
 enum status result_file_mark(struct result_file *result, struct result_mark *mark);

@@ -10,25 +10,6 @@
 
 // ---- the summary
 
-static enum status find_kind(const struct netcdf_reader *reader, int n_kinds, const struct result_kind *kinds,
-                             const struct result_kind **kind) {
-    const int none = -1;
-    for (int k = 0; k < n_kinds; k++) {
-        int schema;
-        TRY(netcdf_read_integer(reader, kinds[k].schema_name, none, &schema));
-        if (schema == none) continue;
-        *kind = &kinds[k];
-        if (schema == kinds[k].schema) return STATUS_OK;
-        return status_fail(
-            STATUS_FILE,
-            "%s: written in schema %d, but this program reads schema %d: use the program that wrote the file",
-            reader->path, schema, kinds[k].schema);
-    }
-
-    return status_fail(STATUS_FILE, "%s: a NetCDF file, but not of shoal (attribute %s is missing)", reader->path,
-                       kinds[0].schema_name);
-}
-
 enum status result_kind_info(struct arena *arena, int n_kinds, const struct result_kind *kinds, const char *path,
                              enum result_info_form form, FILE *stream) {
     static const char *const lines[][2] = {
@@ -36,11 +17,28 @@ enum status result_kind_info(struct arena *arena, int n_kinds, const struct resu
     MEMORY_BOUNDARY(STATUS_MEMORY);
     struct arena *const scratch = arena_create(arena, path);
     struct netcdf_reader *reader;
-    const struct result_kind *kind = NULL;
+    const struct result_kind *kind = kinds;
     char *text;
     NEW(scratch, reader, 1);
     TRY(netcdf_open(scratch, reader, path));
-    TRY(find_kind(reader, n_kinds, kinds, &kind));
+
+    // the kind, by the attribute with the schema
+    const int none = -1;
+    int schema = none;
+    for (; kind < kinds + n_kinds; kind++) {
+        TRY(netcdf_read_integer(reader, kind->schema_name, none, &schema));
+        if (schema != none) break;
+    }
+    if (schema == none) {
+        return status_fail(STATUS_FILE, "%s: a NetCDF file, but not of shoal (attribute %s is missing)", path,
+                           kinds[0].schema_name);
+    }
+    if (schema != kind->schema) {
+        return status_fail(
+            STATUS_FILE,
+            "%s: written in schema %d, but this program reads schema %d: use the program that wrote the file", path,
+            schema, kind->schema);
+    }
 
     if (form == RESULT_INFO_JSON) {
         TRY(result_json_summary(reader, kind->name, stream));

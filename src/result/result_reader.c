@@ -14,24 +14,6 @@ static const struct result_variable *reader_find_variable(const char *name) {
 
 // ---- the file
 
-/* Refuse files that are not of a run. */
-static enum status check_kind(const struct result_reader *reader) {
-    const struct netcdf_reader *const file = &reader->file;
-    int schema, study;
-    TRY(netcdf_read_integer(file, "shoal_schema", 0, &schema));
-    TRY(netcdf_read_integer(file, "shoal_study", 0, &study));
-    if (schema == RESULT_SCHEMA) return STATUS_OK;
-    if (schema != 0)
-        return status_fail(
-            STATUS_FILE,
-            "%s: written in schema %d, but this program reads schema %d: use the program that wrote the file",
-            file->path, schema, RESULT_SCHEMA);
-    if (study != 0)
-        return status_fail(STATUS_FILE, "%s: the file of a study: give the file of one run, such as member-0000.nc",
-                           file->path);
-    return status_fail(STATUS_FILE, "%s: a NetCDF file, but not of shoal", file->path);
-}
-
 /* The counts of a variable over the fish, each from min to max. */
 static enum status read_counts(struct arena *arena, const struct result_reader *reader, const char *name, size_t min,
                                size_t max, int **counts) {
@@ -55,7 +37,24 @@ enum status result_reader_open(struct arena *arena, struct result_reader **opene
     NEW(arena, reader, 1);
     *opened = reader;
     TRY(netcdf_open(arena, &reader->file, path));
-    TRY(check_kind(reader));
+
+    // refuse files that are not of a run
+    int schema, study;
+    TRY(netcdf_read_integer(&reader->file, "shoal_schema", 0, &schema));
+    TRY(netcdf_read_integer(&reader->file, "shoal_study", 0, &study));
+    if (schema != RESULT_SCHEMA && schema != 0) {
+        return status_fail(
+            STATUS_FILE,
+            "%s: written in schema %d, but this program reads schema %d: use the program that wrote the file", path,
+            schema, RESULT_SCHEMA);
+    }
+    if (schema == 0 && study != 0) {
+        return status_fail(STATUS_FILE, "%s: the file of a study: give the file of one run, such as member-0000.nc",
+                           path);
+    }
+    if (schema == 0) return status_fail(STATUS_FILE, "%s: a NetCDF file, but not of shoal", path);
+
+    // the dimensions
     for (enum result_dimension d = TIME; d < MULTIPLIER; d++) {
         TRY(netcdf_read_length(&reader->file, result_table_dimension(d), d == XY ? 2 : 0, d == XY ? 2 : MAX_LENGTH,
                                &reader->length[d]));

@@ -22,32 +22,6 @@ char *checkpoints_path(struct arena *arena, const char *result) {
                       has_ending ? ".ckpt" : ".checkpoint");
 }
 
-// read "0.3,1.25"
-static enum status checkpoint_places_read(struct checkpoints *checkpoints, const struct case_values *values,
-                                          const char *at) {
-    const double interval = values->school.shedding_interval;
-    NEW(checkpoints->arena, checkpoints->at, strlen(at) / 2 + 1);
-
-    while (*at) {
-        char word[64];
-        const size_t length = strcspn(at, ",");
-        double time;
-        snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), at);
-        const bool is_number = text_number(word, &time);
-        const double event = is_number ? round(time / interval) : 0;
-        if (!is_number || !(fabs(time - event * interval) <= 1e-9 * time) || time > values->time.end + interval / 2) {
-            return status_fail(STATUS_CASE,
-                               "--checkpoint-at: '%s' is not the time of an event: an integer multiple of "
-                               "time.shedding_interval, %.9g s, up to time.end, %.9g s",
-                               word, interval, values->time.end);
-        }
-        checkpoints->at[checkpoints->n_at++] = (long)event;
-        at += length + (at[length] == ',');
-    }
-
-    return STATUS_OK;
-}
-
 enum status checkpoints_create(struct arena *arena, struct checkpoints *checkpoints, const struct case_values *values,
                                const char *result, const char *at) {
     *checkpoints = (struct checkpoints){.arena = arena, .places = "", .last = -1, .last_place = -1};
@@ -60,7 +34,27 @@ enum status checkpoints_create(struct arena *arena, struct checkpoints *checkpoi
     text_add_word(&word, checkpoints->path);
     checkpoints->word = word.text;
 
-    if (at) TRY(checkpoint_places_read(checkpoints, values, at));
+    // the times of --checkpoint-at, "0.3,1.25"
+    const double interval = values->school.shedding_interval;
+    if (at) NEW(arena, checkpoints->at, strlen(at) / 2 + 1);
+    while (at && *at) {
+        char time_word[64];
+        const size_t length = strcspn(at, ",");
+        double time;
+        snprintf(time_word, sizeof time_word, "%.*s", (int)(length < sizeof time_word ? length : sizeof time_word - 1),
+                 at);
+        const bool is_number = text_number(time_word, &time);
+        const double event = is_number ? round(time / interval) : 0;
+        if (!is_number || !(fabs(time - event * interval) <= 1e-9 * time) || time > values->time.end + interval / 2) {
+            return status_fail(STATUS_CASE,
+                               "--checkpoint-at: '%s' is not the time of an event: an integer multiple of "
+                               "time.shedding_interval, %.9g s, up to time.end, %.9g s",
+                               time_word, interval, values->time.end);
+        }
+        checkpoints->at[checkpoints->n_at++] = (long)event;
+        at += length + (at[length] == ',');
+    }
+
     TRY(checkpoint_check_target(arena, checkpoints->path, checkpoints->result));
     TRY(checkpoint_check_target(arena, checkpoints->previous, checkpoints->result));
     durable_discard(checkpoints->path);

@@ -13,25 +13,16 @@ char *record_path(struct arena *arena, const struct case_values *values) {
     return arena_text(arena, "%s%s", file ? file : values->name, file ? "" : ".nc");
 }
 
-static void record_begin(struct record *record, const struct result_origin *origin) {
+enum status record_create(struct arena *arena, struct record *record, const struct result_origin *origin) {
+    MEMORY_BOUNDARY(STATUS_MEMORY);
     const struct case_values *const values = origin->values;
+    struct result_origin whole = *origin;
     *record = (struct record){.path = origin->path, .n_events = origin->n_events};
     record->events_per_row = lround(values->time.output_interval / values->school.shedding_interval);
     record->events_per_wake = lround(values->output.wake_interval / values->school.shedding_interval);
-}
-
-enum status record_create(struct arena *arena, struct record *record, const struct result_origin *origin) {
-    MEMORY_BOUNDARY(STATUS_MEMORY);
-    struct result_origin whole = *origin;
-    record_begin(record, origin);
-    whole.effective = case_show(arena, origin->values);
+    if (origin->mark) return result_file_continue(arena, &record->file, origin);
+    whole.effective = case_show(arena, values);
     return result_file_create(arena, &record->file, &whole);
-}
-
-enum status record_continue(struct arena *arena, struct record *record, const struct result_origin *origin,
-                            const struct result_mark *mark, const struct result_checksum *checksum) {
-    record_begin(record, origin);
-    return result_file_continue(arena, &record->file, origin, mark, checksum);
 }
 
 bool record_is_due(const struct record *record, long event) {

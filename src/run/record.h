@@ -22,13 +22,10 @@ struct record {
 /* Path of the result of a case: output.file, or the name of the case with .nc. */
 char *record_path(struct arena *arena, const struct case_values *values);
 
-/* Create the file of an origin, without a row (result_file_create); the record refers to the path until record_close.
- * origin->effective is not used. Fails with STATUS_FILE or, as a boundary, with STATUS_MEMORY; no file remains then. */
+/* Create the file of an origin, without a row (result_file_create), or continue it behind the mark of the origin; the
+ * record refers to the path until record_close. origin->effective is not used. A boundary: fails with STATUS_FILE or
+ * STATUS_MEMORY; no new file remains then. */
 enum status record_create(struct arena *arena, struct record *record, const struct result_origin *origin);
-
-/* Append to an existing file behind the rows of a mark (result_file_continue). */
-enum status record_continue(struct arena *arena, struct record *record, const struct result_origin *origin,
-                            const struct result_mark *mark, const struct result_checksum *checksum);
 
 /* Whether an event is a row: every output interval, and the end. A record without a file has no rows. */
 bool record_is_due(const struct record *record, long event);

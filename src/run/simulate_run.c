@@ -332,9 +332,12 @@ static enum status resume_start(struct resume *resume, const char *path, const s
                                    .command = options->command,
                                    .school = simulation->school,
                                    .n_events = simulation->n_events};
-    const enum status status = changes->has_other_end ? resume_extend(resume, &origin)
-                                                      : record_continue(run->arena, &run->record, &origin,
-                                                                        &resume->checkpoint.rows, &resume->checksum);
+    if (!changes->has_other_end) {
+        origin.mark = &resume->checkpoint.rows;
+        origin.checksum = &resume->checksum;
+    }
+    const enum status status =
+        changes->has_other_end ? resume_extend(resume, &origin) : record_create(run->arena, &run->record, &origin);
     return run->record.file ? run_finish(run, status) : status;
 }
 

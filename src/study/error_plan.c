@@ -120,39 +120,6 @@ static void row_set(const struct row *row, const char *path, int fish, double va
     row->value[c] = text_of(study, case_table_row(path), value);
 }
 
-static void row_apply(const struct row *row, const struct error_plan_change *change) {
-    const struct error_study *const study = row->study;
-    const struct case_values *const values = study->values;
-    const struct error_study_key *const key = &study->key[change->key];
-    const char *const path = key->row->path, *const companion = key->row->companion;
-    const double part = change->value / plan_number_of(values, path, 0);
-    const bool are_nodes = strcmp(path, "fish.nodes") == 0, is_choice = key->row->n_levels > 0;
-    if (!are_nodes && !(fabs(change->value - key->value[key->first_stated]) > 1e-12 * change->value)) return;
-
-    // all levels of the nodes use the sheet of the finest level
-    const double finest = fmax(change->value, key->n_levels > 0 ? key->value[0] : 0);
-    const double nodes_part = fmax(1, finest / plan_number_of(values, "fish.nodes", 0));
-    for (int f = 0; f < n_owners(values, path); f++) {
-        const double value = f == 0 || is_choice ? change->value : part * plan_number_of(values, path, f);
-        row_set(row, path, f, key->row->kind == SWEEP_POINTS ? round(value) : value);
-        if (!are_nodes) continue;
-        const double nodes = round(nodes_part * plan_number_of(values, "fish.nodes", f));
-        row_set(row, "fish.sheet_points", f, fmax(plan_number_of(values, "fish.sheet_points", f), 2 * nodes - 1));
-    }
-
-    if (companion && !is_choice) row_set(row, companion, 0, part * plan_number_of(values, companion, 0));
-    if (strcmp(path, "time.shedding_interval") != 0) return;
-
-    // times that must be multiples of the interval; the end time has no effect on a steady state
-    const double interval = change->value, beat = study->beat;
-    if (study->is_steady && beat > 0) row_set(row, "time.end", 0, beat * ceil(values->time.end / beat - 1e-9));
-    row_set(row, "time.checkpoint_interval", 0, 0);
-    const double output = interval * fmax(1, round(values->time.output_interval / interval));
-    row_set(row, "time.output_interval", 0, output);
-    row_set(row, "output.wake_interval", 0, output * fmax(1, round(values->output.wake_interval / output)));
-    if (values->solver.step > 0) row_set(row, "solver.step", 0, interval / ceil(interval / values->solver.step - 1e-9));
-}
-
 /* Whether a quantity of the modes of small disturbances is requested. */
 static bool asks_for_modes(const struct error_study *study) {
     for (int q = 0; q < study->n_asked; q++) {
@@ -164,6 +131,7 @@ static bool asks_for_modes(const struct error_study *study) {
 /* The row of the case of a point with some changes. */
 static struct row make_row(const struct error_study *study, int n, const struct error_plan_change *changes) {
     const struct sweep_axis *const axis = &study->study->sweep[0];
+    const struct case_values *const values = study->values;
     struct row row = {study, NULL, n > 1};
     NEW(study->sweep->arena, row.value, axis->n_keys);
     memcpy(row.value, axis->value + (size_t)study->base * (size_t)axis->n_keys,
@@ -171,7 +139,37 @@ static struct row make_row(const struct error_study *study, int n, const struct 
 
     // only the case itself has multipliers, unless all members need multipliers
     if (!asks_for_modes(study)) row_set(&row, "steady.multipliers", 0, NO);
-    for (int i = 0; i < n; i++) row_apply(&row, &changes[i]);
+
+    for (const struct error_plan_change *change = changes; change < changes + n; change++) {
+        const struct error_study_key *const key = &study->key[change->key];
+        const char *const path = key->row->path, *const companion = key->row->companion;
+        const double part = change->value / plan_number_of(values, path, 0);
+        const bool are_nodes = strcmp(path, "fish.nodes") == 0, is_choice = key->row->n_levels > 0;
+        if (!are_nodes && !(fabs(change->value - key->value[key->first_stated]) > 1e-12 * change->value)) continue;
+
+        // all levels of the nodes use the sheet of the finest level
+        const double finest = fmax(change->value, key->n_levels > 0 ? key->value[0] : 0);
+        const double nodes_part = fmax(1, finest / plan_number_of(values, "fish.nodes", 0));
+        for (int f = 0; f < n_owners(values, path); f++) {
+            const double value = f == 0 || is_choice ? change->value : part * plan_number_of(values, path, f);
+            row_set(&row, path, f, key->row->kind == SWEEP_POINTS ? round(value) : value);
+            if (!are_nodes) continue;
+            const double nodes = round(nodes_part * plan_number_of(values, "fish.nodes", f));
+            row_set(&row, "fish.sheet_points", f, fmax(plan_number_of(values, "fish.sheet_points", f), 2 * nodes - 1));
+        }
+
+        if (companion && !is_choice) row_set(&row, companion, 0, part * plan_number_of(values, companion, 0));
+        if (strcmp(path, "time.shedding_interval") != 0) continue;
+
+        // times that must be multiples of the interval; the end time has no effect on a steady state
+        const double interval = change->value, beat = study->beat, step = values->solver.step;
+        if (study->is_steady && beat > 0) row_set(&row, "time.end", 0, beat * ceil(values->time.end / beat - 1e-9));
+        row_set(&row, "time.checkpoint_interval", 0, 0);
+        const double output = interval * fmax(1, round(values->time.output_interval / interval));
+        row_set(&row, "time.output_interval", 0, output);
+        row_set(&row, "output.wake_interval", 0, output * fmax(1, round(values->output.wake_interval / output)));
+        if (step > 0) row_set(&row, "solver.step", 0, interval / ceil(interval / step - 1e-9));
+    }
     return row;
 }
 
@@ -537,14 +535,22 @@ static enum status create_points(struct error_sweep *sweep, char ***swept) {
     return STATUS_OK;
 }
 
-/* Plan all points. */
-static enum status plan_points(struct error_sweep *sweep) {
+enum status error_plan_create(struct arena *arena, struct error_sweep **plan, const struct case_values *values) {
+    struct error_sweep *sweep;
+    struct case_values *parsed;
+    NEW(arena, sweep, 1);
+    sweep->arena = arena;
+    TRY(study_folder_parse(arena, &parsed, values->merged, values->name, 0, NULL));
+    sweep->study = *parsed;
+    sweep->study.text = arena_text(arena, "%s", values->text);
+
+    // the keys of each point
     char **swept = NULL, **value;
     TRY(create_points(sweep, &swept));
     for (int p = 0; p < sweep->n_points; p++) {
         struct error_study *const point = &sweep->point[p];
         struct school *school;
-        TRY(fish_school_create(sweep->arena, &school, &point->values->school));
+        TRY(fish_school_create(arena, &school, &point->values->school));
         for (int f = point->n_fish - 1; f >= 0; f--) {
             if (school->fish[f].period > 0) point->beat = school->fish[f].period;
         }
@@ -561,7 +567,7 @@ static enum status plan_points(struct error_sweep *sweep) {
     // the case of each point; the search of a point starts from the state of the point before
     struct sweep_axis *const axis = &sweep->study.sweep[0];
     axis->steady = sweep->point[0].is_steady;
-    NEW(sweep->arena, value, axis->n_keys);
+    NEW(arena, value, axis->n_keys);
     for (int p = 0; p < sweep->n_points; p++) {
         struct error_study *const point = &sweep->point[p];
         for (int c = 0; c < axis->n_keys; c++) {
@@ -570,7 +576,7 @@ static enum status plan_points(struct error_sweep *sweep) {
             const struct sweep_error_key *const row = sweep_error_find(path);
             const bool is_choice = row && row->n_levels > 0;
             value[c] = c < sweep->n_swept ? swept[p * sweep->n_swept + c]
-                       : is_choice        ? arena_text(sweep->arena, "%s", "")
+                       : is_choice        ? arena_text(arena, "%s", "")
                                    : text_of(point, case_table_row(path), plan_number_of(point->values, path, f));
         }
         point->base = point->stated = row_append(sweep, value, p - 1);
@@ -580,18 +586,6 @@ static enum status plan_points(struct error_sweep *sweep) {
         TRY(choose_levels(&sweep->point[p]));
         error_plan_members(&sweep->point[p]);
     }
-    return STATUS_OK;
-}
-
-enum status error_plan_create(struct arena *arena, struct error_sweep **sweep, const struct case_values *values) {
-    struct error_sweep *plan;
-    struct case_values *parsed;
-    NEW(arena, plan, 1);
-    plan->arena = arena;
-    TRY(study_folder_parse(arena, &parsed, values->merged, values->name, 0, NULL));
-    plan->study = *parsed;
-    plan->study.text = arena_text(arena, "%s", values->text);
-    TRY(plan_points(plan));
-    *sweep = plan;
+    *plan = sweep;
     return STATUS_OK;
 }

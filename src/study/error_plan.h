@@ -85,7 +85,7 @@ struct error_sweep {
 
 /* Plan the members of a case with `error`. Fails with STATUS_CASE: an unknown quantity, a quantity of runs beside one
  * of steady states, or no key. */
-enum status error_plan_create(struct arena *arena, struct error_sweep **sweep, const struct case_values *values);
+enum status error_plan_create(struct arena *arena, struct error_sweep **plan, const struct case_values *values);
 
 /* The index of a quantity of a fish in part, value and error. */
 int error_plan_place(const struct error_study *study, int quantity, int fish);

@@ -86,6 +86,10 @@ bool member_file_is_complete(const struct member_file *member) {
     return strcmp(member->status, "complete") == 0;
 }
 
+bool member_file_has_failed(const struct member_file *member, const char *words) {
+    return strncmp(member->status, "failed", strlen("failed")) == 0 && strstr(member->status, words) != NULL;
+}
+
 void member_file_create_values(struct arena *arena, struct member_file *member, int n_fish) {
     const int n = member_file_n_quantities() * n_fish * 2;
     member->n_fish = n_fish;

@@ -49,8 +49,9 @@ void member_file_create_values(struct arena *arena, struct member_file *member, 
 double member_file_value(const struct member_file *member, int quantity, int fish, int xy);
 double member_file_number(const struct member_file *member, const char *name, int fish);
 
-/* Whether the run of the member is complete. */
+/* Whether the run of the member is complete, or has failed with these words in the message. */
 bool member_file_is_complete(const struct member_file *member);
+bool member_file_has_failed(const struct member_file *member, const char *words);
 
 /* The address of an existing value. */
 double *member_file_place(const struct member_file *member, int quantity, int fish, int xy);

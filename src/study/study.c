@@ -251,32 +251,6 @@ static enum status run_until_all_end(struct study *study) {
     }
 }
 
-static enum status run_jobs(struct study *study) {
-    const size_t size = (size_t)study->n_jobs * sizeof *study->report;
-    NEW(study->arena, study->job, study->n_jobs);
-    void *const shared = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (shared == MAP_FAILED) arena_lack(study->arena, (double)size);
-    study->report = shared;
-    for (int j = 0; j < study->n_jobs; j++) study->job[j].report = &study->report[j];
-
-    // a blocked signal stays pending, so the end of a process is never missed
-    sigset_t ended;
-    sigemptyset(&ended);
-    sigaddset(&ended, SIGCHLD);
-    sigprocmask(SIG_BLOCK, &ended, &study->mask);
-    study->is_masked = true;
-    TRY(run_until_all_end(study));
-    if (study->required) {
-        return status_fail(STATUS_SOLVER, "member %d failed: %s", study->required->member,
-                           study->required->report->reason);
-    }
-
-    if (!is_stopped(study)) return STATUS_OK;
-    return status_fail(STATUS_STOPPED,
-                       "stopped by a signal: %d of %d members are finished; repeat the command to continue",
-                       study->progress.n_done, study->progress.n_members);
-}
-
 /* Lock the members, so that no other study runs the same members in the folder. */
 static enum status lock_members(struct study *study) {
     const struct study_options *const options = study->options;
@@ -318,7 +292,32 @@ static enum status plan_and_run(struct study *study) {
     int n = options->n_processes != 0 ? options->n_processes : omp_get_num_procs() / study->plan.max_threads;
     if (n < 1) n = 1;
     study->n_jobs = n < study->plan.n ? n : study->plan.n;
-    return study->n_jobs > 0 ? run_jobs(study) : STATUS_OK;
+    if (study->n_jobs == 0) return STATUS_OK;
+
+    // the processes report in shared memory
+    const size_t size = (size_t)study->n_jobs * sizeof *study->report;
+    NEW(study->arena, study->job, study->n_jobs);
+    void *const shared = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED) arena_lack(study->arena, (double)size);
+    study->report = shared;
+    for (int j = 0; j < study->n_jobs; j++) study->job[j].report = &study->report[j];
+
+    // a blocked signal stays pending, so the end of a process is never missed
+    sigset_t ended;
+    sigemptyset(&ended);
+    sigaddset(&ended, SIGCHLD);
+    sigprocmask(SIG_BLOCK, &ended, &study->mask);
+    study->is_masked = true;
+    TRY(run_until_all_end(study));
+    if (study->required) {
+        return status_fail(STATUS_SOLVER, "member %d failed: %s", study->required->member,
+                           study->required->report->reason);
+    }
+
+    if (!is_stopped(study)) return STATUS_OK;
+    return status_fail(STATUS_STOPPED,
+                       "stopped by a signal: %d of %d members are finished; repeat the command to continue",
+                       study->progress.n_done, study->progress.n_members);
 }
 
 enum status study_run(const struct case_values *values, const struct study_options *options, int *n_failed) {

@@ -563,7 +563,13 @@ static enum status test_completeness(const struct case_values *study, const stru
     const int n = sweep_n_members(study);
     int n_failed = 0;
     for (int m = 0; m < n; m++) {
-        n_failed += !member_file_is_complete(&members[m]) && !study_expects_failure(study, members, m);
+        bool is_expected = member_file_is_complete(&members[m]);
+        for (int i = 0; i < study->n_expectations && !is_expected; i++) {
+            const struct sweep_expectation *const one = &study->expect[i];
+            is_expected =
+                one->fails && sweep_expects_of(study, one, m) && member_file_has_failed(&members[m], one->fails);
+        }
+        n_failed += !is_expected;
     }
     if (n_failed == 0) return STATUS_OK;
     return status_fail(STATUS_SOLVER,
@@ -738,22 +744,6 @@ enum status study_gather(const char *folder, const char *command, bool strict, F
     return refine_and_report(arena, sweep, folder, NULL, command, strict, stream, warnings);
 }
 
-/* Print the errors of a study.nc: refine up to the members of the file. */
-static enum status info_errors(struct arena *arena, const struct case_values *study, const struct member_file *members,
-                               int n, FILE *stream) {
-    struct error_sweep *sweep;
-    TRY(error_plan_create(arena, &sweep, study));
-    if (sweep_n_members(&sweep->study) > n) {
-        return status_fail(STATUS_FILE,
-                           "the file has %d members, expected %d: write study.nc again with `shoal gather`", n,
-                           sweep_n_members(&sweep->study));
-    }
-    do {
-        convergence_sweep_judge(sweep, members);
-    } while (convergence_study_refine(&sweep->point[0], members, n) > 0);
-    return study_print_errors(&sweep->point[0], members, stream);
-}
-
 enum status study_info(const struct netcdf_reader *reader, FILE *stream) {
     struct arena *const arena = reader->arena;
     struct case_values *study;
@@ -775,7 +765,18 @@ enum status study_info(const struct netcdf_reader *reader, FILE *stream) {
     // a missed expectation belongs to the contents of the file
     enum status status;
     if (study->error) {
-        status = info_errors(arena, study, members, n, stream);
+        // refine up to the members of the file
+        struct error_sweep *sweep;
+        TRY(error_plan_create(arena, &sweep, study));
+        if (sweep_n_members(&sweep->study) > n) {
+            return status_fail(STATUS_FILE,
+                               "the file has %d members, expected %d: write study.nc again with `shoal gather`", n,
+                               sweep_n_members(&sweep->study));
+        }
+        do {
+            convergence_sweep_judge(sweep, members);
+        } while (convergence_study_refine(&sweep->point[0], members, n) > 0);
+        status = study_print_errors(&sweep->point[0], members, stream);
     } else {
         struct convergence_orders orders;
         convergence_orders_create(arena, &orders, study, members);

@@ -44,16 +44,12 @@ char *study_folder_member(struct arena *arena, const char *folder, int member, c
     return study_folder_path(arena, folder, name);
 }
 
-static void case_release(void *object) {
-    case_free(object);
-}
-
 enum status study_folder_parse(struct arena *arena, struct case_values **study, const char *text, const char *origin,
                                int n_assignments, const char *const *assignments) {
     struct case_values *one;
     NEW(arena, one, 1);
     TRY(case_parse(one, text, strlen(text), origin, NULL, n_assignments, assignments));
-    arena_defer(arena, case_release, one);
+    arena_move(one->arena, arena);
     *study = one;
     return STATUS_OK;
 }
@@ -63,7 +59,7 @@ enum status study_folder_case(struct arena *arena, struct case_values **values, 
     struct case_values *one;
     NEW(arena, one, 1);
     TRY(case_member(one, study, member));
-    arena_defer(arena, case_release, one);
+    arena_move(one->arena, arena);
     *values = one;
     return STATUS_OK;
 }
@@ -183,27 +179,6 @@ static enum status plan_member(struct arena *arena, struct study_plan *plan, con
     return STATUS_OK;
 }
 
-/* Refuse to replace a file of another program or, without force, a study.nc of another study; ignore an unreadable
- * study.nc. arena: scratch */
-static enum status check_study_file(struct arena *arena, const struct case_values *study, const char *folder,
-                                    bool force) {
-    const char *const path = study_folder_path(arena, folder, "study.nc");
-    struct netcdf_reader *reader;
-    char *text;
-    if (access(path, F_OK) != 0) return STATUS_OK;
-    TRY(target_check(path, TARGET_NETCDF, true));
-    if (force) return STATUS_OK;
-    NEW(arena, reader, 1);
-    enum status status = netcdf_open(arena, reader, path);
-    if (status == STATUS_OK) status = netcdf_attribute(reader, "study_case", &text);
-    if (status != STATUS_OK) return status == STATUS_MEMORY ? status : STATUS_OK;
-    if (!*text || strcmp(text, study->merged) == 0) return STATUS_OK;
-    return status_fail(STATUS_FILE,
-                       "%s was gathered from another study, or the case has changed since: choose another folder with "
-                       "-o, or replace the results with --force",
-                       path);
-}
-
 enum status study_plan_create(struct arena *arena, struct study_plan *plan, const struct case_values *study,
                               const char *folder, int first, int last, bool force) {
     const int n = sweep_n_members(study);
@@ -224,7 +199,26 @@ enum status study_plan_create(struct arena *arena, struct study_plan *plan, cons
 
     if (is_part) return STATUS_OK;
     struct arena *const scratch = arena_create(arena, "the plan of a study");
-    TRY(check_study_file(scratch, study, folder, force));
+
+    // do not replace a file of another program or, without force, a study.nc of another study; one that cannot be read
+    // is replaced
+    const char *const table = study_folder_path(scratch, folder, "study.nc");
+    const bool exists = access(table, F_OK) == 0;
+    if (exists) TRY(target_check(table, TARGET_NETCDF, true));
+    if (exists && !force) {
+        struct netcdf_reader *reader;
+        char *text;
+        NEW(scratch, reader, 1);
+        enum status status = netcdf_open(scratch, reader, table);
+        if (status == STATUS_OK) status = netcdf_attribute(reader, "study_case", &text);
+        if (status == STATUS_MEMORY) return status;
+        if (status == STATUS_OK && *text && strcmp(text, study->merged) != 0) {
+            return status_fail(STATUS_FILE,
+                               "%s was gathered from another study, or the case has changed since: choose another "
+                               "folder with -o, or replace the results with --force",
+                               table);
+        }
+    }
 
     // remove results of other studies beyond the last member; members that an error study with refinement has added
     // belong to the study

@@ -238,18 +238,6 @@ static bool test_quantity(const struct case_values *study, const struct member_f
     return are_met;
 }
 
-static bool has_failed(const struct member_file *member, const char *words) {
-    return strncmp(member->status, "failed", strlen("failed")) == 0 && strstr(member->status, words) != NULL;
-}
-
-bool study_expects_failure(const struct case_values *study, const struct member_file *members, int member) {
-    for (int i = 0; i < study->n_expectations; i++) {
-        const struct sweep_expectation *const one = &study->expect[i];
-        if (one->fails && sweep_expects_of(study, one, member) && has_failed(&members[member], one->fails)) return true;
-    }
-    return false;
-}
-
 enum status study_expect(const struct case_values *study, const struct member_file *members, FILE *stream) {
     int n_missed = 0, first = 0;
     const char *first_what = "";
@@ -265,7 +253,7 @@ enum status study_expect(const struct case_values *study, const struct member_fi
         for (int m = 0; m < sweep_n_members(study) && one->fails; m++) {
             if (!sweep_expects_of(study, one, m)) continue;
             n_failures++;
-            if (!has_failed(&members[m], one->fails)) wrong = m;
+            if (!member_file_has_failed(&members[m], one->fails)) wrong = m;
         }
         if (one->fails) fprintf(stream, "failures, %d member%s\n", n_failures, n_failures == 1 ? "" : "s");
         if (one->fails && wrong < 0) {

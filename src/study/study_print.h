@@ -23,9 +23,6 @@ int study_print_warnings(struct arena *arena, const struct member_file *members,
 /* Print the expectations and the actual values. Fails with STATUS_MISSED if an expectation is not met. */
 enum status study_expect(const struct case_values *study, const struct member_file *members, FILE *stream);
 
-/* Whether the failure of a member is expected. */
-bool study_expects_failure(const struct case_values *study, const struct member_file *members, int member);
-
 /* Print errors and orders along a refined axis. Fails with STATUS_MISSED if the order of a quantity differs from the
  * order that the axis expects. */
 enum status study_print_orders(struct arena *arena, const struct case_values *study,

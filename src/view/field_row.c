@@ -26,29 +26,23 @@ static bool is_row(const struct reading *reading, long row) {
     return row >= 0 && row < reading->n_rows;
 }
 
-/* True if the wakes of a row are in the file: all fish or none have a wake in a row. */
-static enum status find_wake(const struct reading *reading, const struct school *school, long row, bool *has_wake) {
-    *has_wake = true;
-    for (int f = 0; f < school->n_fish; f++) {
-        double count, first;
-        const struct netcdf_slice of_fish[] = {{"time", (size_t)row, 1}, {"fish", (size_t)f, 1}, {NULL, 0, 0}};
-        TRY(netcdf_read_doubles(&reading->file, "wake_count", of_fish, &count));
-        if (count < 1) continue;
-        const struct netcdf_slice of_vortex[] = {
-            {"time", (size_t)row, 1}, {"fish", (size_t)f, 1}, {"vortex", 0, 1}, {NULL, 0, 0}};
-        TRY(netcdf_read_doubles(&reading->file, "wake_circulation", of_vortex, &first));
-        if (isnan(first)) *has_wake = false;
-    }
-
-    return STATUS_OK;
-}
-
-/* The first row with a wake from the given row on, forwards or backwards; an invalid row number if there is none. */
+/* The first row with a wake from the given row on, forwards or backwards; an invalid row number if there is none. All
+ * fish or none have a wake in a row. */
 static enum status next_with_wake(const struct reading *reading, const struct school *school, long from, int step,
                                   long *row) {
     bool has_wake = false;
     for (*row = from; is_row(reading, *row); *row += step) {
-        TRY(find_wake(reading, school, *row, &has_wake));
+        has_wake = true;
+        for (int f = 0; f < school->n_fish; f++) {
+            double count, first;
+            const struct netcdf_slice slice[] = {
+                {"time", (size_t)*row, 1}, {"fish", (size_t)f, 1}, {"vortex", 0, 1}, {NULL, 0, 0}};
+            const struct netcdf_slice of_fish[] = {slice[0], slice[1], {NULL, 0, 0}};
+            TRY(netcdf_read_doubles(&reading->file, "wake_count", of_fish, &count));
+            if (count < 1) continue;
+            TRY(netcdf_read_doubles(&reading->file, "wake_circulation", slice, &first));
+            if (isnan(first)) has_wake = false;
+        }
         if (has_wake) break;
     }
     return STATUS_OK;
@@ -92,38 +86,33 @@ static enum status field_find_row(const struct reading *reading, const struct sc
                            reading->file.path, t, time[*row - 1], time[*row]);
     }
 
-    bool has_wake;
-    TRY(find_wake(reading, school, *row, &has_wake));
-    return has_wake ? STATUS_OK : fail_without_wake(reading, school, *row);
+    long with_wake;
+    TRY(next_with_wake(reading, school, *row, 1, &with_wake));
+    return with_wake == *row ? STATUS_OK : fail_without_wake(reading, school, *row);
 }
 
 // ---- the values of a row
 
-/* A variable over (time, fish, dimension[, xy]): n values of fish f, all of them finite. */
+/* A variable over (time, fish, dimension): n values of fish f, all of them finite; with y, over (..., xy). */
 static enum status field_read_values(const struct reading *reading, const char *name, long row, int f,
-                                     const char *dimension, int n, bool has_xy) {
+                                     const char *dimension, int n, double *x, double *y) {
     const struct netcdf_slice slice[] = {{"time", (size_t)row, 1},
                                          {"fish", (size_t)f, 1},
                                          {dimension, 0, (size_t)n},
-                                         {has_xy ? "xy" : NULL, 0, 2},
+                                         {y ? "xy" : NULL, 0, 2},
                                          {NULL, 0, 0}};
     if (n == 0) return STATUS_OK;
     TRY(netcdf_read_doubles(&reading->file, name, slice, reading->buffer));
 
-    for (int i = 0; i < (has_xy ? 2 : 1) * n; i++) {
-        if (isfinite(reading->buffer[i])) continue;
+    for (int i = 0; i < n; i++) {
+        x[i] = reading->buffer[y ? 2 * i : i];
+        if (y) y[i] = reading->buffer[2 * i + 1];
+        if (isfinite(x[i]) && (!y || isfinite(y[i]))) continue;
         return status_fail(STATUS_FILE, "%s: variable %s has a gap where fish %d has a value", reading->file.path, name,
                            f);
     }
 
     return STATUS_OK;
-}
-
-static void separate(int n, const double *pairs, double *x, double *y) {
-    for (int i = 0; i < n; i++) {
-        x[i] = pairs[2 * i];
-        y[i] = pairs[2 * i + 1];
-    }
 }
 
 static enum status read_wake(const struct reading *reading, long row, int f, const struct field_row *to) {
@@ -136,12 +125,9 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
     }
     const int n = (int)count;
     wake_resize(wake, n);
-    TRY(field_read_values(reading, "wake_x", row, f, "vortex", n, true));
-    separate(n, reading->buffer, wake->x, wake->y);
-    TRY(field_read_values(reading, "wake_circulation", row, f, "vortex", n, false));
-    memcpy(wake->circulation, reading->buffer, (size_t)n * sizeof *wake->circulation);
-    TRY(field_read_values(reading, "wake_birth", row, f, "vortex", n, false));
-    memcpy(wake->birth, reading->buffer, (size_t)n * sizeof *wake->birth);
+    TRY(field_read_values(reading, "wake_x", row, f, "vortex", n, wake->x, wake->y));
+    TRY(field_read_values(reading, "wake_circulation", row, f, "vortex", n, wake->circulation, NULL));
+    TRY(field_read_values(reading, "wake_birth", row, f, "vortex", n, wake->birth, NULL));
     for (int i = 0; i < n; i++) {
         wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = wake->rate[i] = wake->rate_before[i] = 0;
     }
@@ -192,23 +178,19 @@ static enum status field_read_row(struct arena *arena, struct reading *reading, 
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         double *const y = to->state->y;
-        TRY(field_read_values(reading, "x", row, f, "node", fish->n_nodes, true));
-        separate(fish->n_nodes, reading->buffer, y + fish->at.x, y + fish->at.y);
-        TRY(field_read_values(reading, "sheet_strength", row, f, "sheet", fish->n_sheet, false));
+        double *const gamma = y + fish->at.gamma;
+        TRY(field_read_values(reading, "x", row, f, "node", fish->n_nodes, y + fish->at.x, y + fish->at.y));
+        TRY(field_read_values(reading, "sheet_strength", row, f, "sheet", fish->n_sheet, gamma, NULL));
         for (int j = 0; j < fish->n_sheet; j++) {
             // the file has the strength per actual length, the unknown is per natural length
-            y[fish->at.gamma + j] = 1;
-            y[fish->at.gamma + j] = reading->buffer[j] / bound_sheet_strength(fish, j, y);
+            const double strength = gamma[j];
+            gamma[j] = 1;
+            gamma[j] = strength / bound_sheet_strength(fish, j, y);
         }
         TRY(read_wake(reading, row, f, to));
     }
 
     return STATUS_OK;
-}
-
-static void field_row_release(void *object) {
-    struct field_row *const row = object;
-    case_free(&row->values);
 }
 
 enum status field_row_read(struct arena *arena, struct field_row **new, const char *path, double t, int n_assignments,
@@ -217,7 +199,6 @@ enum status field_row_read(struct arena *arena, struct field_row **new, const ch
     struct reading *reading;
     struct field_row *row;
     NEW(arena, row, 1);
-    arena_defer(arena, field_row_release, row);
     *new = row;
     NEW(scratch, reading, 1);
     TRY(netcdf_open(scratch, &reading->file, path));
@@ -232,6 +213,7 @@ enum status field_row_read(struct arena *arena, struct field_row **new, const ch
     TRY(netcdf_attribute(&reading->file, "case_effective", &effective));
     row->effective = arena_text(arena, "%s", effective);
     TRY(case_parse(&row->values, effective, strlen(effective), path, NULL, n_assignments, assignments));
+    arena_move(row->values.arena, arena);
     TRY(fish_school_create(arena, &row->school, &row->values.school));
     row->state = state_create(arena, row->school);
 

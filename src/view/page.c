@@ -103,25 +103,6 @@ static size_t row_of(size_t i, size_t n, size_t stride) {
 
 // ---- the fish
 
-static void write_shape(const struct page *page, const double *thickness, size_t f) {
-    const int n = page->reader->n_nodes[f];
-    const size_t n_weights = (size_t)n * OUTLINE_POINTS;
-    const struct outline outline =
-        outline_create(page->arena, n, thickness + f * page->reader->length[EDGE], page->reader->has_mean_section[f]);
-    float *values;
-    NEW(page->arena, values, 2 * n_weights + OUTLINE_POINTS);
-    for (size_t i = 0; i < n_weights; i++) {
-        values[i] = (float)outline.weight[i];
-        values[n_weights + i] = (float)outline.slope[i];
-    }
-    for (int i = 0; i < OUTLINE_POINTS; i++) values[2 * n_weights + (size_t)i] = (float)outline.half[i];
-
-    fprintf(page->stream, "{\"nodes\":%d,\"points\":%d,", n, OUTLINE_POINTS);
-    page_write_array(page->stream, "weight", n_weights * sizeof *values, values, ",");
-    page_write_array(page->stream, "slope", n_weights * sizeof *values, values + n_weights, ",");
-    page_write_array(page->stream, "half", OUTLINE_POINTS * sizeof *values, values + 2 * n_weights, "}");
-}
-
 /* Write the shapes, each once, and the fish with the numbers of the shapes. */
 static enum status write_fish(const struct page *page) {
     const struct result_reader *const reader = page->reader;
@@ -147,8 +128,22 @@ static enum status write_fish(const struct page *page) {
         shape[f] = s;
         if (s < n_shapes) continue;
         first[n_shapes++] = f;
-        if (s > 0) fputc(',', page->stream);
-        write_shape(page, thickness, f);
+
+        // the weights of the nodes at each point of the outline, their slopes, and the half thickness
+        const int n = reader->n_nodes[f];
+        const size_t n_weights = (size_t)n * OUTLINE_POINTS;
+        const struct outline outline = outline_create(page->arena, n, own, reader->has_mean_section[f]);
+        float *values;
+        NEW(page->arena, values, 2 * n_weights + OUTLINE_POINTS);
+        for (size_t i = 0; i < n_weights; i++) {
+            values[i] = (float)outline.weight[i];
+            values[n_weights + i] = (float)outline.slope[i];
+        }
+        for (int i = 0; i < OUTLINE_POINTS; i++) values[2 * n_weights + (size_t)i] = (float)outline.half[i];
+        fprintf(page->stream, "%s{\"nodes\":%d,\"points\":%d,", s > 0 ? "," : "", n, OUTLINE_POINTS);
+        page_write_array(page->stream, "weight", n_weights * sizeof *values, values, ",");
+        page_write_array(page->stream, "slope", n_weights * sizeof *values, values + n_weights, ",");
+        page_write_array(page->stream, "half", OUTLINE_POINTS * sizeof *values, values + 2 * n_weights, "}");
     }
 
     fprintf(page->stream, "],\n\"fish\":[");

@@ -70,10 +70,12 @@ TEST_WITH(only_the_rows_of_a_mark_have_to_be_there, set_up, tear_down) {
     struct netcdf_rows rows;
     struct result_mark mark;
     bool is_complete;
-    const struct result_origin origin = origin_of(f);
+    struct result_origin origin = origin_of(f);
+    origin.mark = &mark;
     for (int n_bytes = 0; n_bytes < 3; n_bytes++) {
         struct result_checksum checksum = {0}, found = {0};
         struct result_file *result;
+        origin.checksum = &found;
         write_file(f, 4);
         assert_int_equal(result_mark_take(f->path, 2, &checksum, &mark), STATUS_OK);
         assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
@@ -84,7 +86,7 @@ TEST_WITH(only_the_rows_of_a_mark_have_to_be_there, set_up, tear_down) {
         assert_int_equal(rows.n_counted, 4);
         assert_int_equal(result_mark_check(f->arena, f->path, &mark, EFFECTIVE, &found, &is_complete), STATUS_OK);
         assert_false(is_complete);  // whatever the file says
-        assert_int_equal(result_file_continue(f->arena, &result, &origin, &mark, &found), STATUS_OK);
+        assert_int_equal(result_file_continue(f->arena, &result, &origin), STATUS_OK);
         assert_int_equal(append(f, result, 7, 1), STATUS_OK);
         assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
         const int file = open_to_read(f);
@@ -107,11 +109,13 @@ TEST_WITH(a_file_goes_on_behind_a_mark, set_up, tear_down) {
     struct result_checksum checksum = {0};
     struct result_mark mark;
     struct result_file *result;
-    const struct result_origin origin = origin_of(f);
+    struct result_origin origin = origin_of(f);
+    origin.mark = &mark;
+    origin.checksum = &checksum;
     bool is_complete;
     write_file(f, 4);
     assert_int_equal(result_mark_take(f->path, 2, &checksum, &mark), STATUS_OK);
-    assert_int_equal(result_file_continue(f->arena, &result, &origin, &mark, &checksum), STATUS_OK);
+    assert_int_equal(result_file_continue(f->arena, &result, &origin), STATUS_OK);
     struct netcdf_rows rows;
     assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
     assert_int_equal(rows.n, 2);
