@@ -14,28 +14,6 @@
 #include "force/fluid_force.h"
 #include "school/diagnostics_momentum.h"
 
-// power of the constraint forces of prescribed nodes, of the moment on a clamped head, and of the load at the tip;
-// *force: sum of these forces
-static double constraint_power(struct residual *residual, int f, double t, const double *y, double force[2]) {
-    const struct fish *fish = &residual->school->fish[f];
-    const int tail = fish->n_nodes - 1;
-    double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
-    memcpy(force, fish->load_tip, sizeof fish->load_tip);
-    if (fish->motion.prescribed == PRESCRIBED_NONE) return power;
-
-    power += rod_clamp_terms(fish, t, y).driving_power;
-    double *const reaction = residual->scratch;
-    residual_reaction(residual, f, y, residual->state->yp, reaction);
-    for (int k = 0; k < fish_n_prescribed(fish); k++) {
-        const double fx = fish_is_prescribed(fish, k, 0) ? reaction[fish->at.ax + k] : 0,
-                     fy = reaction[fish->at.ay + k];
-        power += fx * y[fish->at.vx + k] + fy * y[fish->at.vy + k];
-        force[0] += fx;
-        force[1] += fy;
-    }
-    return power;
-}
-
 // strains, strain rates for the damping, and stresses for the actuation of fish f: from the positions of the nodes, or,
 // with strain damping, from the strains and stresses integrated over the steps
 static struct rod_strains find_strains(struct residual *residual, int f, const struct actuation *muscle,
@@ -60,11 +38,27 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     const struct actuation muscle = residual_muscle(residual, f, t, y);
     const struct rod_strains strains = find_strains(residual, f, &muscle, y);
 
-    // internal powers, constraints
+    // internal powers
+    const struct rod_clamp_terms clamp = rod_clamp_terms(fish, t, y);
     const double actuation = rod_actuation_power(fish, &muscle, strains.stress);
-    const double damping = rod_damping_power(fish, strains.rate) + rod_clamp_terms(fish, t, y).damping_power;
-    double driving_force[2];
-    const double driving = constraint_power(residual, f, t, y, driving_force);
+    const double damping = rod_damping_power(fish, strains.rate) + clamp.damping_power;
+
+    // the load at the tip, the moment on a clamped head, and the constraint forces of prescribed nodes
+    const int tail = fish->n_nodes - 1;
+    double driving = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
+    double driving_force[2] = {fish->load_tip[0], fish->load_tip[1]};
+    double *const reaction = residual->scratch;
+    if (fish->motion.prescribed != PRESCRIBED_NONE) {
+        driving += clamp.driving_power;
+        residual_reaction(residual, f, y, residual->state->yp, reaction);
+    }
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        const double fx = fish_is_prescribed(fish, k, 0) ? reaction[fish->at.ax + k] : 0;
+        const double fy = reaction[fish->at.ay + k];
+        driving += fx * y[fish->at.vx + k] + fy * y[fish->at.vy + k];
+        driving_force[0] += fx;
+        driving_force[1] += fy;
+    }
 
     struct diagnostics_power power = {.actuation = actuation,
                                       .damping = damping,

@@ -166,40 +166,14 @@ static void impulse_of_fluid(const struct residual *residual, const struct state
 
 // ---- external forces
 
-// force of the external flow without a travelling gust on all vortices of a fish; the velocity is linear in the
-// position, so moments suffice
-static void add_stream(const struct residual *residual, int f, double t, const double *y, double force[3]) {
-    const struct school *const school = residual->school;
-    const struct flow *const flow = residual->flow;
-    const struct state *const state = residual->state;
-    const struct fish *const fish = &school->fish[f];
-    double u, v, gust[2], tail[2];
-    flow_external(school, t, 0, 0, &u, &v);
-    flow_external_gust(school, t, 0, 0, &gust[0], &gust[1]);
-    u -= gust[0];
-    v -= gust[1];
-    if (!(fabs(u) + fabs(v) + fabs(school->shear) > 0) || !residual->pressure[f]) return;
-
-    // moments of free, nascent and bound vortices
-    struct impulse_moments sum = impulse_of_wake(&state->wake[f], school, state->t, t - state->t);
-    fish_tail(fish, y, tail);
-    add_nascent(&sum, flow, state, f, t - state->t, tail);
-    const int first = flow->points[f].first;
-    for (int c = 0; c < fish->n_control; c++) {
-        impulse_add(&sum, residual->pressure[f]->point[c].circulation, flow->x[first + c], flow->y[first + c]);
-    }
-
-    const double factor = school->density * impulse_depth(fish);
-    force[0] += factor * v * sum.circulation;
-    force[1] -= factor * (u * sum.circulation + school->shear * sum.y);
-    force[2] -= factor * (u * sum.x + v * sum.y + school->shear * sum.product);
-}
-
 // all external forces except images; call after pressure_update
 static void external_force(struct residual *residual, int f, double t, const double *y, double force[3]) {
-    const struct fish *const fish = &residual->school->fish[f];
-    const struct flow_at_body flow = flow_at_body(residual->flow, f);
-    const struct fluid_forces fluid = fluid_force_sum(fish, &flow, (const double[2]){0, 0}, y);
+    const struct school *const school = residual->school;
+    const struct state *const state = residual->state;
+    const struct flow *const flow = residual->flow;
+    const struct fish *const fish = &school->fish[f];
+    const struct flow_at_body at_body = flow_at_body(flow, f);
+    const struct fluid_forces fluid = fluid_force_sum(fish, &at_body, (const double[2]){0, 0}, y);
     const struct contact_terms contact = contact_terms(residual->contact, f, y);
 
     double tail[2];
@@ -230,7 +204,25 @@ static void external_force(struct residual *residual, int f, double t, const dou
         // moment of the momentum rate = rate of the moment minus velocity x momentum
         force[2] -= y[fish->at.vx + k] * momentum[1] - y[fish->at.vy + k] * momentum[0];
     }
-    add_stream(residual, f, t, y, force);
+
+    // the external flow without a travelling gust on all vortices of the fish; the velocity is linear in the position,
+    // so the moments of free, nascent and bound vortices suffice
+    double u, v, gust[2];
+    flow_external(school, t, 0, 0, &u, &v);
+    flow_external_gust(school, t, 0, 0, &gust[0], &gust[1]);
+    u -= gust[0];
+    v -= gust[1];
+    if (!(fabs(u) + fabs(v) + fabs(school->shear) > 0) || !residual->pressure[f]) return;
+    struct impulse_moments sum = impulse_of_wake(&state->wake[f], school, state->t, t - state->t);
+    add_nascent(&sum, flow, state, f, t - state->t, tail);
+    const int first = flow->points[f].first;
+    for (int c = 0; c < fish->n_control; c++) {
+        impulse_add(&sum, residual->pressure[f]->point[c].circulation, flow->x[first + c], flow->y[first + c]);
+    }
+    const double factor = school->density * impulse_depth(fish);
+    force[0] += factor * v * sum.circulation;
+    force[1] -= factor * (u * sum.circulation + school->shear * sum.y);
+    force[2] -= factor * (u * sum.x + v * sum.y + school->shear * sum.product);
 }
 
 // ---- images

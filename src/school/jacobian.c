@@ -1,4 +1,4 @@
-/* jacobian.c: allocation of blocks, masks, and products with couplings. */
+/* jacobian.c: allocation of blocks, and products with couplings. */
 #include "school/jacobian.h"
 
 #include <string.h>
@@ -49,17 +49,6 @@ void jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, un
 
     jacobian->n_couplings = n;
     jacobian->pattern = pattern;
-}
-
-void jacobian_mask_couplings(struct jacobian *jacobian, int f) {
-    const struct layout *at = &jacobian->school->fish[f].at;
-    for (int row = at->ax; row < at->phi0; row++) {
-        if (!sparse_is_masked(jacobian->own[f], row)) continue;
-        for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
-            const struct coupling_block *rows = &jacobian->coupling[i].rows;
-            for (long c = 0; c < rows->n_columns; c++) rows->value[c * rows->n_rows + (row - at->ax)] = 0;
-        }
-    }
 }
 
 void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const double *unknowns, double *product) {

@@ -38,9 +38,6 @@ struct jacobian *jacobian_create(struct arena *arena, const struct school *schoo
 /* Allocate the blocks of the pairs (f, g), f != g, for which coupled[f n_fish + g] is not 0. */
 void jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, unsigned pattern);
 
-/* Zero the rows of the couplings of fish f that are masked in the diagonal block of fish f. */
-void jacobian_mask_couplings(struct jacobian *jacobian, int f);
-
 /* product = couplings of fish f times unknowns (n_unknowns): the rows of fish f from ax to the end. */
 void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const double *unknowns, double *product);
 

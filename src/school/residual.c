@@ -16,10 +16,6 @@
 
 // ---- unknowns by slices of the layout
 
-int residual_component(enum unknown kind) {
-    return kind == UNKNOWN_Y || kind == UNKNOWN_VY || kind == UNKNOWN_PY || kind == UNKNOWN_AY;
-}
-
 struct unknown_place residual_place(const struct school *school, int i) {
     // bisection: the first fish with at.end above i
     int f = 0, last = school->n_fish - 1;
@@ -37,23 +33,27 @@ struct unknown_place residual_place(const struct school *school, int i) {
     const struct {
         int first;
         enum unknown kind;
+        int component;
         const char *name;
-    } slices[] = {{at->phi0, UNKNOWN_PHI0, "phi0"},
-                  {at->circulation, UNKNOWN_CIRCULATION, "circulation"},
-                  {at->gamma, UNKNOWN_GAMMA, "gamma"},
-                  {at->ay, UNKNOWN_AY, "ay"},
-                  {at->ax, UNKNOWN_AX, "ax"},
-                  {at->py, UNKNOWN_PY, "py"},
-                  {at->px, UNKNOWN_PX, "px"},
-                  {at->vy, UNKNOWN_VY, "vy"},
-                  {at->vx, UNKNOWN_VX, "vx"},
-                  {at->y, UNKNOWN_Y, "y"},
-                  {at->x, UNKNOWN_X, "x"}};
+    } slices[] = {{at->phi0, UNKNOWN_PHI0, 0, "phi0"},
+                  {at->circulation, UNKNOWN_CIRCULATION, 0, "circulation"},
+                  {at->gamma, UNKNOWN_GAMMA, 0, "gamma"},
+                  {at->ay, UNKNOWN_AY, 1, "ay"},
+                  {at->ax, UNKNOWN_AX, 0, "ax"},
+                  {at->py, UNKNOWN_PY, 1, "py"},
+                  {at->px, UNKNOWN_PX, 0, "px"},
+                  {at->vy, UNKNOWN_VY, 1, "vy"},
+                  {at->vx, UNKNOWN_VX, 0, "vx"},
+                  {at->y, UNKNOWN_Y, 1, "y"},
+                  {at->x, UNKNOWN_X, 0, "x"}};
 
     int s = 0;
     while (i < slices[s].first) s++;
-    return (struct unknown_place){
-        .fish = f, .index = i - slices[s].first, .kind = slices[s].kind, .name = slices[s].name};
+    return (struct unknown_place){.fish = f,
+                                  .index = i - slices[s].first,
+                                  .kind = slices[s].kind,
+                                  .component = slices[s].component,
+                                  .name = slices[s].name};
 }
 
 double residual_scale(const struct school *school, int i) {
@@ -146,23 +146,6 @@ int residual_couple_more(struct residual_couplings *couplings, const double *y) 
         return 0;
     }
     return couplings->pattern != pattern;
-}
-
-int residual_couple_contacts(struct residual_couplings *couplings, const struct contact *contact) {
-    const int n_fish = couplings->school->n_fish;
-    int n_contacts = 0;
-    for (int f = 0; f < n_fish; f++) {
-        const int *other;
-        const int n = contact_partners(contact, f, &other);
-        for (int i = 0; i < n; i++) {
-            unsigned char *const coupled = &couplings->coupled[f * n_fish + other[i]];
-            if (!*coupled) couplings->pattern++;
-            *coupled = 1;
-        }
-
-        n_contacts += n;
-    }
-    return n_contacts > 0;
 }
 
 struct residual *residual_create(struct arena *arena, const struct school *school, const struct state *state) {
@@ -378,7 +361,7 @@ void residual_kinds(const struct residual *residual, const struct residual_mode 
     for (int i = 0; i < residual->school->n_unknowns; i++) {
         const struct unknown_place place = residual_place(residual->school, i);
         const struct fish *fish = &residual->school->fish[place.fish];
-        const bool is_given = fish_is_prescribed(fish, place.index, residual_component(place.kind));
+        const bool is_given = fish_is_prescribed(fish, place.index, place.component);
 
         // of a free node positions and velocities, or positions and momenta, are differential
         bool is_differential = false;

@@ -38,11 +38,9 @@ enum unknown {
 struct unknown_place {
     int fish, index; /* index: node or point of the sheet */
     enum unknown kind;
+    int component;    /* of an unknown of a node: 0: x, 1: y */
     const char *name; /* "x", "sheet", ... */
 };
-
-/* The vector component of an unknown of a node: 0: x, 1: y. */
-int residual_component(enum unknown kind);
 
 /* Fish, kind and index of unknown i. */
 struct unknown_place residual_place(const struct school *school, int i);
@@ -73,9 +71,6 @@ void residual_couple(struct residual_couplings *couplings, const double *y);
 /* Double the reach until more fish couple at the positions in y; the new reach is kept. Returns whether more fish
  * couple: 0 if the blocks would exceed 400 MB. */
 int residual_couple_more(struct residual_couplings *couplings, const double *y);
-
-/* Couple all fish in contact, for any reach; returns whether any fish are in contact. */
-int residual_couple_contacts(struct residual_couplings *couplings, const struct contact *contact);
 
 /* How the equations are evaluated: all zero in a run. */
 struct residual_mode {

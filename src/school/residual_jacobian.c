@@ -107,23 +107,40 @@ static void fish_jacobian(struct residual *residual, const struct residual_mode 
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         struct jacobian_coupling *const coupling = &jacobian->coupling[i];
         flow_jacobian(residual, mode, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
+
+        // masked rows
+        const struct coupling_block *const rows = &coupling->rows;
+        for (int row = fish->at.ax; row < fish->at.phi0; row++) {
+            if (!sparse_is_masked(own, row)) continue;
+            for (long c = 0; c < rows->n_columns; c++) rows->value[c * rows->n_rows + (row - fish->at.ax)] = 0;
+        }
     }
-    jacobian_mask_couplings(jacobian, f);
     sparse_end(own);
 }
 
 enum status residual_jacobian(struct residual *residual, const struct residual_mode *mode, double t, double cj,
                               const double *y, struct jacobian *jacobian) {
     const struct school *school = residual->school;
+    struct residual_couplings *const couplings = &residual->couplings;
     int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
 
+    // couple the fish in contact
     TRY(contact_find(residual->contact, residual->state, t, y));
-    jacobian->has_contacts = residual_couple_contacts(&residual->couplings, residual->contact);
+    jacobian->has_contacts = false;
+    for (int f = 0; f < school->n_fish; f++) {
+        const int *other;
+        const int n = contact_partners(residual->contact, f, &other);
+        jacobian->has_contacts |= n > 0;
+        for (int i = 0; i < n; i++) {
+            unsigned char *const coupled = &couplings->coupled[f * school->n_fish + other[i]];
+            if (!*coupled) couplings->pattern++;
+            *coupled = 1;
+        }
+    }
+
     residual->flow->stop = residual->stop;
     flow_gradient(residual->flow, residual->state, t, y, mode->shed == SHED_IS_FAR);
-    if (jacobian->pattern != residual->couplings.pattern) {
-        jacobian_couple(jacobian, residual->couplings.coupled, residual->couplings.pattern);
-    }
+    if (jacobian->pattern != couplings->pattern) jacobian_couple(jacobian, couplings->coupled, couplings->pattern);
 
     // a recording requests memory, which no parallel region may
     for (int f = 0; f < school->n_fish; f++) {
@@ -170,8 +187,7 @@ void residual_mask(const struct residual *residual, struct jacobian *jacobian) {
         for (int row = fish->at.x; row < fish->at.end; row++) {
             const struct unknown_place place = residual_place(residual->school, row);
             const int moves = place.kind <= UNKNOWN_AY && place.kind != UNKNOWN_PX && place.kind != UNKNOWN_PY;
-            sparse_mask(jacobian->own[f], row,
-                        moves && fish_is_prescribed(fish, place.index, residual_component(place.kind)));
+            sparse_mask(jacobian->own[f], row, moves && fish_is_prescribed(fish, place.index, place.component));
         }
     }
 }
