@@ -217,21 +217,21 @@ void rod_strains(const struct fish *fish, const struct actuation *muscle, const 
     }
 }
 
-double rod_bending_energy(const struct fish *fish, const double *strain) {
-    double energy = 0;
+struct rod_energetics rod_energetics(const struct fish *fish, const struct actuation *muscle,
+                                     const struct rod_strains *of) {
+    struct rod_energetics sum = {.bending = 0};
     for (int j = 0; j < fish->n_joints; j++) {
-        energy += fish->bending_stiffness[j] * strain[j] * strain[j] / (2 * fish->edge_length);
+        sum.bending += fish->bending_stiffness[j] * of->strain[j] * of->strain[j] / (2 * fish->edge_length);
+        sum.actuation -= of->stress[j] * muscle->rate[j];
+        sum.damping -= fish->bending_damping[j] * of->rate[j] * of->rate[j];
     }
-    return energy;
-}
 
-double rod_stretching_energy(const struct fish *fish, const double *strain) {
-    double energy = 0;
     for (int k = 0; k < fish->n_edges; k++) {
-        const double of_edge = strain[fish->n_joints + k];
-        energy += fish->axial_stiffness[k] * of_edge * of_edge * fish->edge_length / 2;
+        const double strain = of->strain[fish->n_joints + k], rate = of->rate[fish->n_joints + k];
+        sum.stretching += fish->axial_stiffness[k] * strain * strain * fish->edge_length / 2;
+        sum.damping -= fish->axial_damping[k] * rate * rate;
     }
-    return energy;
+    return sum;
 }
 
 bool rod_is_torn(const struct fish *fish, const double *y) {
@@ -267,23 +267,6 @@ int rod_sharpest_joint(const struct fish *fish, const double *y, double *turn) {
     }
 
     return sharpest;
-}
-
-double rod_actuation_power(const struct fish *fish, const struct actuation *muscle, const double *stress) {
-    double power = 0;
-    for (int j = 0; j < fish->n_joints; j++) power -= stress[j] * muscle->rate[j];
-    return power;
-}
-
-double rod_damping_power(const struct fish *fish, const double *rate) {
-    double power = 0;
-    for (int j = 0; j < fish->n_joints; j++) power -= fish->bending_damping[j] * rate[j] * rate[j];
-    for (int k = 0; k < fish->n_edges; k++) {
-        const double of_edge = rate[fish->n_joints + k];
-        power -= fish->axial_damping[k] * of_edge * of_edge;
-    }
-
-    return power;
 }
 
 // ---- running sums from the tail; an exponential integrator for every joint and edge

@@ -98,9 +98,13 @@ static inline int rod_n_strains(const struct fish *fish) {
 void rod_strains(const struct fish *fish, const struct actuation *muscle, const double *y,
                  const struct rod_strains *to);
 
-/* Energies, J. */
-double rod_bending_energy(const struct fish *fish, const double *strain);
-double rod_stretching_energy(const struct fish *fish, const double *strain);
+/* Energies of bending and stretching, J; powers of the muscle (rate of the natural curvature times the moments of the
+ * joints) and of the internal damping, which is never positive, W. */
+struct rod_energetics {
+    double bending, stretching, actuation, damping;
+};
+struct rod_energetics rod_energetics(const struct fish *fish, const struct actuation *muscle,
+                                     const struct rod_strains *of);
 
 /* Whether an edge is longer than ten times the natural length: the sign of a step too long for the stiffness. */
 bool rod_is_torn(const struct fish *fish, const double *y);
@@ -110,12 +114,6 @@ int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio);
 
 /* The joint (an inner node, 1 .. n_nodes - 2) of the largest turning angle; *turn: this angle, rad. */
 int rod_sharpest_joint(const struct fish *fish, const double *y, double *turn);
-
-/* Power of the muscle, W: rate of the natural curvature times the moments of the joints. */
-double rod_actuation_power(const struct fish *fish, const struct actuation *muscle, const double *stress);
-
-/* Power of the internal damping, W: never positive. */
-double rod_damping_power(const struct fish *fish, const double *rate);
 
 /* The stresses of a rod from the balance of momentum, and the strains from the material law, for the
  * powers and energies of section 13. doc/model.md, section 13; doc/numerics.md, section 9.

@@ -13,43 +13,41 @@ static double cosine_place(const struct fish *fish, double j) {
     return j == last ? 1 : (1 - cos(M_PI * j / last)) / 2;
 }
 
-static void points_on_polygon(struct fish *fish, bool is_chebyshev) {
-    for (int j = 0; j < fish->n_sheet; j++) {
-        fish->sheet_point[j] = curve_polygon_point(fish->curve, cosine_place(fish, j) * fish->n_edges);
-    }
-
-    for (int c = 0; c < fish->n_control; c++) {
-        const struct stencil *const a = &fish->sheet_point[c], *const b = &fish->sheet_point[c + 1];
-        fish->control_point[c] = is_chebyshev
-                                     ? curve_polygon_point(fish->curve, cosine_place(fish, c + 0.5) * fish->n_edges)
-                                     : curve_polygon_middle(fish->curve, a, b);
-        fish->control_tangent[c] = (struct tangent){.from = *a, .to = *b};
-    }
-
-    fish->tail_tangent = fish->control_tangent[fish->n_control - 1];
-}
-
-static enum status points_on_smooth_curve(struct fish *fish, bool is_chebyshev, const volatile sig_atomic_t *stop) {
-    const int last = fish->n_sheet - 1;
+// the points on the line of the body: vortices, control points between them, and tangents
+static enum status points_set(struct arena *arena, struct fish *fish, bool is_smooth, bool is_chebyshev,
+                              const volatile sig_atomic_t *stop) {
+    const int n = fish->n_sheet, last = n - 1;
+    struct curve *const curve = curve_create(arena, fish->n_nodes, is_smooth ? 1 : 2 * n, is_smooth ? 4 * n + 1 : 0);
+    fish->curve = curve;
     for (int j = 0; j <= last; j++) {
         TRY(status_ask(stop));
         const double u = cosine_place(fish, j) * fish->n_edges;
-        fish->sheet_point[j] = curve_smooth_point(fish->curve, u);
-        if (j == 0 || j == last) continue;  // quadrature weight 0
-        fish->sheet_slope[j] = curve_smooth_slope(fish->curve, u);
+        fish->sheet_point[j] = is_smooth ? curve_smooth_point(curve, u) : curve_polygon_point(curve, u);
+        if (!is_smooth || j == 0 || j == last) continue;  // quadrature weight 0
+        fish->sheet_slope[j] = curve_smooth_slope(curve, u);
         fish->sheet_weight[j] = fish->length / 2 * sin(M_PI * j / last) * M_PI / last;
     }
 
     for (int c = 0; c < last; c++) {
         TRY(status_ask(stop));
-        const double sigma =
-            is_chebyshev ? cosine_place(fish, c + 0.5) : (cosine_place(fish, c) + cosine_place(fish, c + 1)) / 2;
-        fish->control_point[c] = curve_smooth_point(fish->curve, sigma * fish->n_edges);
-        fish->control_tangent[c].to = curve_smooth_slope(fish->curve, sigma * fish->n_edges);
+        const double at_angle = cosine_place(fish, c + 0.5);
+        if (is_smooth) {
+            const double middle = (cosine_place(fish, c) + cosine_place(fish, c + 1)) / 2;
+            const double u = (is_chebyshev ? at_angle : middle) * fish->n_edges;
+            fish->control_point[c] = curve_smooth_point(curve, u);
+            fish->control_tangent[c].to = curve_smooth_slope(curve, u);
+        } else {
+            const struct stencil *const a = &fish->sheet_point[c], *const b = &fish->sheet_point[c + 1];
+            fish->control_point[c] =
+                is_chebyshev ? curve_polygon_point(curve, at_angle * fish->n_edges) : curve_polygon_middle(curve, a, b);
+            fish->control_tangent[c] = (struct tangent){.from = *a, .to = *b};
+        }
     }
 
-    fish->tail_tangent.to = curve_smooth_slope(fish->curve, fish->n_edges);
-    fish->nose_tangent.to = curve_smooth_slope(fish->curve, 0);
+    fish->tail_tangent = fish->control_tangent[last - 1];
+    if (is_smooth) fish->tail_tangent.to = curve_smooth_slope(curve, fish->n_edges);
+    if (is_smooth) fish->nose_tangent.to = curve_smooth_slope(curve, 0);
+    fish->heading_point = curve_polygon_point(curve, 1.0 / 3.0 * fish->n_edges);
     return STATUS_OK;
 }
 
@@ -156,14 +154,7 @@ enum status fish_sheet_set(struct arena *arena, struct fish *fish, int f, const 
         fish->sheet_weight[j] += distance * fish->length / 2;
     }
 
-    // place the points on the line of the body
-    fish->curve = curve_create(arena, fish->n_nodes, is_smooth ? 1 : 2 * n_sheet, is_smooth ? 4 * n_sheet + 1 : 0);
-    if (is_smooth) {
-        TRY(points_on_smooth_curve(fish, is_chebyshev, parameters->stop));
-    } else {
-        points_on_polygon(fish, is_chebyshev);
-    }
-    fish->heading_point = curve_polygon_point(fish->curve, 1.0 / 3.0 * fish->n_edges);
+    TRY(points_set(arena, fish, is_smooth, is_chebyshev, parameters->stop));
 
     // the same points as full matrices
     NEW(arena, fish->sheet_by_node, fish->n_nodes * n_sheet);

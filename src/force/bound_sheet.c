@@ -23,12 +23,6 @@ static void bound_sheet_tangent_jacobian(const struct fish *fish, const struct t
     }
 }
 
-void bound_sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]) {
-    const struct direction body = fish_direction(fish, &fish->control_tangent[c], y);
-    normal[0] = body.n[0];
-    normal[1] = body.n[1];
-}
-
 double bound_sheet_strength(const struct fish *fish, int j, const double *y) {
     const struct stencil *const slope = &fish->sheet_slope[j];
     const double per_natural_length = y[fish->at.gamma + j];

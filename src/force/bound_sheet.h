@@ -43,9 +43,6 @@ void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const 
 /* Derivative of the end correction in the row of control point c by the unknown of bound vortex j, 1. */
 double bound_sheet_end_correction(const struct fish *fish, int c, int j);
 
-/* Unit normal of the body at control point c. */
-void bound_sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]);
-
 /* Circulation of bound vortex j per current length of the body, m s-1. */
 double bound_sheet_strength(const struct fish *fish, int j, const double *y);
 

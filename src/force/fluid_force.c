@@ -170,7 +170,8 @@ double fluid_force_added_mass_energy(const struct fish *fish, const struct flow_
         const struct edge edge = edge_at(fish, k, y);
         double w[2];
         flow_relative_velocity(fish, k, edge.velocity, flow->u, flow->v, w);
-        energy += reactive_energy(fish, k, &edge, w);
+        const double wn = edge_dot(w, edge.n);
+        energy += fish->added_mass[k] * wn * wn / 2;
     }
 
     return energy;

@@ -220,8 +220,3 @@ double reactive_power(const struct fish *fish, int k, const struct edge *edge, c
 
     return power;
 }
-
-double reactive_energy(const struct fish *fish, int k, const struct edge *edge, const double w[2]) {
-    const double wn = edge_dot(w, edge->n);
-    return fish->added_mass[k] * wn * wn / 2;
-}

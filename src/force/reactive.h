@@ -53,7 +53,4 @@ void reactive_slope(const struct fish *fish, int k, const struct edge *edge, con
 /* Power of reactive_force on edge k, W. */
 double reactive_power(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2]);
 
-/* Kinetic energy of the fluid accelerated by edge k, mu w_n^2/2, J. */
-double reactive_energy(const struct fish *fish, int k, const struct edge *edge, const double w[2]);
-
 #endif

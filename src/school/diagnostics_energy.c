@@ -40,8 +40,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
 
     // internal powers
     const struct rod_clamp_terms clamp = rod_clamp_terms(fish, t, y);
-    const double actuation = rod_actuation_power(fish, &muscle, strains.stress);
-    const double damping = rod_damping_power(fish, strains.rate) + clamp.damping_power;
+    const struct rod_energetics body = rod_energetics(fish, &muscle, &strains);
 
     // the load at the tip, the moment on a clamped head, and the constraint forces of prescribed nodes
     const int tail = fish->n_nodes - 1;
@@ -60,8 +59,8 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
         driving_force[1] += fy;
     }
 
-    struct diagnostics_power power = {.actuation = actuation,
-                                      .damping = damping,
+    struct diagnostics_power power = {.actuation = body.actuation,
+                                      .damping = body.damping + clamp.damping_power,
                                       .drag = fluid.drag,
                                       .friction = fluid.friction,
                                       .added_mass = fluid.added_mass,
@@ -89,16 +88,16 @@ struct diagnostics_energies diagnostics_energies(struct residual *residual, int 
     const struct fish *fish = &residual->school->fish[f];
     const struct actuation muscle = residual_muscle(residual, f, t, y);
     const struct rod_strains strains = find_strains(residual, f, &muscle, y);
+    const struct rod_energetics body = rod_energetics(fish, &muscle, &strains);
     double kinetic = 0;
     for (int k = 0; k < fish->n_nodes; k++) {
         const double vx = y[fish->at.vx + k], vy = y[fish->at.vy + k];
         kinetic += fish->mass[k] * (vx * vx + vy * vy) / 2;
     }
-    return (struct diagnostics_energies){
-        .kinetic = kinetic,
-        .bending = rod_bending_energy(fish, strains.strain) + rod_clamp_terms(fish, t, y).energy,
-        .stretching = rod_stretching_energy(fish, strains.strain),
-        .contact = contact_terms(residual->contact, f, y).energy};
+    return (struct diagnostics_energies){.kinetic = kinetic,
+                                         .bending = body.bending + rod_clamp_terms(fish, t, y).energy,
+                                         .stretching = body.stretching,
+                                         .contact = contact_terms(residual->contact, f, y).energy};
 }
 
 double diagnostics_energy(struct residual *residual, int f, double t, const double *y) {

@@ -102,8 +102,8 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
     bound_sheet_residual(fish, residual_lost(residual, f, t), residual->flow->u + first, residual->flow->v + first,
                          d->no_sheets, value);
     for (int c = 0; c < fish->n_control; c++) {
-        double normal[2];
-        bound_sheet_normal(fish, c, y, normal);
+        const struct direction body = fish_direction(fish, &fish->control_tangent[c], y);
+        const double *const normal = body.n;
         rhs[row + c] = -value[fish->at.gamma + c];
         for (int j = last - 1; j <= last; j++) *entry(d, row + c, row + j) += bound_sheet_end_correction(fish, c, j);
 

@@ -19,18 +19,12 @@ static double zero[64];
 static const struct actuation no_muscle = {zero, zero, zero, zero};
 
 /* Energies and powers from the node positions. */
-struct energetics {
-    double bending, stretching, actuation, damping;
-};
-
-static struct energetics energetics_of(const struct fish *fish, const struct actuation *asked, const double *y) {
+static struct rod_energetics energetics_of(const struct fish *fish, const struct actuation *asked, const double *y) {
     double strain[128], rate[128], stress[128];
+    const struct rod_strains strains = {strain, rate, stress};
     AT_MOST(rod_n_strains(fish), 128);
-    rod_strains(fish, asked, y, &(struct rod_strains){strain, rate, stress});
-    return (struct energetics){.bending = rod_bending_energy(fish, strain),
-                               .stretching = rod_stretching_energy(fish, strain),
-                               .actuation = rod_actuation_power(fish, asked, stress),
-                               .damping = rod_damping_power(fish, rate)};
+    rod_strains(fish, asked, y, &strains);
+    return rod_energetics(fish, asked, &strains);
 }
 
 static double bending_energy(const struct fish *fish, const struct actuation *asked, const double *y) {

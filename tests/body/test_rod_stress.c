@@ -209,11 +209,13 @@ TEST(a_soft_body_has_the_stresses_of_its_places) {
     const struct energy_balance *const balance = &simulation->state->balance[0];
     const struct actuation muscle = residual_muscle(simulation->residual, 0, 2, simulation->state->y);
     double strain[STRAINS], rate[STRAINS], stress[STRAINS], largest = 0;
-    rod_strains(fish, &muscle, simulation->state->y, &(struct rod_strains){strain, rate, stress});
+    const struct rod_strains by_places = {strain, rate, stress}, by_momentum = {strain, rate, balance->stress};
+    rod_strains(fish, &muscle, simulation->state->y, &by_places);
     for (int j = 0; j < fish->n_joints; j++) largest = fmax(largest, fabs(stress[j]));
     NEAR_ARRAY(fish->n_joints, balance->stress, stress, 1e-5 * largest, 0);
-    NEAR(rod_actuation_power(fish, &muscle, stress), rod_actuation_power(fish, &muscle, balance->stress), 0, 1e-5);
-    NEAR(rod_bending_energy(fish, strain), simulation->diagnostics->fish[0].bending_energy, 0, 1e-4);
+    const struct rod_energetics one = rod_energetics(fish, &muscle, &by_places);
+    NEAR(one.actuation, rod_energetics(fish, &muscle, &by_momentum).actuation, 0, 1e-5);
+    NEAR(one.bending, simulation->diagnostics->fish[0].bending_energy, 0, 1e-4);
 }
 
 TEST(powers_and_energies_of_a_stiff_body_have_a_limit) {

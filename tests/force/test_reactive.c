@@ -29,7 +29,8 @@ static double energy_at(const struct fish *fish, const double *state) {
     }
 
     const struct edge edge = edge_at(fish, 0, y);
-    return reactive_energy(fish, 0, &edge, edge.velocity);
+    const double wn = edge_dot(edge.velocity, edge.n);
+    return fish->added_mass[0] * wn * wn / 2;
 }
 
 // dT/dq of the eight coordinates by differences of fourth order: exact for the velocities
