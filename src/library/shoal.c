@@ -42,7 +42,6 @@ static enum status open_case(struct shoal *run, const void *data) {
 
     // the flag of the set-up may not outlive this call
     run->simulation->stop = run->simulation->residual->stop = NULL;
-    initial_conditions_listen(run->simulation->consistent, NULL);
     return STATUS_OK;
 }
 

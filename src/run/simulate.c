@@ -77,7 +77,6 @@ enum status simulate_start(struct arena *parent, struct simulation **started, co
     TRY(simulation_create_equations(simulation, stop));
     simulation->diagnostics = diagnostics_create(simulation->arena, simulation->school);
     simulation->residual->stop = stop;
-    initial_conditions_listen(simulation->consistent, stop);
     TRY(event_start(simulation->state, simulation->residual, simulation->consistent));
     TRY(status_ask(stop));
     return simulation->integrator->create(simulation->renewed, &simulation->solver, simulation->residual,
@@ -183,7 +182,6 @@ enum status simulate_step(struct simulation *simulation) {
     // perform the event; count before the restart, which discards the last step
     if (status == STATUS_OK) {
         int jumped = 0;
-        initial_conditions_listen(simulation->consistent, simulation->stop);
         status = event_next(state, simulation->residual, simulation->consistent, &jumped);
         if (status == STATUS_OK) integrator->count(simulation->solver, &simulation->totals);
         if (status == STATUS_OK && jumped && integrator->restart) status = integrator->restart(simulation->solver);

@@ -99,7 +99,8 @@ struct residual {
     struct actuation muscle;             /* actuation at the last evaluation                 (joints of all fish) */
     struct jacobian_scratch *jacobian_scratch; /* scratch of each thread                          (threads) */
     double *scratch;                   /* scratch of diagnostics; fish f uses the slices of fish f     (n_unknowns) */
-    const volatile sig_atomic_t *stop; /* residual_jacobian fails with STATUS_STOPPED once *stop is not 0; or NULL */
+    const volatile sig_atomic_t *stop; /* once *stop is not 0, residual_jacobian and initial_conditions_solve fail with
+                                          STATUS_STOPPED; may be NULL */
 };
 
 /* Scratch of the derivatives through the flow, large enough for any pair of fish. */

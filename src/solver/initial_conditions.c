@@ -38,7 +38,6 @@ struct initial_conditions {
     double *value;       /* residual of the last evaluation                                             (n) */
     double *start;       /* initial guess and solution of KINSOL                                        (n) */
     enum status failure; /* of the last callback */
-    const volatile sig_atomic_t *stop;
 
     struct sundials_context context;
     N_Vector solution, inverse_scales;
@@ -59,7 +58,7 @@ static int algebraic_value(N_Vector solution, N_Vector value, void *data) {
     struct initial_conditions *const c = data;
     double *const to = N_VGetArrayPointer(value);
     take_algebraic(c, N_VGetArrayPointer(solution), c->y);
-    c->failure = status_ask(c->stop);
+    c->failure = status_ask(c->residual->stop);
     if (c->failure == STATUS_OK) c->failure = residual_evaluate(c->residual, c->mode, c->t, c->y, c->zero, c->value);
     for (int i = 0; i < c->n; i++) to[i] = c->kind[i] > 0 ? 0 : c->value[i];
     return c->failure;
@@ -151,10 +150,6 @@ static enum status initial_failed(struct initial_conditions *c, int code) {
         STATUS_SOLVER,
         "no consistent initial conditions at t = %.10g s: %s: check the units of sizes, speeds and positions%s (%s)",
         c->t, reason, largest, cause);
-}
-
-void initial_conditions_listen(struct initial_conditions *c, const volatile sig_atomic_t *stop) {
-    c->stop = stop;
 }
 
 enum status initial_conditions_solve(struct initial_conditions *c, const struct residual_mode *mode, double t,

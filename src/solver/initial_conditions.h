@@ -3,8 +3,6 @@
 #ifndef INITIAL_CONDITIONS_H
 #define INITIAL_CONDITIONS_H
 
-#include <signal.h>
-
 #include "base/status.h"
 #include "school/residual.h"
 
@@ -15,13 +13,10 @@ enum status initial_conditions_create(struct arena *arena, struct initial_condit
                                       struct residual *residual);
 
 /* Solve for the algebraic unknowns of y at time t [s], and set the rates yp of the differential unknowns; both arrays
- * are (n_unknowns). The mode defines the kinds of the unknowns. Fails with STATUS_SOLVER or STATUS_STOPPED: y and yp
- * are unchanged. */
+ * are (n_unknowns). The mode defines the kinds of the unknowns. Fails with STATUS_SOLVER, or with STATUS_STOPPED once
+ * *residual->stop is not 0: y and yp are unchanged. */
 enum status initial_conditions_solve(struct initial_conditions *solver, const struct residual_mode *mode, double t,
                                      double *y, double *yp);
-
-/* Let every later solution end once *stop is not 0; NULL: never. */
-void initial_conditions_listen(struct initial_conditions *solver, const volatile sig_atomic_t *stop);
 
 /* Newton iterations so far. */
 long initial_conditions_iterations(const struct initial_conditions *solver);

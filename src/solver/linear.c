@@ -58,22 +58,21 @@ struct linear *linear_create(struct arena *arena, const struct jacobian *jacobia
     return linear;
 }
 
-static void block_set_up(struct block *block) {
-    block->is_updated = 0;
-    fish_factors_set_up(block->factors);
-}
-
 enum status linear_setup(struct linear *linear) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
-    // a new pattern requests memory, which no parallel region may
-    for (int f = 0; f < school->n_fish; f++) fish_factors_prepare(linear->block[f].factors);
+    for (int f = 0; f < school->n_fish; f++) {
+        // a new pattern requests memory, which no parallel region may
+        fish_factors_prepare(linear->block[f].factors);
+        linear->block[f].is_updated = 0;
+    }
+
     if (threads == 1) {
-        for (int f = 0; f < school->n_fish; f++) block_set_up(&linear->block[f]);
+        for (int f = 0; f < school->n_fish; f++) fish_factors_set_up(linear->block[f].factors);
     } else {
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-        for (int f = 0; f < school->n_fish; f++) block_set_up(&linear->block[f]);
+        for (int f = 0; f < school->n_fish; f++) fish_factors_set_up(linear->block[f].factors);
     }
     for (int f = 0; f < school->n_fish; f++) {
         const enum status status = fish_factors_status(linear->block[f].factors);
