@@ -11,6 +11,12 @@
 #include "flow/flow_derivative.h"
 #include "force/bound_sheet.h"
 
+/* Rows and columns of one fish: strengths (with the Kutta condition at the edge the shed circulation is an unknown),
+ * then with momenta the velocities of the nodes, x and y. */
+struct ode_slices {
+    int strengths, velocities, end;
+};
+
 struct ode_rhs {
     struct residual *residual;
     double *no_sheets; /* the unknowns with sheets and nascent vortices of no strength    (n_unknowns) */
@@ -18,7 +24,7 @@ struct ode_rhs {
 
     /* the dense system of all sheets, column after column: strengths and, with momenta, velocities of each fish */
     int n;
-    int *first;                /* row and column of the first unknown of each fish                      (n_fish) */
+    struct ode_slices *at;     /*                                                                       (n_fish) */
     double *matrix, *solution; /* solution: initially the right-hand side                          (n, n), (n) */
     lapack_int *pivot;         /*                                                                           (n) */
 
@@ -28,22 +34,6 @@ struct ode_rhs {
 
 enum { BANDWIDTH = 4 }; /* of the mass matrix with x and y of a node in neighbouring rows: diagonal and three below */
 
-// with the Kutta condition at the edge the shed circulation is an unknown
-static int n_strengths(const struct residual *residual, const struct fish *fish) {
-    return fish->n_sheet + (residual_shed_is_algebraic(residual) ? 1 : 0);
-}
-
-// with momenta the velocities are unknowns of the system of the sheets
-static int n_velocities(const struct fish *fish) {
-    return fish_has_momentum(fish) ? 2 * fish->n_nodes : 0;
-}
-
-// row and column of component i of the velocity of node k
-static int velocity_at(const struct ode_rhs *d, int f, int i, int k) {
-    const struct fish *fish = &d->residual->school->fish[f];
-    return d->first[f] + n_strengths(d->residual, fish) + i * fish->n_nodes + k;
-}
-
 struct ode_rhs *ode_rhs_create(struct arena *arena, struct residual *residual) {
     const struct school *const school = residual->school;
     const size_t n_fish = (size_t)school->n_fish;
@@ -51,13 +41,15 @@ struct ode_rhs *ode_rhs_create(struct arena *arena, struct residual *residual) {
     struct ode_rhs *d;
     NEW(arena, d, 1);
     d->residual = residual;
-    NEW(arena, d->first, n_fish);
+    NEW(arena, d->at, n_fish);
     NEW(arena, d->influence, n_fish * n_fish);
     NEW(arena, d->no_sheets, school->n_unknowns);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        d->first[f] = d->n;
-        d->n += n_strengths(residual, fish) + n_velocities(fish);
+        struct ode_slices *const at = &d->at[f];
+        at->strengths = d->n;
+        at->velocities = at->strengths + fish->n_sheet + (residual_shed_is_algebraic(residual) ? 1 : 0);
+        at->end = d->n = at->velocities + (fish_has_momentum(fish) ? 2 * fish->n_nodes : 0);
         if (fish->n_nodes > max_nodes) max_nodes = fish->n_nodes;
         for (int g = 0; g < school->n_fish; g++) {
             struct influence_block *const block = &d->influence[f * school->n_fish + g];
@@ -84,7 +76,8 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
     const struct school *const school = residual->school;
     const struct fish *fish = &school->fish[f];
     const bool edge = residual_shed_is_algebraic(residual);
-    const int first = residual->flow->points[f].first, row = d->first[f], last = fish->n_sheet - 1;
+    const struct ode_slices at = d->at[f];
+    const int first = residual->flow->points[f].first, row = at.strengths, last = fish->n_sheet - 1;
 
     // Kelvin's theorem and the edge condition
     const int kelvin = row + fish->n_control, kutta = row + fish->n_sheet;
@@ -109,8 +102,8 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
 
         const struct stencil *const point = &fish->control_point[c];
         for (int m = 0; m < 2 * point->n && fish_has_momentum(fish); m++) {
-            const int i = m / point->n, at = m % point->n;
-            *entry(d, row + c, velocity_at(d, f, i, point->node[at])) -= point->weight[at] * normal[i];
+            const int i = m / point->n, k = m % point->n, column = at.velocities + i * fish->n_nodes + point->node[k];
+            *entry(d, row + c, column) -= point->weight[k] * normal[i];
         }
 
         for (int g = 0; g < school->n_fish; g++) {
@@ -118,26 +111,27 @@ static void assemble_fish(struct ode_rhs *d, int f, double t, const double *y, d
             const struct influence_block *const block = &d->influence[f * school->n_fish + g];
             const double known = edge ? 0 : y[other->at.circulation] - residual->state->wake[g].shed_before;
             for (int j = 0; j <= other->n_sheet; j++) {
-                const long at = (long)j * block->n_points + c;
-                const double along = normal[0] * block->u[at] + normal[1] * block->v[at];
-                if (j < n_strengths(residual, other)) *entry(d, row + c, d->first[g] + j) += along;
+                const long at_point = (long)j * block->n_points + c;
+                const double along = normal[0] * block->u[at_point] + normal[1] * block->v[at_point];
+                const int column = d->at[g].strengths + j;
+                if (column < d->at[g].velocities) *entry(d, row + c, column) += along;
                 if (j == other->n_sheet) rhs[row + c] -= known * along;
             }
         }
     }
 
     // the equations of the velocities: m v + I = m p, or the prescribed motion
-    for (int m = 0; m < n_velocities(fish); m++) {
-        const int i = m / fish->n_nodes, k = m % fish->n_nodes, at = velocity_at(d, f, i, k);
-        *entry(d, at, at) = 1;
-        rhs[at] = y[(fish_is_prescribed(fish, k, i) ? fish->at.vx : fish->at.px) + m];
+    for (int m = 0; m < at.end - at.velocities; m++) {
+        const int i = m / fish->n_nodes, k = m % fish->n_nodes;
+        *entry(d, at.velocities + m, at.velocities + m) = 1;
+        rhs[at.velocities + m] = y[(fish_is_prescribed(fish, k, i) ? fish->at.vx : fish->at.px) + m];
     }
     for (int j = 0; j < fish->n_sheet && fish_has_momentum(fish); j++) {
         pressure_momentum_by_strength(fish, j, y + fish->at.x, d->force);
         for (int m = 0; m < 2 * fish->n_nodes; m++) {
             const int i = m / fish->n_nodes, k = m % fish->n_nodes;
             if (fish_is_prescribed(fish, k, i)) continue;
-            *entry(d, velocity_at(d, f, i, k), row + j) = d->force[m] / fish->mass[k];
+            *entry(d, at.velocities + m, row + j) = d->force[m] / fish->mass[k];
         }
     }
 }
@@ -154,7 +148,7 @@ static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
         const struct fish *fish = &school->fish[f];
         memset(d->no_sheets + fish->at.gamma, 0, (size_t)fish->n_sheet * sizeof *y);
         d->no_sheets[fish->at.circulation] = state->wake[f].shed_before;
-        memset(d->no_sheets + fish->at.vx, 0, (size_t)n_velocities(fish) * sizeof *y);
+        memset(d->no_sheets + fish->at.vx, 0, (size_t)(d->at[f].end - d->at[f].velocities) * sizeof *y);
     }
     flow_velocity(residual->flow, state, t, d->no_sheets, false);
     for (int i = 0; i < school->n_fish * school->n_fish; i++) {
@@ -168,11 +162,12 @@ static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
     }
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        memcpy(y + fish->at.gamma, d->solution + d->first[f], (size_t)fish->n_sheet * sizeof *y);
+        const struct ode_slices at = d->at[f];
+        memcpy(y + fish->at.gamma, d->solution + at.strengths, (size_t)fish->n_sheet * sizeof *y);
         if (residual_shed_is_algebraic(residual)) {
-            y[fish->at.circulation] = state->wake[f].shed_before + d->solution[d->first[f] + fish->n_sheet];
+            y[fish->at.circulation] = state->wake[f].shed_before + d->solution[at.strengths + fish->n_sheet];
         }
-        memcpy(y + fish->at.vx, d->solution + velocity_at(d, f, 0, 0), (size_t)n_velocities(fish) * sizeof *y);
+        memcpy(y + fish->at.vx, d->solution + at.velocities, (size_t)(at.end - at.velocities) * sizeof *y);
     }
     return STATUS_OK;
 }
