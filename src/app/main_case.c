@@ -32,11 +32,16 @@ static const struct result_kind kinds[] = {
 };
 enum { N_LISTS = sizeof kinds / sizeof *kinds, N_KINDS = N_LISTS - 1 };
 
+enum status main_read_case(const struct request *request, struct case_values *values) {
+    TRY(case_read(values, request->positional, request->n_assignments, request->assignments));
+    arena_move(values->arena, request->arena);
+    return STATUS_OK;
+}
+
 enum status main_show(const struct request *request) {
     struct case_values values;
-    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
+    TRY(main_read_case(request, &values));
     fputs(case_show(request->arena, &values), stdout);
-    case_free(&values);
     return STATUS_OK;
 }
 

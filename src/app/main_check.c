@@ -73,34 +73,6 @@ static int common_divisor(int a, int b) {
     return b == 0 ? a : common_divisor(b, a % b);
 }
 
-static enum status check_case(struct checked *checked) {
-    const struct case_values *const values = checked->values;
-    TRY(parallel_start_threads(values->school.threads));
-    if (!checked->is_study) {
-        // an existing output file is no error of the case: only note
-        const char *const path = record_path(checked->request->arena, values);
-        TRY(target_check(path, TARGET_NETCDF, true));
-        TRY(check_start(checked, 0, values));
-        if (!checked->request->quiet && target_check(path, TARGET_NETCDF, false) != STATUS_OK) {
-            say_line(stderr, "shoal: note: %s\n", status_message());
-        }
-        return STATUS_OK;
-    }
-
-    // check all members in steps of the golden ratio, so that the first members sample the entire sweep
-    const int n = checked->n_members;
-    int step = (int)fmax(1, round(0.618 * n));
-    while (common_divisor(n, step) > 1) step++;
-    for (int i = 0, m = 0; i < n; i++, m = (m + step) % n) {
-        struct case_values member;
-        TRY(case_member(&member, values, m));
-        const enum status status = check_start(checked, m, &member);
-        case_free(&member);
-        TRY(status);
-    }
-    return STATUS_OK;
-}
-
 /* Print warnings, and unless quiet the verdict with the cost. */
 static void print_findings(const struct checked *checked) {
     const struct case_values *const values = checked->values;
@@ -146,16 +118,32 @@ static void print_findings(const struct checked *checked) {
 enum status main_check(const struct request *request) {
     struct case_values values;
     main_limit_processor_time(time_limit);
-    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    struct checked checked = {.request = request,
-                              .values = &values,
-                              .is_study = values.n_axes > 0,
-                              .n_members = values.n_axes > 0 ? sweep_n_members(&values) : 1};
-    const enum status status = check_case(&checked);
-    if (status == STATUS_OK) {
-        if (!request->quiet && *values.notes) say_line(stderr, "%s\n", values.notes);
-        print_findings(&checked);
+    TRY(main_read_case(request, &values));
+    const int n = sweep_n_members(&values);
+    struct checked checked = {.request = request, .values = &values, .is_study = values.n_axes > 0, .n_members = n};
+    TRY(parallel_start_threads(values.school.threads));
+    const char *const path = record_path(request->arena, &values);
+    if (!checked.is_study) {
+        TRY(target_check(path, TARGET_NETCDF, true));
+        TRY(check_start(&checked, 0, &values));
     }
-    case_free(&values);
-    return status;
+
+    // check all members in steps of the golden ratio, so that the first members sample the entire sweep
+    int step = (int)fmax(1, round(0.618 * n));
+    while (common_divisor(n, step) > 1) step++;
+    for (int i = 0, m = 0; i < n && checked.is_study; i++, m = (m + step) % n) {
+        struct case_values member;
+        TRY(case_member(&member, &values, m));
+        const enum status status = check_start(&checked, m, &member);
+        case_free(&member);
+        TRY(status);
+    }
+
+    // an existing output file is no error of the case: only note
+    if (!checked.is_study && !request->quiet && target_check(path, TARGET_NETCDF, false) != STATUS_OK) {
+        say_line(stderr, "shoal: note: %s\n", status_message());
+    }
+    if (!request->quiet && *values.notes) say_line(stderr, "%s\n", values.notes);
+    print_findings(&checked);
+    return STATUS_OK;
 }

@@ -32,6 +32,9 @@ enum status main_info(const struct request *request);
 enum status main_view(const struct request *request);
 enum status main_export(const struct request *request);
 
+/* Read the case of a request, with the assignments, into the arena of the request. Fails as case_read. */
+enum status main_read_case(const struct request *request, struct case_values *values);
+
 /* Print a summary of a file of shoal, or only the case in the file. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status main_print_info(struct arena *arena, const char *path, int case_only);
 

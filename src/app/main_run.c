@@ -40,19 +40,13 @@ static enum status refuse_warnings(const struct request *request, const struct t
                        teller->n_warnings > 1 ? "s are errors" : " is an error");
 }
 
-/* Read the case of a request, refuse a sweep, print the notes, and call make with the output path of the request or, by
- * default, of the case. */
-static enum status with_case(const struct request *request,
-                             enum status (*make)(const struct case_values *values, const struct request *request,
-                                                 const char *path)) {
-    struct case_values values;
-    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    if (!request->quiet && *values.notes) say_line(stderr, "%s\n", values.notes);
-    enum status status = sweep_refuse(&values);
-    const char *const path = request->output ? request->output : record_path(request->arena, &values);
-    if (status == STATUS_OK) status = make(&values, request, path);
-    case_free(&values);
-    return status;
+/* Read the case of a request, print the notes, and refuse a sweep. *path: the output of the request or, by default, of
+ * the case. */
+static enum status read_one_case(const struct request *request, struct case_values *values, const char **path) {
+    TRY(main_read_case(request, values));
+    if (!request->quiet && *values->notes) say_line(stderr, "%s\n", values->notes);
+    *path = request->output ? request->output : record_path(request->arena, values);
+    return sweep_refuse(values);
 }
 
 // ---- run
@@ -100,7 +94,10 @@ static enum status run_case(const struct case_values *values, const struct reque
 }
 
 enum status main_run(const struct request *request) {
-    return with_case(request, run_case);
+    struct case_values values;
+    const char *path;
+    TRY(read_one_case(request, &values, &path));
+    return run_case(&values, request, path);
 }
 
 enum status main_resume(const struct request *request) {
@@ -155,8 +152,10 @@ enum status main_demo(const struct request *request) {
 
 // ---- steady
 
-static enum status find_steady_state(const struct case_values *values, const struct request *request,
-                                     const char *path) {
+enum status main_steady(const struct request *request) {
+    struct case_values values;
+    const char *path;
+    TRY(read_one_case(request, &values, &path));
     struct teller teller = {.arena = request->arena};
     const struct steady_options options = {.path = path,
                                            .from = request->from,
@@ -166,11 +165,11 @@ static enum status find_steady_state(const struct case_values *values, const str
                                            .warn = tell_warning,
                                            .data = &teller,
                                            .stop = main_stop_signal()};
-    TRY(parallel_start_threads(values->school.threads));
+    TRY(parallel_start_threads(values.school.threads));
     if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
     main_catch_signals();
     say_progress_start(&teller.progress);
-    const enum status status = steady_run(values, &options);
+    const enum status status = steady_run(&values, &options);
     say_progress_end(&teller.progress);
     TRY(status);
     if (request->json) {
@@ -183,8 +182,4 @@ static enum status find_steady_state(const struct case_values *values, const str
     }
 
     return refuse_warnings(request, &teller, path);
-}
-
-enum status main_steady(const struct request *request) {
-    return with_case(request, find_steady_state);
 }

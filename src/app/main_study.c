@@ -156,46 +156,33 @@ static enum status study_run_in_folder(const struct case_values *values, const s
 
 enum status main_study(const struct request *request) {
     struct case_values values;
-    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    const enum status status = study_run_in_folder(&values, request, "-study");
-    case_free(&values);
-    return status;
-}
-
-/* Write the assignment of the key `error`: the settings of the case, overridden by the command line. */
-static enum status assign_errors(const struct case_values *values, const struct request *request, char **assignment) {
-    struct sweep_error error = {.within = NAN, .most = SWEEP_ERROR_MOST, .confirm = 1};
-    struct text text = {.arena = request->arena};
-    if (values->error) error = *values->error;
-
-    if (request->n_of > 0) {
-        error.n_of = request->n_of;
-        error.of = (char **)(uintptr_t)request->of;
-    }
-
-    if (error.n_of == 0) {
-        return status_fail(STATUS_CASE, "%s has no `error`: give --of QUANTITY, such as --of steady_speed",
-                           request->positional);
-    }
-
-    if (request->within) TRY(study_read_number("--within", request->within, 0, &error.within));
-    if (request->no_confirm) error.confirm = 0;
-    if (request->models) error.models = 1;
-    text_add(&text, "error=");
-    sweep_error_write(&text, &error);
-    *assignment = text.text;
-    return STATUS_OK;
+    TRY(main_read_case(request, &values));
+    return study_run_in_folder(&values, request, "-study");
 }
 
 enum status main_error(const struct request *request) {
     struct case_values values;
     struct request with_errors = *request;
-    char *assignment = NULL;
-    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    enum status status = assign_errors(&values, request, &assignment);
-    case_free(&values);
-    TRY(status);
-    with_errors.assignments[with_errors.n_assignments++] = assignment;
+    TRY(main_read_case(request, &values));
+
+    // the assignment of the key `error`: the settings of the case, overridden by the command line
+    struct sweep_error error = {.within = NAN, .most = SWEEP_ERROR_MOST, .confirm = 1};
+    struct text assignment = {.arena = request->arena};
+    if (values.error) error = *values.error;
+    if (request->n_of > 0) {
+        error.n_of = request->n_of;
+        error.of = (char **)(uintptr_t)request->of;
+    }
+    if (error.n_of == 0) {
+        return status_fail(STATUS_CASE, "%s has no `error`: give --of QUANTITY, such as --of steady_speed",
+                           request->positional);
+    }
+    if (request->within) TRY(study_read_number("--within", request->within, 0, &error.within));
+    if (request->no_confirm) error.confirm = 0;
+    if (request->models) error.models = 1;
+    text_add(&assignment, "error=");
+    sweep_error_write(&assignment, &error);
+    with_errors.assignments[with_errors.n_assignments++] = assignment.text;
 
     // the assignment of the key `sweep`: each --sweep KEY=LIST is an axis
     const char *axes = "";
@@ -209,14 +196,8 @@ enum status main_error(const struct request *request) {
                           (int)(list - sweep), sweep, is_list ? "" : "[", list + 1, is_list ? "" : "]");
     }
     if (*axes) with_errors.assignments[with_errors.n_assignments++] = arena_text(request->arena, "sweep=[%s]", axes);
-    status = case_read(&values, request->positional, with_errors.n_assignments, with_errors.assignments);
-
-    if (status == STATUS_OK) {
-        status = study_run_in_folder(&values, &with_errors, "-error");
-        case_free(&values);
-    }
-
-    return status;
+    TRY(main_read_case(&with_errors, &values));
+    return study_run_in_folder(&values, &with_errors, "-error");
 }
 
 enum status main_gather(const struct request *request) {
@@ -241,7 +222,7 @@ enum status main_compare(const struct request *request) {
     TRY(study_read_number("--limit", request->limit, 60, &limit));
     if (request->output) TRY(target_check(request->output, TARGET_NETCDF, request->force));
     struct case_values values;
-    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
+    TRY(main_read_case(request, &values));
     struct progress progress;
     const struct study_options run = {.command = request->command_line,
                                       .limit = limit,
@@ -254,6 +235,5 @@ enum status main_compare(const struct request *request) {
     TRY(say_begin(&page));
     const enum status status = study_compare(&values, &options, &run, page.stream);
     say_progress_end(&progress);
-    case_free(&values);
     return say_end(&page, request->quiet ? NULL : stdout, status);
 }

@@ -109,10 +109,7 @@ enum {
 
 extern const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES];
 
-/* The number of a quantity among the first n_known; -1 if the name is unknown. */
-int sweep_quantity_find(const char *name, int n_known);
-
-/* The same for a name in a case; -1 after adding an error, with path as the place of the name. */
+/* The number of a quantity among the first n_known; -1 after adding an error, with path as the place of the name. */
 int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *path, int n_known,
                         struct yaml_errors *errors);
 

@@ -49,17 +49,11 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"steady_growth", 0, 0, NULL, NULL, 1},
 };
 
-int sweep_quantity_find(const char *name, int n_known) {
+int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *path, int n_known,
+                        struct yaml_errors *errors) {
     for (int q = 0; q < n_known; q++) {
         if (strcmp(sweep_quantities[q].name, name) == 0) return q;
     }
-    return -1;
-}
-
-int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *path, int n_known,
-                        struct yaml_errors *errors) {
-    const int found = sweep_quantity_find(name, n_known);
-    if (found >= 0) return found;
     struct text known = {.arena = errors->arena};
     for (int q = 0; q < n_known; q++) text_add(&known, "%s%s", q > 0 ? ", " : "", sweep_quantities[q].name);
     yaml_errors_add(errors, mark, "%s: '%.40s' is not a quantity; known quantities: %s", path, name, known.text);

@@ -208,15 +208,6 @@ void durable_claim_give_up(void) {
     if (last_claim) durable_claim_release(last_claim);
 }
 
-enum status durable_claim_hold(const char *path, enum status (*work)(void *data), void *data) {
-    struct durable_claim claim;
-    TRY(target_check(path, TARGET_NETCDF, true));
-    TRY(durable_claim_take(&claim, path));
-    const enum status status = work(data);
-    durable_claim_release(&claim);
-    return status;
-}
-
 // ---- replacing, and keeping the one before
 
 enum status durable_replace(const char *path, const char *previous, const void *bytes, size_t n) {

@@ -78,10 +78,6 @@ void durable_claim_release(struct durable_claim *claim);
 /* Release the claim that this process took last, if it still has it: for an end of the program in a library. */
 void durable_claim_give_up(void);
 
-/* Do the work under the claim of the result at this path, new or existing (target_check). Fails with STATUS_FILE before
- * the work if the path is not writable or another run has the claim; then as the work. */
-enum status durable_claim_hold(const char *path, enum status (*work)(void *data), void *data);
-
 /* Replace the contents of a file; the old file is renamed to previous, or discarded if previous is NULL. After any
  * failure or power cut, path or previous is a complete file. Fails with STATUS_FILE and a message that begins with the
  * path. */

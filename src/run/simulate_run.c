@@ -166,16 +166,15 @@ static enum status run_start(struct run *run) {
     return run_finish(run, status);
 }
 
-static enum status run_all(void *data) {
-    struct run *const run = data;
-    const enum status status = run_start(run);
-    arena_free(run->arena);
-    return status;
-}
-
 enum status simulate_run(const struct case_values *values, const struct simulate_options *options) {
     struct run run = {.values = values, .options = options};
-    return durable_claim_hold(options->path, run_all, &run);
+    struct durable_claim claim;
+    TRY(target_check(options->path, TARGET_NETCDF, true));
+    TRY(durable_claim_take(&claim, options->path));
+    const enum status status = run_start(&run);
+    arena_free(run.arena);
+    durable_claim_release(&claim);
+    return status;
 }
 
 // ---- a run that is resumed

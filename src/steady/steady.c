@@ -293,14 +293,13 @@ static enum status find_and_write(struct run *run) {
     return record_close(&run->record, status);
 }
 
-static enum status run_locked(void *data) {
-    struct run *const run = data;
-    const enum status status = find_and_write(run);
-    arena_free(run->arena);
-    return status;
-}
-
 enum status steady_run(const struct case_values *values, const struct steady_options *options) {
     struct run run = {.values = values, .options = options};
-    return durable_claim_hold(options->path, run_locked, &run);
+    struct durable_claim claim;
+    TRY(target_check(options->path, TARGET_NETCDF, true));
+    TRY(durable_claim_take(&claim, options->path));
+    const enum status status = find_and_write(&run);
+    arena_free(run.arena);
+    durable_claim_release(&claim);
+    return status;
 }

@@ -38,8 +38,8 @@ const struct member_file_quantity *member_file_quantity(int i) {
                                                      .of_steady = from->of_steady};
         }
         for (int c = 0; c < N_COMPUTED; c++) {
-            const struct sweep_quantity *const from =
-                &sweep_quantities[sweep_quantity_find(computed[c], SWEEP_N_QUANTITIES)];
+            const struct sweep_quantity *from = sweep_quantities;
+            while (strcmp(from->name, computed[c]) != 0) from++;
             all[n++] = (struct member_file_quantity){.name = from->name,
                                                      .unit = from->unit,
                                                      .long_name = from->meaning,

@@ -300,23 +300,6 @@ TEST(of_runs_that_race_one_has_the_claim_and_no_part_stays) {
     assert_int_equal(n_files(), 0);
 }
 
-static enum status count_work(void *data) {
-    struct durable_claim other;
-    ++*(int *)data;
-    return durable_claim_take(&other, path) == STATUS_FILE ? STATUS_MISSED : STATUS_OK;
-}
-
-TEST(work_is_done_under_the_claim_and_only_then) {
-    int n = 0;
-    assert_int_equal(durable_claim_hold(path, count_work, &n), STATUS_MISSED);
-    assert_int_equal(durable_claim_hold("/no/folder/a", count_work, &n), STATUS_FILE);
-    put(path, "mine");
-    assert_int_equal(durable_claim_hold(path, count_work, &n), STATUS_FILE);
-    assert_int_equal(n, 1);
-    assert_int_equal(n_files(), 1);
-    unlink(path);
-}
-
 TEST(a_lock_belongs_to_an_open_file_and_not_to_the_process) {
     put(path, "");
     const int one = open(path, O_RDWR), two = open(path, O_RDWR);
