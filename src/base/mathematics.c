@@ -40,25 +40,22 @@ double ramp_rate(double t, double duration) {
 
 // ---- the zeros of Legendre polynomials by Newton's method
 
-// P_n and derivative of P_n at x, by the recurrence (i + 1) P_(i+1) = (2 i + 1) x P_i - i P_(i-1)
-static double legendre(int n, double x, double *slope) {
-    double before = 1, value = x;
-    for (int i = 1; i < n; i++) {
-        const double next = ((2 * i + 1) * x * value - i * before) / (i + 1);
-        before = value;
-        value = next;
-    }
-
-    *slope = n * (x * value - before) / (x * x - 1);
-    return value;
-}
-
 void quadrature_legendre(int n, double *node, double *weight) {
+    enum { ITERATIONS = 5 };
     for (int i = 0; i < n; i++) {
         // Tricomi's estimate has at least three correct digits: five iterations converge to rounding
         double x = -cos(M_PI * (i + 0.75) / (n + 0.5)), slope = 1;
-        for (int iteration = 0; iteration < 5; iteration++) x -= legendre(n, x, &slope) / slope;
-        legendre(n, x, &slope);
+        for (int iteration = 0; iteration <= ITERATIONS; iteration++) {
+            // P_n and derivative of P_n at x, by the recurrence (k + 1) P_(k+1) = (2 k + 1) x P_k - k P_(k-1)
+            double before = 1, value = x;
+            for (int k = 1; k < n; k++) {
+                const double next = ((2 * k + 1) * x * value - k * before) / (k + 1);
+                before = value;
+                value = next;
+            }
+            slope = n * (x * value - before) / (x * x - 1);
+            if (iteration < ITERATIONS) x -= value / slope;
+        }
         node[i] = (1 + x) / 2;
         weight[i] = 1 / ((1 - x * x) * slope * slope);
     }

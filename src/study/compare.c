@@ -248,12 +248,6 @@ static double error_of(const struct case_values *study, const struct member_file
                 fmax(largest_error(study, member, "tail_error"), largest_error(study, member, "power_error")));
 }
 
-static bool is_same_method(const struct case_values *study, int m, int other) {
-    return strcmp(set_to(study, m, METHOD), set_to(study, other, METHOD)) == 0 &&
-           strcmp(set_to(study, m, ORDER), set_to(study, other, ORDER)) == 0 &&
-           has_step(study, m) == has_step(study, other);
-}
-
 static int compare_errors(const void *a, const void *b) {
     const struct point *const one = a, *const other = b;
     return (one->error > other->error) - (one->error < other->error);
@@ -263,12 +257,12 @@ static int compare_errors(const void *a, const void *b) {
 static int collect_points(const struct case_values *study, const struct member_file *members, int m, double *buffer,
                           struct point *point) {
     int n = 0;
-    for (int i = COMPARE_N_REFERENCES; i < m; i++) {
-        if (is_same_method(study, i, m)) return 0;
-    }
-    for (int i = m; i < sweep_n_members(study); i++) {
-        if (!is_same_method(study, i, m) || first_repeat(study, i) != i || !member_file_is_complete(&members[i]))
-            continue;
+    for (int i = COMPARE_N_REFERENCES; i < sweep_n_members(study); i++) {
+        const bool is_same = strcmp(set_to(study, i, METHOD), set_to(study, m, METHOD)) == 0 &&
+                             strcmp(set_to(study, i, ORDER), set_to(study, m, ORDER)) == 0 &&
+                             has_step(study, i) == has_step(study, m);
+        if (is_same && i < m) return 0;
+        if (!is_same || first_repeat(study, i) != i || !member_file_is_complete(&members[i])) continue;
         point[n] =
             (struct point){i, error_of(study, &members[i]), member_file_number(&members[i], "residual_evaluations", 0),
                            wall_time_of(study, members, i, buffer)};
@@ -278,20 +272,18 @@ static int collect_points(const struct case_values *study, const struct member_f
     return n;
 }
 
-/* The cost at an error, by a power law between two settings. */
-static double interpolate_cost(const struct point *fine, const struct point *coarse, double error, double of_fine,
-                               double of_coarse) {
-    const double part = log(error / fine->error) / log(coarse->error / fine->error);
-    return of_fine * pow(of_coarse / of_fine, fmin(1, fmax(0, part)));
-}
-
-/* The cost at an error, with an error bar from the error of the reference (unsure) and the spread of the costs. */
+/* The cost at an error, by a power law between two settings, with an error bar from the error of the reference (unsure)
+ * and the spread of the costs. */
 static struct cost cost_at(const struct point *fine, const struct point *coarse, double error, double unsure,
                            double of_fine, double of_coarse, double spread) {
-    const double value = interpolate_cost(fine, coarse, error, of_fine, of_coarse);
-    const double dearer = interpolate_cost(fine, coarse, fmax(error - unsure, fine->error), of_fine, of_coarse);
-    const double cheaper = interpolate_cost(fine, coarse, error + unsure, of_fine, of_coarse);
-    return (struct cost){value, fmax(fabs(dearer - value), fabs(cheaper - value)) + (isnan(spread) ? 0 : spread)};
+    const double errors[] = {error, fmax(error - unsure, fine->error), error + unsure};
+    double cost[3];
+    for (int i = 0; i < 3; i++) {
+        const double part = log(errors[i] / fine->error) / log(coarse->error / fine->error);
+        cost[i] = of_fine * pow(of_coarse / of_fine, fmin(1, fmax(0, part)));
+    }
+    const double bar = fmax(fabs(cost[1] - cost[0]), fabs(cost[2] - cost[0]));
+    return (struct cost){cost[0], bar + (isnan(spread) ? 0 : spread)};
 }
 
 static void name_setting(const struct case_values *study, int m, char text[NAME_BYTES]) {

@@ -123,20 +123,21 @@ struct convergence_result convergence_judge(const struct convergence_levels *lev
     return result;
 }
 
-// NaN if a level is exact to rounding
-static double order_of_two(const double *size, const double (*f)[2], const double *exact) {
-    const double fine = distance(f[0], exact), coarse = distance(f[1], exact);
-    const double least = rounding * fmax(1, hypot(exact[0], exact[1]));
-    return fine > least && coarse > least ? log(coarse / fine) / log(size[1] / size[0]) : NAN;
-}
-
 struct convergence_result convergence_judge_exact(int n, const double *size, const double (*f)[2],
                                                   const double *exact) {
     struct convergence_result result = {.verdict = CONVERGENCE_ACCEPTED,
-                                        .order = order_of_two(size, f, exact),
-                                        .coarse_order = n > 2 ? order_of_two(size + 1, f + 1, exact) : NAN,
+                                        .order = NAN,
+                                        .coarse_order = NAN,
                                         .error = distance(f[0], exact),
                                         .finest_error = NAN};
+
+    // the order of two levels each; none if a level is exact to rounding
+    const double least = rounding * fmax(1, hypot(exact[0], exact[1]));
+    for (int i = 0; i < 2 && i + 1 < n; i++) {
+        const double fine = distance(f[i], exact), coarse = distance(f[i + 1], exact);
+        if (!(fine > least && coarse > least)) continue;
+        *(i == 0 ? &result.order : &result.coarse_order) = log(coarse / fine) / log(size[i + 1] / size[i]);
+    }
     for (int i = 0; i < n; i++) {
         if (isnan(f[i][0] + f[i][1])) result.verdict = CONVERGENCE_UNKNOWN;
     }

@@ -48,12 +48,35 @@ static enum status next_with_wake(const struct reading *reading, const struct sc
     return STATUS_OK;
 }
 
-static enum status fail_without_wake(const struct reading *reading, const struct school *school, long row) {
+/* The row at time t; NaN: the last row with a wake. */
+static enum status field_find_row(const struct reading *reading, const struct school *school, double t, long *row) {
+    const long last = reading->n_rows - 1;
+    const double *const time = reading->time, rounding = 1e-6 * school->interval;
+    if (last < 0) return status_fail(STATUS_CASE, "%s: there is no row yet", reading->file.path);
+    if (t < time[0] - rounding || t > time[last] + rounding) {
+        return status_fail(STATUS_CASE, "%s: t = %g s is outside of the rows, %g s to %g s", reading->file.path, t,
+                           time[0], time[last]);
+    }
+
+    *row = isnan(t) ? last : 0;
+    while (*row < last && time[*row] < t - rounding) ++*row;
+    if (!isnan(t) && *row > 0 && fabs(time[*row] - t) > rounding) {
+        return status_fail(STATUS_CASE, "%s: there is no row at t = %g s: the nearest are at %g s and %g s",
+                           reading->file.path, t, time[*row - 1], time[*row]);
+    }
+
+    // the row itself or, without a time, the nearest earlier row with a wake
+    const long found = *row;
     long before, after;
+    TRY(next_with_wake(reading, school, found, -1, &before));
+    if (is_row(reading, before) && (isnan(t) || before == found)) {
+        *row = before;
+        return STATUS_OK;
+    }
+
+    // name the nearest rows with a wake
     char near[96] = "; no row has a wake";
-    TRY(next_with_wake(reading, school, row, -1, &before));
-    TRY(next_with_wake(reading, school, row, 1, &after));
-    const double *const time = reading->time;
+    TRY(next_with_wake(reading, school, found, 1, &after));
     if (is_row(reading, before) && is_row(reading, after)) {
         snprintf(near, sizeof near, ": the nearest rows with a wake are at %g s and %g s", time[before], time[after]);
     } else if (is_row(reading, before) || is_row(reading, after)) {
@@ -61,34 +84,7 @@ static enum status fail_without_wake(const struct reading *reading, const struct
                  time[is_row(reading, before) ? before : after]);
     }
     return status_fail(STATUS_CASE, "%s: the row at t = %g s has no wake (output.wake_interval)%s", reading->file.path,
-                       time[row], near);
-}
-
-/* The row at time t; NaN: the last row with a wake. */
-static enum status field_find_row(const struct reading *reading, const struct school *school, double t, long *row) {
-    const long last = reading->n_rows - 1;
-    const double *const time = reading->time, rounding = 1e-6 * school->interval;
-    if (last < 0) return status_fail(STATUS_CASE, "%s: there is no row yet", reading->file.path);
-
-    if (isnan(t)) {
-        TRY(next_with_wake(reading, school, last, -1, row));
-        return is_row(reading, *row) ? STATUS_OK : fail_without_wake(reading, school, last);
-    }
-
-    if (!(t >= time[0] - rounding && t <= time[last] + rounding)) {
-        return status_fail(STATUS_CASE, "%s: t = %g s is outside of the rows, %g s to %g s", reading->file.path, t,
-                           time[0], time[last]);
-    }
-
-    for (*row = 0; *row < last && time[*row] < t - rounding;) ++*row;
-    if (*row > 0 && fabs(time[*row] - t) > rounding) {
-        return status_fail(STATUS_CASE, "%s: there is no row at t = %g s: the nearest are at %g s and %g s",
-                           reading->file.path, t, time[*row - 1], time[*row]);
-    }
-
-    long with_wake;
-    TRY(next_with_wake(reading, school, *row, 1, &with_wake));
-    return with_wake == *row ? STATUS_OK : fail_without_wake(reading, school, *row);
+                       time[found], near);
 }
 
 // ---- the values of a row
