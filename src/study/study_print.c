@@ -747,6 +747,9 @@ static void print_points(const struct error_sweep *sweep, const struct member_fi
         }
     }
     table_print(table, stream);
+    if (n_shown < first->n_fish) {
+        fprintf(stream, "The first %d of %d fish; error.csv and study.nc have all.\n", n_shown, first->n_fish);
+    }
 
     bool are_shared = false;
     for (int p = 0; p < sweep->n_points; p++) are_shared |= !sweep->point[p].is_full;

@@ -167,6 +167,35 @@ run gather along
 check gather_has_the_points test "$(grep -cE '^ +[0-3]\*? +[13]e[56] ' out)" = 4
 refused a_sweep_without_values 2 '--sweep nodes: expects KEY=VALUE,VALUE' error foil.yaml --of steady_lift --sweep nodes
 
+# five fish at four points: a table shows four of them; expectations choose points by the keys of both axes
+
+cat >five.yaml <<'end'
+format: 1
+time: {end: 0.1, shedding_interval: 0.05, output_interval: 0.05}
+fluid: {density: 0}
+defaults: {fish: {nodes: 7, motion: {prescribed: all, speed: 1}, wave: {amplitude: 0.3}}}
+fish: [{name: a}, {name: b, start: {position: [0, 2]}}, {name: c, start: {position: [0, 4]}},
+       {name: d, start: {position: [0, 6]}}, {name: e, start: {position: [0, 8]}}]
+sweep: [{key: "fish[*].motion.speed", values: [1, 2]}, {key: "fish[*].wave.frequency", values: [1, 2]}]
+expect:
+  - {of: speed, where: ["fish[*].wave.frequency=2"], most: 1.9}
+  - {of: speed, fish: e, where: ["fish[*].motion.speed=2", "fish[*].wave.frequency=1"], least: 1.999}
+error: {of: [speed, steps], confirm: false, keys: {nodes: [9, 13], rtol: [1e-4, 1e-5]}}
+end
+run study five.yaml -q -o five
+check a_missed_expectation_at_points_gives_exit_code_3 test "$code" = 3
+run gather five
+check each_row_has_values_of_its_point test "$(awk '$1 ~ /^[0-3]$/ && $5 == $2 && $2 == int($1 / 2) + 1 &&
+    $3 == $1 % 2 + 1 && $4 ~ /^[a-d]$/ && $6 < 1e-9 && $7 < 1e-7 && $8 > 3 && $NF == "rtol"' out | wc -l)" = 16
+check the_other_fish_are_in_the_files has out 'The first 4 of 5 fish; error.csv and study.nc have all.'
+check a_point_of_one_key_is_found eval 'has out "speed, 10 values" && has out "MISSED   the largest is 2, expected at most 1.9"'
+check a_point_of_two_keys_is_found eval 'has out "speed of e, 1 value" && has out "met      the smallest is 2"'
+run study five.yaml -o tabled --set error=none
+check a_study_shows_four_fish_too eval 'has out "The first 4 of 5 fish; study.nc has all." && grep -qE "^ +3 +2 +2 +d " out'
+run error five.yaml -o one --of speed --of steps --set 'sweep=[]' --set 'expect=[]'
+check so_does_one_case has out 'The first 4 of 5 fish; error.csv and study.nc have all.'
+check a_number_of_the_run_is_not_of_a_fish test "$(grep -c '^steps: ' out)-$(grep -c '^speed of ' out)" = 1-4
+
 # ---- pictures
 
 if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
