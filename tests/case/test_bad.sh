@@ -175,7 +175,7 @@ set_fails set_no_equals_sign '--set time.end: error: expects PATH=VALUE, as in -
 set_fails set_nothing '--set : error: expects PATH=VALUE' ''
 set_fails set_no_path '--set =3: error: : unknown key; known keys: format, name' =3
 set_fails set_index_out_of_range 'fish[2]: there is no such fish; the case has 2, the last is fish[1]' 'fish[2].nodes=7'
-set_fails set_index_huge 'fish[99999999999999999999]: there is no such fish' 'fish[99999999999999999999].nodes=7'
+set_fails set_index_huge 'fish[99999999999999999999]: there is no such fish' 'fish[99999999999999999999999].nodes=7'
 set_fails set_index_negative 'fish[-1].nodes: expects the number of a fish' 'fish[-1].nodes=7'
 set_fails set_index_missing 'fish.nodes: write fish[0].nodes for one fish, or fish[*].nodes for every fish' fish.nodes=7
 set_fails set_index_after_a_dot '--set fish.0.length=2: error: fish.0.length: write fish[0].length' fish.0.length=2

@@ -272,6 +272,11 @@ TEST(longer_strings_than_a_key_allows_are_refused) {
 TEST(limits_are_where_the_messages_say) {
 #define SHORT "time: {end: 1, shedding_interval: 0.01}\n"
 #define FINITE(points) SHORT "fish: [{nodes: 5, sheet_points: " points ", force: pressure, pressure: {span: finite}}]\n"
+#define BETWEEN(wake) SHORT "fluid: {walls: [-1, 3]}\nwake: {" wake "}\nfish: [{pressure: {span: infinite}}]\n"
+#define STREET "street: {vortices: 4, spacing: 1, circulation: 1, row_distance: 0.5, position: "
+#define GUST(gust) \
+    SHORT "fluid: {velocity: [1, 0], gust: {amplitude: 0.1, profile: " gust "}}\nfish: [{sensors: [0.5]}]\n"
+#define WITHOUT_BEAT(keys) SHORT "fish: [{wave: {frequency: 0}, " keys "}]\n"
     static const struct {
         const char *inside, *outside, *message;
     } limits[] = {
@@ -326,6 +331,27 @@ TEST(limits_are_where_the_messages_say) {
          "of 9 nodes needs at least 17 points, not 16"},
         {SHORT "fluid: {walls: [-1, 1]}\nfish: [{pressure: {span: infinite}}]\n",
          SHORT "fluid: {walls: [-1, -1]}\nfish: [{}]\n", "the second wall must be above the first; -1 is not above -1"},
+        {BETWEEN("vortices: [[0, -0.99, 1]]"), BETWEEN("vortices: [[0, -1, 1]]"), "vortex 1 is beyond a wall"},
+        {BETWEEN("vortices: [[0, 2.99, 1]]"), BETWEEN("vortices: [[0, 3, 1]]"), "vortex 1 is beyond a wall"},
+        {BETWEEN(STREET "[5, -0.74]}"), BETWEEN(STREET "[5, -0.76]}"), "a row of the street is beyond a wall"},
+        {BETWEEN(STREET "[5, 2.74]}"), BETWEEN(STREET "[5, 2.76]}"), "a row of the street is beyond a wall"},
+        {GUST("uniform, frequency: 1"), GUST("sine, wavelength: 2"), "needs a stream with a potential"},
+        {GUST("uniform, frequency: 2"), GUST("step, gradient_distance: 1"), "needs a stream with a potential"},
+        {WITHOUT_BEAT("motion: {prescribed: all, heave: 1, phase: 90}"),
+         WITHOUT_BEAT("motion: {prescribed: all, heave: 1, phase: 180}"), "motion.heave: has no effect with"},
+        {WITHOUT_BEAT("force: reactive, drag: {law: linear_quadratic, linear_speed: 0}"),
+         WITHOUT_BEAT("force: reactive, drag: {law: linear_quadratic, linear_speed: 1}"), "in lengths per beat"},
+        {WITHOUT_BEAT("control: {law: heading}"), WITHOUT_BEAT("control: {law: course}"), "law: needs wave.frequency"},
+        {WITHOUT_BEAT("force: reactive, control: {law: heading}"),
+         WITHOUT_BEAT("force: reactive, control: {law: heading, feedforward: 1}"), "above 0, or feedforward: 0"},
+        {SHORT "fluid: {density: 0}\nfish: [{force: reactive, control: {law: heading}}]\n",
+         SHORT "fluid: {density: 0}\nfish: [{force: reactive, control: {law: heading, feedforward: 1}}]\n",
+         "needs fluid.density above 0, or feedforward: 0"},
+        {SHORT "wake: {shedding: sheet}\nsheet: {kutta: edge}\nfish: [{}]\n",
+         SHORT "wake: {shedding: sheet}\nsheet: {kutta: rate}\nfish: [{}]\n", "strength that vanishes at the tail"},
+        {SHORT "wake: {lifetime: 3, decay: 1 beats}\nfish: [{}]\n",
+         SHORT "wake: {lifetime: 3, decay: 1 beats}\nfish: [{wave: {frequency: 0}}]\n",
+         "wake.decay: is in beats, but no fish beats"},
         {SHORT "fish: [{control: {law: heading, desired_heading: [[0, 10], [1e-9, 20]]}}]\n",
          SHORT "fish: [{control: {law: heading, desired_heading: [[-1e-9, 10], [1, 20]]}}]\n",
          "the first time must be at least 0 s"},
