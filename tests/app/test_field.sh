@@ -45,9 +45,19 @@ refused "field: too many points" 2 "more than 10000000 points" field run.nc --gr
 refused "field: a box upside down" 2 "--box 0,1,1,0: expects the lower left corner" field run.nc --box 0,1,1,0 -o a.nc
 refused "field: a box without an end" 2 "--box 0,0,1e999,1: expects X0,Y0,X1,Y1" field run.nc --box 0,0,1e999,1 -o a.nc
 refused "field: half a box" 2 "--box 0,1: expects X0,Y0,X1,Y1" field run.nc --box 0,1 -o a.nc
+refused "field: a column" 2 "--grid 1,3: expects NX,NY, integers from 2 on" field run.nc --grid 1,3 -o a.nc
+refused "field: no integer in y" 2 "--grid 3,3.5: expects NX,NY, integers" field run.nc --grid 3,3.5 -o a.nc
+refused "field: a box without a width" 2 "--box 0,0,0,1: expects the lower left" field run.nc --box 0,0,0,1 -o a.nc
 refused "field of a field" 4 "not the result of a run" field run-field.nc -o a.nc
 refused "field of a case" 4 "case.yaml" field case.yaml -o a.nc
 refused "field of nothing" 4 "nothing.nc" field nothing.nc
 check "field: a failure leaves no file" test ! -e a.nc
+
+# the rows from 0.4 s on are lost: one row with a wake is left
+cp run.nc cut.nc
+until "$program" info cut.nc | grep -q '^ *rows *4'; do truncate -s -400 cut.nc || break; done
+refused "field: a row behind the last wake" 2 ": the nearest row with a wake is at 0.2 s" field cut.nc --at 0.3 -o a.nc
+run field cut.nc -o last.nc --force
+check "field without a time: the last row with its wake, of a file that was cut off" has out "at t = 0.2 s"
 
 finish

@@ -636,7 +636,8 @@ TEST(looking_does_not_change_a_run) {
 
 TEST(a_result_file_has_the_rows_that_are_due) {
     const char *const assignments[] = {"time.output_interval=0.04"};
-    struct shoal *const run = opened(*state, 1, assignments);
+    struct shoal *const run = opened(*state, 1, assignments), *copy;
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
     char path[] = "/tmp/test_shoal_result_XXXXXX";
     const int descriptor = mkstemp(path);
     AT_LEAST(descriptor, 0);
@@ -646,7 +647,10 @@ TEST(a_result_file_has_the_rows_that_are_due) {
     assert_int_equal(shoal_write(run, path, 1), SHOAL_OK);
     refuses(shoal_write(run, "/tmp/other.nc", 1), "call shoal_write_end first");
     assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+    refuses(shoal_restore(run, copy), "call shoal_write_end first");
     assert_int_equal(shoal_write_end(run), SHOAL_OK);
+    assert_int_equal(shoal_restore(run, copy), SHOAL_OK);
+    shoal_close(copy);
     shoal_close(run);
     struct netcdf_reader reader;
     struct arena *const arena = arena_create(NULL, "a test");

@@ -102,6 +102,29 @@ TEST(a_member_that_is_not_complete_misses_whatever_its_values) {
     check("{of: speed, least: 0, where: [solver.order=1, solver.order=2]}", "stopped", STATUS_OK, "4 values");
 }
 
+TEST(of_many_kinds_of_warnings_the_first_are_printed_and_all_are_counted) {
+    enum { N = 23, SHOWN = 20 };
+    struct member_file member[N];
+    char warning[N][16], *printed;
+    for (int m = 0; m < N; m++) {
+        snprintf(warning[m], sizeof warning[m], "%c is %d", 'a' + m, m);
+        member[m] = (struct member_file){.number = m, .status = "complete", .warnings = warning[m]};
+    }
+    size_t size;
+    FILE *const stream = open_memstream(&printed, &size);
+    struct arena *const arena = arena_create(NULL, "a test");
+    assert_int_equal(study_print_warnings(arena, member, N, stream), N);
+    fclose(stream);
+    arena_free(arena);
+    for (int m = 0; m < N; m++) {
+        char line[64];
+        snprintf(line, sizeof line, "member %d: warning: %c is %d\n", m, 'a' + m, m);
+        assert_int_equal(strstr(printed, line) != NULL, m < SHOWN);
+    }
+    assert_non_null(strstr(printed, "\nThe first 20 of 23 kinds of warnings; study.nc has all.\n"));
+    free(printed);
+}
+
 TEST(failures_are_expected_by_a_part_of_their_words) {
     check("{fails: unstable, where: [solver.order=3]}", "failed: unstable at t = 1", STATUS_OK, "failures, 1 member\n");
     check("{fails: singular, where: [solver.order=3]}", "failed: unstable at t = 1", STATUS_MISSED,
