@@ -143,7 +143,7 @@ static enum status event_finish(struct state *state, struct residual *residual, 
     diagnostics_momentum_event(residual, state);
     diagnostics_remember(residual, state);
     self_crossing_remember(residual->school, state, residual->scratch);
-    warnings_remember(residual->school, state);
+    warnings_divergence(residual->school, state, state->divergence, &state->diverged);
 
     const bool steered = event_control(state, residual);
     if (steered) {

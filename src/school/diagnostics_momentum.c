@@ -91,32 +91,10 @@ static void add_with_moment(double sum[3], double x, double y, double along_x, d
     sum[2] += x * along_y - y * along_x;
 }
 
-static void momentum_of_body(const struct fish *fish, const double *y, double momentum[3]) {
-    memset(momentum, 0, 3 * sizeof *momentum);
-    for (int k = 0; k < fish->n_nodes; k++) {
-        add_with_moment(momentum, y[fish->at.x + k], y[fish->at.y + k], fish->mass[k] * y[fish->at.vx + k],
-                        fish->mass[k] * y[fish->at.vy + k]);
-    }
-}
-
 // the added momentum of component i of node k
 static double added_momentum(const struct residual *residual, int f, int i, int k) {
     const struct pressure *const pressure = residual->pressure[f];
     return pressure ? pressure->momentum[i * residual->school->fish[f].n_nodes + k] : 0;
-}
-
-// momentum of the prescribed components of nodes, with added momentum; call after pressure_update
-static void given_momentum(const struct residual *residual, int f, const double *y, double momentum[3]) {
-    const struct fish *const fish = &residual->school->fish[f];
-    memset(momentum, 0, 3 * sizeof *momentum);
-    for (int k = 0; k < fish_n_prescribed(fish); k++) {
-        double of_node[2] = {0, 0};
-        for (int i = 0; i < 2; i++) {
-            if (!fish_is_prescribed(fish, k, i)) continue;
-            of_node[i] = fish->mass[k] * y[fish->at.vx + i * fish->n_nodes + k] + added_momentum(residual, f, i, k);
-        }
-        add_with_moment(momentum, y[fish->at.x + k], y[fish->at.y + k], of_node[0], of_node[1]);
-    }
 }
 
 // add the nascent vortex, or stretch, of a fish
@@ -133,17 +111,29 @@ static void add_nascent(struct impulse_moments *sum, const struct flow *flow, co
     }
 }
 
-// impulse of all vortices of a fish at the event of the state; call after pressure_update
-static void impulse_of_fluid(const struct residual *residual, const struct state *state, int f, double impulse[3]) {
+/* Momenta of a fish at the event of the state: of the body; of the fluid, the impulse of all vortices; of the
+ * prescribed components of nodes, with added momentum. */
+struct momenta {
+    double body[3], fluid[3], given[3];
+};
+
+static struct momenta momenta_of(struct residual *residual, const struct state *state, int f) {
     const struct fish *const fish = &residual->school->fish[f];
     const struct sources *const bound = &residual->flow->fish[f].own;
-    const double factor = residual->school->density * impulse_depth(fish);
+    const double *const y = state->y, factor = residual->school->density * impulse_depth(fish);
+    struct momenta of = {.body = {0}};
+    diagnostics_pressure(residual, f, (const double[2]){0, 0}, y);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        add_with_moment(of.body, y[fish->at.x + k], y[fish->at.y + k], fish->mass[k] * y[fish->at.vx + k],
+                        fish->mass[k] * y[fish->at.vy + k]);
+    }
+
+    // the wake
     struct impulse_moments wake = impulse_of_wake(&state->wake[f], residual->school, state->t, 0), sheet = {0};
     double tail[2], of_sheet[3], total = 0;
-
-    fish_tail(fish, state->y, tail);
+    fish_tail(fish, y, tail);
     add_nascent(&wake, residual->flow, state, f, 0, tail);
-    impulse_of(&wake, factor, impulse);
+    impulse_of(&wake, factor, of.fluid);
 
     // the bound sheet
     for (int j = 0; j < fish->n_sheet; j++) {
@@ -154,14 +144,25 @@ static void impulse_of_fluid(const struct residual *residual, const struct state
     // with momenta: added momentum plus bound circulation at the tail, which equals the sum over the control points
     if (residual->pressure[f]) {
         for (int k = 0; k < fish->n_nodes; k++) {
-            add_with_moment(impulse, state->y[fish->at.x + k], state->y[fish->at.y + k],
-                            added_momentum(residual, f, 0, k), added_momentum(residual, f, 1, k));
+            add_with_moment(of.fluid, y[fish->at.x + k], y[fish->at.y + k], added_momentum(residual, f, 0, k),
+                            added_momentum(residual, f, 1, k));
         }
         sheet = (struct impulse_moments){0};
         impulse_add(&sheet, total, tail[0], tail[1]);
     }
     impulse_of(&sheet, factor, of_sheet);
-    for (int i = 0; i < 3; i++) impulse[i] += of_sheet[i];
+    for (int i = 0; i < 3; i++) of.fluid[i] += of_sheet[i];
+
+    // prescribed nodes
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        double of_node[2] = {0, 0};
+        for (int i = 0; i < 2; i++) {
+            if (!fish_is_prescribed(fish, k, i)) continue;
+            of_node[i] = fish->mass[k] * y[fish->at.vx + i * fish->n_nodes + k] + added_momentum(residual, f, i, k);
+        }
+        add_with_moment(of.given, y[fish->at.x + k], y[fish->at.y + k], of_node[0], of_node[1]);
+    }
+    return of;
 }
 
 // ---- external forces
@@ -188,7 +189,7 @@ static void external_force(struct residual *residual, int f, double t, const dou
     }
 
     // constraint forces of prescribed nodes, from m a minus all forces, without the rate of the momentum of these
-    // nodes: given_momentum is the integral of this rate
+    // nodes: momenta.given is the integral of this rate
     double *const balance = residual->scratch;
     if (fish_n_prescribed(fish) > 0) residual_balance(residual, f, y, balance);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
@@ -328,10 +329,10 @@ void diagnostics_momentum_start(struct residual *residual, struct state *state) 
         memset(momentum->external, 0, sizeof momentum->external);
         if (!diagnostics_has_reaction(residual->school, &residual->school->fish[f])) continue;
 
-        diagnostics_pressure(residual, f, (const double[2]){0, 0}, state->y);
-        momentum_of_body(&residual->school->fish[f], state->y, momentum->first_body);
-        impulse_of_fluid(residual, state, f, momentum->first_fluid);
-        given_momentum(residual, f, state->y, momentum->first_given);
+        const struct momenta of = momenta_of(residual, state, f);
+        memcpy(momentum->first_body, of.body, sizeof of.body);
+        memcpy(momentum->first_fluid, of.fluid, sizeof of.fluid);
+        memcpy(momentum->first_given, of.given, sizeof of.given);
     }
 }
 
@@ -358,11 +359,8 @@ void diagnostics_momentum(struct residual *residual, const struct state *state, 
         const struct momentum_balance *const momentum = &state->momentum[f];
         const struct fish *const fish = &school->fish[f];
         struct diagnostics_fish *const to = &diagnostics->fish[f];
-        double body[3], fluid[3], lost[3], given[3];
-        diagnostics_pressure(residual, f, (const double[2]){0, 0}, state->y);
-        momentum_of_body(fish, state->y, body);
-        impulse_of_fluid(residual, state, f, fluid);
-        given_momentum(residual, f, state->y, given);
+        struct momenta of = momenta_of(residual, state, f);
+        double lost[3];
         const struct impulse_moments gone = {
             .x = momentum->lost[0], .y = momentum->lost[1], .square = momentum->lost[2]};
         impulse_of(&gone, school->density * impulse_depth(fish), lost);
@@ -370,14 +368,15 @@ void diagnostics_momentum(struct residual *residual, const struct state *state, 
         // fill the impulses of the fish, and add the fish to the balance
         const bool has_reaction = diagnostics_has_reaction(school, fish);
         for (int i = 0; i < 3; i++) {
-            to->fluid_impulse[i] = fluid[i] + lost[i];
+            to->fluid_impulse[i] = of.fluid[i] + lost[i];
             to->lost_impulse[i] = lost[i];
-            to->external_impulse[i] = has_reaction ? momentum->external[i] + given[i] - momentum->first_given[i] : NAN;
-            fluid[i] -= momentum->first_fluid[i];
-            balance[i] += body[i] - momentum->first_body[i] + fluid[i] + lost[i] - to->external_impulse[i];
+            to->external_impulse[i] =
+                has_reaction ? momentum->external[i] + of.given[i] - momentum->first_given[i] : NAN;
+            of.fluid[i] -= momentum->first_fluid[i];
+            balance[i] += of.body[i] - momentum->first_body[i] + of.fluid[i] + lost[i] - to->external_impulse[i];
         }
-        of_bodies += hypot(body[0], body[1]);
-        of_fluid += hypot(fluid[0], fluid[1]);
+        of_bodies += hypot(of.body[0], of.body[1]);
+        of_fluid += hypot(of.fluid[0], of.fluid[1]);
         external += hypot(to->external_impulse[0], to->external_impulse[1]);
         usual += fish->total_mass * fish->length * fish_rate(school, fish);
     }

@@ -37,8 +37,10 @@ extern const struct warning_words warnings_words[N_WARNINGS];
  * added mass. doc/numerics.md, section 5. */
 double warnings_bending_length(const struct fish *fish);
 
-/* Keep the worst divergence of the run in state->divergence; call at every event. */
-void warnings_remember(const struct school *school, struct state *state);
+/* Replace the worst divergence and its fish by a worse divergence of the present state. Every event calls this function
+ * for state->divergence and state->diverged. */
+void warnings_divergence(const struct school *school, const struct state *state, double worst[N_DIVERGENCE],
+                         long *diverged);
 
 /* Fail with STATUS_SOLVER, time and remedy if a value of the state or a balance that is defined is not finite: no row
  * of a result. diagnostics: of the same event as the state. */

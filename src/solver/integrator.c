@@ -20,19 +20,10 @@ struct integrator_rates *integrator_rates_create(struct arena *arena, const stru
     return rates;
 }
 
-static void rates_keep(struct integrator_rates *rates, double t, const double *y) {
-    double *const oldest = rates->y[N_KEPT - 1];
-    memcpy(oldest, y, (size_t)rates->school->n_unknowns * sizeof *y);
-    rates->y[1] = rates->y[0];
-    rates->y[0] = oldest;
-    rates->t[1] = rates->t[0];
-    rates->t[0] = t;
-    if (rates->n < N_KEPT) rates->n++;
-}
-
 void integrator_rates_begin(struct integrator_rates *rates, const struct state *state) {
-    rates->n = 0;
-    rates_keep(rates, state->t, state->y);
+    memcpy(rates->y[0], state->y, (size_t)rates->school->n_unknowns * sizeof *state->y);
+    rates->t[0] = state->t;
+    rates->n = 1;
 }
 
 void integrator_rates_step(struct integrator_rates *rates, double t, struct state *state) {
@@ -49,5 +40,13 @@ void integrator_rates_step(struct integrator_rates *rates, double t, struct stat
             state->yp[i] = newest + (newest - before) * (t - rates->t[0]) / (t - rates->t[1]);
         }
     }
-    rates_keep(rates, t, state->y);
+
+    // keep the step
+    double *const oldest = rates->y[N_KEPT - 1];
+    memcpy(oldest, state->y, (size_t)rates->school->n_unknowns * sizeof *oldest);
+    rates->y[1] = rates->y[0];
+    rates->y[0] = oldest;
+    rates->t[1] = rates->t[0];
+    rates->t[0] = t;
+    if (rates->n < N_KEPT) rates->n++;
 }

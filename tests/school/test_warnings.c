@@ -465,13 +465,14 @@ TEST(the_worst_divergence_of_all_events_is_kept) {
         school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
     school_run(simulation, 0.1);
     simulate_measure(simulation);
-    double *const shed = &simulation->state->y[simulation->school->fish[1].at.circulation], kept = *shed;
+    struct state *const now = simulation->state;
+    double *const shed = &now->y[simulation->school->fish[1].at.circulation], kept = *shed;
     const double limit = 100 * 2 * acos(-1);
     static const double share[] = {1.5, 3, 2};
     for (int i = 0; i < 3; i++) {
         *shed = -share[i] * limit;
-        warnings_remember(simulation->school, simulation->state);
-        simulation->state->t += 0.01;
+        warnings_divergence(simulation->school, now, now->divergence, &now->diverged);
+        now->t += 0.01;
     }
     *shed = kept;
     expect_line(simulation, WARNING_DIVERGENCE, "fish2 has diverged: at t = 0.11 s");
