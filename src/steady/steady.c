@@ -137,28 +137,6 @@ static enum status write_beats(struct run *run) {
 
 // ---- a run
 
-static enum status steady_find_fixed_point(struct run *run) {
-    TRY(steady_search_run(&run->problem));
-    run->found.residual = steady_map_residual(&run->problem.map);
-    run->found.error = NAN;
-    run->found.stiffness = NAN;
-
-    // correct the state by the multipliers until the speed is near the fixed point
-    const bool has_multipliers = run->values->steady.multipliers != NO && run->problem.n_unknowns > 0;
-    double last = farthest;
-    if (has_multipliers) TRY(find_multipliers(run));
-    for (int i = 0; i < CORRECTIONS && has_multipliers; i++) {
-        const double now = speed_distance(run);
-        if (now <= far_away * run->values->steady.tolerance) break;
-        TRY(steady_search_correct(&run->problem, now <= half * last ? run->way : NULL));
-        last = now;
-        TRY(find_multipliers(run));
-    }
-    steady_modes_of_multipliers(&run->found, run->problem.map.period);
-    run->found.n_beats = run->problem.map.n_beats;
-    return write_beats(run);
-}
-
 // add a line to the warnings of the result and tell it
 __attribute__((format(printf, 2, 3))) static void warn(struct run *run, const char *format, ...) {
     char line[WARNING_BYTES];
@@ -208,13 +186,33 @@ static void warn_of_state(struct run *run) {
 // the record of the result is closed after a lack of memory too
 static enum status steady_find(struct run *run, bool is_static) {
     MEMORY_BOUNDARY(STATUS_MEMORY);
-    if (!is_static) return steady_find_fixed_point(run);
+    run->found.error = NAN;
 
     // an equilibrium of bodies without a beat has one row
-    run->found.error = NAN;
-    TRY(steady_static_find(run->simulation, run->options->from, &run->found));
-    if (run->values->steady.multipliers != NO) TRY(steady_modes_find(run->simulation, &run->found));
-    return write_if_due(run);
+    if (is_static) {
+        TRY(steady_static_find(run->simulation, run->options->from, &run->found));
+        if (run->values->steady.multipliers != NO) TRY(steady_modes_find(run->simulation, &run->found));
+        return write_if_due(run);
+    }
+
+    TRY(steady_search_run(&run->problem));
+    run->found.residual = steady_map_residual(&run->problem.map);
+    run->found.stiffness = NAN;
+
+    // correct the state by the multipliers until the speed is near the fixed point
+    const bool has_multipliers = run->values->steady.multipliers != NO && run->problem.n_unknowns > 0;
+    double last = farthest;
+    if (has_multipliers) TRY(find_multipliers(run));
+    for (int i = 0; i < CORRECTIONS && has_multipliers; i++) {
+        const double now = speed_distance(run);
+        if (now <= far_away * run->values->steady.tolerance) break;
+        TRY(steady_search_correct(&run->problem, now <= half * last ? run->way : NULL));
+        last = now;
+        TRY(find_multipliers(run));
+    }
+    steady_modes_of_multipliers(&run->found, run->problem.map.period);
+    run->found.n_beats = run->problem.map.n_beats;
+    return write_beats(run);
 }
 
 static enum status find_and_write(struct run *run) {

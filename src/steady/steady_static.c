@@ -190,8 +190,37 @@ static enum status growth_from_rest(struct growth *growth) {
     return status_fail(status, "no equilibrium of the bodies, not even without a stream (%s)", reason);
 }
 
-// increase the stream from rest with adaptive steps
-static enum status growth_to_stream(struct growth *growth) {
+static enum status find_solution(struct growth *growth, const char *from, struct steady_values *found) {
+    const struct school *const school = growth->simulation->school;
+    struct state *const state = growth->simulation->state;
+    struct arena *const arena = growth->arena;
+    const size_t bytes = (size_t)school->n_unknowns * sizeof *state->y;
+    double *rest;
+    TRY(flow_check_steady(school));
+    NEW(arena, growth->last, school->n_unknowns);
+    NEW(arena, rest, school->n_unknowns);
+    growth->school = *school;
+    NEW(arena, growth->school.fish, school->n_fish);
+    memcpy(growth->school.fish, school->fish, (size_t)school->n_fish * sizeof *school->fish);
+    growth->equilibrium = equilibrium_create(arena, &growth->school, state);
+
+    TRY(growth_from_rest(growth));
+    TRY(equilibrium_stiffness(growth->equilibrium, &growth->rest));
+
+    // the full stream from the shapes in a file
+    if (from) {
+        memcpy(rest, growth->last, bytes);
+        enum status status = steady_start_shapes(arena, from, school, state->y);
+        if (status == STATUS_OK) {
+            memcpy(growth->last, state->y, bytes);
+            status = growth_solve(growth, 1);
+        }
+        if (is_fatal(status)) return status;
+        if (status != STATUS_OK) memcpy(growth->last, rest, bytes);
+        memcpy(state->y, growth->last, bytes);
+    }
+
+    // without a solution increase the stream from rest with adaptive steps
     double step = 1, stiffness;
     char reason[512];
     while (growth->last_part < 1) {
@@ -210,40 +239,7 @@ static enum status growth_to_stream(struct growth *growth) {
                            "start from another shape with --from (%s)",
                            growth->last_part, stiffness, reason);
     }
-    return STATUS_OK;
-}
 
-static enum status find_solution(struct growth *growth, const char *from, struct steady_values *found) {
-    const struct school *const school = growth->simulation->school;
-    struct state *const state = growth->simulation->state;
-    struct arena *const arena = growth->arena;
-    const size_t bytes = (size_t)school->n_unknowns * sizeof *state->y;
-    double *rest;
-    TRY(flow_check_steady(school));
-    NEW(arena, growth->last, school->n_unknowns);
-    NEW(arena, rest, school->n_unknowns);
-    growth->school = *school;
-    NEW(arena, growth->school.fish, school->n_fish);
-    memcpy(growth->school.fish, school->fish, (size_t)school->n_fish * sizeof *school->fish);
-    growth->equilibrium = equilibrium_create(arena, &growth->school, state);
-
-    TRY(growth_from_rest(growth));
-    TRY(equilibrium_stiffness(growth->equilibrium, &growth->rest));
-
-    // the full stream from the shapes in a file; without a solution continue from rest
-    enum status status = STATUS_SOLVER;
-    if (from) {
-        memcpy(rest, growth->last, bytes);
-        status = steady_start_shapes(arena, from, school, state->y);
-        if (status == STATUS_OK) {
-            memcpy(growth->last, state->y, bytes);
-            status = growth_solve(growth, 1);
-        }
-        if (is_fatal(status)) return status;
-        if (status != STATUS_OK) memcpy(growth->last, rest, bytes);
-        memcpy(state->y, growth->last, bytes);
-    }
-    if (status != STATUS_OK) TRY(growth_to_stream(growth));
     TRY(find_stiffness(growth, &found->stiffness));
     found->residual = equilibrium_residual(growth->equilibrium);
     return STATUS_OK;
