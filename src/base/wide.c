@@ -1,6 +1,8 @@
 /* wide.c: a product of a full matrix and a vector. */
 #include "base/wide.h"
 
+#include <string.h>
+
 /* Eight rows at any address of an array of numbers. */
 enum { ROWS = 8, MOST = 5 };
 typedef double rows_of_eight __attribute__((vector_size(ROWS * sizeof(double)), aligned(sizeof(double)), may_alias));
@@ -38,4 +40,9 @@ WIDE(void, wide_multiply, (int n_rows, int n_columns, const double *matrix, cons
             default: multiply_groups(5, first, n_rows, n_columns, matrix, vector, product);
         }
     }
+}
+
+void wide_product(int n_rows, int n_columns, const double *matrix, const double *vector, double *product) {
+    memset(product, 0, (size_t)n_rows * sizeof *product);
+    wide_multiply(n_rows, n_columns, matrix, vector, product);
 }

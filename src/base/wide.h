@@ -38,4 +38,7 @@
  * order. */
 void wide_multiply(int n_rows, int n_columns, const double *matrix, const double *vector, double *product);
 
+/* The same with product = matrix * vector. */
+void wide_product(int n_rows, int n_columns, const double *matrix, const double *vector, double *product);
+
 #endif

@@ -2,15 +2,8 @@
 #include "fish/fish.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/mathematics.h"
-#include "base/wide.h"
-
-void fish_of_nodes(int n_points, int n_nodes, const double *matrix, const double *of_nodes, double *of_points) {
-    memset(of_points, 0, (size_t)n_points * sizeof *of_points);
-    wide_multiply(n_points, n_nodes, matrix, of_nodes, of_points);
-}
 
 double fish_mass_mean(const struct fish *fish, const double *value) {
     double sum = 0;

@@ -145,7 +145,7 @@ struct fish {
     struct tangent *control_tangent; /* direction of the body at the control points             (n_control) */
     struct tangent tail_tangent;     /* direction of the body at the tail */
     /* weights of the points above as full matrices, by columns: bound vortices (n_nodes, n_sheet); control points, and
-     * tangents there, X' of a smooth curve (n_nodes, n_control) */
+     * tangents there, X' of a smooth curve (n_nodes, n_control); wide_product has the bits of fish_mean */
     double *sheet_by_node, *control_by_node[2];
     double *end_correction;       /* E_c of shedding: sheet, else 0, m-1              (n_control) */
     struct stencil heading_point; /* the body point at a third of the length */
@@ -239,9 +239,6 @@ static inline double fish_mean(const struct stencil *point, const double *value)
     for (int i = 0; i < point->n; i++) mean += point->weight[i] * value[point->node[i]];
     return mean;
 }
-
-/* Values at points from values of the nodes, by a full matrix of weights (n_nodes, n_points): the bits of fish_mean. */
-void fish_of_nodes(int n_points, int n_nodes, const double *matrix, const double *of_nodes, double *of_points);
 
 /* Mass-weighted mean of a value of the nodes (n_nodes). */
 double fish_mass_mean(const struct fish *fish, const double *value);

@@ -160,22 +160,11 @@ enum status sheet_integrals_create(struct arena *arena, struct sheet_integrals *
     return status;
 }
 
-void sheet_integrals_around(const struct sheet_integrals *integrals, const double *circulation, double *around) {
-    memset(around, 0, (size_t)integrals->n_control * sizeof *around);
-    wide_multiply(integrals->n_control, integrals->n_sheet, integrals->strength, circulation, around);
-}
-
-void sheet_integrals_before(const struct sheet_integrals *integrals, const double *circulation, double *before) {
-    memset(before, 0, (size_t)integrals->n_control * sizeof *before);
-    wide_multiply(integrals->n_control, integrals->n_sheet, integrals->circulation, circulation, before);
-}
-
 WIDE(void, sheet_integrals_matrix,
      (const struct sheet_integrals *integrals, const double *circulation, double *parts, double *matrix),
      (integrals, circulation, parts, matrix)) {
     const int n = integrals->n_nodes;
-    memset(parts, 0, 4 * (size_t)n * sizeof *parts);
-    wide_multiply(4 * n, integrals->n_sheet, integrals->part, circulation, parts);
+    wide_product(4 * n, integrals->n_sheet, integrals->part, circulation, parts);
     const double *const a = parts, *const b = parts + n, *const e = parts + 2 * n, *const own = parts + 3 * n;
     const double *const factor = integrals->factor;
     for (int i = 0; i < n; i++) {

@@ -16,10 +16,11 @@ struct sheet_integrals {
     /* P_kij, the integral over u of density C_j b_k b_i', kg m-2, in partial fractions: of each vortex j the numbers A,
      * B, E and the diagonal P_kkj of each node                                           (n_sheet, 4, n_nodes) */
     double *part;
-    double *factor;      /* c_k of the smooth curve                                               (n_nodes) */
-    double *inverse;     /* 1/m for m = 1 - n_nodes .. n_nodes - 1; 0 for m = 0             (2 n_nodes - 1) */
-    double *strength;    /* G: circulation of the interval around a control point, 1        (n_sheet, n_control) */
-    double *circulation; /* C_j at the control points, 1                                  (n_sheet, n_control) */
+    double *factor;  /* c_k of the smooth curve                                               (n_nodes) */
+    double *inverse; /* 1/m for m = 1 - n_nodes .. n_nodes - 1; 0 for m = 0             (2 n_nodes - 1) */
+    /* times the circulations of the vortices: Q_c, the circulation of the interval around each control point, by G; the
+     * circulation between the nose and each control point, by C_j; both 1          (n_sheet, n_control) by columns */
+    double *strength, *circulation;
     /* Corrections of both sums at the control points for a finite strength at the tail, per q_M-2 - 2 q_M-1: g then has
      * a kink at the tail, beyond the cosine series                                               (n_control) */
     double *kink_strength, *kink_circulation;
@@ -29,11 +30,6 @@ struct sheet_integrals {
  * STATUS_STOPPED once *stop is not 0 (stop may be NULL). */
 enum status sheet_integrals_create(struct arena *arena, struct sheet_integrals **integrals, int n_nodes, int n_sheet,
                                    const double *density, const volatile sig_atomic_t *stop);
-
-/* Of a sheet with the given circulations (n_sheet), m2 s-1: Q_c, the circulation of the interval around each control
- * point (n_control), and the circulation between the nose and each control point (n_control). */
-void sheet_integrals_around(const struct sheet_integrals *integrals, const double *circulation, double *around);
-void sheet_integrals_before(const struct sheet_integrals *integrals, const double *circulation, double *before);
 
 /* sum over j of P_kij times circulation j, kg s-1, as a matrix (k, i) by columns; parts: workspace (4 n_nodes). */
 void sheet_integrals_matrix(const struct sheet_integrals *integrals, const double *circulation, double *parts,

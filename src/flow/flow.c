@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/wide.h"
 #include "body/rod.h"
 #include "fish/fish_motion.h"
 
@@ -156,7 +157,7 @@ struct flow *flow_create(struct arena *arena, const struct school *school) {
 void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, double *of_points) {
     const struct fish *fish = &flow->school->fish[f];
     double *const to = of_points + flow->points[f].first;
-    fish_of_nodes(fish->n_control, fish->n_nodes, fish->control_by_node[0], of_nodes, to);
+    wide_product(fish->n_control, fish->n_nodes, fish->control_by_node[0], of_nodes, to);
     for (int k = 0; k < fish->n_edges; k++) to[flow_midpoint(fish, k)] = (of_nodes[k] + of_nodes[k + 1]) / 2;
     to[flow_tail(fish)] = of_nodes[fish->n_nodes - 1];
 }
@@ -176,24 +177,24 @@ static void flow_place_body(struct flow *flow, int f, const double *y) {
     const double *const node_x = y + fish->at.x, *const node_y = y + fish->at.y;
     flow_from_nodes(flow, f, node_x, flow->x);
     flow_from_nodes(flow, f, node_y, flow->y);
-    fish_of_nodes(n, fish->n_nodes, fish->sheet_by_node, node_x, of->own.x);
-    fish_of_nodes(n, fish->n_nodes, fish->sheet_by_node, node_y, of->own.y);
+    wide_product(n, fish->n_nodes, fish->sheet_by_node, node_x, of->own.x);
+    wide_product(n, fish->n_nodes, fish->sheet_by_node, node_y, of->own.y);
     for (int j = 0; j < n; j++) of->own.q[j] = fish->sheet_weight[j] * y[fish->at.gamma + j];
 
     const size_t size = (size_t)of->body.n * sizeof(double);
     memcpy(of->body.x, fish->integrals ? flow->x + points : of->own.x, size);
     memcpy(of->body.y, fish->integrals ? flow->y + points : of->own.y, size);
     if (fish->integrals) {
-        sheet_integrals_around(fish->integrals, of->own.q, of->body.q);
+        wide_product(fish->n_control, n, fish->integrals->strength, of->own.q, of->body.q);
     } else {
         memcpy(of->body.q, of->own.q, size);
     }
     if (!has_legs) return;
 
     // legs
-    sheet_integrals_before(fish->integrals, of->own.q, of->body.dx);
-    fish_of_nodes(fish->n_control, fish->n_nodes, fish->control_by_node[1], node_x, of->line[0]);
-    fish_of_nodes(fish->n_control, fish->n_nodes, fish->control_by_node[1], node_y, of->line[1]);
+    wide_product(fish->n_control, n, fish->integrals->circulation, of->own.q, of->body.dx);
+    wide_product(fish->n_control, fish->n_nodes, fish->control_by_node[1], node_x, of->line[0]);
+    wide_product(fish->n_control, fish->n_nodes, fish->control_by_node[1], node_y, of->line[1]);
     for (int c = 0; c < fish->n_control; c++) {
         const double before = of->body.dx[c];
         of->line[0][c] *= fish->control_interval[c];

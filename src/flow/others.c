@@ -252,7 +252,7 @@ static void remember_fish(struct flow *flow, const struct state *state, int f) {
     const int slices[] = {fish->at.x, fish->at.y, fish->at.vx, fish->at.vy, fish->at.ax, fish->at.ay};
     double *const to[] = {of->start[0],    of->start[1],        of->velocity[0],
                           of->velocity[1], of->acceleration[0], of->acceleration[1]};
-    for (int i = 0; i < 6; i++) fish_of_nodes(FAR, fish->n_nodes, of->from_nodes, y + slices[i], to[i]);
+    for (int i = 0; i < 6; i++) wide_product(FAR, fish->n_nodes, of->from_nodes, y + slices[i], to[i]);
 
     // the points that the body has at the event
     of->aside = 3e-4 * fish->length; /* displacements within an interval */
@@ -620,8 +620,8 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
         struct others_fish *const of = &others->fish[f];
         of->has_drifted = !of->is_used;
         if (!of->is_used) continue;
-        fish_of_nodes(FAR, fish->n_nodes, of->from_nodes, y + fish->at.x, of->x);
-        fish_of_nodes(FAR, fish->n_nodes, of->from_nodes, y + fish->at.y, of->y);
+        wide_product(FAR, fish->n_nodes, of->from_nodes, y + fish->at.x, of->x);
+        wide_product(FAR, fish->n_nodes, of->from_nodes, y + fish->at.y, of->y);
         double place[2][FAR];
         far_places(of, tau, place[0], place[1]);
         for (int i = 0; i < FAR; i++) {

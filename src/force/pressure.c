@@ -58,8 +58,7 @@ static void pressure_find_matrix(struct pressure *p, const double *strength, str
 static void pressure_add_product(struct pressure *p, const struct pressure_matrix *matrix, const double *x,
                                  double *to) {
     const int n = p->fish->n_nodes;
-    memset(p->product, 0, (size_t)n * sizeof *p->product);
-    wide_multiply(n, n, matrix->value, x + n, p->product);
+    wide_product(n, n, matrix->value, x + n, p->product);
     for (int k = 0; k < n; k++) to[k] -= p->product[k];
     wide_multiply(n, n, matrix->value, x, to + n);
 }
@@ -85,13 +84,14 @@ static void pressure_convect(struct pressure *p, const struct flow_at_body *flow
     // values at all control points; with rings also the circulation before each point
     double *const at = p->at_points;
     for (int i = 0; i < 2; i++) {
-        fish_of_nodes(n_control, n, fish->control_by_node[1], y + fish->at.x + i * n, at + (LINE + i) * n_control);
-        fish_of_nodes(n_control, n, fish->control_by_node[0], y + fish->at.vx + i * n, at + (VELOCITY + i) * n_control);
+        wide_product(n_control, n, fish->control_by_node[1], y + fish->at.x + i * n, at + (LINE + i) * n_control);
+        wide_product(n_control, n, fish->control_by_node[0], y + fish->at.vx + i * n, at + (VELOCITY + i) * n_control);
     }
-    sheet_integrals_around(fish->integrals, p->matrix.circulation, at + AROUND * n_control);
-    if (fish->strip_depth > 0) {
-        sheet_integrals_before(fish->integrals, p->matrix.circulation, at + BEFORE * n_control);
-    }
+    const struct sheet_integrals *const integrals = fish->integrals;
+    const double *const q = p->matrix.circulation;
+    wide_product(n_control, fish->n_sheet, integrals->strength, q, at + AROUND * n_control);
+    if (fish->strip_depth > 0)
+        wide_product(n_control, fish->n_sheet, integrals->circulation, q, at + BEFORE * n_control);
 
     double *const x = p->spread, *const z = p->spread + n_control;
     for (int c = 0; c < n_control; c++) {

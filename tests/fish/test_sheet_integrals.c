@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/mathematics.h"
+#include "base/wide.h"
 #include "failing_malloc.h"
 #include "fish/shape.h"
 #include "fish/sheet_integrals.h"
@@ -43,8 +44,8 @@ TEST(control_points_have_the_circulation_of_their_intervals) {
     for (int m = 0; m < N_SHEET - 1; m++) {
         double q[N_SHEET], around[N_SHEET - 1], before[N_SHEET - 1];
         cosine(m, q);
-        sheet_integrals_around(integrals, q, around);
-        sheet_integrals_before(integrals, q, before);
+        wide_product(N_SHEET - 1, N_SHEET, integrals->strength, q, around);
+        wide_product(N_SHEET - 1, N_SHEET, integrals->circulation, q, before);
         for (int c = 0; c < N_SHEET - 1; c++) {
             const double theta = pi * (c + 0.5) / (N_SHEET - 1);
             NEAR(around[c], pi / (N_SHEET - 1) * cos(m * theta), 1e-14, 0);
