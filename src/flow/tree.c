@@ -208,18 +208,15 @@ static WIDE(void, add_to_fine, (const struct node_matrix *matrix, int n_values, 
 
 // ---- boxes
 
-static void node_tree_fill(struct node_tree *nodes, int n, const double *x, const double *y, const double *h, int leaf,
-                           int threads) {
-    tree_boxes_fill(&nodes->boxes, n, x, y, h, leaf, threads);
-    if (nodes->boxes.n_boxes <= nodes->capacity) return;
-    nodes->capacity = nodes->boxes.n_boxes;
-    GROW(nodes->boxes.arena, nodes->box, nodes->capacity);
-}
-
 // the smallest boxes, from the leaves up, in x and y at least 2 least wide; rings: sorted, for the sums of strengths;
 // NULL: none
 static void node_tree_enclose(struct node_tree *nodes, double least, const struct sources *rings) {
     const struct tree_boxes *const boxes = &nodes->boxes;
+    if (boxes->n_boxes > nodes->capacity) {
+        nodes->capacity = boxes->n_boxes;
+        GROW(boxes->arena, nodes->box, nodes->capacity);
+    }
+
     for (int b = boxes->n_boxes - 1; b >= 0; b--) {
         const struct tree_box *const of = &boxes->box[b];
         const int is_leaf = b >= tree_boxes_level(boxes->depth);
@@ -291,20 +288,18 @@ struct search {
     int cost; /* of an interaction of points: 2 with gradients */
 };
 
-// the smallest number of nodes for which rho^-n times the bound is below 1; 0: none
-static int nodes_for(double rho, double bound, int most) {
+// the smallest number of nodes of an interval for which rho^-n times the bound is below 1, with a singularity at the
+// distance (along, across) from the centre; 0: none
+static int nodes_for(double half, double along, double across, double bound, int most) {
+    // rho of the ellipse of Bernstein
+    const double near = along - half, far = along + half;
+    const double sum = (sqrt(near * near + across * across) + sqrt(far * far + across * across)) / (2 * half);
+    const double rho = sum + sqrt(fmax(0, sum * sum - 1));
     for (int n = 1; n <= most; n++) {
         bound /= rho;
         if (bound <= 1) return n;
     }
     return 0;
-}
-
-// rho of the ellipse of Bernstein of an interval for a singularity at distance (along, across) from the centre
-static double bernstein(double half, double along, double across) {
-    const double near = along - half, far = along + half;
-    const double sum = (sqrt(near * near + across * across) + sqrt(far * far + across * across)) / (2 * half);
-    return sum + sqrt(fmax(0, sum * sum - 1));
 }
 
 /* The nodes of one box of a pair. The kernel is analytic in each coordinate, with singularities at r^2 = -e^2 and
@@ -316,14 +311,13 @@ static int box_nodes(const struct node_box *box, const struct node_box *other, c
         if (box->half[axis] <= 0) continue;
         const double along = fmax(0, fabs(box->centre[axis] - other->centre[axis]) - other->half[axis]);
         const double across = sqrt(gap[1 - axis] * gap[1 - axis] + least);
-        n[axis] = nodes_for(bernstein(box->half[axis], along, across), bound, NODES);
+        n[axis] = nodes_for(box->half[axis], along, across, bound, NODES);
         if (n[axis] == 0) return 0;
     }
 
     n[2] = 1;
     if (box->half[2] <= 0) return 1;
-    n[2] =
-        nodes_for(bernstein(box->half[2], gap[0] * gap[0] + gap[1] * gap[1] + low + box->half[2], 0), bound, LENGTHS);
+    n[2] = nodes_for(box->half[2], gap[0] * gap[0] + gap[1] * gap[1] + low + box->half[2], 0, bound, LENGTHS);
     return n[2] > 0;
 }
 
@@ -609,19 +603,17 @@ static void box_scatter(const struct tree *tree, int has_legs, int with_gradient
 
 // ---- the sum
 
-// h of n points
-static void lengths(double factor, int n, const double *half, const double *leg, double *h) {
-    for (int i = 0; i < n; i++) h[i] = (half ? factor * half[i] : 0) + (leg ? leg[i] : 0);
-}
-
 static void sources_sort(struct tree *tree, const struct kernel_pair *pair, const struct sources *rings, int threads) {
     const int n = rings->n;
     struct sources *const sorted = &tree->rings;
     sorted->n = 0;
     sources_append(sorted, n);
-    lengths(pair->factor, n, rings->half, rings->leg, sorted->leg);
-    node_tree_fill(&tree->from, n, rings->x, rings->y, sorted->leg, LEAF, threads);
-    const struct tree_boxes *const boxes = &tree->from.boxes;
+    for (int i = 0; i < n; i++) {
+        // h, in the place of the legs
+        sorted->leg[i] = (rings->half ? pair->factor * rings->half[i] : 0) + (rings->leg ? rings->leg[i] : 0);
+    }
+    struct tree_boxes *const boxes = &tree->from.boxes;
+    tree_boxes_fill(boxes, n, rings->x, rings->y, sorted->leg, LEAF, threads);
     memcpy(sorted->leg, boxes->weight, (size_t)n * sizeof *sorted->leg);
     for (int i = 0; i < n; i++) {
         const int from = boxes->index[i];
@@ -644,8 +636,10 @@ static void targets_sort(struct tree *tree, const struct kernel_pair *pair, cons
                                 &tree->sum[5], &tree->sum[6], &tree->sum[7]};
         for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(tree->arena, *all[i], tree->target_capacity);
     }
-    lengths(pair->factor, at->n, at->half, at->leg, tree->h);
-    node_tree_fill(&tree->to, at->n, at->x, at->y, tree->h, at->u_x ? LEAF_GRADIENT : LEAF, threads);
+    for (int i = 0; i < at->n; i++) {
+        tree->h[i] = (at->half ? pair->factor * at->half[i] : 0) + (at->leg ? at->leg[i] : 0);
+    }
+    tree_boxes_fill(&tree->to.boxes, at->n, at->x, at->y, tree->h, at->u_x ? LEAF_GRADIENT : LEAF, threads);
     memcpy(tree->x, tree->to.boxes.x, size);
     memcpy(tree->y, tree->to.boxes.y, size);
     memcpy(tree->h, tree->to.boxes.weight, size);
