@@ -168,7 +168,7 @@ void school_flow(struct setup *setup, const double *y) {
 
 struct jacobian_scratch *school_influence(struct setup *setup, int f, int g) {
     struct jacobian_scratch *const jacobian_scratch = &setup->residual->jacobian_scratch[0];
-    flow_derivative(setup->residual->flow, f, g, &jacobian_scratch->block);
+    flow_derivative(setup->residual->flow, f, g, COLUMNS_OF_ALL, &jacobian_scratch->block);
     jacobian_scratch->rows.n_rows = flow_n_rows(&setup->school->fish[f]);
     jacobian_scratch->rows.n_columns = flow_n_columns(&setup->school->fish[g]);
     for (int i = 0; i < jacobian_scratch->rows.n_rows * jacobian_scratch->rows.n_columns; i++)

@@ -470,51 +470,7 @@ static void derive_nascent(const struct pass *pass, const struct sheet_points *s
     }
 }
 
-/* Fill a block with the velocity of all sources of fish g at the points of fish f: by strengths, and with_places also
- * by positions and lines, with the points of f fixed. nascent: only the nascent stretch or vortex. */
-static void derive_sources(const struct flow *flow, int f, int g, bool with_places, bool nascent,
-                           const struct influence_block *block) {
-    const size_t size = (size_t)block->n_points * (size_t)block->n_columns * sizeof *block->u;
-    memset(block->u, 0, size);
-    memset(block->v, 0, size);
-    if (block->div) memset(block->div, 0, size);
-    if (block->edge) memset(block->edge, 0, 2 * size);
-
-    const struct pass pass = {flow, f, g, with_places, block};
-    const struct fish *const fish = &flow->school->fish[f];
-    const struct sheet *const sheet = &flow->fish[g].wake;
-    const struct flow_class *const target = &flow->class[flow->class_of[f]];
-    const struct flow_class *const source = &flow->class[flow->class_of[g]];
-    const int n_points = flow->points[f].n, is_sheet = flow_has_free_sheets(flow), has_legs = flow->kernel->has_legs;
-    const double depth = flow->school->fish[g].strip_depth, square = flow_square(flow, WAKE_AT_BODY, target, source);
-    const struct kernel_pair exact = flow->kernel->own(depth, 0), own_wake = flow->kernel->own(depth, square);
-    const struct kernel_pair wake = flow->kernel->other(depth, square);
-    const struct kernel_pair body = flow->kernel->other(depth, flow_square(flow, BODY_AT_BODY, target, source));
-    const struct range control = {0, fish->n_control}, middles = {flow_midpoint(fish, 0), fish->n_edges};
-    const struct range tail = {flow_tail(fish), 1}, all = {0, n_points};
-
-    if (f == g) {
-        const struct kernel_pair bound = flow->kernel->own(depth, flow_square(flow, BODY_AT_WAKE, target, source));
-        if (!nascent) derive_bound(&pass, control, &exact);
-        if (!nascent && !is_sheet) derive_bound(&pass, tail, &bound);
-        if (!nascent && has_legs) derive_body(&pass, control, &exact, 0);
-        derive_nascent(&pass, is_sheet ? &sheet->graded : &sheet->middles, control, is_sheet ? &exact : &own_wake, 0);
-        if (fish_feels_own_wake(fish)) derive_nascent(&pass, &sheet->middles, middles, &own_wake, 0);
-        derive_nascent(&pass, &sheet->middles, tail, &own_wake, 0);
-    } else {
-        derive_body(&pass, all, &body, 0);
-        derive_nascent(&pass, &sheet->middles, all, &wake, 0);
-    }
-
-    // images: mirrored in a wall, and in a channel shifted
-    for (int i = 0; i < flow->school->walls.n; i++) {
-        const double sign = i == 0 ? -1 : 1;
-        if (!nascent) derive_body(&pass, all, &body, sign);
-        derive_nascent(&pass, &sheet->middles, all, &wake, sign);
-    }
-}
-
-// add the derivatives by the motion of the points of fish f in the field of all sources; after flow_gradient
+// add the derivatives by the motion of the points of fish f in the field of all sources
 static void derive_points(const struct flow *flow, int f, const struct influence_block *block) {
     const struct fish *const fish = &flow->school->fish[f];
     for (int p = 0; p < block->n_points; p++) {
@@ -555,23 +511,50 @@ int flow_n_columns(const struct fish *other) {
     return 2 * other->n_nodes + other->n_sheet + 1;
 }
 
-void flow_derivative(const struct flow *flow, int f, int g, struct influence_block *block) {
+void flow_derivative(const struct flow *flow, int f, int g, enum flow_columns columns, struct influence_block *block) {
+    const struct fish *const other = &flow->school->fish[g];
+    const bool nascent = columns == COLUMN_OF_SHED, with_places = columns == COLUMNS_OF_ALL;
     block->n_points = flow->points[f].n;
-    block->n_columns = flow_n_columns(&flow->school->fish[g]);
-    derive_sources(flow, f, g, true, false, block);
+    block->n_columns = nascent ? 1 : with_places ? flow_n_columns(other) : other->n_sheet + 1;
+    const size_t size = (size_t)block->n_points * (size_t)block->n_columns * sizeof *block->u;
+    memset(block->u, 0, size);
+    memset(block->v, 0, size);
+    if (block->div) memset(block->div, 0, size);
+    if (block->edge) memset(block->edge, 0, 2 * size);
+
+    const struct pass pass = {flow, f, g, with_places, block};
+    const struct fish *const fish = &flow->school->fish[f];
+    const struct sheet *const sheet = &flow->fish[g].wake;
+    const struct flow_class *const target = &flow->class[flow->class_of[f]];
+    const struct flow_class *const source = &flow->class[flow->class_of[g]];
+    const int n_points = flow->points[f].n, is_sheet = flow_has_free_sheets(flow), has_legs = flow->kernel->has_legs;
+    const double depth = other->strip_depth, square = flow_square(flow, WAKE_AT_BODY, target, source);
+    const struct kernel_pair exact = flow->kernel->own(depth, 0), own_wake = flow->kernel->own(depth, square);
+    const struct kernel_pair wake = flow->kernel->other(depth, square);
+    const struct kernel_pair body = flow->kernel->other(depth, flow_square(flow, BODY_AT_BODY, target, source));
+    const struct range control = {0, fish->n_control}, middles = {flow_midpoint(fish, 0), fish->n_edges};
+    const struct range tail = {flow_tail(fish), 1}, all = {0, n_points};
+
+    if (f == g) {
+        const struct kernel_pair bound = flow->kernel->own(depth, flow_square(flow, BODY_AT_WAKE, target, source));
+        if (!nascent) derive_bound(&pass, control, &exact);
+        if (!nascent && !is_sheet) derive_bound(&pass, tail, &bound);
+        if (!nascent && has_legs) derive_body(&pass, control, &exact, 0);
+        derive_nascent(&pass, is_sheet ? &sheet->graded : &sheet->middles, control, is_sheet ? &exact : &own_wake, 0);
+        if (fish_feels_own_wake(fish)) derive_nascent(&pass, &sheet->middles, middles, &own_wake, 0);
+        derive_nascent(&pass, &sheet->middles, tail, &own_wake, 0);
+    } else {
+        derive_body(&pass, all, &body, 0);
+        derive_nascent(&pass, &sheet->middles, all, &wake, 0);
+    }
+
+    // images: mirrored in a wall, and in a channel shifted
+    for (int i = 0; i < flow->school->walls.n; i++) {
+        const double sign = i == 0 ? -1 : 1;
+        if (!nascent) derive_body(&pass, all, &body, sign);
+        derive_nascent(&pass, &sheet->middles, all, &wake, sign);
+    }
 
     // the points of a fish move with its nodes in the field of all sources
-    if (f == g) derive_points(flow, f, block);
-}
-
-void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block) {
-    block->n_points = flow->points[f].n;
-    block->n_columns = flow->school->fish[g].n_sheet + 1;
-    derive_sources(flow, f, g, false, false, block);
-}
-
-void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block) {
-    block->n_points = flow->points[f].n;
-    block->n_columns = 1;
-    derive_sources(flow, f, f, false, true, block);
+    if (with_places && f == g) derive_points(flow, f, block);
 }

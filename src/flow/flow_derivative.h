@@ -19,16 +19,10 @@ int flow_column(const struct fish *other, int c);
 int flow_n_rows(const struct fish *fish);
 int flow_n_columns(const struct fish *other);
 
-/* Fill block with the derivative of the velocity at the points of fish f by the unknowns of fish g. After
- * flow_gradient. */
-void flow_derivative(const struct flow *flow, int f, int g, struct influence_block *block);
-
-/* Fill block with the velocity at the points of fish f induced by each bound vortex of unit strength and by a nascent
- * vortex of unit circulation of fish g: columns gamma (M_g), circulation (1). Positions: as at the last velocity. */
-void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block);
-
-/* Fill a block of one column with the velocity at the points of fish f induced by its nascent vortex or stretch of
- * unit circulation. Positions: as at the last velocity. */
-void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block);
+/* Fill block with the derivative of the velocity at the points of fish f by unknowns of fish g: by all unknowns, after
+ * flow_gradient; by the strengths of the bound vortices and the circulation shed (n_sheet, 1), or by the latter alone,
+ * with the positions at the last velocity. */
+enum flow_columns { COLUMNS_OF_ALL, COLUMNS_OF_STRENGTHS, COLUMN_OF_SHED };
+void flow_derivative(const struct flow *flow, int f, int g, enum flow_columns columns, struct influence_block *block);
 
 #endif

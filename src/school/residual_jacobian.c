@@ -20,7 +20,7 @@ static void flow_jacobian(const struct residual *residual, const struct residual
     rows->n_columns = flow_n_columns(&residual->school->fish[g]);
     memset(rows->value, 0, (size_t)rows->n_rows * (size_t)rows->n_columns * sizeof *rows->value);
 
-    flow_derivative(residual->flow, f, g, block);
+    flow_derivative(residual->flow, f, g, COLUMNS_OF_ALL, block);
 
     if (!mode->forces) {
         fluid_force_flow_jacobian(fish, &flow, block, y, rows);
@@ -162,7 +162,7 @@ void residual_by_shed(struct residual *residual, const double *y, double *value)
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         struct jacobian_scratch *const scratch = &residual->jacobian_scratch[omp_get_thread_num()];
-        flow_nascent_influence(residual->flow, f, &scratch->block);
+        flow_derivative(residual->flow, f, f, COLUMN_OF_SHED, &scratch->block);
 
         scratch->rows.n_rows = flow_n_rows(fish);
         scratch->rows.n_columns = 1;

@@ -152,7 +152,8 @@ static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
     }
     flow_velocity(residual->flow, state, t, d->no_sheets, false);
     for (int i = 0; i < school->n_fish * school->n_fish; i++) {
-        flow_influence(residual->flow, i / school->n_fish, i % school->n_fish, &d->influence[i]);
+        const int f = i / school->n_fish, g = i % school->n_fish;
+        flow_derivative(residual->flow, f, g, COLUMNS_OF_STRENGTHS, &d->influence[i]);
     }
 
     memset(d->matrix, 0, (size_t)d->n * (size_t)d->n * sizeof *d->matrix);

@@ -187,7 +187,7 @@ static void compare_derivatives(const char *text) {
         for (int g = 0; g < 2; g++) {
             const struct fish *other = &setup.school->fish[g];
             school_flow(&setup, setup.state->y);
-            flow_derivative(flow, f, g, block);
+            flow_derivative(flow, f, g, COLUMNS_OF_ALL, block);
             assert_int_equal(block->n_points, flow->points[f].n);
             assert_int_equal(block->n_columns, 2 * other->n_nodes + other->n_sheet + 1);
             assert_int_equal(block->n_columns, flow_n_columns(other));

@@ -644,7 +644,7 @@ static void compare_derivatives(const char *fluid, bool is_steady) {
         for (int g = 0; g < 2; g++) {
             const struct fish *other = &setup.school->fish[g];
             flow_gradient(flow, setup.state, setup.t, setup.state->y, is_steady);
-            flow_derivative(flow, f, g, block);
+            flow_derivative(flow, f, g, COLUMNS_OF_ALL, block);
             assert_int_equal(block->n_points, flow->points[f].n);
             assert_int_equal(block->n_columns, flow_n_columns(other));
             for (int c = 0; c < block->n_columns; c++) {
