@@ -150,7 +150,7 @@ void fluid_force_flow_jacobian(const struct fish *fish, const struct flow_at_bod
 }
 
 struct fluid_power fluid_force_power(const struct fish *fish, const struct flow_at_body *flow, const double *y) {
-    struct fluid_power power = {.wake = tail_flux_power(fish, flow, y)};
+    struct fluid_power power = {.wake = 0};
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
         double w[2], drag[2], friction[2];
@@ -158,9 +158,27 @@ struct fluid_power fluid_force_power(const struct fish *fish, const struct flow_
         drag_force(fish, k, &edge, w, drag, friction);
         power.drag += edge_dot(drag, edge.velocity);
         power.friction += edge_dot(friction, edge.velocity);
-        power.added_mass += reactive_power(fish, k, &edge, w, flow->acceleration);
+        if (fish->force == FORCE_PUBLISHED) {
+            const double inertia = fish->added_mass[k] * edge_dot(edge.acceleration, edge.n);
+            power.added_mass -= inertia * edge_dot(edge.velocity, edge.n);
+            continue;
+        }
+
+        // reactive forces on both nodes
+        double force[2][2], of_edge = 0;
+        reactive_force(fish, k, &edge, w, flow->acceleration, force);
+        for (int i = 0; i < 2; i++) {
+            of_edge += (force[0][i] + force[1][i]) * edge.velocity[i] + (force[1][i] - force[0][i]) * edge.rate[i] / 2;
+        }
+        power.added_mass += of_edge;
     }
 
+    // momentum flux at the tail: never positive in still fluid
+    if (fish->tail_added_mass > 0) {
+        double force[2];
+        tail_flux_force(fish, flow, y, force);
+        power.wake = force[0] * y[fish->at.vx + fish->n_nodes - 1] + force[1] * y[fish->at.vy + fish->n_nodes - 1];
+    }
     return power;
 }
 

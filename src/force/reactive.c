@@ -120,13 +120,6 @@ void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body 
     }
 }
 
-double tail_flux_power(const struct fish *fish, const struct flow_at_body *flow, const double *y) {
-    if (!(fish->tail_added_mass > 0)) return 0;
-    double force[2];
-    tail_flux_force(fish, flow, y, force);
-    return force[0] * y[fish->at.vx + fish->n_nodes - 1] + force[1] * y[fish->at.vy + fish->n_nodes - 1];
-}
-
 // components of w and of the relative acceleration a - b in the frame of the edge, and the coefficients of the force
 struct frame {
     double wt, wn, at, an;
@@ -205,18 +198,4 @@ void reactive_slope(const struct fish *fish, int k, const struct edge *edge, con
             }
         }
     }
-}
-
-double reactive_power(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2]) {
-    if (fish->force == FORCE_PUBLISHED) {
-        return -fish->added_mass[k] * edge_dot(edge->acceleration, edge->n) * edge_dot(edge->velocity, edge->n);
-    }
-
-    double force[2][2], power = 0;
-    reactive_force(fish, k, edge, w, b, force);
-    for (int i = 0; i < 2; i++) {
-        power += (force[0][i] + force[1][i]) * edge->velocity[i] + (force[1][i] - force[0][i]) * edge->rate[i] / 2;
-    }
-
-    return power;
 }

@@ -30,9 +30,6 @@ void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow
 void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body *flow,
                              const struct influence_block *block, const double *y, struct coupling_block *rows);
 
-/* Power of the force, W; never positive in still fluid. */
-double tail_flux_power(const struct fish *fish, const struct flow_at_body *flow, const double *y);
-
 /* Derivatives of the forces on the two nodes of an edge: first index node, second index component. */
 struct reactive_slope {
     double by_velocity[2][2][2];  /* by w, with edge.rate constant */
@@ -49,8 +46,5 @@ void reactive_force(const struct fish *fish, int k, const struct edge *edge, con
 /* Derivatives of reactive_force. */
 void reactive_slope(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2],
                     struct reactive_slope *slope);
-
-/* Power of reactive_force on edge k, W. */
-double reactive_power(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2]);
 
 #endif

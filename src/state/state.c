@@ -265,23 +265,22 @@ static void *field_owner(const struct state_row *row, const struct state *state,
     return NULL;
 }
 
-/* The array that a field points to. */
-static void *field_array(const void *field) {
+const void *state_table_values(const struct state_row *row, const struct state *state, int f) {
+    const void *const owner = field_owner(row, state, f);
+    const char *const field = (const char *)(owner ? owner : state) + row->offset;
+    if (!row->length) return field;
     void *array;
     memcpy(&array, field, sizeof array);
     return array;
 }
 
-const void *state_table_values(const struct state_row *row, const struct state *state, int f) {
-    const void *const owner = field_owner(row, state, f);
-    const char *const field = (const char *)(owner ? owner : state) + row->offset;
-    return row->length ? field_array(field) : field;
-}
-
 void *state_table_place(const struct state_row *row, struct state *state, int f) {
     void *const owner = field_owner(row, state, f);
     char *const field = (char *)(owner ? owner : state) + row->offset;
-    return row->length ? field_array(field) : field;
+    if (!row->length) return field;
+    void *array;
+    memcpy(&array, field, sizeof array);
+    return array;
 }
 
 void state_table_make_room(struct state *state, const struct school *school) {
