@@ -81,15 +81,15 @@ CHAPTERS = [
     ("A run", "`plot.py KIND RUN.nc PICTURE` draws the file of a run. Without a kind it draws `swim`.", [
         ("swim", "Bodies, vortices (red counter-clockwise, blue clockwise) and paths, one panel per time.",
          [PAIR, "plot.py swim pair.nc --times 2 8 -- swim.png"]),
-        ("swim_follow", "A window that moves with the school, in body lengths, where the fish would be tiny otherwise.",
+        ("swim_follow", "A window that moves with a school, in body lengths.",
          ["shoal run cases/turn.yaml -q -o turn.nc", "plot.py swim turn.nc --follow --times 3 4 5 7 -- swim_follow.png"]),
         ("swim_many", "A dense school.", [CROWD, "plot.py swim crowd.nc --limits -1 7 -0.5 4 -- swim_many.png"]),
-        ("gait", "The shapes that the muscle asks for over a beat, a grid of fish.",
+        ("gait", "The natural shapes over a beat, in a grid of fish.",
          ["shoal run gaits.yaml -q -o gaits.nc", "plot.py gait gaits.nc gait.png"]),
         ("time", "Speed, heading, power and thrust over time.", [PAIR, "plot.py time pair.nc time.png"]),
-        ("time_one", "Of one fish the forces, and with `--balance` the energy balance.",
+        ("time_one", "The forces of one fish, and with `--balance` the energy balance.",
          [PAIR, "plot.py time pair.nc --fish upper --beats 4 --balance -- time_one.png"]),
-        ("time_many", "Of more than six fish the median, the quartiles and the range.",
+        ("time_many", "The median, the quartiles and the range of more than six fish.",
          [CROWD, "plot.py time crowd.nc time_many.png"]),
         ("time_each", "One variable, a panel per fish.",
          ["shoal run cases/diamond.yaml -q -o diamond.nc --set time.end=6", "plot.py time diamond.nc --each heading -- time_each.png"]),
@@ -117,8 +117,7 @@ CHAPTERS = [
           "plot.py study spacing/study.nc --of cost_of_transport -- map.png"]),
         ("contours", "Contours where both axes have six values or more.",
          ["shoal study fine.yaml -q -o fine", "plot.py study fine/study.nc contours.png"]),
-        ("refine", "A refined axis: the error of each level by Richardson with the next finer one, the orders that are accepted, and "
-         "a triangle of the design order.",
+        ("refine", "A refined axis: Richardson's error of each level, the accepted orders, and a triangle of the design order.",
          ["shoal study levels.yaml -q -o levels", "plot.py study levels/study.nc refine.png"]),
         ("bars", "A refined axis and another axis: values with their error bars, and the errors in per cent.",
          ["shoal study bars.yaml -q -o bars", "plot.py study bars/study.nc bars.png"]),
@@ -285,10 +284,10 @@ def page():
     """The text of doc/gallery.md."""
     lines = [
         "# Figures", "",
-        "Every kind of figure with the commands that draw it, run in this order in the top folder after `make`. `make figures`",
-        "draws all figures of the documents that are older than their inputs and writes this page (scripts/figures.py).",
-        "`shoal.plot` has the same figures as functions ([python.md](python.md)). A name that ends in .pdf or .svg gives a",
-        "figure for print. Options of a kind: `plot.py KIND --help`.", "",
+        "Every kind of figure with the commands that draw it, run in this order in the top folder after `make`. `shoal.plot` has",
+        "the same figures as functions ([python.md](python.md)). A name that ends in .pdf or .svg gives a figure for print.",
+        "`plot.py KIND --help` lists the options of a kind. `make figures` draws the figures of the documents and writes this",
+        "page.", "",
     ]
     shown = set()
     for heading, words, figures in CHAPTERS:
@@ -305,8 +304,8 @@ def page():
         "## Movies and pages", "",
         "`scripts/animate.py RUN.nc MOVIE.mp4` makes a movie in real time with 25 pictures a second, interpolated between coarse",
         "rows. The camera follows a school that swims far (`--follow`, `--no-follow`); `--rate 0.5` is slow motion.", "",
-        "`build/shoal view RUN.nc` writes a page for the browser: bodies and wakes in motion, traces, of many fish median,",
-        "quartiles and range, bodies coloured by speed, heading or power.",
+        "`build/shoal view RUN.nc` writes a page for the browser: bodies, coloured by speed, heading or power, and wakes in",
+        "motion, and traces, of many fish as median, quartiles and range.",
     ]
     return "\n".join(lines) + "\n"
 
