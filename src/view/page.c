@@ -25,6 +25,11 @@ static const double body_bytes = 2.4e6, wake_bytes = 4e6, series_bytes = 0.8e6;
 
 enum { MIN_WAKES = 240 /* rows of wakes are left out down to so many before vortices are */, POSITIONS = 65535 };
 
+/* The rows of the result that a part of the page shows. */
+struct chosen {
+    size_t n, *row; /* (n) */
+};
+
 struct page {
     struct arena *arena;
     struct result_reader *reader;
@@ -32,7 +37,7 @@ struct page {
     size_t n_rows, n_fish, n_nodes /* of all fish */;
     struct school school; /* data for the strength of a vortex */
     size_t body_stride, wake_stride, series_stride, vortex_stride;
-    size_t n_wake_rows, *wake_row; /* rows with a wake                                  (n_wake_rows) */
+    struct chosen bodies, wakes, series;
 };
 
 // ---- JSON
@@ -59,6 +64,17 @@ static void page_write_array(FILE *stream, const char *name, size_t bytes, const
 
 // ---- how much of the run
 
+/* Every stride-th of n rows, or of the numbers in row, and the last row. */
+static struct chosen choose_rows(struct arena *arena, size_t n, const size_t *row, size_t stride) {
+    struct chosen chosen = {.n = n > 0 ? (n - 1 + stride - 1) / stride + 1 : 0};
+    NEW(arena, chosen.row, chosen.n);
+    for (size_t i = 0; i < chosen.n; i++) {
+        const size_t k = i * stride < n ? i * stride : n - 1;
+        chosen.row[i] = row ? row[k] : k;
+    }
+    return chosen;
+}
+
 /* Choose which rows and vortices are left out. */
 static enum status page_choose(struct page *page) {
     const double per_byte = 4.0 / 3, rows = (double)page->n_rows, fish = (double)page->n_fish;
@@ -72,33 +88,28 @@ static enum status page_choose(struct page *page) {
 
     // the rows with a wake, and the number of vortices in these rows
     double n_vortices = 0, *count;
+    size_t n_wake_rows = 0, *wake_row;
     NEW(page->arena, count, page->n_fish);
-    NEW(page->arena, page->wake_row, page->n_rows);
+    NEW(page->arena, wake_row, page->n_rows);
     for (size_t row = 0; row < page->n_rows; row++) {
         bool has_wake;
         TRY(result_reader_has_wake(page->reader, row, &has_wake));
         if (!has_wake) continue;
         TRY(result_reader_row(page->reader, "wake_count", row, count));
         for (size_t f = 0; f < page->n_fish; f++) n_vortices += count[f];
-        page->wake_row[page->n_wake_rows++] = row;
+        wake_row[n_wake_rows++] = row;
     }
 
-    const double wakes = (n_vortices * 3 * sizeof(uint16_t) +
-                          (double)page->n_wake_rows * (4 * sizeof(double) + 2 * fish * sizeof(int32_t))) *
-                         per_byte;
+    const double wakes =
+        (n_vortices * 3 * sizeof(uint16_t) + (double)n_wake_rows * (4 * sizeof(double) + 2 * fish * sizeof(int32_t))) *
+        per_byte;
     const double fraction = ceil(wakes / wake_bytes);
-    page->wake_stride = (size_t)fmax(1, fmin(fraction, floor((double)page->n_wake_rows / MIN_WAKES)));
+    page->wake_stride = (size_t)fmax(1, fmin(fraction, floor((double)n_wake_rows / MIN_WAKES)));
     page->vortex_stride = (size_t)fmax(1, ceil(fraction / (double)page->wake_stride));
+    page->bodies = choose_rows(page->arena, page->n_rows, NULL, page->body_stride);
+    page->wakes = choose_rows(page->arena, n_wake_rows, wake_row, page->wake_stride);
+    page->series = choose_rows(page->arena, page->n_rows, NULL, page->series_stride);
     return STATUS_OK;
-}
-
-/* The number of rows for every stride-th row of n; the last row is always included. */
-static size_t n_of(size_t n, size_t stride) {
-    return n > 0 ? (n - 1 + stride - 1) / stride + 1 : 0;
-}
-
-static size_t row_of(size_t i, size_t n, size_t stride) {
-    return i * stride < n ? i * stride : n - 1;
 }
 
 // ---- the fish
@@ -207,13 +218,12 @@ static void rows_write(const struct page *page, const struct rows *rows) {
 }
 
 static enum status page_write_bodies(const struct page *page) {
-    const size_t n_rows = n_of(page->n_rows, page->body_stride);
-    struct rows rows = rows_create(page, n_rows, n_rows * page->n_nodes);
+    struct rows rows = rows_create(page, page->bodies.n, page->bodies.n * page->n_nodes);
     double *x;
     NEW(page->arena, x, result_reader_n(page->reader, "x") + 1);
 
     for (size_t i = 0; i < rows.n; i++) {
-        const size_t row = row_of(i, page->n_rows, page->body_stride);
+        const size_t row = page->bodies.row[i];
         TRY(result_reader_row(page->reader, "x", row, x));
         // the nodes of all fish one after the other
         size_t n = 0;
@@ -244,31 +254,9 @@ struct wakes {
     double *xy;                      /* those that are kept */
 };
 
-/* Append the positions of the kept vortices of a fish in a row behind the n in wakes->xy; returns the number of
- * vortices. */
-static size_t keep_vortices(const struct page *page, struct wakes *wakes, size_t i, size_t f, size_t n) {
-    const size_t slots = page->reader->length[VORTEX];
-    const long stride = (long)page->vortex_stride;
-    const double t = wakes->rows.time[i];
-    size_t kept = 0;
-
-    for (size_t v = f * slots; v < (f + 1) * slots && isfinite(wakes->circulation[v]); v++) {
-        const long number = lround(wakes->birth[v] / page->school.interval);
-        if (number % stride != 0) continue;
-        if (kept == 0) wakes->first[i * page->n_fish + f] = (int32_t)(number / stride);
-        memcpy(wakes->xy + 2 * (n + kept), wakes->x + 2 * v, 2 * sizeof *wakes->x);
-        const double strength = wake_strength(&page->school, t - wakes->birth[v]);
-        wakes->strength[wakes->rows.n_places + n + kept] = (float)(wakes->circulation[v] * strength);
-        kept++;
-    }
-
-    wakes->count[i * page->n_fish + f] = (int32_t)kept;
-    return kept;
-}
-
 static enum status page_write_wakes(const struct page *page) {
     const struct result_reader *const reader = page->reader;
-    const size_t n_rows = n_of(page->n_wake_rows, page->wake_stride);
+    const size_t n_rows = page->wakes.n;
     const size_t slots = page->n_fish * reader->length[VORTEX], most = n_rows * slots;
     struct wakes wakes = {.rows = rows_create(page, n_rows, most)};
     NEW(page->arena, wakes.first, n_rows * page->n_fish + 1);
@@ -281,13 +269,25 @@ static enum status page_write_wakes(const struct page *page) {
     NEW(page->arena, wakes.xy, 2 * (slots + 1));
 
     for (size_t i = 0; i < n_rows; i++) {
-        const size_t row = page->wake_row[row_of(i, page->n_wake_rows, page->wake_stride)];
+        const size_t row = page->wakes.row[i];
         TRY(result_reader_row(reader, "time", row, &wakes.rows.time[i]));
         TRY(result_reader_row(reader, "wake_x", row, wakes.x));
         TRY(result_reader_row(reader, "wake_circulation", row, wakes.circulation));
         TRY(result_reader_row(reader, "wake_birth", row, wakes.birth));
+
+        // keep the vortices of every vortex_stride-th number
+        const double t = wakes.rows.time[i];
         size_t n = 0;
-        for (size_t f = 0; f < page->n_fish; f++) n += keep_vortices(page, &wakes, i, f, n);
+        for (size_t v = 0; v < slots; v++) {
+            const size_t f = v / reader->length[VORTEX], place = i * page->n_fish + f;
+            if (!isfinite(wakes.circulation[v])) continue;
+            const long number = lround(wakes.birth[v] / page->school.interval), stride = (long)page->vortex_stride;
+            if (number % stride != 0) continue;
+            if (wakes.count[place]++ == 0) wakes.first[place] = (int32_t)(number / stride);
+            memcpy(wakes.xy + 2 * n, wakes.x + 2 * v, 2 * sizeof *wakes.x);
+            const double strength = wake_strength(&page->school, t - wakes.birth[v]);
+            wakes.strength[wakes.rows.n_places + n++] = (float)(wakes.circulation[v] * strength);
+        }
         TRY(rows_add(page, &wakes.rows, i, row, n, wakes.xy));
     }
 
@@ -312,7 +312,7 @@ static enum status page_write_wakes(const struct page *page) {
 
 static enum status write_series(const struct page *page) {
     static const char *const names[] = {"speed", "heading", "actuation_power"};
-    const size_t n = n_of(page->n_rows, page->series_stride);
+    const size_t n = page->series.n;
     double *time, *row;
     float *values;
     NEW(page->arena, time, n);
@@ -320,14 +320,14 @@ static enum status write_series(const struct page *page) {
     NEW(page->arena, values, n * page->n_fish);
 
     for (size_t i = 0; i < n; i++) {
-        TRY(result_reader_row(page->reader, "time", row_of(i, page->n_rows, page->series_stride), &time[i]));
+        TRY(result_reader_row(page->reader, "time", page->series.row[i], &time[i]));
     }
     fprintf(page->stream, "\"series\":{\"n\":%zu,", n);
     page_write_array(page->stream, "time", n * sizeof *time, time, "");
 
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         for (size_t i = 0; i < n; i++) {
-            TRY(result_reader_row(page->reader, names[k], row_of(i, page->n_rows, page->series_stride), row));
+            TRY(result_reader_row(page->reader, names[k], page->series.row[i], row));
             for (size_t f = 0; f < page->n_fish; f++) values[f * n + i] = (float)row[f];
         }
         fputs(",\n", page->stream);
