@@ -103,12 +103,13 @@ static void newton_start(const struct ida_newton *newton, N_Vector weights, N_Ve
 
     const int most = newton->rules.is_periodic ? MOST_LAG : 0;
     const double *const weight = N_VGetArrayPointer(weights), *const last = N_VGetArrayPointer(newton->past[0]);
+    const sunindextype n_values = N_VGetLength(weights);
     int period = 1;
     double least = INFINITY;
     for (int lag = 1; lag <= most && lag < newton->n_past; lag++) {
         const double *const before = N_VGetArrayPointer(newton->past[lag]);
         double sum = 0;
-        for (sunindextype i = 0; i < N_VGetLength(weights); i++) {
+        for (sunindextype i = 0; i < n_values; i++) {
             const double difference = (last[i] - before[i]) * weight[i];
             sum += difference * difference;
         }
