@@ -43,9 +43,9 @@ enum status main_print_info(struct arena *arena, const char *path, int case_only
 
 /* Prepare the process. Open /dev/null for each of standard input, output and error that is closed: otherwise the next
  * file would get the descriptor, and printed text would go into that file. Restore the default action of SIGCHLD.
- * Ignore SIGXFSZ and SIGPIPE, so that a write beyond the limit of a file size, or to a closed pipe, is an error of it.
- * Turn a call of exit before main_exit into exit code 4 with a message, and remove the part of a result: some libraries
- * call exit if threads or memory run out. main_exit returns the exit code of main. */
+ * Ignore SIGXFSZ and SIGPIPE: a write beyond the limit of a file size, or to a closed pipe, is then an error of the
+ * write. Turn a call of exit before main_exit into exit code 4 with a message, and remove the part of a result: some
+ * libraries call exit if threads or memory run out. main_exit returns the exit code of main. */
 void main_prepare(void);
 int main_exit(int code);
 

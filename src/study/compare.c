@@ -361,41 +361,14 @@ static void print_costs(struct arena *arena, const struct case_values *study, co
 
 // ---- the table
 
-/* Print a row for each setting. buffer: (members) */
-static void print_settings(struct arena *arena, const struct case_values *study, const struct member_file *members,
-                           double *buffer, FILE *stream) {
+void compare_print(struct arena *arena, const struct case_values *study, const struct member_file *members,
+                   FILE *stream) {
     static const char *const heads[][2] = {{"method", ""},      {"rtol", ""},      {"step", "s"},  {"nose", "lengths"},
                                            {"tail", "lengths"}, {"power", "part"}, {"wall", "s"},  {"+-", "s"},
                                            {"steps", ""},       {"evaluat.", ""},  {"Newton", ""}, {"Jacobians", ""},
                                            {"us/eval.", ""},    {"status", ""}};
     static const char *const errors[] = {"nose_error", "tail_error", "power_error"};
     static const char *const counts[] = {"steps", "residual_evaluations", "newton_iterations", "jacobian_evaluations"};
-    struct table *const table = table_create(arena, 0);
-    for (size_t c = 0; c < sizeof heads / sizeof *heads; c++) table_column(table, heads[c][0], heads[c][1]);
-    for (int m = COMPARE_N_REFERENCES; m < sweep_n_members(study); m++) {
-        if (first_repeat(study, m) != m) continue;
-        const struct member_file *const member = &members[m];
-        const struct wall_time wall_time = wall_time_of(study, members, m, buffer);
-        char method[NAME_BYTES];
-        name_method(study, m, method);
-        table_cell(table, "%s", method);
-        table_cell(table, "%s", has_step(study, m) ? "-" : set_to(study, m, RTOL));
-        table_cell(table, "%s", has_step(study, m) ? set_to(study, m, STEP) : "-");
-        for (int e = 0; e < 3; e++) table_number(table, "%.1e", largest_error(study, member, errors[e]));
-        table_number(table, "%.3f", wall_time.median);
-        table_number(table, "%.3f", wall_time.spread);
-        for (int c = 0; c < 4; c++) table_number(table, "%.0f", member_file_number(member, counts[c], 0));
-        table_number(table, "%.1f", 1e6 * wall_time.median / member_file_number(member, "residual_evaluations", 0));
-
-        // "failed: reason": the reasons follow the table
-        table_cell(table, "%.*s", (int)strcspn(member->status, ":"), member->status);
-        table_row(table);
-    }
-    table_print(table, stream);
-}
-
-void compare_print(struct arena *arena, const struct case_values *study, const struct member_file *members,
-                   FILE *stream) {
     const int n = sweep_n_members(study);
     double *buffer;
     NEW(arena, buffer, n);
@@ -411,8 +384,29 @@ void compare_print(struct arena *arena, const struct case_values *study, const s
     if (!isnan(power)) fprintf(stream, ", relative difference of the power %.1e", power);
     fprintf(stream, ".\n");
 
-    print_settings(arena, study, members, buffer, stream);
+    // a row for each setting
+    struct table *const table = table_create(arena, 0);
+    for (size_t c = 0; c < sizeof heads / sizeof *heads; c++) table_column(table, heads[c][0], heads[c][1]);
+    for (int m = COMPARE_N_REFERENCES; m < n; m++) {
+        if (first_repeat(study, m) != m) continue;
+        const struct member_file *const member = &members[m];
+        const struct wall_time wall_time = wall_time_of(study, members, m, buffer);
+        name_method(study, m, method);
+        table_cell(table, "%s", method);
+        table_cell(table, "%s", has_step(study, m) ? "-" : set_to(study, m, RTOL));
+        table_cell(table, "%s", has_step(study, m) ? set_to(study, m, STEP) : "-");
+        for (int e = 0; e < 3; e++) table_number(table, "%.1e", largest_error(study, member, errors[e]));
+        table_number(table, "%.3f", wall_time.median);
+        table_number(table, "%.3f", wall_time.spread);
+        for (int c = 0; c < 4; c++) table_number(table, "%.0f", member_file_number(member, counts[c], 0));
+        table_number(table, "%.1f", 1e6 * wall_time.median / member_file_number(member, "residual_evaluations", 0));
+        table_cell(table, "%.*s", (int)strcspn(member->status, ":"), member->status);
+        table_row(table);
+    }
+    table_print(table, stream);
     print_costs(arena, study, members, buffer, stream);
+
+    // "failed: reason": the reasons follow the tables
     for (int m = 0; m < n; m++) {
         if (!strchr(members[m].status, ':')) continue;
         if (m >= COMPARE_N_REFERENCES && first_repeat(study, m) != m) continue;
