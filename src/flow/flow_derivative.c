@@ -146,72 +146,121 @@ enum { FOUR = 4 };
 struct four {
     int n;
     struct moving source[FOUR];
-    struct unit_values values[FOUR];
+    _Alignas(64) struct unit_values values[FOUR];
 };
 
-static WIDE(void, add_four_places,
-            (const struct influence_block *block, const struct fish *other, const struct four *four, int first, int n),
-            (block, other, four, first, n)) {
+/* Some columns of a block, at n_points points, and the weights of four sources in each. */
+enum { COLUMNS = 64 };
+struct four_weights {
+    int n_points, n_columns;
+    const int *column; /* numbers of the columns; NULL: consecutive */
+    long stride;       /* distance of two columns */
+    double of[COLUMNS][FOUR];
+};
+
+/* Eight points at any address. */
+enum { POINTS = 8, MOST = 5 };
+typedef double points_of_eight
+    __attribute__((vector_size(POINTS * sizeof(double)), aligned(sizeof(double)), may_alias));
+
+// n groups of eight points, from the points `begin` on, stay in registers for all columns; groups may overlap
+static inline __attribute__((always_inline)) void add_weighted_groups(int n, const int begin[MOST],
+                                                                      const struct four_weights *weights, double factor,
+                                                                      const double *value, long apart, double *to) {
+    points_of_eight v[FOUR][MOST], sum[MOST];
+    for (int k = 0; k < FOUR; k++) {
+        for (int i = 0; i < n; i++) v[k][i] = *(const points_of_eight *)(value + k * apart + begin[i]);
+    }
+    for (int c = 0; c < weights->n_columns; c++) {
+        double *const at = to + (weights->column ? weights->column[c] : c) * weights->stride, by[FOUR];
+        for (int k = 0; k < FOUR; k++) by[k] = factor * weights->of[c][k];
+        for (int i = 0; i < n; i++) {
+            sum[i] = *(points_of_eight *)(at + begin[i]);
+            sum[i] += by[0] * v[0][i] + by[1] * v[1][i] + by[2] * v[2][i] + by[3] * v[3][i];
+        }
+        for (int i = 0; i < n; i++) *(points_of_eight *)(at + begin[i]) = sum[i];
+    }
+}
+
+// add to all columns `factor` times the sum of weights times values of the four sources; apart: distance of the values
+// of two sources, in numbers
+static WIDE(void, add_weighted,
+            (const struct four_weights *weights, double factor, const double *value, long apart, double *to),
+            (weights, factor, value, apart, to)) {
+    const int n = weights->n_points;
+    for (int c = 0; c < weights->n_columns && n < POINTS; c++) {
+        double *const at = to + (weights->column ? weights->column[c] : c) * weights->stride, by[FOUR];
+        for (int k = 0; k < FOUR; k++) by[k] = factor * weights->of[c][k];
+        for (int p = 0; p < n; p++) {
+            const double *const v = value + p;
+            at[p] += by[0] * v[0] + by[1] * v[apart] + by[2] * v[2 * apart] + by[3] * v[3 * apart];
+        }
+    }
+
+    // four groups at a time; the last points are a group that overlaps the last full one
+    const int n_full = n / POINTS, has_rest = n % POINTS > 0;
+    for (int done = 0; done < n_full;) {
+        int begin[MOST], groups = 0;
+        while (groups < MOST - 1 && done < n_full) begin[groups++] = POINTS * done++;
+        if (done == n_full && has_rest) begin[groups++] = n - POINTS;
+        switch (groups) {
+            case 1: add_weighted_groups(1, begin, weights, factor, value, apart, to); break;
+            case 2: add_weighted_groups(2, begin, weights, factor, value, apart, to); break;
+            case 3: add_weighted_groups(3, begin, weights, factor, value, apart, to); break;
+            case 4: add_weighted_groups(4, begin, weights, factor, value, apart, to); break;
+            default: add_weighted_groups(5, begin, weights, factor, value, apart, to);
+        }
+    }
+}
+
+static void add_four_places(const struct influence_block *block, const struct fish *other, const struct four *four,
+                            int first, int n) {
     const struct moving *const source = four->source;
+    const struct stencil *const place = source[0].place;
     const struct unit_values *const v = four->values;
+    const long apart = sizeof *v / sizeof(double);
     const double sign = source[0].image < 0 ? -1 : 1;
-    for (int i = 0; i < source[0].place->n; i++) {
-        const int node = source[0].place->node[i];
-        const struct column x = column_of(block, node, first), y = column_of(block, other->n_nodes + node, first);
-        double *restrict const x_u = x.u, *restrict const x_v = x.v, *restrict const y_u = y.u,
-                               *restrict const y_v = y.v;
-        double by[FOUR] = {0}, along[FOUR] = {0};
-        for (int k = 0; k < four->n; k++) {
-            by[k] = source[k].follows * source[k].place->weight[i];
-            along[k] = source[k].line ? source[k].along * source[k].line->weight[i] : 0;
+    const struct column x = column_of(block, 0, first), y = column_of(block, other->n_nodes, first);
+    for (int begin = 0; begin < place->n; begin += COLUMNS) {
+        struct four_weights by = {.n_points = n,
+                                  .n_columns = place->n - begin < COLUMNS ? place->n - begin : COLUMNS,
+                                  .column = place->node + begin,
+                                  .stride = block->n_points};
+        struct four_weights along = by;
+        for (int i = 0; i < by.n_columns; i++) {
+            for (int k = 0; k < four->n; k++) {
+                by.of[i][k] = source[k].follows * source[k].place->weight[begin + i];
+                along.of[i][k] = source[k].line ? source[k].along * source[k].line->weight[begin + i] : 0;
+            }
         }
 
         // places
-        for (int p = 0; p < n; p++) {
-            x_u[p] -= by[0] * v[0].u_x[p] + by[1] * v[1].u_x[p] + by[2] * v[2].u_x[p] + by[3] * v[3].u_x[p];
-            x_v[p] -= by[0] * v[0].v_x[p] + by[1] * v[1].v_x[p] + by[2] * v[2].v_x[p] + by[3] * v[3].v_x[p];
-        }
-        for (int k = 0; k < FOUR; k++) by[k] *= sign;
-        for (int p = 0; p < n; p++) {
-            y_u[p] -= by[0] * v[0].u_y[p] + by[1] * v[1].u_y[p] + by[2] * v[2].u_y[p] + by[3] * v[3].u_y[p];
-            y_v[p] -= by[0] * v[0].v_y[p] + by[1] * v[1].v_y[p] + by[2] * v[2].v_y[p] + by[3] * v[3].v_y[p];
-        }
+        add_weighted(&by, -1, v->u_x, apart, x.u);
+        add_weighted(&by, -1, v->v_x, apart, x.v);
+        add_weighted(&by, -sign, v->u_y, apart, y.u);
+        add_weighted(&by, -sign, v->v_y, apart, y.v);
         if (!source[0].line) continue;
 
         // legs; without legs div is 0
-        double *restrict const x_div = x.div, *restrict const y_div = y.div;
-        for (int p = 0; p < n; p++) {
-            const double leg =
-                along[0] * v[0].leg[p] + along[1] * v[1].leg[p] + along[2] * v[2].leg[p] + along[3] * v[3].leg[p];
-            x_v[p] += sign * leg;
-            y_u[p] -= leg;
-        }
-        for (int p = 0; p < n && y_div; p++) {
-            y_div[p] += along[0] * v[0].div_by_dy[p] + along[1] * v[1].div_by_dy[p] + along[2] * v[2].div_by_dy[p] +
-                        along[3] * v[3].div_by_dy[p];
-            y_div[p] -= by[0] * v[0].div_y[p] + by[1] * v[1].div_y[p] + by[2] * v[2].div_y[p] + by[3] * v[3].div_y[p];
-        }
-        for (int k = 0; k < FOUR; k++) {
-            by[k] *= sign;
-            along[k] *= sign;
-        }
-        for (int p = 0; p < n && x_div; p++) {
-            x_div[p] += along[0] * v[0].div_by_dx[p] + along[1] * v[1].div_by_dx[p] + along[2] * v[2].div_by_dx[p] +
-                        along[3] * v[3].div_by_dx[p];
-            x_div[p] -= by[0] * v[0].div_x[p] + by[1] * v[1].div_x[p] + by[2] * v[2].div_x[p] + by[3] * v[3].div_x[p];
-        }
+        add_weighted(&along, sign, v->leg, apart, x.v);
+        add_weighted(&along, -1, v->leg, apart, y.u);
+        if (!block->div) continue;
+        add_weighted(&along, 1, v->div_by_dy, apart, y.div);
+        add_weighted(&by, -sign, v->div_y, apart, y.div);
+        add_weighted(&along, sign, v->div_by_dx, apart, x.div);
+        add_weighted(&by, -1, v->div_x, apart, x.div);
     }
 }
 
 // add the velocity of four control points by the strengths of all bound vortices, from column `strength` on; around,
 // before: circulation of the interval (NULL: none) and before the point (NULL: no legs), per circulation; line: of the
 // points
-static WIDE(void, add_four_strengths,
-            (const struct influence_block *block, const struct fish *fish, int strength, int first, int n,
-             const struct four *four, const double *around, const double *before, double *const line[2], bool has_edge),
-            (block, fish, strength, first, n, four, around, before, line, has_edge)) {
+static void add_four_strengths(const struct influence_block *block, const struct fish *fish, int strength, int first,
+                               int n, const struct four *four, const double *around, const double *before,
+                               double *const line[2], bool has_edge) {
     const double sign = four->source[0].image < 0 ? -1 : 1;
     const struct unit_values *const v = four->values;
+    const long apart = sizeof *v / sizeof(double);
 
     // the legs of unit circulation
     double u[FOUR][KERNEL_CHUNK] = {{0}}, w[FOUR][KERNEL_CHUNK] = {{0}}, div[FOUR][KERNEL_CHUNK] = {{0}};
@@ -226,32 +275,35 @@ static WIDE(void, add_four_strengths,
         }
     }
 
-    for (int j = 0; j < fish->n_sheet; j++) {
-        const struct column to = column_of(block, strength + j, first);
-        double *restrict const to_u = to.u, *restrict const to_v = to.v, *restrict const to_div = to.div;
-        double part[FOUR] = {0};
-        for (int k = 0; k < four->n && around; k++)
-            part[k] = sign * around[j * fish->n_control + k] * fish->sheet_weight[j];
-        for (int p = 0; p < n && around; p++) {
-            to_u[p] += part[0] * v[0].unit_u[p] + part[1] * v[1].unit_u[p] + part[2] * v[2].unit_u[p] +
-                       part[3] * v[3].unit_u[p];
-            to_v[p] += part[0] * v[0].unit_v[p] + part[1] * v[1].unit_v[p] + part[2] * v[2].unit_v[p] +
-                       part[3] * v[3].unit_v[p];
+    for (int begin = 0; begin < fish->n_sheet; begin += COLUMNS) {
+        const struct column to = column_of(block, strength + begin, first);
+        const int left = fish->n_sheet - begin;
+        struct four_weights part = {
+            .n_points = n, .n_columns = left < COLUMNS ? left : COLUMNS, .stride = block->n_points};
+        for (int j = 0; j < part.n_columns && around; j++) {
+            for (int k = 0; k < four->n; k++) {
+                part.of[j][k] = sign * around[(begin + j) * fish->n_control + k] * fish->sheet_weight[begin + j];
+            }
         }
+        if (around) add_weighted(&part, 1, v->unit_u, apart, to.u);
+        if (around) add_weighted(&part, 1, v->unit_v, apart, to.v);
         if (!before) continue;
 
-        for (int k = 0; k < four->n; k++) part[k] = before[j * fish->n_control + k] * fish->sheet_weight[j];
-        for (int p = 0; p < n; p++) {
-            to_u[p] += part[0] * u[0][p] + part[1] * u[1][p] + part[2] * u[2][p] + part[3] * u[3][p];
-            to_v[p] += part[0] * w[0][p] + part[1] * w[1][p] + part[2] * w[2][p] + part[3] * w[3][p];
+        for (int j = 0; j < part.n_columns; j++) {
+            for (int k = 0; k < four->n; k++) {
+                part.of[j][k] = before[(begin + j) * fish->n_control + k] * fish->sheet_weight[begin + j];
+            }
         }
-        for (int p = 0; p < n && to_div; p++) {
-            to_div[p] += part[0] * div[0][p] + part[1] * div[1][p] + part[2] * div[2][p] + part[3] * div[3][p];
-        }
-        for (int k = 0; k < four->n && block->edge && has_edge; k++) {
-            for (int p = 0; p < n; p++) {
-                to.edge[0][p] += part[k] * dx[k] * v[k].edge[p];
-                to.edge[1][p] += part[k] * dy[k] * v[k].edge[p];
+        add_weighted(&part, 1, u[0], KERNEL_CHUNK, to.u);
+        add_weighted(&part, 1, w[0], KERNEL_CHUNK, to.v);
+        if (to.div) add_weighted(&part, 1, div[0], KERNEL_CHUNK, to.div);
+        for (int j = 0; j < part.n_columns && block->edge && has_edge; j++) {
+            const struct column edge = column_of(block, strength + begin + j, first);
+            for (int k = 0; k < four->n; k++) {
+                for (int p = 0; p < n; p++) {
+                    edge.edge[0][p] += part.of[j][k] * dx[k] * v[k].edge[p];
+                    edge.edge[1][p] += part.of[j][k] * dy[k] * v[k].edge[p];
+                }
             }
         }
     }
