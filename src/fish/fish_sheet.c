@@ -133,8 +133,8 @@ static enum status pressure_set(struct arena *arena, struct fish *fish, int f, c
     return sheet_integrals_create(arena, &fish->integrals, fish->n_nodes, fish->n_sheet, per_edge, parameters->stop);
 }
 
-enum status fish_sheet_set(struct arena *arena, struct fish *fish, int f, const struct school_parameters *parameters,
-                           bool is_strip) {
+// the points of the sheet, their matrices, and the weights of the strengths
+static enum status line_set(struct arena *arena, struct fish *fish, const struct school_parameters *parameters) {
     const bool is_smooth = parameters->sheet.curve == BODY_LINE_SMOOTH;
     const bool is_chebyshev = parameters->sheet.collocation == COLLOCATION_CHEBYSHEV;
     const int n_sheet = fish->n_sheet, n_control = fish->n_control, last = n_sheet - 1;
@@ -144,8 +144,6 @@ enum status fish_sheet_set(struct arena *arena, struct fish *fish, int f, const 
     NEW(arena, fish->control_point, n_control);
     NEW(arena, fish->control_tangent, n_control);
     NEW(arena, fish->end_correction, n_control);
-    NEW(arena, fish->control_density, n_control);
-    NEW(arena, fish->control_interval, n_control);
 
     // circulations per unknown
     for (int j = 1; j < n_sheet; j++) {
@@ -180,7 +178,38 @@ enum status fish_sheet_set(struct arena *arena, struct fish *fish, int f, const 
         const double exact = (place * log(place / (1 - place)) - 1) / (2 * M_PI);
         fish->end_correction[c] = (exact - quadrature) / weight;
     }
+    return STATUS_OK;
+}
 
+enum status fish_sheet_set(struct arena *arena, struct fish *fish, int f, const struct school_parameters *parameters,
+                           bool is_strip) {
+    const int n_sheet = fish->n_sheet, n_control = fish->n_control;
+    NEW(arena, fish->control_density, n_control);
+    NEW(arena, fish->control_interval, n_control);
+
+    // of an earlier fish with the same nodes, sheet and length: one copy stays in the caches
+    const struct fish *same = NULL;
+    for (int back = 1; back <= f && back <= FISH_SHARED && !same; back++) {
+        const struct fish *const other = fish - back;
+        if (other->n_nodes != fish->n_nodes || other->n_sheet != n_sheet) continue;
+        if (!(fabs(other->length - fish->length) > 0)) same = other;
+    }
+    if (same) {
+        fish->curve = same->curve;
+        fish->sheet_weight = same->sheet_weight;
+        fish->sheet_point = same->sheet_point;
+        fish->sheet_slope = same->sheet_slope;
+        fish->control_point = same->control_point;
+        fish->control_tangent = same->control_tangent;
+        fish->tail_tangent = same->tail_tangent;
+        fish->nose_tangent = same->nose_tangent;
+        fish->heading_point = same->heading_point;
+        fish->sheet_by_node = same->sheet_by_node;
+        for (int i = 0; i < 2; i++) fish->control_by_node[i] = same->control_by_node[i];
+        fish->end_correction = same->end_correction;
+    } else {
+        TRY(line_set(arena, fish, parameters));
+    }
     if (is_strip) strip_set(arena, fish);
     if (fish->force != FORCE_PRESSURE && !is_strip) return STATUS_OK;
     return pressure_set(arena, fish, f, &parameters->fish[f], parameters, is_strip);

@@ -96,11 +96,18 @@ struct others *others_create(struct arena *arena, const struct flow *flow) {
         struct others_fish *const of = &others->fish[f];
         const int n = fish->n_nodes, n_points = flow_n_points(fish);
         of->is_used = n >= 4 && !fish->depth_varies;
-        NEW(arena, of->to_points, FAR * n_points);
-        NEW(arena, of->from_nodes, n * FAR);
         if (!of->is_used) continue;
         of->body.arena = arena;
         sources_append(&of->body, FAR);
+        for (int i = 0; i < FAR; i++) of->half[i] = of->body.half[i] = fish->point_half ? fish->point_half[0] : 0;
+
+        // fish with the same points share the matrices
+        const bool is_same = f > 0 && of[-1].is_used && fish->control_point == fish[-1].control_point;
+        of->to_points = is_same ? of[-1].to_points : NULL;
+        of->from_nodes = is_same ? of[-1].from_nodes : NULL;
+        if (is_same) continue;
+        NEW(arena, of->to_points, FAR * n_points);
+        NEW(arena, of->from_nodes, n * FAR);
 
         // far points on the smooth curve through the nodes
         double *factor, chebyshev[FAR];
@@ -114,7 +121,6 @@ struct others *others_create(struct arena *arena, const struct flow *flow) {
             for (int k = 0; k < n; k++) {
                 of->from_nodes[k * FAR + i] = (fabs(u - k) < 1e-12 ? 1e30 : factor[k] / (u - k)) / sum;
             }
-            of->half[i] = of->body.half[i] = fish->point_half ? fish->point_half[0] : 0;
         }
 
         // polynomials: 1 at one of the far points, 0 at the others
