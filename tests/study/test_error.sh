@@ -192,9 +192,76 @@ check a_point_of_one_key_is_found eval 'has out "speed, 10 values" && has out "M
 check a_point_of_two_keys_is_found eval 'has out "speed of e, 1 value" && has out "met      the smallest is 2"'
 run study five.yaml -o tabled --set error=none
 check a_study_shows_four_fish_too eval 'has out "The first 4 of 5 fish; study.nc has all." && grep -qE "^ +3 +2 +2 +d " out'
-run error five.yaml -o one --of speed --of steps --set 'sweep=[]' --set 'expect=[]'
+# with given thicknesses no other number of nodes is a case
+run error five.yaml -o one --of speed --of steps --set 'sweep=[]' --set 'expect=[]' --set 'error={of: speed, keys: [nodes, rtol]}' --set \
+    'fish[*].body={profile: table, thickness_table: [.1, .1, .1, .1, .1, .1], depth_table: [.2, .2, .2, .2, .2, .2]}'
+check a_key_without_a_level_is_not_varied grep -qE '^fish.nodes +\[7\] +not varied +not varied$' out
+check the_reason_is_said has out 'not varied: fish.nodes: no other level is a valid case'
 check so_does_one_case has out 'The first 4 of 5 fish; error.csv and study.nc have all.'
 check a_number_of_the_run_is_not_of_a_fish test "$(grep -c '^steps: ' out)-$(grep -c '^speed of ' out)" = 1-4
+
+# ---- the two tables of a study
+
+cat >budget.py <<'end'
+"""budget.py FOLDER...: error.csv and study.nc say the same, and the units of study.nc are those of its quantities."""
+import csv, sys, netCDF4, numpy as np
+
+
+def text(values):
+    return [b"".join(row).rstrip(b"\0").decode() for row in np.ma.getdata(values)]
+
+
+def near(got, want, rtol, what):
+    assert np.isclose(float(got), float(want), rtol=rtol, atol=1e-12, equal_nan=True), (what, got, want)
+
+
+for folder in sys.argv[1:]:
+    data = netCDF4.Dataset(f"{folder}/study.nc")
+    data.set_auto_mask(False)
+    data.set_auto_chartostring(False)
+    for name, variable in data.variables.items():
+        prefix, _, quantity = name.partition("_")
+        if variable.dtype == "S1" or name.startswith("key_value"):
+            continue
+        unit = data[quantity].units if prefix in ("stated", "bar", "lowest", "highest", "part") else None
+        assert variable.units == (unit or ("1" if prefix in ("key", "point", "member") else variable.units)), name
+
+    keys, fish, points = text(data["key_name"][:]), text(data["fish"][:]), []
+    n_rows = 0
+    for row in csv.DictReader(open(f"{folder}/error.csv")):
+        swept = list(row.values())[10:]
+        if swept not in points:
+            points.append(swept)
+        quantity, p, f = row["quantity"], len(points) - 1, fish.index(row["fish"]) if row["fish"] else 0
+
+        def of(name, k=0, quantity=f"_{quantity}", place={"point": p, "fish": f}):
+            variable = data[name + quantity]
+            return variable[tuple({**place, "key": k}[d] for d in variable.dimensions)]
+
+        model = row["key"] if row["key"] in ("lowest", "highest") else "stated"
+        value, error = of("stated"), row["error"]
+        near(row["value"], of(model), 1e-8, row)
+        near(row["percent"], 100 * float(error) / abs(value), 1e-2, row)
+        n_rows += 1
+        if row["key"] == "sum":
+            near(error, of("bar"), 1e-2, row)
+            part = [of("part", k) for k in range(len(keys)) if not data["key_is_choice"][k]]
+            assert points != [[]] or np.isclose(np.nansum(part), of("bar")), row
+        elif model != "stated":
+            near(error, abs(of(model) - value), 1e-2, row)
+        else:
+            k = keys.index(row["key"])
+            near(error, of("part", k), 1e-2, row)
+            near(row["order"], of("key_order", k), 1e-2, row)
+            assert data["key_is_choice"][k] == row["verdict"].startswith("a choice of the model"), row
+            levels = row["levels"].split()
+            stated = [level[0] == "[" for level in reversed(levels)].index(True)
+            assert len(levels) == of("key_levels", k, "") and stated == of("key_stated", k, ""), row
+    assert n_rows > 0 and len(points) == (len(data.dimensions["point"]) if "point" in data.dimensions else 1)
+end
+for folder in foil-error swimmer-study models along five one; do
+    check "error.csv and study.nc say the same: $folder" /usr/bin/python3 budget.py "$folder"
+done
 
 # ---- pictures
 
