@@ -36,6 +36,13 @@ check keys_are_those_that_set_takes grep -qF 'fish[i].wave.frequency' shoal-case
 : >nothing.json
 check nothing_is_no_page test ! "$(page shoal.1 nothing.json 2>errors && echo made)"
 
+# ---- the documents in doc/
+
+documents_match() { diff <("$root/scripts/$1" <"$2") "$root/doc/$3"; }
+check the_keys_are_those_of_the_document documents_match make-cases-doc.py keys.json cases.md
+check the_variables_are_those_of_the_document documents_match make-output-doc.py variables.json output.md
+check the_schema_is_the_one_of_the_document documents_match make-schema.py keys.json case.schema.json
+
 # ---- completion
 
 /usr/bin/python3 "$root/scripts/make-completion.py" about.json keys.json >completion
