@@ -109,8 +109,14 @@ def sums_of_netcdf(path):
             if kinds != "units 1":
                 yield f"{name}: {kinds}"
             values = np.atleast_1d(variable[...])
+            is_text = values.dtype.kind in "SU"
+            needed = {"long_name"} if is_text else {"long_name", "units"}
+            if not is_text and "fish" in variable.dimensions and np.isnan(values.astype(float)).any():
+                needed.add("_FillValue")
+            if not needed <= {*variable.ncattrs()}:
+                raise ValueError(f"{name} has not all of {needed}")
             shape = ", ".join(f"{d} {n}" for d, n in zip(variable.dimensions, values.shape))
-            if values.dtype.kind in "SU":
+            if is_text:
                 yield f"{name} ({shape}) {b'|'.join(values.astype('S').ravel().tolist()).decode(errors='replace')[:60]}"
             else:
                 yield f"{name} ({shape}) {summed(values.astype(float).ravel().tolist())}"

@@ -207,11 +207,12 @@ warnings() {
     check "study: no other line about it" test "$(grep -c 'touch or cross' err)" = 1
     run gather crossing-study
     check "gather: the warnings" grep -q "$warned" out
-    run gather crossing-study -q --strict
+    refused "gather --strict: exit 3" 3 '2 warnings about the members, with --strict' gather crossing-study -q --strict
     check "gather -q: no tables" test ! -s out
-    check "gather --strict: exit 3" ended 3
     run info crossing-study/study.nc
     check "info of a study: the warnings" grep -q "$warned" out
+    refused "study --strict: one warning" 3 '1 warning about the members, with --strict' \
+        study crossing.yaml -q --strict -o once --set 'sweep=[{key: "fish[*].motion.speed", values: [15, 0]}]'
     run study crossing.yaml -q --force --set 'sweep=[{key: "fish[1].start.heading", values: [0, 180, 0, 1]}]'
     check "study: the members of a warning, as ranges" grep -q '^members 0, 2-3: warning: .*touch or cross' err
     run study crossing.yaml -q --force --set 'sweep=[{key: "fish[0].motion.speed", values: [15, 5]}]'
@@ -239,6 +240,8 @@ helpers() {
     check "keys --output WORD: variables" grep -q '^separation_share' out
     check "keys --output WORD: warnings" grep -q '^separation at the nose:' out
 
+    run new quiet.yaml -q
+    check "new -q: prints nothing" silent
     run new mine.yaml
     check "new: exit 0" ended 0
     check "new: the name of the file" test "$(cat out)" = mine.yaml
@@ -299,7 +302,10 @@ for name, variable in data.variables.items():
         assert np.array_equal(np.array(run[name], float), np.array(values, float), equal_nan=True), name
 study, data = json.load(open("study.json")), netCDF4.Dataset("other-study/study.nc")
 assert study["kind"] == "study" and study["status"] == ["complete"] * 2
-assert np.array_equal(study["speed"], data["speed"][:]) and study["fish_wave_amplitude"] == [0.3, 0.4]
+assert study["fish_wave_amplitude"] == [0.3, 0.4] and {"speed", "nose", "steps", "fish_wave_amplitude"} <= {*study}
+for name in {*data.variables} & {*study}:
+    if data[name].dtype != "S1":
+        assert np.array_equal(np.array(study[name], float), np.ma.filled(data[name][...], np.nan), equal_nan=True), name
 EOF
     check "info --json says what is in the file" /usr/bin/python3 summary.py
     run run "$demo" -q -o marked.nc --set "$short" --checkpoint-at 0.1

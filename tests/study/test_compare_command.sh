@@ -28,6 +28,12 @@ end
 
 run compare case.yaml --methods ida2,ida5,euler,rk4,dormand_prince --rtol 1e-3,1e-6 --repeats 2 -o compare.nc
 check all_methods_run test "$code" = 0 -a "$(grep -c ' complete$' out)" = 10
+"$program" keys --json >keys.json
+"$program" compare --help >help
+for method in $(/usr/bin/python3 -c 'import json
+print(*next(key["words"] for key in json.load(open("keys.json")) if key["path"] == "solver.method"))'); do
+    check "help names $method" grep -qE "[ (]$method([ ,;]|$)" help
+done
 check the_error_of_the_reference_is_printed has out 'Reference: ida5, rtol 1e-09; difference of ida5, rtol 1e-08: '
 # dormand_prince is as exact as the reference with either tolerance
 for method in ida2 ida5 euler rk4; do
