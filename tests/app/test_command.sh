@@ -143,9 +143,15 @@ output_paths() {
     run run "$demo" -q -o end.nc --set time.end=0.13 --set time.output_interval=0.05
     check "the end is a row where it is no multiple of the output interval" \
         grep -q 'time = 0, 0.05, 0.1, 0.13 ;' <(ncdump -v time end.nc)
-    run run "$demo" --set "$short" -o log.nc
+    run run "$demo" --set "$short" --set solver.rtol=1e-9 -o log.nc
     check "progress in a log: one line per 10 %" test "$(grep -c ' x real time' err)" = 10
     check "the name of the result on standard output" grep -qx log.nc out
+    tail -n 1 <(grep ' steps/event ' err) >last
+    run info log.nc --json
+    check "the last line of progress has steps and vortices of the result" /usr/bin/python3 -c 'import json, re
+run = json.load(open("out"))
+got = re.fullmatch(r"t +0.300 s +100 % +0 s left .* x real time +(.*) steps/event +(\d+) vortices", open("last").read().strip())
+assert abs(float(got[1]) - run["steps"] * run["shedding_interval"] / 0.3) < 0.06 and int(got[2]) == run["wake_count"][0]'
     run run "$demo" --set time.end=120 -o log.nc --force
     # the rest of the run at the speed so far, which is printed with three digits
     check "the seconds left are the time left over the speed" awk '
