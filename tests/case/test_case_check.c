@@ -213,7 +213,7 @@ static void is_refused(const char *text, const char *message) {
 }
 
 // a number at a bound of its key is out of range where the bound is open, and one just beyond always
-TEST(every_bound_of_every_key_is_kept) {
+TEST(every_bound_of_every_key_is_kept_and_shown) {
     int n = 0;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
@@ -233,7 +233,12 @@ TEST(every_bound_of_every_key_is_kept) {
                 struct case_values values;
                 const enum status status =
                     case_parse(&values, minimal, strlen(minimal), "test", ".", 1, (const char *const[]){assignment});
-                if (status == STATUS_OK) case_free(&values);
+                if (status == STATUS_OK) {
+                    struct case_values again = parse(case_show(test_arena(), &values));
+                    are_equal(&values, &again);
+                    case_free(&again);
+                    case_free(&values);
+                }
                 const bool is_refused = status != STATUS_OK && strstr(status_message(), message);
                 if (is_refused != (beyond || is_open)) fail_msg("%s: %d %s", assignment, (int)status, status_message());
                 n++;
