@@ -100,10 +100,12 @@ TEST(a_run_that_is_resumed_keeps_its_places_and_writes_none_twice) {
 TEST(the_files_of_an_earlier_run_are_removed) {
     struct case_values values;
     struct checkpoints checkpoints;
-    char folder[] = "/tmp/test_checkpoints_XXXXXX", result[64];
+    char folder[] = "/tmp/test_checkpoints_XXXXXX", result[64], part[64];
     assert_non_null(mkdtemp(folder));
     snprintf(result, sizeof result, "%s/run.nc", folder);
+    snprintf(part, sizeof part, "%s/run.ckpt.part", folder);
     school_settings(&values, SCHOOL);
+    fclose(fopen(part, "w"));
     school_ok(checkpoints_create(arena_create(NULL, "a test"), &checkpoints, &values, result, NULL));
     fclose(fopen(checkpoints.path, "w"));
     fclose(fopen(checkpoints.previous, "w"));

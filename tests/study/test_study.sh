@@ -34,6 +34,8 @@ check progress_counts_members has err '4 of 6 members done  100 %  0 s left  2 f
 check quantities_of_steady_states_are_not_in_the_table_of_runs eval '! grep -q growth out'
 check a_line_per_member test "$(grep -cE '^ +[0-5] +0\.[23] ' out)" = 6
 check results_are_gathered test -s small-study/study.nc
+run study "$root/cases/demo.yaml" -o one --set time.end=10 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
+check progress_counts_the_part_of_a_running_member grep -qE '^0 of 1 members done +[1-8][0-9] %.* 1 running$' err
 run info --case small-study/member-0004.nc
 check the_last_axis_is_fastest has out 'amplitude: 0.3'
 check zipped_keys_change_together has out 'method: rk4'
