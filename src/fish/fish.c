@@ -96,7 +96,7 @@ double fish_distance(const struct fish *a, const struct fish *b, const double *y
     for (int j = 0; j < b->n_edges; j++) thickest[1] = fmax(thickest[1], b->thickness[j] / 2);
     if (box_gap(&box, &other) - thickest[0] - thickest[1] > limit) return INFINITY;
 
-    double min = INFINITY;
+    double min = INFINITY, farthest = limit; /* the smaller one of min and limit */
     for (int i = 0; i < a->n_edges; i++) {
         const double p[2] = {y[a->at.x + i], y[a->at.y + i]}, q[2] = {y[a->at.x + i + 1], y[a->at.y + i + 1]};
         const double length = fabs(q[0] - p[0]) + fabs(q[1] - p[1]);
@@ -104,13 +104,14 @@ double fish_distance(const struct fish *a, const struct fish *b, const double *y
             const double r[2] = {y[b->at.x + j], y[b->at.y + j]}, s[2] = {y[b->at.x + j + 1], y[b->at.y + j + 1]};
             const double thickness = (a->thickness[i] + b->thickness[j]) / 2;
 
-            // every point of an edge is within the edge length of the first node
-            const double reach = fmin(min, limit) + thickness + length + fabs(s[0] - r[0]) + fabs(s[1] - r[1]);
-            const double dx = r[0] - p[0], dy = r[1] - p[1];
+            // every point of an edge is within half of the edge length of the middle; all twice
+            const double reach = 2 * (farthest + thickness) + length + fabs(s[0] - r[0]) + fabs(s[1] - r[1]);
+            const double dx = r[0] + s[0] - (p[0] + q[0]), dy = r[1] + s[1] - (p[1] + q[1]);
             if (dx * dx + dy * dy > reach * reach) continue;
             const double apart = fmin(fmin(point_to_segment(p, r, s), point_to_segment(q, r, s)),
                                       fmin(point_to_segment(r, p, q), point_to_segment(s, p, q)));
             min = fmin(min, (segments_cross(p, q, r, s) ? 0 : apart) - thickness);
+            farthest = fmin(min, limit);
         }
     }
 
