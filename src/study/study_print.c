@@ -854,7 +854,7 @@ enum status study_print_csv(const struct error_sweep *sweep, const char *path) {
 
             // the lowest and the highest value of other models
             const struct error_study_model *const models[] = {&study->lowest[place], &study->highest[place]};
-            for (int m = 0; m < 2 && study->study->error->models; m++) {
+            for (int m = 0; m < 2 && study->study->error->models && study->is_full; m++) {
                 const struct error_study_key *const key = models[m]->key < 0 ? NULL : &study->key[models[m]->key];
                 *levels = '\0';
                 if (key)

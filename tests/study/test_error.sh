@@ -143,6 +143,10 @@ refused half_a_node 2 "error.keys: levels of 'fish.nodes' are integers" \
 refused too_many_levels 2 "error.keys: more than 9 levels of 'fish.nodes'" \
     study foil.yaml --set 'error={of: steady_lift, keys: {nodes: [5, 6, 7, 8, 9, 10, 11, 12, 13, 14]}}'
 refused an_unknown_quantity 2 "error.of: 'lift' is no number of a result" error foil.yaml --of lift
+# shellcheck disable=SC2046 # words
+refused seventeen_quantities 2 'error.of: more than 16 quantities' error foil.yaml --plan $(printf -- '--of %s ' \
+    speed heading mean_heading shed_circulation cost_of_transport mean_actuation_power strouhal lateral_drift efficiency \
+    towed_efficiency mean_thrust mean_power energy_balance steps newton_iterations residual_evaluations time)
 refused two_kinds 2 'speed is of a run and steady_lift of a steady state' error foil.yaml --of steady_lift --of speed
 refused a_bound_of_words 2 '--within few: expects a number above 0' error foil.yaml --of steady_lift --within few
 refused a_plan_of_a_sweep 2 '--plan: the case has no `error`' study foil.yaml --plan --set 'sweep=[]'
@@ -155,9 +159,12 @@ check check_takes_it test "$code" = 0
 
 # ---- a sweep: an error at every point
 
-run error foil.yaml --of steady_lift --sweep 'fish[*].body.modulus=1e5,3e5,1e6,3e6' --set 'fish[*].nodes=5' -o along
+run error foil.yaml --of steady_lift --models --sweep 'fish[*].body.modulus=1e5,3e5,1e6,3e6' --set 'fish[*].nodes=5' \
+    -o along
 check errors_along_a_sweep test "$code" = 0
 check a_row_for_each_point test "$(grep -cE '^ +[0-3]\*? +[13]e[56] +[0-9.]+ +[0-9.]+ +[0-9.]+' out)" = 4
+check the_models_of_full_points_are_around_the_value test "$(awk '$7 == "to" && $1 ~ /^[013]$/ &&
+    $6 < $8 && $6 < 1.001 * $3 && $3 < 1.001 * $8' out | wc -l)-$(grep -c ' to [0-9]' out)" = 3-3
 check points_between_share_errors grep -q '^  *2\*  *1e6 ' out
 check ends_and_middle_have_all_keys grep -q '^   *1  *3e5 ' out
 check the_shares_of_all_points test "$(grep -c 'steady_lift,N,.*,sum,.*,[13]e[56]$' along/error.csv)" = 4
