@@ -80,6 +80,7 @@ refused implicit_methods_without_steps 2 '--methods: trapezoid takes fixed steps
 refused tolerance_of_words 2 "--rtol: 'small' is not a number" compare case.yaml --rtol 1e-3,small
 refused step_that_is_no_part 2 'solver.step' compare case.yaml --methods rk4 --steps 0.013
 refused empty_list 2 'nothing to compare' compare case.yaml --methods ''
+TMPDIR=/no/where refused no_folder_for_temporary_files 4 'set TMPDIR to another folder' compare case.yaml
 refused repeats_of_words 2 '--repeats two: expects an integer' compare case.yaml --repeats two
 refused no_repeats 2 '--repeats 0: expects an integer above 0' compare case.yaml --repeats 0
 refused too_many_repeats 2 '--repeats: expects 1 to 99' compare case.yaml --repeats 100
