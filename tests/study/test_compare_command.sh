@@ -56,7 +56,8 @@ check with_force_it_is test "$code" = 0 -a ! -s err -a ! -s out
 run compare case.yaml --methods ida2,rk4,euler --steps 0.01,0.0025 --rtol 1e-4 --repeats 1
 check fixed_steps_count_their_stages test "$(value rk4 0.0025 9)" = 160
 check steps_are_for_explicit_methods_only test "$(value ida2 1e-4 14)" = complete -a "$(value ida2 0.01 14)" = ''
-run compare case.yaml --methods implicit_euler,trapezoid --steps 0.005 --repeats 1
+run compare case.yaml --methods implicit_euler,trapezoid --steps 0.005
+check settings_are_repeated_three_times_by_default has err '8 of 8 members done'
 check implicit_methods_take_fixed_steps_too test "$(value trapezoid 0.005 9)" = 80
 check they_count_newton_and_jacobians below 0 "$(value trapezoid 0.005 12)"
 check the_trapezoid_is_more_exact below "$(value trapezoid 0.005 5)" "$(value implicit_euler 0.005 5)"
