@@ -57,6 +57,8 @@ TEST(samples_take_memory_for_the_events_of_the_run) {
     struct setup period = setup_of("time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\nfish: [{}]\n");
     for (int n = 1; n <= 200; n++) {
         state_reserve(period.state, period.school);
+        state_remember(&period.state->history[0], &(struct sample){.heading = -1});
+        state_forget_newest(&period.state->history[0]);
         state_remember(&period.state->history[0], &(struct sample){.heading = n});
         assert_in_range(period.state->history[0].n_slots, period.state->history[0].n, 52);
     }
