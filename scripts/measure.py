@@ -124,6 +124,12 @@ class Bench:
         done = self.call("steady", self.case(text), "--force", "-q", "--json", "-o", "steady.nc", *sets, may_fail=True)
         return None if done is None else json.loads(done)
 
+    def error(self, text, *assignments):
+        """The errors of the steady speed and cost of a case by `shoal error`, one run at a time."""
+        sets = [word for one in assignments for word in ("--set", one)]
+        self.call("error", self.case(text), "--force", "-q", "-j", "1", "-o", "error", "--of", "steady_speed", "--of",
+                  "steady_cost_of_transport", *sets)
+
     def study(self, name):
         """Run a study of cases/studies: its folder, and its study.nc."""
         folder = os.path.join(self.folder, name)
@@ -650,18 +656,22 @@ def ratios(bench):
     now, before = bench, Bench(bench.before, bench.verbose)
     slow = ("fish[*].start.speed=0",)
     infinite = swimmers(16, 2, ", pressure: {span: infinite}")
+    readme = swimmers(2, 20, ", control: {law: course}").replace("[2, 0]", "[2, 0.3]")
     for name, text, end, keys in (("one fish", swimmers(1, 5), 5, ()), ("4 fish", swimmers(4, 3), 3, ()),
                                   ("16 fish", swimmers(16, 2), 2, ()), ("64 fish", swimmers(64, 0.8), 0.8, ()),
                                   ("64 fish", swimmers(64, 3.2), 3.2, ()), ("16 fish, infinite", infinite, 2, ()),
-                                  ("one fish from rest", swimmers(1, 20), 20, slow), ("diamond", "diamond", 5, ()),
-                                  ("`steady`", swimmers(1, 20), None, slow)):
+                                  ("one fish from rest", swimmers(1, 20), 20, slow),
+                                  ("README's school", readme, 20, (*slow, "time.shedding_interval=0.01")),
+                                  ("diamond", "diamond", 5, ()), ("`steady`", swimmers(1, 20), None, slow),
+                                  ("`error`", swimmers(1, 20), None, slow)):
         variants = [(before, "1e-5"), (now, "1e-5"), (now, "3e-5")]
         seconds, errors = [math.inf] * 3, ["", "", ""]
-        for _ in range(3 if name != "64 fish" else 1):
+        for _ in range(1 if name in ("64 fish", "`error`") else 3):
             for i, (program, rtol) in enumerate(variants):
                 start = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
                 sets = *keys, f"solver.rtol={rtol}", "solver.threads=1"
-                run = program.run(text, *sets, f"time.end={end}") if end else program.steady(text, *sets)
+                act = {"`steady`": program.steady, "`error`": program.error}.get(name, program.run)
+                run = act(text, *sets, *([f"time.end={end}"] if end else []))
                 seconds[i] = min(seconds[i], resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - start)
                 # NetCDF reads lazily: keep the values before the next run replaces the file
                 errors[i] = (nose_and_tail(run), float(run["actuation_work"][-1, 0])) if end else ""
