@@ -31,7 +31,7 @@ help_and_versions() {
     run --help
     check "--help ends with 0" ended 0
     check "--help lists the commands on standard output" grep -q '^  run  ' out
-    check "--help says nothing on standard error" test ! -s err
+    check "--help says nothing on standard error, and -h the same" cmp err <("$program" -h | cmp - out 2>&1)
     for command in run steady study check show keys field info demo; do
         run "$command" --help
         check "$command --help ends with 0" ended 0

@@ -349,20 +349,20 @@ TEST(the_energy_balance_is_compared_with_the_largest_work) {
     double *const work = simulation->state->balance[0].work;
     simulation->state->t = 1.5;
     now->kinetic_energy = 100;
-    work[WORK_FLUID] = 1;
-    work[WORK_DRIVING] = -3;
+    work[1] = 1;
+    work[0] = -3;
     now->energy_balance = -0.0299;
     expect_line(simulation, WARNING_ENERGY, NULL);
     now->energy_balance = -0.0301;
     expect_line(simulation, WARNING_ENERGY, "-0.03 J for 3 J of work");
     // rounding of the energy of a body that does no work
     for (int i = 0; i < N_WORKS; i++) work[i] = 0;
-    work[WORK_FLUID] = 1e-9;
+    work[N_WORKS - 1] = 1e-9;
     now->energy_balance = 0.5e-10;
     expect_line(simulation, WARNING_ENERGY, NULL);
     now->energy_balance = 1.5e-10;
     expect_line(simulation, WARNING_ENERGY, "energy balance of fish1");
-    work[WORK_FLUID] = 0;
+    work[N_WORKS - 1] = 0;
     // no part of nothing
     now->energy_balance = 1;
     expect_line(simulation, WARNING_ENERGY, NULL);
