@@ -104,7 +104,10 @@ static void read_keys(struct arena *arena, struct sweep_error *error, const stru
             const bool is_of_every = strncmp(path, "fish.", 5) == 0 && strncmp(name, "fish[*].", 8) == 0;
             const bool is_last = strcmp(is_of_every ? name + 8 : name, last) == 0;
             if (is_last || strcmp(name, path) == 0) key = &sweep_error_keys[k];
-            text_add(&known, "%s%s", k > 0 ? ", " : "", last);
+
+            // a name that stands for the key before needs its section
+            const bool is_taken = k > 0 && strcmp(strrchr(sweep_error_keys[k - 1].path, '.') + 1, last) == 0;
+            text_add(&known, "%s%s", k > 0 ? ", " : "", is_taken ? path : last);
         }
         if (!key) {
             yaml_errors_add(errors, is_map ? entry->mark : entry->value->mark,

@@ -358,7 +358,7 @@ const struct result_variable result_table[] = {
                   "none; with output.forces: sides only"},
     {"right_separation",      {TIME, FISH},           RESULT_REAL,    "1",
      OF_SIDES(RIGHT_SEPARATION), .forces = OUTPUT_FORCES_SIDES,
-     .long_name = "the same on the right; with output.forces: sides only"},
+     .long_name = "left_separation of the right side; with output.forces: sides only"},
     {"friction_ratio",        {TIME, FISH},           RESULT_REAL,    "1",
      OF_SIDES(FRICTION_RATIO), .forces = OUTPUT_FORCES_SIDES,
      .long_name = "friction of both sides along the body over that of the law that acts; with output.forces: sides "
