@@ -68,14 +68,25 @@ void text_print_clean(FILE *stream, const char *string) {
     }
 }
 
+/* Switch this thread to the "C" locale; pass the result to restore_locale. */
+static locale_t use_c_locale(locale_t *c_locale) {
+    *c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    return uselocale(*c_locale);
+}
+
+static void restore_locale(locale_t before, locale_t c_locale) {
+    uselocale(before);
+    if (c_locale) freelocale(c_locale);
+}
+
 void text_of_number(char text[TEXT_NUMBER_BYTES], double number) {
-    const locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0), before = uselocale(c_locale);
+    locale_t c_locale;
+    const locale_t before = use_c_locale(&c_locale);
     for (int precision = 15; precision <= 17; precision++) {
         snprintf(text, TEXT_NUMBER_BYTES, "%.*g", precision, number);
         if (strtod(text, NULL) == number) break;
     }
-    uselocale(before);
-    if (c_locale) freelocale(c_locale);
+    restore_locale(before, c_locale);
 }
 
 void text_add_number(struct text *text, double number) {
@@ -123,10 +134,10 @@ bool text_number(const char *text, double *number) {
     }
     if (*at != '\0') return false;
 
-    const locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0), before = uselocale(c_locale);
+    locale_t c_locale;
+    const locale_t before = use_c_locale(&c_locale);
     *number = strtod(text, NULL);
-    uselocale(before);
-    if (c_locale) freelocale(c_locale);
+    restore_locale(before, c_locale);
     return true;
 }
 

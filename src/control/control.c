@@ -164,17 +164,22 @@ double control_desired_heading(const struct fish *fish, const struct control_mem
     return atan2(away[1], away[0]);
 }
 
-double control_law(const struct fish *fish, const struct control_memory *memory, double t, double direction,
-                   double more, const double *y) {
-    const double error = angle_wrap(direction - control_desired_heading(fish, memory, t, y));
-    return fish->control.limit * tanh(fish->control.gain * error + more);
+// argument of the hyperbolic tangent of the laws
+static double law_argument(const struct fish *fish, const struct control_memory *memory, double t, double direction,
+                           double more, const double *y) {
+    return fish->control.gain * angle_wrap(direction - control_desired_heading(fish, memory, t, y)) + more;
 }
 
-// argument of the hyperbolic tangent of law heading, between two events
+double control_law(const struct fish *fish, const struct control_memory *memory, double t, double direction,
+                   double more, const double *y) {
+    return fish->control.limit * tanh(law_argument(fish, memory, t, direction, more, y));
+}
+
+// law heading, between two events
 static double heading_argument(const struct fish *fish, const struct control_memory *memory, double t, double since,
                                const double *y) {
-    const double error = angle_wrap(control_heading(fish, y) - control_desired_heading(fish, memory, t, y));
-    return fish->control.gain * error + fish->control.feedforward * (memory->moment + since * memory->moment_rate);
+    const double feedforward = fish->control.feedforward * (memory->moment + since * memory->moment_rate);
+    return law_argument(fish, memory, t, control_heading(fish, y), feedforward, y);
 }
 
 void control_residual(const struct fish *fish, const struct control_memory *memory, double t, double since,

@@ -96,26 +96,35 @@ int fish_n_prescribed(const struct fish *fish) {
     return 0;
 }
 
-void fish_prescribed_direction(const struct fish *fish, double t, double direction[2], double *rate) {
+// heading angle of the prescribed motion, with first and second derivative
+static void prescribed_heading(const struct fish *fish, double t, double heading[3]) {
     const struct motion *const motion = &fish->motion;
-    const double omega = motion->omega, pitch_angle = omega * t + motion->phase + motion->pitch_phase;
-    const double heading = fish->start_heading + motion->pitch * sin(pitch_angle);
-    direction[0] = -cos(heading);
-    direction[1] = -sin(heading);
-    *rate = motion->pitch * omega * cos(pitch_angle);
+    const double omega = motion->omega, angle = omega * t + motion->phase, pitch_angle = angle + motion->pitch_phase;
+    heading[0] = fish->start_heading + motion->pitch * sin(pitch_angle);
+    heading[1] = motion->pitch * omega * cos(pitch_angle);
+    heading[2] = -omega * omega * motion->pitch * sin(pitch_angle);
+}
+
+void fish_prescribed_direction(const struct fish *fish, double t, double direction[2], double *rate) {
+    double heading[3];
+    prescribed_heading(fish, t, heading);
+    direction[0] = -cos(heading[0]);
+    direction[1] = -sin(heading[0]);
+    *rate = heading[1];
 }
 
 void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
                           double acceleration[2]) {
     const struct motion *motion = &fish->motion;
     const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)}, left[2] = {-ahead[1], ahead[0]};
-    const double omega = motion->omega, angle = omega * t + motion->phase, pitch_angle = angle + motion->pitch_phase;
+    const double omega = motion->omega;
+    const double angle = omega * t + motion->phase;
     const double heave = motion->heave * sin(angle), heave_rate = motion->heave * omega * cos(angle);
     const double heave_change = -omega * omega * heave;
-    const double heading = fish->start_heading + motion->pitch * sin(pitch_angle);
-    const double rate = motion->pitch * omega * cos(pitch_angle);
-    const double rate_change = -omega * omega * motion->pitch * sin(pitch_angle);
-    const double along[2] = {cos(heading), sin(heading)}, across[2] = {-along[1], along[0]};
+    double heading[3];
+    prescribed_heading(fish, t, heading);
+    const double rate = heading[1], rate_change = heading[2];
+    const double along[2] = {cos(heading[0]), sin(heading[0])}, across[2] = {-along[1], along[0]};
     const double arm = motion->pivot - fish->arc[k];
 
     for (int i = 0; i < 2; i++) {

@@ -129,17 +129,20 @@ struct joukowski {
     double length, tail; /* thickness at the tail, m */
 };
 
+// the chord coordinate, decreasing from tail to nose
+static double joukowski_chord(const struct joukowski *foil, double theta) {
+    const double re = foil->r0 * (cos(theta) + foil->d), im = foil->r0 * sin(theta), c = foil->c;
+    return re * (1 + c * c / (re * re + im * im));
+}
+
 // the angle of the point at arc coordinate s
 static double joukowski_angle(const struct joukowski *foil, double s) {
-    // the chord coordinate decreases from tail (theta = 0) to nose (theta = pi): bisect to adjacent floating-point
-    // numbers
-    const double c = foil->c;
+    // from tail (theta = 0) to nose (theta = pi): bisect to adjacent floating-point numbers
     double low = 0, high = M_PI;
     for (;;) {
         const double theta = (low + high) / 2;
         if (theta <= low || theta >= high) break;
-        const double re = foil->r0 * (cos(theta) + foil->d), im = foil->r0 * sin(theta);
-        if (re * (1 + c * c / (re * re + im * im)) > foil->nose + s) {
+        if (joukowski_chord(foil, theta) > foil->nose + s) {
             low = theta;
         } else {
             high = theta;
@@ -152,7 +155,7 @@ static double joukowski_angle(const struct joukowski *foil, double s) {
 // half of h: the cusped foil plus the wedge of the tail thickness
 static double joukowski_half_thickness(const struct joukowski *foil, double theta) {
     const double re = foil->r0 * (cos(theta) + foil->d), im = foil->r0 * sin(theta), c = foil->c;
-    const double chord = re * (1 + c * c / (re * re + im * im)), sigma = (chord - foil->nose) / foil->length;
+    const double sigma = (joukowski_chord(foil, theta) - foil->nose) / foil->length;
     const double cusp = im * (1 - c * c / (re * re + im * im)), wedge = foil->tail / 2 * sigma;
     return sqrt(cusp * cusp + wedge * wedge);
 }

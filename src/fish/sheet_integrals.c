@@ -21,11 +21,15 @@ struct series {
     double *sum;    /* of all vortices j (n) */
 };
 
+static void series_sum(const struct series *series, double constant) {
+    for (int j = 0; j < series->n; j++) series->sum[j] = constant;
+    wide_multiply(series->n, series->n - 1, series->cosine, series->term, series->sum);
+}
+
 // C_j of all vortices j at theta
 static void series_circulation(const struct series *series, double theta) {
     for (int m = 1; m < series->n; m++) series->term[m - 1] = 2 / M_PI * sin(m * theta) / m;
-    for (int j = 0; j < series->n; j++) series->sum[j] = theta / M_PI;
-    wide_multiply(series->n, series->n - 1, series->cosine, series->term, series->sum);
+    series_sum(series, theta / M_PI);
 }
 
 /* Add the momentum of one edge, in pieces of equal length in theta with these Gauss points. Partial fractions of b_k
@@ -103,8 +107,7 @@ static enum status integrals_fill(struct sheet_integrals *to, struct arena *scra
         TRY(status_ask(stop));
         const double theta = M_PI * (c + 0.5) / n_control;
         for (int m = 1; m < n; m++) series.term[m - 1] = 2 * cos(m * theta) / (n - 1);
-        for (int j = 0; j < n; j++) series.sum[j] = 1.0 / (n - 1);
-        wide_multiply(n, n - 1, series.cosine, series.term, series.sum);
+        series_sum(&series, 1.0 / (n - 1));
         for (int j = 0; j < n; j++) to->strength[j * n_control + c] = series.sum[j];
         series_circulation(&series, theta);
         for (int j = 0; j < n; j++) to->circulation[j * n_control + c] = series.sum[j];

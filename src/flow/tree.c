@@ -603,15 +603,18 @@ static void box_scatter(const struct tree *tree, int has_legs, int with_gradient
 
 // ---- the sum
 
+// h of n points
+static void lengths(double factor, int n, const double *half, const double *leg, double *h) {
+    for (int i = 0; i < n; i++) h[i] = (half ? factor * half[i] : 0) + (leg ? leg[i] : 0);
+}
+
 static void sources_sort(struct tree *tree, const struct kernel_pair *pair, const struct sources *rings, int threads) {
     const int n = rings->n;
     struct sources *const sorted = &tree->rings;
     sorted->n = 0;
     sources_append(sorted, n);
-    for (int i = 0; i < n; i++) {
-        // h, in the place of the legs
-        sorted->leg[i] = (rings->half ? pair->factor * rings->half[i] : 0) + (rings->leg ? rings->leg[i] : 0);
-    }
+    // h, in the place of the legs
+    lengths(pair->factor, n, rings->half, rings->leg, sorted->leg);
     struct tree_boxes *const boxes = &tree->from.boxes;
     tree_boxes_fill(boxes, n, rings->x, rings->y, sorted->leg, LEAF, threads);
     memcpy(sorted->leg, boxes->weight, (size_t)n * sizeof *sorted->leg);
@@ -636,9 +639,7 @@ static void targets_sort(struct tree *tree, const struct kernel_pair *pair, cons
                                 &tree->sum[5], &tree->sum[6], &tree->sum[7]};
         for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(tree->arena, *all[i], tree->target_capacity);
     }
-    for (int i = 0; i < at->n; i++) {
-        tree->h[i] = (at->half ? pair->factor * at->half[i] : 0) + (at->leg ? at->leg[i] : 0);
-    }
+    lengths(pair->factor, at->n, at->half, at->leg, tree->h);
     tree_boxes_fill(&tree->to.boxes, at->n, at->x, at->y, tree->h, at->u_x ? LEAF_GRADIENT : LEAF, threads);
     memcpy(tree->x, tree->to.boxes.x, size);
     memcpy(tree->y, tree->to.boxes.y, size);

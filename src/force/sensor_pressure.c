@@ -23,6 +23,11 @@ struct sensor_targets {
     struct pressure *pressure;
 };
 
+static void sensor_velocity(const struct sensor_targets *at, int c, double v[2]) {
+    v[0] = at->at.u[c] - at->pressure->point[c].slip[0];
+    v[1] = at->at.v[c] - at->pressure->point[c].slip[1];
+}
+
 // add one source at all control points: K . (q (v - V) + dC/dt dx), and g (v - V) x d of the legs
 static void sensor_add(const struct sensor_targets *at, const struct kernel_pair *pair,
                        const struct sensor_source *source) {
@@ -33,12 +38,13 @@ static void sensor_add(const struct sensor_targets *at, const struct kernel_pair
         kernel_unit(pair, &source->at, n, at->x + first, at->y + first, has_legs ? at->fish->point_half + first : NULL,
                     &unit);
         for (int i = 0; i < n; i++) {
-            struct pressure_point *const point = &at->pressure->point[first + i];
-            const double v[2] = {at->at.u[first + i] - point->slip[0], at->at.v[first + i] - point->slip[1]};
+            double v[2];
+            sensor_velocity(at, first + i, v);
             const double slip[2] = {v[0] - source->velocity[0], v[1] - source->velocity[1]};
             const double of_legs = has_legs ? unit.leg[i] * (slip[1] * source->at.dx - slip[0] * source->at.dy) : 0;
-            point->potential_rate += unit.unit_u[i] * (source->at.q * slip[0] + source->dipole[0]) +
-                                     unit.unit_v[i] * (source->at.q * slip[1] + source->dipole[1]) + of_legs;
+            at->pressure->point[first + i].potential_rate +=
+                unit.unit_u[i] * (source->at.q * slip[0] + source->dipole[0]) +
+                unit.unit_v[i] * (source->at.q * slip[1] + source->dipole[1]) + of_legs;
         }
     }
 }
@@ -217,12 +223,11 @@ void sensor_pressure_update(const struct flow *flow, const struct state *state, 
         for (int k = 0; k < 4; k++) {
             // |v - u_ext|^2/2 - Phi, m2 s-2
             const int c = first + k;
-            const struct pressure_point *const point = &pressure->point[c];
-            double stream[2];
+            double stream[2], v[2];
             flow_external(school, state->t, at.x[c], at.y[c], &stream[0], &stream[1]);
-            const double v[2] = {at.at.u[c] - point->slip[0], at.at.v[c] - point->slip[1]};
+            sensor_velocity(&at, c, v);
             const double square = (v[0] - stream[0]) * (v[0] - stream[0]) + (v[1] - stream[1]) * (v[1] - stream[1]);
-            mean += weight[k] * (square / 2 - point->potential_rate);
+            mean += weight[k] * (square / 2 - pressure->point[c].potential_rate);
 
             // dC/dt, with legs + C div u, m2 s-2; w_t, m s-1; gamma sqrt(s), m3/2 s-1
             const struct pressure_sheet sheet = pressure_sheet_at(pressure, c, state->y, state->yp);

@@ -21,6 +21,11 @@
 
 // ---- differences and means of samples
 
+// displacement through the water between two samples, m
+static void way_through_water(const struct sample *new, const struct sample *old, double way[2]) {
+    for (int i = 0; i < 2; i++) way[i] = new->com[i] - old->com[i] - (new->drifted[i] - old->drifted[i]);
+}
+
 void diagnostics_remember(struct residual *residual, struct state *state) {
     const double interval = residual->school->interval;
     const int threads = fish_threads(residual->school);
@@ -62,9 +67,8 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         // mean speed through the water over one period; the sample capacity - 2 events ago is one period older than the
         // new sample
         if (history->capacity > 1 && history->n >= history->capacity - 1) {
-            const struct sample *const old = state_recall(history, history->capacity - 2);
-            const double way[2] = {sample.com[0] - old->com[0] - (sample.drifted[0] - old->drifted[0]),
-                                   sample.com[1] - old->com[1] - (sample.drifted[1] - old->drifted[1])};
+            double way[2];
+            way_through_water(&sample, state_recall(history, history->capacity - 2), way);
             sample.speed = hypot(way[0], way[1]) / ((history->capacity - 1) * interval);
         }
         state_remember(history, &sample);
@@ -181,8 +185,8 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
 
     // speeds, through the water and over the ground, and powers
     const double duration = (history->n - 1) * interval;
-    const double way[2] = {new->com[0] - old->com[0] - (new->drifted[0] - old->drifted[0]),
-                           new->com[1] - old->com[1] - (new->drifted[1] - old->drifted[1])};
+    double way[2];
+    way_through_water(new, old, way);
     const double distance = hypot(way[0], way[1]);
     to->ground_speed = hypot(new->com[0] - old->com[0], new->com[1] - old->com[1]) / duration;
     to->speed = distance / duration;

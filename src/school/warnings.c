@@ -34,6 +34,11 @@ double warnings_bending_length(const struct fish *fish) {
     return pow(fish->tail_stiffness / (fish->tail_added_mass * omega * omega), 0.25);
 }
 
+// whether forces of the fluid bend the tail
+static bool tail_bends(const struct subject *subject) {
+    return subject->school->density > 0 && subject->school->fish[subject->f].motion.prescribed != PRESCRIBED_ALL;
+}
+
 // warnings about the solution
 static double solution_warning(enum warning warning, const struct subject *subject, const char *who,
                                char line[WARNING_BYTES]) {
@@ -109,7 +114,6 @@ static double resolution_warning(enum warning warning, const struct subject *sub
     const double lengths = now->speed * interval / fish->length, n_points = 3.2 / sqrt(lengths);
     const double bending_length = warnings_bending_length(fish);
     const bool has_wave = fish_has_wave(fish), has_motion = fish->motion.omega > 0;
-    const bool bends = subject->school->density > 0 && fish->motion.prescribed != PRESCRIBED_ALL;
 
     switch (warning) {
         case WARNING_BEATS:
@@ -147,7 +151,7 @@ static double resolution_warning(enum warning warning, const struct subject *sub
                      "least %.0f nodes",
                      who, fish->edge_length, bending_length, ceil(2 * fish->length / bending_length) + 1);
             if (!(has_wave || (fish->motion.prescribed == PRESCRIBED_HEAD && has_motion))) return 0;
-            if (!bends || fish->has_cusp || !(fish->tail_added_mass > 0)) return 0;
+            if (!tail_bends(subject) || fish->has_cusp || !(fish->tail_added_mass > 0)) return 0;
             return 2 * fish->edge_length / bending_length;
 
         default: return 0;
@@ -160,7 +164,6 @@ static double model_warning(enum warning warning, const struct subject *subject,
     const struct fish *const fish = &subject->school->fish[subject->f];
     const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
     const struct motion *const motion = &fish->motion;
-    const bool bends = subject->school->density > 0 && motion->prescribed != PRESCRIBED_ALL;
     double slowest = 0;
 
     // largest speed of the tail by pitch, and speed through the water
@@ -184,7 +187,7 @@ static double model_warning(enum warning warning, const struct subject *subject,
                      "the tail of %s ends in a cusp: results do not converge with the number of nodes "
                      "(doc/numerics.md, section 5); set body.tail_thickness",
                      who);
-            return bends && fish->has_cusp ? always : 0;
+            return tail_bends(subject) && fish->has_cusp ? always : 0;
 
         case WARNING_FORCE:
             snprintf(line, WARNING_BYTES,

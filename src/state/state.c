@@ -97,11 +97,15 @@ static void history_resize(struct arena *arena, struct history *history, int n_s
     history->n_slots = n_slots;
 }
 
+// one slot more than samples: a new sample leaves the sample that it drops in place
+static int history_next(const struct history *history) {
+    return history->last < history->capacity ? history->last + 1 : 0;
+}
+
 void state_reserve(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         struct history *const history = &state->history[f];
-        // one slot more than samples: a new sample leaves the sample that it drops in place
-        const int next = history->last < history->capacity ? history->last + 1 : 0, most = history->capacity + 1;
+        const int next = history_next(history), most = history->capacity + 1;
         if (next < history->n_slots) continue;
         const int twice = history->n_slots > most / 2 ? most : 2 * history->n_slots;
         history_resize(state->arena, history, twice > next ? twice : next + 1);
@@ -115,7 +119,7 @@ void state_forget_newest(struct history *history) {
 }
 
 void state_remember(struct history *history, const struct sample *sample) {
-    history->last = history->last < history->capacity ? history->last + 1 : 0;
+    history->last = history_next(history);
     history->sample[history->last] = *sample;
     if (history->n < history->capacity) history->n++;
 }
@@ -265,22 +269,23 @@ static void *field_owner(const struct state_row *row, const struct state *state,
     return NULL;
 }
 
-const void *state_table_values(const struct state_row *row, const struct state *state, int f) {
-    const void *const owner = field_owner(row, state, f);
-    const char *const field = (const char *)(owner ? owner : state) + row->offset;
-    if (!row->length) return field;
+/* The array that a field points to. */
+static void *field_array(const void *field) {
     void *array;
     memcpy(&array, field, sizeof array);
     return array;
 }
 
+const void *state_table_values(const struct state_row *row, const struct state *state, int f) {
+    const void *const owner = field_owner(row, state, f);
+    const char *const field = (const char *)(owner ? owner : state) + row->offset;
+    return row->length ? field_array(field) : field;
+}
+
 void *state_table_place(const struct state_row *row, struct state *state, int f) {
     void *const owner = field_owner(row, state, f);
     char *const field = (char *)(owner ? owner : state) + row->offset;
-    if (!row->length) return field;
-    void *array;
-    memcpy(&array, field, sizeof array);
-    return array;
+    return row->length ? field_array(field) : field;
 }
 
 void state_table_make_room(struct state *state, const struct school *school) {

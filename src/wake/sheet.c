@@ -280,6 +280,11 @@ double sheet_place_nascent(struct sheet_points *points, const struct school *sch
     return shed - older;
 }
 
+// ends of the panels of a steady wake, in depths: 0, 1/4, 1/2, 1, 2, 3, ..
+static double steady_end(int panel) {
+    return panel < 3 ? panel / 4.0 : panel - 2;
+}
+
 void sheet_place_steady(struct sheet *sheet, struct sheet_points *points, const struct fish *fish, const double tail[2],
                         const double along[2], double shed, double reach) {
     enum { NODES = 8, LEAST = 30 };
@@ -295,13 +300,11 @@ void sheet_place_steady(struct sheet *sheet, struct sheet_points *points, const 
     sources->n = 0;
     sources_append(sources, n);
 
-    // ends of the panels, in depths: 0, 1/4, 1/2, 1, 2, 3, ..; behind the last end, where the legs act like 1/d^3,
-    // quadrature in 1/d
+    // behind the last end, where the legs act like 1/d^3, quadrature in 1/d
     for (int i = 0; i < n; i++) {
-        const int panel = i / NODES, next = panel + 1, is_last = panel == n_panels;
-        const double q = node[i % NODES], part = weight[i % NODES];
-        const double first = depth * (panel < 3 ? panel / 4.0 : panel - 2);
-        const double length = is_last ? first : depth * (next < 3 ? next / 4.0 : next - 2) - first;
+        const int panel = i / NODES, is_last = panel == n_panels;
+        const double q = node[i % NODES], part = weight[i % NODES], first = depth * steady_end(panel);
+        const double length = is_last ? first : depth * steady_end(panel + 1) - first;
         const double distance = is_last ? first / q : first + q * length;
 
         points->part[i] = part * length / (is_last ? q * q : 1);

@@ -52,11 +52,15 @@ void wake_release(struct wake *wake, double x, double y, double circulation, dou
     wake->birth[i] = birth;
 }
 
+// without a decay time a vortex of continuous shedding vanishes within the last interval of its lifetime
+static bool decays_in_one_interval(const struct school *school) {
+    return school->decay <= 0 && school->shedding != SHEDDING_IMPULSIVE;
+}
+
 double wake_strength(const struct school *school, double age) {
-    // without a decay time a vortex of continuous shedding vanishes within the last interval of its lifetime
     const double left = school->lifetime - age;
-    if (school->decay <= 0 && school->shedding == SHEDDING_IMPULSIVE) return 1;
-    if (school->decay <= 0) return fmax(0, fmin(1, left / school->interval));
+    if (decays_in_one_interval(school)) return fmax(0, fmin(1, left / school->interval));
+    if (school->decay <= 0) return 1;
     // the vortex represents circulation shed half an interval before the release, on average
     return 1 - ramp_step((school->interval / 2 + school->decay - left) / school->decay);
 }
@@ -167,8 +171,7 @@ void wake_advance(struct wake *wake, double interval) {
 
 int wake_n_old(const struct wake *wake, const struct school *school, double t) {
     // ages are multiples of the interval; the margin makes the comparison independent of rounding
-    const bool is_sudden = school->decay <= 0 && school->shedding != SHEDDING_IMPULSIVE;
-    const double rounding = school->interval * (is_sudden ? 1e-6 : 0.5);
+    const double rounding = school->interval * (decays_in_one_interval(school) ? 1e-6 : 0.5);
 
     // the age of a stretch is the age of the newer marker
     const int newer = wake->has_markers;
