@@ -205,12 +205,12 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, i
     const bool by_far_points = others_are_selected(flow);
     if (by_far_points) others_add(flow, chunk->fish, chunk->at, &at);
     const bool is_every = !by_far_points || school->walls.n > 0;
-    for (int g = is_every ? 0 : others_next(flow, chunk->fish, -1, false); g < school->n_fish;
-         g = is_every ? g + 1 : others_next(flow, chunk->fish, g, false)) {
-        if (by_far_points && g != chunk->fish) induce_near(flow, chunk->fish, g, &at);
+    const int f = chunk->fish;
+    for (int g = others_next(flow, f, -1, is_every); g < school->n_fish; g = others_next(flow, f, g, is_every)) {
+        if (by_far_points && g != f) induce_near(flow, f, g, &at);
         for (int i = by_far_points ? 2 : 0; i < (school->walls.n > 0 ? 4 : 2); i++) {
             const struct flow_sum sum = {i % 2 == 0 ? BODY_AT_BODY : WAKE_AT_BODY, i >= 2};
-            flow_induce_other(flow, chunk->fish, g, &sum, g == chunk->fish && !sum.of_images, &at);
+            flow_induce_other(flow, f, g, &sum, g == f && !sum.of_images, &at);
         }
     }
 }
