@@ -105,7 +105,7 @@ TEST(a_member_that_is_not_complete_misses_whatever_its_values) {
 TEST(of_many_kinds_of_warnings_the_first_are_printed_and_all_are_counted) {
     enum { N = 23, SHOWN = 20 };
     struct member_file member[N];
-    char warning[N][16], *printed;
+    char warning[N][24], *printed;
     for (int m = 0; m < N; m++) {
         snprintf(warning[m], sizeof warning[m], "%c is %d", 'a' + m, m);
         member[m] = (struct member_file){.number = m, .status = "complete", .warnings = warning[m]};
