@@ -82,8 +82,8 @@ shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include $(file <$(B)/cp
 shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -fPIC -fvisibility=hidden \
                  -Wall -Wextra -Wconversion -Wshadow -Wcast-qual $(if $(WERROR),-Werror) $(warnings) $(sanitize) $(CFLAGS) \
                  $(if $(gcc_12_arm64),-fvect-cost-model=very-cheap)
-# clang warns of fields left out of an initialiser with a name too, gcc does not
-warnings = $(if $(is_clang),-Wno-missing-field-initializers)
+# clang, unlike gcc, warns of fields left out of an initialiser with a name, and of the empty format of an empty cell
+warnings = $(if $(is_clang),-Wno-missing-field-initializers -Wno-format-zero-length)
 # gcc 12 for arm64 stops with an internal error (vect_transform_reduction) at loops that the cost model of -O3 vectorises
 gcc_12_arm64 := $(if $(is_clang),,$(filter aarch64%-12,$(shell $(CC) -dumpmachine)-$(firstword $(subst ., ,$(shell $(CC) -dumpversion)))))
 # results of scripts/find-libraries.sh
