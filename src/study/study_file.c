@@ -263,9 +263,10 @@ static struct value order_value(const struct contents *contents, const struct va
 /* A value of a row of an error study. text: for the reason of a flag */
 static struct value error_value(const struct contents *contents, const struct variable *v, const int *i,
                                 char text[CONVERGENCE_BYTES]) {
-    const struct error_study *const point = &contents->errors->point[contents->length[BY_POINT] > 0 ? *i : 0];
+    const bool is_of_point = v->n_dimensions > 0 && v->dimension[0] == BY_POINT;
+    const struct error_study *const point = &contents->errors->point[is_of_point ? *i : 0];
     if (v->row == POINT_MEMBER) return (struct value){.number = point->stated};
-    if (v->n_dimensions > 0 && v->dimension[0] == BY_POINT) i++;
+    if (is_of_point) i++;
     const bool is_model = v->row == LOWEST || v->row == HIGHEST;
     const bool is_sum = v->row == STATED || v->row == BAR || is_model;
     const int place = error_plan_place(point, v->number, is_sum ? i[0] : i[1]);

@@ -123,6 +123,8 @@ check so_has_the_file test "$(ncdump -v lowest_steady_speed models/study.nc | se
 run error swimmer.yaml --of speed --no-confirm
 check a_run_has_its_error grep -qE '^speed of fish: [0-9.]+ \+- [0-9.]+ m s-1' out
 check levels_are_fewer_without_confirm grep -qE '^fish.nodes +5 6 \[9\] .* 3 levels' out
+run error swimmer.yaml --of speed --no-confirm -o few --sweep 'solver.order=3,5'
+check a_sweep_may_have_fewer_points_than_keys eval 'test "$code-$(grep -c "^ *[01]  *[35] " out)" = 0-2'
 mkdir parts
 run study swimmer.yaml --members 0-1 -o parts
 check a_part_of_the_members test -e parts/member-0001.nc -a ! -e parts/member-0002.nc -a ! -e parts/study.nc
@@ -159,8 +161,7 @@ check check_takes_it test "$code" = 0
 
 # ---- a sweep: an error at every point
 
-run error foil.yaml --of steady_lift --models --sweep 'fish[*].body.modulus=1e5,3e5,1e6,3e6' --set 'fish[*].nodes=5' \
-    -o along
+run error foil.yaml -o along --of steady_lift --models --sweep 'fish[*].body.modulus=1e5,3e5,1e6,3e6' --set 'fish[*].nodes=5'
 check errors_along_a_sweep test "$code" = 0
 check a_row_for_each_point test "$(grep -cE '^ +[0-3]\*? +[13]e[56] +[0-9.]+ +[0-9.]+ +[0-9.]+' out)" = 4
 check the_models_of_full_points_are_around_the_value test "$(awk '$7 == "to" && $1 ~ /^[013]$/ &&
@@ -266,7 +267,7 @@ for folder in sys.argv[1:]:
             assert len(levels) == of("key_levels", k, "") and stated == of("key_stated", k, ""), row
     assert n_rows > 0 and len(points) == (len(data.dimensions["point"]) if "point" in data.dimensions else 1)
 end
-for folder in foil-error swimmer-study models along five one; do
+for folder in foil-error swimmer-study models along five one few; do
     check "error.csv and study.nc say the same: $folder" /usr/bin/python3 budget.py "$folder"
 done
 

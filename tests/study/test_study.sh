@@ -259,8 +259,7 @@ run info unstated/study.nc
 check info_reports_it_too eval 'test "$code" = 0 && has out "missed: expect[0]"'
 refused a_member_that_is_not_complete_misses 3 'expect[0]: speed: expectation not met: see the output' \
     study small.yaml -q -o failing --set 'sweep=[{key: solver.max_steps, values: [1000, 2]}]' \
-    --set solver.method=euler \
-    --set 'expect=[{of: speed, least: 0}]'
+    --set solver.method=euler --set 'expect=[{of: speed, least: 0}]'
 check which_member_it_is_is_printed has err '  MISSED   member 1 is not complete'
 run study small.yaml -o doomed --set 'expect=[{fails: limited by, where: [solver.method=euler]},
     {of: speed, least: 0, where: [solver.method=ida, solver.method=rk4]}]'
