@@ -163,7 +163,27 @@ enum status main_study(const struct request *request) {
 enum status main_error(const struct request *request) {
     struct case_values values;
     struct request with_errors = *request;
-    TRY(main_read_case(request, &values));
+
+    // the assignment of the key `sweep`: each --sweep KEY=LIST is an axis
+    const char *axes = "";
+    for (int i = 0; i < request->n_sweeps; i++) {
+        const char *const sweep = request->sweeps[i], *const list = strchr(sweep, '=');
+        if (!list || list == sweep || !list[1]) {
+            return status_fail(STATUS_CASE, "--sweep %s: expects KEY=VALUE,VALUE,...", sweep);
+        }
+
+        // LIST may have one pair of brackets around all values
+        bool is_list = list[1] == '[';
+        int depth = 0;
+        for (const char *c = list + 1; *c; c++) {
+            depth += (*c == '[') - (*c == ']');
+            if (depth == 0 && c[1]) is_list = false;
+        }
+        axes = arena_text(request->arena, "%s%s{key: \"%.*s\", values: %s%s%s}", axes, i > 0 ? ", " : "",
+                          (int)(list - sweep), sweep, is_list ? "" : "[", list + 1, is_list ? "" : "]");
+    }
+    if (*axes) with_errors.assignments[with_errors.n_assignments++] = arena_text(request->arena, "sweep=[%s]", axes);
+    TRY(main_read_case(&with_errors, &values));
 
     // the assignment of the key `error`: the settings of the case, overridden by the command line
     struct sweep_error error = {.within = NAN, .most = SWEEP_ERROR_MOST, .confirm = 1};
@@ -184,18 +204,6 @@ enum status main_error(const struct request *request) {
     sweep_error_write(&assignment, &error);
     with_errors.assignments[with_errors.n_assignments++] = assignment.text;
 
-    // the assignment of the key `sweep`: each --sweep KEY=LIST is an axis
-    const char *axes = "";
-    for (int i = 0; i < request->n_sweeps; i++) {
-        const char *const sweep = request->sweeps[i], *const list = strchr(sweep, '=');
-        if (!list || list == sweep || !list[1]) {
-            return status_fail(STATUS_CASE, "--sweep %s: expects KEY=VALUE,VALUE,...", sweep);
-        }
-        const bool is_list = list[1] == '[';
-        axes = arena_text(request->arena, "%s%s{key: \"%.*s\", values: %s%s%s}", axes, i > 0 ? ", " : "",
-                          (int)(list - sweep), sweep, is_list ? "" : "[", list + 1, is_list ? "" : "]");
-    }
-    if (*axes) with_errors.assignments[with_errors.n_assignments++] = arena_text(request->arena, "sweep=[%s]", axes);
     TRY(main_read_case(&with_errors, &values));
     return study_run_in_folder(&values, &with_errors, "-error");
 }
