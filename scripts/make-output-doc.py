@@ -50,7 +50,7 @@ for ParaView. Figures and films: [gallery.md](gallery.md).
 | `multiplier` | six for each fish; only in files of `shoal steady`, like the variables `steady_...` ([steady.md](steady.md)) |
 
 A fish with fewer points uses the first `n_nodes`, `n_edges`, `n_joints`, `n_sheet` slots. All other slots, and
-undefined quantities such as a mean in the first beat, are NaN.
+undefined quantities such as a mean in the first beat, are NaN, the `_FillValue`.
 
 *Wake.* A fish has `wake_count` free vortices in the first slots, oldest first; `wake_birth` identifies a vortex. Rows
 between two records of the wake (`output.wake_interval`) hold NaN there. The vortex that grows at the tail has no slot

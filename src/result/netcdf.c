@@ -146,7 +146,8 @@ int netcdf_define_variable(struct netcdf_writer *writer, const struct netcdf_var
         netcdf_write_string(writer, number, "flag_meanings", variable->flags);
     }
     const double gap = NAN;
-    if (variable->has_gaps) CALL(writer, nc_put_att_double(writer->file, number, "_FillValue", type, 1, &gap));
+    const bool has_gaps = !variable->axis && (type == NC_FLOAT || type == NC_DOUBLE);
+    if (has_gaps) CALL(writer, nc_put_att_double(writer->file, number, "_FillValue", type, 1, &gap));
     return number;
 }
 

@@ -29,7 +29,7 @@ struct netcdf_writer {
     int code;                 /* 0, or the reason of the first failure: see netcdf_reason */
 };
 
-/* A variable to define. */
+/* A variable to define. NaN marks missing values of a real variable without an axis. */
 struct netcdf_variable {
     const char *name, *long_name;
     const char *units; /* of numbers; "" or NULL is written as "1" */
@@ -37,7 +37,6 @@ struct netcdf_variable {
     const char *flags; /* the words of the values 0, 1, ..., separated by blanks; NULL: none */
     enum netcdf_type type;
     int n_dimensions, dimension[NETCDF_MAX_DIMENSIONS]; /* numbers of the dimensions */
-    bool has_gaps;                                      /* NaN marks missing values */
 };
 
 /* Create a file in the classic format with 64-bit sizes (CDF-5), with the attributes Conventions, title, history (now,

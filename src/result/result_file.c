@@ -200,7 +200,6 @@ static void file_define_variable(struct result_file *result, int i, const int *d
                                         .type = is_single ? NETCDF_FLOAT : types[variable->type]};
     for (const enum result_dimension *d = variable->dimension; *d != NONE; d++)
         to_define.dimension[to_define.n_dimensions++] = dimension_number[*d];
-    to_define.has_gaps = of_fish && (to_define.type == NETCDF_DOUBLE || to_define.type == NETCDF_FLOAT);
     result->number[i] = netcdf_define_variable(&result->writer, &to_define);
 
     // the place on the body of each slot of this variable

@@ -340,8 +340,7 @@ static void write_variables(struct netcdf_writer *writer, const struct contents 
                                           .long_name = v->meaning,
                                           .units = v->unit,
                                           .type = v->type,
-                                          .n_dimensions = v->n_dimensions,
-                                          .has_gaps = v->type == NETCDF_DOUBLE && v->row != SWEPT_KEY};
+                                          .n_dimensions = v->n_dimensions};
         for (int d = 0; d < v->n_dimensions; d++) defined.dimension[d] = dimension[v->dimension[d]];
         if (v->type == NETCDF_TEXT) defined.dimension[defined.n_dimensions++] = dimension[BY_TEXT];
         const int variable = netcdf_define_variable(writer, &defined);

@@ -144,7 +144,6 @@ static void grid_define_all(struct netcdf_writer *writer, const struct field *fi
         to_define.axis = i == TIME_AT ? "T" : i == X_AT ? "X" : i == Y_AT ? "Y" : NULL;
         to_define.flags = i == MEAN_SECTION ? mean_flags : NULL;
         to_define.type = variable->type == NETCDF_FLOAT && !is_single ? NETCDF_DOUBLE : variable->type;
-        to_define.has_gaps = i == BODY_X || i == THICKNESS;
         for (const int *axis = variable->axis; *axis != NO_AXIS; axis++) {
             to_define.dimension[to_define.n_dimensions++] = number[*axis];
         }

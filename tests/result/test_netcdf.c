@@ -105,8 +105,7 @@ static enum status write_file(const char *path, bool overwrite) {
                                                                                 .units = "m s-1",
                                                                                 .type = NETCDF_DOUBLE,
                                                                                 .n_dimensions = 2,
-                                                                                .dimension = {time, fish},
-                                                                                .has_gaps = true});
+                                                                                .dimension = {time, fish}});
     const int steps = netcdf_define_variable(
         &writer,
         &(struct netcdf_variable){

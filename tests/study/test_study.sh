@@ -105,8 +105,7 @@ check slurm_scripts_are_written "$program" study small.yaml --slurm --bundle 4 -
 check a_task_has_a_bundle has cluster/array.sbatch '#SBATCH --array=0-1'
 # the actions of a task, without Slurm
 for task in 0 1; do SLURM_ARRAY_TASK_ID=$task sh cluster/array.sbatch >/dev/null 2>&1; done
-check the_tasks_run_all_members test -e cluster/member-0003.nc \
-    -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
+check the_tasks_run_all_members test -e cluster/member-0003.nc -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
 run gather cluster
 check their_results_are_those_of_the_study has err '2 of 6 members in cluster'
 refused no_quotes_in_scripts 2 'must not contain quotes' study small.yaml --slurm -o "it's"
@@ -190,10 +189,8 @@ refused another_order_gives_exit_code_3 3 \
                    expect: {order: 3, within: 0.1}}]'
 check then_everything_is_written_all_the_same test -s third/study.nc
 # a speed not reached by any level: all errors are equal to the distance, and there is no order
-run study refined.yaml -o given \
-    --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100}}]'
-check errors_are_against_the_reference grep -qE \
-    '^ +speed\* +fish1 +m s-1 +9\.9.e\+01 +9\.9.e\+01 +9\.9.e\+01 +-?0\.00 ' out
+run study refined.yaml -o given --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100}}]'
+check errors_are_against_the_reference grep -qE '^ +speed\* +fish1 +m s-1 +9\.9.e\+01 +9\.9.e\+01 +9\.9.e\+01 +-?0\.00 ' out
 check other_errors_are_against_the_finest grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- ' out
 check the_head_says_so has out "from the finest level (*: from the reference of the case)"
 run info given/study.nc
