@@ -79,8 +79,7 @@ TEST(the_pressure_of_a_sheet_makes_the_mode_of_a_light_plate) {
     const double h = 0.2, d = 0.4, stiffness = 2e6 * M_PI * d * h * h * h / 64;
     const double found = slowest_mode(
         "nodes: 81, sheet_points: 161, length: 2, force: pressure, pressure: {span: infinite}, body: {profile: "
-        "uniform, thickness: 0.1, "
-        "depth: 0.2, density: 1e-3, modulus: 2e6, second_moment: ellipse}");
+        "uniform, thickness: 0.1, depth: 0.2, density: 1e-3, modulus: 2e6, second_moment: ellipse}");
     NEAR(found, 8.9060824 * sqrt(stiffness / (1000 * d)) / (2 * M_PI), 0, 0.003);
 }
 

@@ -322,9 +322,8 @@ TEST(plates_that_swim_in_line_do_not_cross) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME
                           "defaults: {fish: {nodes: 5, sheet_points: 17, force: pressure, pressure: {span: infinite}, "
-                          "wave: {amplitude: 0, frequency: 0}, "
-                          "body: {profile: uniform, thickness: 0.05, depth: 1, density: 2000}, "
-                          "motion: {prescribed: all, surge: free, heave: 0.05, frequency: 1}}}\n"
+                          "wave: {amplitude: 0, frequency: 0}, body: {profile: uniform, thickness: 0.05, depth: 1, "
+                          "density: 2000}, motion: {prescribed: all, surge: free, heave: 0.05, frequency: 1}}}\n"
                           "fish: [{start: {speed: 1}}, {start: {position: [1.3, 0], speed: 2}}]\n");
     double stored = 0, imbalance = 0;
     const double energy = diagnostics_energy(simulation->residual, 1, 0, simulation->state->y);

@@ -268,9 +268,7 @@ TEST(force_and_reaction_are_those_of_the_jump) {
                           "time: {end: 1, shedding_interval: 0.01}\n"
                           "fluid: {density: 2, viscosity: 0}\n"
                           "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, "
-                          "start: {speed: 1}, body: "
-                          "{profile: uniform, thickness: 0.1, "
-                          "depth: 0.5},\n"
+                          "start: {speed: 1}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
                           "        motion: {prescribed: all, heave: 0.05, pitch: 5, frequency: 1}}]\n");
     school_run(simulation, 0.3);
     simulate_measure(simulation);
@@ -321,8 +319,7 @@ TEST(the_pressure_acts_on_the_depth_of_an_edge) {
         SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.01}\n"
         "fish: [{nodes: 5, sheet_points: 21, pressure: {span: infinite}, body: {profile: table, thickness_table: [.1, "
-        ".1, "
-        ".1, .1], depth_table: [.2, .3, .5, .4]}, motion: {prescribed: all, pitch: 5, frequency: 1}}]\n");
+        ".1, .1, .1], depth_table: [.2, .3, .5, .4]}, motion: {prescribed: all, pitch: 5, frequency: 1}}]\n");
     school_run(simulation, 0.1);
     simulate_measure(simulation);
     const struct fish *const fish = simulation->school->fish;
@@ -577,8 +574,7 @@ TEST(energy_and_momentum_of_a_free_fish_are_accounted_for) {
                           "time: {end: 1, shedding_interval: 0.01}\n"
                           "solver: {rtol: 1.0e-6}\n"
                           "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite}, body: "
-                          "{modulus: 3.0e+4}, wave: {ramp: "
-                          "0.3}, start: {speed: 0.5}}]\n");
+                          "{modulus: 3.0e+4}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n");
     const struct fish *fish = simulation->school->fish;
     const struct diagnostics_fish *of = simulation->diagnostics->fish;
 

@@ -130,9 +130,7 @@ static void compare_with_differences(double t, const char *keys, const char *fis
              "solver: {rtol: 1e-7}\n"
              "wake: {smoothing: 1e-3, lifetime: 0.4, decay: 0.39}\n"
              "sheet: {smoothing: 1e-3}\n"
-             "%s"
-             "defaults: {fish: {force: pressure, start: {speed: 0.5}, nodes: 9, "
-             "sheet_points: 33, sensors: [0.5],\n"
+             "%sdefaults: {fish: {force: pressure, start: {speed: 0.5}, nodes: 9, sheet_points: 33, sensors: [0.5],\n"
              "                  wave: {ramp: 0.2}%s}}\n"
              "fish: [{}, {start: {position: [0.1, 0.4]}, wave: {phase: 70}}]\n",
              keys, fish);

@@ -80,8 +80,7 @@ static const struct run {
      "    {" SLENDER ", length: 0.9, start: {position: [0.2, 0.6], speed: 0.6}, control: {law: averaged_heading,\n"
      "     desired_heading: 150, rate: 2, feedforward: 30, filter: 0.2}},\n"
      "    {" SLENDER
-     ", start: {position: [0.1, -0.7], speed: 0.7}, control: {law: course, desired_heading: 200, damping: "
-     "0.1}}]\n"},
+     ", start: {position: [0.1, -0.7], speed: 0.7}, control: {law: course, desired_heading: 200, damping: 0.1}}]\n"},
     {"driven", TIME
      "fluid: {velocity: [0.4, 0.1], shear: 0.5}\noutput: {forces: edges}\n"
      "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, motion: {prescribed: head, heave: 0.05, pitch: "
@@ -111,8 +110,7 @@ static const struct run {
      "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, start: {heading: 170, speed: 0.8}, drag: {skin: "
      "boundary_layer}},\n"
      "    {" SLENDER
-     ", length: 0.8, start: {position: [0.2, 0.6], speed: 0.5}, control: {law: heading, desired_heading: "
-     "170}}]\n"},
+     ", length: 0.8, start: {position: [0.2, 0.6], speed: 0.5}, control: {law: heading, desired_heading: 170}}]\n"},
     {"implicit_euler",
      "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: implicit_euler, step: 1.25e-3}\n" BODY
      "wake: {lifetime: 0.1}\n"
@@ -139,9 +137,8 @@ static const struct run {
      "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n" BODY
      "fluid: {density: 2, velocity: [0.8, 0.2], shear: 0.3, viscosity: 0}\nwake: {lifetime: 2, decay: 0.5}\n"
      "fish: [{nodes: 6, sheet_points: 17, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0.2, "
-     "constant: 1, linear: 0.5, frequency: "
-     "0},\n     control: {bias: 0.4}, motion: {prescribed: head}, body: {modulus: 4e4, profile: uniform, thickness: "
-     "0.03},\n     start: {heading: 175}, load: {tip: [0.01, 0.02]}},\n"
+     "constant: 1, linear: 0.5, frequency: 0},\n     control: {bias: 0.4}, motion: {prescribed: head}, body: {modulus: "
+     "4e4, profile: uniform, thickness: 0.03},\n     start: {heading: 175}, load: {tip: [0.01, 0.02]}},\n"
      "    {force: reactive, nodes: 5, sheet_points: 13, length: 0.7, wave: {frequency: 0, amplitude: 0}, motion: "
      "{prescribed: all},\n"
      "     start: {position: [0.3, 0.8], heading: 160}}]\n"},
@@ -527,11 +524,10 @@ enum { N_ASSIGNMENTS = sizeof assignments / sizeof *assignments, MAX_ASSIGNED = 
 /* Keys without influence on two intervals: files, limits and machines, steady states, what only a program uses. */
 static const char keys_elsewhere[] =
     " format name include time.end time.output_interval time.checkpoint_interval wake.tolerance wake.merge "
-    "wake.spare_vortices solver.rtol solver.order "
-    "solver.coupling_distance solver.threads solver.max_steps output.file output.precision output.forces "
-    "output.wake_interval steady.tolerance steady.beats steady.output_beats steady.formation steady.multipliers "
-    "defaults "
-    "fish.name fish.control.damping fish.control.slow fish.control.course_filter fish.control.ramp sweep expect error ";
+    "wake.spare_vortices solver.rtol solver.order solver.coupling_distance solver.threads solver.max_steps output.file "
+    "output.precision output.forces output.wake_interval steady.tolerance steady.beats steady.output_beats "
+    "steady.formation steady.multipliers defaults fish.name fish.control.damping fish.control.slow "
+    "fish.control.course_filter fish.control.ramp sweep expect error ";
 
 /* The kind of the school of a row: 1 and 2 for rows that begin with r and p, else 0. */
 static int school_kind(const char *row) {

@@ -549,8 +549,7 @@ TEST(forces_by_name_make_up_momentum_and_angular_momentum) {
         TIME
         "fish: [{body: {section: mean, modulus: 1.0e+5}, wave: {amplitude: 0}, motion: {prescribed: head, heave: 0.1,\n"
         "        pitch: 10, frequency: 1}}, {start: {position: [0, 1]}, motion: {prescribed: all, pitch: 20, "
-        "frequency: "
-        "2}}]\n"};
+        "frequency: 2}}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct simulation *const simulation = school_simulation(texts[i]);
         school_run(simulation, 0.53);
@@ -725,8 +724,7 @@ TEST(a_body_that_sweeps_over_a_wake_loses_no_circulation) {
         "time: {end: 1, shedding_interval: 0.02}\nwake: {shedding: sheet}\n"
         "defaults: {fish: {wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"
         "fish: [{motion: {prescribed: all, speed: 2, heave: 0.1, frequency: 2}}, {start: {position: [0.5, -1.2], "
-        "heading: "
-        "90}, motion: {prescribed: all, speed: 3}}]\n");
+        "heading: 90}, motion: {prescribed: all, speed: 3}}]\n");
     double most = 0;
     while (simulation->state->t < 0.6) {
         school_ok(simulate_step(simulation));
@@ -813,8 +811,7 @@ TEST(powers_on_the_water_are_those_of_a_towed_body) {
             SCHOOL_DEFAULTS
             "time: {end: 1, shedding_interval: 0.02}\nsolver: {rtol: 1e-8}\nfluid: {velocity: [%.17g, %.17g]}\n"
             "fish: [{nodes: 7, sheet_points: 21, start: {heading: 137, speed: %g}, motion: {prescribed: head, heave: "
-            "0.1, "
-            "frequency: 1, speed: %g}}]\n",
+            "0.1, frequency: 1, speed: %g}}]\n",
             is_held * -speed * cos(heading), is_held * -speed * sin(heading), speed * !is_held, speed * !is_held);
         school_run(simulation, 0.2);
         simulate_measure(simulation);

@@ -74,8 +74,7 @@ TEST(the_balance_is_closed_with_every_external_force) {
         {"a channel, two lengths",
          "fluid: {walls: [-0.4, 0.8]}\nwake: {lifetime: 0.8, decay: 0.6}\n"
          "fish: [{" FISH "}, {force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, length: 0.5, "
-         "drag: {skin: laminar}, start: {position: [0.5, 0.4], speed: 0.5}, "
-         "body: {depth: 2}}]\n"},
+         "drag: {skin: laminar}, start: {position: [0.5, 0.4], speed: 0.5}, body: {depth: 2}}]\n"},
         {"a load at the tail", "fish: [{" FISH ", load: {tip: [2, -1]}}]\n"},
         {"a prescribed head",
          "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
@@ -89,10 +88,9 @@ TEST(the_balance_is_closed_with_every_external_force) {
          "body: {depth: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, "
          "start: {speed: 4}, motion: {prescribed: all, heave: 0.02, frequency: 1, phase: 90}}]\n"},
         {"a plate that surges",
-         "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
-         "body: {depth: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, "
-         "start: {speed: 1}, "
-         "motion: {prescribed: all, surge: free, heave: 0.02, frequency: 1, phase: 90}}]\n"},
+         "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, body: "
+         "{depth: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, start: {speed: 1}, motion: {prescribed: "
+         "all, surge: free, heave: 0.02, frequency: 1, phase: 90}}]\n"},
         {"finite span", "wake: {lifetime: 0.8, decay: 0.6}\nfish: [{" STRIP "}]\n"},
         {"finite span, no fade", "wake: {lifetime: 0.5, decay: 0}\nfish: [{" STRIP "}]\n"},
         {"finite span, merged", "wake: {lifetime: 10, merge: 0.1}\nfish: [{" STRIP "}]\n"},
@@ -108,10 +106,9 @@ TEST(the_balance_is_closed_with_every_external_force) {
          "fish: [{" STRIP "}, {force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 33, length: 0.5, "
          "drag: {skin: laminar}, start: {position: [0.5, 0.4], speed: 0.5}, body: {depth: 0.4}}]\n"},
         {"finite span, a depth for every edge",
-         "fish: [{force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 65, wave: {ramp: 0.5}, "
-         "drag: {skin: laminar}, start: {speed: 0.5}, body: {profile: table, "
-         "thickness_table: [0.05, 0.1, 0.1, 0.1, 0.08, 0.06, 0.04, 0.02], "
-         "depth_table: [0.12, 0.2, 0.24, 0.24, 0.2, 0.16, 0.18, 0.22]}}]\n"},
+         "fish: [{force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 65, wave: {ramp: 0.5}, drag: "
+         "{skin: laminar}, start: {speed: 0.5}, body: {profile: table, thickness_table: [0.05, 0.1, 0.1, 0.1, 0.08, "
+         "0.06, 0.04, 0.02], depth_table: [0.12, 0.2, 0.24, 0.24, 0.2, 0.16, 0.18, 0.22]}}]\n"},
         {"finite span, a plate that surges",
          "fish: [{force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
          "body: {depth: 0.25, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, start: {speed: 1}, "
@@ -206,8 +203,7 @@ TEST(forces_without_a_reaction_have_no_balance) {
         {"fish: [{force: reactive, nodes: 9, start: {speed: 1}}]\n", 1, 0, 0},
         {"preset: published\nfish: [{}]\n", 1, 0, 0},
         {"fish: [{force: pressure, pressure: {span: infinite}, nodes: 5, body: {profile: table, thickness_table: [0.1, "
-         "0.2, 0.15, 0.05], "
-         "depth_table: [0.2, 0.3, 0.25, 0.1]}}]\n",
+         "0.2, 0.15, 0.05], depth_table: [0.2, 0.3, 0.25, 0.1]}}]\n",
          0, 0, 0},
         // two fish of different depth
         {"fish: [{" FISH "}, {force: pressure, pressure: {span: infinite}, start: {position: [0, 1]}}]\n", 1, 1, 0},

@@ -250,13 +250,11 @@ TEST(bodies_that_pass_through_each_other_are_told) {
     // between two rows, and between two steps: without a fluid a prescribed motion needs few
     expect_warnings(
         "time: {end: 3, shedding_interval: 0.05}\nfluid: {density: 0}\ndefaults: {fish: {wave: {amplitude: 0}, motion: "
-        "{prescribed: all, "
-        "speed: 15}}}\nfish: [{name: a}, {name: b, start: {position: [-6, 0], heading: 0}}]\n",
+        "{prescribed: all, speed: 15}}}\nfish: [{name: a}, {name: b, start: {position: [-6, 0], heading: 0}}]\n",
         1, "c");
     expect_warnings(
         "time: {end: 3, shedding_interval: 0.05}\nfluid: {density: 0}\ndefaults: {fish: {wave: {amplitude: 0}, motion: "
-        "{prescribed: all, "
-        "speed: 15}}}\nfish: [{name: a}, {name: b, start: {position: [-6, 1], heading: 0}}]\n",
+        "{prescribed: all, speed: 15}}}\nfish: [{name: a}, {name: b, start: {position: [-6, 1], heading: 0}}]\n",
         1, "");
     // bodies that could yield, and that the case lets pass: near each other, and through each other
     expect_warnings(TIME

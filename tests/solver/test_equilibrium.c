@@ -150,11 +150,9 @@ static void stiffness_is_that_of_differences(const char *span, const char *fluid
     snprintf(text, sizeof text,
              SCHOOL_DEFAULTS TIME
              "fluid: {density: 1, viscosity: 0, %s}\n"
-             "fish: [{nodes: 4, sheet_points: 9, force: pressure, pressure: {span: %s},"
-             " wave: {amplitude: 0, frequency: 0},"
-             " body: {profile: uniform, thickness: 0.05, depth: 1,"
-             " density: 20, modulus: 1e5},"
-             " start: {heading: 170, speed: 0}, motion: {prescribed: head, speed: 0}}]\n",
+             "fish: [{nodes: 4, sheet_points: 9, force: pressure, pressure: {span: %s}, wave: {amplitude: 0, "
+             "frequency: 0}, body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e5}, start: "
+             "{heading: 170, speed: 0}, motion: {prescribed: head, speed: 0}}]\n",
              fluid, span);
     struct rig rig = rig_of(text);
     struct equilibrium_stiffness stiffness;

@@ -122,8 +122,7 @@ TEST(momenta_follow_at_the_start_and_velocities_later) {
         setup_stirred(TIME
                       "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
                       "fish: [{nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite}, motion: "
-                      "{prescribed: head, heave: 0.1, "
-                      "frequency: 1}}]\n");
+                      "{prescribed: head, heave: 0.1, frequency: 1}}]\n");
     const struct layout *at = &setup.school->fish[0].at;
     double *const y = setup.state->y, before[128];
     struct initial_conditions *solver;

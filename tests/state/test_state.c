@@ -119,8 +119,7 @@ static void set_unknowns(struct setup *setup, double t) {
 TEST(rates_of_quartics_are_exact_after_five_events_without_a_jump) {
     static const char two_fish[] = TIME
         "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{nodes: 5, sheet_points: 9, force: pressure, "
-        "pressure: "
-        "{span: infinite}}, {nodes: 5, force: reactive, start: {position: [0, 2]}}]\n";
+        "pressure: {span: infinite}}, {nodes: 5, force: reactive, start: {position: [0, 2]}}]\n";
     for (int shed_is_algebraic = 0; shed_is_algebraic < 2; shed_is_algebraic++) {
         struct setup setup = setup_of(two_fish);
         const struct fish *const fish = setup.school->fish;

@@ -96,9 +96,8 @@ TEST(a_run_grows_as_fast) {
     NEAR(found.values.growth_frequency, found.omega[0] / (2 * 3.14159265358979), 0, 1e-12);
     const double rate = found.rate[0], period = 1 / found.values.growth_frequency;
 
-    struct simulation *const run = school_simulation(STREAM("[1, 0]") "fish: [{" FLAG
-                                                                      "start: {heading: 179.9994, speed: "
-                                                                      "0}}]\n");
+    struct simulation *const run =
+        school_simulation(STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 179.9994, speed: 0}}]\n");
     const struct fish *const fish = &run->school->fish[0];
     const int tail = fish->at.y + fish->n_nodes - 1;
     double least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
@@ -188,8 +187,7 @@ TEST(what_has_no_stiffness_left_diverges) {
                  SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.05}\nfluid: {density: 1, velocity: [-%g, 0]}\n"
                  "wake: {lifetime: 20}\nfish: [{force: reactive, nodes: 9, sheet_points: 17, wave: {amplitude: 0, "
-                 "frequency: 0}, motion: "
-                 "{prescribed: head}, drag: {tangential: 0}, " PLATE
+                 "frequency: 0}, motion: {prescribed: head}, drag: {tangential: 0}, " PLATE
                  "relaxation_time: 0.2}, start: {heading: 180, speed: 0}}]\n",
                  part[i] * critical);
         find(&found, text);

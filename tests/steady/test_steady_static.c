@@ -48,9 +48,7 @@ TEST(a_run_with_damping_comes_to_it) {
     // across the stream: the body bends by half of the length
     static const char across[] = SCHOOL_DEFAULTS TIME
         "fluid: {density: 1, velocity: [0.5, 0]}\nwake: {lifetime: 5}\n"
-        "fish: [{" HEAD
-        ", added_mass: {coefficient: 0},"
-        " start: {heading: 270, speed: 0}, load: {tip: [0, 0.002]}}]\n";
+        "fish: [{" HEAD ", added_mass: {coefficient: 0}, start: {heading: 270, speed: 0}, load: {tip: [0, 0.002]}}]\n";
     struct answer found;
     answer(&found, pressure);
     school_ok(found.status);

@@ -287,9 +287,7 @@ static void all_options(void) {
     }
     static const char source[] =
         "product of collocation, kutta, shedding, second_moment, profile, drag law, extent, control law, prescribed; "
-        "of "
-        "the "
-        "default model shedding, curve, collocation, section, force, extent, control law, prescribed; two fish";
+        "of the default model shedding, curve, collocation, section, force, extent, control law, prescribed; two fish";
     verify_show("combinations of options", source, worst.n);
     // nonsingular, and so far from singular that the solution keeps twelve of sixteen digits
     verify_zero("largest condition number, rows and columns equilibrated", source, 1 / worst.condition, 1e4);

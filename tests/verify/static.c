@@ -21,9 +21,7 @@ struct body {
 };
 
 static const char pressure[] = VERIFY_ATTACHED,
-                  finite[] =
-                      "force: pressure, drag: {skin: laminar}, pressure: {span: "
-                      "finite, suction_limit: 0}",
+                  finite[] = "force: pressure, drag: {skin: laminar}, pressure: {span: finite, suction_limit: 0}",
                   slender[] = "force: reactive, drag: {tangential: 0}",
                   drag_alone[] = "force: reactive, drag: {tangential: 0}, added_mass: {coefficient: 0}";
 

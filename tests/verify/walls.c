@@ -50,8 +50,7 @@ static struct simulation *open_fish(const char *force, double rtol, const char *
                        "time: {end: 1, output_interval: 0.1}\n"
                        "wake: {tolerance: 0}\n"
                        "solver: {rtol: %.17g}\n"
-                       "%s"
-                       "defaults: {fish: {force: %s}}\n"
+                       "%sdefaults: {fish: {force: %s}}\n"
                        "fish: [{start: {position: [0, 0.25]}}%s]\n",
                        rtol, fluid, force, other);
 }
