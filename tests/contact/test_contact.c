@@ -412,12 +412,9 @@ TEST(bodies_that_are_thrown_back_go_on_tail_first) {
                   "  {start: {position: [0.15, 0], heading: 178, speed: 4}}]\n"}};
     const size_t n_cases = sizeof cases / sizeof *cases;
     for (size_t i = 0; i < 2 * n_cases; i++) {
-        char text[1024];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS TIME
-                 "defaults: {fish: {force: pressure, pressure: {span: %s}, sheet_points: 33, %s}}\n%s",
-                 i < n_cases ? "infinite" : "finite", cases[i % n_cases].defaults, cases[i % n_cases].text);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, pressure: {span: %s}, sheet_points: 33, %s}}\n%s",
+            i < n_cases ? "infinite" : "finite", cases[i % n_cases].defaults, cases[i % n_cases].text);
         double stored = 0;
         while (simulation->state->t < 0.6) {
             school_ok(simulate_step(simulation));

@@ -494,13 +494,11 @@ TEST(waypoints_that_are_set_begin_where_the_fish_is) {
 TEST(work_of_a_stiff_fish_from_rest_has_a_limit_in_the_interval) {
     double work[2];
     for (int i = 0; i < 2; i++) {
-        char text[400];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
-                 "time: {end: 6, shedding_interval: %g}\n"
-                 "fish: [{body: {modulus: 1e8}, control: {law: course}}]\n",
-                 i == 0 ? 0.02 : 0.01);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation =
+            school_simulation_of(SCHOOL_DEFAULTS
+                                 "time: {end: 6, shedding_interval: %g}\n"
+                                 "fish: [{body: {modulus: 1e8}, control: {law: course}}]\n",
+                                 i == 0 ? 0.02 : 0.01);
         school_run(simulation, 6);
         simulate_measure(simulation);
         work[i] = simulation->diagnostics->fish[0].actuation_work;

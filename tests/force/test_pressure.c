@@ -418,17 +418,15 @@ TEST(suction_law_has_a_value_at_rest) {
 
 // a plate at an incidence in a stream, with this suction limit; the caller frees the setup
 static struct simulation *inclined_plate(double degrees, double limit) {
-    char text[512];
-    snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS
-             "time: {end: 1, shedding_interval: 0.01}\n"
-             "fluid: {density: 2, viscosity: 0}\n"
-             "fish: [{force: pressure, pressure: {span: infinite, suction: 0.8, suction_limit: %g}, wave: {amplitude: "
-             "0, frequency: 0},\n"
-             "        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
-             "        motion: {prescribed: all, pitch: %g, pitch_phase: 90}}]\n",
-             limit, degrees);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation = school_simulation_of(
+        SCHOOL_DEFAULTS
+        "time: {end: 1, shedding_interval: 0.01}\n"
+        "fluid: {density: 2, viscosity: 0}\n"
+        "fish: [{force: pressure, pressure: {span: infinite, suction: 0.8, suction_limit: %g}, wave: {amplitude: "
+        "0, frequency: 0},\n"
+        "        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
+        "        motion: {prescribed: all, pitch: %g, pitch_phase: 90}}]\n",
+        limit, degrees);
     school_run(simulation, 0.1);
     simulate_measure(simulation);
     return simulation;

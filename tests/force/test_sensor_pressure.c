@@ -123,18 +123,16 @@ static double potential(const struct simulation *simulation, double t, int f, in
 static void compare_with_differences(double t, const char *keys, const char *fish, int n_mirrors,
                                      const struct mirror *mirrors, double bound) {
     enum { MOST = 64 };
-    char text[1000];
-    snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS
-             "time: {end: 1, shedding_interval: 0.0025}\n"
-             "solver: {rtol: 1e-7}\n"
-             "wake: {smoothing: 1e-3, lifetime: 0.4, decay: 0.39}\n"
-             "sheet: {smoothing: 1e-3}\n"
-             "%sdefaults: {fish: {force: pressure, start: {speed: 0.5}, nodes: 9, sheet_points: 33, sensors: [0.5],\n"
-             "                  wave: {ramp: 0.2}%s}}\n"
-             "fish: [{}, {start: {position: [0.1, 0.4]}, wave: {phase: 70}}]\n",
-             keys, fish);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation = school_simulation_of(
+        SCHOOL_DEFAULTS
+        "time: {end: 1, shedding_interval: 0.0025}\n"
+        "solver: {rtol: 1e-7}\n"
+        "wake: {smoothing: 1e-3, lifetime: 0.4, decay: 0.39}\n"
+        "sheet: {smoothing: 1e-3}\n"
+        "%sdefaults: {fish: {force: pressure, start: {speed: 0.5}, nodes: 9, sheet_points: 33, sensors: [0.5],\n"
+        "                  wave: {ramp: 0.2}%s}}\n"
+        "fish: [{}, {start: {position: [0.1, 0.4]}, wave: {phase: 70}}]\n",
+        keys, fish);
     const struct fish *const of = simulation->school->fish;
     double before[MOST], rate[MOST], most = 0, error = 0;
     AT_MOST(of->n_control, MOST);

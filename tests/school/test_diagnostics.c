@@ -510,17 +510,15 @@ TEST(thrust_and_power_of_a_held_plate_are_means_over_the_last_period) {
 TEST(power_of_a_held_plate_is_the_work_of_muscle_and_drive) {
     double power[2];
     for (int i = 0; i < 2; i++) {
-        char text[768];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
-                 "time: {end: 4, shedding_interval: 0.02}\n"
-                 "fluid: {density: 1, velocity: [%d, 0]}\n"
-                 "fish: [{force: pressure, pressure: {span: infinite}, nodes: 13, wave: {amplitude: 0.1}, body: "
-                 "{profile: uniform, thickness: 0.05,\n"
-                 "  depth: 1, density: 25, modulus: 8.0e+5, relaxation_time: 0.02},\n"
-                 "  motion: {prescribed: head, speed: %d, heave: 0.05, frequency: 1}}]\n",
-                 i, 1 - i);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            SCHOOL_DEFAULTS
+            "time: {end: 4, shedding_interval: 0.02}\n"
+            "fluid: {density: 1, velocity: [%d, 0]}\n"
+            "fish: [{force: pressure, pressure: {span: infinite}, nodes: 13, wave: {amplitude: 0.1}, body: "
+            "{profile: uniform, thickness: 0.05,\n"
+            "  depth: 1, density: 25, modulus: 8.0e+5, relaxation_time: 0.02},\n"
+            "  motion: {prescribed: head, speed: %d, heave: 0.05, frequency: 1}}]\n",
+            i, 1 - i);
         school_run(simulation, 3);
         const double *const work = simulation->state->balance[0].work;
         double before[N_WORKS], of[N_WORKS];

@@ -106,13 +106,12 @@ TEST(the_worst_fish_is_named) {
     // beats of 10 and 5 events, then the other way round; the third one has enough
     static const char *const frequencies[][2] = {{"2", "4"}, {"4", "2"}};
     for (int i = 0; i < 2; i++) {
-        char text[512], line[WARNING_BYTES];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
-                 "time: {end: 1, shedding_interval: 0.05}\nfish: [{name: a, wave: {frequency: %s}}, {name: b, wave: "
-                 "{frequency: %s}, start: {position: [0, 2]}}, {name: c, start: {position: [0, 4]}}]\n",
-                 frequencies[i][0], frequencies[i][1]);
-        struct simulation *const simulation = school_simulation(text);
+        char line[WARNING_BYTES];
+        struct simulation *const simulation = school_simulation_of(
+            SCHOOL_DEFAULTS
+            "time: {end: 1, shedding_interval: 0.05}\nfish: [{name: a, wave: {frequency: %s}}, {name: b, wave: "
+            "{frequency: %s}, start: {position: [0, 2]}}, {name: c, start: {position: [0, 4]}}]\n",
+            frequencies[i][0], frequencies[i][1]);
         simulate_measure(simulation);
         assert_true(warnings_line(WARNING_EVENTS, simulation->school, simulation->state, simulation->diagnostics,
                                   simulation->residual->scratch, line));
