@@ -64,6 +64,16 @@ struct setup setup_of(const char *text) {
     return setup;
 }
 
+struct setup setup_with(const char *format, ...) {
+    char text[4096];
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    assert_in_range(length, 1, sizeof text - 1);
+    return setup_of(text);
+}
+
 struct setup setup_stirred(const char *text) {
     struct setup setup = setup_of(text);
     school_stir(&setup);

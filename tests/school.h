@@ -35,6 +35,7 @@ void school_settings(struct case_values *values, const char *text);
 void school_build(struct setup *setup, const char *text);
 struct setup setup_of(const char *text);      /* the same */
 struct setup setup_stirred(const char *text); /* and school_stir */
+struct setup setup_with(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void school_clear(struct setup *setup);
 
 /* A random number in [-1, 1], always the same ones in the same order. */

@@ -95,9 +95,7 @@ TEST(no_joint_turns_by_more_than_the_largest_turn) {
     static const char *const waves[] = {"amplitude: 0.3, ramp: 0",
                                         "amplitude: 0.3, ramp: 0, table: [[0, 0.6, 0, -0.6], [0, 3, 0, -3]]"};
     for (int i = 0; i < 2; i++) {
-        char text[256];
-        snprintf(text, sizeof text, TIME "fish: [{nodes: 9, wave: {%s}}]\n", waves[i]);
-        struct setup setup = setup_of(text);
+        struct setup setup = setup_with(TIME "fish: [{nodes: 9, wave: {%s}}]\n", waves[i]);
         const struct fish *const fish = setup.school->fish;
         const double largest = fish_largest_turn(fish, 1.5, 0.4);
         NEAR(fish_largest_turn(fish, 1.5, -0.4), largest, 0, 0);

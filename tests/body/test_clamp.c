@@ -155,14 +155,12 @@ static void eliminate(int n, double *a, double *b) {
 // beta L of the lowest mode of a uniform beam with EI/(rho A L^4) = 1 s-2, clamped at its nose: by inverse iteration
 // with the Jacobian's matrix of lateral motion, K/m
 static double lowest_mode(int nodes) {
-    char text[512];
-    snprintf(text, sizeof text,
-             TIME
-             "fluid: {density: 0}\nfish: [{nodes: %d, sheet_points: 5, start: {speed: 0}, wave: {amplitude: 0},\n"
-             "  body: {section: mean, profile: uniform, thickness: 0.001, modulus: 3.2e+10},\n"
-             "  motion: {prescribed: head, speed: 0}}]\n",
-             nodes);
-    struct setup setup = setup_of(text);
+    struct setup setup =
+        setup_with(TIME
+                   "fluid: {density: 0}\nfish: [{nodes: %d, sheet_points: 5, start: {speed: 0}, wave: {amplitude: 0},\n"
+                   "  body: {section: mean, profile: uniform, thickness: 0.001, modulus: 3.2e+10},\n"
+                   "  motion: {prescribed: head, speed: 0}}]\n",
+                   nodes);
     const struct fish *fish = setup.school->fish;
     school_ok(residual_jacobian(setup.residual, &residual_run, 0, 0, setup.state->y, setup.jacobian));
     double *const dense = school_dense_jacobian(setup.jacobian);

@@ -138,13 +138,11 @@ TEST(strains_creep_as_the_law_of_the_material_says) {
     const double relaxation[] = {0, 1e-9, 1e-4, 0.003, 0.02, 0.5, 100, 1e6};
     const double s[3] = {0.3, -2, 7}, h = 0.004, g = 0.007, start = 0.01;
     for (size_t r = 0; r < sizeof relaxation / sizeof *relaxation; r++) {
-        char text[256];
-        snprintf(text, sizeof text,
-                 TIME
-                 "fish: [{nodes: 5, body: {damping: strain, bending_damping: 0, stretching_damping: 0, "
-                 "relaxation_time: %g}}]\n",
-                 relaxation[r]);
-        struct setup setup = setup_of(text);
+        struct setup setup =
+            setup_with(TIME
+                       "fish: [{nodes: 5, body: {damping: strain, bending_damping: 0, stretching_damping: 0, "
+                       "relaxation_time: %g}}]\n",
+                       relaxation[r]);
         const struct fish *fish = setup.school->fish;
         const int n = rod_n_strains(fish);
         const double tau = relaxation[r];

@@ -143,9 +143,8 @@ TEST(a_wall_is_a_spring_that_stiffens) {
     static const double parts[] = {0.1, 0.5, 0.9, 0.99};
     for (int i = 0; i < 4; i++) {
         const double s = parts[i], range = 0.2, wall = -0.05 - s * range;
-        char text[400];
-        snprintf(text, sizeof text, TIME STRAIGHT "fluid: {walls: [%.17g]}\ncontact: {range: 0.2}\nfish: [{}]\n", wall);
-        struct setup setup = setup_of(text);
+        struct setup setup =
+            setup_with(TIME STRAIGHT "fluid: {walls: [%.17g]}\ncontact: {range: 0.2}\nfish: [{}]\n", wall);
         const struct fish *const fish = &setup.school->fish[0];
         const double *const y = setup.state->y, k = fish->contact_strength;
         school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
@@ -186,13 +185,11 @@ TEST(the_energy_above_walls_is_that_of_all_ends) {
 TEST(two_bodies_with_given_motions_pass_through_each_other) {
     static const char *const motions[] = {"all", "head"};
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 TIME
-                 "defaults: {fish: {sheet_points: 9, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1},"
-                 " motion: {prescribed: all}}}\nfish: [{motion: {prescribed: %s}}, {start: {position: [0, 0.2]}}]\n",
-                 motions[i]);
-        struct setup setup = setup_of(text);
+        struct setup setup = setup_with(
+            TIME
+            "defaults: {fish: {sheet_points: 9, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1},"
+            " motion: {prescribed: all}}}\nfish: [{motion: {prescribed: %s}}, {start: {position: [0, 0.2]}}]\n",
+            motions[i]);
         double *const y = setup.state->y;
         const struct fish *const fish = &setup.school->fish[1];
         for (int k = 0; k < fish->n_nodes; k++) y[fish->at.y + k] -= 0.15;

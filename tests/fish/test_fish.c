@@ -262,9 +262,7 @@ TEST(a_wave_has_an_amplitude_a_frequency_and_a_free_body) {
                  {"motion: {prescribed: head, heave: 0.1, frequency: 1}", 1},
                  {"motion: {prescribed: all, heave: 0.1, frequency: 1}", 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[256];
-        snprintf(text, sizeof text, "time: {end: 1, shedding_interval: 0.02}\nfish: [{%s}]\n", cases[i].fish);
-        struct setup setup = setup_of(text);
+        struct setup setup = setup_with("time: {end: 1, shedding_interval: 0.02}\nfish: [{%s}]\n", cases[i].fish);
         const struct fish *const fish = setup.school->fish;
         assert_int_equal(fish_has_wave(fish), cases[i].has_wave);
         // the friction of a body on which a wave travels

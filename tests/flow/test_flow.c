@@ -115,13 +115,11 @@ TEST(external_flow_is_stream_plus_shear_plus_gust) {
 TEST(a_travelling_gust_moves_along_the_stream) {
     static const char *const profiles[] = {"profile: sine, wavelength: 0.7", "profile: step, gradient_distance: 0.4"};
     for (int i = 0; i < 2; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 TIME
-                 "fluid: {velocity: [0.6, 0.8], shear: 0.3, gust: {amplitude: 1, position: 0.2, %s}}\n"
-                 "fish: [{nodes: 5, sheet_points: 21, force: published}]\n",
-                 profiles[i]);
-        struct setup setup = setup_of(text);
+        struct setup setup =
+            setup_with(TIME
+                       "fluid: {velocity: [0.6, 0.8], shear: 0.3, gust: {amplitude: 1, position: 0.2, %s}}\n"
+                       "fish: [{nodes: 5, sheet_points: 21, force: published}]\n",
+                       profiles[i]);
         const struct school *const school = setup.school;
 
         // the zero of the sine and the middle of the step are 0.2 m along the stream at the start, and move at 1 m/s

@@ -78,14 +78,11 @@ TEST(derivatives_agree_with_differences) {
 // Bound circulations q (m) of a plate at rest along x in the stream (cos alpha, sin alpha). The smoothing of the free
 // vortex is so wide that the vortex induces no velocity: only the bound sheet remains.
 static void solve_plate(const char *collocation, const char *kutta, int m, const char *more, double *q) {
-    char text[512];
-    snprintf(text, sizeof text,
-             TIME
-             "fluid: {velocity: [0.8, 0.6]%s}\n"
-             "wake: {smoothing: 1.0e+9}\nsheet: {collocation: %s, kutta: %s}\n"
-             "fish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n",
-             more, collocation, kutta, m);
-    struct setup setup = setup_of(text);
+    struct setup setup = setup_with(TIME
+                                    "fluid: {velocity: [0.8, 0.6]%s}\n"
+                                    "wake: {smoothing: 1.0e+9}\nsheet: {collocation: %s, kutta: %s}\n"
+                                    "fish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n",
+                                    more, collocation, kutta, m);
     struct initial_conditions *consistent;
     school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
     school_ok(initial_conditions_solve(consistent, &residual_run, 0, setup.state->y, setup.state->yp));
@@ -148,11 +145,8 @@ TEST(plate_with_midpoints_converges) {
 
 // bound circulation of a plate beside a vortex of circulation 1 at (0.4, 0.3) with smoothing 0.2
 static double circulation_beside_a_vortex(int m) {
-    char text[512];
-    snprintf(text, sizeof text,
-             TIME "wake: {smoothing: 0.2}\nfish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n",
-             m);
-    struct setup setup = setup_of(text);
+    struct setup setup = setup_with(
+        TIME "wake: {smoothing: 0.2}\nfish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n", m);
     wake_release(&setup.state->wake[0], 0.4, 0.3, 1, 0);
     struct initial_conditions *consistent;
     school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
@@ -179,14 +173,11 @@ TEST(chebyshev_points_converge_spectrally) {
  * place: positions of the nodes as functions of the arc length. Shed circulation induces no velocity. */
 typedef void line(double s, double place[2]);
 static double circulation_of_a_bent_body(line *place, const char *curve, int n_nodes, int m) {
-    char text[512];
-    snprintf(text, sizeof text,
-             TIME
-             "fluid: {velocity: [%.17g, %.17g]}\n"
-             "wake: {smoothing: 1.0e+9}\nsheet: {curve: %s}\n"
-             "fish: [{nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {speed: 0}}]\n",
-             cos(pi / 18), sin(pi / 18), curve, n_nodes, m);
-    struct setup setup = setup_of(text);
+    struct setup setup = setup_with(TIME
+                                    "fluid: {velocity: [%.17g, %.17g]}\n"
+                                    "wake: {smoothing: 1.0e+9}\nsheet: {curve: %s}\n"
+                                    "fish: [{nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {speed: 0}}]\n",
+                                    cos(pi / 18), sin(pi / 18), curve, n_nodes, m);
     const struct fish *fish = setup.school->fish;
     for (int k = 0; k < n_nodes; k++) {
         double at[2];
@@ -283,13 +274,11 @@ TEST(strength_is_circulation_per_length_of_the_body_as_it_is) {
 TEST(end_correction_makes_a_sheet_that_ends_with_a_step_exact) {
     // a plate along x at rest with the strength s/L, except 0 at the tail point: normal velocity by Cauchy's integral
     for (int m = 5; m <= 33; m += 14) {
-        char text[200];
-        snprintf(text, sizeof text,
-                 TIME
-                 "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{sheet_points: %d, length: 1.2, start: "
-                 "{speed: 0}}]\n",
-                 m);
-        struct setup setup = setup_of(text);
+        struct setup setup =
+            setup_with(TIME
+                       "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{sheet_points: %d, length: 1.2, start: "
+                       "{speed: 0}}]\n",
+                       m);
         const struct fish *fish = setup.school->fish;
         double *const y = setup.state->y, with[64];
         for (int j = 1; j < m - 1; j++) y[fish->at.gamma + j] = fish_mean(&fish->sheet_point[j], fish->arc) / 1.2;

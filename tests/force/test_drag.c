@@ -141,11 +141,9 @@ TEST(a_body_with_a_wave_has_the_factor_of_waving) {
                  {"wave: {amplitude: 0}, motion: {prescribed: head, heave: 0.1, frequency: 1}", 1},
                  {"drag: {waving: 1.2}", 1.2}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[512];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, pressure: {span: infinite}}}\nfish: [{%s}]\n",
-                 cases[i].fish);
-        struct setup setup = setup_of(text);
+        struct setup setup = setup_with(
+            SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, pressure: {span: infinite}}}\nfish: [{%s}]\n",
+            cases[i].fish);
         assert_int_equal(setup.school->fish->friction, FRICTION_BOUNDARY_LAYER);
         NEAR(setup.school->fish->waving, cases[i].waving, 0, 0);
     }
@@ -251,14 +249,12 @@ TEST(cross_flow_drag_of_a_strip_is_the_suction_of_its_side_edges) {
                                         {1, 2.136},    {2, 1.551},   {4, 0.967},    {8, 0.537}};
     for (size_t i = 0; i < sizeof suction / sizeof *suction; i++) {
         for (int is_thick = 0; is_thick < 2; is_thick++) {
-            char text[400];
-            snprintf(text, sizeof text,
-                     TIME
-                     "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
-                     "fish: [{length: 2, nodes: 9, sheet_points: 101, force: pressure, pressure: {span: finite},\n"
-                     "        body: {depth: %g}, drag: {normal: 3}, added_mass: {extent: %s}}]\n",
-                     suction[i][0], is_thick ? "thickness" : "depth");
-            struct setup setup = setup_of(text);
+            struct setup setup = setup_with(
+                TIME
+                "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+                "fish: [{length: 2, nodes: 9, sheet_points: 101, force: pressure, pressure: {span: finite},\n"
+                "        body: {depth: %g}, drag: {normal: 3}, added_mass: {extent: %s}}]\n",
+                suction[i][0], is_thick ? "thickness" : "depth");
             const struct fish *const fish = setup.school->fish;
             const double flat = 1000 * 3 * 2 * suction[i][0] * (2.0 / 8) / 2;
             for (int k = 0; k < fish->n_edges; k++) {
@@ -277,15 +273,13 @@ TEST(cross_flow_drag_of_a_strip_is_the_suction_of_its_side_edges) {
 TEST(cross_flow_drag_of_an_edge_has_the_depth_of_the_edge) {
     static const double depth[] = {0.5, 0.7, 0.6, 0.4};
     for (int is_finite = 0; is_finite < 2; is_finite++) {
-        char text[500];
-        snprintf(text, sizeof text,
-                 TIME
-                 "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
-                 "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: %s}, drag: {normal: 1},\n"
-                 "        body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05],\n"
-                 "               depth_table: [0.5, 0.7, 0.6, 0.4]}}]\n",
-                 is_finite ? "finite" : "infinite");
-        struct setup setup = setup_of(text);
+        struct setup setup =
+            setup_with(TIME
+                       "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+                       "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: %s}, drag: {normal: 1},\n"
+                       "        body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05],\n"
+                       "               depth_table: [0.5, 0.7, 0.6, 0.4]}}]\n",
+                       is_finite ? "finite" : "infinite");
         for (int k = 0; k < 4; k++) {
             const double a = depth[k], share = is_finite ? (3.4 + a) / (3.4 + 2.4 * a + 0.7 * a * a) : 1;
             NEAR(setup.school->fish->drag_normal[k], 1000 * share * a * 0.25 / 2, 0, 1e-14);
@@ -301,13 +295,10 @@ TEST(drag_of_a_towed_body_has_form_and_no_waving) {
     const double speed = 0.7, reynolds = speed * 2 / 0.002, area = 3 * speed * speed * 2 * 0.8;
     const double blasius = 1.328 / sqrt(reynolds), want[] = {blasius, 1.3 * blasius, 1.3 * 0.074 / pow(reynolds, 0.2)};
     for (int i = 0; i < 3; i++) {
-        char text[400];
-        snprintf(text, sizeof text,
-                 TIME
-                 "fluid: {viscosity: 0.002, density: 3}\n"
-                 "fish: [{length: 2, body: {depth: 0.4}, drag: {%s, normal: 2%s}}]\n",
-                 keys[i], i > 0 ? ", skin: boundary_layer" : "");
-        struct setup setup = setup_of(text);
+        struct setup setup = setup_with(TIME
+                                        "fluid: {viscosity: 0.002, density: 3}\n"
+                                        "fish: [{length: 2, body: {depth: 0.4}, drag: {%s, normal: 2%s}}]\n",
+                                        keys[i], i > 0 ? ", skin: boundary_layer" : "");
         NEAR(drag_towed(setup.school->fish, speed), area * want[i], 0, 1e-7);
         school_clear(&setup);
     }

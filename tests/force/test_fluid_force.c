@@ -75,9 +75,7 @@ TEST(jacobian_agrees_with_differences) {
 
 // total force (fx, fy) on a plate along the heading 180 degrees that moves with (vx, vy) in still fluid
 static void force_on_plate(const char *keys, double vx, double vy, double ay, double force[2]) {
-    char text[256];
-    snprintf(text, sizeof text, TIME "fish: [{body: {profile: uniform, thickness: 0.1}, %s}]\n", keys);
-    struct setup setup = setup_of(text);
+    struct setup setup = setup_with(TIME "fish: [{body: {profile: uniform, thickness: 0.1}, %s}]\n", keys);
     const struct fish *fish = setup.school->fish;
     for (int k = 0; k < fish->n_nodes; k++) {
         setup.state->y[fish->at.vx + k] = vx;

@@ -112,14 +112,11 @@ TEST(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_s
 // forces on the nodes of a straight plate of 7 nodes along the x axis, nose first, with prescribed motion in still
 // fluid
 static void forces_on_plate(const char *motion, double t, double force[7][2]) {
-    char text[512];
-    snprintf(text, sizeof text,
-             TIME
-             "fish: [{force: reactive, body: {profile: uniform, thickness: 0.1, depth: 0.3},\n"
-             "        drag: {" NO_DRAG
-             "}, added_mass: {extent: depth, coefficient: 1}, motion: {prescribed: all, %s}}]\n",
-             motion);
-    struct setup setup = setup_of(text);
+    struct setup setup = setup_with(TIME
+                                    "fish: [{force: reactive, body: {profile: uniform, thickness: 0.1, depth: 0.3},\n"
+                                    "        drag: {" NO_DRAG
+                                    "}, added_mass: {extent: depth, coefficient: 1}, motion: {prescribed: all, %s}}]\n",
+                                    motion);
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     for (int k = 0; k < fish->n_nodes; k++) {

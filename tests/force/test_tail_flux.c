@@ -123,9 +123,7 @@ TEST(its_mass_is_that_of_the_extent_at_the_tail) {
                  {"force: reactive, body: {profile: uniform, thickness: 0.1}", 1000 * 1.5 * 0.01},
                  {"force: published, added_mass: {extent: depth}", 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[256];
-        snprintf(text, sizeof text, TIME "fish: [{%s}]\n", cases[i].keys);
-        struct setup setup = setup_of(text);
+        struct setup setup = setup_with(TIME "fish: [{%s}]\n", cases[i].keys);
         NEAR(setup.school->fish[0].tail_added_mass, pi / 4 * cases[i].mass, 0, 1e-14);
     }
 }

@@ -129,9 +129,7 @@ TEST(legs_grow_along_the_sheet_and_old_stretches_have_fewer_points) {
 TEST(stretches_decay_by_labels_only_if_rings_must_stay_closed) {
     static const char *const fish[] = {SPAN("infinite"), SPAN("finite")};
     for (int k = 0; k < 2; k++) {
-        char text[512];
-        snprintf(text, sizeof text, TIME "wake: {shedding: sheet, lifetime: 0.2, decay: 0.15}\n%s", fish[k]);
-        struct setup setup = setup_of(text);
+        struct setup setup = setup_with(TIME "wake: {shedding: sheet, lifetime: 0.2, decay: 0.15}\n%s", fish[k]);
         struct wake *const wake = &setup.state->wake[0];
         for (int i = 0; i < 8; i++) {
             wake_release(wake, i, sin(i), 0.1 * cos(i), setup.state->t - 0.02 * (8 - i));
