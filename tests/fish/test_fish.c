@@ -194,13 +194,24 @@ TEST(start_without_ramp_has_the_natural_shape) {
 }
 
 TEST(overlapping_fish_are_refused) {
-    struct case_values values;
-    school_settings(&values, TIME "fish: [{}, {start: {position: [0.3, 0.05]}}]\n");
-    struct school *school = (struct school *)&values;
-    assert_int_equal(fish_school_create(NULL, &school, &values.school), STATUS_CASE);
-    assert_null(school);
-    assert_non_null(strstr(status_message(), "overlap"));
-    case_free(&values);
+    // fish 1 and 4 overlap, and fish 3 overlaps 2 and 0: named is the first fish that overlaps one before, with the
+    // first of those, in whatever order the fish lie
+    for (int side = -1; side <= 1; side += 2) {
+        struct case_values values;
+        char text[512];
+        snprintf(text, sizeof text,
+                 TIME
+                 "defaults: {fish: {start: {position: [0, 0]}}}\n"
+                 "fish: [{start: {position: [%g, 0.04]}}, {start: {position: [%g, 0]}}, {}, "
+                 "{start: {position: [%g, 0.02]}}, {start: {position: [%g, 0.02]}}]\n",
+                 side * 1.2, side * 9.0, side * 0.6, side * 9.1);
+        school_settings(&values, text);
+        struct school *school = (struct school *)&values;
+        assert_int_equal(fish_school_create(NULL, &school, &values.school), STATUS_CASE);
+        assert_null(school);
+        assert_non_null(strstr(status_message(), "fish[0] (fish1) and fish[3] (fish4) overlap"));
+        case_free(&values);
+    }
 }
 
 TEST(fish_that_begin_beyond_a_wall_are_refused) {

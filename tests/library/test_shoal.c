@@ -10,6 +10,7 @@
 
 #include "base/version.h"
 #include "failing_malloc.h"
+#include "library/handle.h"
 #include "result/checkpoint.h"
 #include "result/durable.h"
 #include "result/netcdf.h"
@@ -955,6 +956,22 @@ TEST(a_body_is_where_it_was_put_with_its_velocity) {
     assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
     NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
     BELOW(fabs(one_of(run, "energy_balance", 0) - audit[2]), 1e-3 * fabs(one_of(run, "kinetic_energy", 0)));
+    shoal_close(run);
+}
+
+TEST(a_body_that_is_put_across_itself_is_remembered) {
+    struct shoal *const run = opened_to_change(state, 0.1);
+    double x[18];
+    assert_int_equal(shoal_state(run, 0, x, NULL), SHOAL_OK);
+    assert_int_equal(run->simulation->state->crossed, -1);
+    // eight edges that turn by 1.1 rad each: more than a circle
+    for (int k = 0; k < 8; k++) {
+        x[2 * k + 2] = x[2 * k] + cos(1.1 * k) / 8;
+        x[2 * k + 3] = x[2 * k + 1] + sin(1.1 * k) / 8;
+    }
+    assert_int_equal(shoal_set_state(run, 0, x, NULL), SHOAL_OK);
+    assert_int_equal(run->simulation->state->crossed, 0);
+    NEAR(run->simulation->state->crossed_t, 0.1, 0, 1e-15);
     shoal_close(run);
 }
 

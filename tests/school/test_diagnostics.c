@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "body/rod.h"
+#include "flow/flow_at_bodies.h"
 #include "force/drag.h"
 #include "school.h"
 #include "school/diagnostics.h"
@@ -152,6 +153,21 @@ TEST(after_a_jump_the_balance_goes_on_from_the_powers_of_then) {
         NEAR(balance->t[0], simulation->state->t, 0, 0);
         NEAR(balance->power[0][WORK_ALL], total, 1e-9, 1e-9);
         NEAR(balance->power[0][WORK_ACTUATION], fish->actuation_power, 1e-9, 1e-9);
+
+        // drag is friction along the edges and cross-flow drag
+        const struct flow_at_body flow = flow_at_body(simulation->residual->flow, 0);
+        double drag = 0, along = 0;
+        for (int k = 0; k < simulation->school->fish->n_edges; k++) {
+            const struct edge edge = edge_at(simulation->school->fish, k, simulation->state->y);
+            double w[2], force[2], friction[2];
+            flow_relative_velocity(simulation->school->fish, k, edge.velocity, flow.u, flow.v, w);
+            drag_force(simulation->school->fish, k, &edge, w, force, friction);
+            drag += edge_dot(force, edge.velocity);
+            along += edge_dot(friction, edge.velocity);
+        }
+        NEAR(fish->drag_power, drag, 0, 1e-12);
+        NEAR(fish->friction_power, along, 0, 1e-12);
+        NEAR(fish->cross_flow_power, drag - along, 0, 1e-12);
     }
 }
 

@@ -219,6 +219,14 @@ TEST(scales_are_lengths_and_beats) {
         const struct steady_unknown unknown = {0, (enum steady_quantity)i};
         NEAR(steady_map_scale(&setup.problem.map, unknown), want[i], 0, 1e-15);
     }
+
+    // what is read in these units is put in them
+    double value[STEADY_QUANTITIES], now[STEADY_QUANTITIES];
+    steady_problem_read(&setup.problem, value);
+    for (int i = 0; i < setup.problem.n_unknowns; i++) value[i] += 0.01 * (i + 1);
+    school_ok(steady_problem_put(&setup.problem, value));
+    steady_problem_read(&setup.problem, now);
+    NEAR_ARRAY(setup.problem.n_unknowns, now, value, 1e-9, 0);
 }
 
 TEST(a_held_fish_is_steady_when_its_forces_repeat) {

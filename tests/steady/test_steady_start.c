@@ -29,11 +29,12 @@ static int tear_down(void **state) {
 
 TEST_GROUP(set_up, tear_down)
 
-/* A steady state of n fish: heading of the first fish in degrees, speeds, nodes (n, N_NODES, 2). */
+/* A steady state of n fish in the last of two rows: heading of the first fish in degrees, speeds, nodes (n, N_NODES,
+ * 2). */
 static void put_state(int n, double heading, const double *speed, const double *nodes) {
     int file, dimension[4], variable[3];
     const char *const names[] = {"time", "fish", "node", "xy"};
-    const size_t lengths[] = {1, (size_t)n, N_NODES, 2};
+    const size_t lengths[] = {2, (size_t)n, N_NODES, 2}, last[] = {1, 0, 0, 0}, row[] = {1, (size_t)n, N_NODES, 2};
     const double headings[N_FISH] = {heading, 77};
     assert_int_equal(nc_create(path, NC_CLOBBER | NC_64BIT_DATA, &file), NC_NOERR);
     for (int d = 0; d < 4; d++) assert_int_equal(nc_def_dim(file, names[d], lengths[d], &dimension[d]), NC_NOERR);
@@ -41,8 +42,8 @@ static void put_state(int n, double heading, const double *speed, const double *
     assert_int_equal(nc_def_var(file, "heading", NC_DOUBLE, 2, dimension, &variable[1]), NC_NOERR);
     assert_int_equal(nc_def_var(file, "steady_speed", NC_DOUBLE, 1, dimension + 1, &variable[2]), NC_NOERR);
     assert_int_equal(nc_enddef(file), NC_NOERR);
-    assert_int_equal(nc_put_var_double(file, variable[0], nodes), NC_NOERR);
-    assert_int_equal(nc_put_var_double(file, variable[1], headings), NC_NOERR);
+    assert_int_equal(nc_put_vara_double(file, variable[0], last, row, nodes), NC_NOERR);
+    assert_int_equal(nc_put_vara_double(file, variable[1], last, row, headings), NC_NOERR);
     assert_int_equal(nc_put_var_double(file, variable[2], speed), NC_NOERR);
     assert_int_equal(nc_close(file), NC_NOERR);
 }
