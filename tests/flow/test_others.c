@@ -193,6 +193,37 @@ TEST(a_displaced_body_has_fewer_far_sources) {
     BELOW(error, 1);
 }
 
+// a shift of everything leaves every source as far as it was
+TEST(what_is_far_does_not_depend_on_the_origin) {
+    struct simulation *const simulation = swum("finite", 0.8);
+    const struct school *const school = simulation->school;
+    struct state *const at = simulation->state;
+    const double shift[] = {64, -32};
+    int near[2][64] = {{0}}, n_far = 0;
+    for (int moved = 0; moved < 2; moved++) {
+        flow_velocity(simulation->residual->flow, at, at->t, at->y, false);
+        for (int i = 0; i < 16; i++) {
+            const struct others_near of = others_near(simulation->residual->flow, i / 4, i % 4);
+            near[moved][4 * i] = of.body.n;
+            near[moved][4 * i + 1] = of.n_wake;
+            for (int k = 0; k < of.n_wake; k++) near[moved][4 * i + 2] += of.wake[k].n;
+            n_far += of.body.n == 0;
+        }
+        for (int f = 0; f < 4; f++) {
+            const struct layout *const layout = &school->fish[f].at;
+            for (int i = layout->x; i < layout->vx; i++) {
+                at->y[i] += shift[i >= layout->y];
+                for (int p = 0; p < STATE_PAST; p++) at->past[p * school->n_unknowns + i] += shift[i >= layout->y];
+            }
+            for (int i = 0; i < at->wake[f].n_vortex; i++) at->wake[f].x[i] += shift[0], at->wake[f].y[i] += shift[1];
+            at->wake[f].version++;
+        }
+    }
+    AT_LEAST(n_far, 2);
+    assert_memory_equal(near[0], near[1], sizeof near[0]);
+    simulate_free(simulation);
+}
+
 TEST(a_body_elsewhere_feels_all_sources) {
     struct simulation *const simulation = swum("finite", 0.8);
     struct school *const school = simulation->school;

@@ -363,14 +363,30 @@ TEST(unknowns_have_names_kinds_and_scales) {
         assert_string_equal(place.name, want[k].name);
         NEAR(kind[want[k].i], want[k].kind, 0, 0);
     }
-    // a fish of twice the length and the same beat
-    NEAR(residual_scale(setup.school, b->y), 2 * residual_scale(setup.school, a->y), 0, 1e-14);
-    NEAR(residual_scale(setup.school, b->vx), 2 * residual_scale(setup.school, a->vx), 0, 1e-14);
-    NEAR(residual_scale(setup.school, b->circulation), 4 * residual_scale(setup.school, a->circulation), 0, 1e-14);
+    // every slice in turn, with scales of the dimension of its unknowns: a fish of twice the length and three times the
+    // beat, with the added momenta of the same shape
+    school_build(&setup, SCHOOL_DEFAULTS TIME
+                 "defaults: {fish: {force: pressure, nodes: 5, sheet_points: 21}}\n"
+                 "fish: [{}, {length: 2, wave: {frequency: 3}, start: {position: [0, 3]}}]\n");
+    static const char *const names[] = {"x", "y", "vx", "vy", "px", "py", "ax", "ay", "gamma", "circulation", "phi0"};
+    a = &setup.school->fish[0].at;
+    const int first[] = {a->x,  a->y,  a->vx,    a->vy,          a->px,   a->py,
+                         a->ax, a->ay, a->gamma, a->circulation, a->phi0, a->end};
+    const double units[] = {2, 2, 6, 6, 6, 6, 18, 18, 6, 12, 1};
+    for (int s = 0; s < 11; s++) {
+        for (int i = first[s]; i < first[s + 1]; i++) {
+            const struct unknown_place place = residual_place(setup.school, i);
+            assert_int_equal(place.kind, (enum unknown)s);
+            assert_int_equal(place.index, i - first[s]);
+            assert_int_equal(place.component, s < UNKNOWN_GAMMA ? s % 2 : 0);
+            assert_string_equal(place.name, names[s]);
+            NEAR(residual_scale(setup.school, i + a->end), units[s] * residual_scale(setup.school, i), 0, 1e-14);
+            NEAR(residual_undamped(setup.school, i), s >= UNKNOWN_VX && s <= UNKNOWN_PY ? 1 / 3e3 : 1, 0, 1e-15);
+        }
+    }
     // velocities of methods without damping: ten times the scale of the positions in the time 1/f, f = 1 Hz
     NEAR(residual_scale(setup.school, a->vx) * residual_undamped(setup.school, a->vx),
          10 * residual_scale(setup.school, a->x), 0, 1e-14);
-    NEAR(residual_undamped(setup.school, a->x), 1, 0, 0);
 }
 
 TEST(circulation_shed_is_differential_only_with_a_rate) {
@@ -444,7 +460,7 @@ static int n_coupled(const struct residual *residual) {
 TEST(more_fish_couple_when_asked_until_all_do) {
     struct setup setup;
     // gaps of 0.5, 1.5, and 3 between those that are not neighbours
-    school_build(&setup, TIME
+    school_build(&setup, SCHOOL_DEFAULTS TIME
                  "solver: {coupling_distance: 0.1}\n"
                  "fish: [{}, {start: {position: [1.5, 0]}}, {start: {position: [4, 0]}}]\n");
     struct residual *const residual = setup.residual;
