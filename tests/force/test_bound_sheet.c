@@ -55,14 +55,10 @@ TEST(derivatives_agree_with_differences) {
         TIME "wake: {shedding: sheet}\nfish: [{sheet_points: 9}]\n",
         TIME "sheet: {curve: smooth, collocation: midpoint}\nfish: [{sheet_points: 15, nodes: 4}]\n",
         TIME FAR
-        "sheet: {curve: smooth}\n"
-        "fish:\n"
-        "  - {sheet_points: 9}\n"
+        "sheet: {curve: smooth}\nfish:\n  - {sheet_points: 9}\n"
         "  - {nodes: 5, sheet_points: 13, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n",
         TIME FAR
-        "sheet: {collocation: midpoint}\n"
-        "fish:\n"
-        "  - {sheet_points: 9}\n"
+        "sheet: {collocation: midpoint}\nfish:\n  - {sheet_points: 9}\n"
         "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
         "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
     const enum bound_sheet_law laws[] = {BOUND_SHEET_EDGE, BOUND_SHEET_RATE, BOUND_SHEET_FROZEN};
@@ -174,8 +170,7 @@ TEST(chebyshev_points_converge_spectrally) {
 typedef void line(double s, double place[2]);
 static double circulation_of_a_bent_body(line *place, const char *curve, int n_nodes, int m) {
     struct setup setup = setup_with(TIME
-                                    "fluid: {velocity: [%.17g, %.17g]}\n"
-                                    "wake: {smoothing: 1.0e+9}\nsheet: {curve: %s}\n"
+                                    "fluid: {velocity: [%.17g, %.17g]}\nwake: {smoothing: 1.0e+9}\nsheet: {curve: %s}\n"
                                     "fish: [{nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {speed: 0}}]\n",
                                     cos(pi / 18), sin(pi / 18), curve, n_nodes, m);
     const struct fish *fish = setup.school->fish;

@@ -62,8 +62,7 @@ TEST(jacobian_agrees_with_differences) {
         "fish: [{sheet_points: 9, force: reactive, body: {section: mean}, \n"
         "        drag: {law: linear_quadratic, linear_speed: 0.7}, added_mass: {extent: depth}}]\n",
         TIME FAR
-        "fish:\n"
-        "  - {sheet_points: 9}\n"
+        "fish:\n  - {sheet_points: 9}\n"
         "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
         "     force: reactive, drag: {law: linear_quadratic}, added_mass: {extent: depth}}\n"
         "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};

@@ -19,11 +19,9 @@ static void build_plate(struct setup *setup, int nodes, int points, const char *
     char text[1024];
     snprintf(text, sizeof text,
              SCHOOL_DEFAULTS
-             "time: {end: 1, shedding_interval: 0.002}\n"
-             "fluid: {density: 1, viscosity: 0}\n"
+             "time: {end: 1, shedding_interval: 0.002}\nfluid: {density: 1, viscosity: 0}\n"
              "fish: [{nodes: %d, sheet_points: %d, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, "
-             "frequency: 0},\n"
-             "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
+             "frequency: 0},\n        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
              nodes, 2 * nodes - 1, more);
     school_settings(&setup->values, text);
     arena_move(setup->values.arena, test_arena());
@@ -118,8 +116,7 @@ TEST(added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep) {
         char text[1024];
         snprintf(text, sizeof text,
                  SCHOOL_DEFAULTS
-                 "time: {end: 1, shedding_interval: 0.002}\n"
-                 "fluid: {density: 1, viscosity: 0}\n"
+                 "time: {end: 1, shedding_interval: 0.002}\nfluid: {density: 1, viscosity: 0}\n"
                  "fish: [{nodes: 17, sheet_points: 65, force: pressure, pressure: {span: finite},\n"
                  "        wave: {amplitude: 0, frequency: 0},\n"
                  "        body: {profile: uniform, thickness: 0.1, depth: %g}}]\n",
@@ -158,8 +155,7 @@ TEST(added_mass_of_finite_span_is_symmetric_and_positive) {
         char text[1024];
         snprintf(text, sizeof text,
                  SCHOOL_DEFAULTS
-                 "time: {end: 1, shedding_interval: 0.002}\n"
-                 "fluid: {density: 1, viscosity: 0}\n"
+                 "time: {end: 1, shedding_interval: 0.002}\nfluid: {density: 1, viscosity: 0}\n"
                  "fish: [{nodes: 9, sheet_points: 65, force: pressure, pressure: {span: finite},\n"
                  "        wave: {amplitude: 0, frequency: 0}, body: {%s}}]\n",
                  cases[i].depth);
@@ -218,8 +214,7 @@ TEST(a_stream_that_starts_at_once_pushes_by_the_added_mass) {
     snprintf(body, sizeof body, "density: %.17g, modulus: 1.0e+9, relaxation_time: 0.01", mass / (pi / 4 * 0.1));
     struct simulation *const simulation = school_simulation_of(
         SCHOOL_DEFAULTS
-        "time: {end: 1, shedding_interval: 0.002}\n"
-        "fluid: {density: 1, viscosity: 0, velocity: [0, 0.1]}\n"
+        "time: {end: 1, shedding_interval: 0.002}\nfluid: {density: 1, viscosity: 0, velocity: [0, 0.1]}\n"
         "fish: [{nodes: 17, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0},\n"
         "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
         body);
@@ -248,8 +243,7 @@ TEST(momenta_scale_with_the_deeper_end) {
                  SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 800}\n"
                  "fish: [{nodes: 5, sheet_points: 21, length: 2, force: pressure, pressure: {span: infinite}, body: "
-                 "{profile: table,\n"
-                 "    thickness_table: [0.1, 0.1, 0.1, 0.1], depth_table: [%s]}}]\n",
+                 "{profile: table,\n    thickness_table: [0.1, 0.1, 0.1, 0.1], depth_table: [%s]}}]\n",
                  depths[i]);
         school_build(&setup, text);
         const struct fish *const fish = setup.school->fish;
@@ -265,8 +259,7 @@ TEST(momenta_scale_with_the_deeper_end) {
 TEST(force_and_reaction_are_those_of_the_jump) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 1, shedding_interval: 0.01}\n"
-                          "fluid: {density: 2, viscosity: 0}\n"
+                          "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 2, viscosity: 0}\n"
                           "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, "
                           "start: {speed: 1}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
                           "        motion: {prescribed: all, heave: 0.05, pitch: 5, frequency: 1}}]\n");
@@ -350,8 +343,7 @@ TEST(forces_turn_with_the_fish_and_a_stream_carries_them) {
             const double a = frames[i].heading * pi / 180, stream = frames[i].stream;
             struct simulation *const simulation = school_simulation_of(
                 SCHOOL_DEFAULTS
-                "time: {end: 1, shedding_interval: 0.01}\n"
-                "fluid: {velocity: [%g, 0]}\nsolver: {rtol: 1.0e-9}\n"
+                "time: {end: 1, shedding_interval: 0.01}\nfluid: {velocity: [%g, 0]}\nsolver: {rtol: 1.0e-9}\n"
                 "fish: [{nodes: 7, sheet_points: 21, pressure: {span: %s}, start: {speed: %g, heading: %g}}]\n",
                 stream, spans[k], 0.8 + stream, frames[i].heading);
             school_run(simulation, 0.1);
@@ -420,11 +412,9 @@ TEST(suction_law_has_a_value_at_rest) {
 static struct simulation *inclined_plate(double degrees, double limit) {
     struct simulation *const simulation = school_simulation_of(
         SCHOOL_DEFAULTS
-        "time: {end: 1, shedding_interval: 0.01}\n"
-        "fluid: {density: 2, viscosity: 0}\n"
+        "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 2, viscosity: 0}\n"
         "fish: [{force: pressure, pressure: {span: infinite, suction: 0.8, suction_limit: %g}, wave: {amplitude: "
-        "0, frequency: 0},\n"
-        "        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
+        "0, frequency: 0},\n        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
         "        motion: {prescribed: all, pitch: %g, pitch_phase: 90}}]\n",
         limit, degrees);
     school_run(simulation, 0.1);
@@ -569,8 +559,7 @@ TEST(a_kink_at_the_tail_has_its_exact_circulation) {
 TEST(energy_and_momentum_of_a_free_fish_are_accounted_for) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 1, shedding_interval: 0.01}\n"
-                          "solver: {rtol: 1.0e-6}\n"
+                          "time: {end: 1, shedding_interval: 0.01}\nsolver: {rtol: 1.0e-6}\n"
                           "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite}, body: "
                           "{modulus: 3.0e+4}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n");
     const struct fish *fish = simulation->school->fish;

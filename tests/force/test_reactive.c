@@ -275,8 +275,7 @@ static struct simulation *ideal_fish(double amplitude, double number, double pha
     char text[512];
     snprintf(text, sizeof text,
              "time: {end: 60, shedding_interval: 0.05}\n" STILL
-             "solver: {method: rk4, step: 0.001}\n"
-             "fish: [{force: reactive, start: {speed: 0}, drag: {" NO_DRAG
+             "solver: {method: rk4, step: 0.001}\nfish: [{force: reactive, start: {speed: 0}, drag: {" NO_DRAG
              "}, body: {modulus: 2.0e+4, relaxation_time: 0, " NO_DAMPING
              "}, wave: {ramp: 0, amplitude: %g, number: %g, phase: %g}}]\n",
              amplitude, number, phase);

@@ -10,8 +10,7 @@ static const double pi = 3.14159265358979323846;
 TEST(a_body_that_glides_reads_the_stagnation_pressure_at_the_nose) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 1}\n"
-                          "fluid: {density: 2, velocity: [0.5, 0]}\n"
+                          "time: {end: 1}\nfluid: {density: 2, velocity: [0.5, 0]}\n"
                           "fish: [{force: pressure, pressure: {span: infinite}, sensors: [0, 0.1, 0.5, 1], wave: "
                           "{amplitude: 0, frequency: 0},\n"
                           "        start: {speed: 1}, body: {profile: uniform, thickness: 0.1},\n"
@@ -125,13 +124,10 @@ static void compare_with_differences(double t, const char *keys, const char *fis
     enum { MOST = 64 };
     struct simulation *const simulation = school_simulation_of(
         SCHOOL_DEFAULTS
-        "time: {end: 1, shedding_interval: 0.0025}\n"
-        "solver: {rtol: 1e-7}\n"
-        "wake: {smoothing: 1e-3, lifetime: 0.4, decay: 0.39}\n"
-        "sheet: {smoothing: 1e-3}\n"
+        "time: {end: 1, shedding_interval: 0.0025}\nsolver: {rtol: 1e-7}\n"
+        "wake: {smoothing: 1e-3, lifetime: 0.4, decay: 0.39}\nsheet: {smoothing: 1e-3}\n"
         "%sdefaults: {fish: {force: pressure, start: {speed: 0.5}, nodes: 9, sheet_points: 33, sensors: [0.5],\n"
-        "                  wave: {ramp: 0.2}%s}}\n"
-        "fish: [{}, {start: {position: [0.1, 0.4]}, wave: {phase: 70}}]\n",
+        "                  wave: {ramp: 0.2}%s}}\nfish: [{}, {start: {position: [0.1, 0.4]}, wave: {phase: 70}}]\n",
         keys, fish);
     const struct fish *const of = simulation->school->fish;
     double before[MOST], rate[MOST], most = 0, error = 0;

@@ -47,8 +47,7 @@ TEST(derivatives_agree_with_differences) {
         // swimming backwards: no flux along a leading tail
         TIME "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE ", start: {speed: -2}}]\n",
         TIME
-        "solver: {coupling_distance: 100}\ncontact: {action: warn}\n"
-        "fluid: {velocity: [0.3, -0.2], shear: 0.7}\n"
+        "solver: {coupling_distance: 100}\ncontact: {action: warn}\nfluid: {velocity: [0.3, -0.2], shear: 0.7}\n"
         "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE
         "}, {nodes: 5, sheet_points: 7, start: {position: [0.2, 0.5]}}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
@@ -135,8 +134,7 @@ TEST(a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes) {
     for (int i = 0; i < 3; i++) {
         struct simulation *const simulation = school_simulation_of(
             SCHOOL_DEFAULTS TIME
-            "wake: {smoothing: 1.0e+6}\n"
-            "fish: [{force: reactive, nodes: %d, sheet_points: %d,\n"
+            "wake: {smoothing: 1.0e+6}\nfish: [{force: reactive, nodes: %d, sheet_points: %d,\n"
             "        body: {profile: uniform, thickness: 0.1, modulus: 1.0e+8, damping: curvature,\n"
             "               relaxation_time: 0.001}}]\n",
             nodes[i], nodes[i] > 17 ? 2 * nodes[i] - 1 : 33);

@@ -11,13 +11,10 @@
 // one fish; coupled fish; a prescribed head; circulation as a differential unknown; jumps
 static const char *const cases[] = {
     "time: {end: 0.4, shedding_interval: 0.02}\n" FISH,
-    "time: {end: 0.4, shedding_interval: 0.02}\n"
-    "fluid: {velocity: [0.1, -0.05], shear: 0.2}\n"
-    "fish:\n"
+    "time: {end: 0.4, shedding_interval: 0.02}\nfluid: {velocity: [0.1, -0.05], shear: 0.2}\nfish:\n"
     "  - {nodes: 7, sheet_points: 13, control: {law: heading, desired_heading: 150}}\n"
     "  - {nodes: 9, length: 0.8, sheet_points: 11, start: {position: [0.2, 0.5]}, drag: {law: linear_quadratic}}\n",
-    "time: {end: 0.4, shedding_interval: 0.02}\n"
-    "fluid: {velocity: [-1, 0]}\n"
+    "time: {end: 0.4, shedding_interval: 0.02}\nfluid: {velocity: [-1, 0]}\n"
     "fish: [{nodes: 8, sheet_points: 15, wave: {amplitude: 0}, start: {speed: 0},\n"
     "        motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1, speed: 0}}]\n",
     "time: {end: 0.4, shedding_interval: 0.02}\nsheet: {kutta: rate}\n" FISH,
@@ -40,8 +37,7 @@ static double tail_at_end(const char *text, const char *solver) {
 static const char *const with_pressure[] = {
     PRESSURE "fish: [{nodes: 7, force: pressure}]\n",
     PRESSURE
-    "fish:\n"
-    "  - {nodes: 7, force: pressure, control: {law: heading, desired_heading: 150}}\n"
+    "fish:\n  - {nodes: 7, force: pressure, control: {law: heading, desired_heading: 150}}\n"
     "  - {nodes: 9, force: pressure, length: 0.8, start: {position: [0.2, 0.5]}, drag: {law: linear_quadratic}}\n",
 };
 

@@ -8,10 +8,8 @@
 
 // without drag: v|v| has a kink in its derivative, at which no method keeps an order above three
 static const char soft[] =
-    "time: {end: 0.4, shedding_interval: 0.02}\n"
-    "solver: {method: %s, step: %.9g, rtol: %.3g, order: 5}\n"
-    "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4},\n"
-    "        drag: {normal: 0, tangential: 0}}]\n";
+    "time: {end: 0.4, shedding_interval: 0.02}\nsolver: {method: %s, step: %.9g, rtol: %.3g, order: 5}\n"
+    "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4},\n        drag: {normal: 0, tangential: 0}}]\n";
 
 // y of the tail at the end
 static double tail_at_end(const char *method, double step, double rtol) {
@@ -79,8 +77,7 @@ TEST(explicit_and_implicit_solutions_agree) {
 
 TEST(an_unstable_step_ends_with_a_message_that_tells_the_time) {
     struct simulation *const simulation = school_simulation(
-        "time: {end: 1, shedding_interval: 0.02}\n"
-        "solver: {method: rk4, step: 0.02}\n"
+        "time: {end: 1, shedding_interval: 0.02}\nsolver: {method: rk4, step: 0.02}\n"
         "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+9}}]\n");
     school_fails(simulation, "unstable at t = ");
     assert_non_null(strstr(status_message(), "solver.method: ida"));
@@ -92,8 +89,7 @@ TEST(an_unstable_step_ends_with_a_message_that_tells_the_time) {
 TEST(a_torn_body_is_no_result) {
     // in no fluid too long a step tears the body apart, and every number stays finite
     struct simulation *const simulation = school_simulation(
-        "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 0}\n"
-        "solver: {method: rk4, step: 0.01}\n"
+        "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 0}\nsolver: {method: rk4, step: 0.01}\n"
         "fish: [{nodes: 7, sheet_points: 5, body: {modulus: 1.0e+7, bending_damping: 0,\n"
         "        stretching_damping: 0}}]\n");
     school_fails(simulation, "unstable at t = ");
@@ -137,8 +133,7 @@ TEST(a_failure_without_a_reason_is_not_explained_by_an_old_message) {
 
 TEST(the_rate_of_the_shed_circulation_is_a_difference_of_events) {
     struct simulation *const simulation = school_simulation(
-        "time: {end: 1, shedding_interval: 0.005}\n"
-        "solver: {method: rk4, step: 0.005}\n"
+        "time: {end: 1, shedding_interval: 0.005}\nsolver: {method: rk4, step: 0.005}\n"
         "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4}, wave: {ramp: 0},\n"
         "        control: {law: heading, desired_heading: 150}}]\n");
     school_shed_event_by_event(simulation);

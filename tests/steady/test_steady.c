@@ -63,8 +63,7 @@ TEST(a_plate_with_limited_suction_has_the_speed_of_a_long_run) {
         "fish: [{nodes: 5, sheet_points: 17, force: pressure, pressure: {span: infinite, suction_limit: 0.14}, start: "
         "{speed: 5},\n"
         "        wave: {amplitude: 0, frequency: 0}, body: {profile: uniform, thickness: 0.1, depth: 1, density: "
-        "1.59},\n"
-        "        motion: {prescribed: all, surge: free, heave: 0.175, frequency: 1}}]\n";
+        "1.59},\n        motion: {prescribed: all, surge: free, heave: 0.175, frequency: 1}}]\n";
     struct steady_setup setup;
     struct brute brute[60];
     steady_setup_open(&setup, text);
@@ -231,11 +230,9 @@ TEST(scales_are_lengths_and_beats) {
 
 TEST(a_held_fish_is_steady_when_its_forces_repeat) {
     struct steady_setup setup;
-    steady_setup_open(&setup, COARSE
-                      "fluid: {velocity: [1, 0]}\n"
-                      "fish: [{" FISH
-                      ", wave: {amplitude: 0}, body: {modulus: 3e6},"
-                      " motion: {prescribed: head, heave: 0.05, frequency: 1, phase: 90, speed: 0}}]\n");
+    steady_setup_open(&setup, COARSE "fluid: {velocity: [1, 0]}\nfish: [{" FISH
+                                     ", wave: {amplitude: 0}, body: {modulus: 3e6},"
+                                     " motion: {prescribed: head, heave: 0.05, frequency: 1, phase: 90, speed: 0}}]\n");
     assert_int_equal(setup.problem.n_unknowns, 0);
     school_ok(steady_search_run(&setup.problem));
     const double thrust = setup.problem.map.last[0].thrust, power = setup.problem.map.last[0].driving;
@@ -246,11 +243,9 @@ TEST(a_held_fish_is_steady_when_its_forces_repeat) {
 
 TEST(a_beat_without_a_finite_value_is_not_steady) {
     struct steady_setup setup;
-    steady_setup_open(&setup, COARSE
-                      "fluid: {velocity: [1, 0]}\n"
-                      "fish: [{" FISH
-                      ", wave: {amplitude: 0}, body: {modulus: 1e9},"
-                      " motion: {prescribed: all, heave: 0.001, frequency: 1, speed: 0}}]\n");
+    steady_setup_open(&setup, COARSE "fluid: {velocity: [1, 0]}\nfish: [{" FISH
+                                     ", wave: {amplitude: 0}, body: {modulus: 1e9},"
+                                     " motion: {prescribed: all, heave: 0.001, frequency: 1, speed: 0}}]\n");
     steady_setup_beats(&setup, 3);
     struct steady_beat *const now = &setup.problem.map.last[0];
     double *const values[] = {&now->speed, &now->turn, &now->thrust, &now->driving, &now->rms_power};
@@ -268,11 +263,9 @@ TEST(a_beat_without_a_finite_value_is_not_steady) {
 TEST(two_beats_in_a_row_are_steady) {
     // a tolerance that every beat meets
     struct steady_setup setup;
-    steady_setup_open(&setup, COARSE
-                      "fluid: {velocity: [1, 0]}\nsteady: {tolerance: 0.1}\n"
-                      "fish: [{" FISH
-                      ", wave: {amplitude: 0}, body: {modulus: 1e9},"
-                      " motion: {prescribed: all, heave: 0.001, frequency: 1, speed: 0}}]\n");
+    steady_setup_open(&setup, COARSE "fluid: {velocity: [1, 0]}\nsteady: {tolerance: 0.1}\nfish: [{" FISH
+                                     ", wave: {amplitude: 0}, body: {modulus: 1e9},"
+                                     " motion: {prescribed: all, heave: 0.001, frequency: 1, speed: 0}}]\n");
     assert_int_equal(setup.problem.n_unknowns, 0);
     school_ok(steady_search_run(&setup.problem));
     print_message("%d beats\n", (int)setup.problem.map.n_beats);
@@ -390,8 +383,7 @@ TEST(of_a_held_fish_thrust_and_power_must_repeat) {
 TEST(headings_are_seen_from_the_first_fish_and_its_from_the_first_that_is_steered) {
     struct simulation *const simulation = school_simulation(
         COARSE "defaults: {fish: {" FISH
-               "}}\n"
-               "fish: [{start: {heading: 20}}, {start: {position: [0, 3], heading: 50}, control: {law: heading, "
+               "}}\nfish: [{start: {heading: 20}}, {start: {position: [0, 3], heading: 50}, control: {law: heading, "
                "desired_heading: 15}}, {start: {position: [0, 6], heading: -170}, control: {law: heading, "
                "desired_heading: 100}}]\n");
     struct steady_map map;

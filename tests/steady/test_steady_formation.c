@@ -60,11 +60,9 @@ TEST(between_two_stable_places_is_one_that_the_follower_leaves) {
 
 TEST(fish_that_swim_freely_keep_the_place_that_is_found) {
     struct steady_setup setup;
-    steady_setup_open(&setup, COARSE
-                      "steady: {formation: true, tolerance: 1e-3}\n"
-                      "defaults: {fish: {" FISH
-                      ", start: {speed: 0.75}, control: {law: heading, desired_heading: 180}}}\n"
-                      "fish: [{}, {start: {position: [1.4, 0]}}]\n");
+    steady_setup_open(&setup, COARSE "steady: {formation: true, tolerance: 1e-3}\ndefaults: {fish: {" FISH
+                                     ", start: {speed: 0.75}, control: {law: heading, desired_heading: 180}}}\n"
+                                     "fish: [{}, {start: {position: [1.4, 0]}}]\n");
     // speed, slip and turn of both, heading of the first, place and heading of the second relative to the first
     assert_int_equal(setup.problem.n_unknowns, 10);
     school_ok(steady_search_run(&setup.problem));

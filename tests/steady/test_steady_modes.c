@@ -63,8 +63,7 @@ TEST(without_water_they_are_those_of_a_clamped_beam) {
 TEST(modes_without_damping_are_told_apart) {
     static const char text[] = SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 1e-9, velocity: [1, 0], viscosity: 0}\n"
-        "wake: {lifetime: 1}\n"
-        "fish: [{nodes: 17, sheet_points: 33, " CLAMPED PLATE
+        "wake: {lifetime: 1}\nfish: [{nodes: 17, sheet_points: 33, " CLAMPED PLATE
         "relaxation_time: 0}, start: {heading: 180, speed: 0}}]\n";
     struct found found;
     find(&found, text);

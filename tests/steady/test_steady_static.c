@@ -41,8 +41,7 @@ static void is_where_a_run_ends(const struct answer *answer, const char *text, d
 
 TEST(a_run_with_damping_comes_to_it) {
     static const char pressure[] = SCHOOL_DEFAULTS TIME
-        "fluid: {density: 1, velocity: [0.3, 0], viscosity: 0}\nwake: {lifetime: 20}\n"
-        "fish: [{" BODY
+        "fluid: {density: 1, velocity: [0.3, 0], viscosity: 0}\nwake: {lifetime: 20}\nfish: [{" BODY
         ", motion: {prescribed: head, speed: 0}, force: pressure, pressure: {span: infinite}, start: {heading: 170, "
         "speed: 0}}]\n";
     // across the stream: the body bends by half of the length
@@ -66,8 +65,7 @@ TEST(a_run_with_damping_comes_to_it) {
 TEST(a_body_of_finite_span_has_legs_to_infinity) {
     struct answer found;
     answer(&found, SCHOOL_DEFAULTS TIME
-           "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\n"
-           "fish: [{" BODY
+           "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\nfish: [{" BODY
            ", force: pressure, pressure: {span: finite, suction_limit: 0}, start: {heading: 179, speed: 0},"
            " motion: {prescribed: all, speed: 0}}]\n");
     school_ok(found.status);
@@ -101,8 +99,7 @@ TEST(a_body_of_finite_span_has_legs_to_infinity) {
 TEST(forces_are_those_along_and_across_the_stream) {
     struct answer found;
     answer(&found, SCHOOL_DEFAULTS TIME
-           "fluid: {density: 1, velocity: [0, 2], viscosity: 0}\n"
-           "fish: [{" BODY
+           "fluid: {density: 1, velocity: [0, 2], viscosity: 0}\nfish: [{" BODY
            ", force: pressure, pressure: {span: infinite, suction_limit: 0}, start: {heading: 260, speed: 0},"
            " motion: {prescribed: all, speed: 0}}]\n");
     school_ok(found.status);
@@ -195,9 +192,8 @@ TEST(what_can_have_no_equilibrium_is_refused_with_the_reason) {
                                  ", start: {position: [3, 0], heading: 190}, motion: {prescribed: head, speed: 1}}]\n",
             "move at different velocities");
     refused(SCHOOL_DEFAULTS TIME "fluid: {gust: {amplitude: 0.1, frequency: 1}}\nfish: [{" HEAD "}]\n", "gust");
-    refused(SCHOOL_DEFAULTS TIME
-            "fluid: {shear: 0.1}\n"
-            "fish: [{" SLENDER ", start: {heading: 90}, motion: {prescribed: head, speed: 1}}]\n",
+    refused(SCHOOL_DEFAULTS TIME "fluid: {shear: 0.1}\nfish: [{" SLENDER
+                                 ", start: {heading: 90}, motion: {prescribed: head, speed: 1}}]\n",
             "across a shear");
     refused(SCHOOL_DEFAULTS TIME "wake: {removed_circulation: dropped}\nfish: [{" HEAD "}]\n", "retained");
     refused(SCHOOL_DEFAULTS TIME
