@@ -37,6 +37,34 @@ TEST(nobody_repels_what_is_farther_than_the_range) {
     }
 }
 
+// oblique bodies side by side, in pairs: the boxes around all of them overlap, and only partners are within the range;
+// a body that gets through its partner in a step is noticed in every pair
+TEST(of_many_candidates_only_partners_are_in_contact) {
+    char text[1024];
+    int end = snprintf(text, sizeof text, TIME STRAIGHT "fish:\n");
+    for (int f = 0; f < 6; f++) {
+        const double side = sqrt(0.5) * (0.27 * (f / 2) + 0.119 * (f % 2));
+        end += snprintf(text + end, sizeof text - (size_t)end,
+                        "  - {start: {position: [%.17g, %.17g], heading: 225}}\n", -side, side);
+    }
+    struct setup setup = setup_of(text);
+    struct contact *const contact = setup.residual->contact;
+    double *const y = setup.state->y;
+    memcpy(setup.state->closest->before, y, sizeof *y * (size_t)setup.school->n_unknowns);
+    school_ok(contact_find(contact, setup.state, 0, y));
+    for (int f = 0; f < 6; f++) {
+        const int *other;
+        assert_int_equal(contact_partners(contact, f, &other), 1);
+        assert_int_equal(other[0], f ^ 1);
+    }
+    for (int f = 1; f < 6; f += 2) {
+        const struct fish *const fish = &setup.school->fish[f];
+        for (int i = 0; i < 2 * fish->n_nodes; i++) y[fish->at.x + i] += i < fish->n_nodes ? 0.11 : -0.11;
+        assert_int_equal(contact_find(contact, setup.state, 0, y), STATUS_RETRY);
+        memcpy(y, setup.state->closest->before, sizeof *y * (size_t)setup.school->n_unknowns);
+    }
+}
+
 static double energy_of_school(struct setup *setup, const double *y) {
     double energy = 0;
     for (int f = 0; f < setup->school->n_fish; f++) energy += contact_terms(setup->residual->contact, f, y).energy;

@@ -209,6 +209,56 @@ TEST(two_wakes_have_opposite_forces_for_each_other) {
     "}, "                                                                                          \
     "start: {position: [0, " #y "], heading: " #heading "}"
 
+// every sum begins at zero, whatever the arrays hold
+TEST(sums_do_not_depend_on_the_evaluation_before) {
+    struct simulation *const simulation = school_simulation(
+        TIME SHEET "fluid: {walls: [-0.6, 0.8]}\nfish: [{" MIRRORED(0.3, 170, 0) "}, {" MIRRORED(-0.3, 190, 90) "}]\n");
+    school_run(simulation, 0.1);
+    struct flow *const flow = simulation->residual->flow;
+    double *const all[] = {flow->u,
+                           flow->v,
+                           flow->u_x,
+                           flow->u_y,
+                           flow->v_x,
+                           flow->div,
+                           flow->div_x,
+                           flow->div_y,
+                           flow->image_u,
+                           flow->image_v,
+                           flow->image_div,
+                           flow->image_leg_v,
+                           flow->wake_u,
+                           flow->wake_v,
+                           flow->wake_div,
+                           flow->wake_rate,
+                           flow->wake_leg_u,
+                           flow->wake_leg_v,
+                           flow->wake_leg_div,
+                           flow->wake_image_u,
+                           flow->wake_image_v,
+                           flow->wake_image_div,
+                           flow->wake_image_leg_v};
+    enum { N = sizeof all / sizeof *all, MOST = 256 };
+    static double kept[N][MOST];
+    double rate[2][6];
+    AT_MOST(flow->n_points, MOST);
+    AT_MOST(flow->n_markers, MOST);
+    for (int again = 0; again < 2; again++) {
+        flow_gradient(flow, simulation->state, simulation->state->t, simulation->state->y, false);
+        flow_at_wake(flow, simulation->state);
+        flow_images(flow, simulation->state);
+        flow_leg_rate(flow, 0, rate[again], rate[again] + 3);
+        for (int k = 0; k < N; k++) {
+            for (int i = 0; i < (k < 12 ? flow->n_points : flow->n_markers); i++) {
+                if (again) NEAR(all[k][i], kept[k][i], 0, 0);
+                kept[k][i] = all[k][i];
+                all[k][i] = 7;
+            }
+        }
+    }
+    NEAR_ARRAY(6, rate[1], rate[0], 0, 0);
+}
+
 // a wall between a fish and its mirror image changes nothing, also for rings, whose circulation changes
 TEST(a_wall_is_a_mirror) {
     static const char *const texts[] = {"fluid: {walls: [0]}\nfish: [{" MIRRORED(0.3, 170, 0) "}]\n",
