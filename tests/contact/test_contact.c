@@ -381,8 +381,7 @@ TEST(walls_throw_bodies_back) {
          "solver: {rtol: 1.0e-6}\n" TIME
          "fluid: {density: 0, walls: [-0.42, 0.62]}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
          "defaults: {fish: {" PASSIVE
-         ", start: {speed: 4}}}\n"
-         "fish: [{start: {heading: 160}}, {start: {position: [0.1, 0.2], heading: 200}}]\n",
+         ", start: {speed: 4}}}\nfish: [{start: {heading: 160}}, {start: {position: [0.1, 0.2], heading: 200}}]\n",
          0.3, 5e-3);
 }
 
@@ -524,8 +523,7 @@ TEST(of_many_contacts_the_least_gap_is_named) {
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
             "time: {end: 1, shedding_interval: 0.02}\nfluid: {walls: [0]}\nsolver: {max_steps: 1}\n"
-            "contact: {range: 0.1}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
-            "defaults: {fish: {" PASSIVE
+            "contact: {range: 0.1}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\ndefaults: {fish: {" PASSIVE
             ", body: {profile: uniform, thickness: 0.1}}}\n"
             "fish: [{name: a, start: {position: [0, 0.13]}}, {name: b, start: {position: [5, 0.09]}},\n"
             "    {name: c, start: {position: [10, 0.11]}}, {name: d, start: {position: [15, 1]}},\n"

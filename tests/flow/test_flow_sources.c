@@ -498,8 +498,7 @@ static void build_large(struct setup *setup, const char *tolerance, int n) {
              SCHOOL_DEFAULTS
              "time: {end: 1, shedding_interval: 0.02}\nwake: {tolerance: %s}\nfluid: {walls: [-1.5]}\n"
              "contact: {action: warn}\n"
-             "defaults: {fish: {nodes: 25, sheet_points: 199, force: pressure, pressure: {span: %s}}}\n"
-             "fish:\n"
+             "defaults: {fish: {nodes: 25, sheet_points: 199, force: pressure, pressure: {span: %s}}}\nfish:\n"
              "  - {start: {position: [0, 0]}}\n  - {start: {position: [0.5, 1]}}\n  - {start: {position: [0, 2]}}\n"
              "  - {start: {position: [0.5, 3]}}\n  - {length: 0.8, start: {position: [0, -0.9]}}\n",
              tolerance, kind == INFINITE ? "infinite" : "finite");

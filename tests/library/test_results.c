@@ -47,13 +47,11 @@ static const struct run {
      "     drag: {law: linear_quadratic, linear_speed: 0.3}}]\n"},
     {"pressure", TIME STREAM
      "wake: {lifetime: 0.2, spare_vortices: 6, vortices: [[0.5, 0.4, 0.05], [-0.4, -0.3, -0.04]]}\n"
-     "output: {forces: edges}\n"
-     "fish: [{" FISH
+     "output: {forces: edges}\nfish: [{" FISH
      ", force: pressure, start: {heading: 170, speed: 0.6}, pressure: {span: infinite, suction_limit: 0.12},\n"
      "     drag: {skin: boundary_layer, transition: 1e5}},\n"
      "    {nodes: 6, sheet_points: 19, length: 1.2, force: pressure, pressure: {span: infinite}, start: {position: "
-     "[0.2, 0.7], speed: 0.7},\n"
-     "     wave: {frequency: 3}, drag: {skin: laminar}}]\n"},
+     "[0.2, 0.7], speed: 0.7},\n     wave: {frequency: 3}, drag: {skin: laminar}}]\n"},
     {"span", TIME
      "fluid: {walls: [-0.6], velocity: [0.1, 0], shear: 0.2}\nwake: {lifetime: 0.2, decay: 0.1}\n"
      "fish: [{nodes: 5, sheet_points: 21, wave: {frequency: 4}, force: pressure, pressure: {span: finite}, start: "
@@ -64,22 +62,19 @@ static const struct run {
     {"channel", TIME "fluid: {walls: [-0.5, 0.8], velocity: [0.3, 0]}\nwake: {lifetime: 0.2}\ncontact: {range: 0.05}\n"
                      "fish: [{" SLENDER ", start: {heading: 160, speed: 0.9}},\n"
                      "    {nodes: 6, sheet_points: 13, length: 0.8, force: pressure, pressure: {span: infinite}, "
-                     "start: {position: [0.3, 0.5], heading: 190},\n"
-                     "     wave: {frequency: 3}}]\n"},
+                     "start: {position: [0.3, 0.5], heading: 190},\n     wave: {frequency: 3}}]\n"},
     {"published",
      "format: 1\ntime: {end: 0.3, shedding_interval: 0.0125}\nsolver: {method: rk4, step: 2.5e-4}\npreset: published\n"
      "fluid: {velocity: [0.2, 0.1]}\nwake: {lifetime: 0.1}\n"
      "fish: [{sheet_points: 15, wave: {frequency: 4, ramp: 0.2}, start: {speed: 0.7}},\n"
      "    {sheet_points: 13, length: 0.8, wave: {frequency: 3}, start: {position: [0.2, 0.6], speed: 0.5, heading: "
-     "170},\n"
-     "     control: {law: heading, desired_heading: [[0, 170], [0.3, 150]], feedforward: 0.5, filter: 0.2}}]\n"},
+     "170},\n     control: {law: heading, desired_heading: [[0, 170], [0.3, 150]], feedforward: 0.5, filter: 0.2}}]\n"},
     {"steered", TIME STREAM
      "wake: {shedding: continuous, removed_circulation: dropped, lifetime: 0.12, decay: 0.05}\n"
      "fish: [{" SLENDER ", start: {speed: 0.8}, control: {law: heading, waypoints: [[-0.3, 0.2], [-1, -1]],\n"
      "     acceptance_radius: 0.3, gain: 1.5, limit: 0.8}},\n"
      "    {" SLENDER ", length: 0.9, start: {position: [0.2, 0.6], speed: 0.6}, control: {law: averaged_heading,\n"
-     "     desired_heading: 150, rate: 2, feedforward: 30, filter: 0.2}},\n"
-     "    {" SLENDER
+     "     desired_heading: 150, rate: 2, feedforward: 30, filter: 0.2}},\n    {" SLENDER
      ", start: {position: [0.1, -0.7], speed: 0.7}, control: {law: course, desired_heading: 200, damping: 0.1}}]\n"},
     {"driven", TIME
      "fluid: {velocity: [0.4, 0.1], shear: 0.5}\noutput: {forces: edges}\n"
@@ -87,8 +82,7 @@ static const struct run {
      "10, pitch_phase: 80,\n"
      "     frequency: 4, pivot: 0.2}, load: {tip: [3, -8]}, body: {damping: curvature, relaxation_time: 0.01}},\n"
      "    {" SLENDER ", start: {position: [0.2, 0.7]}, motion: {prescribed: all, heave: 0.1, pitch: 20, frequency: 4,\n"
-     "     speed: 0.5}},\n"
-     "    {" SLENDER
+     "     speed: 0.5}},\n    {" SLENDER
      ", start: {position: [0.1, -0.7], heading: 180, speed: 0.4}, motion: {prescribed: head, surge: free,\n"
      "     heave: 0.05, frequency: 4}}]\n"},
     {"contact", "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {rtol: 1e-8}\n" BODY
@@ -108,8 +102,7 @@ static const struct run {
      "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: trapezoid, step: 1.25e-3}\n" BODY STREAM
      "wake: {lifetime: 0.1}\noutput: {forces: edges}\n"
      "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, start: {heading: 170, speed: 0.8}, drag: {skin: "
-     "boundary_layer}},\n"
-     "    {" SLENDER
+     "boundary_layer}},\n    {" SLENDER
      ", length: 0.8, start: {position: [0.2, 0.6], speed: 0.5}, control: {law: heading, desired_heading: 170}}]\n"},
     {"implicit_euler",
      "format: 1\ntime: {end: 0.2, shedding_interval: 0.0125}\nsolver: {method: implicit_euler, step: 1.25e-3}\n" BODY
@@ -129,8 +122,7 @@ static const struct run {
      "fish: [{" FISH ", force: pressure, pressure: {span: infinite}, body: {modulus: 1e5}, load: {tip: [1, 2]},\n"
      "     motion: {prescribed: head, heave: 0.05, pitch: 10, frequency: 4}}]\n"},
     {"changed", TIME STREAM
-     "wake: {lifetime: 0.25, decay: 0.1, spare_vortices: 9}\n"
-     "fish: [{" SLENDER ", start: {heading: 170, speed: 0.8}},\n"
+     "wake: {lifetime: 0.25, decay: 0.1, spare_vortices: 9}\nfish: [{" SLENDER ", start: {heading: 170, speed: 0.8}},\n"
      "    {" FISH ", force: pressure, pressure: {span: infinite}, start: {position: [0.2, 0.7], speed: 0.6}}]\n"},
     // names with "steady": steady states
     {"steady_equilibrium",
@@ -140,8 +132,7 @@ static const struct run {
      "constant: 1, linear: 0.5, frequency: 0},\n     control: {bias: 0.4}, motion: {prescribed: head}, body: {modulus: "
      "4e4, profile: uniform, thickness: 0.03},\n     start: {heading: 175}, load: {tip: [0.01, 0.02]}},\n"
      "    {force: reactive, nodes: 5, sheet_points: 13, length: 0.7, wave: {frequency: 0, amplitude: 0}, motion: "
-     "{prescribed: all},\n"
-     "     start: {position: [0.3, 0.8], heading: 160}}]\n"},
+     "{prescribed: all},\n     start: {position: [0.3, 0.8], heading: 160}}]\n"},
     {"steady_circle",
      "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n" BODY
      "fluid: {velocity: [0.2, 0.1]}\nsteady: {tolerance: 1e-6}\n"

@@ -97,14 +97,12 @@ TEST(a_turn_of_everything_turns_the_run) {
 TEST(the_mirror_image_of_a_case_runs_as_the_mirror_image) {
     struct outcome one[2], mirrored[2];
     outcomes_of(TIME TIGHT
-                "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
-                "fish: [{control: {law: heading, desired_heading: 160}},\n"
+                "fluid: {velocity: [0.1, 0.05], shear: 0.2}\nfish: [{control: {law: heading, desired_heading: 160}},\n"
                 "  {start: {position: [0.3, 0.6], heading: 170}, control: {bias: 0.2}}]\n",
                 2, one);
     // y becomes -y: the wave is half a beat on, angles, bias and shear change sign
     outcomes_of(TIME TIGHT
-                "fluid: {velocity: [0.1, -0.05], shear: -0.2}\n"
-                "defaults: {fish: {wave: {phase: 180}}}\n"
+                "fluid: {velocity: [0.1, -0.05], shear: -0.2}\ndefaults: {fish: {wave: {phase: 180}}}\n"
                 "fish: [{control: {law: heading, desired_heading: 200}},\n"
                 "  {start: {position: [0.3, -0.6], heading: 190}, control: {bias: -0.2}}]\n",
                 2, mirrored);

@@ -75,8 +75,7 @@ TEST(strains_are_integrated_with_third_order) {
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
             school_simulation_of(TIME
-                                 "solver: {method: rk4, step: %g}\n"
-                                 "fish: [{nodes: 7, sheet_points: 13,\n"
+                                 "solver: {method: rk4, step: %g}\nfish: [{nodes: 7, sheet_points: 13,\n"
                                  "  body: {modulus: 1.0e+4, damping: strain, relaxation_time: 0.05}}]\n",
                                  2e-3 / (1 << i));
         const struct fish *const fish = &simulation->school->fish[0];
@@ -495,8 +494,7 @@ TEST(thrust_and_power_of_a_held_plate_are_means_over_the_last_period) {
     enum { N = 100 };
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS
-                          "time: {end: 2, shedding_interval: 0.01}\n"
-                          "fluid: {density: 2, viscosity: 1.0e-5}\n"
+                          "time: {end: 2, shedding_interval: 0.01}\nfluid: {density: 2, viscosity: 1.0e-5}\n"
                           "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0}, start: {speed: "
                           "1}, body: {profile: uniform},\n"
                           "        motion: {prescribed: all, heave: 0.05, frequency: 1}}]\n");
@@ -528,11 +526,9 @@ TEST(power_of_a_held_plate_is_the_work_of_muscle_and_drive) {
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
             SCHOOL_DEFAULTS
-            "time: {end: 4, shedding_interval: 0.02}\n"
-            "fluid: {density: 1, velocity: [%d, 0]}\n"
+            "time: {end: 4, shedding_interval: 0.02}\nfluid: {density: 1, velocity: [%d, 0]}\n"
             "fish: [{force: pressure, pressure: {span: infinite}, nodes: 13, wave: {amplitude: 0.1}, body: "
-            "{profile: uniform, thickness: 0.05,\n"
-            "  depth: 1, density: 25, modulus: 8.0e+5, relaxation_time: 0.02},\n"
+            "{profile: uniform, thickness: 0.05,\n  depth: 1, density: 25, modulus: 8.0e+5, relaxation_time: 0.02},\n"
             "  motion: {prescribed: head, speed: %d, heave: 0.05, frequency: 1}}]\n",
             i, 1 - i);
         school_run(simulation, 3);
@@ -640,9 +636,8 @@ static double largest_difference(int i, int n_events, const double *value, const
 TEST(pressure_at_events_has_the_accuracy_of_the_motion) {
     enum { N = 100 };
     static const char *const fish[] = {
-        SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.01}\nfish: [{drag: {normal: 0}}]\n", SCHOOL_DEFAULTS
-        "time: {end: 1, shedding_interval: 0.01}\n"
-        "fish: [{nodes: 9, body: {modulus: 1.0e+5}}]\n"};
+        SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.01}\nfish: [{drag: {normal: 0}}]\n",
+        SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.01}\nfish: [{nodes: 9, body: {modulus: 1.0e+5}}]\n"};
     // the trapezoidal rule does not damp the vibrations of the body; dormand_prince: 2e-5, and 7e-4 if the first stage
     // after an event takes the rates of the last stage before it
     static const struct {

@@ -81,36 +81,30 @@ static const struct variant {
           "fish: [{sheet_points: 9, load: {tip: [1, 2]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}]\n"},
     {"three fish",
      TIME FAR "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
-              "fish:\n"
-              "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+              "fish:\n  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
               "     drag: {law: linear_quadratic}, added_mass: {extent: depth}, control: {law: averaged_heading}}\n"
               "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
               "     motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"},
     {"three fish, reactive",
      TIME FAR "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
-              "defaults: {fish: {force: reactive, added_mass: {extent: depth}}}\n"
-              "fish:\n"
-              "  - {sheet_points: 9}\n"
+              "defaults: {fish: {force: reactive, added_mass: {extent: depth}}}\nfish:\n  - {sheet_points: 9}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
               "  - {nodes: 9, sheet_points: 11, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"},
     {"three fish, kutta rate, midpoint, waypoints",
      TIME FAR "sheet: {kutta: rate, collocation: midpoint}\n"
-              "fish:\n"
-              "  - {sheet_points: 9, control: {law: heading, waypoints: [[-3, 1]]}}\n"
+              "fish:\n  - {sheet_points: 9, control: {law: heading, waypoints: [[-3, 1]]}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
               "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
               "     body: {second_moment: published}, control: {law: heading}}\n"},
     {"two fish, smooth curve",
      TIME FAR "sheet: {curve: smooth}\n"
-              "fish:\n"
-              "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+              "fish:\n  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"free sheet", TIME "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" FISH},
     {"three fish with free sheets",
      TIME FAR "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
-              "fish:\n"
-              "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+              "fish:\n  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
               "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"},
     {"pressure", PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}]\n"},
@@ -132,8 +126,7 @@ static const struct variant {
      TIME "fish: [{sheet_points: 9, force: reactive, drag: {skin: boundary_layer, transition: 0, form: 100}}]\n"},
     {"pressure, clamped head", PRESSURE
      "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, body: {section: mean, "
-     "relaxation_time: 0.05},\n"
-     "        load: {tip: [3, -2]},\n"
+     "relaxation_time: 0.05},\n        load: {tip: [3, -2]},\n"
      "        motion: {prescribed: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
     {"pressure, prescribed body",
      PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite},\n"
@@ -142,8 +135,7 @@ static const struct variant {
      PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite},\n"
               "        motion: {prescribed: all, surge: free, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
     {"four fish, one force each and a prescribed head", PRESSURE FAR
-     "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
-     "fish:\n"
+     "fluid: {velocity: [0.1, 0.05], shear: 0.2}\nfish:\n"
      "  - {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}\n"
      "  - {nodes: 5, sheet_points: 7, force: reactive, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
      "  - {nodes: 4, sheet_points: 7, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"
@@ -165,8 +157,7 @@ static const struct variant {
                   "     drag: {normal: 2, law: linear_quadratic}, added_mass: {extent: thickness},\n"
                   "     start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"four fish of finite span, one force each, two depths", PRESSURE FAR
-     "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
-     "fish:\n"
+     "fluid: {velocity: [0.1, 0.05], shear: 0.2}\nfish:\n"
      "  - {nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}\n"
      "  - {nodes: 5, sheet_points: 15, force: reactive, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
      "  - {nodes: 4, sheet_points: 7, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"
@@ -187,19 +178,16 @@ static const struct variant {
           "fish: [{sheet_points: 9, force: published, control: {law: heading}}]\n"},
     {"two fish of finite span beside a wall, driven",
      TIME FAR "fluid: {walls: [1.5]}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\n"
-              "defaults: {fish: {force: pressure, pressure: {span: finite}, drag: {skin: laminar}}}\n"
-              "fish:\n"
+              "defaults: {fish: {force: pressure, pressure: {span: finite}, drag: {skin: laminar}}}\nfish:\n"
               "  - {nodes: 5, sheet_points: 21, motion: {prescribed: all, heave: 0.1, pitch: 10, frequency: 1}}\n"
               "  - {nodes: 5, sheet_points: 21, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"fish in contact that are not coupled otherwise",
      TIME "solver: {coupling_distance: 0}\ncontact: {range: 0.9}\n"
-          "fish:\n"
-          "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+          "fish:\n  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
           "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.6], heading: 190}}\n"},
     {"three fish in contact, one of them prescribed",
      TIME "solver: {coupling_distance: 100}\nfluid: {density: 0}\ncontact: {range: 0.9}\n"
-          "fish:\n"
-          "  - {sheet_points: 9}\n"
+          "fish:\n  - {sheet_points: 9}\n"
           "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.6], heading: 190}}\n"
           "  - {nodes: 9, sheet_points: 11, start: {position: [0.1, -0.6], heading: 170},\n"
           "     motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"},
@@ -210,21 +198,18 @@ static const struct variant {
     {"a wall, kutta rate, midpoint", TIME "fluid: {walls: [-0.5]}\nsheet: {kutta: rate, collocation: midpoint}\n" FISH},
     {"two fish in a channel, free sheets, one in contact",
      TIME FAR "fluid: {velocity: [0.3, 0], shear: 0.2, walls: [-0.6, 1.1]}\n"
-              "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
-              "fish:\n"
+              "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\nfish:\n"
               "  - {sheet_points: 9}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"two fish in a channel, one held",
      TIME FAR "fluid: {walls: [-0.7, 1.2]}\n"
-              "fish:\n"
-              "  - {sheet_points: 9, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
+              "fish:\n  - {sheet_points: 9, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"pressure in a channel",
      PRESSURE "fluid: {walls: [-0.5, 0.8]}\ncontact: {range: 0.6}\n"
               "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}]\n"},
     {"two fish, impulsive", TIME FAR "preset: published\n"
-                                     "fish:\n"
-                                     "  - {sheet_points: 9}\n"
+                                     "fish:\n  - {sheet_points: 9}\n"
                                      "  - {nodes: 5, sheet_points: 7, start: {position: [0.2, 0.5]}}\n"},
 };
 
@@ -252,8 +237,7 @@ TEST(jacobian_agrees_with_differences_where_the_suction_ends) {
         "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
         "fluid: {velocity: [0.3, 0], shear: 0.7, walls: [-1.2, 1.3]}\n"
         "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, body: {modulus: "
-        "1}}}\n"
-        "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n";
+        "1}}}\nfish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n";
     const double factor[] = {0.3, 0.9, 1, 1.1, 2};
     for (size_t i = 0; i < sizeof factor / sizeof *factor; i++) {
         struct setup setup = setup_stirred(text);
@@ -273,8 +257,7 @@ static void compare_overtaken(const char *keys, int with_legs) {
     snprintf(text, sizeof text,
              TIME FAR
              "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
-             "fluid: {walls: [-1.2, 1.3]}\n"
-             "defaults: {fish: {nodes: 5, %s, force: pressure}}\n"
+             "fluid: {walls: [-1.2, 1.3]}\ndefaults: {fish: {nodes: 5, %s, force: pressure}}\n"
              "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n",
              keys);
     struct setup setup = setup_stirred(text);
@@ -306,8 +289,7 @@ TEST(jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake) {
 
 TEST(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else) {
     const char *const text = TIME
-        "solver: {coupling_distance: 0.6}\n"
-        "fish: [{sheet_points: 9}, {sheet_points: 9, start: {position: [0, 1]}}]\n";
+        "solver: {coupling_distance: 0.6}\nfish: [{sheet_points: 9}, {sheet_points: 9, start: {position: [0, 1]}}]\n";
     struct setup setup = setup_of(text);
     const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
     const size_t n = (size_t)setup.school->n_unknowns;

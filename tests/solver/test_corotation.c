@@ -7,10 +7,7 @@
 #include "solver/corotation.h"
 
 static const char *const text =
-    "time: {end: 1}\n"
-    "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
-    "fish:\n"
-    "  - {nodes: 6, sheet_points: 7}\n"
+    "time: {end: 1}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\nfish:\n  - {nodes: 6, sheet_points: 7}\n"
     "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
     "  - {nodes: 9, sheet_points: 18, length: 0.6, force: pressure, pressure: {span: infinite}, start: {position: [2, "
     "1], heading: 30}}\n";

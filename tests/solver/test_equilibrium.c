@@ -14,9 +14,8 @@
     " start: {heading: 170, speed: 0}, motion: {prescribed: head, speed: 0}"
 
 // two plates, one behind the other, with couplings
-static const char pair[] = SCHOOL_DEFAULTS STREAM "defaults: {fish: {" PLATE
-                                                  "}}\n"
-                                                  "fish: [{}, {start: {position: [1.2, 0.1]}}]\n";
+static const char pair[] =
+    SCHOOL_DEFAULTS STREAM "defaults: {fish: {" PLATE "}}\nfish: [{}, {start: {position: [1.2, 0.1]}}]\n";
 
 struct rig {
     struct simulation *simulation;
@@ -68,9 +67,8 @@ TEST(the_equations_of_a_run_hold_at_rest) {
 
 TEST(bodies_that_go_on_together_are_at_rest_in_their_frame) {
     struct rig held = rig_of(SCHOOL_DEFAULTS STREAM "fish: [{" PLATE "}]\n");
-    struct rig goes = rig_of(SCHOOL_DEFAULTS TIME
-                             "fluid: {density: 1, velocity: [1.5, 0.2], viscosity: 0}\n"
-                             "fish: [{" PLATE "}]\n");
+    struct rig goes =
+        rig_of(SCHOOL_DEFAULTS TIME "fluid: {density: 1, velocity: [1.5, 0.2], viscosity: 0}\nfish: [{" PLATE "}]\n");
     // the frame moves at half a metre per second along x, the heading of the second plate
     for (int i = 0; i < 2; i++) {
         struct fish *const fish = &(i == 0 ? &held : &goes)->simulation->school->fish[0];

@@ -28,8 +28,7 @@ static const char *const texts[] = {
     TIME "fluid: {density: 0}\n" FISH,
     TIME "fish: [{body: {modulus: 1.0e+10}}]\n",
     TIME
-    "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
-    "fish:\n"
+    "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish:\n"
     "  - {nodes: 7, sheet_points: 13, force: pressure, pressure: {span: infinite}}\n"
     "  - {nodes: 6, sheet_points: 13, force: reactive, start: {position: [0, 0.7]}}\n"
     "  - {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}, start: {position: [0, -0.7]},\n"
@@ -38,9 +37,8 @@ static const char *const texts[] = {
     "fish: [{}, {nodes: 5, length: 0.7, start: {position: [0.2, 0.5]}}, {nodes: 9, start: {position: [0, -0.6]}}]\n"};
 
 /* Newton's iteration with a Jacobian without the blocks that couple these fish. */
-static const char uncoupled[] = TIME
-    "solver: {coupling_distance: 0}\n"
-    "fish: [{}, {nodes: 5, start: {position: [0.2, 0.5]}}]\n";
+static const char uncoupled[] =
+    TIME "solver: {coupling_distance: 0}\nfish: [{}, {nodes: 5, start: {position: [0.2, 0.5]}}]\n";
 
 static void check_residual(struct setup *setup, double t, const char *text) {
     const int n = setup->school->n_unknowns;
@@ -151,8 +149,7 @@ TEST(stiffness_takes_no_iterations_where_momenta_are_kept) {
             school_simulation_of(SCHOOL_DEFAULTS
                                  "time: {end: 1, shedding_interval: 0.01}\n"
                                  "fish: [{force: pressure, pressure: {span: infinite}, body: {modulus: %s}, wave: "
-                                 "{ramp: 0}, start: {speed: 1},\n"
-                                 "        motion: {prescribed: head}}]\n",
+                                 "{ramp: 0}, start: {speed: 1},\n        motion: {prescribed: head}}]\n",
                                  moduli[i]);
         assert_in_range(initial_conditions_iterations(simulation->consistent), 1, 2);
     }
@@ -166,8 +163,7 @@ TEST(light_bodies_take_no_iterations_either) {
             school_simulation_of(SCHOOL_DEFAULTS
                                  "time: {end: 1, shedding_interval: 0.01}\n"
                                  "fish: [{force: pressure, pressure: {span: infinite}, body: {density: %s}, wave: "
-                                 "{ramp: 0}, start: {speed: 1},\n"
-                                 "        motion: {prescribed: head}}]\n",
+                                 "{ramp: 0}, start: {speed: 1},\n        motion: {prescribed: head}}]\n",
                                  densities[i]);
         assert_in_range(initial_conditions_iterations(simulation->consistent), 1, 2);
     }

@@ -5,8 +5,7 @@
 #include "solver/integrator.h"
 
 static const char two_fish[] =
-    "time: {end: 1}\n"
-    "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+    "time: {end: 1}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\n"
     "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}, {nodes: 5, sheet_points: 9, "
     "force: reactive, start: {position: [0, 2]}}]\n";
 

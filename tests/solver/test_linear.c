@@ -309,9 +309,7 @@ TEST(the_column_of_the_circulation_shed_can_be_updated) {
         SHEETS, "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n" SCHOOL,
         "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
         "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}}\n" TIME
-        "solver: {coupling_distance: 0.6}\n"
-        "fish:\n"
-        "  - {start: {position: [0, 0]}}\n"
+        "solver: {coupling_distance: 0.6}\nfish:\n  - {start: {position: [0, 0]}}\n"
         "  - {start: {position: [0.2, 0.35]}, length: 0.7}\n"
         "  - {start: {position: [0.1, -0.4]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
         "  - {start: {position: [1.35, 0]}, force: reactive}\n"};

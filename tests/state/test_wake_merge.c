@@ -177,9 +177,7 @@ TEST(nothing_is_merged_near_a_body_or_where_one_will_be) {
     BELOW(count_between(wake, 8, 11), 250);
 
     // the other fish swims left below the wake, and passes most of the wake at a distance of 1
-    trail(&setup, TIME
-          "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\n"
-          "fish: [{}, {start: {position: [9, -1]}}]\n");
+    trail(&setup, TIME "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\nfish: [{}, {start: {position: [9, -1]}}]\n");
     const int n_passed = merge_all(&setup);
     assert_int_equal(count_between(&setup.state->wake[0], 3.005, 8.995), 599);
     BELOW(n_passed, n);
@@ -216,9 +214,8 @@ TEST(a_pair_that_dies_before_a_body_comes_is_merged) {
     // the second body is 100 away and comes near with 8 a second, in 12 s; the oldest vortices have some tenths of a
     // second to live, the newest ones 16 s
     struct setup setup;
-    trail(&setup, TIME
-          "wake: {lifetime: 16, shedding: continuous, merge: 0.1}\n"
-          "fish: [{}, {start: {position: [100, 0.2]}}]\n");
+    trail(&setup,
+          TIME "wake: {lifetime: 16, shedding: continuous, merge: 0.1}\nfish: [{}, {start: {position: [100, 0.2]}}]\n");
     double *const y = setup.state->y;
     const struct fish *const fish = setup.school->fish;
     for (int k = 0; k < fish[0].n_nodes; k++) y[fish[0].at.x + k] -= 100;
