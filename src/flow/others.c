@@ -41,9 +41,10 @@ struct others_fish {
     double radius;       /* of the circle around the middle that encloses body and released wake */
     double reach;        /* distance from the middle beyond which all sources are far, and bodies act from few points */
     struct sources body; /* the body, by sources at its far points             (FAR) */
-    /* u, v, div, u_x, u_y, v_x, div_x, div_y at the far points: of far wakes at three times, of all far sources now */
-    double wake[TIMES][VALUES][FAR], now[VALUES][FAR];
+    /* the far points at the time of a sum, with u, v, div, u_x, u_y, v_x, div_x, div_y of the far sources: of wakes at
+     * three times, of all sources now */
     double x[FAR], y[FAR];
+    double wake[TIMES][VALUES][FAR], now[VALUES][FAR];
     bool has_drifted;
     int n_near, near_capacity; /* ranges of near sources in wakes */
     struct range *near;
@@ -438,12 +439,11 @@ static bool acts_by_tree(const struct flow *flow, int g) {
     return !flow->others->fish[g].has_drifted && flow->school->fish[g].integrals;
 }
 
-// add sources of all fish at the far points of all fish, class by class: all released sources, with all wakes placed at
-// this time; or (time == TIMES) all bodies now, from their far points, and their nascent points
-static void sum_by_tree(struct flow *flow, int time, int threads) {
+// add sources of all fish at the far points of all fish, class by class: the released wakes; or the bodies, from their far
+// points, with their nascent points
+static void sum_by_tree(struct flow *flow, bool of_bodies, int threads) {
     struct others *const others = flow->others;
     const struct school *const school = flow->school;
-    const bool is_now = time == TIMES;
     for (int c = 0; c < flow->n_classes; c++) {
         struct sources *const points = &others->points, *const many = &flow->many;
         int n = 0, first = 0;
@@ -455,9 +455,8 @@ static void sum_by_tree(struct flow *flow, int time, int threads) {
             const struct others_fish *const of = &others->fish[f];
             if (flow->class_of[f] != c || !of->is_used) continue;
             if (n == 0) first = f;
-            if (!is_now) far_places(of, time * school->interval / 2, points->x + n, points->y + n);
-            if (is_now) memcpy(points->x + n, of->x, sizeof of->x);
-            if (is_now) memcpy(points->y + n, of->y, sizeof of->y);
+            memcpy(points->x + n, of->x, sizeof of->x);
+            memcpy(points->y + n, of->y, sizeof of->y);
             memcpy(points->half + n, of->half, sizeof of->half);
             n += FAR;
         }
@@ -469,7 +468,7 @@ static void sum_by_tree(struct flow *flow, int time, int threads) {
             school->wake_tolerance * fish->length * fish_rate(school, fish) / (8 * flow->n_classes);
         const struct targets at = far_targets(n, points->x, points->y, points->half, others->value, n);
         memset(others->value, 0, VALUES * (size_t)n * sizeof *others->value);
-        for (int k = 0; k < (1 + is_now) * flow->n_classes; k++) {
+        for (int k = 0; k < (1 + of_bodies) * flow->n_classes; k++) {
             struct kernel_pair pair = {0};
             const bool is_body = k >= flow->n_classes;
             many->n = 0;
@@ -477,13 +476,13 @@ static void sum_by_tree(struct flow *flow, int time, int threads) {
                 if (flow->class_of[g] != k % flow->n_classes) continue;
                 const struct sheet_points *const middles = &flow->fish[g].wake.middles;
                 pair = flow_pair_of(flow, first, g, &(struct flow_sum){is_body ? BODY_AT_BODY : WAKE_AT_BODY, false});
-                if (is_now && !acts_by_tree(flow, g)) continue;
+                if (of_bodies && !acts_by_tree(flow, g)) continue;
                 if (is_body) {
                     flow_append_with_span(many, &others->fish[g].body, (struct range){0, FAR}, pair.span);
                 } else {
                     const struct range nascent = {middles->n_released, 1};
                     const struct range released = {0, middles->n_released};
-                    flow_append_with_span(many, &middles->sources, is_now ? nascent : released, pair.span);
+                    flow_append_with_span(many, &middles->sources, of_bodies ? nascent : released, pair.span);
                 }
             }
             pair.span = 1;
@@ -495,24 +494,21 @@ static void sum_by_tree(struct flow *flow, int time, int threads) {
             struct others_fish *const of = &others->fish[f];
             if (flow->class_of[f] != c || !of->is_used) continue;
             for (int k = 0; k < VALUES; k++) {
-                double *const to = is_now ? of->now[k] : of->wake[time][k];
-                for (int i = 0; i < FAR; i++) to[i] += others->value[(long)k * n + done + i];
+                for (int i = 0; i < FAR; i++) of->now[k][i] += others->value[(long)k * n + done + i];
             }
             done += FAR;
         }
     }
 }
 
-// the far wakes at one of three times: the far sources; or, after sum_by_tree, less the near and own sources
-static void sum_wakes(struct flow *flow, int f, int time) {
+// add the far wakes: the far sources; or, after sum_by_tree, less the near and own sources
+static void sum_wakes(struct flow *flow, int f) {
     struct others *const others = flow->others;
     struct others_fish *const of = &others->fish[f];
-    double x[FAR], y[FAR];
     if (!of->is_used) return;
-    far_places(of, time * flow->school->interval / 2, x, y);
 
     const double *const half = flow->kernel->has_legs ? of->half : NULL;
-    const struct targets at = far_targets(FAR, x, y, half, of->wake[time][0], FAR);
+    const struct targets at = far_targets(FAR, of->x, of->y, half, of->now[0], FAR);
     for (int g = others_next(flow, f, -1, !others->is_by_tree); g < others->n_fish;
          g = others_next(flow, f, g, !others->is_by_tree)) {
         const struct sources *const sources = &flow->fish[g].wake.middles.sources;
@@ -586,12 +582,19 @@ void others_select(struct flow *flow, const struct state *state) {
     const int threads =
         parallel_threads(school->threads, school->n_fish, n_sources * school->n_fish * FAR, PARALLEL_INTERACTIONS);
     for (int time = 0; time < TIMES; time++) {
-        flow_place_released(flow, state, state->t + time * school->interval / 2);
-        for (int f = 0; f < school->n_fish; f++)
-            memset(others->fish[f].wake[time], 0, sizeof others->fish[f].wake[time]);
-        if (others->is_by_tree) sum_by_tree(flow, time, school->threads);
+        const double tau = time * school->interval / 2;
+        flow_place_released(flow, state, state->t + tau);
+        for (int f = 0; f < school->n_fish; f++) {
+            struct others_fish *const of = &others->fish[f];
+            far_places(of, tau, of->x, of->y);
+            memset(of->now, 0, sizeof of->now);
+        }
+        if (others->is_by_tree) sum_by_tree(flow, false, school->threads);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-        for (int f = 0; f < school->n_fish; f++) sum_wakes(flow, f, time);
+        for (int f = 0; f < school->n_fish; f++) {
+            sum_wakes(flow, f);
+            memcpy(others->fish[f].wake[time], others->fish[f].now, sizeof others->fish[f].now);
+        }
     }
 }
 
@@ -705,7 +708,7 @@ void others_sum(struct flow *flow, const struct state *state, const double *y, i
             kernel_induce(&wake, &other->wake.middles.sources, nascent, &at);
         }
     }
-    if (others->bodies_by_tree) sum_by_tree(flow, TIMES, threads);
+    if (others->bodies_by_tree) sum_by_tree(flow, true, threads);
 }
 
 // values of the polynomials with these values at the far points, at n <= FAR points; part: of each far point at the
