@@ -310,6 +310,7 @@ void diagnostics_event(struct residual *residual, const struct state *state, str
     const struct school *school = residual->school;
     double sum[2] = {0, 0};
     diagnostics->t = state->t;
+    flow_velocity(residual->flow, state, state->t, state->y, residual->flow->is_steady);
 
     // boxes around bodies and wakes
     for (int f = 0; f < school->n_fish; f++) {

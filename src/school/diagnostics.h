@@ -29,7 +29,7 @@ void diagnostics_period(const struct fish *fish, const struct history *history, 
 
 struct diagnostics *diagnostics_create(struct arena *arena, const struct school *school);
 
-/* Fill *diagnostics at the event of the state; the residual must have been evaluated at this event. */
+/* Fill *diagnostics at the event of the state, with the flow at this event. */
 void diagnostics_event(struct residual *residual, const struct state *state, struct diagnostics *diagnostics);
 
 #endif
