@@ -99,6 +99,20 @@ static void induce_own_body(const struct flow *flow, const struct state *state, 
     kernel_induce(&pair, body, (struct range){0, body->n}, &at);
 }
 
+// add the velocities that the wakes of two fish cause at each other
+static void induce_pair_of_wakes(const struct flow *flow, int f, int g) {
+    const struct flow_sum wake = {WAKE_AT_WAKE, false};
+    const struct targets at_f = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
+    const struct targets at_g = markers_of(flow, g, (struct range){0, flow->wake_range[g].n});
+    if (flow->class_of[f] == flow->class_of[g]) {
+        const struct kernel_pair pair = flow_pair_of(flow, f, g, &wake);
+        kernel_induce_mutual(&pair, &flow->fish[f].markers, &at_f, &flow->fish[g].markers, &at_g);
+    } else {
+        flow_induce_other(flow, f, g, &wake, false, &at_f);
+        flow_induce_other(flow, g, f, &wake, false, &at_g);
+    }
+}
+
 // add the velocity of the external flow, of the body that shed the markers, and of all others
 static void induce_at_markers(const struct flow *flow, const struct state *state, int f, struct range which) {
     const struct school *const school = flow->school;
@@ -121,7 +135,8 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
     for (int g = 0; g < school->n_fish; g++) {
         const struct flow_sum body = {BODY_AT_WAKE, false}, wake = {WAKE_AT_WAKE, false};
         flow_induce_other(flow, f, g, &body, g == f, &at);
-        if (g != f || !own_is_in_tree(flow, f)) flow_induce_other(flow, f, g, &wake, g == f, &at);
+        const bool is_done = g != f ? flow->has_all_legs : own_is_in_tree(flow, f);
+        if (!is_done) flow_induce_other(flow, f, g, &wake, g == f, &at);
     }
     if (flow->has_all_legs) memcpy(flow->wake_leg_div + first, at.div, (size_t)which.n * sizeof *at.div);
     if (school->walls.n == 0) return;
@@ -208,7 +223,17 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
         const struct targets at = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
         double *const sums[] = {at.u, at.v, at.leg_u, at.leg_v, at.div};
         for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) memset(sums[i], 0, (size_t)at.n * sizeof **sums);
-        if (!own_is_in_tree(flow, f)) kernel_induce_mutual(&smooth, &flow->fish[f].markers, &at);
+        const struct sources *const own = &flow->fish[f].markers;
+        if (!own_is_in_tree(flow, f)) kernel_induce_mutual(&smooth, own, &at, own, &at);
+    }
+    // without a tree wakes act on each other in pairs; in a round of a tournament no fish is in two pairs
+    const int n_rounds = school->n_fish - 1 + school->n_fish % 2;
+    for (int round = 0; round < n_rounds && flow->has_all_legs; round++) {
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+        for (int i = 0; i <= n_rounds / 2; i++) {
+            const int f = (round + i) % n_rounds, g = i == 0 ? n_rounds : (round + n_rounds - i) % n_rounds;
+            if (g < school->n_fish) induce_pair_of_wakes(flow, f, g);
+        }
     }
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int chunk = 0; chunk < n_chunks; chunk++) {

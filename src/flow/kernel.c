@@ -213,28 +213,34 @@ static double sum_of_lanes(const double *value) {
     return ((value[0] + value[4]) + (value[2] + value[6])) + ((value[1] + value[5]) + (value[3] + value[7]));
 }
 
-void kernel_induce_mutual(const struct kernel_pair *pair, const struct sources *sources, const struct targets *at) {
+void kernel_induce_mutual(const struct kernel_pair *pair, const struct sources *one, const struct targets *at_one,
+                          const struct sources *other, const struct targets *at_other) {
     if (!pair->kernel->loops(0)->mutual) {
-        kernel_induce(pair, sources, (struct range){0, sources->n}, at);
+        kernel_induce(pair, other, (struct range){0, other->n}, at_one);
+        if (other != one) kernel_induce(pair, one, (struct range){0, one->n}, at_other);
         return;
     }
 
-    for (int first = 0; first < sources->n; first += TILE) {
-        const struct range tile = {first, sources->n - first < TILE ? sources->n - first : TILE};
-        const struct block_sources from = block_sources_of(pair, sources, tile);
+    const struct targets *const at = at_other;
+    for (int first = 0; first < other->n; first += TILE) {
+        const struct range tile = {first, other->n - first < TILE ? other->n - first : TILE};
+        const struct block_sources from = block_sources_of(pair, other, tile);
         struct block_lanes sums[TILE];
         memset(sums, 0, sizeof sums);
 
-        // the tile and all sources before
-        for (int before = 0; before < first; before += KERNEL_BLOCK) {
+        // the tile and the whole other set, or all sources before; the padding of a block has no strength
+        const int end = other == one ? first : one->n;
+        for (int before = 0; before < end; before += KERNEL_BLOCK) {
             struct kernel_block block;
             struct block_mates mates;
-            fill_block(&block, pair, at, before, KERNEL_BLOCK);
-            memcpy(mates.q, sources->q + before, sizeof mates.q);
-            memcpy(mates.dx, sources->dx + before, sizeof mates.dx);
-            memcpy(mates.dy, sources->dy + before, sizeof mates.dy);
+            const int n = end - before < KERNEL_BLOCK ? end - before : KERNEL_BLOCK;
+            fill_block(&block, pair, at_one, before, n);
+            memset(&mates, 0, sizeof mates);
+            memcpy(mates.q, one->q + before, (size_t)n * sizeof *mates.q);
+            memcpy(mates.dx, one->dx + before, (size_t)n * sizeof *mates.dx);
+            memcpy(mates.dy, one->dy + before, (size_t)n * sizeof *mates.dy);
             pair->kernel->loops(0)->mutual(&block, &mates, &from, sums);
-            add_block(&block, pair, at, before, KERNEL_BLOCK);
+            add_block(&block, pair, at_one, before, n);
         }
         for (int i = 0; i < tile.n; i++) {
             at->u[first + i] += sum_of_lanes(sums[i].u);
@@ -248,9 +254,9 @@ void kernel_induce_mutual(const struct kernel_pair *pair, const struct sources *
             if (at->div) at->div[first + i] -= 3 * sum_of_lanes(sums[i].div);
         }
 
-        // the sources of the tile
+        // the sources of the tile at each other
         const struct targets own = kernel_targets_part(at, tile);
-        kernel_induce(pair, sources, tile, &own);
+        if (other == one) kernel_induce(pair, one, tile, &own);
     }
 }
 

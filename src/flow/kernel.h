@@ -58,10 +58,11 @@ struct kernel_pair {
 void kernel_induce(const struct kernel_pair *pair, const struct sources *sources, struct range which,
                    const struct targets *at);
 
-/* Add the velocities of all sources to the sources themselves: kernel_induce with the places, half and leg of the
- * sources as targets, without gradients; a pair of sources has one division and one root. `square` of the sources is
- * 0. */
-void kernel_induce_mutual(const struct kernel_pair *pair, const struct sources *sources, const struct targets *at);
+/* Add the velocities that two sets of sources cause at each other, or a set at itself (other: one): kernel_induce with
+ * the places, half and leg of the sources as targets, without gradients; a pair of sources has one division and one
+ * root. `square` of the sources is 0. */
+void kernel_induce_mutual(const struct kernel_pair *pair, const struct sources *one, const struct targets *at_one,
+                          const struct sources *other, const struct targets *at_other);
 
 /* One source for a Jacobian at n targets of one chunk. */
 enum { KERNEL_CHUNK = 64 };

@@ -43,7 +43,7 @@ static double seconds_of(const struct kernel_pair *pair, const struct sources *a
     double best = INFINITY;
     for (int run = 0; run < (all->n > 3000 ? 2 : RUNS); run++) {
         const double since = cpu_time();
-        if (how == MUTUAL) kernel_induce_mutual(pair, all, &at);
+        if (how == MUTUAL) kernel_induce_mutual(pair, all, &at, all, &at);
         if (how == DIRECT || how == GRADIENT) kernel_induce(pair, all, (struct range){0, all->n}, &at);
         if (how == BY_TREE) tree_induce(tree, pair, all, 1, 2.5e-8, 1, &at);
         best = fmin(best, cpu_time() - since);

@@ -304,15 +304,28 @@ TEST(sources_cause_the_same_velocity_one_by_one_and_mutually) {
     for (int k = 0; k < 7; k++) {
         for (int i = 0; i < N; i++) values[k][i] = k < 5 ? number(k * N + i) : 0.01 + 0.01 * fabs(number(k * N + i));
     }
-    for (int m = 0; m < 2; m++) {
-        const struct kernel_pair pair = m == 0 ? kernel_finite.own(1.2, 1e-4) : kernel_infinite.own(0, 1e-4);
+    // a set at itself, and its two parts at each other
+    const struct range part[2] = {{0, 61}, {61, N - 61}};
+    struct sources parts[2] = {rings, rings};
+    for (int i = 0; i < 2; i++) {
+        double **const arrays[] = {&parts[i].x,  &parts[i].y,    &parts[i].q,   &parts[i].dx,
+                                   &parts[i].dy, &parts[i].half, &parts[i].leg, &parts[i].square};
+        for (int k = 0; k < 8; k++) *arrays[k] += part[i].first;
+        parts[i].n = part[i].n;
+    }
+    for (int m = 0; m < 4; m++) {
+        const struct kernel_pair pair = m % 2 == 0 ? kernel_finite.own(1.2, 1e-4) : kernel_infinite.own(0, 1e-4);
         double one[5][N] = {{0}}, mutual[5][N] = {{0}};
-        struct targets at = {.n = N, .x = rings.x, .y = rings.y, .half = rings.half, .leg = rings.leg};
+        struct targets at = {.n = N, .x = rings.x, .y = rings.y, .half = rings.half, .leg = rings.leg}, at_part[2];
         at.u = one[0], at.v = one[1], at.leg_u = one[2], at.leg_v = one[3], at.div = one[4];
-        kernel_induce(&pair, &rings, (struct range){0, N}, &at);
+        for (int i = 0; i < 2; i++) at_part[i] = kernel_targets_part(&at, part[i]);
+        if (m < 2) kernel_induce(&pair, &rings, (struct range){0, N}, &at);
+        for (int i = 0; i < 2 && m >= 2; i++) kernel_induce(&pair, &rings, part[1 - i], &at_part[i]);
         at.u = mutual[0], at.v = mutual[1], at.leg_u = mutual[2], at.leg_v = mutual[3], at.div = mutual[4];
-        kernel_induce_mutual(&pair, &rings, &at);
-        for (int k = 0; k < (m == 0 ? 5 : 2); k++) {
+        for (int i = 0; i < 2; i++) at_part[i] = kernel_targets_part(&at, part[i]);
+        if (m < 2) kernel_induce_mutual(&pair, &rings, &at, &rings, &at);
+        if (m >= 2) kernel_induce_mutual(&pair, &parts[0], &at_part[0], &parts[1], &at_part[1]);
+        for (int k = 0; k < (m % 2 == 0 ? 5 : 2); k++) {
             double most = 0;
             for (int i = 0; i < N; i++) most = fmax(most, fabs(one[k][i]));
             NEAR_ARRAY(N, mutual[k], one[k], 1e-13 * most, 0);

@@ -25,8 +25,7 @@ struct plate {
 static struct simulation *open_plate(const struct plate *plate) {
     const double thickness = 0.1;
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: 1, shedding_interval: 0.002}\n"
+                       "format: 1\ntime: {end: 1, shedding_interval: 0.002}\n"
                        "fluid: {density: 1, viscosity: 0, velocity: [0, %.17g]}\n"
                        "fish:\n"
                        "  - {nodes: %d, sheet_points: %d, force: pressure, pressure: {span: infinite}, wave: "
@@ -161,8 +160,7 @@ static struct simulation *open_fish(int nodes, double interval, double rtol, dou
                  start);
     }
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: %g, shedding_interval: %.17g}\n"
+                       "format: 1\ntime: {end: %g, shedding_interval: %.17g}\n"
                        "fluid: {density: 1, viscosity: 1.003e-4}\n"
                        "wake: {lifetime: 8, smoothing: %g}\n"
                        "solver: {rtol: %g}\n"

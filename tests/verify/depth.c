@@ -14,8 +14,7 @@ static const double pi = 3.14159265358979323846;
 static struct simulation *heave_at(double frequency, const char *span, double depth, double amplitude, const char *wake,
                                    const char *walls) {
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: 20}\n"
+                       "format: 1\ntime: {end: 20}\n"
                        "fluid: {density: 1, viscosity: 0, velocity: [1, 0], walls: [%s]}\n"
                        "wake: {%s}\n"
                        "fish: [{nodes: 9, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
@@ -47,8 +46,7 @@ static double lift_part(double depth, int n_sheet, double interval, double end) 
     const double angle = 0.01;
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
-                    "format: 1\n"
-                    "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                     "fluid: {density: 1, viscosity: 0, velocity: [1, %.17g]}\n"
                     "wake: {lifetime: 1000, decay: 0}\n"
                     "fish: [{nodes: 9, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
@@ -68,8 +66,7 @@ static double lift_part(double depth, int n_sheet, double interval, double end) 
 static double added_mass_part(double depth, int n_sheet) {
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
-                    "format: 1\n"
-                    "time: {end: 1}\n"
+                    "format: 1\ntime: {end: 1}\n"
                     "fluid: {density: 1, viscosity: 0}\n"
                     "fish: [{nodes: 17, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
                     "        pressure: {span: finite}, start: {speed: 0},\n"
@@ -145,8 +142,7 @@ static void check_added_mass(void) {
 // the energy balance of a free fish at the end over the work of its muscle
 static void check_energy(const char *name, const char *walls, double end) {
     struct simulation *const simulation = verify_open(VERIFY_DEFAULTS
-                                                      "format: 1\n"
-                                                      "time: {end: %.17g}\n"
+                                                      "format: 1\ntime: {end: %.17g}\n"
                                                       "solver: {rtol: 1e-7}\n"
                                                       "fluid: {walls: [%s]}\n"
                                                       "fish: [{force: pressure, start: {speed: 0.5},\n"
@@ -211,8 +207,7 @@ static void check_channel_limits(void) {
 
 static struct simulation *in_channel(double y, double phase) {
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: 1}\n"
+                       "format: 1\ntime: {end: 1}\n"
                        "solver: {rtol: 1e-8}\n"
                        "fluid: {viscosity: 0, walls: [-0.5, 0.5]}\n"
                        "fish: [{force: pressure, start: {speed: 0.5, position: [0, %.17g]},\n"
@@ -267,8 +262,7 @@ static void check_channel_fish(void) {
 // the momentum of a fish, and of two of different depth, is found in the fluid
 static void check_momentum(const char *name, const char *fish, double bound) {
     struct simulation *const simulation = verify_open(VERIFY_DEFAULTS
-                                                      "format: 1\n"
-                                                      "time: {end: 2}\n"
+                                                      "format: 1\ntime: {end: 2}\n"
                                                       "fluid: {viscosity: 0}\n"
                                                       "defaults: {fish: {force: pressure, start: {speed: 0.5},\n"
                                                       "  pressure: {span: finite, suction_limit: 0}}}\n"
@@ -295,8 +289,7 @@ static void check_momentum(const char *name, const char *fish, double bound) {
 // times the circulation shed, and the fish diverges.
 static void check_slow_start(void) {
     struct simulation *const simulation = verify_open(VERIFY_DEFAULTS
-                                                      "format: 1\n"
-                                                      "time: {end: 5}\n"
+                                                      "format: 1\ntime: {end: 5}\n"
                                                       "fish: [{force: pressure, body: {depth: 0.05},\n"
                                                       "        start: {speed: 0}, pressure: {span: finite}}]\n");
     double label = 0, shed = 0;

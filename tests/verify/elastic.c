@@ -32,8 +32,7 @@ static struct simulation *open_plate(const struct setting *setting, double end, 
                                      double heading, const char *motion) {
     const double thickness = 0.1;
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: %.17g, shedding_interval: %.17g}\n"
+                       "format: 1\ntime: {end: %.17g, shedding_interval: %.17g}\n"
                        "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
                        "wake: {lifetime: 1000, taper: %g}\n"
                        "solver: {rtol: %g}\n"

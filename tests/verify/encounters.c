@@ -16,8 +16,7 @@ static const double amplitude = 0.005; /* of gusts, m s-1 */
 /* A plate from x = 0 to 1 in the stream 1 along x; gust: keys of the gust. */
 static struct simulation *open_plate(int n_sheet, double interval, double end, const char *gust) {
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                       "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                        "fluid: {density: 1, viscosity: 0, velocity: [1, 0], gust: {amplitude: %.17g, %s}}\n"
                        "wake: {lifetime: 1000}\n"
                        "fish:\n"
@@ -106,8 +105,7 @@ static double street_speed(int n, double interval) {
     const double end = 1;
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
-                    "format: 1\n"
-                    "time: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "format: 1\ntime: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
                     "wake: {lifetime: 1000, street: {vortices: %d, spacing: 1, circulation: 1}}\n"
                     "solver: {rtol: 1e-4}\n"
                     "fish: [{length: 1e-3, force: published, sheet_points: 9, wave: {amplitude: 0, frequency: 0},\n"
@@ -148,8 +146,7 @@ static void drift(void) {
     const double mass = pi / 4 * 0.02, from = 10, to = from + 3 * a;
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
-                    "format: 1\n"
-                    "time: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "format: 1\ntime: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
                     "fluid: {density: 1, viscosity: 0, velocity: [%.17g, 0]}\n"
                     "wake: {lifetime: 1000, smoothing: 0.005,\n"
                     "       street: {vortices: 48, spacing: %g, circulation: %g, position: [-7, 0]}}\n"
@@ -249,8 +246,7 @@ static void free_plate(void) {
     struct free_plate plate = {.mass = mass, .inertia = mass / 12};
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
-                    "format: 1\n"
-                    "time: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "format: 1\ntime: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
                     "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
                     "wake: {lifetime: 1000, smoothing: 0.005,\n"
                     "       street: {vortices: %d, spacing: %g, circulation: %g, position: [%.17g, 0]}}\n"

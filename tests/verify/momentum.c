@@ -28,8 +28,7 @@ struct found {
 
 static struct simulation *open_run(const struct run *run) {
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                       "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                        "solver: {rtol: 1.0e-6}\n"
                        "fluid: {viscosity: %g%s}\n"
                        "wake: {lifetime: %g, decay: %g}\n"

@@ -42,8 +42,7 @@ static struct simulation *open_plate(const struct resolution *with, double end, 
                                      const char *motion) {
     return verify_open(
         VERIFY_DEFAULTS
-        "format: 1\n"
-        "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
         "fluid: {velocity: [%.17g, %.17g]}\n"
         "wake: {smoothing: %.17g, lifetime: 1000, shedding: %s}\n"
         "sheet: {smoothing: %.17g, kutta: %s, collocation: %s}\n"

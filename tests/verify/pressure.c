@@ -21,8 +21,7 @@ struct plate {
 
 static struct simulation *open_plate(const struct plate *plate) {
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                       "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                        "solver: {rtol: 1.0e-6}\n"
                        "fluid: {density: 1, viscosity: 0}\n"
                        "wake: {lifetime: 1000, smoothing: %.17g%s}\n"
@@ -249,8 +248,7 @@ static void self_propelled(double amplitude, const char *wake, int per_period, i
     const double complex c = linear_theory_theodorsen(k);
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
-                    "format: 1\n"
-                    "time: {end: %d, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "format: 1\ntime: {end: %d, shedding_interval: %.17g, output_interval: %.17g}\n"
                     "fluid: {density: 1, viscosity: %.17g}\n"
                     "wake: {%ssmoothing: 0.05}\n"
                     "fish:\n"

@@ -69,8 +69,7 @@ static void check_passing_vortex(void) {
     const int is_fast = verify_is_fast();
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
-                    "format: 1\n"
-                    "time: {end: 1, shedding_interval: %g}\n"
+                    "format: 1\ntime: {end: 1, shedding_interval: %g}\n"
                     "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
                     "wake: {lifetime: 1000, decay: 0, smoothing: 0.003, taper: 0, taper_beside: 0,\n"
                     "       vortices: [[-0.2, 0.2, %g]]}\n"
@@ -109,8 +108,7 @@ static void check_gust(double k, double bound) {
     const int per_period = verify_is_fast() ? 100 : 200, n_periods = 4;
     struct simulation *const simulation = verify_open(
         VERIFY_DEFAULTS
-        "format: 1\n"
-        "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
         "fluid: {density: 1, viscosity: 0, velocity: [%.17g, %.17g], gust: {amplitude: %g, frequency: %.17g}}\n"
         "wake: {lifetime: 1000, decay: 0}\n"
         "fish: [{nodes: 17, sheet_points: 65, sensors: [0.1, 0.5, 0.9], " VERIFY_ATTACHED
@@ -172,8 +170,7 @@ static void check_friction_at_rest(void) {
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
             verify_open(VERIFY_DEFAULTS
-                        "format: 1\n"
-                        "time: {end: 1, shedding_interval: 0.01}\n"
+                        "format: 1\ntime: {end: 1, shedding_interval: 0.01}\n"
                         "fluid: {density: 1, viscosity: 1e-3}\n"
                         "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 1}, wave: {amplitude: 0, "
                         "frequency: 0},\n"
