@@ -439,8 +439,8 @@ static bool acts_by_tree(const struct flow *flow, int g) {
     return !flow->others->fish[g].has_drifted && flow->school->fish[g].integrals;
 }
 
-// add sources of all fish at the far points of all fish, class by class: the released wakes; or the bodies, from their far
-// points, with their nascent points
+// add sources of all fish at the far points of all fish, class by class: the released wakes; or the bodies, from their
+// far points, with their nascent points
 static void sum_by_tree(struct flow *flow, bool of_bodies, int threads) {
     struct others *const others = flow->others;
     const struct school *const school = flow->school;

@@ -139,8 +139,8 @@ static bool event_control(struct state *state, struct residual *residual) {
 // unknowns have jumped, or a control law makes the unknowns jump
 static enum status event_finish(struct state *state, struct residual *residual, struct initial_conditions *initial,
                                 int jumps, int *jumped) {
-    // The flow at the event, where unknowns jump, and where shedding or control take values of it. For the samples of the
-    // history the last evaluation of the step is exact to the tolerance of Newton's iteration.
+    // The flow at the event, where unknowns jump, and where shedding or control take values of it. For the samples of
+    // the history the last evaluation of the step is exact to the tolerance of Newton's iteration.
     const struct school *const school = residual->school;
     bool uses_flow = jumps || school->shedding != SHEDDING_SHEET;
     for (int f = 0; f < school->n_fish; f++) uses_flow |= control_uses_moment(&school->fish[f]);

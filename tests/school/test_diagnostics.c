@@ -508,7 +508,7 @@ TEST(thrust_and_power_of_a_held_plate_are_means_over_the_last_period) {
         power -= part * force[1] * v[simulation->school->fish[0].at.vy];
         edge = fmax(edge, fabs(of->pressure.leading_edge_a0));
     }
-    // the samples of the means have the flow of the last iterate of a step, exact to the tolerance of Newton's iteration
+    // the samples have the flow of the last iterate of a step, exact to the tolerance of Newton's iteration
     NEAR(of->mean_thrust, thrust, 0, 1e-7);
     // works are integrated over steps, the power here over events: 1.1e-3, of second order in the interval
     NEAR(of->mean_power, power, 0, 2e-3);
