@@ -330,6 +330,10 @@ def in_threads(*calls):
         thread.join()
 
 
+FORKS_BESIDE_THREADS = unittest.skipIf("libasan" in os.environ.get("LD_PRELOAD", ""),
+                                       "the allocator of gcc 12's sanitizer stays locked in the child of a process with threads")
+
+
 def in_fork(call):
     """A call in a child, which has to end."""
     child = os.fork()
@@ -371,7 +375,7 @@ class Misuse(unittest.TestCase):
             with self.subTest(code):
                 self.assertRegex(self.outcome(code), f"^({want})")
 
-    @unittest.skipIf("libasan" in os.environ.get("LD_PRELOAD", ""), "a fork leaves the allocator of gcc 12's sanitizer locked")
+    @FORKS_BESIDE_THREADS
     def test_a_run_that_a_thread_steps_during_a_fork_is_refused_in_the_child(self):
         run = shoal.Run({**PAIR, "time": {**PAIR["time"], "end": 20}})
         thread = threading.Thread(target=lambda: run.advance(run.end))
@@ -985,6 +989,7 @@ def example(name):
 
 
 class Examples(unittest.TestCase):
+    @FORKS_BESIDE_THREADS  # of the pool before, which end after it has closed
     def test_a_fish_begins_to_learn(self):
         hold_place = example("hold_place")
         hold_place.CASE["time"]["end"] = 1.92
