@@ -398,8 +398,7 @@ TEST(distance_from_a_wall_counts_the_thicker_edge_of_a_node) {
 TEST(a_street_has_two_staggered_rows_along_the_stream) {
     struct setup setup =
         setup_of(TIME
-                 "fluid: {velocity: [0, 2]}\n"
-                 "wake: {vortices: [[7, 8, 9]],\n"
+                 "fluid: {velocity: [0, 2]}\nwake: {vortices: [[7, 8, 9]],\n"
                  "       street: {vortices: 3, spacing: 0.8, row_distance: 0.3, circulation: 5, position: [1, 2]}}\n"
                  "fish: [{force: published}]\n");
     // along y: the row on the left has the smaller x

@@ -20,12 +20,9 @@
 
 // two fish with different sizes and positions
 static const char case_text[] =
-    "format: 1\n"
-    "name: two\n"
-    "time: {end: 0.1, shedding_interval: 0.02}\n"
+    "format: 1\nname: two\ntime: {end: 0.1, shedding_interval: 0.02}\n"
     "wake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
-    "defaults: {fish: {start: {speed: 1}, body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
-    "fish:\n"
+    "defaults: {fish: {start: {speed: 1}, body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\nfish:\n"
     "  - {name: a, nodes: 5, sheet_points: 7}\n"
     "  - {name: b, nodes: 7, sheet_points: 9, start: {position: [0.2, 0.7]}, wave: {phase: 60}}\n";
 

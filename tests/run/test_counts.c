@@ -42,8 +42,7 @@ static void print_cost(const char *name, double modulus, const struct cost *cost
 static struct cost cost_of_article(int nodes, int sheet_points, const char *second_moment, double modulus) {
     char text[512], name[64];
     snprintf(text, sizeof text,
-             "time: {end: 2, shedding_interval: 0.01}\n"
-             "solver: {rtol: 1.0e-5}\n"
+             "time: {end: 2, shedding_interval: 0.01}\nsolver: {rtol: 1.0e-5}\n"
              "fish: [{nodes: %d, sheet_points: %d, body: {second_moment: %s, modulus: %.1e}, wave: {ramp: 1}}]\n",
              nodes, sheet_points, second_moment, modulus);
     const struct cost cost = cost_per_event(text, 2);

@@ -82,8 +82,7 @@ TEST(a_run_that_is_done_whole_takes_what_it_took) {
 
 TEST(a_wake_that_grows_costs_more_than_its_first_events) {
     const char long_run[] =
-        "time: {end: 2000, shedding_interval: 0.02, output_interval: 0.02}\n"
-        "wake: {lifetime: %d}\n" FISH;
+        "time: {end: 2000, shedding_interval: 0.02, output_interval: 0.02}\nwake: {lifetime: %d}\n" FISH;
     char text[sizeof long_run + 20];
     double seconds[2];
     for (int i = 0; i < 2; i++) {

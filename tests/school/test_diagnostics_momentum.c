@@ -181,8 +181,7 @@ TEST(a_wall_pushes_across_itself) {
             school_simulation_of(SCHOOL_DEFAULTS TIME
                                  "wake: {lifetime: 3, decay: 2}\nfluid: {viscosity: 0, walls: [-0.25%s]}\n"
                                  "defaults: {fish: {drag: {normal: 0, skin: laminar}, pressure: {span: finite, "
-                                 "suction_limit: 0}}}\n"
-                                 "fish: [{nodes: 9, sheet_points: 33, start: {speed: 0.5}},\n"
+                                 "suction_limit: 0}}}\nfish: [{nodes: 9, sheet_points: 33, start: {speed: 0.5}},\n"
                                  "       {nodes: 9, sheet_points: 33, start: {speed: 0.5, position: [0.4, 0.3]}}]\n",
                                  walls == 2 ? ", 0.6" : "");
         school_run(simulation, 2);

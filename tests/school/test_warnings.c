@@ -531,8 +531,7 @@ static int warns_of_pitch(double ratio, const char *motion) {
     const double pitch = ratio * 5.392165 / (2 * M_PI * 2 / 3) * 180 / M_PI;
     snprintf(text, sizeof text,
              SCHOOL_DEFAULTS
-             "time: {end: 1, shedding_interval: 0.01}\n"
-             "fluid: {density: 1, viscosity: 1.348e-4}\n"
+             "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1.348e-4}\n"
              "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 5.392165}, wave: {amplitude: 0, "
              "frequency: 0},\n  body: {profile: uniform, thickness: 0.12}, motion: {%s, pitch: %.17g, "
              "pivot: 0.333333333, frequency: 1}}]\n",

@@ -26,8 +26,7 @@ TEST(impulses_are_those_of_point_vortices) {
 TEST(a_depth_that_varies_is_none) {
     struct setup setup = setup_of(
         TIME
-        "fish:\n"
-        "  - {length: 2, body: {depth: 0.3}}\n"
+        "fish:\n  - {length: 2, body: {depth: 0.3}}\n"
         "  - {nodes: 5, start: {position: [3, 3]}, body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05],\n"
         "     depth_table: [0.2, 0.3, 0.25, 0.1]}}\n");
     NEAR(impulse_depth(&setup.school->fish[0]), 0.6, 1e-15, 0);

@@ -41,8 +41,7 @@ TEST(a_fish_without_a_beat_remembers_one_sample) {
 TEST(samples_take_memory_for_the_events_of_the_run) {
     // a beat of 1e6 s has 1e8 events of 0.01 s, of which a run has twenty
     struct setup setup = setup_of(
-        "time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.01}\n"
-        "fish: [{wave: {frequency: 1e-6}}]\n");
+        "time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.01}\nfish: [{wave: {frequency: 1e-6}}]\n");
     struct history *const history = &setup.state->history[0];
     assert_int_equal(history->n_slots, 0);
     assert_in_range(history->capacity, 10000000, 10000001);

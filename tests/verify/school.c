@@ -95,9 +95,7 @@ static const struct variant usual = {.interval = 0.02,
 static struct simulation *open_school(const struct variant *variant) {
     return verify_open(
         "format: 1\nname: school\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-        "%ssolver: {rtol: %.17g, order: %d}\n"
-        "defaults: {fish: {control: {law: heading}}}\n"
-        "fish:\n"
+        "%ssolver: {rtol: %.17g, order: %d}\ndefaults: {fish: {control: {law: heading}}}\nfish:\n"
         "  - {name: leader, body: {modulus: %.17g}}\n"
         "  - {name: side, nodes: 5, sheet_points: 13, length: 0.8, body: {modulus: %.17g},\n"
         "     wave: {frequency: 1.25, phase: 90}, control: {desired_heading: 185},\n"

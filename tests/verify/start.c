@@ -231,8 +231,7 @@ static struct simulation *open_second(const int *choice) {
         "format: 1\ntime: {end: 1, shedding_interval: 0.01}\n"
         "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
         "wake: {%s}\nsheet: {%s, collocation: %s}\nfish:\n  - nodes: 5\n    sheet_points: 9\n    wave: {ramp: 0}\n"
-        "    body: {%s}\n    %s\n    added_mass: {%s}\n    control: {%s}\n    motion: {%s}\n"
-        "    start: {speed: 1}\n",
+        "    body: {%s}\n    %s\n    added_mass: {%s}\n    control: {%s}\n    motion: {%s}\n    start: {speed: 1}\n",
         word[0], word[1], choice[0] == 2 ? "midpoint" : "chebyshev", word[2], word[3], word[4], word[5], word[6]);
 }
 

@@ -27,11 +27,8 @@ static const char pressure[] = VERIFY_ATTACHED,
 
 static struct simulation *open_body(const struct body *body) {
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: %.17g, shedding_interval: 0.04}\n"
-                       "fluid: {density: 1, velocity: [%.17g, 0]%s}\n"
-                       "wake: {lifetime: %.17g}\n"
-                       "fish:\n"
+                       "format: 1\ntime: {end: %.17g, shedding_interval: 0.04}\n"
+                       "fluid: {density: 1, velocity: [%.17g, 0]%s}\nwake: {lifetime: %.17g}\nfish:\n"
                        "  - {nodes: %d, sheet_points: %d, wave: {amplitude: 0, frequency: 0}, %s,\n"
                        "     body: {profile: uniform, thickness: %.17g, depth: %.17g, density: 20, modulus: %.17g,\n"
                        "            relaxation_time: 0.2},\n"

@@ -60,8 +60,7 @@ static double turned_angle(const struct view_point *view, double degrees) {
 static void write_case(const struct view_point *view, double output_interval, char *text) {
     int used =
         snprintf(text, MOST_TEXT,
-                 "%sformat: 1\nname: symmetry\n"
-                 "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                 "%sformat: 1\nname: symmetry\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                  "fluid: {velocity: [%.17g, 0]}\nwake: {lifetime: 0.5, decay: 0.2}\n"
                  "solver: {threads: %d, rtol: %.17g, order: %d}\n"
                  "defaults: {fish: {body: {depth: 0.25}, %swave: {ramp: %.17g}}}\nfish:\n",

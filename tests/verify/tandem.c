@@ -27,17 +27,13 @@ static void text_of(const struct pair *pair, int n_fish, const char *keys, size_
     const double thickness = 0.05, area = pi / 4 * thickness * pair->length * pair->length;
     const int length = snprintf(text, size,
                                 VERIFY_DEFAULTS
-                                "format: 1\n"
-                                "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-                                "fluid: {density: 1, viscosity: %.17g}\n"
-                                "wake: {lifetime: %g, decay: 6, smoothing: %g}\n"
+                                "format: 1\ntime: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+                                "fluid: {density: 1, viscosity: %.17g}\nwake: {lifetime: %g, decay: 6, smoothing: %g}\n"
                                 "steady: {formation: %s, tolerance: 1e-3}\n"
                                 "defaults: {fish: {length: %g, nodes: 5, " VERIFY_ATTACHED
-                                ", start: {speed: %.17g},\n"
-                                "  wave: {amplitude: 0, frequency: 0},\n"
+                                ", start: {speed: %.17g},\n  wave: {amplitude: 0, frequency: 0},\n"
                                 "  body: {profile: uniform, thickness: %g, depth: 1, density: %.17g},\n"
-                                "  motion: {prescribed: all, heave: %g, frequency: 1, %s}}}\n"
-                                "fish: [{}",
+                                "  motion: {prescribed: all, heave: %g, frequency: 1, %s}}}\nfish: [{}",
                                 pow(pair->friction / 1.328, 2) / pair->length, pair->lifetime,
                                 pair->smoothing / pair->length, n_fish > 1 ? "true" : "false", pair->length,
                                 pair->speed, thickness, pair->mass / area, pair->heave, keys);

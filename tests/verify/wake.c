@@ -15,13 +15,10 @@ static const double delta = 0.2; /* smoothing, m: fish of length 1 m with the de
 
 static struct simulation *still_water(double interval) {
     return verify_open(
-        "format: 1\n"
-        "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
         "wake: {smoothing: %.17g, lifetime: 1000, tolerance: 1e-8}\n"
         "defaults: {fish: {nodes: 4, sheet_points: 5, wave: {amplitude: 0}, motion: {prescribed: all, speed: 0}}}\n"
-        "fish:\n"
-        "  - start: {position: [1000, 0], speed: 0}\n"
-        "  - start: {position: [2000, 0], speed: 0}\n",
+        "fish:\n  - start: {position: [1000, 0], speed: 0}\n  - start: {position: [2000, 0], speed: 0}\n",
         interval, interval, interval, delta);
 }
 

@@ -20,10 +20,8 @@ static double circulation_between(double distance) {
     const double degree = 0.5, angle = degree * pi / 180;
     struct simulation *const simulation = verify_open(
         VERIFY_DEFAULTS
-        "format: 1\n"
-        "time: {end: %.17g, shedding_interval: 0.04, output_interval: 0.04}\n"
-        "fluid: {velocity: [1, 0], walls: [%.17g, %.17g]}\n"
-        "wake: {lifetime: %.17g}\n"
+        "format: 1\ntime: {end: %.17g, shedding_interval: 0.04, output_interval: 0.04}\n"
+        "fluid: {velocity: [1, 0], walls: [%.17g, %.17g]}\nwake: {lifetime: %.17g}\n"
         "fish: [{force: reactive, nodes: 4, wave: {amplitude: 0}, start: {heading: %.17g, position: [%.17g, %.17g]},\n"
         "        motion: {prescribed: all, speed: 0}}]\n",
         12 * distance, -distance / 2, distance / 2, 6 * distance, 180 - degree, -0.5 * cos(angle), 0.5 * sin(angle));
@@ -46,12 +44,8 @@ static void check_plate(void) {
 
 static struct simulation *open_fish(const char *force, double rtol, const char *fluid, const char *other) {
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\n"
-                       "time: {end: 1, output_interval: 0.1}\n"
-                       "wake: {tolerance: 0}\n"
-                       "solver: {rtol: %.17g}\n"
-                       "%sdefaults: {fish: {force: %s}}\n"
-                       "fish: [{start: {position: [0, 0.25]}}%s]\n",
+                       "format: 1\ntime: {end: 1, output_interval: 0.1}\nwake: {tolerance: 0}\nsolver: {rtol: %.17g}\n"
+                       "%sdefaults: {fish: {force: %s}}\nfish: [{start: {position: [0, 0.25]}}%s]\n",
                        rtol, fluid, force, other);
 }
 
@@ -92,8 +86,7 @@ static void check_mirror(const char *force, double bound) {
 static void check_energy(const char *force) {
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
-                    "format: 1\n"
-                    "time: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\n"
+                    "format: 1\ntime: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\n"
                     "fluid: {walls: [0, 2]}\n"
                     "fish: [{force: %s, start: {position: [0, 0.6], heading: 215, speed: 0.8}}]\n",
                     force);
@@ -122,8 +115,7 @@ static void check_energy(const char *force) {
 static double dipole_error(double interval, double *parted) {
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
-                    "format: 1\n"
-                    "time: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "format: 1\ntime: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
                     "fluid: {density: 1, viscosity: 0, walls: [0]}\n"
                     "wake: {lifetime: 1000, decay: 0, smoothing: 0.001, tolerance: 0,\n"
                     "       vortices: [[-0.5, 2, -6.283185307179586], [0.5, 2, 6.283185307179586]]}\n"
