@@ -536,6 +536,82 @@ TEST(every_variable_of_the_table_can_be_read) {
     shoal_close(run);
 }
 
+// the factor on a number with this unit in a system of units with other lengths and times, and the same density
+static double factor_of(const char *unit, double length, double time) {
+    const double force = pow(length, 4) / (time * time);
+    const struct {
+        const char *name;
+        double factor;
+    } units[] = {{"m", length}, {"s", time},           {"kg", pow(length, 3)},       {"Hz", 1 / time},
+                 {"N", force},  {"J", force * length}, {"W", force * length / time}, {"Pa", force / (length * length)}};
+    double factor = 1;
+    char name[16];
+    for (int n = 0, n_power = 0, power; sscanf(unit, " %15[A-Za-z]%n", name, &n) == 1; unit += n + n_power) {
+        power = 1;
+        n_power = 0;
+        if (sscanf(unit + n, "%d%n", &power, &n_power) != 1) power = 1;
+        for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+            if (strcmp(name, units[i].name) == 0) factor *= pow(units[i].factor, power);
+        }
+    }
+    return factor;
+}
+
+static struct shoal *run_in_units(int i, double length, double time) {
+    static const char *const fish[] = {
+        "wave: {frequency: %.17g}}}\nfish:\n"
+        "  - {nodes: 7, sheet_points: 27, sensors: [0.2, 0.7], load: {tip: [%.17g, %.17g]}, control: {law: course}}\n"
+        "  - {nodes: 7, sheet_points: 15, force: reactive, drag: {law: linear_quadratic}, start: {position: [%.17g, "
+        "%.17g]}}\n"
+        "  - {nodes: 9, sheet_points: 27, wave: {amplitude: 0}, start: {position: [%.17g, %.17g]},\n"
+        "     motion: {prescribed: head, heave: %.17g, pitch: 10, frequency: %.17g, speed: %.17g}}\n",
+        "wave: {frequency: %.17g}, nodes: 7, sheet_points: 15, force: reactive, load: {tip: [%.17g, %.17g]}}}\n"
+        "wake: {shedding: continuous, taper: 0, taper_beside: 0}\nsheet: {curve: polygon}\nfish:\n"
+        "  - {drag: {skin: boundary_layer},\n"
+        "     control: {law: averaged_heading, desired_heading: 150, feedforward: 1, rate: %.17g, filter: %.17g}}\n"
+        "  - {start: {position: [%.17g, %.17g]},\n"
+        "     motion: {prescribed: all, heave: %.17g, frequency: %.17g, speed: %.17g}}\n"};
+    const double l = length, t = time, v = l / t, force = pow(l, 4) / (t * t);
+    char text[4096], whole[2048];
+    snprintf(whole, sizeof whole,
+             "format: 1\nname: units\ntime: {end: %%.17g, shedding_interval: %%.17g}\n"
+             "fluid: {viscosity: %%.17g, velocity: [%%.17g, 0], %s}\n"
+             "defaults: {fish: {length: %%.17g, start: {speed: %%.17g}, body: {modulus: %%.17g}, %s",
+             i == 0 ? "walls: [%.17g, %.17g]" : "gust: {amplitude: %.17g, frequency: %.17g}", fish[i]);
+    snprintf(text, sizeof text, whole, t, 0.02 * t, 1e-3 * l * v, 0.1 * v, i == 0 ? -0.9 * l : 0.1 * v,
+             i == 0 ? 1.3 * l : 1.5 / t, l, 0.7 * v, 1e6 * v * v, 1 / t, 3 * force, -2 * force,
+             i == 0 ? 0.1 * l : 2 / t, i == 0 ? 0.4 * l : 0.3 * t, -0.2 * l, -0.4 * l, 0.05 * l, 1.2 / t, 0.8 * v);
+    struct shoal *run;
+    if (shoal_open_text(&run, text, NULL, 0, NULL) != SHOAL_OK) fail_msg("%s", shoal_message());
+    if (shoal_advance(run, 0.5 * t) != SHOAL_OK) fail_msg("%s", shoal_message());
+    return run;
+}
+
+// a case in other units is the same case, and every variable has the dimension of its unit; powers of two hardly round
+TEST(every_variable_has_the_dimension_of_its_unit) {
+    for (int i = 0; i < 2; i++) {
+        struct shoal *const one = run_in_units(i, 1, 1), *const other = run_in_units(i, 4, 0.5);
+        for (int n = 0; n < result_table_n; n++) {
+            const struct result_variable *const of = &result_table[n];
+            struct shoal_array want, got;
+            if ((of->type != RESULT_REAL && of->type != RESULT_BULK) || strstr(of->name, "wall_time")) continue;
+            const double *const a = read_doubles(one, of->name, &want), *const b = read_doubles(other, of->name, &got);
+            const double factor = factor_of(of->unit, 4, 0.5);
+            size_t size = 1;
+            for (int d = 0; d < want.n_dimensions; d++) size *= (size_t)want.shape[d];
+            double largest = 0;
+            for (size_t k = 0; k < size; k++) largest = fmax(largest, isfinite(a[k]) ? fabs(a[k]) : 0);
+            for (size_t k = 0; k < size; k++) {
+                // what vanishes but for rounding is some 1e-16
+                if (isfinite(a[k]) ? fabs(b[k] / factor - a[k]) <= 1e-6 * largest + 1e-15 : !isfinite(b[k])) continue;
+                fail_msg("%s[%zu]: %g %s in other units, %g", of->name, k, b[k] / factor, of->unit, a[k]);
+            }
+        }
+        shoal_close(one);
+        shoal_close(other);
+    }
+}
+
 TEST(what_has_been_read_holds_until_the_next_step) {
     struct shoal *const run = opened(*state, 0, NULL);
     struct shoal_array array;

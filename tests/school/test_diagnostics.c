@@ -518,6 +518,23 @@ TEST(thrust_and_power_of_a_held_plate_are_means_over_the_last_period) {
     ABOVE(power, thrust);
 }
 
+// thrust of a held body: against the stream where its centre of mass is
+TEST(thrust_of_a_held_body_is_along_the_stream_at_the_body) {
+    struct simulation *const simulation =
+        school_simulation(TIME
+                          "fluid: {velocity: [0.5, 0.2], shear: 0.3}\n"
+                          "fish: [{start: {position: [0, 2], speed: 0}, motion: {prescribed: all, speed: 0}}]\n");
+    school_run(simulation, 0.1);
+    simulate_measure(simulation);
+    const struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
+    const double stream[] = {0.5 + 0.3 * now->com[1], 0.2};
+    double force[2];
+    diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, force);
+    const double drag = (force[0] * stream[0] + force[1] * stream[1]) / hypot(stream[0], stream[1]);
+    ABOVE(drag, 0);
+    NEAR(now->thrust, -drag, 0, 1e-12);
+}
+
 /* A plate with damping and a muscle: the drive pays for both, and the power is the same in a stream. */
 TEST(power_of_a_held_plate_is_the_work_of_muscle_and_drive) {
     double power[2];

@@ -49,6 +49,21 @@ TEST(blocks_are_those_of_the_coupled_fish) {
     AT_MOST(n, 6);
 }
 
+// fish that come into contact between two evaluations are coupled, however short the coupling distance
+TEST(contact_couples) {
+    struct setup setup = setup_of(TIME
+                                  "solver: {coupling_distance: 0}\n"
+                                  "defaults: {fish: {sheet_points: 9, body: {profile: uniform, thickness: 0.1}}}\n"
+                                  "fish: [{}, {start: {position: [0, 0.3]}}]\n");
+    for (int are_near = 0; are_near < 2; are_near++) {
+        const struct fish *const fish = &setup.school->fish[1];
+        for (int k = 0; k < fish->n_nodes && are_near; k++) setup.state->y[fish->at.y + k] -= 0.185;
+        school_ok(residual_jacobian(setup.residual, &residual_run, setup.t, 37, setup.state->y, setup.jacobian));
+        assert_int_equal(setup.jacobian->has_contacts, are_near);
+        assert_int_equal(setup.jacobian->n_couplings, 2 * are_near);
+    }
+}
+
 TEST(couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks) {
     struct setup setup;
     build(&setup, FIVE(1));

@@ -109,6 +109,27 @@ TEST(counts_go_on_across_restarts) {
     }
 }
 
+// the rates of algebraic unknowns are differences of the steps since; no count is lost, nor those of failures
+TEST(a_restart_begins_like_a_new_solver) {
+    struct simulation *run[2];
+    for (int i = 0; i < 2; i++) {
+        run[i] = school_simulation(SCHOOL_DEFAULTS TIME
+                                   "solver: {rtol: 1e-2}\nfish: [{nodes: 9, sheet_points: 27, body: {modulus: 1e8}, "
+                                   "wave: {amplitude: 1, ramp: 0.02}}]\n");
+        school_run(run[i], 0.2);
+    }
+    const struct integrator_counts before = counts_of(run[0]);
+    ABOVE(before.error_test_failures, 0);
+    ABOVE(before.convergence_failures, 0);
+    school_ok(run[0]->integrator->restart(run[0]->solver));
+    const struct integrator_counts after = counts_of(run[0]);
+    assert_memory_equal(&after, &before, offsetof(struct integrator_counts, step_size));
+    school_ok(simulate_renew(run[1]));
+    for (int i = 0; i < 2; i++) school_ok(simulate_step(run[i]));
+    const size_t size = sizeof(double) * (size_t)run[0]->school->n_unknowns;
+    assert_memory_equal(run[0]->state->yp, run[1]->state->yp, size);
+}
+
 TEST(a_restart_without_a_jump_does_not_change_the_path) {
     double tail[2];
     for (int i = 0; i < 2; i++) {
