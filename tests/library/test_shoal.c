@@ -546,13 +546,13 @@ static double factor_of(const char *unit, double length, double time) {
                  {"N", force},  {"J", force * length}, {"W", force * length / time}, {"Pa", force / (length * length)}};
     double factor = 1;
     char name[16];
-    for (int n = 0, n_power = 0, power; sscanf(unit, " %15[A-Za-z]%n", name, &n) == 1; unit += n + n_power) {
-        power = 1;
-        n_power = 0;
-        if (sscanf(unit + n, "%d%n", &power, &n_power) != 1) power = 1;
+    for (int n = 0; sscanf(unit, " %15[A-Za-z]%n", name, &n) == 1; unit += n) {
+        int power = 1, n_power = 0;
+        sscanf(unit + n, "%d%n", &power, &n_power);
         for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
             if (strcmp(name, units[i].name) == 0) factor *= pow(units[i].factor, power);
         }
+        n += n_power;
     }
     return factor;
 }
@@ -562,8 +562,7 @@ static struct shoal *run_in_units(int i, double length, double time) {
         "wave: {frequency: %.17g}}}\nfish:\n"
         "  - {nodes: 7, sheet_points: 27, sensors: [0.2, 0.7], load: {tip: [%.17g, %.17g]}, control: {law: course}}\n"
         "  - {nodes: 7, sheet_points: 15, force: reactive, drag: {law: linear_quadratic}, start: {position: [%.17g, "
-        "%.17g]}}\n"
-        "  - {nodes: 9, sheet_points: 27, wave: {amplitude: 0}, start: {position: [%.17g, %.17g]},\n"
+        "%.17g]}}\n  - {nodes: 9, sheet_points: 27, wave: {amplitude: 0}, start: {position: [%.17g, %.17g]},\n"
         "     motion: {prescribed: head, heave: %.17g, pitch: 10, frequency: %.17g, speed: %.17g}}\n",
         "wave: {frequency: %.17g}, nodes: 7, sheet_points: 15, force: reactive, load: {tip: [%.17g, %.17g]}}}\n"
         "wake: {shedding: continuous, taper: 0, taper_beside: 0}\nsheet: {curve: polygon}\nfish:\n"
@@ -1396,8 +1395,7 @@ TEST(without_memory_every_call_fails_and_leaves_nothing) {
         "defaults: {fish: {force: reactive}}\nfish:\n"
         "  - {nodes: 7, sheet_points: 9, control: {law: heading, waypoints: [[-3, 1]]}}\n"
         "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, control: {law: heading, desired_heading: [[0, "
-        "180], "
-        "[1, 90]]}}\n";
+        "180], [1, 90]]}}\n";
     // rings, and couplings that need GMRES
     static const char pressure[] =
         "fish:\n  - {nodes: 7, sheet_points: 26}\n  - {nodes: 7, sheet_points: 26, start: {position: [0, 0.4]}}\n";

@@ -112,9 +112,7 @@ TEST_WITH(info_is_printed_whole, set_up, tear_down) {
     const char *const text = info(f->path, 0, &status);
     assert_int_equal(status, STATUS_OK);
     is_printed(strstr(text, "  status"),
-               "  status      complete\n"
-               "  rows        4, from t = 0 s to 1.5 s; a vortex every 0.1 s\n"
-               "\n"
+               "  status      complete\n  rows        4, from t = 0 s to 1.5 s; a vortex every 0.1 s\n\n"
                "fish      nodes  sheet  length  vortices   speed  heading    phi0        shed"
                "  cross-flow  energy   work   balance\n"
                "                             m             m s-1   degree              m2 s-1"
@@ -122,14 +120,9 @@ TEST_WITH(info_is_printed_whole, set_up, tear_down) {
                "leader        5      7       1         0  0.1235   -12.35  0.0123  -1.235e-03"
                "      -0.568   23.46  34.57  -4.6e-05\n"
                "suédois      7      5       2         0  0.2469   -24.69  0.0247  -2.469e-03"
-               "       -1.14   46.91  69.14  -9.1e-05\n"
-               "\n"
-               "  total circulation         1.1e+01 m2 s-1\n"
-               "  momentum balance          5.0e-03 N s\n"
-               "  least distance            12.0000 m\n"
-               "  polarisation              13.0000\n"
-               "\n"
-               "  steps                          21   1.40 per event\n"
+               "       -1.14   46.91  69.14  -9.1e-05\n\n  total circulation         1.1e+01 m2 s-1\n"
+               "  momentum balance          5.0e-03 N s\n  least distance            12.0000 m\n"
+               "  polarisation              13.0000\n\n  steps                          21   1.40 per event\n"
                "  residual_evaluations           22   1.47 per event\n"
                "  newton_iterations              23   1.53 per event\n"
                "  jacobian_evaluations           24   1.60 per event\n"
@@ -167,35 +160,20 @@ TEST_WITH(a_steady_state_is_printed_whole, set_up, tear_down) {
         .n_beats = 12, .residual = 2e-6, .error = 3e-5, .stiffness = NAN, .fish = fish};
     const char *const text = steady_summary(f, &values);
     is_printed(strstr(text, "  steady state"),
-               "  steady state after 12 beats: change from beat to beat 2.0e-06, about 3.0e-05 from the fixed point\n"
-               "\n"
-               "                            leader  suédois\n"
-               "speed                      0.12346   2.59258  m s-1\n"
-               "turn in a beat              0.2469    2.7160  degree\n"
-               "place, ahead               0.37037   2.83949  m\n"
-               "place, aside               0.49382   2.96294  m\n"
-               "force of the fluid, x      0.61728    3.0864  N\n"
-               "force of the fluid, y      0.74074    3.2099  N\n"
-               "thrust                     0.86419    3.3333  N\n"
-               "drag                       0.98765    3.4568  N\n"
-               "lift                        1.1111    3.5802  N\n"
-               "deflection                 1.23456   3.70368  m\n"
-               "power of the muscle          1.358    3.8271  W\n"
-               "driving power               1.4815    3.9506  W\n"
-               "power of damping            1.6049     4.074  W\n"
-               "power to the fluid          1.7284    4.1975  W\n"
-               "power of muscle and drive   1.8518     4.321  W\n"
-               "cost of transport          1.97530   4.44442  m s-2\n"
-               "efficiency                 2.09875   4.56787\n"
-               "towed efficiency           2.22221   4.69133\n"
-               "Strouhal number            2.34566   4.81478\n"
-               "\n"
-               "  steps                          21\n"
-               "  residual_evaluations           22\n"
-               "  newton_iterations              23\n"
-               "  jacobian_evaluations           24\n"
-               "  error_test_failures            25\n"
-               "  convergence_failures           26\n"
+               "  steady state after 12 beats: change from beat to beat 2.0e-06, about 3.0e-05 from the fixed point\n\n"
+               "                            leader  suédois\nspeed                      0.12346   2.59258  m s-1\n"
+               "turn in a beat              0.2469    2.7160  degree\nplace, ahead               0.37037   2.83949  m\n"
+               "place, aside               0.49382   2.96294  m\nforce of the fluid, x      0.61728    3.0864  N\n"
+               "force of the fluid, y      0.74074    3.2099  N\nthrust                     0.86419    3.3333  N\n"
+               "drag                       0.98765    3.4568  N\nlift                        1.1111    3.5802  N\n"
+               "deflection                 1.23456   3.70368  m\npower of the muscle          1.358    3.8271  W\n"
+               "driving power               1.4815    3.9506  W\npower of damping            1.6049     4.074  W\n"
+               "power to the fluid          1.7284    4.1975  W\npower of muscle and drive   1.8518     4.321  W\n"
+               "cost of transport          1.97530   4.44442  m s-2\nefficiency                 2.09875   4.56787\n"
+               "towed efficiency           2.22221   4.69133\nStrouhal number            2.34566   4.81478\n\n"
+               "  steps                          21\n  residual_evaluations           22\n"
+               "  newton_iterations              23\n  jacobian_evaluations           24\n"
+               "  error_test_failures            25\n  convergence_failures           26\n"
                "  wall_time                   28.00 s   0 times real time\n");
 }
 
@@ -217,10 +195,8 @@ TEST_WITH(info_shows_the_multipliers_of_a_steady_state_and_a_table, set_up, tear
         "  steady state after 12 beats: change from beat to beat 2.0e-06, about 3.0e-05 from the fixed point\n"
         "  multipliers in 30 more beats: 0.6000 +- 0.6000 i, 0.4000: stable\n",
         "speed                      0.50000   0.25000  m s-1\n",
-        "place, ahead               0.00000  -3.00000  m\n"
-        "place, aside               0.00000   2.00000  m\n"
-        "force of the fluid, x            4         7  N\n"
-        "force of the fluid, y            5         8  N\n",
+        "place, ahead               0.00000  -3.00000  m\nplace, aside               0.00000   2.00000  m\n"
+        "force of the fluid, x            4         7  N\nforce of the fluid, y            5         8  N\n",
         "drag                             -         6  N\n"};
     const char *text = steady_summary(f, &values);
     has_lines(text, 4, lines);

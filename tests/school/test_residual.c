@@ -321,30 +321,14 @@ TEST(unknowns_have_names_kinds_and_scales) {
         "0.1, frequency: 1}}]\n");
     const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
     const struct {
-        int i, fish, index;
-        const char *name;
+        int i;
         double kind;
-    } want[] = {{a->x, 0, 0, "x", 1},
-                {a->vy + 3, 0, 3, "vy", 1},
-                {a->ax + 1, 0, 1, "ax", 0},
-                {a->gamma + 4, 0, 4, "gamma", 0},
-                {a->circulation, 0, 0, "circulation", 0},
-                {a->phi0, 0, 0, "phi0", 0},
-                {b->x + 1, 1, 1, "x", 0},
-                {b->y + 2, 1, 2, "y", 1},
-                {b->vx + 1, 1, 1, "vx", 0},
-                {b->vx + 2, 1, 2, "vx", 1},
-                {b->circulation, 1, 0, "circulation", 0}};
+    } want[] = {{a->x, 1},     {a->vy + 3, 1}, {a->ax + 1, 0}, {a->gamma + 4, 0}, {a->circulation, 0}, {a->phi0, 0},
+                {b->x + 1, 0}, {b->y + 2, 1},  {b->vx + 1, 0}, {b->vx + 2, 1},    {b->circulation, 0}};
     double kind[128];
     AT_MOST(setup.school->n_unknowns, 128);
     residual_kinds(setup.residual, &residual_run, kind);
-    for (size_t k = 0; k < sizeof want / sizeof *want; k++) {
-        const struct unknown_place place = residual_place(setup.school, want[k].i);
-        assert_int_equal(place.fish, want[k].fish);
-        assert_int_equal(place.index, want[k].index);
-        assert_string_equal(place.name, want[k].name);
-        NEAR(kind[want[k].i], want[k].kind, 0, 0);
-    }
+    for (size_t k = 0; k < sizeof want / sizeof *want; k++) NEAR(kind[want[k].i], want[k].kind, 0, 0);
     // every slice in turn, with scales of the dimension of its unknowns: a fish of twice the length and three times the
     // beat, with the added momenta of the same shape
     school_build(&setup, SCHOOL_DEFAULTS TIME
@@ -359,6 +343,8 @@ TEST(unknowns_have_names_kinds_and_scales) {
         for (int i = first[s]; i < first[s + 1]; i++) {
             const struct unknown_place place = residual_place(setup.school, i);
             assert_int_equal(place.kind, (enum unknown)s);
+            assert_int_equal(place.fish, 0);
+            assert_int_equal(residual_place(setup.school, i + a->end).fish, 1);
             assert_int_equal(place.index, i - first[s]);
             assert_int_equal(place.component, s < UNKNOWN_GAMMA ? s % 2 : 0);
             assert_string_equal(place.name, names[s]);

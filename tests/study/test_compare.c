@@ -105,8 +105,7 @@ TEST(the_wall_time_is_the_median_of_the_repeats) {
  * 200 and 357.8. A reference that is off by 1e-5 moves the first by 200 log(10)/log(100) 1e-2. */
 TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
     static const char text[] = CASE
-        "fish: [{}]\n"
-        "sweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step],\n"
+        "fish: [{}]\nsweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step],\n"
         "    values: [[ida, 5, 1e-9, 0], [ida, 5, 1e-8, 0], [ida, 2, 1e-5, 0], [ida, 2, 1e-3, 0],\n"
         "        [rk4, 4, 1e-5, 0.005], [rk4, 4, 1e-5, 0.01], [heun, 2, 1e-3, 0]]}]\n";
     static const double error[] = {0, 1e-5, 4e-5, 4e-3, 2e-4, 2e-2, 1e-4},
@@ -149,8 +148,7 @@ TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
  * range of the repeats of the less repeatable setting. */
 TEST(steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar) {
     static const char text[] = CASE
-        "fish: [{}]\n"
-        "sweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step],\n"
+        "fish: [{}]\nsweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step],\n"
         "    values: [[ida, 5, 1e-9, 0], [ida, 5, 1e-8, 0], " ROW_A ", [rk4, 4, 1e-5, 0.005], [rk4, 4, 1e-4, 0], " ROW_A
         ", [rk4, 4, 1e-5, 0.005]]}]\n";
     static const double error[] = {0, 1e-9, 4e-3, 4e-5, 2e-4, 4e-3, 4e-5}, wall_time[] = {90, 80, 2, 10, 5, 2.4, 11};

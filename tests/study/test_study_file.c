@@ -39,8 +39,7 @@ TEST(a_given_value_gives_the_order_with_two_levels_each) {
 }
 
 static const char refined[] =
-    "format: 1\ntime: {end: 1, shedding_interval: 0.1}\nfish: [{}, {}]\n"
-    "sweep:\n"
+    "format: 1\ntime: {end: 1, shedding_interval: 0.1}\nfish: [{}, {}]\nsweep:\n"
     "  - {key: solver.order, values: [1, 2]}\n"
     "  - {key: time.shedding_interval, values: [0.05, 0.1, 0.025], refine: true, reference: {speed: 5}}\n";
 
@@ -183,8 +182,7 @@ static void is_table(const char *text, double expected, const char *met) {
         "(doc/studies.md)\n"
         "difference of   fish  unit       0.1      0.05  0.025  coarse order  order  extrapolated       error  by\n"
         "         nose  fish1     m  3.18e-02  1.06e-02      -             -   1.00             5  5  1.3e-02  3 "
-        "levels\n"
-        "%s: order of nose of fish1 is 1.00, expected %g +- 0.1\n",
+        "levels\n%s: order of nose of fish1 is 1.00, expected %g +- 0.1\n",
         met, expected);
     if (strcmp(text, want) != 0) fail_msg("%s\ninstead of\n%s", text, want);
 }
@@ -264,8 +262,7 @@ TEST(differences_below_the_error_of_a_search_are_noise) {
 
 TEST(levels_of_points_are_their_distances_from_coarse_to_fine) {
     static const char text[] =
-        "format: 1\ntime: {end: 1}\nfish: [{}]\n"
-        "sweep: [{key: \"fish[*].nodes\", values: [9, 5, 17], refine: true}]\n";
+        "format: 1\ntime: {end: 1}\nfish: [{}]\nsweep: [{key: \"fish[*].nodes\", values: [9, 5, 17], refine: true}]\n";
     struct case_values study;
     assert_int_equal(case_parse(&study, text, strlen(text), "points.yaml", NULL, 0, NULL), STATUS_OK);
     const struct member_file missing[3] = {{.status = ""}, {.status = ""}, {.status = ""}};

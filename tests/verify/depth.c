@@ -14,8 +14,7 @@ static const double pi = 3.14159265358979323846;
 static struct simulation *heave_at(double frequency, const char *span, double depth, double amplitude, const char *wake,
                                    const char *walls) {
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: 20}\n"
-                       "fluid: {density: 1, viscosity: 0, velocity: [1, 0], walls: [%s]}\n"
+                       "format: 1\ntime: {end: 20}\nfluid: {density: 1, viscosity: 0, velocity: [1, 0], walls: [%s]}\n"
                        "wake: {%s}\n"
                        "fish: [{nodes: 9, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
                        "        pressure: {span: %s, suction_limit: 0},\n"
@@ -47,8 +46,7 @@ static double lift_part(double depth, int n_sheet, double interval, double end) 
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
                     "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "fluid: {density: 1, viscosity: 0, velocity: [1, %.17g]}\n"
-                    "wake: {lifetime: 1000, decay: 0}\n"
+                    "fluid: {density: 1, viscosity: 0, velocity: [1, %.17g]}\nwake: {lifetime: 1000, decay: 0}\n"
                     "fish: [{nodes: 9, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
                     "        pressure: {span: finite, suction_limit: 0}, motion: {prescribed: all},\n"
                     "        body: {profile: uniform, thickness: 0.02, depth: %.17g}}]\n",
@@ -66,8 +64,7 @@ static double lift_part(double depth, int n_sheet, double interval, double end) 
 static double added_mass_part(double depth, int n_sheet) {
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
-                    "format: 1\ntime: {end: 1}\n"
-                    "fluid: {density: 1, viscosity: 0}\n"
+                    "format: 1\ntime: {end: 1}\nfluid: {density: 1, viscosity: 0}\n"
                     "fish: [{nodes: 17, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
                     "        pressure: {span: finite}, start: {speed: 0},\n"
                     "        body: {profile: uniform, thickness: 0.1, depth: %.17g}}]\n",
@@ -142,8 +139,7 @@ static void check_added_mass(void) {
 // the energy balance of a free fish at the end over the work of its muscle
 static void check_energy(const char *name, const char *walls, double end) {
     struct simulation *const simulation = verify_open(VERIFY_DEFAULTS
-                                                      "format: 1\ntime: {end: %.17g}\n"
-                                                      "solver: {rtol: 1e-7}\n"
+                                                      "format: 1\ntime: {end: %.17g}\nsolver: {rtol: 1e-7}\n"
                                                       "fluid: {walls: [%s]}\n"
                                                       "fish: [{force: pressure, start: {speed: 0.5},\n"
                                                       "        pressure: {span: finite}}]\n",
@@ -207,9 +203,7 @@ static void check_channel_limits(void) {
 
 static struct simulation *in_channel(double y, double phase) {
     return verify_open(VERIFY_DEFAULTS
-                       "format: 1\ntime: {end: 1}\n"
-                       "solver: {rtol: 1e-8}\n"
-                       "fluid: {viscosity: 0, walls: [-0.5, 0.5]}\n"
+                       "format: 1\ntime: {end: 1}\nsolver: {rtol: 1e-8}\nfluid: {viscosity: 0, walls: [-0.5, 0.5]}\n"
                        "fish: [{force: pressure, start: {speed: 0.5, position: [0, %.17g]},\n"
                        "        wave: {phase: %.17g}, pressure: {span: finite, suction_limit: 0}}]\n",
                        y, phase);
@@ -262,11 +256,9 @@ static void check_channel_fish(void) {
 // the momentum of a fish, and of two of different depth, is found in the fluid
 static void check_momentum(const char *name, const char *fish, double bound) {
     struct simulation *const simulation = verify_open(VERIFY_DEFAULTS
-                                                      "format: 1\ntime: {end: 2}\n"
-                                                      "fluid: {viscosity: 0}\n"
+                                                      "format: 1\ntime: {end: 2}\nfluid: {viscosity: 0}\n"
                                                       "defaults: {fish: {force: pressure, start: {speed: 0.5},\n"
-                                                      "  pressure: {span: finite, suction_limit: 0}}}\n"
-                                                      "fish: [%s]\n",
+                                                      "  pressure: {span: finite, suction_limit: 0}}}\nfish: [%s]\n",
                                                       fish);
     double most = 0, momentum = 0;
     for (int i = 1; i <= 20; i++) {

@@ -33,11 +33,8 @@ static struct simulation *open_plate(const struct setting *setting, double end, 
     const double thickness = 0.1;
     return verify_open(VERIFY_DEFAULTS
                        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g}\n"
-                       "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
-                       "wake: {lifetime: 1000, taper: %g}\n"
-                       "solver: {rtol: %g}\n"
-                       "fish:\n"
-                       "  - {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
+                       "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\nwake: {lifetime: 1000, taper: %g}\n"
+                       "solver: {rtol: %g}\nfish:\n  - {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
                        ", wave: {amplitude: 0},\n"
                        "     body: {profile: uniform, thickness: %g, depth: 1, density: %.17g, modulus: %.17g,\n"
                        "            relaxation_time: 0},\n"

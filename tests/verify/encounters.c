@@ -18,11 +18,8 @@ static struct simulation *open_plate(int n_sheet, double interval, double end, c
     return verify_open(VERIFY_DEFAULTS
                        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                        "fluid: {density: 1, viscosity: 0, velocity: [1, 0], gust: {amplitude: %.17g, %s}}\n"
-                       "wake: {lifetime: 1000}\n"
-                       "fish:\n"
-                       "  - {nodes: 17, sheet_points: %d, " VERIFY_ATTACHED
-                       ", wave: {amplitude: 0, frequency: 0},\n"
-                       "     start: {speed: 0}, motion: {prescribed: all},\n"
+                       "wake: {lifetime: 1000}\nfish:\n  - {nodes: 17, sheet_points: %d, " VERIFY_ATTACHED
+                       ", wave: {amplitude: 0, frequency: 0},\n     start: {speed: 0}, motion: {prescribed: all},\n"
                        "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1}}\n",
                        end, interval, interval, amplitude, gust, n_sheet);
 }
@@ -106,8 +103,7 @@ static double street_speed(int n, double interval) {
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
                     "format: 1\ntime: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "wake: {lifetime: 1000, street: {vortices: %d, spacing: 1, circulation: 1}}\n"
-                    "solver: {rtol: 1e-4}\n"
+                    "wake: {lifetime: 1000, street: {vortices: %d, spacing: 1, circulation: 1}}\nsolver: {rtol: 1e-4}\n"
                     "fish: [{length: 1e-3, force: published, sheet_points: 9, wave: {amplitude: 0, frequency: 0},\n"
                     "        start: {position: [0, 1000], speed: 0}, motion: {prescribed: all}}]\n",
                     end, interval, interval, n);
@@ -149,8 +145,7 @@ static void drift(void) {
                     "format: 1\ntime: {end: %g, shedding_interval: %.17g, output_interval: %.17g}\n"
                     "fluid: {density: 1, viscosity: 0, velocity: [%.17g, 0]}\n"
                     "wake: {lifetime: 1000, smoothing: 0.005,\n"
-                    "       street: {vortices: 48, spacing: %g, circulation: %g, position: [-7, 0]}}\n"
-                    "fish:\n"
+                    "       street: {vortices: 48, spacing: %g, circulation: %g, position: [-7, 0]}}\nfish:\n"
                     "  - {nodes: 17, sheet_points: %d, " VERIFY_ATTACHED
                     ", wave: {amplitude: 0, frequency: 0},\n"
                     "     start: {speed: 0}, motion: {prescribed: all, surge: free},\n"
@@ -247,10 +242,8 @@ static void free_plate(void) {
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
                     "format: 1\ntime: {end: 5, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
-                    "wake: {lifetime: 1000, smoothing: 0.005,\n"
-                    "       street: {vortices: %d, spacing: %g, circulation: %g, position: [%.17g, 0]}}\n"
-                    "fish:\n"
+                    "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\nwake: {lifetime: 1000, smoothing: 0.005,\n"
+                    "       street: {vortices: %d, spacing: %g, circulation: %g, position: [%.17g, 0]}}\nfish:\n"
                     "  - {nodes: 33, sheet_points: 65, " VERIFY_ATTACHED
                     ", wave: {amplitude: 0, frequency: 0}, start: {speed: 0},\n"
                     "     body: {profile: uniform, thickness: 0.02, depth: 1, density: %g, modulus: 1.0e+9}}\n",

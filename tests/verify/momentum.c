@@ -29,9 +29,7 @@ struct found {
 static struct simulation *open_run(const struct run *run) {
     return verify_open(VERIFY_DEFAULTS
                        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                       "solver: {rtol: 1.0e-6}\n"
-                       "fluid: {viscosity: %g%s}\n"
-                       "wake: {lifetime: %g, decay: %g}\n"
+                       "solver: {rtol: 1.0e-6}\nfluid: {viscosity: %g%s}\nwake: {lifetime: %g, decay: %g}\n"
                        "defaults: {fish: {sheet_points: %d, body: {thickness: 0.2, depth: 0.25, modulus: 1e6}}}\n"
                        "fish: [%s]\n",
                        run->end, run->interval, run->interval, run->viscosity, run->fluid ? run->fluid : "",

@@ -43,11 +43,8 @@ static struct simulation *open_plate(const struct resolution *with, double end, 
     return verify_open(
         VERIFY_DEFAULTS
         "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-        "fluid: {velocity: [%.17g, %.17g]}\n"
-        "wake: {smoothing: %.17g, lifetime: 1000, shedding: %s}\n"
-        "sheet: {smoothing: %.17g, kutta: %s, collocation: %s}\n"
-        "solver: {rtol: 1e-6}\n"
-        "fish:\n"
+        "fluid: {velocity: [%.17g, %.17g]}\nwake: {smoothing: %.17g, lifetime: 1000, shedding: %s}\n"
+        "sheet: {smoothing: %.17g, kutta: %s, collocation: %s}\nsolver: {rtol: 1e-6}\nfish:\n"
         "  - {force: reactive, nodes: 4, sheet_points: %d, wave: {amplitude: 0}, start: {heading: 180, speed: 0},\n"
         "     motion: {prescribed: all, %s}}\n",
         end, with->interval, with->interval, velocity[0], velocity[1], with->smoothing, with->shedding,

@@ -22,13 +22,10 @@ struct plate {
 static struct simulation *open_plate(const struct plate *plate) {
     return verify_open(VERIFY_DEFAULTS
                        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                       "solver: {rtol: 1.0e-6}\n"
-                       "fluid: {density: 1, viscosity: 0}\n"
-                       "wake: {lifetime: 1000, smoothing: %.17g%s}\n"
-                       "fish:\n"
+                       "solver: {rtol: 1.0e-6}\nfluid: {density: 1, viscosity: 0}\n"
+                       "wake: {lifetime: 1000, smoothing: %.17g%s}\nfish:\n"
                        "  - {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
-                       ", wave: {amplitude: 0, frequency: 0},\n"
-                       "     start: {speed: 1},\n"
+                       ", wave: {amplitude: 0, frequency: 0},\n     start: {speed: 1},\n"
                        "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1},\n"
                        "     motion: {prescribed: all, %s}}\n",
                        plate->end, plate->interval, plate->interval, plate->smoothing,
@@ -249,9 +246,7 @@ static void self_propelled(double amplitude, const char *wake, int per_period, i
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
                     "format: 1\ntime: {end: %d, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "fluid: {density: 1, viscosity: %.17g}\n"
-                    "wake: {%ssmoothing: 0.05}\n"
-                    "fish:\n"
+                    "fluid: {density: 1, viscosity: %.17g}\nwake: {%ssmoothing: 0.05}\nfish:\n"
                     "  - {length: 2, nodes: 17, sheet_points: 33, " VERIFY_ATTACHED
                     ", wave: {amplitude: 0, frequency: 0}, start: {speed: %.17g},\n"
                     "     body: {profile: uniform, thickness: 0.1, depth: 0.5, density: 4.8, modulus: 1.0e+5},\n"

@@ -74,8 +74,7 @@ static void check_passing_vortex(void) {
                     "wake: {lifetime: 1000, decay: 0, smoothing: 0.003, taper: 0, taper_beside: 0,\n"
                     "       vortices: [[-0.2, 0.2, %g]]}\n"
                     "fish: [{nodes: 9, sheet_points: %d, sensors: [0.1, 0.5, 0.9], " VERIFY_ATTACHED
-                    ",\n"
-                    "        wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all},\n"
+                    ",\n        wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all},\n"
                     "        body: {profile: uniform, thickness: 1e-4, depth: 1}}]\n",
                     is_fast ? 0.01 : 0.0025, circulation, is_fast ? 65 : 129);
     for (int i = 0; i < (is_fast ? 2 : 3); i++) {
@@ -112,8 +111,7 @@ static void check_gust(double k, double bound) {
         "fluid: {density: 1, viscosity: 0, velocity: [%.17g, %.17g], gust: {amplitude: %g, frequency: %.17g}}\n"
         "wake: {lifetime: 1000, decay: 0}\n"
         "fish: [{nodes: 17, sheet_points: 65, sensors: [0.1, 0.5, 0.9], " VERIFY_ATTACHED
-        ",\n"
-        "        start: {heading: 200}, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all},\n"
+        ",\n        start: {heading: 200}, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all},\n"
         "        body: {profile: uniform, thickness: 1e-4, depth: 1}}]\n",
         n_periods * period, period / per_period, period / per_period, cos(angle), sin(angle), v, omega / (2 * pi));
     double complex jump[3] = {0, 0, 0}, mean[3] = {0, 0, 0};
@@ -170,8 +168,7 @@ static void check_friction_at_rest(void) {
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
             verify_open(VERIFY_DEFAULTS
-                        "format: 1\ntime: {end: 1, shedding_interval: 0.01}\n"
-                        "fluid: {density: 1, viscosity: 1e-3}\n"
+                        "format: 1\ntime: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1e-3}\n"
                         "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 1}, wave: {amplitude: 0, "
                         "frequency: 0},\n"
                         "        body: {profile: uniform, thickness: %g, depth: 1}, motion: {prescribed: all}}]\n",

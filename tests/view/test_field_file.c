@@ -21,8 +21,7 @@ static const char *school_with(const char *shedding, const char *keys) {
     static char text[1024];
     snprintf(text, sizeof text,
              SCHOOL_DEFAULTS
-             "time: {end: 0.6, shedding_interval: 0.02, output_interval: 0.1}\n"
-             "output: {wake_interval: 0.3}\n"
+             "time: {end: 0.6, shedding_interval: 0.02, output_interval: 0.1}\noutput: {wake_interval: 0.3}\n"
              "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
              "wake: {shedding: %s, lifetime: 0.4, decay: 0.2}\nsolver: {rtol: 1e-3}\n"
              "defaults: {fish: {nodes: 5, %s, start: {speed: 0.5}}}\n"
