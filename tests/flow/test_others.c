@@ -221,7 +221,6 @@ TEST(what_is_far_does_not_depend_on_the_origin) {
     }
     AT_LEAST(n_far, 2);
     assert_memory_equal(near[0], near[1], sizeof near[0]);
-    simulate_free(simulation);
 }
 
 TEST(a_body_elsewhere_feels_all_sources) {

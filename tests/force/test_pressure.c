@@ -446,7 +446,8 @@ TEST(suction_of_a_plate_ends_at_its_limit) {
 
         // prescribed motion: the suction limit does not change the circulation
         NEAR(of->pressure.leading_edge_a0, full->leading_edge_a0, 0, 1e-9);
-        NEAR(of->leading_edge_most, a0, 0, 1e-9);
+        // of samples, with the flow of the last iterate of a step: the tolerance of Newton's iteration
+        NEAR(of->leading_edge_most, a0, 0, 1e-7);
         NEAR(size_of(of->pressure.suction), part * size_of(full->suction), 0, 1e-9);
         NEAR(size_of(of->pressure.separation), (1 / 0.8 - part) * size_of(full->suction), 1e-9, 1e-9);
 
