@@ -185,7 +185,6 @@ TEST(frequency_of_a_clamped_beam_is_of_second_order_in_its_whole_length) {
     const double exact = 1.8751040687;
     double error[3];
     for (int level = 0; level < 3; level++) error[level] = lowest_mode(10 * (1 << level) + 1) / exact - 1;
-    print_message("beta L of the lowest mode: %.2e %.2e %.2e\n", error[0], error[1], error[2]);
     for (int level = 0; level < 2; level++) NEAR(log2(error[level] / error[level + 1]), 2, 0.05, 0);
     // half of (lbar/L)^2
     NEAR(error[2], 0, 0.5 / 1600, 0);

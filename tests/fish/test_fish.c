@@ -376,7 +376,6 @@ TEST(distance_of_bent_bodies_is_the_least_of_their_points) {
         NEAR(fish_distance(a, b, y, got + 1e-12), got, 0, 0);
         n_touching += got <= 0;
     }
-    print_message("%d of 60 pairs touch\n", n_touching);
     assert_in_range(n_touching, 10, 50);
 }
 

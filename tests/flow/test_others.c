@@ -153,7 +153,6 @@ TEST(bodies_of_many_fish_act_by_the_tree) {
         school_run(simulation, 0.1);
         double *const y = simulation->state->y;
         const double errors[] = {error_of(simulation, y, true), error_of(simulation, y, false)};
-        print_message("errors over the tolerance: by the tree %g, by sums %g\n", errors[0], errors[1]);
         BELOW(errors[0], 1);
         ABOVE(fabs(errors[0] - errors[1]), 1e-4);
         simulate_free(simulation);
@@ -176,7 +175,6 @@ TEST(beside_a_bent_body_no_source_is_far) {
     for (int i = 0; i < wake->n_vortex; i++) wake->x[i] += shift[0], wake->y[i] += shift[1];
     memcpy(at->past, at->y, sizeof *at->y * (size_t)simulation->school->n_unknowns);
     const double error = error_of(simulation, at->y, false);
-    print_message("error over the tolerance: %g\n", error);
     BELOW(error, 1);
 }
 
@@ -189,7 +187,6 @@ TEST(a_displaced_body_has_fewer_far_sources) {
     memcpy(y, simulation->state->y, sizeof *y * (size_t)simulation->school->n_unknowns);
     for (int k = 0; k < fish->n_nodes; k++) y[fish->at.y + k] += 3e-4 * fish->length;
     const double error = error_of(simulation, y, false);
-    print_message("error over the tolerance: %g\n", error);
     BELOW(error, 1);
 }
 

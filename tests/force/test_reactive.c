@@ -299,7 +299,6 @@ TEST(reversing_the_wave_reverses_the_path) {
     school_ok(initial_conditions_solve(back->consistent, &residual_run, 0, y, back->state->yp));
     school_ok(back->integrator->restart(back->solver));
     school_run(back, 1);
-    print_message("distance %.3f m\n", gone);
     ABOVE(gone, 0.01);
 
     // error of the method: (omega step)^4 of the fastest motion

@@ -144,7 +144,6 @@ TEST(a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes) {
     }
 
     const double order = log2((speed[1] - speed[0]) / (speed[2] - speed[1]));
-    print_message("%.5f %.5f %.5f m/s: order %.1f\n", speed[0], speed[1], speed[2], order);
     ABOVE(order, 1.8);
     NEAR(speed[2], 0.4245, 1e-4, 0);
 }

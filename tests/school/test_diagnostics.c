@@ -62,7 +62,6 @@ TEST(energy_audit_falls_with_the_tolerance) {
 TEST(powers_are_integrated_with_third_order) {
     // with BDF of order 5 the error of the quadrature dominates: 1e-6 J measured, 3e-5 J with the trapezoidal rule
     const struct audit_result balance = audit_of(TIME "solver: {rtol: 1.0e-7, order: 5}\nfish: [{}]\n", 2);
-    print_message("balance %.2e J at 1e-7 and order 5\n", balance.worst);
     BELOW(balance.worst, 4e-6);
 }
 
@@ -89,7 +88,6 @@ TEST(strains_are_integrated_with_third_order) {
         }
     }
     const double order = log2(worst[0] / worst[1]);
-    print_message("differences of strains %.2e and %.2e, order %.2f\n", worst[0], worst[1], order);
     NEAR(order, 3, 0.3, 0);
 }
 
@@ -124,14 +122,12 @@ TEST(a_bias_that_moves_across_impulses_keeps_the_balance) {
                                                  "wake: {shedding: impulsive}\nsolver: {rtol: 1.0e-6}\n"
                                                  "fish: [{control: {law: averaged_heading, desired_heading: 150}}]\n",
                                                  2);
-    print_message("balance %.2e J of %.1f J\n", balance.worst, balance.put_in);
     AT_MOST(balance.worst, 30 * 1e-6 * balance.put_in);
     // a sudden start of the muscle excites vibrations, resolved only by a small tolerance; the defect was 300 J
     const struct audit_result published = audit_of(TIME
                                                    "preset: published\nsolver: {rtol: 1.0e-5}\n"
                                                    "fish: [{control: {law: averaged_heading, desired_heading: 150}}]\n",
                                                    0.5);
-    print_message("balance %.2e J of %.1f J\n", published.worst, published.put_in);
     AT_MOST(published.worst, 0.01 * published.put_in);
 }
 

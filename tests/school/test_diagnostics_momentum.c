@@ -122,7 +122,6 @@ TEST(the_balance_is_closed_with_every_external_force) {
         BELOW(worst.momentum, 5e-3);
         BELOW(worst.angular, 5e-3);
     }
-    print_message("the bodies are the largest term at %d events, the fluid at %d\n", largest[0], largest[1]);
     ABOVE(largest[0], 0);
     ABOVE(largest[1], 0);
 }
@@ -169,7 +168,6 @@ TEST(legs_of_other_fish_are_booked) {
         "                  drag: {skin: laminar}, body: {depth: 0.25}, start: {speed: 0.5}}}\n"
         "fish: [{}, {start: {position: [0, 0.4]}, wave: {phase: 180}}]\n",
         2);
-    print_message("a pair in antiphase: %.2g, angular %.2g\n", worst.momentum, worst.angular);
     BELOW(worst.momentum, 1e-3);
     BELOW(worst.angular, 1e-3);
 }
@@ -189,7 +187,6 @@ TEST(a_wall_pushes_across_itself) {
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;
         const double along = of[0].external_impulse[0] + of[1].external_impulse[0];
         const double across = fmax(fabs(of[0].external_impulse[1]), fabs(of[1].external_impulse[1]));
-        print_message("%d walls: along %.2g, across %.2g N s\n", walls, along, across);
         AT_MOST(along, 1e-3 * across);
     }
 }

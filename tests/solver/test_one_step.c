@@ -55,7 +55,6 @@ TEST(steps_converge_with_the_order_of_the_method) {
         double error[2];
         for (int i = 0; i < 2; i++) error[i] = with_step(cases[0], methods[order - 1], 0.002 / (1 << i)) - exact;
         const double observed = log2(fabs(error[0] / error[1]));
-        print_message("%s: errors %.2e %.2e, order %.2f\n", methods[order - 1], error[0], error[1], observed);
         NEAR(observed, order, 0.1, 0);
     }
 }
@@ -66,7 +65,6 @@ TEST(all_cases_agree_with_ida) {
         // second order: four times the steps, a sixteenth of the error
         const double coarse = with_step(cases[i], "trapezoid", 0.002) - want;
         const double fine = with_step(cases[i], "trapezoid", 0.0005) - want;
-        print_message("case %zu: errors %.2e %.2e\n", i, coarse, fine);
         NEAR(coarse, 0, 3e-5, 0);
         NEAR(fine, 0, fabs(coarse) / 8 + 2e-8, 0);
     }
@@ -226,10 +224,8 @@ TEST(steps_converge_with_the_square_of_their_length) {
     ends_of("method: verlet, step: 0.0005", fine, &imbalance[2]);
     for (int f = 0; f < 2; f++) {
         const double order = log2(fabs((coarse[f] - exact[f]) / (fine[f] - exact[f])));
-        print_message("rod %d: errors %.2e %.2e, order %.2f\n", f, coarse[f] - exact[f], fine[f] - exact[f], order);
         NEAR(order, 2, 0.1, 0);
     }
-    print_message("energy: %.1e %.1e\n", imbalance[1], imbalance[2]);
     NEAR(log2(imbalance[1] / imbalance[2]), 2, 0.3, 0);
 }
 

@@ -31,7 +31,6 @@ TEST(fixed_steps_converge_with_the_order_of_the_method) {
         const double coarse = tail_at_end(methods[i].name, methods[i].step, 1e-5) - exact;
         const double fine = tail_at_end(methods[i].name, methods[i].step / 2, 1e-5) - exact;
         const double order = log2(fabs(coarse / fine));
-        print_message("%s: errors %.2e %.2e, order %.2f\n", methods[i].name, coarse, fine, order);
         NEAR(order, methods[i].order, 0.3, 0);
     }
 }

@@ -203,7 +203,6 @@ TEST(the_step_of_the_multipliers_leads_to_the_fixed_point) {
         steady_problem_read(&setup.problem, at[i]);
     }
     const double step = (at[1][0] - at[0][0]) / 4 / (1 - setup.real[0]);
-    print_message("step of the speed: %.3e, by the largest multiplier %.3e\n", setup.way[0], step);
     NEAR(setup.way[0], step, 0, 0.3);
 }
 
@@ -268,7 +267,6 @@ TEST(two_beats_in_a_row_are_steady) {
                                      " motion: {prescribed: all, heave: 0.001, frequency: 1, speed: 0}}]\n");
     assert_int_equal(setup.problem.n_unknowns, 0);
     school_ok(steady_search_run(&setup.problem));
-    print_message("%d beats\n", (int)setup.problem.map.n_beats);
     // the ramp, two more beats, and two that are steady
     const int ramp = (int)ceil(setup.simulation->school->fish[0].ramp / setup.problem.map.period * (1 - 1e-9));
     assert_int_equal(setup.problem.map.n_beats, ramp + 4);
@@ -509,7 +507,6 @@ TEST(a_small_fish_is_found_like_a_large_one) {
         steady_setup_open(&setup, text);
         school_ok(steady_search_run(&setup.problem));
         const double found = setup.problem.map.last[0].speed / length;
-        print_message("length %g: %g lengths per beat after %d beats\n", length, found, setup.problem.map.n_beats);
         if (i == 1) NEAR(found, speed, 0, 1e-6);
         if (i == 1) assert_int_equal(setup.problem.map.n_beats, n_beats);
         speed = found;
