@@ -91,7 +91,6 @@ TEST(energy_audit_of_a_clamped_fish_closes) {
             worst = fmax(worst, fabs(fish->energy_balance));
             most = fmax(most, fish->kinetic_energy + fish->bending_energy);
         }
-        print_message("imbalance %.1e J of %.1f J\n", worst, most);
         // a motion that begins at once: thirty tolerances, as in test_diagnostics.c
         BELOW(worst, 30 * 1e-5 * most);
     }

@@ -447,7 +447,6 @@ TEST(bodies_that_are_thrown_back_go_on_tail_first) {
         }
         const double speed =
             hypot(simulation->diagnostics->fish[0].com_velocity[0], simulation->diagnostics->fish[0].com_velocity[1]);
-        print_message("thrown back %zu: %.2g J stored, then %.2g m/s\n", i, stored, speed);
         ABOVE(stored, 0.1);
         BELOW(speed, 4);
     }

@@ -73,7 +73,6 @@ TEST(rings_and_images_cause_no_flow_through_a_channel) {
             through = fmax(through, fabs(field.v[k]));
             along = fmax(along, fabs(field.u[k]));
         }
-        print_message("depth %g: %d images, flow through the walls %.2g of %.2g\n", cases[i].depth, n, through, along);
         BELOW(through, cases[i].bound * along);
     }
 }

@@ -179,7 +179,6 @@ TEST(interactions_grow_almost_as_the_number_of_rings) {
         const struct kernel_pair pair = kernel_finite.other(0.25, 0.0025);
         const struct targets at = targets_of(&rings, 0, &got);
         const double now = induce(&rings, &pair, 5e-8, 1, &at);
-        print_message("%d wakes: %.3g interactions, direct %.3g\n", fish, now, (double)rings.n * rings.n);
         if (fish == MOST_FISH) NEAR(log(now / before) / log(4), 1, 0.25, 0);
         if (fish == MOST_FISH) BELOW(now, 0.1 * rings.n * rings.n);
         before = now;

@@ -131,7 +131,6 @@ TEST(a_thick_plate_has_the_friction_of_the_flow_round_its_nose) {
             const double tau = share * share * pow(gradient + 0.09, 0.62) / sqrt(0.45 * integral);
             want += 0.5 * pow(k, 1.5) * sqrt(1e-3) * tau * 2 * root / M;
         }
-        print_message("thickness %g: %.5f N, by quadrature %.5f N\n", thickness[i], sides.force[0][0], want);
         for (int side = 0; side < 2; side++) NEAR(sides.force[side][0], want, 0, 0.002);
     }
 }

@@ -1315,7 +1315,8 @@ TEST(the_version_is_that_of_the_program) {
 
 /* Call each function that requests memory, until one fails. */
 static int live(const char *text, const char *path, struct shoal **run, struct shoal **other) {
-    static const char checkpoint[] = "/tmp/test_shoal_memory.ckpt";
+    char checkpoint[sizeof result_path + 8];
+    snprintf(checkpoint, sizeof checkpoint, "%s.ckpt", path);
     const double points[] = {5, 5, -1, 2};
     double position[2 * 7], velocity[4], vorticity[2];
     struct shoal_array array;
@@ -1406,5 +1407,5 @@ TEST(without_memory_every_call_fails_and_leaves_nothing) {
         snprintf(text, sizeof text, MEMORY_CASE("%s", "%s"), methods[i % 3], i < 3 ? plain : pressure);
         sweep(text, result_path, 300);
     }
-    unlink("/tmp/test_shoal_memory.ckpt");
+    unlink(strcat(result_path, ".ckpt"));
 }

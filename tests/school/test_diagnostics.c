@@ -110,7 +110,6 @@ TEST(energy_audit_closes_with_every_kind_of_power) {
         TIME "fluid: {velocity: [0.3, 0.1], shear: 0.2}\nfish: [{body: {relaxation_time: 0.01}, wave: {ramp: 0.5}}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         const struct audit_result balance = audit_of(texts[i], 2);
-        print_message("balance %.2e J of %.1f J: %s", balance.worst, balance.put_in, texts[i] + sizeof TIME - 1);
         // order 1 at restarts, a load and a motion that begin at once: thirty tolerances
         AT_MOST(balance.worst, 30 * 1e-5 * balance.put_in);
     }

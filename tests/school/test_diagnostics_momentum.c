@@ -118,7 +118,6 @@ TEST(the_balance_is_closed_with_every_external_force) {
         char text[1024];
         snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "%s", cases[i].text);
         const struct balance worst = run(text, 1.5);
-        print_message("%s: %.2g, angular %.2g\n", cases[i].name, worst.momentum, worst.angular);
         BELOW(worst.momentum, 5e-3);
         BELOW(worst.angular, 5e-3);
     }

@@ -162,7 +162,6 @@ TEST(coupled_fish_are_solved_to_the_tolerance) {
         school_ok(linear_solve(system.linear, system.b, system.x));
         const double error = error_of(&system);
         const struct linear_counts counts = linear_count(system.linear);
-        print_message("tolerance %.0e: %ld iterations, error %.1e\n", tolerances[i], counts.iterations, error);
         // the error is the residual times the norm of the inverse of a matrix that is close to the identity
         BELOW(error, 10 * tolerances[i]);
         ABOVE(counts.iterations, before);

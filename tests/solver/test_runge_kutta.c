@@ -85,6 +85,17 @@ TEST(an_unstable_step_ends_with_a_message_that_tells_the_time) {
     assert_non_null(strstr(status_message(), "] of fish fish1;"));
 }
 
+// twenty steps between two events
+TEST(no_more_than_the_largest_number_of_steps_are_made) {
+    for (int most = 19; most <= 20; most++) {
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 1, shedding_interval: 0.02}\nsolver: {method: rk4, step: 0.001, "
+            "max_steps: %d}\nfish: [{body: {modulus: 1e4}}]\n",
+            most);
+        assert_int_equal(simulate_step(simulation), most == 20 ? STATUS_OK : STATUS_SOLVER);
+    }
+}
+
 TEST(a_torn_body_is_no_result) {
     // in no fluid too long a step tears the body apart, and every number stays finite
     struct simulation *const simulation = school_simulation(

@@ -550,7 +550,6 @@ TEST(the_balance_of_momentum_begins_with_the_rows_and_is_kept) {
     const double open = beat_balance(map, searched);
     diagnostics_restart(simulation->residual, simulation->state);
     const double closed = beat_balance(map, first);
-    print_message("%.2g of the largest term with what the search adds, %.2g in a beat of the rows\n", open, closed);
     ABOVE(open, 0.1);
     BELOW(closed, 0.01);
 
