@@ -116,6 +116,10 @@ void say_progress_steady(const struct steady_progress *now, void *data) {
 
 void say_progress_study(const struct study_progress *now, void *data) {
     struct progress *const progress = data;
+    if (progress->terminal && now->n_running == 0) {
+        say_progress_end(progress);  // a report follows
+        return;
+    }
     if (!progress_is_due(progress, now->part, now->wall_time)) return;
     char part[5][PART_BYTES];
     snprintf(part[0], PART_BYTES, "%d of %d members done", now->n_done, now->n_members);
@@ -129,4 +133,5 @@ void say_progress_study(const struct study_progress *now, void *data) {
 void say_progress_end(struct progress *progress) {
     if (progress->drawn) fputs("\r\033[K", stderr);
     progress->drawn = 0;
+    progress->drawn_at = -1;
 }

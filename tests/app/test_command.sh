@@ -352,11 +352,16 @@ assert max(map(len, drawn)) > int(sys.argv[1]) // 2, drawn
 assert int(sys.argv[1]) != 20 or max(map(len, drawn)) == 19, drawn
 # one line, redrawn: no line of progress ends with a line feed
 assert not any(progress.match(line.split("\r")[-1]) for line in lines.split("\n")), lines
+# the first line of a study comes at once
+assert "members" not in drawn[0] or re.fullmatch("0 of [0-9]+ members done    0 %  0 s left  0 failed  1 running", drawn[0]), drawn
 EOF
     check "a run draws one line within 60 columns" /usr/bin/python3 terminal.py 60 "$program" run "$demo" --force -o drawn.nc --set time.end=20
     check "a run draws one line within 35 columns" /usr/bin/python3 terminal.py 35 "$program" run "$demo" --force -o drawn.nc --set time.end=20
     check "and one within 20 columns" /usr/bin/python3 terminal.py 20 "$program" run "$demo" --force -o drawn.nc --set time.end=5
-    check "so does a study" /usr/bin/python3 terminal.py 60 "$program" study other.yaml -o drawn -j 1 --set time.end=5
+    # shellcheck disable=SC2086 # words
+    for words in 'study other.yaml -o drawn -j 1' 'error other.yaml --of speed -j 1 --set sweep=[]' 'compare other.yaml --methods rk4 --steps 5e-3 --set sweep=[]'; do
+        check "so does ${words%% *}" /usr/bin/python3 terminal.py 60 "$program" $words --force
+    done
     printf '%s\n' 'format: 1' 'time: {end: 3, shedding_interval: 0.05, output_interval: 0.1}' \
         'fish: [{name: a, force: pressure, pressure: {span: infinite}}]' >search.yaml
     check "and a search" /usr/bin/python3 terminal.py 60 "$program" steady search.yaml --force
@@ -512,6 +517,9 @@ limits() {
     code=0
     timeout "$time_limit" "$program" --help >/dev/full 2>err || code=$?
     check "standard output full: exit 4" ended 4
+    code=0
+    timeout "$time_limit" "$program" error "$demo" --of speed --no-confirm --set time.end=0.1 -o full >/dev/full 2>err || code=$?
+    check "error, standard output full: exit 4 and the table of the study" eval 'ended 4 && has err "cannot write to standard output" && test -s full/study.nc'
     code=0
     timeout "$time_limit" "$program" keys >&- 2>err || code=$?
     check "standard output closed: exit 4" ended 4
