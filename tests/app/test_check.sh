@@ -35,7 +35,7 @@ is_below() { awk -v value="$1" -v limit="$2" 'BEGIN { print value, limit; exit !
 estimates() {
     run check "$demo"
     check "time and memory are estimated" \
-        grep -qE '^    the run takes about [0-9.e+]+ (s|min|h) and [0-9.e+]+ MB on this machine: estimated from a few events, often within a factor of two$' out
+        grep -qE '^    the run takes about [0-9.e+]+ (s|min|h) and ([0-9]\.[0-9]|[1-9][0-9]+) MB on this machine: estimated from a few events, often within a factor of two$' out
     local of_one
     of_one=$(estimated MB)
     run check "$cases/studies/phase.yaml" --set time.end=1

@@ -56,7 +56,7 @@ static enum status holds(const char *statement, const char *status_of_the_last, 
 static void check(const char *statement, const char *status_of_the_last, enum status want, const char *line) {
     char *printed;
     const enum status status = holds(statement, status_of_the_last, &printed);
-    if (status != want || !strstr(printed, line)) {
+    if (status != want || !strstr(printed, line) || strncmp(printed, "\nExpected:\n", 11) != 0) {
         fail_msg("%s: status %d, want %d; '%s' in:\n%s", statement, status, want, line, printed);
     }
     free(printed);
