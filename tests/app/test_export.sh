@@ -138,12 +138,12 @@ cat >channel.yaml <<'end'
 format: 1
 time: {end: 0.1, shedding_interval: 0.02, output_interval: 0.1}
 fluid: {walls: [-0.5, 1.5]}
-fish: [{nodes: 5, length: 0.5, start: {position: [10, 0]}}]
+fish: [{nodes: 5, length: 0.5, start: {position: [10, 0]}}, {nodes: 5, length: 0.25, start: {position: [10.1, 1]}}]
 end
 run run channel.yaml -q -o channel.nc
 run export channel.nc --vtk channel
 cat >walls.py <<'end'
-"""The walls are two lines at their height, longer than the bodies are, and there at all times."""
+"""The walls are two lines at their height, two lengths of the longest body beyond the nodes, and there at all times."""
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 

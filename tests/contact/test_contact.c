@@ -291,9 +291,7 @@ static void meet(const char *name, const char *text, double end, double audit_li
     const double scale = momentum(simulation, n_fish, before);
     momentum(simulation, 1, first);
     long most = 0, steps = 0;
-    for (int f = 0; f < n_fish; f++) {
-        energy += diagnostics_energy(simulation->residual, f, 0, simulation->state->y);
-    }
+    for (int f = 0; f < n_fish; f++) energy += diagnostics_energy(simulation->residual, f, 0, simulation->state->y);
     while (simulation->state->t < end) {
         simulate_measure(simulation);
         for (int f = 0; f < n_fish; f++) {

@@ -126,9 +126,7 @@ TEST(momentum_of_every_cosine_is_the_exact_one) {
 static double circulation_before(int n_sheet, int j, double theta) {
     const int last = n_sheet - 1;
     double sum = theta / pi;
-    for (int m = 1; m <= last; m++) {
-        sum += (m < last ? 2 : 1) / pi * cos(m * pi * j / last) * sin(m * theta) / m;
-    }
+    for (int m = 1; m <= last; m++) sum += (m < last ? 2 : 1) / pi * cos(m * pi * j / last) * sin(m * theta) / m;
     return sum;
 }
 

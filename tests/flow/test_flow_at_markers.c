@@ -106,9 +106,7 @@ static void feel(struct setup *setup, int body, int wake, struct felt *felt) {
             felt->wake_q[f][i] = flow->fish[f].markers.q[i];
         }
 
-        for (int c = 0; c < school->fish[f].n_control; c++) {
-            felt->body_q[f][c] = flow->fish[f].body.q[c];
-        }
+        for (int c = 0; c < school->fish[f].n_control; c++) felt->body_q[f][c] = flow->fish[f].body.q[c];
 
         memcpy(state->y + school->fish[f].at.gamma, kept[f], sizeof(double) * (size_t)(school->fish[f].n_sheet + 1));
         memcpy(state->wake[f].circulation, labels[f], sizeof labels[f]);

@@ -561,9 +561,7 @@ TEST_OF_KERNELS(large_schools_are_summed_by_the_tree_to_half_the_tolerance) {
                                            {c->wake_div, d->wake_div},
                                            {c->wake_image_div, d->wake_image_div},
                                            {c->wake_rate, d->wake_rate}};
-    for (int i = 0; i < 7; i++) {
-        BELOW(largest_difference(c->n_markers, at_markers[i][0], at_markers[i][1]), 5e-8);
-    }
+    for (int i = 0; i < 7; i++) BELOW(largest_difference(c->n_markers, at_markers[i][0], at_markers[i][1]), 5e-8);
 
     // the bits do not depend on the number of threads
     struct setup threads;

@@ -16,8 +16,7 @@ enum { N_RING_TARGETS = 24 };
 
 // velocity and div u of one ring of half span `span` with its images at targets, half of them on the walls
 struct ring_field {
-    double x[N_RING_TARGETS], y[N_RING_TARGETS];
-    double u[N_RING_TARGETS], v[N_RING_TARGETS], div[N_RING_TARGETS];
+    double x[N_RING_TARGETS], y[N_RING_TARGETS], u[N_RING_TARGETS], v[N_RING_TARGETS], div[N_RING_TARGETS];
 };
 static void ring_field_of(const struct sources *rings, double span, int n_images, const struct image *image,
                           struct ring_field *field) {

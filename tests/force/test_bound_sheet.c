@@ -199,9 +199,7 @@ TEST(smooth_curve_has_the_circulation_of_an_arc) {
     const double exact = -3 / cos(pi / 12) * sin(pi / 18 + pi / 12);
     const int n_nodes[] = {7, 11, 21, 41};
     const double allowed[] = {1e-4, 2e-5, 2e-6, 2e-7};
-    for (int i = 0; i < 4; i++) {
-        NEAR(circulation_of_a_bent_body(arc, "smooth", n_nodes[i], 41), exact, 0, allowed[i]);
-    }
+    for (int i = 0; i < 4; i++) NEAR(circulation_of_a_bent_body(arc, "smooth", n_nodes[i], 41), exact, 0, allowed[i]);
 }
 
 // a default fish in mid-beat: curvature of the full wave, integrated by Simpson's rule

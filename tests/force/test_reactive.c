@@ -102,9 +102,7 @@ TEST(a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_s
         reactive_force(fish, k, &edge, w, still, at_rest);
         const double displaced = 1000 * pi * fish->thickness[k] * 0.25 / 4 / 6;
         for (int end = 0; end < 2; end++) {
-            for (int i = 0; i < 2; i++) {
-                NEAR(in_stream[end][i], at_rest[end][i] + displaced * b[i] / 2, 1e-12, 1e-13);
-            }
+            for (int i = 0; i < 2; i++) NEAR(in_stream[end][i], at_rest[end][i] + displaced * b[i] / 2, 1e-12, 1e-13);
         }
     }
 }

@@ -729,9 +729,7 @@ TEST(vortices_inside_an_outline_are_counted) {
     const double place[][2] = {{0.5, 0.049}, {0.5, 0.051}, {0.9, -0.049}, {-0.045, 0.045},
                                {-0.049, 0},  {-0.051, 0},  {0.2, 1}};
     struct wake *const wake = &setup.state->wake[1];
-    for (size_t i = 0; i < sizeof place / sizeof *place; i++) {
-        wake_release(wake, place[i][0], place[i][1], 0.1, 0);
-    }
+    for (size_t i = 0; i < sizeof place / sizeof *place; i++) wake_release(wake, place[i][0], place[i][1], 0.1, 0);
     diagnostics_start(setup.residual, setup.state);
     diagnostics_remember(setup.residual, setup.state);
     struct diagnostics *const diagnostics = diagnostics_create(test_arena(), setup.school);

@@ -292,9 +292,7 @@ TEST(a_mapped_elastic_force_has_no_net_force_and_moment) {
         const int n = 2 * fish->n_nodes;
         // a straight body at rest: the elastic matrix gives neither net force nor moment
         memset(both.reference, 0, (size_t)both.n * sizeof(double));
-        for (int k = 0; k < fish->n_nodes; k++) {
-            both.reference[fish->at.x + k] = k * fish->edge_length;
-        }
+        for (int k = 0; k < fish->n_nodes; k++) both.reference[fish->at.x + k] = k * fish->edge_length;
         corotation_set_reference(both.corotation, both.reference);
         corotation_set_current(both.corotation, both.current);
         double dense[2 * MAX_NODES * 2 * MAX_NODES] = {0}, force[2 * MAX_NODES], motion[2 * MAX_NODES];

@@ -121,9 +121,7 @@ TEST(what_merging_changes_is_booked) {
     struct wake *const wake = &setup.state->wake[0];
     wake_resize(wake, 0);
     setup.state->t = 5;
-    for (int i = 0; i < N; i++) {
-        wake_release(wake, 20 - 0.05 * i, 0.1 * sin(0.3 * i), 0.1 * sin(0.2 * i), 0.02 * i);
-    }
+    for (int i = 0; i < N; i++) wake_release(wake, 20 - 0.05 * i, 0.1 * sin(0.3 * i), 0.1 * sin(0.2 * i), 0.02 * i);
     double before[3], after[3];
     all_of(&setup, before);
     for (setup.state->event = 0; setup.state->event < WAKE_MERGE_EVENTS; setup.state->event++) {

@@ -90,9 +90,7 @@ TEST(the_wall_time_is_the_median_of_the_repeats) {
     assert_has(text, "\n   rk4     -  0.01        -        -      -  2.500  4.500 ");  // 1, 2, 3, 10
     assert_has(text, "\n  ida2  1e-3     -        -        -      -  3.000  9.500 ");  // 1, 3, 20
     // what has failed has no time, and is said once
-    for (int m = 2; m < N_MEMBERS; m += 2) {
-        members[m].status = "failed: too slow";
-    }
+    for (int m = 2; m < N_MEMBERS; m += 2) members[m].status = "failed: too slow";
     text = print(&study, members);
     assert_has(text, "\n   rk4     -  0.01        -        -      -      -      - ");
     assert_has(text, "failed\n  ida2");

@@ -219,22 +219,17 @@ TEST(fish_of_different_resolution_change_in_proportion) {
     close_study(&study);
 }
 
+#define FOIL                                                                                                          \
+    "fluid: {velocity: [1, 0]}\nfish: [{nodes: 9, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, " \
+    "frequency: 0}, motion: {prescribed: head, speed: 0}, body: {relaxation_time: 0.01}}]\n"
+
 TEST(an_equilibrium_has_points_only) {
-    struct error_study study = open_study(
-        "format: 1\ntime: {end: 4}\nfluid: {velocity: [1, 0]}\nfish: [{nodes: 9, force: pressure, pressure: {span: "
-        "infinite}, wave: {amplitude: 0, "
-        "frequency: 0}, motion: {prescribed: head, speed: 0}}]\n",
-        "{of: steady_lift}");
+    struct error_study study = open_study("format: 1\ntime: {end: 4}\n" FOIL, "{of: steady_lift}");
     assert_true(study.is_static);
     assert_int_equal(study.n_keys, 2);
     close_study(&study);
     // the modes shed wakes, and are computed for every member
-    study = open_study(
-        "format: 1\ntime: {end: 4, shedding_interval: 0.02}\nfluid: {velocity: [1, 0]}\n"
-        "fish: [{nodes: 9, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, motion: "
-        "{prescribed: head, speed: "
-        "0}}]\n",
-        "{of: steady_growth}");
+    study = open_study("format: 1\ntime: {end: 4, shedding_interval: 0.02}\n" FOIL, "{of: steady_growth}");
     assert_int_equal(study.n_keys, 3);
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 0.08}, 0.02);
     for (int m = 0; m < sweep_n_members(study.study); m++) {
@@ -245,6 +240,38 @@ TEST(an_equilibrium_has_points_only) {
         case_free(&member);
     }
     close_study(&study);
+}
+
+TEST(only_keys_that_change_the_case_are_varied) {
+    static const struct {
+        const char *settings, *of, *key;
+        bool is_varied;
+    } examples[] = {
+        {"fish: [{body: {relaxation_time: 0.01}}]\n", "speed", "fish.body.relaxation_time", true},
+        {"fish: [{body: {relaxation_time: 0}}]\n", "speed", "fish.body.relaxation_time", false},
+        {FOIL, "steady_lift", "fish.body.relaxation_time", false},
+        {FOIL, "steady_lift", "fish.pressure.suction_limit", true},
+        {"fish: [{force: reactive}]\n", "speed", "fish.pressure.span", false},
+        {"fish: [{drag: {skin: boundary_layer, waving: 1.5}}]\n", "speed", "fish.drag.waving", true},
+        {"fish: [{drag: {skin: boundary_layer, waving: 1}}]\n", "speed", "fish.drag.waving", false},
+        {"fish: [{drag: {skin: quadratic}}]\n", "speed", "fish.drag.transition", false},
+        {"solver: {method: rk4, step: 1e-3}\nfish: [{}]\n", "speed", "solver.step", true},
+        {"solver: {method: rk4, step: 1e-3}\nfish: [{}]\n", "speed", "solver.rtol", false},
+        {"wake: {tolerance: 0}\nfish: [{}]\n", "speed", "wake.tolerance", false},
+        {"wake: {lifetime: 7.9}\nfish: [{}]\n", "speed", "wake.lifetime", true},
+        {"wake: {lifetime: 8}\nfish: [{}]\n", "speed", "wake.lifetime", false},  // half of it is the run
+        {"wake: {lifetime: 8}\nfish: [{}]\n", "steady_speed", "wake.lifetime", true},
+        {"fluid: {density: 0}\nfish: [{}]\n", "speed", "fish.sheet_points", false},
+        {"fluid: {density: 0}\nfish: [{}]\n", "speed", "solver.rtol", true},
+    };
+    for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
+        char text[512], error[96];
+        snprintf(text, sizeof text, "format: 1\ntime: {end: 4}\n%s", examples[i].settings);
+        snprintf(error, sizeof error, "{of: %s, models: true}", examples[i].of);
+        const struct error_study study = open_study(text, error);
+        if ((key_of(&study, examples[i].key) != NULL) != examples[i].is_varied) fail_msg("example %zu", i);
+        close_study(&study);
+    }
 }
 
 TEST(quantities_that_are_not_known_are_refused) {

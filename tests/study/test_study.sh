@@ -101,13 +101,20 @@ if command -v parallel >/dev/null; then
 else
     skip gnu_parallel 'parallel is missing'
 fi
-check slurm_scripts_are_written "$program" study small.yaml --slurm --bundle 4 -o cluster
-check a_task_has_a_bundle has cluster/array.sbatch '#SBATCH --array=0-1'
+run study small.yaml --slurm --bundle 4 -o cluster
+run study small.yaml --slurm --bundle 4 -o cluster --threads 2
+check slurm_scripts_are_written_and_replaced grep -qx '6 members in 2 tasks; start them with cluster/submit.sh' out
+check a_task_has_a_bundle eval 'has cluster/array.sbatch "--array=0-1" && has cluster/array.sbatch "--cpus-per-task=2"'
+printf '#!/bin/sh\necho "$*" >>jobs; wc -l <jobs\n' >sbatch && chmod +x sbatch
+check the_results_wait_for_the_members eval 'grep -qE "members: job 1; results: job 2, .*/cluster/study.txt and study.nc" \
+    <(PATH=.:$PATH sh cluster/submit.sh -p few) && grep -q "^--parsable -p few .*/array.sbatch" jobs && has jobs =afterany:1'
+echo mine >alone/array.sbatch
+refused scripts_of_others_are_kept 4 'was not written by shoal study --slurm' study small.yaml --slurm -o alone
 # the actions of a task, without Slurm
 for task in 0 1; do SLURM_ARRAY_TASK_ID=$task sh cluster/array.sbatch >/dev/null 2>&1; done
 check the_tasks_run_all_members test -e cluster/member-0003.nc -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
-run gather cluster
-check their_results_are_those_of_the_study has err '2 of 6 members in cluster'
+sh cluster/gather.sbatch >out 2>err
+check their_results_are_those_of_the_study grep -q '2 of 6 members in .*/cluster' err
 refused no_quotes_in_scripts 2 'must not contain quotes' study small.yaml --slurm -o "it's"
 refused bundles_of_nothing 2 '--bundle 0: expects an integer above 0' study small.yaml --slurm --bundle 0 -o cluster
 refused bundles_of_words 2 '--bundle few: expects an integer' study small.yaml --slurm --bundle few -o cluster

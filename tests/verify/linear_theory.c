@@ -265,9 +265,7 @@ struct linear_theory_load linear_theory_flexible(const struct linear_theory_plat
 // cos(beta) + 1/cosh(beta) = 0 near (j + 1/2) pi
 double linear_theory_mode_number(int j) {
     double beta = (j + 0.5) * pi;
-    for (int i = 0; i < 8; i++) {
-        beta -= (cos(beta) + 1 / cosh(beta)) / (-sin(beta) - tanh(beta) / cosh(beta));
-    }
+    for (int i = 0; i < 8; i++) beta -= (cos(beta) + 1 / cosh(beta)) / (-sin(beta) - tanh(beta) / cosh(beta));
     return beta;
 }
 

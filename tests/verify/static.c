@@ -272,9 +272,7 @@ static void reconfiguration(void) {
 static double distance_of(const struct simulation *one, const struct simulation *other) {
     const struct fish *const fish = &one->school->fish[0];
     double most = 0;
-    for (int i = fish->at.x; i < fish->at.vx; i++) {
-        most = fmax(most, fabs(one->state->y[i] - other->state->y[i]));
-    }
+    for (int i = fish->at.x; i < fish->at.vx; i++) most = fmax(most, fabs(one->state->y[i] - other->state->y[i]));
     return most;
 }
 

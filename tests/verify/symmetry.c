@@ -271,9 +271,7 @@ static void check_output_interval(void) {
 // final position of a fish with a companion to the left, or without (distance 0); rtol far below the effect
 static struct simulation *run_pair(double apart) {
     char companion[128] = "";
-    if (apart > 0) {
-        snprintf(companion, sizeof companion, "  - {name: other, start: {position: [0, %.17g]}}\n", apart);
-    }
+    if (apart > 0) snprintf(companion, sizeof companion, "  - {name: other, start: {position: [0, %.17g]}}\n", apart);
     struct simulation *simulation = verify_open(
         "format: 1\nname: pair\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
         "solver: {rtol: 1e-10, order: 5}\nfish:\n  - {name: fish}\n%s",

@@ -171,9 +171,7 @@ static struct reference reference_of(const struct table *table, const char *flow
         if (strncmp(table->line[i], start, (size_t)length) != 0) continue;
         if (sscanf(table->line[i] + length, "%lf,%lf", &low, &high) != 2) abort();
         struct reference reference = {(low + high) / 2, "Navier-Stokes"};
-        if (high > low) {
-            snprintf(reference.source, sizeof reference.source, "Navier-Stokes, %g to %g", low, high);
-        }
+        if (high > low) snprintf(reference.source, sizeof reference.source, "Navier-Stokes, %g to %g", low, high);
         return reference;
     }
     abort();

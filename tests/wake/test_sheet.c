@@ -131,9 +131,7 @@ TEST(stretches_decay_by_labels_only_if_rings_must_stay_closed) {
     for (int k = 0; k < 2; k++) {
         struct setup setup = setup_with(TIME "wake: {shedding: sheet, lifetime: 0.2, decay: 0.15}\n%s", fish[k]);
         struct wake *const wake = &setup.state->wake[0];
-        for (int i = 0; i < 8; i++) {
-            wake_release(wake, i, sin(i), 0.1 * cos(i), setup.state->t - 0.02 * (8 - i));
-        }
+        for (int i = 0; i < 8; i++) wake_release(wake, i, sin(i), 0.1 * cos(i), setup.state->t - 0.02 * (8 - i));
         double label[8], part[8];
         wake_strengths(wake, setup.school, setup.state->t, 0, 0.3, label);
         for (int i = 0; i < 8; i++) part[i] = wake_strength_within(setup.school, 0.02 * (8 - i), 0.3);
