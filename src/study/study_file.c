@@ -577,7 +577,7 @@ static enum status test_completeness(const struct case_values *study, const stru
                        folder, study->error ? "error" : "study");
 }
 
-/* Let the streams of a report take the memory for all that was printed. main reports a full or closed standard output. */
+/* Let the streams of a report take the memory for all that was printed. main reports a full standard output. */
 static enum status end_texts(FILE *stream, FILE *warnings) {
     if ((fflush(stream) == 0 && fflush(warnings) == 0) || errno != ENOMEM) return STATUS_OK;
     return status_fail(STATUS_MEMORY, "out of memory: text to print");

@@ -996,17 +996,20 @@ static struct shoal *opened_to_change(void **state, double t) {
 TEST(a_body_is_where_it_was_put_with_its_velocity) {
     struct shoal *const run = opened_to_change(state, 0.2);
     double x[18], v[18], x_now[18], v_now[18], audit[3];
-    const double moment = one_of(run, "angular_momentum_balance", 0);
+    struct shoal *copy;  // to read from: the balances of the run stay those of its last row
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    const double moment = one_of(copy, "angular_momentum_balance", 0);
     const int n_before = shoal_n_vortices(run, 0);
     assert_int_equal(shoal_state(run, 0, x, v), SHOAL_OK);
     for (size_t i = 0; i < 3; i++)
-        audit[i] = i < 2 ? one_of(run, "momentum_balance", i) : one_of(run, "energy_balance", 0);
+        audit[i] = i < 2 ? one_of(copy, "momentum_balance", i) : one_of(copy, "energy_balance", 0);
     for (int k = 0; k < 9; k++) {
         x[2 * k] += 0.1;
         x[2 * k + 1] -= 0.2;
         v[2 * k] -= 0.3;
     }
-    const double com = one_of(run, "com", 0), velocity = one_of(run, "com_velocity", 0);
+    const double com = one_of(copy, "com", 0), velocity = one_of(copy, "com_velocity", 0);
+    shoal_close(copy);
     assert_int_equal(shoal_set_state(run, 0, x, v), SHOAL_OK);
     assert_int_equal(shoal_state(run, 0, x_now, v_now), SHOAL_OK);
     for (int i = 0; i < 18; i++) {

@@ -264,6 +264,7 @@ TEST_WITH(only_what_is_expected_is_read, set_up, tear_down) {
         if (status != (tries[i].is_right ? STATUS_OK : STATUS_FILE)) fail_msg("try %zu: %d", i, status);
         if (status == STATUS_FILE) assert_message("variable v was not written by shoal");
         if (status == STATUS_FILE) assert_message(f->path);
+        if (tries[i].slice == long_b) assert_message("shoal: numbers over (a[0:2], b[1:4]) are expected");
     }
 }
 

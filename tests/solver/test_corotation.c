@@ -165,8 +165,7 @@ TEST(a_node_rotates_by_the_mean_of_its_edges) {
     const double *const from_x = both.reference + fish->at.x, *const from_y = both.reference + fish->at.y;
     // neighbouring edges rotate in opposite senses: inner nodes do not rotate at all
     for (int k = 0; k < fish->n_edges; k++) {
-        const double angle = k % 2 == 0 ? 0.3 : -0.3;
-        const double ex = from_x[k + 1] - from_x[k], ey = from_y[k + 1] - from_y[k];
+        const double angle = k % 2 == 0 ? 0.3 : -0.3, ex = from_x[k + 1] - from_x[k], ey = from_y[k + 1] - from_y[k];
         x[k + 1] = x[k] + cos(angle) * ex - sin(angle) * ey;
         y[k + 1] = y[k] + sin(angle) * ex + cos(angle) * ey;
     }

@@ -10,8 +10,7 @@ enum { MOST = 6 };
 /* A key with levels as numbers of points, from fine to coarse, or as sizes for numbers below 1. */
 struct key {
     int n, base;
-    double level[MOST];
-    double design;
+    double level[MOST], design;
     const char *objection;
 };
 

@@ -179,8 +179,7 @@ enum { N_STEPS = 500, N_STREET = 12, N_PLACES = 40 };
 static const double step = 0.01, street_spacing = 2, street_ahead = 2, street_circulation = 0.002;
 
 struct free_plate {
-    double phi[N_STEPS + 1], downwash[N_STEPS + 1];
-    double mass, inertia;
+    double phi[N_STEPS + 1], downwash[N_STEPS + 1], mass, inertia;
     double y[2], pitch[2]; /* value and rate */
 };
 
