@@ -187,7 +187,7 @@ set_fails set_in_one_other_section 'unknown key here; the key belongs to fish[0]
 set_fails set_viscosity "has no effect: all fish have 'drag.skin: quadratic' with the coefficient drag.tangential" 'fish[*].force=reactive' fluid.viscosity=1e-3
 set_fails set_reynolds 'the friction is set by drag.tangential of a fish, or by fluid.viscosity with' fluid.reynolds=1000
 set_fails set_a_letter_beside_mu 'fluid.u: unknown key; known keys: density' fluid.u=1
-set_fails set_index_open 'expects the number of a fish, as in fish[0]' 'fish[0=7'
+for open in 0 '*'; do set_fails "set_index_open $open" 'expects the number of a fish, as in fish[0]' "fish[$open=7"; done
 set_fails set_no_dot_after_index "fish[0]nodes: expects a '.' after the ']'" 'fish[0]nodes=7'
 set_fails set_below_a_value 'time.end.x: time.end is a value and has no keys' time.end.x=3
 set_fails set_mistyped '--set time.end=soon: error: time.end: expects a number in s, got '"'soon'" time.end=soon
