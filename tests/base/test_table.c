@@ -23,10 +23,6 @@ TEST(a_table_grows_by_rows_and_has_no_blanks_at_the_end) {
     table_print(table, stream);
     fclose(stream);
     assert_string_equal(written,
-                        "quantity           status
-            m s-1
-speed of 2    1.2
-cost            -  failed
-");
+                        "quantity           status\n            m s-1\nspeed of 2    1.2\ncost            -  failed\n");
     arena_free(arena);
 }
