@@ -340,11 +340,17 @@ enum status vtk_export(struct arena *arena, const char *from, const char *folder
                                            reader->has_mean_section[f]);
     }
 
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        return status_fail(STATUS_FILE, "%s: cannot make this folder: %s", folder, strerror(errno));
+    struct stat existing;
+    if (mkdir(folder, 0777) != 0 && (errno != EEXIST || stat(folder, &existing) != 0 || !S_ISDIR(existing.st_mode))) {
+        return status_fail(STATUS_FILE, "%s: cannot make this folder: %s: choose another name with --vtk", folder,
+                           strerror(errno));
     }
     const struct content times = {"times", vtk_write_list};
     const char *const name = arena_text(export.arena, "%s.pvd", export.stem);
     *list = arena_text(arena, "%s/%s", folder, name);
+    if (!overwrite && lstat(*list, &existing) == 0) {
+        return status_fail(STATUS_FILE, "%s exists: choose another folder with --vtk or replace it with --force",
+                           *list);
+    }
     return write_file(&export, name, &times, 0);
 }

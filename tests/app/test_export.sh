@@ -20,12 +20,13 @@ check the_list_is_named grep -qxF 'out_of_it/a _pair_.pvd' out
 check there_is_a_file_of_bodies_for_each_row test "$(ls out_of_it | grep -c bodies)" = 7
 check and_one_of_wakes_where_there_is_one test "$(ls out_of_it | grep -c wakes)" = 4
 check and_none_of_walls test "$(ls out_of_it | grep -c walls)" = 0
-refused existing_files_are_kept 4 'exists' export 'a <pair>.nc' --vtk out_of_it
+refused existing_files_are_kept 4 'choose another folder with --vtk or replace it with --force' export 'a <pair>.nc' --vtk out_of_it
 run export 'a <pair>.nc' --vtk out_of_it --force -q
 check force_replaces_them test "$code" = 0 -a ! -s out
 refused no_result 4 'nothing.nc' export nothing.nc --vtk out_of_it
 refused no_format 2 'choose a format: --vtk FOLDER' export 'a <pair>.nc'
-refused no_folder 4 'cannot make this folder' export 'a <pair>.nc' --vtk no/such
+refused no_folder 4 'cannot make this folder: No such file' export 'a <pair>.nc' --vtk no/such
+refused a_file_as_folder 4 'cannot make this folder: File exists: choose another name with --vtk' export 'a <pair>.nc' --vtk pair.yaml
 
 cat >compare.py <<'end'
 """Compare what VTK reads with the result."""
