@@ -133,11 +133,21 @@ static void axis_read_keys(struct axis *axis) {
             continue;
         }
 
-        // refuse a key that another axis, or this one, has too
+        // the keys of a fish replace those of defaults
+        if (strncmp(node->text, "defaults.", 9) == 0) {
+            yaml_errors_add(errors, node->mark,
+                            "%s.key: '%.60s' cannot be swept: a fish may have the key; write fish[*].%.60s", axis->name,
+                            node->text, path.pattern + 5);
+            continue;
+        }
+
+        // refuse a key that replaces all values of another axis, or of this one
         for (int i = 0; i <= axis->values->n_axes; i++) {
             const struct sweep_axis *const other = &axis->values->sweep[i];
             for (int k = 0; k < other->n_keys; k++) {
-                if (!other->key[k].path || strcmp(other->key[k].path, node->text) != 0) continue;
+                if (!other->key[k].path || strcmp(other->key[k].row, key->path) != 0) continue;
+                const bool is_of_all = path.fish == CASE_EVERY_FISH || axis->values->school.n_fish == 1;
+                if (!is_of_all && strcmp(other->key[k].path, node->text) != 0) continue;
                 yaml_errors_add(errors, node->mark, "%s.key: sweep[%d] has this key too", axis->name, i);
             }
         }
