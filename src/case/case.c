@@ -160,18 +160,25 @@ static void keep_texts(const struct reading *reading) {
     memcpy(values->text, source->text, source->length);
 
     // one line for each key at the top, with the name, which may come from the file
-    struct text text = {.arena = values->arena};
+    struct text name = {.arena = values->arena}, merged = name, common = name;
     if (!yaml_tree_find(tree->root, "name")) {
-        text_add(&text, "name: ");
-        yaml_write_scalar(&text, values->name);
-        text_add(&text, "\n");
+        text_add(&name, "name: ");
+        yaml_write_scalar(&name, values->name);
+        text_add(&name, "\n");
+        text_add(&merged, "%s", name.text);
+        text_add(&common, "%s", name.text);
     }
     for (int i = 0; i < tree->root->n; i++) {
-        text_add(&text, "%s: ", tree->root->entry[i].key);
-        yaml_write_node(&text, tree->root->entry[i].value);
-        text_add(&text, "\n");
+        const char *const key = tree->root->entry[i].key;
+        struct text line = {.arena = values->arena};
+        text_add(&line, "%s: ", key);
+        yaml_write_node(&line, tree->root->entry[i].value);
+        text_add(&line, "\n");
+        text_add(&merged, "%s", line.text);
+        if (strcmp(key, "sweep") != 0 && strcmp(key, "error") != 0) text_add(&common, "%s", line.text);
     }
-    values->merged = text.text;
+    values->merged = merged.text;
+    values->common = common.text;
 
     // the notes compare with a case of one fish and the same preset, without other keys
     struct case_values initial = {.arena = tree->arena};
@@ -231,7 +238,7 @@ static enum status read_member(struct case_values *values, const struct case_val
     int n_keys = 0, n = 0;
     for (int a = 0; a < study->n_axes; a++) n_keys += study->sweep[a].n_keys;
     const char **assignments;
-    NEW(*arena, assignments, n_keys + 2);
+    NEW(*arena, assignments, n_keys + 1);
     for (int a = 0; a < study->n_axes; a++) {
         const int value = sweep_member_value(study, member, a);
         for (int k = 0; k < study->sweep[a].n_keys; k++) {
@@ -240,12 +247,11 @@ static enum status read_member(struct case_values *values, const struct case_val
         }
     }
 
-    // remove the sweep and the errors
+    // without a sweep, a member expects nothing
     assignments[n++] = "sweep=[]";
-    if (study->error) assignments[n++] = "error=none";
 
     const enum status status =
-        case_parse(values, study->merged, strlen(study->merged), study->name, NULL, n, assignments);
+        case_parse(values, study->common, strlen(study->common), study->name, NULL, n, assignments);
     if (status == STATUS_CASE) {
         status_fail(STATUS_CASE, "member %d (%s):\n%s", member, sweep_member_text(*arena, study, member),
                     status_message());

@@ -64,6 +64,7 @@ struct case_values {
     struct sweep_expectation *expect; /* (n_expectations) */
     char *text;                       /* text of the case file, without includes */
     char *merged;                     /* case file, includes and assignments merged into one text, without defaults */
+    char *common;                     /* merged without sweep and error: of the members of a study */
     char *notes; /* on values that are hardly ever meant, one after the other as errors are written; "": none */
     char *study; /* of a member of a study: the merged text of the study; else NULL */
     int member;  /* number of the member, from 0 */

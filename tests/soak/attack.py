@@ -72,6 +72,7 @@ TEXTS = {
     "100,000 waypoints": b"format: 1\nfish: [{control: {law: course, waypoints: [" + 100000 * b"[1,1]," + b"]}}]\n",
     "a sweep of a thousand million": CASE.encode() + b"sweep: [" + b",".join(
         b"{key: 'fish[0].wave.phase', values: [" + b",".join(b"%d" % i for i in range(1000)) + b"]}" for _ in range(3)) + b"]\n",
+    "a sweep of 6000 values": CASE.encode() + b"sweep: [{key: 'fish[0].wave.phase', values: %s}]\n" % str([*range(6000)]).encode(),
     "a sweep of nothing": CASE.encode() + b"sweep: [{key: 'fish[0].nodes', values: []}]\n",
     "a sweep of a sweep": CASE.encode() + b"sweep: [{key: sweep, values: [1]}]\n",
     "a fish too many": CASE.encode() + b"sweep: [{key: 'fish[7].nodes', values: [5, 7]}]\n",
