@@ -416,10 +416,9 @@ enum status result_file_row(struct result_file *result, const struct result_row 
     result->n_rows++;
     netcdf_sync(&result->writer, false);
     if (result->writer.code == 0) return STATUS_OK;
-    return status_fail(STATUS_FILE,
-                       "%s: cannot be written at t = %g s (%s): make room or choose another place with -o; the rows "
-                       "before are good",
-                       path, t, netcdf_reason(result->writer.code));
+    return status_fail(
+        STATUS_FILE, "%s: cannot be written at t = %g s (%s): make room or choose another place with -o%s", path, t,
+        netcdf_reason(result->writer.code), *result->writer.part.name ? "" : "; the rows before are good");
 }
 
 enum status result_file_mark(struct result_file *result, struct result_mark *mark) {

@@ -32,16 +32,11 @@ static enum status read_counts(struct arena *arena, const struct result_reader *
     return STATUS_OK;
 }
 
-enum status result_reader_open(struct arena *arena, struct result_reader **opened, const char *path) {
-    struct result_reader *reader;
-    NEW(arena, reader, 1);
-    *opened = reader;
-    TRY(netcdf_open(arena, &reader->file, path));
-
-    // refuse files that are not of a run
+enum status result_reader_check(const struct netcdf_reader *file) {
+    const char *const path = file->path;
     int schema, study;
-    TRY(netcdf_read_integer(&reader->file, "shoal_schema", 0, &schema));
-    TRY(netcdf_read_integer(&reader->file, "shoal_study", 0, &study));
+    TRY(netcdf_read_integer(file, "shoal_schema", 0, &schema));
+    TRY(netcdf_read_integer(file, "shoal_study", 0, &study));
     if (schema != RESULT_SCHEMA && schema != 0) {
         return status_fail(
             STATUS_FILE,
@@ -52,7 +47,15 @@ enum status result_reader_open(struct arena *arena, struct result_reader **opene
         return status_fail(STATUS_FILE, "%s: the file of a study: give the file of one run, such as member-0000.nc",
                            path);
     }
-    if (schema == 0) return status_fail(STATUS_FILE, "%s: a NetCDF file, but not of shoal", path);
+    return schema == 0 ? status_fail(STATUS_FILE, "%s: not the result of a run", path) : STATUS_OK;
+}
+
+enum status result_reader_open(struct arena *arena, struct result_reader **opened, const char *path) {
+    struct result_reader *reader;
+    NEW(arena, reader, 1);
+    *opened = reader;
+    TRY(netcdf_open(arena, &reader->file, path));
+    TRY(result_reader_check(&reader->file));
 
     // the dimensions
     for (enum result_dimension d = TIME; d < MULTIPLIER; d++) {

@@ -18,6 +18,9 @@ struct result_reader {
     double *scratch;                    /* (2 FISH) */
 };
 
+/* Refuse a file that is not of a run, or of another schema, with STATUS_FILE. */
+enum status result_reader_check(const struct netcdf_reader *file);
+
 /* Open the file of a run that has at least one row, until the arena is freed. Fails with STATUS_FILE, also for the file
  * of a study, or with STATUS_MEMORY. The path must outlive the arena. */
 enum status result_reader_open(struct arena *arena, struct result_reader **reader, const char *path);

@@ -9,6 +9,7 @@
 #include "fish/fish_school.h"
 #include "force/bound_sheet.h"
 #include "result/netcdf.h"
+#include "result/result_reader.h"
 #include "result/result_table.h"
 #include "view/field_file.h"
 
@@ -200,12 +201,8 @@ enum status field_row_read(struct arena *arena, struct field_row **new, const ch
     TRY(netcdf_open(scratch, &reading->file, path));
 
     // the case
-    int schema;
     char *effective;
-    TRY(netcdf_read_integer(&reading->file, "shoal_schema", 0, &schema));
-    if (schema != RESULT_SCHEMA) {
-        return status_fail(STATUS_FILE, "%s: not the result of a run that this program can read", path);
-    }
+    TRY(result_reader_check(&reading->file));
     TRY(netcdf_attribute(&reading->file, "case_effective", &effective));
     row->effective = arena_text(arena, "%s", effective);
     TRY(case_parse(&row->values, effective, strlen(effective), path, NULL, n_assignments, assignments));

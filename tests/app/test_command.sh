@@ -510,6 +510,10 @@ limits() {
         check "file too large: $command: nothing is left" diff <(find . -type f ! -name check.out | sort) "$folder.files"
     done
     check "file too large: gather keeps study.nc" cmp pair-study/study.nc study.before
+    limited -f 150 steady "$demo" -q -o cut.nc
+    check "file too large: steady: the reason, nothing is left, no row is promised" \
+        eval 'says "at t = " && test ! -e cut.nc && ! has err "rows before are good"'
+    refused "field of a study" 4 "the file of a study: give the file of one run" field pair-study/study.nc -o cut.nc
     (ulimit -f 0 && exec timeout "$time_limit" "$program" new cut.yaml) 2>&1 | cat >err
     check "file too large: new: the reason" says "File too large"
     check "file too large: new: nothing is left" test ! -e cut.yaml

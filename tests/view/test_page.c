@@ -63,7 +63,7 @@ TEST_WITH(the_reader_refuses_other_files, set_up, tear_down) {
     put_attribute(f, "shoal_schema", RESULT_SCHEMA + 1);
     cannot_be_read(f->path, "use the program that wrote the file");
     put_attribute(f, "shoal_schema", 0);
-    cannot_be_read(f->path, "not of shoal");
+    cannot_be_read(f->path, "not the result of a run");
     put_attribute(f, "shoal_study", 1);
     cannot_be_read(f->path, "the file of a study: give the file of one run");
 }
