@@ -143,6 +143,12 @@ static enum status study_run_in_folder(const struct case_values *values, const s
     const char *const place = request->output ? request->output : folder;
     if (!request->quiet && *values->notes) say_line(stderr, "%s\n", values->notes);
     int bundle = 0;
+    if ((request->slurm != 0) + (request->members != NULL) + (request->plan != 0) > 1) {
+        return status_fail(STATUS_CASE, "--plan, --members and --slurm exclude each other: give one of these options");
+    }
+    if (request->bundle && !request->slurm) {
+        return status_fail(STATUS_CASE, "--bundle %s: members of a task of Slurm: add --slurm", request->bundle);
+    }
     if (request->bundle) TRY(read_count("--bundle", request->bundle, &bundle));
     if (values->error) return run_errors(values, request, place, bundle);
     if (request->plan) {

@@ -151,6 +151,8 @@ refused seventeen_quantities 2 'error.of: more than 16 quantities' error foil.ya
     towed_efficiency mean_thrust mean_power energy_balance steps newton_iterations residual_evaluations time)
 refused two_kinds 2 'speed is of a run and steady_lift of a steady state' error foil.yaml --of steady_lift --of speed
 refused a_bound_of_words 2 '--within few: expects a number above 0' error foil.yaml --of steady_lift --within few
+refused a_plan_runs_no_member 2 'exclude each other' study swimmer.yaml --plan --members 0 -o planned
+refused a_bundle_without_slurm 2 '--bundle 2: members of a task of Slurm: add --slurm' study swimmer.yaml --bundle 2
 refused a_plan_of_a_sweep 2 '--plan: the case has no `error`' study foil.yaml --plan --set 'sweep=[]'
 refused a_bound_with_a_sweep 2 'error.within: refines one case' study foil.yaml \
     --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5]}]' --set 'error={of: steady_lift, within: 0.1}'
