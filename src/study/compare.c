@@ -8,10 +8,11 @@
 #include "base/methods.h"
 #include "base/table.h"
 #include "case/case.h"
+#include "case/case_table.h"
 #include "case/sweep.h"
 #include "study/study_folder.h"
 
-enum { METHOD, ORDER, RTOL, STEP, N_KEYS };
+enum { BY_METHOD, BY_ORDER, BY_RTOL, BY_STEP, N_KEYS };
 static const char *const keys[N_KEYS] = {"solver.method", "solver.order", "solver.rtol", "solver.step"};
 
 enum { MAX_REPEATS = 99, WORD_BYTES = 32, NAME_BYTES = 128 };
@@ -90,6 +91,14 @@ static enum status sweep_add_method(struct text *sweep, const char *word, const 
         double number;
         if (!text_number(value, &number)) {
             return status_fail(STATUS_CASE, "%s: '%s' is not a number", by_step ? "--steps" : "--rtol", value);
+        }
+        const struct bounds *const bounds = &case_table_row("solver.rtol")->bounds;
+        if (by_step && !(number >= 0)) {
+            return status_fail(STATUS_CASE, "--steps %s: solver.step must be at least 0", value);
+        }
+        if (!by_step && !(number >= bounds->min && number <= bounds->max)) {
+            return status_fail(STATUS_CASE, "--rtol %s: solver.rtol must be from %g to %g", value, bounds->min,
+                               bounds->max);
         }
         sweep_add_member(sweep, method, order, by_step ? rtol : value, by_step ? value : "0");
     }
@@ -219,13 +228,13 @@ static struct wall_time wall_time_of(const struct case_values *study, const stru
 
 /* "ida2" for ida of order 2, otherwise the word of the method. */
 static void name_method(const struct case_values *study, int m, char name[NAME_BYTES]) {
-    const char *const word = set_to(study, m, METHOD);
-    snprintf(name, NAME_BYTES, "%s%s", word, strcmp(word, "ida") == 0 ? set_to(study, m, ORDER) : "");
+    const char *const word = set_to(study, m, BY_METHOD);
+    snprintf(name, NAME_BYTES, "%s%s", word, strcmp(word, "ida") == 0 ? set_to(study, m, BY_ORDER) : "");
 }
 
 static bool has_step(const struct case_values *study, int m) {
     double step;
-    return text_number(set_to(study, m, STEP), &step) && step > 0;
+    return text_number(set_to(study, m, BY_STEP), &step) && step > 0;
 }
 
 // ---- the cost at equal error
@@ -258,8 +267,8 @@ static int collect_points(const struct case_values *study, const struct member_f
                           struct point *point) {
     int n = 0;
     for (int i = COMPARE_N_REFERENCES; i < sweep_n_members(study); i++) {
-        const bool is_same = strcmp(set_to(study, i, METHOD), set_to(study, m, METHOD)) == 0 &&
-                             strcmp(set_to(study, i, ORDER), set_to(study, m, ORDER)) == 0 &&
+        const bool is_same = strcmp(set_to(study, i, BY_METHOD), set_to(study, m, BY_METHOD)) == 0 &&
+                             strcmp(set_to(study, i, BY_ORDER), set_to(study, m, BY_ORDER)) == 0 &&
                              has_step(study, i) == has_step(study, m);
         if (is_same && i < m) return 0;
         if (!is_same || first_repeat(study, i) != i || !member_file_is_complete(&members[i])) continue;
@@ -287,8 +296,8 @@ static struct cost cost_at(const struct point *fine, const struct point *coarse,
 }
 
 static void name_setting(const struct case_values *study, int m, char text[NAME_BYTES]) {
-    const int key = has_step(study, m) ? STEP : RTOL;
-    snprintf(text, NAME_BYTES, "%s %s", key == STEP ? "step" : "rtol", set_to(study, m, key));
+    const int key = has_step(study, m) ? BY_STEP : BY_RTOL;
+    snprintf(text, NAME_BYTES, "%s %s", key == BY_STEP ? "step" : "rtol", set_to(study, m, key));
 }
 
 /* Fill the row of a method: the cost at an error, by a power law between two settings. */
@@ -378,8 +387,8 @@ void compare_print(struct arena *arena, const struct case_values *study, const s
     name_method(study, 0, method);
     name_method(study, 1, other);
     fprintf(stream, "Reference: %s, rtol %s; difference of %s, rtol %s: %.1e (nose) and %.1e (tail) lengths", method,
-            set_to(study, 0, RTOL), other, set_to(study, 1, RTOL), largest_error(study, &members[1], "nose_error"),
-            largest_error(study, &members[1], "tail_error"));
+            set_to(study, 0, BY_RTOL), other, set_to(study, 1, BY_RTOL),
+            largest_error(study, &members[1], "nose_error"), largest_error(study, &members[1], "tail_error"));
     const double power = largest_error(study, &members[1], "power_error");
     if (!isnan(power)) fprintf(stream, ", relative difference of the power %.1e", power);
     fprintf(stream, ".\n");
@@ -393,8 +402,8 @@ void compare_print(struct arena *arena, const struct case_values *study, const s
         const struct wall_time wall_time = wall_time_of(study, members, m, buffer);
         name_method(study, m, method);
         table_cell(table, "%s", method);
-        table_cell(table, "%s", has_step(study, m) ? "-" : set_to(study, m, RTOL));
-        table_cell(table, "%s", has_step(study, m) ? set_to(study, m, STEP) : "-");
+        table_cell(table, "%s", has_step(study, m) ? "-" : set_to(study, m, BY_RTOL));
+        table_cell(table, "%s", has_step(study, m) ? set_to(study, m, BY_STEP) : "-");
         for (int e = 0; e < 3; e++) table_number(table, "%.1e", largest_error(study, member, errors[e]));
         table_number(table, "%.3f", wall_time.median);
         table_number(table, "%.3f", wall_time.spread);

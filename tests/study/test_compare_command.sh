@@ -75,9 +75,10 @@ check which_may_be_the_reference has err 'the reference, member 0 failed: too sl
 check then_nothing_else_runs test ! -s out
 
 refused unknown_method 2 "--methods: 'adams' is unknown" compare case.yaml --methods ida2,adams
-refused tolerance_out_of_range 2 'solver.rtol' compare case.yaml --rtol 1e-3,-1
+refused tolerance_out_of_range 2 'error: --rtol -1: solver.rtol must be from 1e-14 to 0.1' compare case.yaml --rtol 1e-3,-1
 refused implicit_methods_without_steps 2 '--methods: trapezoid takes fixed steps only: give them with --steps' \
     compare case.yaml --methods trapezoid
+refused a_step_below_0 2 'error: --steps -1: solver.step must be at least 0' compare case.yaml --methods rk4 --steps -1
 refused tolerance_of_words 2 "--rtol: 'small' is not a number" compare case.yaml --rtol 1e-3,small
 refused step_that_is_no_part 2 'solver.step' compare case.yaml --methods rk4 --steps 0.013
 refused empty_list 2 'nothing to compare' compare case.yaml --methods ''
