@@ -104,8 +104,8 @@ static void induce_pair_of_wakes(const struct flow *flow, int f, int g) {
     const struct flow_sum wake = {WAKE_AT_WAKE, false};
     const struct targets at_f = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
     const struct targets at_g = markers_of(flow, g, (struct range){0, flow->wake_range[g].n});
-    if (flow->class_of[f] == flow->class_of[g]) {
-        const struct kernel_pair pair = flow_pair_of(flow, f, g, &wake);
+    const struct kernel_pair pair = flow_pair_of(flow, f, g, &wake), back = flow_pair_of(flow, g, f, &wake);
+    if (!(fabs(pair.span - back.span) + fabs(pair.square - back.square) > 0)) {
         kernel_induce_mutual(&pair, &flow->fish[f].markers, &at_f, &flow->fish[g].markers, &at_g);
     } else {
         flow_induce_other(flow, f, g, &wake, false, &at_f);

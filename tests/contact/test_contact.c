@@ -358,8 +358,6 @@ TEST(plates_that_swim_in_line_do_not_cross) {
         for (int f = 0; f < 2; f++) imbalance = fmax(imbalance, fabs(of[f].energy_balance));
         for (int i = 0; i < 2; i++) NEAR(of[0].contact_force[i], -of[1].contact_force[i], 1e-9, 1e-9);
     }
-    print_message("plates in line: gap %.2g m, imbalance %.1g of %.3g J\n", simulation->state->closest->distance,
-                  imbalance, energy);
     ABOVE(simulation->state->closest->distance, 0);
     ABOVE(stored, 0.005 * energy);
     BELOW(imbalance, 5e-3 * energy);
@@ -406,8 +404,6 @@ TEST(bodies_under_pressure_throw_each_other_back) {
         NEAR_ARRAY(2, sum, ((double[]){0, 0}), 1e-6 * scale, 0);
         for (int i = 0; i < 2; i++) NEAR(of[0].contact_force[i], -of[1].contact_force[i], 1e-9, 1e-12);
     }
-    print_message("under pressure: gap %.2g m, imbalance %.1g of %.3g J\n", simulation->state->closest->distance,
-                  imbalance, energy);
     ABOVE(simulation->state->closest->distance, 0);
     ABOVE(stored, 0.005 * energy);
     BELOW(imbalance, 1e-3 * energy);
@@ -579,9 +575,6 @@ TEST(of_256_fish_no_two_get_through_each_other) {
         }
     }
     momentum(simulation, CROWD, after);
-    print_message("256 fish: %d in contact, least %.2e m, %.1f steps per event\n", n_contacts,
-                  simulation->state->closest->distance,
-                  (double)simulation->totals.steps / (double)simulation->state->event);
     ABOVE(n_contacts, 20);
     ABOVE(simulation->state->closest->distance, 0);
     NEAR_ARRAY(2, after, before, 1e-10 * scale, 0);

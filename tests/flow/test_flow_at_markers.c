@@ -202,6 +202,32 @@ TEST(two_wakes_have_opposite_forces_for_each_other) {
     }
 }
 
+TEST(a_wake_acts_on_another_with_its_own_depth) {
+    struct setup setup;
+    school_build(&setup, TIME SHEET
+                 "defaults: {fish: {force: pressure, pressure: {span: finite}, nodes: 5, sheet_points: 11, body: "
+                 "{depth: 0.5}}}\n"
+                 "fish: [{body: {depth: 1}}, {start: {position: [0.3, 0.5]}}, {start: {position: [0.2, 0.8]}}]\n");
+    school_stir(&setup);
+    make_wakes(&setup);
+    const struct flow *const flow = setup.residual->flow;
+    assert_int_equal(flow->n_classes, 1);
+    for (int i = 0; i < N_FISH * N_FISH; i++) {
+        const int f = i / N_FISH, g = i % N_FISH;
+        if (f == g) continue;
+        struct felt by_f;
+        feel(&setup, -1, f, &by_f);
+        const struct sources *const from = &flow->fish[f].markers, *const to = &flow->fish[g].markers;
+        const struct kernel_pair pair = flow_pair_of(flow, g, f, &(struct flow_sum){WAKE_AT_WAKE, false});
+        double u[N_MARKERS] = {0}, v[N_MARKERS] = {0};
+        kernel_induce(&pair, from, (struct range){0, N_MARKERS},
+                      &(struct targets){N_MARKERS, to->x, to->y, to->half, to->leg, .u = u, .v = v});
+        NEAR_ARRAY(N_MARKERS, by_f.wake_u[g], u, 1e-14, 1e-12);
+        NEAR_ARRAY(N_MARKERS, by_f.wake_v[g], v, 1e-14, 1e-12);
+        ABOVE(fabs(u[0]), 1e-5);
+    }
+}
+
 #define MIRRORED(y, heading, phase)                                                                \
     "force: pressure, nodes: 7, sheet_points: 21, pressure: {span: finite}, wave: {phase: " #phase \
     "}, "                                                                                          \

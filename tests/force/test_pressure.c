@@ -118,8 +118,7 @@ TEST(added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep) {
                  SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.002}\nfluid: {density: 1, viscosity: 0}\n"
                  "fish: [{nodes: 17, sheet_points: 65, force: pressure, pressure: {span: finite},\n"
-                 "        wave: {amplitude: 0, frequency: 0},\n"
-                 "        body: {profile: uniform, thickness: 0.1, depth: %g}}]\n",
+                 "  wave: {amplitude: 0, frequency: 0}, body: {profile: uniform, thickness: 0.1, depth: %g}}]\n",
                  cases[i].depth);
         school_build(&setup, text);
         double velocity[17], momentum[17], mass = 0, moment = 0, lift = 0;

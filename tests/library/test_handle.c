@@ -80,7 +80,6 @@ TEST(every_method_integrates_the_same_led_swim) {
     NEAR(tight, exact, 2e-7, 0);
     NEAR(usual, exact, 3e-4, 0);
     // the integrator does not start again, and a change costs a few steps
-    print_message("%ld steps, %ld where nothing is set\n", steps, steps_alone);
     BELOW(2 * steps, 3 * steps_alone);
 }
 

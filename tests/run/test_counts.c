@@ -125,8 +125,6 @@ TEST(a_step_keeps_its_size_and_its_jacobian) {
                          "  - {start: {position: [%g, %g], speed: 0.79}}\n", 1.3 * (f % in_row), 0.4 * (f / in_row));
         }
         const struct cost cost = cost_per_event(text, schools[i].end);
-        print_message("%d fish: per event %.2f steps, %.2f iterations, %.2f Jacobians\n", n, cost.steps,
-                      cost.iterations, cost.jacobians);
         AT_MOST(cost.steps, 7);
         AT_MOST(cost.iterations, 14);
         AT_MOST(cost.jacobians, schools[i].jacobians);
@@ -154,8 +152,6 @@ TEST(a_dense_school_couples_what_it_needs) {
                            1.3 * (f % 3), 0.4 * (f / 3));
     }
     const struct cost cost = cost_per_event(text, 0.5);
-    print_message("dense school: per event %.2f iterations, %.2f Jacobians, %.3f failures\n", cost.iterations,
-                  cost.jacobians, cost.failures);
     AT_MOST(cost.iterations, 7);
     AT_MOST(cost.jacobians, 1);
     AT_MOST(cost.failures, 0.1);

@@ -289,7 +289,6 @@ TEST(a_fish_reaches_its_waypoints) {
     const struct state *s = simulation->state;
     assert_int_equal(simulation->school->fish[0].control.law, CONTROL_COURSE);
     while (s->control[0].waypoint < 3 && s->t < 22) school_ok(simulate_step(simulation));
-    print_message("all waypoints at t = %g s\n", s->t);
     assert_int_equal(s->control[0].waypoint, 3);
 }
 

@@ -313,8 +313,6 @@ TEST(it_is_closed_where_the_tree_sums) {
         swim_among_many(fluids[w], 1e-4, summed, &size, &by_tree);
         assert_true(by_tree);
         for (int i = 0; i < 3; i++) error = fmax(error, fabs(summed[i] - direct[i]) / size);
-        print_message("direct: %.2g, angular %.2g; by the tree: %.2g more\n", hypot(direct[0], direct[1]) / size,
-                      direct[2] / size, error);
         BELOW(hypot(summed[0], summed[1]), 5e-3 * size);
         BELOW(fabs(summed[2]), 5e-3 * size);
         ABOVE(error, 0);

@@ -80,8 +80,6 @@ TEST(a_splitting_adds_an_error_of_higher_order) {
             error[k] = imex - want;
             splitting[k] = imex - with_step(with_pressure[i], "trapezoid", 0.002 / (1 << k));
         }
-        print_message("case %zu: errors %.2e %.2e, of the splitting %.2e %.2e\n", i, error[0], error[1], splitting[0],
-                      splitting[1]);
         NEAR(log2(error[0] / error[1]), 1, 0.15, 0);
         BELOW(fabs(splitting[0]), 0.1 * fabs(error[0]));
         BELOW(fabs(splitting[1]), 0.4 * fabs(splitting[0]));

@@ -126,9 +126,6 @@ static void check_bound(const char *text) {
         double largest = 0;
         velocity_at(&setup, f, after);
         for (int k = 0; k < VELOCITIES; k++) largest = fmax(largest, fabs(after[k] - before[f][k]));
-        print_message("%s wake.merge %g, fish %d: %d merged, the velocity changes by %.2e\n",
-                      setup.state->wake[0].has_markers ? "sheet:     " : "continuous:", setup.school->wake_merge, f,
-                      n_merged, largest);
         AT_MOST(largest, setup.school->wake_merge * n_merged / N);
         ABOVE(largest, 0);
     }

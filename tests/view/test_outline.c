@@ -69,7 +69,6 @@ TEST(an_egg_stays_one) {
         const double angle = acos(1 - 2 * polygon[2 * i]);
         worst = fmax(worst, fabs(polygon[2 * i + 1] - 0.1 * sin(angle) * (1 + 0.4 * cos(angle))));
     }
-    print_message("egg: error %.1e\n", worst);
     BELOW(worst, 5e-4);
 }
 
@@ -96,7 +95,6 @@ TEST(a_ratio_that_is_a_parabola_stays_one) {
         NEAR(polygon[2 * i + 1], 0.1 * sin(angle) * (1 + 0.3 * angle - 0.2 * angle * angle), 1e-12, 0);
         n++;
     }
-    print_message("%d of %d points\n", n, OUTLINE_POINTS);
     AT_LEAST(n, 8);
 }
 
