@@ -136,8 +136,8 @@ static void axis_read_keys(struct axis *axis) {
         // the keys of a fish replace those of defaults
         if (strncmp(node->text, "defaults.", 9) == 0) {
             yaml_errors_add(errors, node->mark,
-                            "%s.key: '%.60s' cannot be swept: a fish may have the key; write fish[*].%.60s", axis->name,
-                            node->text, path.pattern + 5);
+                            "%s.key: '%.60s' cannot be swept, as a fish may set the key itself: write fish[*].%.60s",
+                            axis->name, node->text, path.pattern + 5);
             continue;
         }
 
