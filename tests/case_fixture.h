@@ -46,7 +46,13 @@ static const char stated[] =
     "  - {fails: 'is: unstable', where: [solver.rtol=1e-3, 'fish[1].start.position=[0, 2]', solver.method=rk4,\n"
     "      solver.method=ida]}\n";
 
-/* Parse a case that must be good, with up to three assignments (NULL: none). */
+/* The values until the end of the test. */
+static inline struct case_values kept(struct case_values values) {
+    arena_move(values.arena, test_arena());
+    return values;
+}
+
+/* Parse a case that must be good, with up to three assignments (NULL: none). Released at the end of the test. */
 static inline struct case_values parse_with(const char *text, const char *first, const char *second,
                                             const char *third) {
     const char *const assignments[] = {first, second, third};
@@ -55,11 +61,24 @@ static inline struct case_values parse_with(const char *text, const char *first,
     struct case_values values;
     const enum status status = case_parse(&values, text, strlen(text), "cases/x.yaml", NULL, n, assignments);
     if (status != STATUS_OK) fail_msg("%s", status_message());
-    return values;
+    return kept(values);
 }
 
 static inline struct case_values parse(const char *text) {
     return parse_with(text, NULL, NULL, NULL);
+}
+
+/* The same for a file, and for a member of a study. */
+static inline struct case_values read_file(const char *path) {
+    struct case_values values;
+    if (case_read(&values, path, 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
+    return kept(values);
+}
+
+static inline struct case_values member_of(const struct case_values *study, int member) {
+    struct case_values values;
+    if (case_member(&values, study, member) != STATUS_OK) fail_msg("%s", status_message());
+    return kept(values);
 }
 
 /* The fields of two axes are the same. */

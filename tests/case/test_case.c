@@ -97,7 +97,6 @@ TEST(the_defaults_are_those_of_the_reference) {
     assert_int_equal(fish->control.law, CONTROL_NONE);
     assert_int_equal(fish->control.waypoints.n, 0);
     NEAR(fish->control.gain, 2, 0, 0);
-    case_free(&s);
 }
 
 // of the fish that beats most slowly; of a prescribed one the beat is that of its motion
@@ -121,7 +120,6 @@ TEST(lifetime_and_fade_may_be_in_beats) {
         struct case_values s = parse(text);
         NEAR(s.school.wake.lifetime.seconds, cases[i].lifetime, 0, 1e-15);
         NEAR(s.school.wake.decay.seconds, cases[i].decay, 0, 1e-15);
-        case_free(&s);
     }
 }
 
@@ -146,7 +144,6 @@ TEST(derived_defaults_follow_what_they_derive_from) {
     assert_int_equal(s.school.fish[0].control.desired_heading.n, 1);
     NEAR(s.school.fish[0].control.desired_heading.value[0], 0, 0, 0);
     NEAR(s.school.fish[0].control.desired_heading.value[1], 30, 0, 0);
-    case_free(&s);
 }
 
 // 170 events a second: other intervals are rounded to the nearest multiple, that of the wake to ten of them
@@ -156,13 +153,11 @@ TEST(intervals_are_rounded_to_events) {
         "fish: [{wave: {frequency: 1.7}}]\n");
     NEAR(s.time.checkpoint_interval, 17 / 170.0, 0, 1e-14);
     NEAR(s.output.wake_interval, 30 / 170.0, 0, 1e-14);
-    case_free(&s);
 }
 
 TEST(every_default_of_the_table_is_a_value_of_its_key) {
-    struct case_values s = parse(minimal), published = parse_with(minimal, "preset=published", NULL, NULL);
-    case_free(&s);
-    case_free(&published);
+    parse(minimal);
+    parse_with(minimal, "preset=published", NULL, NULL);
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
         BELOW(strlen(key->path), 60);  // the buffers for paths hold more
@@ -182,7 +177,6 @@ TEST(defaults_reach_every_fish_below_its_own_keys) {
     NEAR(s.school.fish[0].body.modulus, 1e5, 0, 0);
     NEAR(s.school.fish[1].body.modulus, 1e4, 0, 0);
     NEAR(s.school.fish[0].body.density, 900, 0, 0);
-    case_free(&s);
 }
 
 TEST(a_wrong_default_is_reported_once_even_if_unused) {
@@ -211,7 +205,6 @@ TEST(preset_published_sets_the_options_of_the_article) {
     assert_int_equal(s.school.wake.removed_circulation, REMOVED_DROPPED);
     assert_int_equal(s.school.fish->drag.law, DRAG_QUADRATIC);
     assert_int_equal(s.school.fish->added_mass.extent, EXTENT_THICKNESS);
-    case_free(&s);
 }
 
 TEST(keys_in_the_case_override_the_preset) {
@@ -222,7 +215,6 @@ TEST(keys_in_the_case_override_the_preset) {
     assert_int_equal(s.school.sheet.collocation, COLLOCATION_MIDPOINT);
     NEAR(s.school.fish->wave.ramp, 2, 0, 0);
     assert_int_equal(s.school.fish->body.second_moment, SECOND_MOMENT_ELLIPSE);
-    case_free(&s);
 }
 
 // ---- values
@@ -248,7 +240,6 @@ TEST(every_type_of_value_is_read) {
     NEAR_ARRAY(6, s.school.fish[2].control.waypoints.value, ((const double[]){1, 2, 3, 4, 5, 6}), 0, 0);
     assert_string_equal(s.school.fish[1].name, "a: b");
     NEAR(s.school.fish[1].control.desired_heading.value[1], -90, 0, 0);
-    case_free(&s);
 }
 
 TEST(multiples_are_recognised_despite_rounding) {
@@ -258,8 +249,7 @@ TEST(multiples_are_recognised_despite_rounding) {
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
         char text[200];
         snprintf(text, sizeof text, "format: 1\ntime: %s\nfish: [{}]\n", times[i]);
-        struct case_values s = parse(text);
-        case_free(&s);
+        parse(text);
     }
 }
 
@@ -280,9 +270,7 @@ TEST(turns_of_a_fine_body_are_those_of_its_reference) {
     snprintf(text, sizeof text, format, 1.01 * folds);
     is_refused(text, "fish[0].wave.amplitude: the wave turns a joint by up to 3.17 rad");
     snprintf(text, sizeof text, format, 0.99 * folds);
-    struct case_values values;
-    assert_int_equal(case_parse(&values, text, strlen(text), "x.yaml", NULL, 0, NULL), STATUS_OK);
-    case_free(&values);
+    parse(text);
 }
 
 TEST(a_suggestion_differs_by_a_third_of_the_word_at_most) {
@@ -316,8 +304,7 @@ TEST_WITH(an_include_is_weaker_than_the_file_that_includes_it, make_folder, remo
     write_file("water.yaml", "fluid: {density: 1025, velocity: [1, 2]}\nwake: {lifetime: 4}\nfish: [{nodes: 9}, {}]\n");
     write_file("case.yaml",
                "include: [water.yaml]\nformat: 1\ntime: {end: 1}\nfluid: {velocity: [3, 4]}\nfish: [{}]\n");
-    struct case_values s;
-    if (case_read(&s, "case.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
+    struct case_values s = read_file("case.yaml");
     NEAR(s.school.fluid.density, 1025, 0, 0);
     NEAR(s.school.fluid.velocity[0], 3, 0, 0);
     NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
@@ -325,7 +312,6 @@ TEST_WITH(an_include_is_weaker_than_the_file_that_includes_it, make_folder, remo
     assert_int_equal(s.school.fish->nodes, 25);
     assert_string_equal(s.name, "case");
     assert_non_null(strstr(s.text, "include: [water.yaml]"));
-    case_free(&s);
 }
 
 TEST_WITH(includes_are_relative_to_their_file_and_the_last_is_strongest, make_folder, remove_folder) {
@@ -333,28 +319,24 @@ TEST_WITH(includes_are_relative_to_their_file_and_the_last_is_strongest, make_fo
     write_file("below/more.yaml", "include: ../water.yaml\nname: more\nwake: {lifetime: 3}\n");
     write_file("water.yaml", "name: water\nwake: {lifetime: 4, smoothing: 0.4}\n");
     write_file("case.yaml", "include: [below/more.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n");
-    struct case_values s;
-    if (case_read(&s, "case.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
+    struct case_values s = read_file("case.yaml");
     NEAR(s.school.wake.lifetime.seconds, 3, 0, 0);
     NEAR(s.school.wake.smoothing, 0.4, 0, 0);
     assert_string_equal(s.name, "case");  // of no include, however deep and at any place of the list
-    case_free(&s);
     // an absolute path is relative to nothing
     char absolute[PATH_MAX + 100], folder[PATH_MAX];
     assert_non_null(getcwd(folder, sizeof folder));
     snprintf(absolute, sizeof absolute, "include: [%s/water.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n", folder);
     write_file("below/.yaml", absolute);
-    if (case_read(&s, "below/.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
+    s = read_file("below/.yaml");
     NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
     assert_string_equal(s.name, ".yaml");  // a hidden file has a name and no ending
-    case_free(&s);
     assert_int_equal(unlink("below/.yaml"), 0);
     static const char text[] = "include: [below/more.yaml, water.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n";
     write_file("case.yaml", text);
-    if (case_read(&s, "case.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
+    s = read_file("case.yaml");
     assert_string_equal(s.name, "case");
-    case_free(&s);
-    if (case_parse(&s, text, strlen(text), "memory", *state, 0, NULL)) fail_msg("%s", status_message());
+    assert_int_equal(case_parse(&s, text, strlen(text), "memory", *state, 0, NULL), STATUS_OK);
     NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
     case_free(&s);
 }
@@ -382,7 +364,6 @@ TEST(assignments_are_strongest_and_the_last_counts) {
     struct case_values s = parse_with(minimal, "time.end=5", "fish[0].start.position=[1, 2]", "time.end=6");
     NEAR(s.time.end, 6, 0, 0);
     NEAR_ARRAY(2, s.school.fish->start_position, ((const double[]){1, 2}), 0, 0);
-    case_free(&s);
 }
 
 TEST(a_star_assigns_to_every_fish) {
@@ -396,7 +377,6 @@ TEST(a_star_assigns_to_every_fish) {
     }
     NEAR(s.school.fish[2].wave.phase, 3, 0, 0);  // a map is merged
     NEAR(s.school.fish[2].wave.frequency, 2, 0, 0);
-    case_free(&s);
 }
 
 TEST(assignments_reach_defaults_preset_and_sections) {
@@ -404,13 +384,11 @@ TEST(assignments_reach_defaults_preset_and_sections) {
     assert_int_equal(s.school.fish->nodes, 9);
     assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
     assert_int_equal(s.school.sheet.kutta, KUTTA_EDGE);
-    case_free(&s);
     s = parse_with(minimal, "fish=[{name: a}, {name: 'b = c'}]", "fish[1].length=2", "name=x=y");
     assert_int_equal(s.school.n_fish, 2);
     assert_string_equal(s.school.fish[1].name, "b = c");
     NEAR(s.school.fish[1].length, 2, 0, 0);
     assert_string_equal(s.name, "x=y");
-    case_free(&s);
 }
 
 // ---- showing
@@ -443,8 +421,6 @@ TEST(a_case_shown_reads_back_bit_for_bit) {
         struct case_values second = parse(shown);
         are_equal(&first, &second);
         assert_string_equal(shown, case_show(second.arena, &second));
-        case_free(&first);
-        case_free(&second);
     }
 }
 
@@ -455,24 +431,21 @@ TEST(a_shown_case_has_neither_preset_nor_defaults) {
     assert_null(strstr(shown, "defaults"));
     assert_non_null(strstr(shown, "    nodes: 9\n"));
     assert_non_null(strstr(shown, "  end: 3                                # s\n"));
-    case_free(&s);
 }
 
 TEST(the_table_of_keys_is_valid_text_and_json) {
     static char text[100000];
-    struct arena *const arena = arena_create(NULL, "a test");
     for (int as_json = 0; as_json <= 1; as_json++) {
         memset(text, 0, sizeof text);
         FILE *const stream = fmemopen(text, sizeof text - 1, "w");
         assert_non_null(stream);
-        assert_int_equal(case_keys(arena, stream, as_json, NULL), case_table_n);
+        assert_int_equal(case_keys(test_arena(), stream, as_json, NULL), case_table_n);
         assert_int_equal(fclose(stream), 0);
         int n = 0;
         const char *const mark = as_json ? "{\"path\": \"" : "default: ";
         for (const char *c = text; (c = strstr(c, mark)); c++) n++;
         assert_int_equal(n, case_table_n);
     }
-    arena_free(arena);
     assert_int_equal(text[0], '[');
     assert_string_equal(text + strlen(text) - 3, "}]\n");
 }

@@ -12,7 +12,6 @@ static void notes_are(const char *assignment, const char *want) {
     struct case_values values = parse_with(minimal, assignment, NULL, NULL);
     const bool is_right = *want ? strstr(values.notes, want) != NULL : *values.notes == '\0';
     if (!is_right) fail_msg("the notes on %s are\n%s\nwithout %s", assignment, values.notes, want);
-    case_free(&values);
 }
 
 TEST(a_usual_case_has_no_notes) {
@@ -63,7 +62,6 @@ TEST(a_key_that_fish_share_is_noted_once_with_the_defaults_that_follow) {
     assert_non_null(first);
     assert_non_null(strstr(first, "fish.drag.skin quadratic\n"));
     assert_null(strstr(first, "fish[2]"));
-    case_free(&values);
 }
 
 /* The rows of the table decide: a default with a condition on another key is in the note, whatever the key. */
@@ -83,7 +81,6 @@ TEST(the_derived_filter_of_a_period_is_no_given_key) {
     struct case_values values = parse_with(minimal, "fish[0].wave.frequency=1.0001", NULL, NULL);
     NEAR(values.school.fish[0].control.filter, 1 / 1.0001, 0, 1e-14);
     NEAR(values.school.fish[0].control.course_filter, 0.25 / 1.0001, 0, 1e-14);
-    case_free(&values);
 }
 
 TEST(an_angle_in_radians_is_noted) {
@@ -132,7 +129,6 @@ TEST(a_value_that_fish_share_is_noted_once) {
     assert_non_null(first);
     assert_null(strstr(first, "fish[1]"));
     assert_non_null(strstr(first, ":3:47: note: fish[0].body.modulus"));
-    case_free(&values);
 }
 
 // ---- the default shedding interval
@@ -143,13 +139,12 @@ static struct case_values read_case(const char *text) {
     const int length = snprintf(whole, sizeof whole, "format: 1\n%s", text);
     struct case_values values;
     if (case_parse(&values, whole, (size_t)length, "test", ".", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
-    return values;
+    return kept(values);
 }
 
 static void interval_is(const char *text, double interval) {
     struct case_values values = read_case(text);
     NEAR(values.school.shedding_interval, interval, 0, 1e-15);
-    case_free(&values);
 }
 
 TEST(the_fastest_beat_has_a_hundred_events) {
@@ -181,7 +176,6 @@ TEST(times_that_do_not_fit_the_default_are_rounded_and_noted) {
     assert_non_null(strstr(values.notes, "rounded to 0.098 s"));
     assert_non_null(
         strstr(values.notes, "output.wake_interval: 0.5 s is not an integer multiple of time.output_interval"));
-    case_free(&values);
 }
 
 TEST(times_that_fit_stay_to_the_bit) {
@@ -191,13 +185,11 @@ TEST(times_that_fit_stay_to_the_bit) {
     NEAR(values.time.end, 2, 0, 0);
     NEAR(values.time.output_interval, 0.1, 0, 0);
     assert_string_equal(values.notes, "");
-    case_free(&values);
     // nothing is less than one interval
     values = read_case("time: {end: 0.001, output_interval: 1e-5}\nfish: [{}]\n");
     NEAR(values.time.end, 0.01, 0, 0);
     NEAR(values.time.output_interval, 0.01, 0, 0);
     NEAR(values.output.wake_interval, 0.01, 0, 0);
-    case_free(&values);
 }
 
 static void is_refused(const char *text, const char *message) {
@@ -236,7 +228,6 @@ TEST(every_bound_of_every_key_is_kept_and_shown) {
                 if (status == STATUS_OK) {
                     struct case_values again = parse(case_show(test_arena(), &values));
                     are_equal(&values, &again);
-                    case_free(&again);
                     case_free(&values);
                 }
                 const bool is_refused = status != STATUS_OK && strstr(status_message(), message);

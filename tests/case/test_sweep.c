@@ -17,10 +17,8 @@ TEST(a_sweep_keeps_its_values_as_assignments_take_them) {
     assert_string_equal(s.sweep[1].value[1], "[0, 2]");
     char assignment[100];
     snprintf(assignment, sizeof assignment, "%s=%s", s.sweep[1].key[0].path, s.sweep[1].value[1]);
-    case_free(&s);
     s = parse_with(swept, assignment, NULL, NULL);
     NEAR(s.school.fish[1].start_position[1], 2, 0, 0);
-    case_free(&s);
 }
 
 TEST(values_in_beats_are_no_numbers) {
@@ -29,7 +27,6 @@ TEST(values_in_beats_are_no_numbers) {
         "sweep: [{key: wake.lifetime, values: [3, 4]}, {key: wake.decay, values: [1 beat, 1]}]\n");
     assert_true(s.sweep[0].key[0].is_number);
     assert_false(s.sweep[1].key[0].is_number);
-    case_free(&s);
 }
 
 TEST(members_are_numbered_with_the_last_axis_fastest) {
@@ -37,8 +34,7 @@ TEST(members_are_numbered_with_the_last_axis_fastest) {
     assert_int_equal(sweep_n_members(&study), 6);
     assert_null(strstr(study.common, "sweep"));  // the work for a member does not grow with the number of members
     for (int m = 0; m < 6; m++) {
-        struct case_values s;
-        assert_int_equal(case_member(&s, &study, m), STATUS_OK);
+        const struct case_values s = member_of(&study, m);
         NEAR(s.school.shedding_interval, 0.1 / (1 << m / 2), 0, 1e-15);
         // derived values follow swept ones
         NEAR(s.time.output_interval, 1.0 / (1 << m / 2), 0, 1e-15);
@@ -48,31 +44,23 @@ TEST(members_are_numbered_with_the_last_axis_fastest) {
         assert_int_equal(s.member, m);
         assert_string_equal(s.study, study.merged);
         assert_string_equal(s.text, study.text);
-        case_free(&s);
     }
     assert_string_equal(sweep_member_text(study.arena, &study, 3),
                         "time.shedding_interval=0.05, fish[*].nodes=9, fish[1].name=\"a: b\"");
-    case_free(&study);
 }
 
 TEST(the_merged_text_is_the_complete_study) {
     struct case_values study = parse_with(zipped, "fish[0].length=2", "wake.decay=0.1", NULL);
-    struct case_values again;
-    assert_int_equal(case_parse(&again, study.merged, strlen(study.merged), "other.yaml", NULL, 0, NULL), STATUS_OK);
+    struct case_values again = parse(study.merged);
     are_equal(&study, &again);
     assert_string_equal(again.merged, study.merged);
-    case_free(&study);
-    case_free(&again);
 }
 
 TEST(a_sweep_is_shown_as_it_is_written) {
     struct case_values study = parse(refined);
-    struct arena *const arena = arena_create(NULL, "a test");
-    const char *const text = case_show(arena, &study);
+    const char *const text = case_show(test_arena(), &study);
     assert_non_null(strstr(text, "    expect: {order: 0.8, within: 0.2, of: [com, speed]}\n"));
     assert_non_null(strstr(text, "    values: [1e-3, 1e-4, 1e-5]\n"));
-    arena_free(arena);
-    case_free(&study);
 }
 
 TEST(a_reference_is_given_for_all_fish_or_for_each) {
@@ -88,11 +76,9 @@ TEST(a_reference_is_given_for_all_fish_or_for_each) {
         NEAR(sweep_reference(&s, 0, 4, f, 0), 7 + f, 0, 0);
     }
     assert_int_equal(s.sweep[0].order_of, 1 << 3 | 1 << 2);
-    case_free(&s);
     s = parse(zipped);
     assert_true(isnan(sweep_reference(&s, 0, 0, 0, 0)));
     assert_int_equal(s.sweep[0].order_of, 1 << SWEEP_NOSE | 1 << SWEEP_TAIL);
-    case_free(&s);
 }
 
 TEST(an_expectation_is_about_the_members_with_its_values) {
@@ -111,11 +97,7 @@ TEST(an_expectation_is_about_the_members_with_its_values) {
     for (int i = 0; i < 4; i++) {
         for (int m = 0; m < 6; m++) assert_int_equal(sweep_expects_of(&s, &s.expect[i], m), are_meant[i][m]);
     }
-    struct case_values member;
-    assert_int_equal(case_member(&member, &s, 2), STATUS_OK);
-    assert_int_equal(member.n_expectations, 0);
-    case_free(&member);
-    case_free(&s);
+    assert_int_equal(member_of(&s, 2).n_expectations, 0);
     // an expectation may be about the first member only
     s = parse(
         "time: {end: 1, shedding_interval: 0.1}\nformat: 1\nfish: [{}]\n"
@@ -123,29 +105,23 @@ TEST(an_expectation_is_about_the_members_with_its_values) {
         "expect: [{of: speed, least: 1, where: [solver.rtol=1e-3]}]\n");
     assert_int_equal(sweep_expects_of(&s, s.expect, 0), 1);
     assert_int_equal(sweep_expects_of(&s, s.expect, 1), 0);
-    case_free(&s);
 }
 
 TEST(a_wrong_member_is_named) {
     struct case_values study =
         parse("format: 1\ntime: {end: 1}\nfish: [{}]\nsweep: [{key: wake.lifetime, values: [1, 0.003]}]\n");
-    struct case_values s;
-    assert_int_equal(case_member(&s, &study, 0), STATUS_OK);
-    case_free(&s);
+    struct case_values s = member_of(&study, 0);
     assert_int_equal(case_member(&s, &study, 1), STATUS_CASE);
     assert_non_null(strstr(status_message(), "member 1 (wake.lifetime=0.003):\n"));
     assert_non_null(strstr(status_message(), "wake.lifetime: 0.003 s is less than time.shedding_interval, 0.01 s"));
-    case_free(&study);
 }
 
 TEST(a_sweep_is_refused_as_one_run_with_a_remedy) {
     struct case_values s = parse(minimal);
     assert_int_equal(sweep_refuse(&s), STATUS_OK);
-    case_free(&s);
     s = parse(swept);
     assert_int_equal(sweep_refuse(&s), STATUS_CASE);
     assert_non_null(strstr(status_message(), "error: sweep: this case has a sweep of 3 axes: use `shoal study`"));
-    case_free(&s);
 }
 
 TEST(a_key_of_an_error_has_at_most_nine_levels) {
@@ -154,7 +130,6 @@ TEST(a_key_of_an_error_has_at_most_nine_levels) {
                                   "error={of: speed, keys: {nodes: [9, 10, 11, 12, 13, 14, 15, 16, 17, 18]}}"};
     struct case_values s = parse_with(text, levels[0], NULL, NULL);
     assert_int_equal(s.error->levels[0].n, 9);
-    case_free(&s);
     assert_int_equal(case_parse(&s, text, strlen(text), "x.yaml", NULL, 1, &levels[1]), STATUS_CASE);
     assert_non_null(strstr(status_message(), "more than 9 levels of 'fish.nodes'"));
 }
