@@ -42,11 +42,32 @@ static int remove_case(void **state) {
 
 TEST_GROUP(write_case, remove_case)
 
-static struct shoal *opened(const char *path, int n_assignments, const char *const *assignments) {
+// a run that the test closes
+static struct shoal *open_run(const char *path, int n_assignments, const char *const *assignments) {
     struct shoal *run;
-    if (shoal_open(&run, path, n_assignments, assignments) != 0) fail_msg("%s", shoal_message());
+    assert_int_equal(shoal_open(&run, path, n_assignments, assignments), SHOAL_OK);
     assert_non_null(run);
     return run;
+}
+
+static void close_run(void *run) {
+    shoal_close(run);
+}
+
+// a run until the end of the test
+static struct shoal *kept(struct shoal *run) {
+    arena_defer(test_arena(), close_run, run);
+    return run;
+}
+
+static struct shoal *opened(const char *path, int n_assignments, const char *const *assignments) {
+    return kept(open_run(path, n_assignments, assignments));
+}
+
+static struct shoal *copy_of(struct shoal *run) {
+    struct shoal *copy;
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    return kept(copy);
 }
 
 TEST(a_run_begins_with_the_start_of_its_case) {
@@ -64,7 +85,6 @@ TEST(a_run_begins_with_the_start_of_its_case) {
         NEAR(x[k], 0.2 + k / 6.0, 1e-15, 0);
         NEAR(y[k], 0.7, 1e-15, 0);
     }
-    shoal_close(run);
 }
 
 TEST(assignments_change_the_case) {
@@ -72,11 +92,9 @@ TEST(assignments_change_the_case) {
     struct shoal *run = opened(*state, 1, assignments);
     NEAR(shoal_end(run), 0.06, 0, 0);
     assert_int_equal(shoal_n_nodes(run, 0), 5);
-    shoal_close(run);
     run = opened(*state, 2, assignments);
     assert_int_equal(shoal_n_nodes(run, 0), 9);
     assert_int_equal(shoal_n_nodes(run, 1), 7);
-    shoal_close(run);
 }
 
 TEST(a_step_goes_to_the_next_event_and_releases_a_vortex_of_each_fish) {
@@ -90,14 +108,13 @@ TEST(a_step_goes_to_the_next_event_and_releases_a_vortex_of_each_fish) {
         assert_int_equal(shoal_n_vortices(run, 1), n_steps);
     }
     assert_int_equal(n_steps, 5);
-    shoal_close(run);
 }
 
 TEST(bodies_and_wakes_are_those_of_the_simulation) {
     struct case_values values;
     struct simulation *simulation;
     school_ok(case_read(&values, *state, 0, NULL));
-    school_ok(simulate_start(NULL, &simulation, &values, NULL));
+    school_ok(simulate_start(test_arena(), &simulation, &values, NULL));
     struct shoal *const run = opened(*state, 0, NULL);
     for (int i = 0; i < 5; i++) {
         school_ok(simulate_step(simulation));
@@ -121,13 +138,11 @@ TEST(bodies_and_wakes_are_those_of_the_simulation) {
             ABOVE(fabs(circulation[i]), 0);
         }
     }
-    shoal_close(run);
-    simulate_free(simulation);
     case_free(&values);
 }
 
 TEST(two_runs_do_not_know_each_other) {
-    struct shoal *const one = opened(*state, 0, NULL), *const other = opened(*state, 0, NULL);
+    struct shoal *const one = open_run(*state, 0, NULL), *const other = opened(*state, 0, NULL);
     assert_int_equal(shoal_step(one), 0);
     assert_int_equal(shoal_step(one), 0);
     assert_int_equal(shoal_step(other), 0);
@@ -136,7 +151,6 @@ TEST(two_runs_do_not_know_each_other) {
     shoal_close(one);
     assert_int_equal(shoal_step(other), 0);
     assert_int_equal(shoal_n_vortices(other, 1), 2);
-    shoal_close(other);
 }
 
 // the message of a case that cannot be opened
@@ -165,7 +179,6 @@ TEST(a_run_that_fails_can_be_read_and_closed) {
     shoal_nodes(run, 1, x, y);
     assert_true(isfinite(x[6]) && isfinite(y[6]));
     BELOW(shoal_time(run), shoal_end(run));
-    shoal_close(run);
 }
 
 static void *fail_in_a_thread(void *message) {
@@ -251,11 +264,9 @@ TEST(runs_in_many_threads_are_those_alone) {
         assert_int_equal(worker[i].failed, 0);
         NEAR(worker[i].nose, alone.nose, 0, 0);
     }
-    shoal_close(origin);
 }
 
 TEST(closing_nothing_is_allowed) {
-    shoal_close(NULL);
 }
 
 // ---- checked arguments
@@ -296,7 +307,6 @@ TEST(a_fish_that_is_not_there_is_refused) {
         refuses(shoal_nodes(run, wrong[i], x, y), "there is no fish");
         refuses(shoal_vortices(run, wrong[i], x, y, x), "there is no fish");
     }
-    shoal_close(run);
 }
 
 TEST(arrays_that_are_not_there_are_refused) {
@@ -314,7 +324,6 @@ TEST(arrays_that_are_not_there_are_refused) {
     refuses(shoal_flow(run, -1, x, x, x), "-1 points");
     refuses(shoal_flow(run, 1, (double[]){0, NAN}, x, x), "not finite");
     refuses(shoal_write(run, NULL, 0), "path is NULL");
-    shoal_close(run);
 }
 
 TEST(what_a_fish_is_set_to_is_checked) {
@@ -327,7 +336,6 @@ TEST(what_a_fish_is_set_to_is_checked) {
     refuses(shoal_set(run, 0, "wave.amplitud", 1, &value), "'wave.amplitud' cannot be set");
     assert_int_equal(shoal_set(run, 1, "wave.amplitude", 1, &value), SHOAL_OK);
     assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
-    shoal_close(run);
 }
 
 static double of_fish(struct shoal *run, const char *name, int fish) {
@@ -357,7 +365,6 @@ TEST(the_gait_in_force_can_be_read) {
     NEAR(of_fish(run, "wave_frequency", 0), 1.4, 1e-12, 0);
     NEAR(of_fish(run, "wave_frequency", 1), 1, 0, 0);
     NEAR(of_fish(run, "frequency", 0), 1, 0, 0);  // frequency of the case, for means over a period
-    shoal_close(run);
 }
 
 TEST(assignments_are_checked) {
@@ -377,7 +384,6 @@ TEST(a_step_past_the_end_is_refused) {
     NEAR(shoal_time(run), 0.1, 1e-15, 0);
     refuses(shoal_step(run), "the run is at its end, t = 0.1 s");
     NEAR(shoal_time(run), 0.1, 1e-15, 0);
-    shoal_close(run);
 }
 
 TEST(a_run_advances_to_the_event_at_or_after_a_time) {
@@ -394,7 +400,6 @@ TEST(a_run_advances_to_the_event_at_or_after_a_time) {
     refuses(shoal_advance(run, 0.11), "after the end of the case");
     refuses(shoal_advance(run, NAN), "not finite");
     NEAR(shoal_time(run), 0.06, 0, 0);
-    shoal_close(run);
 }
 
 TEST(a_failed_run_makes_no_step_and_says_why) {
@@ -407,7 +412,6 @@ TEST(a_failed_run_makes_no_step_and_says_why) {
     assert_int_equal(shoal_advance(run, 0.1), SHOAL_SOLVER);
     assert_int_equal(shoal_flow(run, 1, two, two, two), SHOAL_SOLVER);
     assert_int_equal(shoal_write(run, "/tmp/never.nc", 0), SHOAL_SOLVER);
-    shoal_close(run);
 }
 
 TEST(a_run_that_ends_in_contact_has_failed) {
@@ -419,7 +423,6 @@ TEST(a_run_that_ends_in_contact_has_failed) {
     if (!strstr(message, "come within") && !strstr(message, "contact")) fail_msg("%s", message);
     assert_int_equal(shoal_step(run), SHOAL_SOLVER);
     assert_non_null(strstr(shoal_message(), "the run has failed before: "));
-    shoal_close(run);
 }
 
 // ---- a case from text
@@ -427,6 +430,7 @@ TEST(a_run_that_ends_in_contact_has_failed) {
 TEST(the_text_of_a_case_is_a_case) {
     struct shoal *const by_path = opened(*state, 0, NULL), *by_text;
     assert_int_equal(shoal_open_text(&by_text, case_text, NULL, 0, NULL), SHOAL_OK);
+    kept(by_text);
     double x[2][7], y[2][7];
     assert_int_equal(shoal_advance(by_path, 0.04), SHOAL_OK);
     assert_int_equal(shoal_advance(by_text, 0.04), SHOAL_OK);
@@ -434,8 +438,6 @@ TEST(the_text_of_a_case_is_a_case) {
     assert_int_equal(shoal_nodes(by_text, 1, x[1], y[1]), SHOAL_OK);
     NEAR_ARRAY(7, x[0], x[1], 0, 0);
     NEAR_ARRAY(7, y[0], y[1], 0, 0);
-    shoal_close(by_path);
-    shoal_close(by_text);
 }
 
 TEST(an_error_in_a_text_has_its_line) {
@@ -482,7 +484,6 @@ TEST(a_variable_is_read_with_its_shape) {
     }
     NEAR(*read_doubles(run, "time", &array), 0.04, 0, 0);
     assert_int_equal(array.n_dimensions, 0);
-    shoal_close(run);
 }
 
 TEST(a_wake_is_read_without_empty_slots) {
@@ -500,7 +501,6 @@ TEST(a_wake_is_read_without_empty_slots) {
             for (int i = 0; i < n; i++) NEAR(wake[2 * (f * n + i)], x[i], 0, 0);
         }
     }
-    shoal_close(run);
 }
 
 TEST(names_and_counts_are_read_too) {
@@ -516,7 +516,6 @@ TEST(names_and_counts_are_read_too) {
     assert_int_equal(shoal_read(run, "steps", &array), SHOAL_OK);
     assert_int_equal(array.type, SHOAL_LONG);
     ABOVE(*(const long *)array.values, 0);
-    shoal_close(run);
 }
 
 TEST(every_variable_of_the_table_can_be_read) {
@@ -533,7 +532,6 @@ TEST(every_variable_of_the_table_can_be_read) {
     struct shoal_array array;
     refuses(shoal_read(run, "spede", &array), "there is no variable 'spede'");
     assert_null(array.values);
-    shoal_close(run);
 }
 
 // the factor on a number with this unit in a system of units with other lengths and times, and the same density
@@ -583,7 +581,7 @@ static struct shoal *run_in_units(int i, double length, double time) {
     struct shoal *run;
     if (shoal_open_text(&run, text, NULL, 0, NULL) != SHOAL_OK) fail_msg("%s", shoal_message());
     if (shoal_advance(run, 0.5 * t) != SHOAL_OK) fail_msg("%s", shoal_message());
-    return run;
+    return kept(run);
 }
 
 // a case in other units is the same case, and every variable has the dimension of its unit; powers of two hardly round
@@ -606,8 +604,6 @@ TEST(every_variable_has_the_dimension_of_its_unit) {
                 fail_msg("%s[%zu]: %g %s in other units, %g", of->name, k, b[k] / factor, of->unit, a[k]);
             }
         }
-        shoal_close(one);
-        shoal_close(other);
     }
 }
 
@@ -621,7 +617,6 @@ TEST(what_has_been_read_holds_until_the_next_step) {
     assert_ptr_equal(read_doubles(run, "x", &array), x);
     assert_ptr_equal(read_doubles(run, "v", &array), v);
     ABOVE(fabs(x[0] - before), 0);
-    shoal_close(run);
 }
 
 // ---- the flow
@@ -644,7 +639,6 @@ TEST(far_from_everything_the_flow_is_the_external_one) {
     const double want[] = {0.3 + 0.5 * 2, -0.1, 0.3 - 0.5 * 4, -0.1};
     NEAR_ARRAY(4, velocity, want, 1e-6, 0);
     NEAR(vorticity[0], -0.5, 1e-9, 0);
-    shoal_close(run);
 }
 
 TEST(the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own) {
@@ -666,7 +660,6 @@ TEST(the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own) {
     // all circulation is bound, free or nascent: together none; the smoothing leaves (delta/radius)^2 of each
     ABOVE(size, 1e-4);
     NEAR(circulation, 0, 3e-3 * size, 0);
-    shoal_close(run);
 }
 
 TEST(vorticity_is_the_curl_of_the_velocity) {
@@ -678,7 +671,6 @@ TEST(vorticity_is_the_curl_of_the_velocity) {
     const double curl = (velocity[3] - velocity[5]) / (2 * h) - (velocity[6] - velocity[8]) / (2 * h);
     ABOVE(fabs(vorticity[0]), 1e-3);
     NEAR(vorticity[0], curl, 0, 1e-4);
-    shoal_close(run);
 }
 
 TEST(looking_does_not_change_a_run) {
@@ -701,16 +693,23 @@ TEST(looking_does_not_change_a_run) {
         for (int d = 0; d < array[0].n_dimensions; d++) n *= array[0].shape[d];
         assert_memory_equal(one, other, n * sizeof *one);
     }
-    shoal_close(seen);
-    shoal_close(alone);
 }
 
 // ---- result files
 
+static size_t n_rows_of(const char *path) {
+    struct netcdf_reader reader;
+    size_t n_rows;
+    struct arena *const arena = arena_create(NULL, "a test");
+    school_ok(netcdf_open(arena, &reader, path));
+    school_ok(netcdf_read_length(&reader, "time", 0, 100, &n_rows));
+    arena_free(arena);
+    return n_rows;
+}
+
 TEST(a_result_file_has_the_rows_that_are_due) {
     const char *const assignments[] = {"time.output_interval=0.04"};
-    struct shoal *const run = opened(*state, 1, assignments), *copy;
-    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    struct shoal *const run = opened(*state, 1, assignments), *const copy = copy_of(run);
     char path[] = "/tmp/test_shoal_result_XXXXXX";
     const int descriptor = mkstemp(path);
     AT_LEAST(descriptor, 0);
@@ -723,20 +722,12 @@ TEST(a_result_file_has_the_rows_that_are_due) {
     refuses(shoal_restore(run, copy), "call shoal_write_end first");
     assert_int_equal(shoal_write_end(run), SHOAL_OK);
     assert_int_equal(shoal_restore(run, copy), SHOAL_OK);
-    shoal_close(copy);
-    shoal_close(run);
-    struct netcdf_reader reader;
-    struct arena *const arena = arena_create(NULL, "a test");
-    school_ok(netcdf_open(arena, &reader, path));
-    size_t n_rows;
-    school_ok(netcdf_read_length(&reader, "time", 1, 100, &n_rows));
-    assert_int_equal(n_rows, 4);  // 0, 0.04, 0.08 and the end
-    arena_free(arena);
+    assert_int_equal(n_rows_of(path), 4);  // 0, 0.04, 0.08 and the end
     assert_int_equal(unlink(path), 0);
 }
 
 TEST(a_checkpoint_stands_beside_the_result) {
-    struct shoal *const run = opened(*state, 0, NULL);
+    struct shoal *const run = open_run(*state, 0, NULL);
     char folder[] = "/tmp/test_shoal_folder_XXXXXX", path[64];
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/run.nc", folder);
@@ -748,11 +739,9 @@ TEST(a_checkpoint_stands_beside_the_result) {
     shoal_close(run);
     snprintf(path, sizeof path, "%s/run.ckpt", folder);
     struct checkpoint checkpoint;
-    struct arena *const arena = arena_create(NULL, "a test");
-    school_ok(checkpoint_read(arena, &checkpoint, path));
+    school_ok(checkpoint_read(test_arena(), &checkpoint, path));
     NEAR(checkpoint.t, 0.06, 1e-15, 0);
     assert_string_equal(checkpoint.result, "run.nc");
-    arena_free(arena);
     assert_int_equal(unlink(path), 0);
     snprintf(path, sizeof path, "%s/run.nc", folder);
     assert_int_equal(unlink(path), 0);
@@ -770,18 +759,8 @@ static void make_result_folder(void) {
     snprintf(result_path, sizeof result_path, "%s/run.nc", result_folder);
 }
 
-static size_t n_rows_of(const char *path) {
-    struct netcdf_reader reader;
-    size_t n_rows;
-    struct arena *const arena = arena_create(NULL, "a test");
-    school_ok(netcdf_open(arena, &reader, path));
-    school_ok(netcdf_read_length(&reader, "time", 0, 100, &n_rows));
-    arena_free(arena);
-    return n_rows;
-}
-
 TEST(two_runs_of_one_process_do_not_write_the_same_result) {
-    struct shoal *const one = opened(*state, 1, every_event), *const other = opened(*state, 1, every_event);
+    struct shoal *const one = open_run(*state, 1, every_event), *const other = opened(*state, 1, every_event);
     make_result_folder();
     assert_int_equal(shoal_write(one, result_path, 0), SHOAL_OK);
     assert_int_equal(shoal_step(one), SHOAL_OK);
@@ -790,7 +769,6 @@ TEST(two_runs_of_one_process_do_not_write_the_same_result) {
         assert_int_equal(shoal_write(other, result_path, overwrite), SHOAL_FILE);
     }
     assert_non_null(strstr(shoal_message(), "another run writes this result"));
-    shoal_close(other);
     // the lock holds for other processes too
     const pid_t child = fork();
     if (child == 0) {
@@ -834,7 +812,7 @@ static pid_t fork_of_all(void) {
 }
 
 TEST(a_fork_leaves_the_result_and_its_lock_alone) {
-    struct shoal *const run = opened(*state, 1, every_event);
+    struct shoal *const run = open_run(*state, 1, every_event);
     make_result_folder();
     assert_int_equal(shoal_write(run, result_path, 0), SHOAL_OK);
     for (int how = 0; how < 4; how++) {
@@ -864,7 +842,6 @@ TEST(a_result_file_that_cannot_be_written_is_said_so) {
     assert_int_equal(shoal_write(run, "/no/such/folder/x.nc", 0), SHOAL_FILE);
     assert_non_null(strstr(shoal_message(), "/no/such/folder"));
     assert_int_equal(shoal_step(run), SHOAL_OK);
-    shoal_close(run);
 }
 
 // ---- copies
@@ -892,72 +869,56 @@ static const char *const led[] = {"time.end=0.6", "fish[*].wave.ramp=0.1", "fish
                                   "fish[1].control.waypoints=[[-3, 1], [-6, 0]]"};
 
 TEST(a_copy_goes_on_with_the_bits_of_the_run) {
-    struct shoal *const run = opened(*state, 4, led), *copy;
+    struct shoal *const run = open_run(*state, 4, led);
     assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
     const double amplitude = 0.3;
     assert_int_equal(shoal_set(run, 0, "wave.amplitude", 1, &amplitude), SHOAL_OK);
     assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
-    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    struct shoal *const copy = copy_of(run);
     same_in_all(run, copy);
     assert_int_equal(shoal_advance(run, 0.6), SHOAL_OK);
     NEAR(shoal_time(copy), 0.3, 1e-15, 0);
     assert_int_equal(shoal_advance(copy, 0.6), SHOAL_OK);
     same_in_all(run, copy);
     // a copy outlives the run
-    struct shoal *second;
     shoal_close(run);
-    assert_int_equal(shoal_clone(&second, copy), SHOAL_OK);
-    same_in_all(copy, second);
-    shoal_close(copy);
-    shoal_close(second);
+    same_in_all(copy, copy_of(copy));
 }
 
 TEST(a_copy_shows_what_the_run_shows) {
-    struct shoal *const run = opened(*state, 4, led), *const alone = opened(*state, 4, led), *copy;
+    struct shoal *const run = opened(*state, 4, led), *const alone = opened(*state, 4, led);
     assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
     assert_int_equal(shoal_advance(alone, 0.4), SHOAL_OK);
-    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
-    same_in_all(alone, copy);
+    same_in_all(alone, copy_of(run));
     same_in_all(alone, run);
-    shoal_close(run);
-    shoal_close(copy);
-    shoal_close(alone);
 }
 
 TEST(a_run_is_put_back_to_a_copy) {
-    struct shoal *const run = opened(*state, 4, led), *kept, *first;
-    assert_int_equal(shoal_clone(&kept, run), SHOAL_OK);
+    struct shoal *const run = opened(*state, 4, led), *const start = copy_of(run);
     assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
-    assert_int_equal(shoal_clone(&first, run), SHOAL_OK);
+    struct shoal *const first = copy_of(run);
     const double bias = 0.2;
     assert_int_equal(shoal_set(run, 0, "control.bias", 1, &bias), SHOAL_OK);
     assert_int_equal(shoal_advance(run, 0.6), SHOAL_OK);
-    assert_int_equal(shoal_restore(run, kept), SHOAL_OK);
+    assert_int_equal(shoal_restore(run, start), SHOAL_OK);
     NEAR(shoal_time(run), 0, 0, 0);
     assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
     same_in_all(run, first);
-    shoal_close(kept);
-    shoal_close(first);
-    shoal_close(run);
 }
 
 TEST(a_run_that_has_failed_is_whole_when_it_is_put_back) {
     const char *const assignments[] = {"solver.max_steps=9", "time.end=2", "fish[*].wave.ramp=0.01"};
-    struct shoal *const run = opened(*state, 3, assignments), *kept;
-    assert_int_equal(shoal_clone(&kept, run), SHOAL_OK);
+    struct shoal *const run = opened(*state, 3, assignments), *const start = copy_of(run);
     assert_int_equal(shoal_advance(run, 2), SHOAL_SOLVER);
     const double reached = shoal_time(run);
     struct shoal *copy;
     assert_int_equal(shoal_clone(&copy, run), SHOAL_SOLVER);
     assert_null(copy);
-    assert_int_equal(shoal_restore(kept, run), SHOAL_SOLVER);
-    assert_int_equal(shoal_restore(run, kept), SHOAL_OK);
-    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
-    shoal_close(copy);
+    assert_int_equal(shoal_restore(start, run), SHOAL_SOLVER);
+    assert_int_equal(shoal_restore(run, start), SHOAL_OK);
+    copy_of(run);
     assert_int_equal(shoal_advance(run, 2), SHOAL_SOLVER);
     NEAR(shoal_time(run), reached, 0, 0);
-    shoal_close(run);
-    shoal_close(kept);
 }
 
 TEST(only_copies_can_be_put_in_the_place_of_one_another) {
@@ -968,8 +929,6 @@ TEST(only_copies_can_be_put_in_the_place_of_one_another) {
     refuses(shoal_restore(run, NULL), "from is NULL");
     refuses(shoal_restore(run, other), "not copies of one another");
     assert_int_equal(shoal_restore(run, run), SHOAL_OK);
-    shoal_close(run);
-    shoal_close(other);
 }
 
 // ---- changes from outside
@@ -996,8 +955,7 @@ static struct shoal *opened_to_change(void **state, double t) {
 TEST(a_body_is_where_it_was_put_with_its_velocity) {
     struct shoal *const run = opened_to_change(state, 0.2);
     double x[18], v[18], x_now[18], v_now[18], audit[3];
-    struct shoal *copy;  // to read from: the balances of the run stay those of its last row
-    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    struct shoal *const copy = copy_of(run);  // to read from: the balances of the run stay those of its last row
     const double moment = one_of(copy, "angular_momentum_balance", 0);
     const int n_before = shoal_n_vortices(run, 0);
     assert_int_equal(shoal_state(run, 0, x, v), SHOAL_OK);
@@ -1009,7 +967,6 @@ TEST(a_body_is_where_it_was_put_with_its_velocity) {
         v[2 * k] -= 0.3;
     }
     const double com = one_of(copy, "com", 0), velocity = one_of(copy, "com_velocity", 0);
-    shoal_close(copy);
     assert_int_equal(shoal_set_state(run, 0, x, v), SHOAL_OK);
     assert_int_equal(shoal_state(run, 0, x_now, v_now), SHOAL_OK);
     for (int i = 0; i < 18; i++) {
@@ -1031,7 +988,6 @@ TEST(a_body_is_where_it_was_put_with_its_velocity) {
     assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
     NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
     BELOW(fabs(one_of(run, "energy_balance", 0) - audit[2]), 1e-3 * fabs(one_of(run, "kinetic_energy", 0)));
-    shoal_close(run);
 }
 
 TEST(a_body_that_is_put_across_itself_is_remembered) {
@@ -1047,13 +1003,11 @@ TEST(a_body_that_is_put_across_itself_is_remembered) {
     assert_int_equal(shoal_set_state(run, 0, x, NULL), SHOAL_OK);
     assert_int_equal(run->simulation->state->crossed, 0);
     NEAR(run->simulation->state->crossed_t, 0.1, 0, 1e-15);
-    shoal_close(run);
 }
 
 TEST(a_state_that_is_set_to_itself_stays) {
-    struct shoal *const run = opened_to_change(state, 0.2), *copy;
+    struct shoal *const run = opened_to_change(state, 0.2), *const copy = copy_of(run);
     double x[18], v[18];
-    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
     assert_int_equal(shoal_state(run, 1, x, v), SHOAL_OK);
     assert_int_equal(shoal_set_state(run, 1, NULL, NULL), SHOAL_OK);
     same_in_all(run, copy);
@@ -1072,14 +1026,11 @@ TEST(a_state_that_is_set_to_itself_stays) {
     assert_int_equal(shoal_advance(copy, 0.4), SHOAL_OK);
     // vortices begin a first interval again: an error of the second order in the interval, once
     for (size_t i = 0; i < 4; i++) NEAR(one_of(run, "com", i), one_of(copy, "com", i), 5e-5, 0);
-    shoal_close(copy);
-    shoal_close(run);
 }
 
 TEST(a_state_that_no_body_can_have_is_refused) {
-    struct shoal *const run = opened_to_change(state, 0.1), *copy;
+    struct shoal *const run = opened_to_change(state, 0.1), *const copy = copy_of(run);
     double x[18], v[18], wrong[18];
-    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
     assert_int_equal(shoal_state(run, 0, x, v), SHOAL_OK);
     memcpy(wrong, x, sizeof wrong);
     wrong[3] = NAN;
@@ -1112,8 +1063,6 @@ TEST(a_state_that_no_body_can_have_is_refused) {
     assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
     assert_int_equal(shoal_advance(copy, 0.2), SHOAL_OK);
     same_in_all(run, copy);
-    shoal_close(copy);
-    shoal_close(run);
 }
 
 TEST(a_vortex_from_outside_keeps_momentum_and_circulation) {
@@ -1138,8 +1087,7 @@ TEST(a_vortex_from_outside_keeps_momentum_and_circulation) {
         for (size_t k = 0; k < 3; k++)
             before[k] = k < 2 ? one_of(run, "momentum_balance", k) : one_of(run, "energy_balance", 0);
         for (size_t k = 0; k < 2; k++) lost[k] = one_of(run, "lost_impulse", k);
-        struct shoal *copy;
-        assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+        struct shoal *const copy = copy_of(run);
         assert_int_equal(shoal_flow(run, 2, points, far, NULL), SHOAL_OK);
         assert_int_equal(shoal_add_vortex(run, 0, x, y, circulation), SHOAL_OK);
         assert_int_equal(shoal_n_vortices(run, 0), n_before + (i == 0 ? 3 : 1));
@@ -1163,33 +1111,32 @@ TEST(a_vortex_from_outside_keeps_momentum_and_circulation) {
         for (size_t k = 0; k < 2 && i == 0; k++) {
             NEAR(one_of(run, "momentum_balance", k), one_of(copy, "momentum_balance", k), 5e-3 * fabs(impulse), 0);
         }
-        shoal_close(copy);
-        shoal_close(run);
     }
 }
 
 TEST(a_changed_run_is_copied_and_saved_like_any_other) {
-    struct shoal *const run = opened_to_change(state, 0.2), *copy, *loaded;
+    struct shoal *const run = open_run(*state, N_CHANGED, changed), *loaded;
     double x[18];
+    assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
     assert_int_equal(shoal_add_vortex(run, 1, -1, 0, 0.02), SHOAL_OK);
     assert_int_equal(shoal_state(run, 0, x, NULL), SHOAL_OK);
     for (int k = 0; k < 9; k++) x[2 * k] -= 0.01;
     assert_int_equal(shoal_set_state(run, 0, x, NULL), SHOAL_OK);
     make_result_folder();
     assert_int_equal(shoal_write(run, result_path, 0), SHOAL_OK);
-    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    struct shoal *const copy = copy_of(run);
     char path[80];
     snprintf(path, sizeof path, "%s/saved.ckpt", result_folder);
     assert_int_equal(shoal_save(run, path), SHOAL_OK);
     assert_int_equal(shoal_load(&loaded, path), SHOAL_OK);
-    same_in_all(run, loaded);
+    same_in_all(run, kept(loaded));
     struct shoal *const all[] = {run, copy, loaded};
     for (int i = 0; i < 3; i++) assert_int_equal(shoal_advance(all[i], 0.6), SHOAL_OK);
     same_in_all(run, copy);
     same_in_all(run, loaded);
     // the file has room until the end
     ABOVE(n_rows_of(result_path), 2);
-    for (int i = 0; i < 3; i++) shoal_close(all[i]);
+    shoal_close(run);
     assert_int_equal(unlink(path), 0);
     assert_int_equal(unlink(result_path), 0);
     assert_int_equal(rmdir(result_folder), 0);
@@ -1215,7 +1162,6 @@ TEST(the_longest_wake_has_all_its_slots_and_the_other_ends_in_nan) {
                     assert_true(isnan(read[g * n + i]));
             }
         }
-        shoal_close(run);
     }
 }
 
@@ -1230,12 +1176,10 @@ TEST(a_vortex_without_room_is_refused) {
     assert_non_null(strstr(shoal_message(), "wake.spare_vortices: 6, of which 6 are used"));
     assert_int_equal(shoal_n_vortices(run, 0), n);
     assert_int_equal(shoal_step(run), SHOAL_OK);
-    shoal_close(run);
     const char *const dropped[] = {"wake.spare_vortices=6", "wake.removed_circulation=dropped"};
     struct shoal *const other = opened(*state, 2, dropped);
     assert_int_equal(shoal_add_vortex(other, 0, -1, 2, 0.01), SHOAL_USAGE);
     assert_non_null(strstr(shoal_message(), "choose 'retained'"));
-    shoal_close(other);
 }
 
 // ---- checkpoints of their own
@@ -1257,14 +1201,13 @@ TEST(a_saved_run_goes_on_with_the_bits_of_the_run) {
     make_saved_path();
     for (int again = 0; again < 2; again++) assert_int_equal(shoal_save(run, saved_path), SHOAL_OK);
     assert_int_equal(shoal_load(&loaded, saved_path), SHOAL_OK);
+    kept(loaded);
     NEAR(shoal_time(loaded), shoal_time(run), 0, 0);
     same_in_all(run, loaded);
     assert_int_equal(shoal_advance(run, 0.6), SHOAL_OK);
     assert_int_equal(shoal_advance(loaded, 0.6), SHOAL_OK);
     same_in_all(run, loaded);
     assert_int_equal(shoal_restore(loaded, run), SHOAL_USAGE);
-    shoal_close(loaded);
-    shoal_close(run);
     assert_int_equal(unlink(saved_path), 0);
 }
 
@@ -1280,7 +1223,6 @@ TEST(only_a_checkpoint_is_replaced_or_loaded) {
     assert_int_equal(shoal_save(NULL, "x.ckpt"), SHOAL_USAGE);
     assert_int_equal(shoal_save(run, NULL), SHOAL_USAGE);
     assert_int_equal(shoal_step(run), SHOAL_OK);
-    shoal_close(run);
 }
 
 TEST(a_fork_of_a_run_with_threads_goes_on) {
@@ -1297,7 +1239,6 @@ TEST(a_fork_of_a_run_with_threads_goes_on) {
     assert_int_equal(waitpid(child, &outcome, 0), child);
     assert_int_equal(outcome, 0);
     assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
-    shoal_close(run);
 }
 
 TEST(the_end_is_the_time_of_an_event) {
@@ -1306,7 +1247,6 @@ TEST(the_end_is_the_time_of_an_event) {
     struct shoal *const run = opened(*state, 3, assignments);
     assert_int_equal(shoal_advance(run, 29), SHOAL_OK);
     NEAR(shoal_time(run), shoal_end(run), 0, 0);
-    shoal_close(run);
 }
 
 TEST(the_version_is_that_of_the_program) {
@@ -1386,7 +1326,6 @@ TEST(a_change_that_lacks_memory_leaves_the_run_as_it_was) {
         shoal_close(copy);
     }
     AT_LEAST(n, 10);
-    shoal_close(run);
 }
 
 #define MEMORY_CASE(solver, more)                                                                                    \
