@@ -6,9 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "case/case.h"
-#include "case/sweep.h"
-#include "near.h"
+#include "case_fixture.h"
 #include "study/compare.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
@@ -25,12 +23,6 @@ static const char repeated[] = CASE
     ", " ROW_A "]}]\n";
 static const double wall_times[] = {100, 90, 2, 3, 10, 1, 1, 20, 3};
 enum { N_MEMBERS = sizeof wall_times / sizeof *wall_times };
-
-static struct case_values parse(const char *text) {
-    struct case_values values;
-    assert_int_equal(case_parse(&values, text, strlen(text), "small.yaml", NULL, 0, NULL), STATUS_OK);
-    return values;
-}
 
 static double *at(const struct member_file *member, const char *quantity, int fish, int xy) {
     return member_file_place(member, member_file_quantity_number(quantity), fish, xy);
@@ -58,9 +50,7 @@ static const char *print(const struct case_values *study, const struct member_fi
     static char text[4096];
     memset(text, 0, sizeof text);
     FILE *const stream = fmemopen(text, sizeof text - 1, "w");
-    struct arena *const arena = arena_create(NULL, "a test");
-    compare_print(arena, study, members, stream);
-    arena_free(arena);
+    compare_print(test_arena(), study, members, stream);
     fclose(stream);
     return text;
 }
@@ -80,7 +70,6 @@ TEST(errors_are_distances_from_the_first_member_in_lengths) {
     NEAR(*at(&members[4], "tail_error", 1, 0), 0, 0, 0);
     // the table shows the fish with the larger error
     assert_has(print(&study, members), "difference of ida5, rtol 1e-8: 1.0e+01 (nose) and 7.1e-01 (tail) lengths");
-    case_free(&study);
 }
 
 TEST(the_wall_time_is_the_median_of_the_repeats) {
@@ -96,7 +85,6 @@ TEST(the_wall_time_is_the_median_of_the_repeats) {
     assert_has(text, "failed\n  ida2");
     assert_has(text, "complete\nrk4, step 0.01 failed: too slow\n");
     assert_null(strstr(strstr(text, "too slow") + 1, "too slow"));
-    case_free(&study);
 }
 
 /* Errors of 4e-5 and 4e-3 for 1000 and 100 evaluations, and of 2e-4 and 2e-2 for 800 and 80: at 1e-3 a power law gives
@@ -139,7 +127,6 @@ TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
     const char *const rough = print(&study, members);
     assert_has(rough, "Cost at an error of 1e-02 in nose, tail (lengths) and power (part), known to 3.0e-04:");
     assert_has(rough, "\n  ida2       100   0    1.000      -  at most: error 4.0e-03 with rtol 1e-3\n");
-    case_free(&study);
 }
 
 /* One method with fixed steps, twice, and with adaptive steps: two rows of costs. The bar of the wall time has half the
@@ -170,7 +157,6 @@ TEST(steps_of_a_kind_are_compared_and_their_spread_is_in_the_bar) {
              10.5 * pow(2.2 / 10.5, log(25) / log(100)));
     assert_has(printed, row);
     assert_has(printed, "\n   rk4       500   0    5.000      -  at most: error 2.0e-04 with rtol 1e-4\n");
-    case_free(&study);
 }
 
 TEST(only_a_sweep_of_these_keys_is_a_comparison) {
@@ -188,9 +174,7 @@ TEST(only_a_sweep_of_these_keys_is_a_comparison) {
         snprintf(text, sizeof text, CASE "fish: [{}]\n%s", sweeps[i]);
         struct case_values study = parse(text);
         assert_false(compare_is(&study));
-        case_free(&study);
     }
     struct case_values study = parse(repeated);
     assert_true(compare_is(&study));
-    case_free(&study);
 }

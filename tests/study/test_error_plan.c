@@ -6,9 +6,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
-#include "case/case.h"
-#include "case/sweep.h"
-#include "near.h"
+#include "case_fixture.h"
 #include "study/error_plan.h"
 #include "study/study_print.h"
 
@@ -22,18 +20,12 @@
 /* The first point of the plan, which is the only one without a sweep. */
 static struct error_study open_study(const char *text, const char *error) {
     char all[2048];
-    struct case_values values;
     struct error_sweep *sweep;
     snprintf(all, sizeof all, "%serror: %s\n", text, error);
-    if (case_parse(&values, all, strlen(all), "test.yaml", NULL, 0, NULL) != STATUS_OK)
-        fail_msg("%s", status_message());
-    if (error_plan_create(arena_create(NULL, "a test"), &sweep, &values) != STATUS_OK) fail_msg("%s", status_message());
+    struct case_values values = parse(all);
+    assert_int_equal(error_plan_create(test_arena(), &sweep, &values), STATUS_OK);
     case_free(&values);
     return sweep->point[0];
-}
-
-static void close_study(const struct error_study *study) {
-    arena_free(study->sweep->arena);
 }
 
 static const struct error_study_key *key_of(const struct error_study *study, const char *path) {
@@ -55,12 +47,12 @@ static double setting(const struct error_study *study, int m, const char *path) 
     return number;
 }
 
-static void levels_are(const struct error_study *study, const char *path, int n, const double *levels, double stated) {
+static void levels_are(const struct error_study *study, const char *path, int n, const double *levels, double value) {
     const struct error_study_key *const key = key_of(study, path);
     assert_non_null(key);
     assert_int_equal(key->n_levels, n);
     NEAR_ARRAY(n, key->value, levels, 0, 1e-12);
-    NEAR(key->value[key->stated], stated, 0, 1e-12);
+    NEAR(key->value[key->stated], value, 0, 1e-12);
     for (int i = 0; i < n; i++) NEAR(setting(study, key->member[i], path), levels[i], 0, 1e-12);
 }
 
@@ -90,26 +82,22 @@ TEST(the_keys_of_the_table_have_the_levels_of_the_table) {
     const int n = sweep_n_members(study.study);
     assert_int_equal(n, 17);
     for (int m = 0; m < n; m++) {
-        struct case_values member;
-        assert_int_equal(case_member(&member, study.study, m), STATUS_OK);
+        const struct case_values member = member_of(study.study, m);
         assert_int_equal(member.steady.multipliers, m == 0 ? YES : NO);
         assert_int_equal(member.n_axes, 0);
         assert_null(member.error);
         BELOW(sweep_member_before(study.study, m), m);
-        case_free(&member);
     }
     const struct error_study_key *const interval = key_of(&study, "time.shedding_interval");
     assert_int_equal(sweep_member_before(study.study, 0), -1);
     assert_int_equal(sweep_member_before(study.study, interval->member[2]), 0);
     assert_int_equal(sweep_member_before(study.study, interval->member[3]), interval->member[2]);
-    close_study(&study);
 }
 
 TEST(without_confirm_there_is_no_finer_level) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, confirm: false}");
     levels_are(&study, "fish.nodes", 3, (double[]){25, 17, 13}, 25);
     levels_are(&study, "solver.rtol", 2, (double[]){1e-5, 1e-4}, 1e-5);
-    close_study(&study);
 }
 
 TEST(levels_that_are_no_valid_cases_are_replaced) {
@@ -120,12 +108,10 @@ TEST(levels_that_are_no_valid_cases_are_replaced) {
         "{of: steady_speed}");
     levels_are(&study, "fish.sheet_points", 4, (double[]){136, 97, 69, 49}, 49);
     levels_are(&study, "fish.nodes", 4, (double[]){35, 25, 17, 13}, 25);
-    close_study(&study);
     // fewer points do not resolve the momentum of the nodes
     study = open_study("format: 1\ntime: {end: 4}\nfish: [{force: reactive, nodes: 25, sheet_points: 48}]\n",
                        "{of: steady_speed}");
     assert_non_null(strstr(key_of(&study, "fish.sheet_points")->objection, "fewer sheet_points than 2 nodes - 1"));
-    close_study(&study);
     // a table has a value for each edge
     study = open_study(
         "format: 1\ntime: {end: 4}\nfish: [{force: reactive, nodes: 5, sheet_points: 11, body: {profile: table, "
@@ -136,7 +122,6 @@ TEST(levels_that_are_no_valid_cases_are_replaced) {
         "{of: speed}");
     assert_int_equal(key_of(&study, "fish.nodes")->n_levels, 1);
     assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "no other level"));
-    close_study(&study);
 }
 
 TEST(an_interval_divides_the_beat_or_the_run) {
@@ -144,15 +129,12 @@ TEST(an_interval_divides_the_beat_or_the_run) {
     struct error_study study = open_study(text, "{of: steady_speed, keys: [shedding_interval]}");
     // 50 events in a beat; 12.5 are none
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 1 / 13.0}, 0.02);
-    close_study(&study);
     // a search ends after whole beats, no earlier than the case
     study = open_study("format: 1\ntime: {end: 4.5, shedding_interval: 0.02, output_interval: 0.1}\nfish: [{}]\n",
                        "{of: steady_speed, keys: [shedding_interval]}");
     NEAR(setting(&study, key_of(&study, "time.shedding_interval")->member[3], "time.end"), 5, 0, 1e-12);
-    close_study(&study);
     study = open_study(text, "{of: speed, keys: [shedding_interval]}");
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 0.08}, 0.02);
-    close_study(&study);
     // fixed steps divide the interval
     study = open_study(
         "format: 1\ntime: {end: 1, shedding_interval: 0.02}\nsolver: {method: rk4, step: 0.005}\nfish: [{}]\n",
@@ -160,7 +142,6 @@ TEST(an_interval_divides_the_beat_or_the_run) {
     levels_are(&study, "solver.step", 4, (double[]){0.0025, 0.005, 0.01, 0.02}, 0.005);
     assert_null(key_of(&study, "solver.rtol"));
     NEAR(setting(&study, key_of(&study, "time.shedding_interval")->member[2], "solver.step"), 0.005, 0, 1e-12);
-    close_study(&study);
 }
 
 TEST(a_duration_keeps_the_unit_of_the_case) {
@@ -183,17 +164,13 @@ TEST(a_duration_keeps_the_unit_of_the_case) {
         char **const row = axis->value + key->member[0] * axis->n_keys;
         assert_string_equal(row[error_plan_column(&study, "wake.lifetime")], examples[i].longest);
         assert_string_equal(row[error_plan_column(&study, "wake.decay")], examples[i].fade);
-        struct case_values member;
-        assert_int_equal(case_member(&member, study.study, key->member[0]), STATUS_OK);
+        const struct case_values member = member_of(study.study, key->member[0]);
         NEAR(member.school.wake.lifetime.seconds, i == 0 ? 6 : i == 1 ? 8 : 6, 0, 1e-12);
-        case_free(&member);
-        close_study(&study);
     }
     // a run with an earlier end keeps the whole wake
     struct error_study study =
         open_study("format: 1\ntime: {end: 1}\nfish: [{}]\n", "{of: speed, keys: [lifetime, rtol]}");
     assert_null(key_of(&study, "wake.lifetime"));
-    close_study(&study);
 }
 
 TEST(levels_can_be_given) {
@@ -201,7 +178,6 @@ TEST(levels_can_be_given) {
         open_study(UNIFORM, "{of: steady_speed, keys: {nodes: [17, 33, 65], \"fish[*].sheet_points\": default}}");
     assert_int_equal(study.n_keys, 2);
     levels_are(&study, "fish.nodes", 4, (double[]){65, 33, 25, 17}, 25);
-    close_study(&study);
 }
 
 TEST(fish_of_different_resolution_change_in_proportion) {
@@ -216,7 +192,6 @@ TEST(fish_of_different_resolution_change_in_proportion) {
     NEAR(nodes->value[2], 9, 0, 0);
     assert_string_equal(axis->value[nodes->member[2] * axis->n_keys + c], "17");
     assert_string_equal(axis->value[nodes->member[2] * axis->n_keys + c - 1], "9");
-    close_study(&study);
 }
 
 #define FOIL                                                                                                          \
@@ -227,19 +202,15 @@ TEST(an_equilibrium_has_points_only) {
     struct error_study study = open_study("format: 1\ntime: {end: 4}\n" FOIL, "{of: steady_lift}");
     assert_true(study.is_static);
     assert_int_equal(study.n_keys, 2);
-    close_study(&study);
     // the modes shed wakes, and are computed for every member
     study = open_study("format: 1\ntime: {end: 4, shedding_interval: 0.02}\n" FOIL, "{of: steady_growth}");
     assert_int_equal(study.n_keys, 3);
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 0.08}, 0.02);
     for (int m = 0; m < sweep_n_members(study.study); m++) {
-        struct case_values member;
-        assert_int_equal(case_member(&member, study.study, m), STATUS_OK);
+        const struct case_values member = member_of(study.study, m);
         assert_int_equal(member.steady.multipliers, YES);
         NEAR(member.time.end, 4, 0, 1e-12);
-        case_free(&member);
     }
-    close_study(&study);
 }
 
 TEST(only_keys_that_change_the_case_are_varied) {
@@ -270,7 +241,6 @@ TEST(only_keys_that_change_the_case_are_varied) {
         snprintf(error, sizeof error, "{of: %s, models: true}", examples[i].of);
         const struct error_study study = open_study(text, error);
         if ((key_of(&study, examples[i].key) != NULL) != examples[i].is_varied) fail_msg("example %zu", i);
-        close_study(&study);
     }
 }
 
@@ -287,23 +257,19 @@ TEST(quantities_that_are_not_known_are_refused) {
     };
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
         char text[512];
-        struct case_values values;
         struct error_sweep *sweep;
-        struct arena *const arena = arena_create(NULL, "a test");
         snprintf(text, sizeof text, UNIFORM "error: %s\n", examples[i].error);
-        assert_int_equal(case_parse(&values, text, strlen(text), "test.yaml", NULL, 0, NULL), STATUS_OK);
-        assert_int_equal(error_plan_create(arena, &sweep, &values), STATUS_CASE);
+        const struct case_values values = parse(text);
+        assert_int_equal(error_plan_create(test_arena(), &sweep, &values), STATUS_CASE);
         if (!strstr(status_message(), examples[i].message)) fail_msg("%s", status_message());
-        arena_free(arena);
-        case_free(&values);
     }
 }
 
 /* Five moduli: the ends and the middle vary all keys, the two others the nodes and the interval. */
-static const char swept[] = UNIFORM "sweep: [{key: \"fish[*].body.modulus\", values: [1e7, 3e7, 1e8, 3e8, 1e9]}]\n";
+static const char moduli[] = UNIFORM "sweep: [{key: \"fish[*].body.modulus\", values: [1e7, 3e7, 1e8, 3e8, 1e9]}]\n";
 
 TEST(a_sweep_has_a_plan_at_every_point) {
-    const struct error_study first = open_study(swept, "{of: steady_speed, keys: [nodes, sheet_points, rtol]}");
+    const struct error_study first = open_study(moduli, "{of: steady_speed, keys: [nodes, sheet_points, rtol]}");
     const struct error_sweep *const sweep = first.sweep;
     assert_int_equal(sweep->n_points, 5);
     assert_int_equal(sweep->n_swept, 1);
@@ -315,16 +281,13 @@ TEST(a_sweep_has_a_plan_at_every_point) {
         assert_int_equal(sweep_member_before(point->study, p), p - 1);
         for (int k = 0; k < point->n_keys; k++) {
             for (int i = 0; i < point->key[k].n_levels; i++) {
-                struct case_values member;
-                assert_int_equal(case_member(&member, point->study, point->key[k].member[i]), STATUS_OK);
+                const struct case_values member = member_of(point->study, point->key[k].member[i]);
                 NEAR(member.school.fish[0].body.modulus, point->values->school.fish[0].body.modulus, 0, 0);
                 assert_int_equal(member.n_axes, 0);
                 assert_null(member.error);
-                case_free(&member);
             }
         }
     }
-    close_study(&first);
 }
 
 TEST(a_key_of_the_sweep_is_not_varied) {
@@ -333,7 +296,6 @@ TEST(a_key_of_the_sweep_is_not_varied) {
     assert_int_equal(first.sweep->n_points, 2);
     assert_int_equal(first.n_keys, 1);
     assert_string_equal(first.key[0].row->path, "solver.rtol");
-    close_study(&first);
 }
 
 // ---- values of members
@@ -393,12 +355,11 @@ TEST(the_error_is_the_sum_over_the_keys_and_covers_the_true_one) {
     NEAR(next.value, 0.005, 0, 1e-12);
     NEAR(next.cost, 2, 0, 1e-3);  // but for the millisecond that every beat counts
     NEAR(next.part, 1.25 * interval_error * 0.005 * 2 * cost / study.value[1], 0, 1e-6);
-    close_study(&study);
 }
 
 /* The error of the sheet is largest at the middle of the sweep, where it is 3 % of the value. */
 TEST(errors_of_other_keys_are_shared_along_a_sweep) {
-    struct error_study first = open_study(swept, "{of: steady_speed, keys: [nodes, sheet_points, shedding_interval]}");
+    struct error_study first = open_study(moduli, "{of: steady_speed, keys: [nodes, sheet_points, shedding_interval]}");
     struct error_sweep *const sweep = first.sweep;
     struct member_file *const members = make_members(&first);
     const struct error_study_key *const sheet = key_of(&sweep->point[2], "fish.sheet_points");
@@ -420,7 +381,6 @@ TEST(errors_of_other_keys_are_shared_along_a_sweep) {
     convergence_sweep_judge(sweep, members);
     assert_true(isnan(sweep->point[1].error[0]));
     ABOVE(sweep->point[0].error[0], 0);
-    close_study(&first);
 }
 
 /* Five tolerances, the stated one the coarsest: four of them are judged. */
@@ -435,15 +395,17 @@ TEST(a_stated_level_beyond_the_judged_ones_has_its_own_value) {
     assert_int_equal(key->part[0].verdict, CONVERGENCE_ACCEPTED);
     NEAR(study.value[0], speed + 40e-5, 1e-12, 0);
     NEAR(study.error[0], 40 * (1e-5 - 1e-9) + 1.25 * 40 * 1e-9, 1e-10, 0);
-    close_study(&study);
 }
 
-/* Print the report of a judged study; the caller frees *text. */
-static void print_report(struct error_study *study, const struct member_file *members, char **text) {
+/* The report of a judged study, until the end of the test. */
+static const char *report_of(struct error_study *study, const struct member_file *members) {
+    char *text;
     size_t size;
-    FILE *const stream = open_memstream(text, &size);
+    FILE *const stream = open_memstream(&text, &size);
     assert_int_equal(study_print_errors(study, members, stream), STATUS_OK);
     fclose(stream);
+    arena_defer(test_arena(), free, text);
+    return text;
 }
 
 /* The beginning of error.csv. */
@@ -473,16 +435,13 @@ TEST(a_flag_belongs_to_one_quantity_and_names_its_levels) {
     assert_int_equal(key->part[1].verdict, CONVERGENCE_TURNS);
     NEAR(key->part[0].error, nodes_error * (0.25 / (34.0 * 34) + 1 / (24.0 * 24)), 0, 1e-6);
 
-    char *text = NULL;
-    print_report(&study, members, &text);
+    const char *const text = report_of(&study, members);
     contains(text, "fish.nodes  13 17 [25] 35  0.0018    2.0  0.12");
     contains(text, "flagged: fish.nodes: cost_of_transport of fish1: differences change sign at 17\n");
     assert_null(strstr(text, "speed of fish1: differences"));
 
     // the largest error is of the cost
     contains(text, "<- spend here: nodes 49, CPU x 3.7, to find an order of cost_of_transport\n");
-    free(text);
-    close_study(&study);
 }
 
 /* A finer level cannot take less time: times of short runs are noisy. */
@@ -495,12 +454,9 @@ TEST(a_finer_level_is_never_cheaper) {
     convergence_study_judge(&study, members);
     const struct error_study_next next = convergence_study_next(&study, members);
     NEAR(next.cost, 1, 0, 0);
-    char *text = NULL;
-    print_report(&study, members, &text);
+    const char *const text = report_of(&study, members);
     contains(text, "<- spend here: shedding_interval 0.005, speed +-");
     assert_null(strstr(text, "CPU x"));
-    free(text);
-    close_study(&study);
 }
 
 /* The members of a run count a tenth of a second each, below which times are noise. */
@@ -518,7 +474,6 @@ TEST(the_cost_of_a_finer_level_is_the_ratio_of_the_times) {
         assert_true(next.is_member);
         NEAR(next.cost, times[i][2], 0, 1e-5);
     }
-    close_study(&study);
 }
 
 /* Follow a study to the end, as a run does; and again, with the members at that time. */
@@ -561,8 +516,6 @@ TEST(refinement_ends_where_the_error_is_within_the_bound) {
     assert_int_equal(sweep_n_members(again.study), n);
     assert_int_equal(again.stated, study.stated);
     NEAR(again.error[0], study.error[0], 0, 0);
-    close_study(&study);
-    close_study(&again);
 }
 
 TEST(without_the_members_of_a_step_it_is_not_taken) {
@@ -579,7 +532,6 @@ TEST(without_the_members_of_a_step_it_is_not_taken) {
     // the levels that are known are taken: half of the interval
     NEAR(key_of(&study, "time.shedding_interval")->value[key_of(&study, "time.shedding_interval")->stated], 0.005, 0,
          1e-12);
-    close_study(&study);
 }
 
 TEST(what_is_too_dear_is_not_run_and_its_cost_is_said) {
@@ -592,7 +544,6 @@ TEST(what_is_too_dear_is_not_run_and_its_cost_is_said) {
     convergence_study_say_cost(&study, words);
     assert_non_null(strstr(words, "time.shedding_interval"));
     assert_non_null(strstr(words, "times the CPU time"));
-    close_study(&study);
 }
 
 TEST(a_member_that_failed_leaves_the_error_unknown) {
@@ -605,7 +556,6 @@ TEST(a_member_that_failed_leaves_the_error_unknown) {
     assert_true(isnan(study.error[0]) && !study.is_reached);
     n_new = convergence_study_refine(&study, members, INT_MAX);
     assert_int_equal(n_new, 0);
-    close_study(&study);
 }
 
 TEST(a_cusp_an_edge_and_a_sheet_are_objected_to) {
@@ -614,7 +564,6 @@ TEST(a_cusp_an_edge_and_a_sheet_are_objected_to) {
         "{of: speed}");
     assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "cusp"));
     assert_non_null(strstr(key_of(&study, "fish.sheet_points")->objection, "2 nodes - 1"));
-    close_study(&study);
     study = open_study(
         "format: 1\ntime: {end: 4, shedding_interval: 1e-3}\n"
         "fish: [{force: reactive, nodes: 25, sheet_points: 49, body: {profile: uniform, modulus: 5e2}}]\n",
@@ -625,7 +574,6 @@ TEST(a_cusp_an_edge_and_a_sheet_are_objected_to) {
     convergence_study_judge(&study, members);
     assert_int_equal(key_of(&study, "time.shedding_interval")->part[0].verdict, CONVERGENCE_OBJECTION);
     assert_non_null(strstr(key_of(&study, "time.shedding_interval")->objection, "needs 84 sheet_points"));
-    close_study(&study);
 }
 
 // the report of a study whose shedding interval has this share of the error and a reason for a flag
@@ -640,12 +588,7 @@ static int is_flagged_with_share(double share) {
         snprintf(study.key[k].objection, sizeof study.key[k].objection, "too long");
         study.key[k].part[0].error = share * study.error[0];
     }
-    char *text = NULL;
-    print_report(&study, members, &text);
-    const int is_flagged = strstr(text, "flagged: time.shedding_interval: too long\n") != NULL;
-    free(text);
-    close_study(&study);
-    return is_flagged;
+    return strstr(report_of(&study, members), "flagged: time.shedding_interval: too long\n") != NULL;
 }
 
 TEST(a_flag_is_explained_from_a_hundredth_of_the_error_on) {
@@ -661,11 +604,7 @@ TEST(choices_of_the_model_are_not_in_the_sum) {
     convergence_study_judge(&study, members);
     NEAR(key_of(&study, "wake.smoothing")->part[0].error, 2.5 - study.value[0], 0, 1e-12);
     NEAR(study.error[0], 0, 1e-12, 0);
-    char *text = NULL;
-    print_report(&study, members, &text);
-    assert_non_null(strstr(text, "choices, not in the sum: wake.smoothing ([0.1] 0.05) "));
-    free(text);
-    close_study(&study);
+    contains(report_of(&study, members), "choices, not in the sum: wake.smoothing ([0.1] 0.05) ");
 }
 
 TEST(other_models_bound_the_value) {
@@ -682,13 +621,11 @@ TEST(other_models_bound_the_value) {
 
     // a member has one other choice, and the defaults that do not follow from it
     for (int m = 0; m < sweep_n_members(study.study); m++) {
-        struct case_values member;
-        assert_int_equal(case_member(&member, study.study, m), STATUS_OK);
+        const struct case_values member = member_of(study.study, m);
         const struct fish_parameters *const fish = &member.school.fish[0];
         assert_int_equal(fish->force, m == force->member[0] ? FORCE_REACTIVE : FORCE_PRESSURE);
         assert_int_equal(fish->drag.friction, FRICTION_BOUNDARY_LAYER);
         assert_int_equal(isnan(fish->drag.form), m != form->member[0]);
-        case_free(&member);
     }
 
     // the lowest and the highest value, of any choice
@@ -699,11 +636,9 @@ TEST(other_models_bound_the_value) {
     NEAR(study.error[0], 0, 1e-12, 0);
     NEAR(study.lowest[0].value, 0.5, 0, 1e-12);
     NEAR(study.highest[0].value, 2.5, 0, 1e-12);
-    char *text = NULL;
-    print_report(&study, members, &text);
+    const char *const text = report_of(&study, members);
     assert_non_null(strstr(text, "other models: from 0.5 m s-1 (drag.transition 0) to 2.5 m s-1 (force reactive)\n"));
     assert_non_null(strstr(text, "fish.force ([pressure] reactive) "));
-    free(text);
     char csv[16384], change[80];
     read_csv(&study, sizeof csv, csv);
     for (int i = 0; i < 2; i++) {
@@ -719,7 +654,6 @@ TEST(other_models_bound_the_value) {
     convergence_study_judge(&study, members);
     assert_int_equal(study.lowest[0].key, -1);
     NEAR(study.highest[0].value, study.value[0], 0, 0);
-    close_study(&study);
 }
 
 static void is_printed(const char *got, const char *want) {
@@ -737,9 +671,7 @@ TEST(a_report_is_printed_whole) {
     set_value(&members[key_of(&study, "wake.smoothing")->member[0]], "steady_speed", 1.6);
     set_value(&members[key_of(&study, "wake.taper")->member[0]], "steady_cost_of_transport", 0.0825);
     convergence_study_judge(&study, members);
-    char *text = NULL;
-    print_report(&study, members, &text);
-    is_printed(text,
+    is_printed(report_of(&study, members),
                "steady_speed of fish1: 1.5060 +- 0.0063 m s-1 (0.42 %)\n"
                "steady_cost_of_transport of fish1: 0.0810 +- 0.0010 m s-2 (1.2 %)\n"
                "key                     levels                    speed  order     %  share  cost_of_transport  order  "
@@ -754,7 +686,6 @@ TEST(a_report_is_printed_whole) {
                "1.24\n"
                "noise of a value, of integrator and search: 1.0e-05\n"
                "choices, not in the sum: wake.smoothing ([0.1] 0.05) 6.2 %; wake.taper ([0.6] 0.3) 1.9 %\n");
-    free(text);
 
     char csv[4096];
     read_csv(&study, sizeof csv, csv);
@@ -776,8 +707,5 @@ TEST(a_report_is_printed_whole) {
         set_value(&members[m], "steady_speed", -member_file_number(&members[m], "steady_speed", 0));
     }
     convergence_study_judge(&study, members);
-    print_report(&study, members, &text);
-    contains(text, "steady_speed of fish1: -1.5060 +- 0.0063 m s-1 (0.42 %)\n");
-    free(text);
-    close_study(&study);
+    contains(report_of(&study, members), "steady_speed of fish1: -1.5060 +- 0.0063 m s-1 (0.42 %)\n");
 }
