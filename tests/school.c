@@ -18,35 +18,25 @@ void school_ok(enum status status) {
     fail();
 }
 
-void school_settings(struct case_values *values, const char *text) {
+struct case_values school_values(const char *text) {
+    struct case_values values;
     char whole[32768];
     // a preset is weaker than an include
     const char *const include =
         strstr(text, "preset:") || strstr(text, SCHOOL_DEFAULTS) ? "" : "include: [tests/data/small.yaml]\n";
     const int length = snprintf(whole, sizeof whole, "format: 1\nname: test\n%s%s", include, text);
     assert_in_range(length, 0, sizeof whole - 1);
-    school_ok(case_parse(values, whole, (size_t)length, "test", ".", 0, NULL));
-}
-
-// what is not in the arena of a setup
-struct owned {
-    struct case_values values;
-};
-
-static void release(void *object) {
-    struct owned *const owned = object;
-    case_free(&owned->values);
+    school_ok(case_parse(&values, whole, (size_t)length, "test", ".", 0, NULL));
+    arena_move(values.arena, test_arena());
+    return values;
 }
 
 void school_build(struct setup *setup, const char *text) {
     *setup = (struct setup){.arena = arena_create(test_arena(), "a school"), .mode = &residual_run, .seed = 1};
-    struct owned *owned;
-    NEW(setup->arena, owned, 1);
-    arena_defer(setup->arena, release, owned);
-    school_settings(&setup->values, text);
+    setup->values = school_values(text);
+    arena_move(setup->values.arena, setup->arena);
     school_ok(fish_school_create(setup->arena, &setup->school, &setup->values.school));
     setup->state = state_create(setup->arena, setup->school);
-    *owned = (struct owned){setup->values};
     setup->residual = residual_create(setup->arena, setup->school, setup->state);
     setup->jacobian = jacobian_create(setup->arena, setup->school);
     residual_mask(setup->residual, setup->jacobian);
@@ -334,9 +324,8 @@ void school_compare(struct setup *setup, school_value *value, school_jacobian *j
 }
 
 struct simulation *school_simulation(const char *text) {
-    struct case_values values;
-    school_settings(&values, text);
     struct simulation *simulation;
+    struct case_values values = school_values(text);
     school_ok(simulate_start(test_arena(), &simulation, &values, NULL));
     case_free(&values);
     return simulation;

@@ -29,9 +29,9 @@ struct setup {
 #define SCHOOL_DEFAULTS "include: [tests/data/thick.yaml]\n"
 
 /* "format: 1", a name and, without SCHOOL_DEFAULTS or a preset, the defaults of the article's model (a small fish:
- * tests/data/small.yaml) go before the text. Fails the test with the message of an error. A school lives
- * until the end of the test, or until school_clear. */
-void school_settings(struct case_values *values, const char *text);
+ * tests/data/small.yaml) go before the text. Fails the test with the message of an error. Values and a school live
+ * until the end of the test, a school also until school_clear. */
+struct case_values school_values(const char *text);
 void school_build(struct setup *setup, const char *text);
 struct setup setup_of(const char *text);      /* the same */
 struct setup setup_stirred(const char *text); /* and school_stir */

@@ -3,16 +3,8 @@
 
 #include <string.h>
 
-static void release(void *values) {
-    case_free(values);
-}
-
 static void pose(struct steady_setup *setup, const char *text) {
-    struct case_values *values;
-    NEW(test_arena(), values, 1);
-    arena_defer(test_arena(), release, values);
-    school_settings(values, text);
-    setup->values = *values;
+    setup->values = school_values(text);
     setup->simulation = school_simulation(text);
 }
 

@@ -502,7 +502,6 @@ TEST(work_of_a_stiff_fish_from_rest_has_a_limit_in_the_interval) {
         school_run(simulation, 6);
         simulate_measure(simulation);
         work[i] = simulation->diagnostics->fish[0].actuation_work;
-        simulate_free(simulation);
     }
     NEAR(work[0], work[1], 0, 0.02);
     BELOW(work[1], 12);

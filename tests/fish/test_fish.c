@@ -197,7 +197,6 @@ TEST(overlapping_fish_are_refused) {
     // fish 1 and 4 overlap, and fish 3 overlaps 2 and 0: named is the first fish that overlaps one before, with the
     // first of those, in whatever order the fish lie
     for (int side = -1; side <= 1; side += 2) {
-        struct case_values values;
         char text[512];
         snprintf(text, sizeof text,
                  TIME
@@ -205,12 +204,11 @@ TEST(overlapping_fish_are_refused) {
                  "fish: [{start: {position: [%g, 0.04]}}, {start: {position: [%g, 0]}}, {}, "
                  "{start: {position: [%g, 0.02]}}, {start: {position: [%g, 0.02]}}]\n",
                  side * 1.2, side * 9.0, side * 0.6, side * 9.1);
-        school_settings(&values, text);
+        struct case_values values = school_values(text);
         struct school *school = (struct school *)&values;
         assert_int_equal(fish_school_create(NULL, &school, &values.school), STATUS_CASE);
         assert_null(school);
         assert_non_null(strstr(status_message(), "fish[0] (fish1) and fish[3] (fish4) overlap"));
-        case_free(&values);
     }
 }
 
@@ -233,13 +231,10 @@ TEST(fish_that_begin_beyond_a_wall_are_refused) {
                  "fluid: {walls: %s}\ndefaults: {fish: {wave: {amplitude: 0}, body: {profile: uniform, thickness: "
                  "0.1}}}\nfish: %s\n",
                  cases[i].walls, cases[i].fish);
-        struct case_values values;
-        school_settings(&values, text);
+        const struct case_values values = school_values(text);
         struct school *school;
-        assert_int_equal(fish_school_create(NULL, &school, &values.school), cases[i].status);
+        assert_int_equal(fish_school_create(test_arena(), &school, &values.school), cases[i].status);
         if (cases[i].status != STATUS_OK) assert_non_null(strstr(status_message(), "wall"));
-        fish_school_free(school);
-        case_free(&values);
     }
 }
 
@@ -322,15 +317,12 @@ TEST(bodies_in_boxes_apart_are_not_compared_edge_by_edge) {
         snprintf(text + used, sizeof text - used, "  - {start: {position: [%g, %g]}}\n", 1.5 * (i % COLUMNS),
                  0.6 * (i / COLUMNS));
     }
-    struct case_values values;
+    const struct case_values values = school_values(text);
     struct school *school;
-    school_settings(&values, text);
     n_hypot = 0;
-    school_ok(fish_school_create(NULL, &school, &values.school));
+    school_ok(fish_school_create(test_arena(), &school, &values.school));
     const int per_pair = 4 * school->fish->n_edges * school->fish->n_edges;
     BELOW(n_hypot, per_pair);
-    fish_school_free(school);
-    case_free(&values);
 }
 
 /* The same from points along the bodies, SAMPLES per edge; too large by less than the distance between two points. */

@@ -88,7 +88,6 @@ TEST(errors_are_below_the_tolerance) {
         BELOW(worst, unit);
         ABOVE(worst, 1e-6 * unit);
         BELOW(gradient, 200 * unit);
-        simulate_free(simulation);
     }
 }
 
@@ -155,7 +154,6 @@ TEST(bodies_of_many_fish_act_by_the_tree) {
         const double errors[] = {error_of(simulation, y, true), error_of(simulation, y, false)};
         BELOW(errors[0], 1);
         ABOVE(fabs(errors[0] - errors[1]), 1e-4);
-        simulate_free(simulation);
     }
 }
 
@@ -235,7 +233,6 @@ TEST(a_body_elsewhere_feels_all_sources) {
     // the order of the sources differs
     NEAR_ARRAY(flow->points[0].n, flow->u + flow->points[0].first, kept[0] + flow->points[0].first, 1e-13, 1e-13);
     NEAR_ARRAY(flow->points[0].n, flow->div + flow->points[0].first, kept[2] + flow->points[0].first, 1e-12, 1e-12);
-    simulate_free(simulation);
 }
 
 // the selection depends on the state alone, not on evaluations before
@@ -259,5 +256,4 @@ TEST(bits_do_not_depend_on_threads_or_evaluations_before) {
         assert_memory_equal(fresh->u, kept[0], sizeof(double) * (size_t)flow->n_points);
         assert_memory_equal(fresh->u_x, kept[3], sizeof(double) * (size_t)flow->n_points);
     }
-    simulate_free(simulation);
 }

@@ -23,8 +23,7 @@ static void build_plate(struct setup *setup, int nodes, int points, const char *
              "fish: [{nodes: %d, sheet_points: %d, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, "
              "frequency: 0},\n        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
              nodes, 2 * nodes - 1, more);
-    school_settings(&setup->values, text);
-    arena_move(setup->values.arena, test_arena());
+    setup->values = school_values(text);
 
     // the keys do not allow this value
     setup->values.school.fish[0].sheet_points = points;
@@ -359,7 +358,6 @@ TEST(forces_turn_with_the_fish_and_a_stream_carries_them) {
                 // rtol in the positions
                 NEAR(part, want[n], 1e-6 * hypot(want[n / 2 * 2], want[n / 2 * 2 + 1]), 0);
             }
-            simulate_free(simulation);
         }
     }
 }

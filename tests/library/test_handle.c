@@ -26,7 +26,6 @@ TEST(the_phase_of_the_beat_is_continuous) {
     NEAR(later.omega, 2 * pi * 2, 1e-13, 0);
     // half of the ramp counts with the new frequency
     NEAR(later.angle, 2 * pi * (0.6 + 0.1 + 2 * 0.3), 1e-13, 0);
-    simulate_free(simulation);
 }
 
 TEST(amplitude_and_bias_get_there_within_the_ramp) {
@@ -43,7 +42,6 @@ TEST(amplitude_and_bias_get_there_within_the_ramp) {
     NEAR(simulation->state->y[fish->at.phi0], -0.1, 1e-12, 0);
     school_run(simulation, 0.8);
     NEAR(simulation->state->y[fish->at.phi0], -0.3, 1e-12, 0);
-    simulate_free(simulation);
 }
 
 // the nose after a swim in which everything is set, three times within one ramp; or nothing
@@ -67,9 +65,7 @@ static double led_swim(const char *solver, int is_led, long *steps) {
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);
     *steps = counts.steps;
-    const double nose = simulation->state->y[simulation->school->fish[0].at.x];
-    simulate_free(simulation);
-    return nose;
+    return simulation->state->y[simulation->school->fish[0].at.x];
 }
 
 TEST(every_method_integrates_the_same_led_swim) {
@@ -96,7 +92,6 @@ TEST(a_desired_heading_is_taken_up_the_short_way) {
     school_run(simulation, 0.6);
     set(simulation, "control.desired_heading", 150);
     NEAR(control_desired_heading(fish, memory, 0.9, NULL), 150 * degree, 1e-14, 0);
-    simulate_free(simulation);
 }
 
 TEST(waypoints_are_taken_up) {
@@ -114,7 +109,6 @@ TEST(waypoints_are_taken_up) {
     // the first one is near enough to be passed at once
     school_run(simulation, 0.12);
     assert_int_equal(memory->waypoint, 1);
-    simulate_free(simulation);
 }
 
 static void refused(const struct simulation *simulation, const char *key, int n, double value, const char *words) {
@@ -137,12 +131,10 @@ TEST(what_has_no_use_is_refused) {
     refused(simulation, "wave.frequency", 1, -0.1, "cannot be negative");
     refused(simulation, "control.desired_heading", 1, 90, "has no control law");
     refused(simulation, "control.waypoints", 2, 1, "needs 'law: course'");
-    simulate_free(simulation);
     simulation = school_simulation(TIME "fish: [{wave: {amplitude: 0}, control: {waypoints: [[-3, 0]]}}]\n");
     refused(simulation, "wave.amplitude", 1, 0.1, "in the case is 0: give an initial amplitude");
     refused(simulation, "control.bias", 1, 0.1, "sets the bias: use");
     refused(simulation, "control.desired_heading", 1, 90, "follows waypoints");
     refused(simulation, "control.waypoints", 3, 1, "3 numbers: give 1 to 32 pairs");
     refused(simulation, "control.waypoints", 66, 1, "66 numbers: give 1 to 32 pairs");
-    simulate_free(simulation);
 }

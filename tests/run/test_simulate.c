@@ -185,10 +185,8 @@ static void count_progress(const struct simulate_progress *progress, void *data)
 }
 
 static void run_into(const char *text, const struct simulate_options *options, enum status want) {
-    struct case_values values;
-    school_settings(&values, text);
+    const struct case_values values = school_values(text);
     const enum status status = simulate_run(&values, options);
-    case_free(&values);
     if (status != want) print_error("%s\n", status_message());
     assert_int_equal(status, want);
 }
@@ -539,11 +537,9 @@ static int order_of(const char *solver, const char *fish) {
     struct case_values values;
     school_ok(case_parse(&values, text, strlen(text), "test", NULL, 0, NULL));
     struct simulation *simulation;
-    school_ok(simulate_start(NULL, &simulation, &values, NULL));
+    school_ok(simulate_start(test_arena(), &simulation, &values, NULL));
     case_free(&values);
-    const int order = simulation->options.order;
-    simulate_free(simulation);
-    return order;
+    return simulation->options.order;
 }
 
 TEST(order_3_needs_bodies_whose_stiffness_is_damped) {

@@ -59,14 +59,13 @@ static void steps(struct simulation *simulation, int n) {
 
 // another simulation of the case, created from the contents of a checkpoint
 static struct simulation *taken_up(const struct simulation *from, const char *text) {
-    struct case_values values;
+    struct case_values values = school_values(text);
     struct school *school;
     struct simulation *simulation;
-    school_settings(&values, text);
     school_ok(fish_school_create(NULL, &school, &values.school));
     struct state *const state = state_create(NULL, school);
     state_table_copy(state, from->state, school, true);
-    school_ok(simulate_take_up(NULL, &simulation, &values, school, state, &from->totals));
+    school_ok(simulate_take_up(test_arena(), &simulation, &values, school, state, &from->totals));
     case_free(&values);
     return simulation;
 }
@@ -80,7 +79,6 @@ TEST(a_run_goes_on_from_its_state_alone_with_the_same_bits) {
         steps(one, N_AFTER);
         steps(other, N_AFTER);
         school_same_bits(other, one, cases[i]);
-        simulate_free(other);
     }
 }
 
@@ -91,7 +89,6 @@ TEST(a_run_may_be_taken_up_at_its_first_event) {
     steps(one, N_AFTER);
     steps(other, N_AFTER);
     school_same_bits(other, one, cases[0]);
-    simulate_free(other);
 }
 
 // Sheets and wakes summed by the tree of the event, also with another number of threads.
@@ -119,5 +116,4 @@ TEST(a_large_school_goes_on_with_the_same_bits_on_other_threads) {
     steps(one, 2);
     steps(other, 2);
     school_same_bits(other, one, text[1]);
-    simulate_free(other);
 }

@@ -47,9 +47,7 @@ static void compare_threads(const char *settings, const char *force, int n_event
     for (int threads = 2; threads <= 3; threads++) {
         struct simulation *const many = run_of(settings, force, threads, n_events);
         school_same_bits(many, one, settings);
-        simulate_free(many);
     }
-    simulate_free(one);
 }
 
 TEST(threads_change_no_bit_of_a_school_in_contact) {

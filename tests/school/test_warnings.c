@@ -542,7 +542,6 @@ static int warns_of_pitch(double ratio, const char *motion) {
     const int warns = warnings_line(WARNING_PITCH, simulation->school, simulation->state, simulation->diagnostics,
                                     simulation->residual->scratch, line);
     if (warns) assert_non_null(strstr(line, "0.6"));
-    simulate_free(simulation);
     return warns;
 }
 
@@ -578,5 +577,4 @@ TEST(a_stalled_foil_is_told) {
                          cases[i].warns);
         if (cases[i].warns) assert_non_null(strstr(line, "60 %"));
     }
-    simulate_free(simulation);
 }

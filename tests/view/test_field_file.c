@@ -35,11 +35,9 @@ static const char *school_of(const char *shedding) {
 }
 
 static void write_run(const char *text) {
-    struct case_values values;
-    school_settings(&values, text);
+    const struct case_values values = school_values(text);
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
     school_ok(simulate_run(&values, &options));
-    case_free(&values);
 }
 
 /* Points near the bodies and the wakes, and the flow there. */
