@@ -14,20 +14,17 @@ static double sum(const struct stencil *stencil, const double *value) {
 TEST(polygon_is_straight_between_two_nodes) {
     const double value[] = {2, 5, 3, -1};
     const double u[] = {0, 0.25, 1, 1.5, 2.75, 3}, want[] = {2, 2.75, 5, 4, 0, -1};
-    struct arena *const arena = arena_create(NULL, "a test");
-    struct curve *const curve = curve_create(arena, 4, 6, 6);
+    struct curve *const curve = curve_create(test_arena(), 4, 6, 6);
     for (int i = 0; i < 6; i++) {
         const struct stencil point = curve_polygon_point(curve, u[i]);
         assert_int_equal(point.n, 2);
         NEAR(sum(&point, value), want[i], 0, 0);
     }
-    arena_free(arena);
 }
 
 TEST(middles_of_the_polygon_hold_each_node_once) {
     const double value[] = {2, 5, 3, -1};
-    struct arena *const arena = arena_create(NULL, "a test");
-    struct curve *const curve = curve_create(arena, 4, 6, 6);
+    struct curve *const curve = curve_create(test_arena(), 4, 6, 6);
     const struct stencil a = curve_polygon_point(curve, 0.25), b = curve_polygon_point(curve, 0.75),
                          c = curve_polygon_point(curve, 1.5), d = curve_polygon_point(curve, 2.75);
     const struct stencil one_edge = curve_polygon_middle(curve, &a, &b), two = curve_polygon_middle(curve, &b, &c),
@@ -40,7 +37,6 @@ TEST(middles_of_the_polygon_hold_each_node_once) {
     const struct stencil far = curve_polygon_middle(curve, &a, &d);
     assert_int_equal(far.n, 4);
     NEAR(sum(&far, value), 1.375, 0, 0);
-    arena_free(arena);
 }
 
 // positions between nodes, on nodes, and as close to nodes as rounding permits
@@ -49,8 +45,7 @@ enum { N_PLACES = sizeof places / sizeof *places };
 
 TEST(smooth_curve_reproduces_cubics_and_their_slopes) {
     for (int n = 4; n <= 40; n += 3) {
-        struct arena *const arena = arena_create(NULL, "a test");
-        struct curve *const curve = curve_create(arena, n, 2 * N_PLACES, 2 * N_PLACES);
+        struct curve *const curve = curve_create(test_arena(), n, 2 * N_PLACES, 2 * N_PLACES);
         for (int i = 0; i < N_PLACES; i++) {
             const double u = places[i] * (n - 1) / 3;
             const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
@@ -67,25 +62,21 @@ TEST(smooth_curve_reproduces_cubics_and_their_slopes) {
             NEAR(sum(&slope, constant), 0, 1e-14, 0);
             NEAR(sum(&slope, cubic) * (n - 1), -1 - s * (1.4 - 6 * s), 1e-13 * n, 0);
         }
-        arena_free(arena);
     }
 }
 
 TEST(smooth_curve_goes_through_its_nodes) {
-    struct arena *const arena = arena_create(NULL, "a test");
-    struct curve *const curve = curve_create(arena, 9, 9, 9);
+    struct curve *const curve = curve_create(test_arena(), 9, 9, 9);
     for (int k = 0; k < 9; k++) {
         const struct stencil point = curve_smooth_point(curve, k);
         for (int i = 0; i < 9; i++) NEAR(point.weight[i], i == k, 0, 0);
     }
-    arena_free(arena);
 }
 
 TEST(slope_is_the_derivative_of_the_point) {
     const double h = 1e-3;
     for (int n = 4; n <= 13; n += 3) {
-        struct arena *const arena = arena_create(NULL, "a test");
-        struct curve *const curve = curve_create(arena, n, 1000, 1000);
+        struct curve *const curve = curve_create(test_arena(), n, 1000, 1000);
         for (double u = 0.05; u < n - 1; u += 0.19) {
             const struct stencil slope = curve_smooth_slope(curve, u);
             const struct stencil at[4] = {curve_smooth_point(curve, u - 2 * h), curve_smooth_point(curve, u - h),
@@ -97,7 +88,6 @@ TEST(slope_is_the_derivative_of_the_point) {
                 NEAR(slope.weight[k], difference, 1e-10, 0);
             }
         }
-        arena_free(arena);
     }
 }
 
@@ -108,14 +98,12 @@ static double error_of_arc(int n) {
         x[k] = cos(pi * k / (n - 1));
         y[k] = sin(pi * k / (n - 1));
     }
-    struct arena *const arena = arena_create(NULL, "a test");
-    struct curve *const curve = curve_create(arena, n, 10 * n, 10 * n);
+    struct curve *const curve = curve_create(test_arena(), n, 10 * n, 10 * n);
     for (int i = 0; i < 10 * (n - 1); i++) {
         const double u = 0.1 * i + 0.05;
         const struct stencil point = curve_smooth_point(curve, u);
         largest = fmax(largest, hypot(sum(&point, x) - cos(pi * u / (n - 1)), sum(&point, y) - sin(pi * u / (n - 1))));
     }
-    arena_free(arena);
     return largest;
 }
 

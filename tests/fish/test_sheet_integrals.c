@@ -21,11 +21,11 @@ static void cosine(int m, double *circulation) {
     }
 }
 
-static struct sheet_integrals *make(struct arena *arena, double (*density)(int)) {
+static struct sheet_integrals *make(double (*density)(int)) {
     double values[N_NODES - 1];
     for (int k = 0; k < N_NODES - 1; k++) values[k] = density(k);
     struct sheet_integrals *integrals;
-    assert_int_equal(sheet_integrals_create(arena, &integrals, N_NODES, N_SHEET, values, NULL), STATUS_OK);
+    assert_int_equal(sheet_integrals_create(test_arena(), &integrals, N_NODES, N_SHEET, values, NULL), STATUS_OK);
     return integrals;
 }
 
@@ -39,8 +39,7 @@ static double first_two_edges(int edge) {
 }
 
 TEST(control_points_have_the_circulation_of_their_intervals) {
-    struct arena *const arena = arena_create(NULL, "a test");
-    struct sheet_integrals *const integrals = make(arena, three);
+    struct sheet_integrals *const integrals = make(three);
     for (int m = 0; m < N_SHEET - 1; m++) {
         double q[N_SHEET], around[N_SHEET - 1], before[N_SHEET - 1];
         cosine(m, q);
@@ -52,12 +51,10 @@ TEST(control_points_have_the_circulation_of_their_intervals) {
             NEAR(before[c], m == 0 ? theta : sin(m * theta) / m, 1e-13, 0);
         }
     }
-    arena_free(arena);
 }
 
 TEST(a_kink_at_the_tail_is_what_the_series_lacks) {
-    struct arena *const arena = arena_create(NULL, "a test");
-    struct sheet_integrals *const integrals = make(arena, three);
+    struct sheet_integrals *const integrals = make(three);
     const double h = pi / (N_SHEET - 1);
     for (int c = 0; c < N_SHEET - 1; c++) {
         // g = sin(theta) (1 - cos(theta)): a strength proportional to the position, finite at the tail
@@ -74,7 +71,6 @@ TEST(a_kink_at_the_tail_is_what_the_series_lacks) {
     // the kink is large at the tail
     ABOVE(fabs(integrals->kink_strength[N_SHEET - 2]), 0.1);
     BELOW(fabs(integrals->kink_strength[0]), 0.01);
-    arena_free(arena);
 }
 
 // sum over nodes k, i and vortices j of weight_k P_kij x_i q_j
@@ -95,23 +91,20 @@ TEST(momentum_of_a_sheet_of_constant_g_is_the_exact_one) {
     cosine(0, q);
     // C = theta, and with u = (N-1)(1 - cos theta)/2: integral of theta du, and of theta u du
     const double half = (N_NODES - 1) / 2.0;
-    struct arena *const arena = arena_create(NULL, "a test");
-    struct sheet_integrals *const integrals = make(arena, three);
+    struct sheet_integrals *const integrals = make(three);
     NEAR(integral(integrals, one, place, q), 3 * pi * half, 0, 1e-9);
     NEAR(integral(integrals, place, place, q), 3 * pi * half * half * 1.25, 0, 1e-9);
     // a sum over nodes of slopes of 1 vanishes
     NEAR(integral(integrals, place, one, q), 0, 1e-11, 0);
     // to the end of the second edge: (N-1)/2 (sin(theta) - theta cos(theta))
-    struct sheet_integrals *const part = make(arena, first_two_edges);
+    struct sheet_integrals *const part = make(first_two_edges);
     const double end = acos(1 - 2 / half);
     NEAR(integral(part, one, place, q), half * (sin(end) - end * cos(end)), 0, 1e-9);
-    arena_free(arena);
 }
 
 // g = cos(m theta) has C = sin(m theta)/m; its momentum to the end of the second edge
 TEST(momentum_of_every_cosine_is_the_exact_one) {
-    struct arena *const arena = arena_create(NULL, "a test");
-    struct sheet_integrals *const part = make(arena, first_two_edges);
+    struct sheet_integrals *const part = make(first_two_edges);
     const double half = (N_NODES - 1) / 2.0, end = acos(1 - 2 / half);
     for (int m = 1; m < N_SHEET; m++) {
         double q[N_SHEET];
@@ -119,7 +112,6 @@ TEST(momentum_of_every_cosine_is_the_exact_one) {
         const double less = m == 1 ? end : sin((m - 1) * end) / (m - 1), more = sin((m + 1) * end) / (m + 1);
         NEAR(integral(part, one, place, q), half * (less - more) / (2 * m), 1e-10, 0);
     }
-    arena_free(arena);
 }
 
 // C_j(theta) of doc/model.md, section 15
@@ -138,7 +130,7 @@ static void momentum_by_weights(int n, int n_sheet, int j, double *matrix) {
         const double first = acos(1 - 2.0 * edge / (n - 1)), last = acos(1 - 2.0 * (edge + 1) / (n - 1));
         const int n_pieces = (int)fmax(2, ceil((last - first) / (pi / (n_sheet - 1))));
         const double piece = (last - first) / n_pieces;
-        struct arena *const arena = arena_create(NULL, "a test");
+        ARENA(arena, NULL, "a curve");
         struct curve *const curve = curve_create(arena, n, 0, 2 * 6 * n_pieces);
         for (int p = 0; p < 6 * n_pieces; p++) {
             const double theta = first + (p / 6 + node[p % 6]) * piece, u = (n - 1) * (1 - cos(theta)) / 2;
@@ -149,7 +141,6 @@ static void momentum_by_weights(int n, int n_sheet, int j, double *matrix) {
                 for (int k = 0; k < n; k++) matrix[i * n + k] += value * slope.weight[i] * point.weight[k];
             }
         }
-        arena_free(arena);
     }
 }
 
@@ -161,18 +152,17 @@ TEST(partial_fractions_are_the_products_of_weights_and_slopes) {
     for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
         const int n = sizes[s].n, n_sheet = sizes[s].n_sheet;
         const size_t n_nodes = (size_t)n, n_entries = n_nodes * n_nodes;
-        double *const memory = calloc(2 * n_entries + 10 * n_nodes + (size_t)n_sheet, sizeof *memory);
-        assert_non_null(memory);
+        double *memory;
+        NEW(test_arena(), memory, 2 * n_entries + 10 * n_nodes + (size_t)n_sheet);
         double *const want = memory, *const got = want + n_entries, *const parts = got + n_entries,
                       *const x = parts + 4 * n, *const product = x + 2 * n, *const sum = product + 2 * n,
                       *const density = sum + n, *const q = density + n;
         momentum_by_weights(n, n_sheet, sizes[s].vortex, want);
 
-        struct arena *const arena = arena_create(NULL, "a test");
         struct sheet_integrals *integrals;
         for (int k = 0; k < n; k++) density[k] = 1;
         q[sizes[s].vortex] = 1;
-        assert_int_equal(sheet_integrals_create(arena, &integrals, n, n_sheet, density, NULL), STATUS_OK);
+        assert_int_equal(sheet_integrals_create(test_arena(), &integrals, n, n_sheet, density, NULL), STATUS_OK);
         sheet_integrals_matrix(integrals, q, parts, got);
         double largest = 0;
         for (int e = 0; e < n * n; e++) largest = fmax(largest, fabs(want[e]));
@@ -186,8 +176,6 @@ TEST(partial_fractions_are_the_products_of_weights_and_slopes) {
             for (int e = 0; e < n * n; e++) sum[e % n] += want[e] * x[of_y * n + e / n];
             NEAR_ARRAY(n, product + of_y * n, sum, 1e-13 * largest, 0);
         }
-        arena_free(arena);
-        free(memory);
     }
 }
 
@@ -196,12 +184,11 @@ TEST(memory_is_the_product_of_nodes_and_vortices) {
     double density[199];
     for (int k = 0; k < 199; k++) density[k] = 1;
     for (int n = 25; n < 200; n = 2 * n + 49) {
-        struct arena *const arena = arena_create(NULL, "a test");
+        ARENA(arena, NULL, "integrals");
         struct sheet_integrals *integrals;
         n_bytes = 0;
         assert_int_equal(sheet_integrals_create(arena, &integrals, n, 2 * n - 1, density, NULL), STATUS_OK);
         // part, strength, circulation, and once the series
         NEAR((double)n_bytes, 8.0 * (4 * n * (2 * n - 1) + 3 * (2 * n - 1) * (2 * n - 2)), 0, 0.05);
-        arena_free(arena);
     }
 }
