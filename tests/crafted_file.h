@@ -12,14 +12,14 @@
 
 enum craft { MISSING, OTHER_TYPE, MORE_DIMENSIONS, FEWER_DIMENSIONS, LONG_DIMENSION, N_CRAFTS };
 
-/* The bytes of a file, to write it again. The caller frees them. */
+/* The bytes of a file, to write it again. They are kept until the end of the test. */
 static inline char *read_bytes(const char *path, size_t *n) {
     FILE *const file = fopen(path, "rb");
     assert_non_null(file);
     fseek(file, 0, SEEK_END);
     *n = (size_t)ftell(file);
     rewind(file);
-    char *const bytes = malloc(*n);
+    char *const bytes = arena_new(test_arena(), *n, 1);
     assert_int_equal(fread(bytes, 1, *n, file), *n);
     fclose(file);
     return bytes;
@@ -38,7 +38,6 @@ static inline off_t length_of_data(const char *path) {
     size_t n;
     char *const bytes = read_bytes(path, &n);
     while (n > 0 && bytes[n - 1] == 0) n--;
-    free(bytes);
     return (off_t)n;
 }
 

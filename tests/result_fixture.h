@@ -38,6 +38,7 @@ struct fixture {
     struct diagnostics_fish of_fish[N_FISH];
     struct integrator_counts counts;
     char folder[32], path[64];
+    int file; /* path, open to read; or -1 */
 };
 
 static inline void number_consecutively(double *value, size_t n, double first) {
@@ -46,6 +47,7 @@ static inline void number_consecutively(double *value, size_t n, double first) {
 
 static inline int set_up(void **state) {
     struct fixture *f = calloc(1, sizeof *f);
+    f->file = -1;
     f->arena = arena_create(NULL, "a test");
     assert_int_equal(case_parse(&f->values, CASE_TEXT, strlen(CASE_TEXT), "case", ".", 0, NULL), STATUS_OK);
     assert_int_equal(fish_school_create(NULL, &f->school, &f->values.school), STATUS_OK);
@@ -78,8 +80,14 @@ static inline int set_up(void **state) {
     return 0;
 }
 
+static inline void close_to_read(struct fixture *f) {
+    if (f->file >= 0) nc_close(f->file);
+    f->file = -1;
+}
+
 static inline int tear_down(void **state) {
     struct fixture *f = *state;
+    close_to_read(f);
     unlink(f->path);
     arena_free(f->arena);
     assert_int_equal(rmdir(f->folder), 0);  // nothing else is left in it
@@ -133,12 +141,29 @@ static inline void write_file(struct fixture *f, int n_rows) {
     assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
 }
 
+/* A steady state, with rows at n times. */
+static inline void write_steady(struct fixture *f, int n, const double *times, const struct steady_values *values) {
+    struct result_file *result;
+    assert_int_equal(begin(f, false, true, &result), STATUS_OK);
+    for (int i = 0; i < n; i++) assert_int_equal(append(f, result, times[i], 0), STATUS_OK);
+    result_file_steady(result, f->school, values);
+    assert_int_equal(result_file_publish(result, "complete"), STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+}
+
 // ---- reading ----
 
-static inline int open_to_read(const struct fixture *f) {
-    int file;
-    assert_int_equal(nc_open(f->path, NC_NOWRITE, &file), NC_NOERR);
-    return file;
+/* The file, open until the next call or the end of the test. */
+static inline int open_to_read(struct fixture *f) {
+    close_to_read(f);
+    assert_int_equal(nc_open(f->path, NC_NOWRITE, &f->file), NC_NOERR);
+    return f->file;
+}
+
+/* The same, of a new file with rows. */
+static inline int open_new(struct fixture *f, int n_rows) {
+    write_file(f, n_rows);
+    return open_to_read(f);
 }
 
 static inline int number_of(int file, const char *name) {

@@ -13,11 +13,10 @@
 
 TEST_WITH(format_is_cdf5, set_up, tear_down) {
     struct fixture *f = *state;
-    write_file(f, 1);
-    int file = open_to_read(f), format;
+    const int file = open_new(f, 1);
+    int format;
     assert_int_equal(nc_inq_format(file, &format), NC_NOERR);
     assert_int_equal(format, NC_FORMAT_CDF5);
-    nc_close(file);
 }
 
 // the place on the body of each slot along a body
@@ -65,7 +64,6 @@ TEST_WITH(every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name
         if (variable->type != RESULT_TEXT) assert_string_equal(text_of(file, number, "units"), variable->unit);
         coordinates_are_complete(file, variable);
     }
-    nc_close(file);
 }
 
 TEST(the_list_has_every_variable_with_its_dimensions) {
@@ -96,8 +94,7 @@ TEST(versions_of_the_libraries_are_those_loaded) {
 
 TEST_WITH(dimensions_are_those_of_the_largest_fish, set_up, tear_down) {
     struct fixture *f = *state;
-    write_file(f, 3);
-    const int file = open_to_read(f);
+    const int file = open_new(f, 3);
     assert_int_equal(length_of(file, "time"), 3);
     assert_int_equal(length_of(file, "fish"), 2);
     assert_int_equal(length_of(file, "node"), 7);
@@ -106,13 +103,11 @@ TEST_WITH(dimensions_are_those_of_the_largest_fish, set_up, tear_down) {
     assert_int_equal(length_of(file, "sheet"), 7);
     assert_int_equal(length_of(file, "vortex"), (size_t)wake_most(f->school, 10));
     assert_int_equal(length_of(file, "name"), strlen("suédois"));
-    nc_close(file);
 }
 
 TEST_WITH(attributes_name_the_case_the_program_and_the_conventions, set_up, tear_down) {
     struct fixture *f = *state;
-    write_file(f, 1);
-    const int file = open_to_read(f);
+    const int file = open_new(f, 1);
     assert_string_equal(text_of(file, NC_GLOBAL, "Conventions"), "CF-1.10");
     assert_string_equal(text_of(file, NC_GLOBAL, "title"), "result");
     assert_string_equal(text_of(file, NC_GLOBAL, "case_text"), CASE_TEXT);
@@ -121,13 +116,11 @@ TEST_WITH(attributes_name_the_case_the_program_and_the_conventions, set_up, tear
     assert_non_null(strstr(text_of(file, NC_GLOBAL, "history"), "shoal run case.yaml"));
     assert_non_null(strstr(text_of(file, NC_GLOBAL, "source"), version_short()));
     assert_string_equal(text_of(file, number_of(file, "fish"), "_Encoding"), "utf-8");
-    nc_close(file);
 }
 
 TEST_WITH(constants_are_those_of_the_fish, set_up, tear_down) {
     struct fixture *f = *state;
-    write_file(f, 0);
-    const int file = open_to_read(f);
+    const int file = open_new(f, 0);
     char name[16] = {0};
     assert_int_equal(nc_get_vara_text(file, number_of(file, "fish"), (size_t[]){1, 0}, (size_t[]){1, 8}, name), 0);
     assert_string_equal(name, "suédois");
@@ -145,13 +138,11 @@ TEST_WITH(constants_are_those_of_the_fish, set_up, tear_down) {
         NEAR(value_at(file, "edge_arc", 0, k, 0, 0), arc * ((double)k + 0.5) / (double)k, 0, 1e-15);
     }
     NEAR(value_at(file, "sheet_arc", 1, 4, 0, 0), 2, 0, 1e-15);
-    nc_close(file);
 }
 
 TEST_WITH(unknowns_of_each_fish_come_back, set_up, tear_down) {
     struct fixture *f = *state;
-    write_file(f, 2);
-    const int file = open_to_read(f);
+    const int file = open_new(f, 2);
     const struct layout *at = &f->school->fish[1].at;
     const double *y = f->state->y;
     NEAR(value_at(file, "x", 1, 1, 3, 0), y[at->x + 3], 0, 0);
@@ -163,17 +154,14 @@ TEST_WITH(unknowns_of_each_fish_come_back, set_up, tear_down) {
     NEAR(value_at(file, "sheet_strength", 1, 1, 4, 0), y[at->gamma + 4], 0, 0);
     // the first one after the 3 joints of fish 0, over the length of an edge
     NEAR(value_at(file, "natural_curvature", 1, 1, 0, 0), 4 / f->school->fish[1].edge_length, 0, 1e-15);
-    nc_close(file);
 }
 
 TEST_WITH(sheet_starts_at_the_nose_and_ends_at_the_tail, set_up, tear_down) {
     struct fixture *f = *state;
-    write_file(f, 1);
-    const int file = open_to_read(f);
+    const int file = open_new(f, 1);
     const struct layout *at = &f->school->fish[1].at;
     NEAR(value_at(file, "sheet_x", 0, 1, 0, 0), f->state->y[at->x], 0, 1e-15);
     NEAR(value_at(file, "sheet_x", 0, 1, 4, 1), f->state->y[at->y + 6], 0, 1e-15);
-    nc_close(file);
 }
 
 TEST_WITH(curvature_of_a_right_angle_is_two_over_an_edge, set_up, tear_down) {
@@ -182,17 +170,14 @@ TEST_WITH(curvature_of_a_right_angle_is_two_over_an_edge, set_up, tear_down) {
     const double x[] = {0, 1, 1, 0, 0}, y[] = {0, 0, 1, 1, 0};
     memcpy(f->state->y + at->x, x, sizeof x);
     memcpy(f->state->y + at->y, y, sizeof y);
-    write_file(f, 1);
-    const int file = open_to_read(f);
+    const int file = open_new(f, 1);
     for (size_t j = 0; j < 3; j++)
         NEAR(value_at(file, "curvature", 0, 0, j, 0), 2 / f->school->fish[0].edge_length, 0, 1e-15);
-    nc_close(file);
 }
 
 TEST_WITH(unused_slots_hold_nan, set_up, tear_down) {
     struct fixture *f = *state;
-    write_file(f, 1);
-    const int file = open_to_read(f);
+    const int file = open_new(f, 1);
     assert_true(isnan(value_at(file, "x", 0, 0, 5, 0)));
     assert_true(isnan(value_at(file, "curvature", 0, 0, 3, 0)));
     assert_true(isnan(value_at(file, "sheet_strength", 0, 1, 5, 0)));
@@ -201,13 +186,11 @@ TEST_WITH(unused_slots_hold_nan, set_up, tear_down) {
     double fill = 0;
     assert_int_equal(nc_get_att_double(file, number_of(file, "x"), "_FillValue", &fill), NC_NOERR);
     assert_true(isnan(fill));
-    nc_close(file);
 }
 
 TEST_WITH(derived_quantities_have_their_names, set_up, tear_down) {
     struct fixture *f = *state;
-    write_file(f, 2);
-    const int file = open_to_read(f);
+    const int file = open_new(f, 2);
     NEAR(value_at(file, "time", 1, 0, 0, 0), 0.5, 0, 0);
     NEAR(value_at(file, "com", 1, 0, 1, 0), f->of_fish[0].com[1], 0, 0);
     NEAR(value_at(file, "com_velocity", 1, 1, 0, 0), f->of_fish[1].com_velocity[0], 0, 0);
@@ -222,15 +205,13 @@ TEST_WITH(derived_quantities_have_their_names, set_up, tear_down) {
     NEAR(value_at(file, "jacobian_evaluations", 1, 0, 0, 0), 24, 0, 0);
     NEAR(value_at(file, "order", 1, 0, 0, 0), 2, 0, 0);
     NEAR(value_at(file, "wall_time", 1, 0, 0, 0), 28, 0, 0);
-    nc_close(file);
 }
 
 TEST_WITH(walls_are_there_where_the_case_has_them, set_up, tear_down) {
     struct fixture *f = *state;
     for (int n = 0; n <= 2; n++) {
         f->school->walls = (struct walls){n, {-7, 8}, {1, -1}};
-        write_file(f, 1);
-        const int file = open_to_read(f);
+        const int file = open_new(f, 1);
         int number;
         assert_int_equal(nc_inq_varid(file, "wall_y", &number), n > 0 ? NC_NOERR : NC_ENOTVAR);
         assert_int_equal(nc_inq_dimid(file, "wall", &number), n > 0 ? NC_NOERR : NC_EBADDIM);
@@ -238,7 +219,6 @@ TEST_WITH(walls_are_there_where_the_case_has_them, set_up, tear_down) {
         for (size_t i = 0; i < (size_t)n; i++) {
             NEAR(value_at(file, "wall_y", i, 0, 0, 0), f->school->walls.y[i], 0, 0);
         }
-        nc_close(file);
         unlink(f->path);
     }
 }
@@ -261,7 +241,6 @@ TEST_WITH(sensors_are_there_where_the_case_has_them, set_up, tear_down) {
             assert_true(isnan(value_at(file, "sensor_place", 0, i, 0, 0)));
             assert_true(isnan(value_at(file, "sensor_pressure_right", 0, 1, i, 0)));
         }
-        nc_close(file);
         unlink(f->path);
     }
 }
@@ -300,15 +279,13 @@ TEST_WITH(wake_is_oldest_first_and_can_be_left_out, set_up, tear_down) {
     NEAR(value_at(file, "wake_count", 2, 1, 0, 0), 2, 0, 0);
     assert_true(isnan(value_at(file, "wake_x", 2, 1, 0, 0)));
     assert_true(isnan(value_at(file, "wake_birth", 2, 1, 0, 0)));
-    nc_close(file);
 }
 
 TEST_WITH(single_precision_keeps_time_and_scalars_double, set_up, tear_down) {
     struct fixture *f = *state;
     f->values.output.precision = PRECISION_SINGLE;
     f->state->y[f->school->fish[0].at.x] = 0.1;
-    write_file(f, 1);
-    const int file = open_to_read(f);
+    const int file = open_new(f, 1);
     nc_type bulk, time, speed;
     nc_inq_vartype(file, number_of(file, "x"), &bulk);
     nc_inq_vartype(file, number_of(file, "time"), &time);
@@ -318,18 +295,15 @@ TEST_WITH(single_precision_keeps_time_and_scalars_double, set_up, tear_down) {
     assert_int_equal(speed, NC_DOUBLE);
     NEAR(value_at(file, "x", 0, 0, 0, 0), (double)0.1f, 0, 0);
     assert_true(isnan(value_at(file, "x", 0, 0, 5, 0)));
-    nc_close(file);
 }
 
 TEST_WITH(forces_of_edges_are_there_on_request_only, set_up, tear_down) {
     struct fixture *f = *state;
-    write_file(f, 1);
-    const int file = open_to_read(f);
+    const int file = open_new(f, 1);
     int number;
     assert_int_equal(nc_inq_varid(file, "edge_resistive_force", &number), NC_ENOTVAR);
     assert_int_equal(nc_inq_varid(file, "edge_reactive_force", &number), NC_ENOTVAR);
     assert_int_equal(nc_inq_varid(file, "resistive_force", &number), NC_NOERR);
-    nc_close(file);
 }
 
 TEST_WITH(long_status_is_cut, set_up, tear_down) {
@@ -343,7 +317,6 @@ TEST_WITH(long_status_is_cut, set_up, tear_down) {
     const int file = open_to_read(f);
     assert_memory_equal(text_of(file, NC_GLOBAL, "run_status"), reason, 255);
     assert_int_equal(strlen(text_of(file, NC_GLOBAL, "run_status")), 255);
-    nc_close(file);
 }
 
 // ---- while it is written ----
@@ -359,7 +332,6 @@ TEST_WITH(file_can_be_read_between_rows, set_up, tear_down) {
             NEAR(value_at(file, "time", n - 1, 0, 0, 0), (double)n - 1, 0, 0);
             NEAR(value_at(file, "wall_time", n - 1, 0, 0, 0), 28, 0, 0);
         }
-        nc_close(file);
         assert_int_equal(append(f, result, (double)n, 1), STATUS_OK);
     }
     assert_int_equal(result_file_close(result, "stopped"), STATUS_OK);
@@ -395,11 +367,8 @@ TEST_WITH(existing_file_stays_untouched, set_up, tear_down) {
     assert_string_equal(text, "mine");
 }
 
-static size_t number_of_rows(const struct fixture *f) {
-    const int file = open_to_read(f);
-    const size_t n = length_of(file, "time");
-    nc_close(file);
-    return n;
+static size_t number_of_rows(struct fixture *f) {
+    return length_of(open_to_read(f), "time");
 }
 
 TEST_WITH(a_file_without_its_name_leaves_nothing, set_up, tear_down) {
@@ -489,7 +458,6 @@ TEST_WITH(full_disk_keeps_the_rows_before, set_up, tear_down) {
     assert_int_equal(length_of(file, "time"), n_rows);
     assert_string_equal(text_of(file, NC_GLOBAL, "run_status"), "failed: no room");
     NEAR(value_at(file, "wall_time", (size_t)n_rows - 1, 0, 0, 0), 28, 0, 0);
-    nc_close(file);
 }
 
 /* A checkpoint of few rows, then one of more, has the checksum of all rows. */

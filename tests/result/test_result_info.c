@@ -13,16 +13,22 @@
 static const struct result_kind run = {"run",       "shoal_schema",     RESULT_SCHEMA, "case_effective",
                                        result_info, result_table_listed};
 
-/* What is printed, or "" when it fails. */
-static const char *info(const char *path, int case_only, enum status *status) {
-    static char text[8192];
-    memset(text, 0, sizeof text);
-    FILE *stream = fmemopen(text, sizeof text - 1, "w");
-    struct arena *const arena = arena_create(NULL, "a test");
-    *status = result_kind_info(arena, 1, &run, path, case_only ? RESULT_INFO_CASE : RESULT_INFO_TEXT, stream);
-    arena_free(arena);
+static char printed[8192];
+
+/* Print into printed, which stays empty when that fails. */
+static enum status print_info(const struct fixture *f, bool case_only) {
+    memset(printed, 0, sizeof printed);
+    FILE *stream = fmemopen(printed, sizeof printed - 1, "w");
+    ARENA(arena, NULL, "info");
+    const enum status status =
+        result_kind_info(arena, 1, &run, f->path, case_only ? RESULT_INFO_CASE : RESULT_INFO_TEXT, stream);
     fclose(stream);
-    return text;
+    return status;
+}
+
+static void has_lines(const char *text, int n, const char *const *lines) {
+    for (int i = 0; i < n; i++)
+        if (strstr(text, lines[i]) == NULL) fail_msg("\"%s\" is not in\n%s", lines[i], text);
 }
 
 TEST_WITH(info_sums_up, set_up, tear_down) {
@@ -30,9 +36,7 @@ TEST_WITH(info_sums_up, set_up, tear_down) {
     f->diagnostics.momentum_balance[0] = -3e-3;
     f->diagnostics.momentum_balance[1] = 4e-3;
     write_file(f, 3);
-    enum status status;
-    const char *text = info(f->path, 0, &status);
-    assert_int_equal(status, STATUS_OK);
+    assert_int_equal(print_info(f, false), STATUS_OK);
     const char *const parts[] = {"momentum balance          5.0e-03 N s",
                                  "total circulation         1.1e+01 m2 s-1",
                                  "least distance            12.0000 m",
@@ -47,29 +51,16 @@ TEST_WITH(info_sums_up, set_up, tear_down) {
                                  "suédois",
                                  "2.10 per event",
                                  "28.00 s   0.0357 times real time"};
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-        if (strstr(text, parts[i]) == NULL) fail_msg("\"%s\" is not in\n%s", parts[i], text);
-    assert_null(strstr(text, "nan"));
+    has_lines(printed, sizeof parts / sizeof *parts, parts);
+    assert_null(strstr(printed, "nan"));
 }
 
 /* The summary of a steady state, on a page of its own. */
 static const char *steady_summary(struct fixture *f, const struct steady_values *values) {
-    struct result_file *file;
-    enum status status;
     unlink(f->path);
-    assert_int_equal(begin(f, false, true, &file), STATUS_OK);
-    assert_int_equal(append(f, file, 0, 0), STATUS_OK);
-    result_file_steady(file, f->school, values);
-    assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);
-    assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
-    const char *const text = info(f->path, 0, &status);
-    assert_int_equal(status, STATUS_OK);
-    return text;
-}
-
-static void has_lines(const char *text, int n, const char *const *lines) {
-    for (int i = 0; i < n; i++)
-        if (strstr(text, lines[i]) == NULL) fail_msg("\"%s\" is not in\n%s", lines[i], text);
+    write_steady(f, 1, &(double){0}, values);
+    assert_int_equal(print_info(f, false), STATUS_OK);
+    return printed;
 }
 
 static void is_printed(const char *got, const char *want) {
@@ -84,9 +75,8 @@ TEST_WITH(thrust_is_told_of_a_school_with_a_held_body, set_up, tear_down) {
         for (int i = 0; i < N_FISH; i++) f->school->fish[i].motion.is_held = i == held;
         f->of_fish[1].mean_thrust = 0.125;
         write_file(f, 1);
-        enum status status;
-        const char *const text = info(f->path, 0, &status);
-        assert_int_equal(strstr(text, "  thrust") != NULL && strstr(text, "  0.125") != NULL, held >= 0);
+        assert_int_equal(print_info(f, false), STATUS_OK);
+        assert_int_equal(strstr(printed, "  thrust") != NULL && strstr(printed, "  0.125") != NULL, held >= 0);
         unlink(f->path);
     }
 }
@@ -108,10 +98,8 @@ TEST_WITH(info_is_printed_whole, set_up, tear_down) {
     f->diagnostics.momentum_balance[0] = -3e-3;
     f->diagnostics.momentum_balance[1] = 4e-3;
     write_file(f, 4);
-    enum status status;
-    const char *const text = info(f->path, 0, &status);
-    assert_int_equal(status, STATUS_OK);
-    is_printed(strstr(text, "  status"),
+    assert_int_equal(print_info(f, false), STATUS_OK);
+    is_printed(strstr(printed, "  status"),
                "  status      complete\n  rows        4, from t = 0 s to 1.5 s; a vortex every 0.1 s\n\n"
                "fish      nodes  sheet  length  vortices   speed  heading    phi0        shed"
                "  cross-flow  energy   work   balance\n"
@@ -158,8 +146,7 @@ TEST_WITH(a_steady_state_is_printed_whole, set_up, tear_down) {
     }
     const struct steady_values values = {
         .n_beats = 12, .residual = 2e-6, .error = 3e-5, .stiffness = NAN, .fish = fish};
-    const char *const text = steady_summary(f, &values);
-    is_printed(strstr(text, "  steady state"),
+    is_printed(strstr(steady_summary(f, &values), "  steady state"),
                "  steady state after 12 beats: change from beat to beat 2.0e-06, about 3.0e-05 from the fixed point\n\n"
                "                            leader  suédois\nspeed                      0.12346   2.59258  m s-1\n"
                "turn in a beat              0.2469    2.7160  degree\nplace, ahead               0.37037   2.83949  m\n"
@@ -198,9 +185,8 @@ TEST_WITH(info_shows_the_multipliers_of_a_steady_state_and_a_table, set_up, tear
         "place, ahead               0.00000  -3.00000  m\nplace, aside               0.00000   2.00000  m\n"
         "force of the fluid, x            4         7  N\nforce of the fluid, y            5         8  N\n",
         "drag                             -         6  N\n"};
-    const char *text = steady_summary(f, &values);
-    has_lines(text, 4, lines);
-    assert_null(strstr(text, "lift"));
+    has_lines(steady_summary(f, &values), 4, lines);
+    assert_null(strstr(printed, "lift"));
     // by the absolute value
     real[0] = real[1] = 0.81;
     values.error = NAN;
@@ -246,23 +232,19 @@ TEST_WITH(info_says_how_bodies_without_a_beat_lose_their_stability, set_up, tear
 TEST_WITH(info_of_a_file_without_rows_says_so, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 0);
-    enum status status;
-    assert_non_null(strstr(info(f->path, 0, &status), "none yet"));
-    assert_int_equal(status, STATUS_OK);
+    assert_int_equal(print_info(f, false), STATUS_OK);
+    assert_non_null(strstr(printed, "none yet"));
 }
 
 TEST_WITH(info_prints_the_case_exactly, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 1);
-    enum status status;
-    assert_string_equal(info(f->path, 1, &status), EFFECTIVE);
-    assert_int_equal(status, STATUS_OK);
+    assert_int_equal(print_info(f, true), STATUS_OK);
+    assert_string_equal(printed, EFFECTIVE);
 }
 
 static void assert_no_info(const struct fixture *f, const char *part) {
-    enum status status;
-    info(f->path, 0, &status);
-    assert_int_equal(status, STATUS_FILE);
+    assert_int_equal(print_info(f, false), STATUS_FILE);
     assert_message(f->path);
     assert_message(part);
 }
@@ -299,7 +281,6 @@ TEST_WITH(info_refuses_another_schema, set_up, tear_down) {
 
 TEST_WITH(info_shows_the_whole_rows_of_a_file_that_was_cut, set_up, tear_down) {
     struct fixture *f = *state;
-    enum status status;
     struct netcdf_rows rows;
     write_file(f, 4);
     assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
@@ -309,19 +290,17 @@ TEST_WITH(info_shows_the_whole_rows_of_a_file_that_was_cut, set_up, tear_down) {
         for (int i = 1; i >= 0; i--) {
             char missing[64], whole[64];
             assert_int_equal(truncate(f->path, (off_t)(rows.begin_of_rows + n * rows.bytes + left[i])), 0);
-            const char *const text = info(f->path, 0, &status);
-            assert_int_equal(status, STATUS_OK);
+            assert_int_equal(print_info(f, false), STATUS_OK);
             snprintf(missing, sizeof missing, "missing     %d of 4 rows: the file was cut off", (int)(4 - n));
             snprintf(whole, sizeof whole, "rows        %d, from t = 0 s to %g s", (int)n, 0.5 * ((int)n - 1));
-            assert_non_null(strstr(text, missing));
-            assert_non_null(strstr(text, n > 0 ? whole : "rows        none is whole"));
+            assert_non_null(strstr(printed, missing));
+            assert_non_null(strstr(printed, n > 0 ? whole : "rows        none is whole"));
         }
     }
     const off_t left[] = {(off_t)rows.begin_of_rows - 1, 5000, 100, 3};
     for (size_t i = 0; i < sizeof left / sizeof *left; i++) {
         assert_int_equal(truncate(f->path, left[i]), 0);
-        info(f->path, 0, &status);
-        assert_int_equal(status, STATUS_FILE);
+        assert_int_equal(print_info(f, false), STATUS_FILE);
     }
 }
 
@@ -334,8 +313,7 @@ TEST_WITH(info_refuses_variables_that_do_not_fit, set_up, tear_down) {
     for (int i = 0; name_of_variable(f->path, i, name); i++) {
         for (enum craft how = 0; how < N_CRAFTS; how++) {
             craft_variable(f->path, name, how);
-            enum status status;
-            info(f->path, 0, &status);
+            const enum status status = print_info(f, false);
             if (status == STATUS_FILE) {
                 assert_message(f->path);
                 n_refused++;
@@ -347,7 +325,6 @@ TEST_WITH(info_refuses_variables_that_do_not_fit, set_up, tear_down) {
     }
     // 24 variables are printed
     AT_LEAST(n_refused, 24 * N_CRAFTS);
-    free(bytes);
 }
 
 // ---- the list of variables and the version ----

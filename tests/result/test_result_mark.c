@@ -93,7 +93,6 @@ TEST_WITH(only_the_rows_of_a_mark_have_to_be_there, set_up, tear_down) {
         assert_int_equal(length_of(file, "time"), 3);
         NEAR(value_at(file, "time", 1, 0, 0, 0), 0.5, 0, 0);
         NEAR(value_at(file, "time", 2, 0, 0, 0), 7, 0, 0);
-        nc_close(file);
         // one row less than the mark counts is too little
         unlink(f->path);
         write_file(f, 4);
@@ -131,19 +130,16 @@ TEST_WITH(a_file_goes_on_behind_a_mark, set_up, tear_down) {
     assert_int_equal(length_of(file, "time"), 3);
     NEAR(value_at(file, "time", 1, 0, 0, 0), 0.5, 0, 0);
     NEAR(value_at(file, "time", 2, 0, 0, 0), 7, 0, 0);
-    nc_close(file);
 }
 
 static void extend_and_compare(struct fixture *f, bool drop) {
     struct result_file *result;
-    write_file(f, 3);
-    const int before = open_to_read(f);
+    const int before = open_new(f, 3);
     const size_t n_vortices = length_of(before, "vortex");
     double circulation[2];
     for (size_t g = 0; g < 2; g++) circulation[g] = value_at(before, "wake_circulation", 0, g, 0, 0);
     NEAR_ARRAY(2, circulation, ((double[]){3, 4}), 0, 0);
     const double bending = value_at(before, "bending_energy", 1, 1, 0, 0);
-    nc_close(before);
     const struct result_source source = {f->path, 2, drop};
     struct result_origin origin = origin_of(f);
     origin.overwrite = true;
@@ -152,7 +148,6 @@ static void extend_and_compare(struct fixture *f, bool drop) {
     assert_int_equal(result_file_create(f->arena, &result, &origin), STATUS_OK);
     const int still = open_to_read(f);
     assert_int_equal(length_of(still, "time"), 3);
-    nc_close(still);
     assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
     assert_int_equal(append(f, result, 9, 1), STATUS_OK);
     assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
@@ -174,7 +169,6 @@ static void extend_and_compare(struct fixture *f, bool drop) {
             }
         }
     }
-    nc_close(file);
 }
 
 TEST_WITH(a_longer_run_begins_with_the_rows, set_up, tear_down) {

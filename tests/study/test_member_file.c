@@ -70,15 +70,10 @@ TEST_WITH(a_member_that_lacks_rows_is_refused, set_up, tear_down) {
 
 TEST_WITH(a_steady_state_has_its_own_values, set_up, tear_down) {
     struct fixture *const f = *state;
-    struct result_file *file;
     struct member_file member;
     struct steady_fish fish[N_FISH] = {{.drag = 3, .force = {4, 5}}, {.drag = 6, .force = {7, 8}}};
     const struct steady_values values = {.stiffness = 0.5, .growth = -0.25, .fish = fish};
-    assert_int_equal(begin(f, false, true, &file), STATUS_OK);
-    assert_int_equal(append(f, file, 0, 0), STATUS_OK);
-    result_file_steady(file, f->school, &values);
-    assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);
-    assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
+    write_steady(f, 1, &(double){0}, &values);
     assert_int_equal(member_file_read(test_arena(), &member, f->path), STATUS_OK);
     NEAR(value(&member, "steady_drag", 1, 0), 6, 0, 0);
     NEAR(value(&member, "steady_force", 0, 1), 5, 0, 0);
@@ -92,15 +87,10 @@ TEST_WITH(a_steady_state_has_its_own_values, set_up, tear_down) {
 
 TEST_WITH(beats_of_a_search_are_those_of_search_multipliers_and_rows, set_up, tear_down) {
     struct fixture *const f = *state;
-    struct result_file *file;
     struct member_file member;
     struct steady_fish fish[N_FISH] = {{.drag = 3}, {.drag = 6}};
     const struct steady_values values = {.n_beats = 5, .n_multiplier_beats = 7, .fish = fish};
-    assert_int_equal(begin(f, false, true, &file), STATUS_OK);
-    for (int i = 0; i < 2; i++) assert_int_equal(append(f, file, 3 + 0.75 * i, 0), STATUS_OK);
-    result_file_steady(file, f->school, &values);
-    assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);
-    assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
+    write_steady(f, 2, (double[]){3, 3.75}, &values);
     assert_int_equal(member_file_read(test_arena(), &member, f->path), STATUS_OK);
     // rows of 0.75 s at 2 Hz; 28 s
     NEAR(value(&member, "beat_time", 0, 0), 28 / (5 + 7 + 1.5), 0, 1e-14);
@@ -165,7 +155,6 @@ TEST_WITH(a_member_that_was_cut_is_refused, set_up, tear_down) {
         assert_message(f->path);
         assert_null(member.status);
     }
-    free(bytes);
 }
 
 /* Whether a member cannot be read without this variable. */
@@ -206,7 +195,6 @@ TEST_WITH(a_variable_that_does_not_fit_is_refused, set_up, tear_down) {
         }
     }
     ABOVE(n_refused, 150);
-    free(bytes);
 }
 
 TEST_WITH(a_body_cannot_have_more_nodes_than_there_are_places, set_up, tear_down) {

@@ -7,9 +7,8 @@
 #include <unistd.h>
 
 #include "base/text.h"
-#include "case/sweep.h"
+#include "case_fixture.h"
 #include "crafted_file.h"
-#include "near.h"
 #include "study/convergence.h"
 #include "study/study.h"
 #include "study/study_file.h"
@@ -38,7 +37,7 @@ TEST(a_given_value_gives_the_order_with_two_levels_each) {
     assert_int_equal(convergence_judge_exact(3, sizes, missing, one).verdict, CONVERGENCE_UNKNOWN);
 }
 
-static const char refined[] =
+static const char of_two_orders[] =
     "format: 1\ntime: {end: 1, shedding_interval: 0.1}\nfish: [{}, {}]\nsweep:\n"
     "  - {key: solver.order, values: [1, 2]}\n"
     "  - {key: time.shedding_interval, values: [0.05, 0.1, 0.025], refine: true, reference: {speed: 5}}\n";
@@ -71,17 +70,22 @@ static enum status read_study(const char *path, struct case_values **study, stru
     return study_file_read(reader, study, members, &(int){0});
 }
 
-TEST(orders_are_kept_in_study_nc) {
-    struct case_values study, *again;
-    assert_int_equal(case_parse(&study, refined, strlen(refined), "refined.yaml", NULL, 0, NULL), STATUS_OK);
-    struct member_file member[6], *read;
+/* A study with six members, and the observed orders, in a new file. */
+static struct case_values write_study(char *path, struct member_file member[6]) {
+    const struct case_values study = parse(of_two_orders);
     for (int m = 0; m < 6; m++) make_member(&member[m], &study, m);
     struct convergence_orders orders;
-    struct arena *const arena = arena_create(NULL, "a test");
-    convergence_orders_create(arena, &orders, &study, member);
-    char path[] = "/tmp/shoal-study-XXXXXX";
+    convergence_orders_create(test_arena(), &orders, &study, member);
     close(mkstemp(path));
-    assert_int_equal(study_file_write(arena, path, &study, member, &orders, NULL, "test"), STATUS_OK);
+    assert_int_equal(study_file_write(test_arena(), path, &study, member, &orders, NULL, "test"), STATUS_OK);
+    return study;
+}
+
+TEST(orders_are_kept_in_study_nc) {
+    struct case_values *again;
+    struct member_file member[6], *read;
+    char path[] = "/tmp/shoal-study-XXXXXX";
+    const struct case_values study = write_study(path, member);
 
     int file, variable;
     assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
@@ -129,22 +133,12 @@ TEST(orders_are_kept_in_study_nc) {
     assert_int_equal(read_study(path, &none, &nobody), STATUS_FILE);
     assert_non_null(strstr(status_message(), "write study.nc again"));
     unlink(path);
-    arena_free(arena);
-    case_free(&study);
 }
 
 TEST(a_study_nc_that_does_not_fit_is_refused) {
-    struct case_values study;
-    assert_int_equal(case_parse(&study, refined, strlen(refined), "refined.yaml", NULL, 0, NULL), STATUS_OK);
     struct member_file member[6];
-    for (int m = 0; m < 6; m++) make_member(&member[m], &study, m);
-    struct convergence_orders orders;
-    struct arena *const arena = arena_create(NULL, "a test");
-    convergence_orders_create(arena, &orders, &study, member);
     char path[] = "/tmp/shoal-study-XXXXXX";
-    close(mkstemp(path));
-    assert_int_equal(study_file_write(arena, path, &study, member, &orders, NULL, "test"), STATUS_OK);
-
+    write_study(path, member);
     size_t n;
     char *const bytes = read_bytes(path, &n), name[NC_MAX_NAME + 1];
     for (int i = 0; name_of_variable(path, i, name); i++) {
@@ -166,10 +160,7 @@ TEST(a_study_nc_that_does_not_fit_is_refused) {
             write_bytes(path, n, bytes);
         }
     }
-    free(bytes);
     unlink(path);
-    arena_free(arena);
-    case_free(&study);
 }
 
 /* The printed orders of nose and tail, of values 5 + 0.3 h in both directions. */
@@ -187,6 +178,19 @@ static void is_table(const char *text, double expected, const char *met) {
     if (strcmp(text, want) != 0) fail_msg("%s\ninstead of\n%s", text, want);
 }
 
+/* The printed orders of the members of a study, until the end of the test. */
+static const char *print_orders(const struct case_values *study, const struct member_file *member, enum status want) {
+    struct convergence_orders orders;
+    char *printed;
+    size_t size;
+    convergence_orders_create(test_arena(), &orders, study, member);
+    FILE *const stream = open_memstream(&printed, &size);
+    assert_int_equal(study_print_orders(test_arena(), study, &orders, stream), want);
+    fclose(stream);
+    arena_defer(test_arena(), free, printed);
+    return printed;
+}
+
 // values 5 + 0.3 h
 TEST(an_order_is_met_within_its_bounds_on_both_sides) {
     static const struct {
@@ -200,10 +204,8 @@ TEST(an_order_is_met_within_its_bounds_on_both_sides) {
                  "sweep: [{key: time.shedding_interval, values: [0.05, 0.1, 0.025], refine: true, expect: {order: %g, "
                  "within: 0.1, of: nose}}]\n",
                  cases[i].order);
-        struct case_values study;
+        const struct case_values study = parse(text);
         struct member_file member[3];
-        struct convergence_orders orders;
-        assert_int_equal(case_parse(&study, text, strlen(text), "order.yaml", NULL, 0, NULL), STATUS_OK);
         for (int m = 0; m < 3; m++) {
             static const double h[] = {0.05, 0.1, 0.025};
             member[m] = (struct member_file){.number = m, .status = "complete"};
@@ -211,17 +213,8 @@ TEST(an_order_is_met_within_its_bounds_on_both_sides) {
             const int nose = member_file_quantity_number("nose");
             for (int k = 0; k < 2; k++) *member_file_place(&member[m], nose, 0, k) = 5 + 0.3 * h[m];
         }
-        struct arena *const arena = arena_create(NULL, "a test");
-        convergence_orders_create(arena, &orders, &study, member);
-        char *printed;
-        size_t size;
-        FILE *const stream = open_memstream(&printed, &size);
-        assert_int_equal(study_print_orders(arena, &study, &orders, stream), cases[i].want);
-        fclose(stream);
+        const char *const printed = print_orders(&study, member, cases[i].want);
         is_table(printed, cases[i].order, cases[i].want == STATUS_OK ? "met" : "MISSED");
-        free(printed);
-        arena_free(arena);
-        case_free(&study);
     }
 }
 
@@ -232,12 +225,8 @@ TEST(differences_below_the_error_of_a_search_are_noise) {
         static const char text[] =
             "format: 1\ntime: {end: 1, shedding_interval: 0.1}\nfish: [{}]\n"
             "sweep: [{key: time.shedding_interval, values: [0.1, 0.05, 0.025], refine: true, steady: true}]\n";
-        struct case_values study;
+        const struct case_values study = parse(text);
         struct member_file member[3];
-        struct convergence_orders orders;
-        char *printed;
-        size_t size;
-        assert_int_equal(case_parse(&study, text, strlen(text), "noise.yaml", NULL, 0, NULL), STATUS_OK);
         for (int m = 0; m < 3; m++) {
             static const double speeds[] = {1.002, 1.001, 1};
             static const char *const names[] = {"steady_speed", "steady_error", "steady_residual"};
@@ -248,34 +237,23 @@ TEST(differences_below_the_error_of_a_search_are_noise) {
                 *member_file_place(&member[m], member_file_quantity_number(names[k]), 0, 0) = values[k];
             }
         }
-        struct arena *const arena = arena_create(NULL, "a test");
-        convergence_orders_create(arena, &orders, &study, member);
-        FILE *const stream = open_memstream(&printed, &size);
-        assert_int_equal(study_print_orders(arena, &study, &orders, stream), STATUS_OK);
-        fclose(stream);
+        const char *const printed = print_orders(&study, member, STATUS_OK);
         if (!strstr(printed, "steady_speed") || (strstr(printed, "noise") != NULL) != (i < 2)) fail_msg("%s", printed);
-        free(printed);
-        arena_free(arena);
-        case_free(&study);
     }
 }
 
 TEST(levels_of_points_are_their_distances_from_coarse_to_fine) {
     static const char text[] =
         "format: 1\ntime: {end: 1}\nfish: [{}]\nsweep: [{key: \"fish[*].nodes\", values: [9, 5, 17], refine: true}]\n";
-    struct case_values study;
-    assert_int_equal(case_parse(&study, text, strlen(text), "points.yaml", NULL, 0, NULL), STATUS_OK);
+    const struct case_values study = parse(text);
     const struct member_file missing[3] = {{.status = ""}, {.status = ""}, {.status = ""}};
     struct convergence_orders orders;
-    struct arena *const arena = arena_create(NULL, "a test");
-    convergence_orders_create(arena, &orders, &study, missing);
+    convergence_orders_create(test_arena(), &orders, &study, missing);
     assert_int_equal(orders.n_levels, 3);
     const double sizes[] = {1.0 / 4, 1.0 / 8, 1.0 / 16};
     const int levels[] = {1, 0, 2};
     NEAR_ARRAY(3, orders.grid_spacing, sizes, 0, 0);
     assert_memory_equal(orders.level, levels, sizeof levels);
-    arena_free(arena);
-    case_free(&study);
 }
 
 TEST(quantities_of_a_case_are_those_of_a_study) {

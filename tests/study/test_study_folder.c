@@ -126,7 +126,6 @@ TEST_WITH(a_member_in_the_place_of_another_is_refused, set_up, tear_down) {
     size_t n;
     char *const bytes = read_bytes(f->member[0], &n);
     write_bytes(f->member[1], n, bytes);
-    free(bytes);
     assert_refused(f, &f->study, f->member[1]);
 }
 
@@ -143,7 +142,6 @@ TEST_WITH(members_beyond_the_last_are_refused_or_removed, set_up, tear_down) {
     size_t n;
     char *const bytes = read_bytes(f->member[0], &n);
     write_bytes(path, n, bytes);
-    free(bytes);
     assert_refused(f, &f->study, path);
     assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 1), STATUS_OK);
     assert_int_not_equal(access(path, F_OK), 0);

@@ -77,11 +77,10 @@ TEST(the_flow_of_a_row_is_that_of_the_run) {
         write_run(text);
         struct simulation *const run = school_simulation(text);
         school_run(run, 0.6);
-        struct arena *const arena = arena_create(NULL, "a test");
         struct field_row *row;
         struct points there, here;
-        school_ok(field_row_read(arena, &row, path, NAN, 0, NULL));
-        struct flow *const flow = flow_create(arena, row->school);
+        school_ok(field_row_read(test_arena(), &row, path, NAN, 0, NULL));
+        struct flow *const flow = flow_create(test_arena(), row->school);
         NEAR(row->state->t, 0.6, 1e-12, 0);
         assert_int_equal(row->state->wake[0].n_vortex, run->state->wake[0].n_vortex);
         ABOVE(row->state->wake[0].n_vortex, 15);
@@ -92,7 +91,6 @@ TEST(the_flow_of_a_row_is_that_of_the_run) {
         NEAR_ARRAY(N_POINTS, here.u, there.u, 1e-12, 0);
         NEAR_ARRAY(N_POINTS, here.v, there.v, 1e-12, 0);
         NEAR_ARRAY(N_POINTS, here.v_x, there.v_x, 1e-10, 0);
-        arena_free(arena);
     }
 }
 
@@ -151,11 +149,10 @@ TEST(at_a_tail_it_is_what_the_tail_feels) {
         felt[f][0] = live->u[tail];
         felt[f][1] = live->v[tail];
     }
-    struct arena *const arena = arena_create(NULL, "a test");
     struct field_row *row;
     struct points points;
-    school_ok(field_row_read(arena, &row, path, 0.6, 0, NULL));
-    struct flow *const flow = flow_create(arena, row->school);
+    school_ok(field_row_read(test_arena(), &row, path, 0.6, 0, NULL));
+    struct flow *const flow = flow_create(test_arena(), row->school);
     place_points(&points);
     for (int f = 0; f < 2; f++) {
         const struct fish *const fish = &row->school->fish[f];
@@ -167,19 +164,17 @@ TEST(at_a_tail_it_is_what_the_tail_feels) {
         NEAR(points.u[f], felt[f][0], 1e-12, 0);
         NEAR(points.v[f], felt[f][1], 1e-12, 0);
     }
-    arena_free(arena);
 }
 
 // ---- rows that there are not
 
 static void refused(double t, enum status want, const char *part) {
-    struct arena *const arena = arena_create(NULL, "a test");
+    ARENA(arena, NULL, "a row");
     struct field_row *row;
     const enum status status = field_row_read(arena, &row, path, t, 0, NULL);
     if (status != want || !strstr(status_message(), part)) {
         fail_msg("t = %g: status %d, message: %s", t, (int)status, status_message());
     }
-    arena_free(arena);
 }
 
 TEST(other_times_are_refused) {
@@ -189,18 +184,16 @@ TEST(other_times_are_refused) {
             "has no wake (output.wake_interval): the nearest rows with a wake are at 0.3 s and 0.6 s");
     refused(0.7, STATUS_CASE, "outside of the rows, 0 s to 0.6 s");
     refused(-0.1, STATUS_CASE, "outside of the rows");
-    struct arena *const arena = arena_create(NULL, "a test");
     struct field_row *row;
-    school_ok(field_row_read(arena, &row, path, 0.3, 0, NULL));
+    school_ok(field_row_read(test_arena(), &row, path, 0.3, 0, NULL));
     NEAR(row->state->t, 0.3, 1e-12, 0);
 
     // a time may be off by a millionth of an interval of 0.02 s
     static const double close[] = {0.3 - 1.9e-8, 0.3 + 1.9e-8, 0.6 + 1.9e-8, -1.9e-8};
     for (int i = 0; i < 4; i++) {
-        school_ok(field_row_read(arena, &row, path, close[i], 0, NULL));
+        school_ok(field_row_read(test_arena(), &row, path, close[i], 0, NULL));
         NEAR(row->state->t, close[i], 1.95e-8, 0);
     }
-    arena_free(arena);
     refused(0.3 + 2.1e-8, STATUS_CASE, "no row at t = 0.3 s: the nearest are at 0.3 s and 0.4 s");
     refused(0.3 - 2.1e-8, STATUS_CASE, "no row at t = 0.3 s: the nearest are at 0.2 s and 0.3 s");
     refused(0.6 + 2.1e-8, STATUS_CASE, "outside of the rows");
@@ -229,7 +222,6 @@ TEST(damaged_rows_are_refused) {
         nc_close(file);
         refused(0.6, STATUS_FILE, damage[i].part);
     }
-    free(good);
 }
 
 // ---- the file
@@ -244,10 +236,9 @@ static double value_of(int file, const char *name, size_t i, size_t j, size_t k,
 
 TEST(the_file_has_the_field_on_its_grid) {
     write_run(school_of("sheet"));
-    struct arena *const arena = arena_create(NULL, "a test");
     struct field_row *row;
     struct field_grid grid = {.nx = 12, .ny = 5};
-    school_ok(field_row_read(arena, &row, path, NAN, 0, NULL));
+    school_ok(field_row_read(test_arena(), &row, path, NAN, 0, NULL));
     field_file_box(row, grid.low, grid.high);
     // half a length of the longer fish around all nodes and vortices
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
@@ -268,10 +259,10 @@ TEST(the_file_has_the_field_on_its_grid) {
         NEAR(grid.low[i], low[i] - 0.5, 1e-14, 0);
         NEAR(grid.high[i], high[i] + 0.5, 1e-14, 0);
     }
-    school_ok(field_file_write(arena, field_path, 1, path, "test", row, &grid));
+    school_ok(field_file_write(test_arena(), field_path, 1, path, "test", row, &grid));
     int file;
     assert_int_equal(nc_open(field_path, NC_NOWRITE, &file), NC_NOERR);
-    struct flow *const flow = flow_create(arena, row->school);
+    struct flow *const flow = flow_create(test_arena(), row->school);
     for (size_t j = 0; j < 5; j++) {
         for (size_t i = 0; i < 12; i++) {
             const double x = value_of(file, "x", i, 0, 0, 0), y = value_of(file, "y", j, 0, 0, 0);
@@ -292,7 +283,6 @@ TEST(the_file_has_the_field_on_its_grid) {
     assert_true(isnan(value_of(file, "body_x", 0, 0, 6, 1)));
     NEAR(value_of(file, "edge_thickness", 0, 1, 0, 0), row->school->fish[0].thickness[1], 0, 0);
     nc_close(file);
-    arena_free(arena);
 }
 
 static int make_folder(void **state) {

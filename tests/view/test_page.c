@@ -13,9 +13,8 @@
 TEST_WITH(the_reader_gives_what_was_written, set_up, tear_down) {
     struct fixture *f = *state;
     write_file(f, 3);
-    struct arena *const arena = arena_create(NULL, "a test");
     struct result_reader *reader;
-    assert_int_equal(result_reader_open(arena, &reader, f->path), STATUS_OK);
+    assert_int_equal(result_reader_open(test_arena(), &reader, f->path), STATUS_OK);
     assert_int_equal(reader->length[TIME], 3);
     assert_string_equal(reader->title, "result");
     assert_string_equal(reader->run_status, "complete");
@@ -27,21 +26,19 @@ TEST_WITH(the_reader_gives_what_was_written, set_up, tear_down) {
     double time, *x;
     assert_int_equal(result_reader_row(reader, "time", 2, &time), STATUS_OK);
     NEAR(time, 1, 0, 0);
-    assert_int_equal(result_reader_new(arena, reader, "x", 1, &x), STATUS_OK);
+    assert_int_equal(result_reader_new(test_arena(), reader, "x", 1, &x), STATUS_OK);
     const struct fish *const second = &f->school->fish[1];
     NEAR(x[2 * 7 + 1], f->state->y[second->at.y], 0, 0);
     assert_true(isnan(x[2 * 5]));  // the leader has five nodes
     bool has_wake = false;
     assert_int_equal(result_reader_has_wake(reader, 0, &has_wake), STATUS_OK);
     assert_true(has_wake);
-    arena_free(arena);
 }
 
 static void cannot_be_read(const char *path, const char *part) {
-    struct arena *const arena = arena_create(NULL, "a test");
+    ARENA(arena, NULL, "a reader");
     struct result_reader *reader;
     assert_int_equal(result_reader_open(arena, &reader, path), STATUS_FILE);
-    arena_free(arena);
     assert_message(path);
     assert_message(part);
 }
@@ -83,16 +80,14 @@ TEST_WITH(sections_and_forces_are_those_of_the_fish_whatever_their_names, set_up
     f->school->fish[1].has_mean_section = 1;
     // nothing has force: pressure, the first fish, the last fish
     for (int with_pressure = -1; with_pressure < 2; with_pressure++) {
-        struct arena *const arena = arena_create(NULL, "a test");
         struct result_reader *reader;
         for (int i = 0; i < 2; i++) f->school->fish[i].force = i == with_pressure ? FORCE_PRESSURE : FORCE_REACTIVE;
         write_file(f, 1);
         set_text(f, "case_effective", "  - name: section: mean\n    section: mean\n    force: pressure\n");
-        assert_int_equal(result_reader_open(arena, &reader, f->path), STATUS_OK);
+        assert_int_equal(result_reader_open(test_arena(), &reader, f->path), STATUS_OK);
         assert_false(reader->has_mean_section[0]);
         assert_true(reader->has_mean_section[1]);
         assert_int_equal(reader->has_pressure, with_pressure >= 0);
-        arena_free(arena);
         unlink(f->path);
     }
 }
@@ -125,10 +120,8 @@ static const char *page_of(const struct fixture *f) {
 }
 
 static enum status new_page(const char *from, const char *to, bool overwrite) {
-    struct arena *const arena = arena_create(NULL, "a test");
-    const enum status status = page_write(arena, from, to, overwrite);
-    arena_free(arena);
-    return status;
+    ARENA(arena, NULL, "a page");
+    return page_write(arena, from, to, overwrite);
 }
 
 TEST_WITH(a_page_is_whole_or_not_there, set_up, tear_down) {
@@ -140,7 +133,6 @@ TEST_WITH(a_page_is_whole_or_not_there, set_up, tear_down) {
     char *const bytes = read_bytes(page, &n);
     assert_memory_equal(bytes, "<!DOCTYPE html>", 15);
     assert_memory_equal(bytes + n - 8, "</html>\n", 8);
-    free(bytes);
 
     assert_int_equal(new_page(f->path, page, false), STATUS_FILE);
     assert_message("exists");
@@ -176,5 +168,4 @@ TEST_WITH(variables_that_do_not_fit_are_refused, set_up, tear_down) {
     }
     // 17 variables are read in three ways, three of them without a dimension that could be too long
     AT_LEAST(n_refused, 17 * 3 - 3);
-    free(bytes);
 }
