@@ -529,7 +529,6 @@ static enum status create_points(struct error_sweep *sweep, char ***swept) {
     }
     study->expect = expect;
 
-    axis->order = axis->within = NAN;
     study->sweep = axis;
     study->n_axes = 1;
     return STATUS_OK;

@@ -358,6 +358,7 @@ EOF
     check "a run draws one line within 60 columns" /usr/bin/python3 terminal.py 60 "$program" run "$demo" --force -o drawn.nc --set time.end=20
     check "a run draws one line within 35 columns" /usr/bin/python3 terminal.py 35 "$program" run "$demo" --force -o drawn.nc --set time.end=20
     check "and one within 20 columns" /usr/bin/python3 terminal.py 20 "$program" run "$demo" --force -o drawn.nc --set time.end=5
+    check "and less within 19 columns" /usr/bin/python3 terminal.py 19 "$program" run "$demo" --force -o drawn.nc --set time.end=5
     # shellcheck disable=SC2086 # words
     for words in 'study other.yaml -o drawn -j 1' 'error other.yaml --of speed -j 1 --set sweep=[]' 'compare other.yaml --methods rk4 --steps 5e-3 --set sweep=[]'; do
         check "so does ${words%% *}" /usr/bin/python3 terminal.py 60 "$program" $words --force

@@ -123,12 +123,15 @@ TEST(a_wave_that_travels_forwards_is_noted) {
 
 TEST(a_value_that_fish_share_is_noted_once) {
     static const char text[] =
-        "format: 1\ntime: {end: 3}\ndefaults: {fish: {length: 50, body: {modulus: 1}}}\nfish: [{}, {}, {}]\n";
+        "format: 1\ntime: {end: 3}\nfluid: {viscosity: 0}\n"
+        "defaults: {fish: {length: 50, body: {modulus: 1}}}\nfish: [{}, {}, {drag: {skin: quadratic}}]\n";
     struct case_values values = parse(text);
-    const char *const first = strstr(values.notes, ":3:27: note: fish[0].length");
+    const char *const first = strstr(values.notes, ":4:27: note: fish[0].length");
     assert_non_null(first);
     assert_null(strstr(first, "fish[1]"));
-    assert_non_null(strstr(first, ":3:47: note: fish[0].body.modulus"));
+    assert_non_null(strstr(first, ":4:47: note: fish[0].body.modulus"));
+    // of two fish of three
+    assert_non_null(strstr(values.notes, ":3:20: note: fluid.viscosity: 0 removes the friction of the skin"));
 }
 
 // ---- the default shedding interval

@@ -102,9 +102,10 @@ TEST(an_expectation_is_about_the_members_with_its_values) {
     s = parse(
         "time: {end: 1, shedding_interval: 0.1}\nformat: 1\nfish: [{}]\n"
         "sweep: [{key: solver.rtol, values: [1e-3, 1e-4]}]\n"
-        "expect: [{of: speed, least: 1, where: [solver.rtol=1e-3]}]\n");
+        "expect: [{of: speed, fish: fish1, least: 1, where: [solver.rtol=1e-3]}]\n");
     assert_int_equal(sweep_expects_of(&s, s.expect, 0), 1);
     assert_int_equal(sweep_expects_of(&s, s.expect, 1), 0);
+    assert_non_null(strstr(case_show(s.arena, &s), "{of: [speed], fish: fish1, where: "));
 }
 
 TEST(a_wrong_member_is_named) {

@@ -169,6 +169,7 @@ TEST(what_no_run_has_written_is_refused) {
     crafted("result", "../run.nc", 9, "section 'result' is invalid");
     crafted("rows", "\xff\xff\xff\xff\xff\xff\xff\xff", 8, "section 'result' is invalid");
     crafted("steps", "1234567", 7, "section 'steps' is invalid");
+    crafted("steps", "123456789", 9, "section 'steps' is invalid");
     crafted("t", "", 0, "section 't' is invalid");
     crafted("y", "12345678", 8, "section 'y' is invalid");
     crafted("wake.n_vortex", many, sizeof many, "section 'wake.n_vortex' is invalid");

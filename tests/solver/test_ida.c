@@ -115,6 +115,7 @@ TEST(a_restart_begins_like_a_new_solver) {
     for (int i = 0; i < 2; i++) {
         run[i] = school_simulation(SCHOOL_DEFAULTS TIME
                                    "solver: {rtol: 1e-2}\nfish: [{nodes: 9, sheet_points: 27, body: {modulus: 1e8}, "
+                                   "motion: {prescribed: head, heave: 0.1, frequency: 1}, "
                                    "wave: {amplitude: 1, ramp: 0.02}}]\n");
         school_run(run[i], 0.2);
     }
@@ -126,8 +127,9 @@ TEST(a_restart_begins_like_a_new_solver) {
     assert_memory_equal(&after, &before, offsetof(struct integrator_counts, step_size));
     school_ok(simulate_renew(run[1]));
     for (int i = 0; i < 2; i++) school_ok(simulate_step(run[i]));
-    const size_t size = sizeof(double) * (size_t)run[0]->school->n_unknowns;
-    assert_memory_equal(run[0]->state->yp, run[1]->state->yp, size);
+    // the iteration that makes a new solver consistent changes the rounding
+    NEAR_ARRAY(run[0]->school->n_unknowns, run[0]->state->yp, run[1]->state->yp, 1e-9, 1e-9);
+    NEAR_ARRAY(N_WORKS, run[0]->state->balance->work, run[1]->state->balance->work, 1e-9, 1e-9);
 }
 
 TEST(a_restart_without_a_jump_does_not_change_the_path) {
@@ -165,6 +167,16 @@ TEST(equations_without_a_finite_value_end_with_time_fish_and_reason) {
     assert_non_null(strstr(status_message(), "nemo"));
     // the cause, not what IDA says about it
     assert_non_null(strstr(status_message(), "of fish nemo has no finite value at t = 0.1"));
+}
+
+TEST(a_jacobian_that_is_singular_ends_with_a_remedy) {
+    struct simulation *const simulation = school_simulation(TIME "sheet: {kutta: rate}\nfish: [{name: nemo}]\n");
+    // Kelvin's theorem without circulations
+    struct fish *const fish = simulation->school->fish;
+    for (int j = 0; j < fish->n_sheet; j++) fish->sheet_weight[j] = 0;
+    simulation->school->kutta = KUTTA_RATE;
+    assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "the Jacobian is singular: check the units of the body"));
 }
 
 TEST(an_edge_that_is_pressed_to_nothing_is_named) {

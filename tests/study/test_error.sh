@@ -194,6 +194,10 @@ expect:
   - {of: speed, fish: e, where: ["fish[*].motion.speed=2", "fish[*].wave.frequency=1"], least: 1.999}
 error: {of: [speed, steps], confirm: false, keys: {nodes: [9, 13], rtol: [1e-4, 1e-5]}}
 end
+# more processes than members: the time of the longest, of which the table prints two digits
+run error five.yaml --plan -j 64 --set time.end=100 --set 'sweep=[]' --set 'expect=[]'
+check members_at_once_take_the_time_of_the_longest awk '/^(fish|solver)/ { for (i = NF - 2; i <= NF; i++) if ($i > most) most = $i }
+    / at once/ { ok = $13 == most && $14 == "s" && $16 == 64 } END { exit !ok }' out
 run study five.yaml -q -o five
 check a_missed_expectation_at_points_gives_exit_code_3 test "$code" = 3
 run gather five

@@ -125,10 +125,21 @@ TEST(levels_that_are_no_valid_cases_are_replaced) {
 }
 
 TEST(an_interval_divides_the_beat_or_the_run) {
-    static const char text[] = "format: 1\ntime: {end: 4, shedding_interval: 0.02, output_interval: 0.1}\nfish: [{}]\n";
+    static const char text[] =
+        "format: 1\ntime: {end: 4, shedding_interval: 0.02, output_interval: 0.1, checkpoint_interval: 0.7}\n"
+        "output: {wake_interval: 0.3}\nfish: [{}]\n";
     struct error_study study = open_study(text, "{of: steady_speed, keys: [shedding_interval]}");
     // 50 events in a beat; 12.5 are none
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 1 / 13.0}, 0.02);
+    // all times are multiples of it
+    for (int m = 0; m < sweep_n_members(study.study); m++) {
+        struct case_values member;
+        assert_int_equal(case_member(&member, study.study, m), STATUS_OK);
+        const double times[] = {member.time.end, member.time.output_interval, member.time.checkpoint_interval,
+                                member.output.wake_interval};
+        for (int i = 0; i < 4; i++) NEAR(remainder(times[i], member.school.shedding_interval), 0, 1e-12, 0);
+        case_free(&member);
+    }
     // a search ends after whole beats, no earlier than the case
     study = open_study("format: 1\ntime: {end: 4.5, shedding_interval: 0.02, output_interval: 0.1}\nfish: [{}]\n",
                        "{of: steady_speed, keys: [shedding_interval]}");
@@ -484,7 +495,9 @@ static struct member_file *follow(struct error_study *study, int *n_rounds) {
     while (n_new > 0) {
         members = make_members(study);
         convergence_study_judge(study, members);
+        const int n_before = sweep_n_members(study->study);
         n_new = convergence_study_refine(study, members, INT_MAX);
+        assert_int_equal(n_new, sweep_n_members(study->study) - n_before);
         ++*n_rounds;
         assert_in_range(*n_rounds, 1, 30);
     }
@@ -534,6 +547,16 @@ TEST(without_the_members_of_a_step_it_is_not_taken) {
          1e-12);
 }
 
+TEST(a_bound_out_of_reach_adds_three_levels_to_a_key) {
+    struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [shedding_interval], within: 1e-9}");
+    const int n_planned = study.key[0].n_levels;
+    int n_rounds;
+    study.study->error->most = 1e12;
+    follow(&study, &n_rounds);
+    assert_false(study.is_reached);
+    assert_int_equal(study.key[0].n_levels, n_planned + 3);
+}
+
 TEST(what_is_too_dear_is_not_run_and_its_cost_is_said) {
     struct error_study study = open_study(UNIFORM, "{of: steady_speed, within: 2e-4, most: 3}");
     int n_rounds;
@@ -544,6 +567,17 @@ TEST(what_is_too_dear_is_not_run_and_its_cost_is_said) {
     convergence_study_say_cost(&study, words);
     assert_non_null(strstr(words, "time.shedding_interval"));
     assert_non_null(strstr(words, "times the CPU time"));
+
+    // one key of first order: the interval is divided by 1.1 until its error is within the bound
+    study = open_study(UNIFORM, "{of: steady_speed, keys: [shedding_interval], within: 1e-4, most: 3}");
+    follow(&study, &n_rounds);
+    const struct error_study_key *const key = study.key;
+    char want[CONVERGENCE_BYTES];
+    const double ratio = pow(1.1, ceil(log(key->part[0].error / study.value[0] / 1e-4) / log(1.1)));
+    snprintf(want, sizeof want, "time.shedding_interval %.3g: about %.2g times the CPU time",
+             key->value[key->stated] / ratio, pow(ratio, key->cost_exponent));
+    convergence_study_say_cost(&study, words);
+    assert_string_equal(words, want);
 }
 
 TEST(a_member_that_failed_leaves_the_error_unknown) {
@@ -578,7 +612,8 @@ TEST(a_cusp_an_edge_and_a_sheet_are_objected_to) {
 
 // the report of a study whose shedding interval has this share of the error and a reason for a flag
 static int is_flagged_with_share(double share) {
-    struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [nodes, shedding_interval]}");
+    struct error_study study =
+        open_study(UNIFORM, "{of: steady_speed, keys: {nodes: [13, 17], shedding_interval: [0.01, 0.02]}}");
     struct member_file *const members = make_members(&study);
     convergence_study_judge(&study, members);
     ABOVE(study.error[0], 0);
