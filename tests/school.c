@@ -48,6 +48,13 @@ void school_clear(struct setup *setup) {
     arena_free(setup->arena);
 }
 
+struct initial_conditions *school_consistent(struct setup *setup, double t) {
+    struct initial_conditions *solver;
+    school_ok(initial_conditions_create(test_arena(), &solver, setup->residual));
+    school_ok(initial_conditions_solve(solver, &residual_run, t, setup->state->y, setup->state->yp));
+    return solver;
+}
+
 struct setup setup_of(const char *text) {
     struct setup setup;
     school_build(&setup, text);
@@ -345,6 +352,17 @@ void school_run(struct simulation *simulation, double t) {
     while (simulation->state->t < t - simulation->school->interval / 2) school_ok(simulate_step(simulation));
 }
 
+void school_measure(struct simulation *simulation, double t) {
+    school_run(simulation, t);
+    simulate_measure(simulation);
+}
+
+struct integrator_counts school_counts(const struct simulation *simulation) {
+    struct integrator_counts counts;
+    simulation->integrator->count(simulation->solver, &counts);
+    return counts;
+}
+
 void school_fails(struct simulation *simulation, const char *message) {
     enum status status = STATUS_OK;
     for (int event = 0; event < 50 && status == STATUS_OK; event++) status = simulate_step(simulation);
@@ -381,9 +399,7 @@ void school_same_bits(const struct simulation *got, const struct simulation *wan
             }
         }
     }
-    struct integrator_counts counts[2];
-    got->integrator->count(got->solver, &counts[0]);
-    want->integrator->count(want->solver, &counts[1]);
+    const struct integrator_counts counts[] = {school_counts(got), school_counts(want)};
     if (memcmp(&counts[0], &counts[1], sizeof *counts) != 0) fail_msg("the totals differ, case:\n%s", text);
     ABOVE(counts[0].steps, want->options.before.steps);
 }

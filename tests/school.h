@@ -10,6 +10,7 @@
 #include "run/simulate.h"
 #include "school/jacobian.h"
 #include "school/residual.h"
+#include "solver/initial_conditions.h"
 
 struct setup {
     struct arena *arena;
@@ -45,6 +46,9 @@ double school_random(struct setup *setup);
  * past the last event. */
 void school_stir(struct setup *setup);
 
+/* Unknowns and rates that satisfy the equations at a time; returns their solver. */
+struct initial_conditions *school_consistent(struct setup *setup, double t);
+
 /* Fill the wake of each fish up to n vortices, at random places behind the body. */
 void school_fill_wakes(struct setup *setup, int n);
 
@@ -70,6 +74,11 @@ double *school_dense_jacobian(const struct jacobian *jacobian);
 struct simulation *school_simulation(const char *text);
 struct simulation *school_simulation_of(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void school_run(struct simulation *simulation, double t);
+
+/* The same, with the diagnostics of that time. */
+void school_measure(struct simulation *simulation, double t);
+
+struct integrator_counts school_counts(const struct simulation *simulation);
 
 /* Fail the test, with the text of the case, unless two runs of the case have the same bits in every field of the state
  * and the same totals. */

@@ -196,8 +196,7 @@ static struct simulation *fish_from_rest(const char *modulus, const char *rtol) 
                              "solver: {rtol: %s}\nfish: [{force: reactive, nodes: 13, sheet_points: 33, body: "
                              "{modulus: %s, relaxation_time: 0.02}}]\n",
                              rtol, modulus);
-    school_run(simulation, 2);
-    simulate_measure(simulation);
+    school_measure(simulation, 2);
     return simulation;
 }
 

@@ -499,8 +499,7 @@ TEST(work_of_a_stiff_fish_from_rest_has_a_limit_in_the_interval) {
                                  "time: {end: 6, shedding_interval: %g}\n"
                                  "fish: [{body: {modulus: 1e8}, control: {law: course}}]\n",
                                  i == 0 ? 0.02 : 0.01);
-        school_run(simulation, 6);
-        simulate_measure(simulation);
+        school_measure(simulation, 6);
         work[i] = simulation->diagnostics->fish[0].actuation_work;
     }
     NEAR(work[0], work[1], 0, 0.02);

@@ -5,7 +5,6 @@
 #include "flow/flow_at_bodies.h"
 #include "force/bound_sheet.h"
 #include "school.h"
-#include "solver/initial_conditions.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define FAR "solver: {coupling_distance: 100}\n"
@@ -79,9 +78,7 @@ static void solve_plate(const char *collocation, const char *kutta, int m, const
                                     "wake: {smoothing: 1.0e+9}\nsheet: {collocation: %s, kutta: %s}\n"
                                     "fish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n",
                                     more, collocation, kutta, m);
-    struct initial_conditions *consistent;
-    school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
-    school_ok(initial_conditions_solve(consistent, &residual_run, 0, setup.state->y, setup.state->yp));
+    school_consistent(&setup, 0);
     const struct fish *fish = setup.school->fish;
     for (int j = 0; j < m; j++) q[j] = fish->sheet_weight[j] * setup.state->y[fish->at.gamma + j];
 }
@@ -144,9 +141,7 @@ static double circulation_beside_a_vortex(int m) {
     struct setup setup = setup_with(
         TIME "wake: {smoothing: 0.2}\nfish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n", m);
     wake_release(&setup.state->wake[0], 0.4, 0.3, 1, 0);
-    struct initial_conditions *consistent;
-    school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
-    school_ok(initial_conditions_solve(consistent, &residual_run, 0, setup.state->y, setup.state->yp));
+    school_consistent(&setup, 0);
     const double circulation = bound_sheet_circulation(setup.school->fish, setup.state->y);
     return circulation;
 }
@@ -181,9 +176,7 @@ static double circulation_of_a_bent_body(line *place, const char *curve, int n_n
         setup.state->y[fish->at.y + k] = at[1];
     }
 
-    struct initial_conditions *consistent;
-    school_ok(initial_conditions_create(test_arena(), &consistent, setup.residual));
-    school_ok(initial_conditions_solve(consistent, &residual_run, 0, setup.state->y, setup.state->yp));
+    school_consistent(&setup, 0);
     const double circulation = bound_sheet_circulation(fish, setup.state->y);
     return circulation;
 }

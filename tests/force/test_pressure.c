@@ -8,7 +8,6 @@
 #include "fish/fish_school.h"
 #include "force/pressure.h"
 #include "school.h"
-#include "solver/initial_conditions.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -261,8 +260,7 @@ TEST(force_and_reaction_are_those_of_the_jump) {
                           "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0, frequency: 0}, "
                           "start: {speed: 1}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
                           "        motion: {prescribed: all, heave: 0.05, pitch: 5, frequency: 1}}]\n");
-    school_run(simulation, 0.3);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.3);
     const struct fish *fish = simulation->school->fish;
     const struct diagnostics_fish *of = simulation->diagnostics->fish;
     const struct pressure *pressure = simulation->residual->pressure[0];
@@ -311,8 +309,7 @@ TEST(the_pressure_acts_on_the_depth_of_an_edge) {
         "time: {end: 1, shedding_interval: 0.01}\n"
         "fish: [{nodes: 5, sheet_points: 21, pressure: {span: infinite}, body: {profile: table, thickness_table: [.1, "
         ".1, .1, .1], depth_table: [.2, .3, .5, .4]}, motion: {prescribed: all, pitch: 5, frequency: 1}}]\n");
-    school_run(simulation, 0.1);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.1);
     const struct fish *const fish = simulation->school->fish;
     const struct pressure *const pressure = simulation->residual->pressure[0];
     const double *const y = simulation->state->y, *const yp = simulation->state->yp;
@@ -344,8 +341,7 @@ TEST(forces_turn_with_the_fish_and_a_stream_carries_them) {
                 "time: {end: 1, shedding_interval: 0.01}\nfluid: {velocity: [%g, 0]}\nsolver: {rtol: 1.0e-9}\n"
                 "fish: [{nodes: 7, sheet_points: 21, pressure: {span: %s}, start: {speed: %g, heading: %g}}]\n",
                 stream, spans[k], 0.8 + stream, frames[i].heading);
-            school_run(simulation, 0.1);
-            simulate_measure(simulation);
+            school_measure(simulation, 0.1);
             const struct diagnostics_fish *const of = simulation->diagnostics->fish;
             const double vector[3][2] = {{of->pressure.pressure[0], of->pressure.pressure[1]},
                                          {of->pressure.suction[0], of->pressure.suction[1]},
@@ -414,8 +410,7 @@ static struct simulation *inclined_plate(double degrees, double limit) {
         "0, frequency: 0},\n        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
         "        motion: {prescribed: all, pitch: %g, pitch_phase: 90}}]\n",
         limit, degrees);
-    school_run(simulation, 0.1);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.1);
     return simulation;
 }
 
@@ -470,8 +465,7 @@ TEST(energy_balance_is_closed_where_the_limit_acts) {
             "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite, suction_limit: %g},\n"
             "        body: {modulus: 3.0e+5}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n",
             i == 0 ? 0 : 0.003);
-        school_run(simulation, 1.5);
-        simulate_measure(simulation);
+        school_measure(simulation, 1.5);
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;
         imbalance[i] = fabs(of->energy_balance) / of->actuation_work;
         print_message("limit %s: imbalance over work %.2g, separated for %.2g of the period\n",
@@ -566,8 +560,7 @@ TEST(energy_and_momentum_of_a_free_fish_are_accounted_for) {
     // momentum at five events, forces at the middle one
     double momentum[5], force = 0;
     for (int n = 0; n < 5; n++) {
-        school_run(simulation, 0.48 + 0.01 * n);
-        simulate_measure(simulation);
+        school_measure(simulation, 0.48 + 0.01 * n);
         momentum[n] = fish->total_mass * of->com_velocity[1];
         if (n == 2) force = of->resistive_force[1] + of->pressure.pressure[1] + of->pressure.suction[1];
     }

@@ -15,8 +15,7 @@ TEST(a_body_that_glides_reads_the_stagnation_pressure_at_the_nose) {
                           "{amplitude: 0, frequency: 0},\n"
                           "        start: {speed: 1}, body: {profile: uniform, thickness: 0.1},\n"
                           "        motion: {prescribed: all}}]\n");
-    school_run(simulation, 0.5);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.5);
     const struct fish *const fish = simulation->school->fish;
     NEAR(fish->nose_radius, 0.005, 0, 1e-12);
     for (int i = 0; i < fish->n_sensors; i++) {
@@ -135,8 +134,7 @@ static void compare_with_differences(double t, const char *keys, const char *fis
 
     school_run(simulation, t - 0.0025);
     for (int c = 0; c < of->n_control; c++) before[c] = potential(simulation, t, 0, c, n_mirrors, mirrors);
-    school_run(simulation, t);
-    simulate_measure(simulation);
+    school_measure(simulation, t);
     for (int c = 0; c < of->n_control; c++) rate[c] = simulation->residual->pressure[0]->point[c].potential_rate;
     school_run(simulation, t + 0.0025);
     // the last two points are nearer to the tail than the stretches of an interval
@@ -183,8 +181,7 @@ TEST(both_sides_differ_by_the_jump) {
                           "[0.15820385, 0.51635954, 0.86493204],\n"
                           "        sheet_points: 49, body: {profile: uniform, thickness: 1e-3}, wave: {ramp: 0.2}},\n"
                           "       {pressure: {span: infinite}, start: {position: [0.2, 0.4]}}]\n");
-    school_run(simulation, 0.5);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.5);
     struct pressure *const pressure = simulation->residual->pressure[0];
     for (int i = 0; i < 3; i++) {
         const int c = 12 * (i + 1);
@@ -207,8 +204,7 @@ TEST(mirrored_fish_exchange_left_and_right) {
                  "       {start: {position: [0.2, %g]}, wave: {phase: %d, ramp: 0.3}}]\n",
                  i == 0 ? 0 : 180, i == 0 ? 0.4 : -0.4, i == 0 ? 60 : 240);
         two[i] = school_simulation(text);
-        school_run(two[i], 0.5);
-        simulate_measure(two[i]);
+        school_measure(two[i], 0.5);
     }
     for (int i = 0; i < 2; i++) {
         for (int side = 0; side < 2; side++) {

@@ -62,8 +62,7 @@ static double led_swim(const char *solver, int is_led, long *steps) {
         set(simulation, changes[i].key, changes[i].value);
     }
     school_run(simulation, 1.2);
-    struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
+    const struct integrator_counts counts = school_counts(simulation);
     *steps = counts.steps;
     return simulation->state->y[simulation->school->fish[0].at.x];
 }

@@ -24,8 +24,7 @@ int __wrap_dense_factors_set_up(struct dense_factors *factors) {
 static struct cost cost_per_event(const char *text, double end) {
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, end);
-    struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
+    const struct integrator_counts counts = school_counts(simulation);
     const double n_events = (double)simulation->state->event;
     assert_int_equal(simulation->state->event, lround(end / simulation->school->interval));
     return (struct cost){(double)counts.steps / n_events, (double)counts.newton_iterations / n_events,
@@ -94,8 +93,7 @@ TEST(blocks_are_factorised_in_parts_again_after_a_failure) {
         school_simulation(SCHOOL_DEFAULTS "time: {end: 2, shedding_interval: 0.02}\nfish: [{start: {speed: 0.79}}]\n");
     n_divided = 0;
     school_run(simulation, 2);
-    struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
+    const struct integrator_counts counts = school_counts(simulation);
     print_message("%d of %ld Jacobians in parts\n", n_divided, counts.jacobian_evaluations);
     NEAR(n_divided, (double)counts.jacobian_evaluations, 6, 0);
 }

@@ -166,8 +166,7 @@ TEST(positive_bias_turns_right) {
         struct simulation *const simulation =
             school_simulation(i == 0 ? "time: {end: 3, shedding_interval: 0.02}\nfish: [{control: {bias: 0.5}}]\n"
                                      : "time: {end: 3, shedding_interval: 0.02}\nfish: [{control: {bias: -0.5}}]\n");
-        school_run(simulation, 3);
-        simulate_measure(simulation);
+        school_measure(simulation, 3);
         heading[i] = simulation->diagnostics->fish[0].heading;
     }
     // after three beats; within a beat the heading oscillates by some degrees
@@ -507,8 +506,7 @@ TEST(a_limp_fish_swims_on) {
                                  "time: {end: 26, shedding_interval: 0.02, output_interval: 0.02}\n"
                                  "fish: [{force: %s, nodes: 17, body: {modulus: 1e4}, start: {speed: 0.3}}]\n",
                                  forces[i]);
-        school_run(simulation, 26);
-        simulate_measure(simulation);
+        school_measure(simulation, 26);
         const double speed = simulation->diagnostics->fish[0].speed;
         ABOVE(speed, 0.01);
         BELOW(speed, 1);

@@ -235,8 +235,7 @@ TEST(a_body_that_does_not_travel_has_no_numbers_per_speed) {
         TIME
         "fluid: {density: 0}\n"
         "fish: [{nodes: 7, sheet_points: 21, wave: {ramp: 0}, control: {bias: 0.3}, start: {speed: 0}}]\n");
-    school_run(simulation, 1);
-    simulate_measure(simulation);
+    school_measure(simulation, 1);
     const struct diagnostics_fish *const fish = simulation->diagnostics->fish;
     BELOW(fish->speed, 1e-9);
     assert_true(isnan(fish->strouhal));
@@ -352,8 +351,7 @@ TEST(speed_and_strouhal_number_are_those_of_a_driven_plate) {
     // an oblique heading: both coordinates of the tail count
     struct simulation *const simulation = school_simulation(
         TIME "fish: [{start: {heading: 60}, motion: {prescribed: all, speed: 1.5, heave: 0.1, frequency: 2}}]\n");
-    school_run(simulation, 1);
-    simulate_measure(simulation);
+    school_measure(simulation, 1);
     const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
     NEAR(fish->speed, 1.5, 0, 1e-9);
     // samples every hundredth of a second, 50 in a period: parabolas through three of them miss crests by 1e-5
@@ -380,8 +378,7 @@ TEST(means_are_those_of_the_way_through_the_water) {
                  TIME "fluid: {velocity: [%g, 0]}\nfish: [{body: {modulus: 1.0e+5}, start: {speed: %g}}]\n", 0.6 * i,
                  1 - 0.6 * i);
         struct simulation *const simulation = school_simulation(text);
-        school_run(simulation, 1.6);
-        simulate_measure(simulation);
+        school_measure(simulation, 1.6);
         of[i] = simulation->diagnostics->fish[0];
     }
     NEAR(of[0].ground_speed, of[0].speed, 0, 1e-15);
@@ -401,8 +398,7 @@ TEST(stream_at_the_fish_is_integrated_by_trapezoids) {
         TIME
         "fluid: {velocity: [0.2, 0], shear: 0.5, gust: {amplitude: 0.3, frequency: 0.4}}\n"
         "fish: [{start: {position: [0, 2], speed: 0}, motion: {prescribed: all, heave: 0, frequency: 2}}]\n");
-    school_run(simulation, 1);
-    simulate_measure(simulation);
+    school_measure(simulation, 1);
     const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
     const double omega = 0.8 * acos(-1);
     // over the last period, 0.5 s, [1.2, 0.3 sin(omega t)]
@@ -417,15 +413,13 @@ TEST(drift_is_the_change_of_the_speed_in_a_period) {
     struct simulation *const simulation = school_simulation(TIME "fish: [{wave: {frequency: 2}}]\n");
     double speed[2];
     for (int i = 1; i <= 3; i++) {
-        school_run(simulation, 0.5 * i);
-        simulate_measure(simulation);
+        school_measure(simulation, 0.5 * i);
         const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
         if (i == 1) assert_true(isnan(fish->drift));
         if (i > 1) NEAR(fish->drift, (fish->speed - speed[0]) / fish->speed, 1e-13, 1e-12);
         speed[0] = fish->speed;
         // not before two complete periods
-        school_run(simulation, 0.5 * i + 0.49);
-        simulate_measure(simulation);
+        school_measure(simulation, 0.5 * i + 0.49);
         if (i == 1) assert_true(isnan(fish->drift));
     }
 }
@@ -444,8 +438,7 @@ TEST(cost_of_transport_is_what_fluid_and_damping_take) {
             school_simulation_of(SCHOOL_DEFAULTS TIME "solver: {rtol: 1.0e-6}\nfish: [%s]\n", fish[i]);
         double energy[2], audit[2];
         for (int k = 0; k < 2; k++) {
-            school_run(simulation, 1 + k);
-            simulate_measure(simulation);
+            school_measure(simulation, 1 + k);
             energy[k] = total_energy(&simulation->diagnostics->fish[0]);
             audit[k] = simulation->diagnostics->fish[0].energy_balance;
         }
@@ -471,8 +464,7 @@ TEST(cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream) {
             "fish: [{force: pressure, pressure: {span: infinite}, wave: {amplitude: 0}, body: {profile: uniform},\n"
             "  motion: {prescribed: all, speed: %d, heave: 0.05, frequency: 1}}]\n",
             i, 1 - i);
-        school_run(simulation, 1);
-        simulate_measure(simulation);
+        school_measure(simulation, 1);
         cost[i] = simulation->diagnostics->fish[0].cost_of_transport;
     }
     NEAR(cost[1], cost[0], 0, 1e-6);
@@ -489,8 +481,7 @@ TEST(thrust_and_power_of_a_held_plate_are_means_over_the_last_period) {
     const struct diagnostics_fish *of = simulation->diagnostics->fish;
     double thrust = 0, power = 0, edge = 0;
     for (int i = 0; i <= N; i++) {
-        school_run(simulation, 0.5 + i * 0.01);
-        simulate_measure(simulation);
+        school_measure(simulation, 0.5 + i * 0.01);
         const double part = (i == 0 || i == N ? 0.5 : 1) / N, *const v = simulation->state->y;
         double force[2];
         for (int k = 0; k < 2; k++)
@@ -515,8 +506,7 @@ TEST(thrust_of_a_held_body_is_along_the_stream_at_the_body) {
         school_simulation(TIME
                           "fluid: {velocity: [0.5, 0.2], shear: 0.3}\n"
                           "fish: [{start: {position: [0, 2], speed: 0}, motion: {prescribed: all, speed: 0}}]\n");
-    school_run(simulation, 0.1);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.1);
     const struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
     const double stream[] = {0.5 + 0.3 * now->com[1], 0.2};
     double force[2];
@@ -541,8 +531,7 @@ TEST(power_of_a_held_plate_is_the_work_of_muscle_and_drive) {
         const double *const work = simulation->state->balance[0].work;
         double before[N_WORKS], of[N_WORKS];
         memcpy(before, work, sizeof before);
-        school_run(simulation, 4);
-        simulate_measure(simulation);
+        school_measure(simulation, 4);
         for (int w = 0; w < N_WORKS; w++) of[w] = work[w] - before[w];
 
         const struct diagnostics_fish *const fish = simulation->diagnostics->fish;
@@ -568,8 +557,7 @@ TEST(forces_by_name_make_up_momentum_and_angular_momentum) {
         "frequency: 2}}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct simulation *const simulation = school_simulation(texts[i]);
-        school_run(simulation, 0.53);
-        simulate_measure(simulation);
+        school_measure(simulation, 0.53);
         for (int f = 0; f < 2; f++) {
             const struct fish *fish = &simulation->school->fish[f];
             const struct diagnostics_fish *of = &simulation->diagnostics->fish[f];
@@ -700,8 +688,7 @@ TEST(force_at_events_is_the_rate_of_the_momentum) {
 TEST(moments_follow_the_origin) {
     // M(a) = M(0) - a x F
     struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}]\n");
-    school_run(simulation, 0.3);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.3);
     const struct pressure *const pressure = simulation->residual->pressure[0];
     const double a[2] = {3, -2}, *const y = simulation->state->y;
     const struct pressure_forces at_zero = pressure_sum(pressure, (const double[]){0, 0}, y);
@@ -801,8 +788,7 @@ TEST(powers_on_the_water_are_seen_from_the_stream_at_the_centre_of_mass) {
                                  "time: {end: 1, shedding_interval: 0.02}\nfluid: {velocity: [0.5, 0.2], shear: 0.3}\n"
                                  "fish: [{force: %s, load: {tip: [3, 4]}, start: {position: [0, 2], speed: 1}}]\n",
                                  forces[i]);
-        school_run(simulation, 0.1);
-        simulate_measure(simulation);
+        school_measure(simulation, 0.1);
         const struct fish *const fish = simulation->school->fish;
         const double *const y = simulation->state->y;
         const struct diagnostics_power power = diagnostics_power(simulation->residual, 0, simulation->state->t, y);
@@ -830,8 +816,7 @@ TEST(powers_on_the_water_are_those_of_a_towed_body) {
             "fish: [{nodes: 7, sheet_points: 21, start: {heading: 137, speed: %g}, motion: {prescribed: head, heave: "
             "0.1, frequency: 1, speed: %g}}]\n",
             is_held * -speed * cos(heading), is_held * -speed * sin(heading), speed * !is_held, speed * !is_held);
-        school_run(simulation, 0.2);
-        simulate_measure(simulation);
+        school_measure(simulation, 0.2);
         const struct diagnostics_power power =
             diagnostics_power(simulation->residual, 0, simulation->state->t, simulation->state->y);
         if (!is_held) want[0] = power.on_water, want[1] = power.driving_on_water;

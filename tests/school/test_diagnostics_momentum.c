@@ -181,8 +181,7 @@ TEST(a_wall_pushes_across_itself) {
                                  "suction_limit: 0}}}\nfish: [{nodes: 9, sheet_points: 33, start: {speed: 0.5}},\n"
                                  "       {nodes: 9, sheet_points: 33, start: {speed: 0.5, position: [0.4, 0.3]}}]\n",
                                  walls == 2 ? ", 0.6" : "");
-        school_run(simulation, 2);
-        simulate_measure(simulation);
+        school_measure(simulation, 2);
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;
         const double along = of[0].external_impulse[0] + of[1].external_impulse[0];
         const double across = fmax(fabs(of[0].external_impulse[1]), fabs(of[1].external_impulse[1]));
@@ -226,8 +225,7 @@ static void fill(const char *fluid, const char *start, struct diagnostics_fish *
                              "fish: [{force: pressure, pressure: {span: infinite}, nodes: 9, sheet_points: 33, wave: "
                              "{ramp: 0.5}, drag: {skin: laminar}, %s}]\n",
                              fluid, start);
-    school_run(simulation, 1.2);
-    simulate_measure(simulation);
+    school_measure(simulation, 1.2);
     *of = *simulation->diagnostics->fish;
     for (int i = 0; i < 3; i++) imbalance[i] = simulation->diagnostics->momentum_balance[i];
 }
@@ -261,8 +259,7 @@ TEST(a_stream_changes_no_balance) {
 TEST(a_restart_begins_the_balance_again) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME "wake: {lifetime: 0.1}\nfish: [{" FISH "}]\n");
-    school_run(simulation, 0.3);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.3);
     ABOVE(fabs(simulation->diagnostics->fish->lost_impulse[1]), 0);
     ABOVE(fabs(simulation->diagnostics->fish->external_impulse[0]), 0);
     diagnostics_restart(simulation->residual, simulation->state);

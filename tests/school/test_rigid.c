@@ -142,8 +142,7 @@ TEST(every_vector_of_the_past_turns_with_the_fish) {
 
 TEST(means_over_the_last_period_do_not_notice_a_displacement) {
     struct simulation *const simulation = school_simulation(text);
-    school_run(simulation, 0.5);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.5);
     const double speed = simulation->diagnostics->fish[1].speed, heading = simulation->diagnostics->fish[1].heading;
     rigid_change(simulation->school, simulation->state, 1, &(struct rigid){.place = {3, 1}, .heading = 0.2});
     simulate_measure(simulation);
@@ -156,8 +155,7 @@ TEST(means_over_the_last_period_do_not_notice_a_turn_in_a_stream) {
         SCHOOL_DEFAULTS
         "time: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\nfluid: {velocity: [0.4, -0.2]}\n"
         "fish: [{start: {speed: 0.5}}]\n");
-    school_run(simulation, 1.5);
-    simulate_measure(simulation);
+    school_measure(simulation, 1.5);
     const struct diagnostics_fish before = *simulation->diagnostics->fish;
     rigid_change(simulation->school, simulation->state, 0, &(struct rigid){.place = {3, 1}, .heading = 0.7});
     simulate_measure(simulation);

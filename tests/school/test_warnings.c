@@ -12,6 +12,18 @@
 
 // ---- which warnings a run has
 
+static int line_of(const struct simulation *simulation, enum warning warning, char line[WARNING_BYTES]) {
+    *line = 0;
+    return warnings_line(warning, simulation->school, simulation->state, simulation->diagnostics,
+                         simulation->residual->scratch, line);
+}
+
+static void expect_line(const struct simulation *simulation, enum warning warning, const char *part) {
+    char line[WARNING_BYTES];
+    assert_int_equal(line_of(simulation, warning, line), part != NULL);
+    if (part && !strstr(line, part)) fail_msg("'%s' without '%s'", line, part);
+}
+
 // the warnings of a simulation, one character each: contact c, a body crosses itself x, divergence i, energy e,
 // momentum o, drift d, events v, sheet s, modes m, leading edge l, controller h, cusp u, few nodes at the
 // tail t, published force p, fast pitch f, stalled foil a; the runs are short, and the warning of few beats has its own
@@ -20,9 +32,7 @@ static void expect_of(struct simulation *simulation, const char *expected) {
     simulate_measure(simulation);
     char line[WARNING_BYTES], found[N_WARNINGS + 1] = "";
     for (enum warning w = 0; w < N_WARNINGS; w++) {
-        if (w == WARNING_BEATS || !warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
-                                                 simulation->residual->scratch, line))
-            continue;
+        if (w == WARNING_BEATS || !line_of(simulation, w, line)) continue;
         print_message("%s\n", line);
         assert_null(strchr(line, '\n'));
         strncat(found, &"cxieo-dvsmlhutpfa"[w], 1);
@@ -113,8 +123,7 @@ TEST(the_worst_fish_is_named) {
             "{frequency: %s}, start: {position: [0, 2]}}, {name: c, start: {position: [0, 4]}}]\n",
             frequencies[i][0], frequencies[i][1]);
         simulate_measure(simulation);
-        assert_true(warnings_line(WARNING_EVENTS, simulation->school, simulation->state, simulation->diagnostics,
-                                  simulation->residual->scratch, line));
+        assert_true(line_of(simulation, WARNING_EVENTS, line));
         assert_non_null(strstr(line, i == 0 ? "b (the worst of 2 fish)" : "a (the worst of 2 fish)"));
         assert_non_null(strstr(line, "only 5 events"));
     }
@@ -187,11 +196,8 @@ TEST(a_run_that_diverges_in_its_first_beat_says_so) {
     simulation->state->wake[1].circulation[2] = 0;
     expect_of(simulation, "");
     y[at->vy + 3] = 1.01 * limit;
-    char line[WARNING_BYTES];
     simulate_measure(simulation);
-    assert_true(warnings_line(WARNING_DIVERGENCE, simulation->school, simulation->state, simulation->diagnostics,
-                              simulation->residual->scratch, line));
-    assert_non_null(strstr(line, "fish2 has diverged"));
+    expect_line(simulation, WARNING_DIVERGENCE, "fish2 has diverged");
     y[at->vy + 3] = kept[1];
 }
 
@@ -210,12 +216,8 @@ TEST(speeds_that_the_case_gives_are_no_divergence) {
     double least = INFINITY;
     for (size_t i = 0; i < sizeof fast / sizeof *fast; i++) {
         struct simulation *const simulation = school_simulation_of(REST, fast[i].fluid, fast[i].fish);
-        school_run(simulation, 0.1);
-        simulate_measure(simulation);
-        char line[WARNING_BYTES] = "";
-        warnings_line(WARNING_DIVERGENCE, simulation->school, simulation->state, simulation->diagnostics,
-                      simulation->residual->scratch, line);
-        assert_string_equal(line, "");
+        school_measure(simulation, 0.1);
+        expect_line(simulation, WARNING_DIVERGENCE, NULL);
         const struct layout *const at = &simulation->school->fish[0].at;
         const double *const y = simulation->state->y;
         least = fmin(least, fmax(fabs(y[at->circulation]), hypot(y[at->vx], y[at->vy])));
@@ -268,18 +270,6 @@ TEST(bodies_that_pass_through_each_other_are_told) {
 
 // ---- the limits, with values of the diagnostics that no run gave
 
-static int line_of(const struct simulation *simulation, enum warning warning, char line[WARNING_BYTES]) {
-    *line = 0;
-    return warnings_line(warning, simulation->school, simulation->state, simulation->diagnostics,
-                         simulation->residual->scratch, line);
-}
-
-static void expect_line(const struct simulation *simulation, enum warning warning, const char *part) {
-    char line[WARNING_BYTES];
-    assert_int_equal(line_of(simulation, warning, line), part != NULL);
-    if (part && !strstr(line, part)) fail_msg("'%s' without '%s'", line, part);
-}
-
 TEST(a_run_shorter_than_two_beats_has_no_means_of_a_cycle) {
     // the slowest fish decides
     struct simulation *simulation =
@@ -304,8 +294,7 @@ TEST(the_limits_are_those_of_the_manual) {
         school_simulation(SCHOOL_DEFAULTS TIME
                           "fish: [{force: pressure, pressure: {span: infinite}, wave: {frequency: 0.5}}, {force: "
                           "reactive, start: {position: [0, 2]}}]\n");
-    school_run(simulation, 0.02);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.02);
     struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
     // 1 %, of a gain and of a loss
     static const double drift[] = {0.0099, -0.0099, 0.0101, -0.0101};
@@ -369,8 +358,7 @@ TEST(the_advice_is_enough) {
     // 3.2/sqrt(U Dt/L) = 32: 33 points are enough, 0.9 of 32 edges are allowed, and 29 edges are the first such number
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME "fish: [{force: reactive, sheet_points: 29}]\n");
-    school_run(simulation, 0.02);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.02);
     struct fish *const fish = &simulation->school->fish[0];
     struct diagnostics_fish *const now = &simulation->diagnostics->fish[0];
     now->speed = 0.999999;
@@ -460,8 +448,7 @@ TEST(divergence_is_a_hundred_times_the_speeds_of_the_case) {
 TEST(the_worst_divergence_of_all_events_is_kept) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
-    school_run(simulation, 0.1);
-    simulate_measure(simulation);
+    school_measure(simulation, 0.1);
     struct state *const now = simulation->state;
     double *const shed = &now->y[simulation->school->fish[1].at.circulation], kept = *shed;
     const double limit = 100 * 2 * acos(-1);
@@ -537,10 +524,8 @@ static int warns_of_pitch(double ratio, const char *motion) {
              "pivot: 0.333333333, frequency: 1}}]\n",
              motion, pitch);
     struct simulation *const simulation = school_simulation(text);
-    school_run(simulation, 0.02);
-    simulate_measure(simulation);
-    const int warns = warnings_line(WARNING_PITCH, simulation->school, simulation->state, simulation->diagnostics,
-                                    simulation->residual->scratch, line);
+    school_measure(simulation, 0.02);
+    const int warns = line_of(simulation, WARNING_PITCH, line);
     if (warns) assert_non_null(strstr(line, "0.6"));
     return warns;
 }
@@ -568,13 +553,9 @@ TEST(a_stalled_foil_is_told) {
         int warns;
     } cases[] = {{0.2, 0.6, 1}, {-0.2, 0.6, 1}, {0.09, 0.9, 0}, {0.9, 0.45, 0}, {NAN, 0.9, 0}, {0.2, NAN, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char line[WARNING_BYTES];
         simulate_measure(simulation);
         simulation->diagnostics->fish[0].drift = cases[i].drift;
         simulation->diagnostics->fish[0].separation_share = cases[i].share;
-        assert_int_equal(warnings_line(WARNING_STALL, simulation->school, simulation->state, simulation->diagnostics,
-                                       simulation->residual->scratch, line),
-                         cases[i].warns);
-        if (cases[i].warns) assert_non_null(strstr(line, "60 %"));
+        expect_line(simulation, WARNING_STALL, cases[i].warns ? "60 %" : NULL);
     }
 }

@@ -5,7 +5,6 @@
 
 #include "fish/fish_motion.h"
 #include "school.h"
-#include "solver/initial_conditions.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define FISH "fish: [{sheet_points: 11}]\n"
@@ -63,9 +62,7 @@ static void check_residual(struct setup *setup, double t, const char *text) {
 TEST(all_equations_hold_at_the_start_for_every_option) {
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup = setup_of(texts[i]);
-        struct initial_conditions *solver;
-        school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-        school_ok(initial_conditions_solve(solver, &residual_run, 0, setup.state->y, setup.state->yp));
+        school_consistent(&setup, 0);
         check_residual(&setup, 0, texts[i]);
     }
 }
@@ -73,9 +70,7 @@ TEST(all_equations_hold_at_the_start_for_every_option) {
 TEST(blocks_left_out_of_the_jacobian_change_no_solution) {
     struct setup setup = setup_of(uncoupled);
     assert_int_equal(setup.residual->couplings.coupled[1], 0);
-    struct initial_conditions *solver;
-    school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-    school_ok(initial_conditions_solve(solver, &residual_run, 0, setup.state->y, setup.state->yp));
+    school_consistent(&setup, 0);
     check_residual(&setup, 0, uncoupled);
 }
 
@@ -83,9 +78,7 @@ TEST(all_equations_hold_again_from_any_state) {
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup = setup_stirred(texts[i]);
         // the solver moves prescribed nodes to their given motion: their positions and velocities are algebraic
-        struct initial_conditions *solver;
-        school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-        school_ok(initial_conditions_solve(solver, &residual_run, setup.t, setup.state->y, setup.state->yp));
+        school_consistent(&setup, setup.t);
         // rates of algebraic unknowns appear in no equation
         check_residual(&setup, setup.t, texts[i]);
     }
@@ -99,9 +92,7 @@ TEST(differential_unknowns_stay_as_they_are) {
     assert_non_null(before);
     memcpy(before, setup.state->y, (size_t)setup.school->n_unknowns * sizeof *before);
     residual_kinds(setup.residual, &residual_run, kind);
-    struct initial_conditions *solver;
-    school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-    school_ok(initial_conditions_solve(solver, &residual_run, setup.t, setup.state->y, setup.state->yp));
+    struct initial_conditions *const solver = school_consistent(&setup, setup.t);
     int n_differential = 0;
     for (int i = 0; i < setup.school->n_unknowns; i++) {
         if (kind[i] > 0) NEAR(setup.state->y[i], before[i], 0, 0);
@@ -171,9 +162,7 @@ TEST(light_bodies_take_no_iterations_either) {
 
 TEST(a_second_solution_changes_nothing) {
     struct setup setup = setup_stirred(TIME FISH);
-    struct initial_conditions *solver;
-    school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-    school_ok(initial_conditions_solve(solver, &residual_run, setup.t, setup.state->y, setup.state->yp));
+    struct initial_conditions *const solver = school_consistent(&setup, setup.t);
     double *const before = calloc((size_t)setup.school->n_unknowns, sizeof *before);
     assert_non_null(before);
     memcpy(before, setup.state->y, (size_t)setup.school->n_unknowns * sizeof *before);
@@ -218,8 +207,6 @@ TEST(a_rate_that_is_not_a_number_does_not_matter) {
     struct setup setup = setup_of(TIME FISH);
     const struct fish *fish = setup.school->fish;
     setup.state->yp[fish->at.x + 1] = NAN;
-    struct initial_conditions *solver;
-    school_ok(initial_conditions_create(test_arena(), &solver, setup.residual));
-    school_ok(initial_conditions_solve(solver, &residual_run, 0, setup.state->y, setup.state->yp));
+    school_consistent(&setup, 0);
     NEAR(setup.state->yp[fish->at.x + 1], setup.state->y[fish->at.vx + 1], 0, 0);
 }

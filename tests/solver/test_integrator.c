@@ -80,8 +80,7 @@ static double tail_after(const char *word, const char *step, const char *fish_te
     struct simulation *const simulation = school_simulation_of(
         "time: {end: 1, shedding_interval: 0.02}\nsolver: {method: %s, step: %s}\n%s", word, step, fish_text);
     school_run(simulation, 0.1);
-    struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
+    const struct integrator_counts counts = school_counts(simulation);
     *order = counts.order;
     const struct fish *fish = simulation->school->fish;
     const double tail = simulation->state->y[fish->at.y + fish->n_nodes - 1];

@@ -119,8 +119,7 @@ TEST(a_jacobian_is_kept_for_many_steps) {
     struct simulation *const simulation = school_simulation("time: {end: 0.4, shedding_interval: 0.02}\n" FISH
                                                             "solver: {method: trapezoid, step: 0.005}\n");
     school_run(simulation, 0.4);
-    struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
+    const struct integrator_counts counts = school_counts(simulation);
     assert_int_equal(counts.steps, 80);
     assert_int_equal(counts.order, 2);
     NEAR(counts.step_size, 0.005, 0, 0);
@@ -204,8 +203,7 @@ static struct simulation *open_with(const char *text, const char *solver) {
 // y of the tails of both rods at the end, and the largest of the energy balances over the energy put in
 static void ends_of(const char *solver, double tail[2], double *imbalance) {
     struct simulation *const simulation = open_with(RODS, solver);
-    school_run(simulation, 1);
-    simulate_measure(simulation);
+    school_measure(simulation, 1);
     *imbalance = 0;
     for (int f = 0; f < 2; f++) {
         const struct fish *const fish = &simulation->school->fish[f];
@@ -252,8 +250,7 @@ TEST(all_equations_hold_at_events) {
     school_ok(residual_evaluate(residual, &residual_run, 1, simulation->state->y, simulation->state->yp, value));
     // rounding of forces per mass of the order of 1e3 m s-2
     for (int i = 0; i < simulation->school->n_unknowns; i++) NEAR(value[i], 0, 1e-9, 0);
-    struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
+    const struct integrator_counts counts = school_counts(simulation);
     assert_int_equal(counts.steps, 1000);
     assert_int_equal(counts.residual_evaluations, 1000);
     assert_int_equal(counts.order, 2);
