@@ -17,9 +17,9 @@ struct fixture {
     enum status status;
 };
 
-/* Parse some bytes as the file "x.yaml". */
+/* Parse some bytes as the file "x.yaml", until the end of the test. */
 static void read_bytes(struct fixture *fixture, const char *text, size_t length) {
-    *fixture = (struct fixture){.arena = arena_create(NULL, "a test"),
+    *fixture = (struct fixture){.arena = arena_create(test_arena(), "a tree"),
                                 .source = {.name = "x.yaml", .text = text, .length = length}};
     fixture->errors.arena = fixture->arena;
     fixture->status = yaml_tree_read(fixture->arena, &fixture->root, &fixture->source, &fixture->errors);
@@ -27,10 +27,6 @@ static void read_bytes(struct fixture *fixture, const char *text, size_t length)
 
 static void read_text(struct fixture *fixture, const char *text) {
     read_bytes(fixture, text, strlen(text));
-}
-
-static void release(struct fixture *fixture) {
-    arena_free(fixture->arena);
 }
 
 /* The text of a tree on one line; valid until the next call. */
@@ -47,7 +43,6 @@ static void reads_as(const char *text, const char *want) {
     read_text(&f, text);
     assert_int_equal(f.status, STATUS_OK);
     assert_string_equal(flow(f.root), want);
-    release(&f);
 }
 
 static void is_refused(const char *text, size_t length, const char *want) {
@@ -59,7 +54,6 @@ static void is_refused(const char *text, size_t length, const char *want) {
     if (!strstr(status_message(), want)) {
         fail_msg("the message of '%.60s' is\n%.600s\nwithout %s", text, status_message(), want);
     }
-    release(&f);
 }
 
 // ---- reading
@@ -88,7 +82,6 @@ TEST(keys_and_values_know_their_places) {
     assert_int_equal(nodes->value->mark.column, 12);
     assert_int_equal(fish->entry[0].value->mark.column, 12);  // counted in characters, not bytes
     assert_ptr_equal(nodes->mark.source, &f.source);
-    release(&f);
 }
 
 TEST(a_text_without_values_has_no_root) {
@@ -98,7 +91,6 @@ TEST(a_text_without_values_has_no_root) {
         read_text(&f, strings[i]);
         assert_int_equal(f.status, STATUS_OK);
         if (f.root) assert_string_equal(f.root->text, "");
-        release(&f);
     }
 }
 
@@ -155,7 +147,6 @@ TEST(all_refusals_of_a_text_are_listed) {
     struct fixture f;
     read_text(&f, "a: &x 1\na: !y 2\n<<: 3\n");
     assert_int_equal(f.errors.n, 4);
-    release(&f);
 }
 
 TEST(more_than_256_keys_or_4_mib_are_refused) {
@@ -179,7 +170,6 @@ TEST(find_follows_a_path_of_keys) {
     assert_null(yaml_tree_find(f.root, "a.c"));
     assert_null(yaml_tree_find(f.root, "ab.c"));
     assert_null(yaml_tree_find(NULL, "a"));
-    release(&f);
 }
 
 TEST(merging_joins_maps_and_replaces_the_rest) {
@@ -188,18 +178,14 @@ TEST(merging_joins_maps_and_replaces_the_rest) {
     read_text(&over, "a: {y: [3], w: 2}\nc: 5\nd: 6\n");
     yaml_tree_merge(base.arena, &base.root, over.root);
     assert_string_equal(flow(base.root), "{a: {x: 1, y: [3], w: 2}, b: 1, c: 5, d: 6}");
-    release(&base);
-    release(&over);
 }
 
 TEST(a_copy_is_equal_and_its_own) {
     struct fixture f;
     read_text(&f, "a: [1, {b: c}]\n");
-    struct arena *const arena = arena_create(NULL, "a test");
-    const struct yaml_node *const copy = yaml_tree_copy(arena, f.root);
-    release(&f);
+    const struct yaml_node *const copy = yaml_tree_copy(test_arena(), f.root);
+    arena_free(f.arena);
     assert_string_equal(flow(copy), "{a: [1, {b: c}]}");
-    arena_free(arena);
 }
 
 TEST(a_key_is_taken_out_of_a_map_with_its_value) {
@@ -210,7 +196,6 @@ TEST(a_key_is_taken_out_of_a_map_with_its_value) {
     assert_null(yaml_tree_take(f.root, "b"));
     assert_string_equal(flow(yaml_tree_take(f.root, "c")), "3");
     assert_string_equal(flow(f.root), "{a: 1}");
-    release(&f);
 }
 
 // ---- errors
@@ -225,7 +210,6 @@ TEST(errors_are_listed_by_place_with_a_caret) {
     assert_string_equal(status_message(),
                         "x.yaml:1:4: error: a: the first\na: 1\n   ^\n"
                         "x.yaml:2:10: error: b: the second\nb: größe 2\n         ^");
-    release(&f);
 }
 
 TEST(twenty_errors_are_listed_and_the_rest_counted) {
@@ -238,7 +222,6 @@ TEST(twenty_errors_are_listed_and_the_rest_counted) {
     for (const char *c = status_message(); (c = strstr(c, "error: wrong")); c++) n++;
     assert_int_equal(n, 20);
     assert_non_null(strstr(status_message(), "\n... and 80 more"));
-    release(&f);
 }
 
 TEST(of_a_long_line_the_neighbourhood_is_shown) {
@@ -246,23 +229,21 @@ TEST(of_a_long_line_the_neighbourhood_is_shown) {
     memset(text, 'x', sizeof text - 1);
     text[1500] = 'Y';
     struct yaml_source source = {"x.yaml", text, sizeof text - 1, 0, false};
-    struct yaml_errors errors = {.arena = arena_create(NULL, "a test")};
+    struct yaml_errors errors = {.arena = test_arena()};
     yaml_errors_add(&errors, (struct yaml_mark){&source, 1, 1501}, "here");
     yaml_errors_status(&errors);
     const char *const line = strchr(status_message(), '\n') + 1;
     const char *const caret = strchr(line, '\n') + 1;
     assert_int_equal(caret - line, 101);
     assert_int_equal(line[strspn(caret, " ")], 'Y');
-    arena_free(errors.arena);
 }
 
 TEST(a_place_after_the_end_is_harmless) {
     struct yaml_source source = {"x.yaml", "a", 1, 0, false};
-    struct yaml_errors errors = {.arena = arena_create(NULL, "a test")};
+    struct yaml_errors errors = {.arena = test_arena()};
     yaml_errors_add(&errors, (struct yaml_mark){&source, 9, 900}, "here");
     assert_int_equal(yaml_errors_status(&errors), STATUS_CASE);
     assert_string_equal(status_message(), "x.yaml:9:900: error: here");
-    arena_free(errors.arena);
 }
 
 // ---- writing
@@ -281,6 +262,5 @@ TEST(strings_of_any_kind_are_written_so_that_they_read_back) {
         read_text(&f, text.text);
         assert_int_equal(f.status, STATUS_OK);
         assert_string_equal(f.root->entry[0].value->text, strings[i]);
-        release(&f);
     }
 }
