@@ -15,6 +15,14 @@ struct arena *test_arena(void) {
     return arena;
 }
 
+double *test_array(int n) {
+    return arena_new(test_arena(), (size_t)n, sizeof(double));
+}
+
+double *test_copy(int n, const double *values) {
+    return memcpy(test_array(n), values, (size_t)n * sizeof *values);
+}
+
 void near_add(int line, struct CMUnitTest test) {
     if (n_tests == MAX_TESTS) abort();
     int at = n_tests++;

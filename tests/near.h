@@ -4,6 +4,7 @@
  *     TEST_WITH(a_fact, set_up, tear_down)       with cmocka's functions around it; *state is what set_up leaves there
  *     TEST_GROUP(set_up, tear_down)              cmocka's functions around all tests of a program
  *     test_arena()                               an arena that is freed at the end of the test
+ *     test_array(n), test_copy(n, values)        n zeros, or a copy of n values, in this arena
  *
  *     NEAR(got, want, atol, rtol)                passes when |got - want| <= atol + rtol |want|
  *     NEAR_ARRAY(n, got, want, atol, rtol)       the same for each of n values; names the worst index
@@ -46,6 +47,8 @@
 void near_add(int line, struct CMUnitTest test);
 void near_group(CMFixtureFunction set_up, CMFixtureFunction tear_down);
 struct arena *test_arena(void);
+double *test_array(int n);
+double *test_copy(int n, const double *values);
 int near_run(void); /* all tests of the program; the exit code. For a main with arguments. */
 
 #define NEAR(got, want, atol, rtol) near_check(#got, (got), (want), (atol), (rtol), __FILE__, __LINE__)

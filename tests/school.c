@@ -203,19 +203,19 @@ static void copy_block(const struct sparse *block, size_t n, double *dense) {
     }
 }
 
-double *school_dense(const struct sparse *matrix) {
+double *school_dense(struct arena *arena, const struct sparse *matrix) {
     const size_t n = (size_t)matrix->n;
-    double *const dense = calloc(n * n, sizeof *dense);
-    assert_non_null(dense);
+    double *dense;
+    NEW(arena, dense, n * n);
     copy_block(matrix, n, dense);
     return dense;
 }
 
-double *school_dense_jacobian(const struct jacobian *jacobian) {
+double *school_dense_jacobian(struct arena *arena, const struct jacobian *jacobian) {
     const struct school *school = jacobian->school;
     const size_t n = (size_t)school->n_unknowns;
-    double *const dense = calloc(n * n, sizeof *dense);
-    assert_non_null(dense);
+    double *dense;
+    NEW(arena, dense, n * n);
     for (int f = 0; f < school->n_fish; f++) {
         copy_block(jacobian->own[f], n, dense);
         for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
@@ -315,18 +315,17 @@ void school_compare(struct setup *setup, school_value *value, school_jacobian *j
         } else {
             school_ok(residual_jacobian(setup->residual, setup->mode, setup->t, cj, setup->state->y, setup->jacobian));
         }
-        double *const dense = jacobian ? school_dense(setup->term) : school_dense_jacobian(setup->jacobian);
-        double *const expected = calloc(n * n, sizeof *expected), *const column = calloc(n, sizeof *column);
-        assert_non_null(expected);
-        assert_non_null(column);
+        ARENA(arena, NULL, "dense matrices");
+        double *const dense =
+            jacobian ? school_dense(arena, setup->term) : school_dense_jacobian(arena, setup->jacobian);
+        double *expected, *column;
+        NEW(arena, expected, n * n);
+        NEW(arena, column, n);
         for (size_t j = 0; j < n; j++) {
             difference(setup, value, cj, (int)j, step_of(residual_place(setup->school, (int)j).kind).step, column);
             for (size_t row = 0; row < n; row++) expected[row * n + j] = column[row];
         }
         for (size_t row = 0; row < n; row++) check_row(setup, (int)row, dense + row * n, expected + row * n, name);
-        free(dense);
-        free(expected);
-        free(column);
     }
 }
 

@@ -65,9 +65,9 @@ void school_compare(struct setup *setup, school_value *value, school_jacobian *j
 struct jacobian_scratch *school_influence(struct setup *setup, int f, int g);
 void school_add_rows(struct setup *setup, int f, int g, struct sparse *term);
 
-/* The matrix as a dense matrix, row after row; the caller frees the array. */
-double *school_dense(const struct sparse *matrix);
-double *school_dense_jacobian(const struct jacobian *jacobian);
+/* The matrix as a dense matrix, row after row, in an arena. */
+double *school_dense(struct arena *arena, const struct sparse *matrix);
+double *school_dense_jacobian(struct arena *arena, const struct jacobian *jacobian);
 
 /* A simulation at the first event, which lives until the end of the test, and advanced to a time. Fails the test with
  * the message of an error. */

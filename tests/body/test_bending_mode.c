@@ -14,11 +14,7 @@ static double slowest_mode(const char *fish) {
     const char *const sheet = strstr(fish, "pressure") ? "wake: {shedding: sheet}\nsheet: {curve: smooth}\n" : "";
     snprintf(text, sizeof text, TIME "%sfish: [{%s}]\n", sheet, fish);
     struct setup setup = setup_of(text);
-    double *const scratch = calloc((size_t)setup.school->n_unknowns, sizeof *scratch);
-    assert_non_null(scratch);
-    const double frequency = bending_mode_frequency(&setup.school->fish[0], scratch);
-    free(scratch);
-    return frequency;
+    return bending_mode_frequency(&setup.school->fish[0], test_array(setup.school->n_unknowns));
 }
 
 #define UNIFORM                                                                                                 \

@@ -162,10 +162,9 @@ static double lowest_mode(int nodes) {
                    nodes);
     const struct fish *fish = setup.school->fish;
     school_ok(residual_jacobian(setup.residual, &residual_run, 0, 0, setup.state->y, setup.jacobian));
-    double *const dense = school_dense_jacobian(setup.jacobian);
+    double *const dense = school_dense_jacobian(test_arena(), setup.jacobian);
     const int n = nodes - 1, all = setup.school->n_unknowns;
-    double *const matrix = calloc((size_t)(n * n), sizeof *matrix), shape[64], square = 0;
-    assert_non_null(matrix);
+    double *const matrix = test_array(n * n), shape[64], square = 0;
     for (int i = 0; i < n; i++) shape[i] = 1;
     for (int iteration = 0; iteration < 30; iteration++) {
         for (int i = 0; i < n; i++) {
@@ -175,8 +174,6 @@ static double lowest_mode(int nodes) {
         square = 1 / shape[n - 1];
         for (int i = 0; i < n; i++) shape[i] *= square;
     }
-    free(matrix);
-    free(dense);
     return pow(square, 0.25);
 }
 

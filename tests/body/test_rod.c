@@ -122,8 +122,7 @@ TEST(damping_power_is_that_of_the_damping_forces_and_never_positive) {
     struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
-    double *const elastic = calloc((size_t)fish->at.end, sizeof *elastic);
-    assert_non_null(elastic);
+    double *const elastic = test_array(fish->at.end);
     for (int trial = 0; trial < 10; trial++) {
         memset(elastic, 0, (size_t)fish->at.end * sizeof *elastic);
         memset(setup.value, 0, (size_t)fish->at.end * sizeof *setup.value);
@@ -142,7 +141,6 @@ TEST(damping_power_is_that_of_the_damping_forces_and_never_positive) {
         NEAR(damping_power(fish, &muscle, y), power, 1e-14 * size, 1e-12);
         BELOW(damping_power(fish, &muscle, y), 0);
     }
-    free(elastic);
 }
 
 TEST(rigid_motion_is_not_damped) {
@@ -249,8 +247,7 @@ static double rate_of_energy(struct setup *setup) {
     const double h = 3e-4;
     double rate = 0, curvature[5];
     const struct actuation moved = {curvature, zero, zero, zero};
-    double *const y = malloc((size_t)fish->at.end * sizeof *y);
-    assert_non_null(y);
+    double *const y = test_array(fish->at.end);
     for (int i = 0; i < 4; i++) {
         const double tau = node[i] * h;
         memcpy(y, setup->state->y, (size_t)fish->at.end * sizeof *y);
@@ -258,7 +255,6 @@ static double rate_of_energy(struct setup *setup) {
         for (int j = 0; j < 5; j++) curvature[j] = natural[j] + tau * natural_rate[j];
         rate += weight[i] / h * (bending_energy(fish, &moved, y) + stretching_energy(fish, y));
     }
-    free(y);
     return rate;
 }
 

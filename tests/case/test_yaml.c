@@ -154,10 +154,9 @@ TEST(more_than_256_keys_or_4_mib_are_refused) {
     size_t length = 0;
     for (int i = 0; i <= 256; i++) length += (size_t)snprintf(keys + length, sizeof keys - length, "k%d: 1\n", i);
     is_refused(keys, length, "x.yaml:257:1: error: more than 256 keys in one map");
-    char *const large = malloc(YAML_TREE_BYTES + 1);
+    char *const large = arena_new(test_arena(), YAML_TREE_BYTES + 1, 1);
     memset(large, '\n', YAML_TREE_BYTES + 1);
     is_refused(large, YAML_TREE_BYTES + 1, "x.yaml:1:1: error: larger than 4 MiB");
-    free(large);
 }
 
 // ---- the tree

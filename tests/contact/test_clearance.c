@@ -50,9 +50,7 @@ TEST(of_pairs_at_the_same_distance_the_first_one_counts) {
     strcat(text, "]\n");
     struct pair pair = place(text);
     AT_LEAST(pair.setup.school->n_unknowns, PARALLEL_UNKNOWNS);
-    double *const at_start = calloc((size_t)pair.setup.school->n_unknowns, sizeof *at_start);
-    assert_non_null(at_start);
-    memcpy(at_start, pair.setup.state->y, (size_t)pair.setup.school->n_unknowns * sizeof *at_start);
+    double *const at_start = test_copy(pair.setup.school->n_unknowns, pair.setup.state->y);
     for (int threads = 1; threads <= 3; threads++) {
         pair.setup.school->threads = threads;
         // all fish but the first two halve the distance to a neighbour
@@ -71,7 +69,6 @@ TEST(of_pairs_at_the_same_distance_the_first_one_counts) {
     }
     // neighbours allocated by the residual
     pair.setup.school->threads = 1;
-    free(at_start);
 }
 
 TEST(one_fish_is_close_to_none) {
@@ -134,7 +131,7 @@ TEST(two_bodies_that_turn_towards_each_other_have_touched) {
 TEST(a_body_that_sweeps_over_another_has_touched_it) {
     for (int sweeper = 0; sweeper < 2; sweeper++) {
         struct setup setup = setup_of(PAIR("0", "3"));
-        double *const between = calloc((size_t)setup.school->n_unknowns, sizeof *between), *const y = setup.state->y;
+        double *const between = test_array(setup.school->n_unknowns), *const y = setup.state->y;
         for (int end = 0; end < 2; end++) {
             for (int f = 0; f < 2; f++) {
                 const struct fish *const fish = &setup.school->fish[f];
@@ -153,7 +150,6 @@ TEST(a_body_that_sweeps_over_another_has_touched_it) {
         NEAR(setup.state->closest->distance, 0, 0, 0);
         ABOVE(setup.state->closest->t, 0.2);
         BELOW(setup.state->closest->t, 0.5);
-        free(between);
     }
 }
 
@@ -203,8 +199,7 @@ TEST(the_record_of_a_school_is_that_of_all_pairs) {
     struct pair pair = place(text);
     const struct school *const school = pair.setup.school;
     const size_t size = (size_t)school->n_unknowns * sizeof(double);
-    double *const before = malloc(size), *const y = pair.setup.state->y;
-    assert_non_null(before);
+    double *const before = test_array(school->n_unknowns), *const y = pair.setup.state->y;
     double least = of_all_pairs(&pair, y);
     NEAR(pair.setup.state->closest->distance, least, 0, 0);
     int n_records = 0;
@@ -225,5 +220,4 @@ TEST(the_record_of_a_school_is_that_of_all_pairs) {
         NEAR(pair.setup.state->closest->distance, least, 0, 0);
     }
     ABOVE(n_records, 3);
-    free(before);
 }

@@ -532,8 +532,7 @@ enum { CROWD = 256 };
 // 256 fish in colliding pairs, each pair at a different angle
 static char *crowd(void) {
     enum { BYTES = 40000 };
-    char *const text = malloc(BYTES);
-    assert_non_null(text);
+    char *const text = arena_new(test_arena(), BYTES, 1);
     size_t used = (size_t)snprintf(text, BYTES,
                                    "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
                                    "fluid: {density: 0}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
@@ -551,9 +550,7 @@ static char *crowd(void) {
 }
 
 TEST(of_256_fish_no_two_get_through_each_other) {
-    char *const text = crowd();
-    struct simulation *const simulation = school_simulation(text);
-    free(text);
+    struct simulation *const simulation = school_simulation(crowd());
     double before[2], after[2];
     const double scale = momentum(simulation, CROWD, before);
     while (simulation->state->t < 0.05) school_ok(simulate_step(simulation));

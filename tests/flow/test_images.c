@@ -79,8 +79,8 @@ TEST(rings_and_images_cause_no_flow_through_a_channel) {
 // the sum over 40 000 images
 TEST(few_images_of_rings_are_the_sum_over_all) {
     enum { MANY = 10000 };
-    struct image *image, *all = calloc(4 * MANY, sizeof *all);
-    assert_non_null(all);
+    struct image *image, *all;
+    NEW(test_arena(), all, 4 * MANY);
     for (int k = 1; k <= MANY; k++) {
         all[4 * k - 4] = (struct image){-1, 0.7 - 1.5 * (2 * k - 1), 1};
         all[4 * k - 3] = (struct image){-1, 0.7 + 1.5 * (2 * k - 1), 1};
@@ -105,7 +105,6 @@ TEST(few_images_of_rings_are_the_sum_over_all) {
             NEAR(few.div[k], sum.div[k], bound, 0);
         }
     }
-    free(all);
 }
 
 // ---- vortices

@@ -107,23 +107,20 @@ TEST(every_truncation_is_noticed_and_so_is_more) {
     for (size_t n = 0; n < n_whole; n++) {
         if (sections_check(whole, n) != STATUS_FILE) fail_msg("%zu of %zu bytes", n, n_whole);
     }
-    unsigned char *const more = calloc(n_whole + 1, 1);
+    unsigned char *const more = arena_new(test_arena(), n_whole + 1, 1);
     memcpy(more, whole, n_whole);
     assert_int_equal(sections_check(more, n_whole + 1), STATUS_FILE);
-    free(more);
 }
 
 // write the bytes with another format or order of bytes, and a checksum that fits
 static void other_format(size_t at, uint32_t number, const char *reason) {
     enum { CHECK_AT = 24 };
-    unsigned char *const bytes = malloc(n_whole);
-    memcpy(bytes, whole, n_whole);
+    unsigned char *const bytes = memcpy(arena_new(test_arena(), n_whole, 1), whole, n_whole);
     memcpy(bytes + at, &number, sizeof number);
     const uint32_t check = (uint32_t)crc32(0, bytes, CHECK_AT);
     memcpy(bytes + CHECK_AT, &check, sizeof check);
     assert_int_equal(sections_check(bytes, n_whole), STATUS_FILE);
     if (!strstr(status_message(), reason)) fail_msg("%s", status_message());
-    free(bytes);
 }
 
 TEST(another_format_is_refused_by_name) {
@@ -189,7 +186,7 @@ TEST(values_that_are_not_finite_are_refused) {
         const struct state_row *const row = &state_table[i];
         const struct section_reader section = sections_find(whole, n_whole, row->name);
         if (row->type != STATE_REAL || section.left == 0) continue;
-        unsigned char *const bytes = malloc(section.left);
+        unsigned char *const bytes = arena_new(test_arena(), section.left, 1);
         // the last value too: that of the last fish
         const size_t places[] = {0, section.left - sizeof(double)};
         for (int k = 0; k < 4; k++) {
@@ -199,7 +196,6 @@ TEST(values_that_are_not_finite_are_refused) {
             crafted(row->name, bytes, section.left, strcmp(row->name, "t") == 0 ? "value 0 of 't' is" : row->name);
             n_refused++;
         }
-        free(bytes);
     }
     ABOVE(n_refused, 100);
     crafted("wall_time", &wrong[0], sizeof wrong[0], "section 'wall_time' is invalid");
@@ -209,7 +205,7 @@ TEST(values_that_are_not_finite_are_refused) {
 
 /* What a machine of the other order of bytes would write: all numbers the other way round. */
 TEST(a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name) {
-    unsigned char *const other = malloc(n_whole);
+    unsigned char *const other = arena_new(test_arena(), n_whole, 1);
     const size_t numbers[][2] = {{8, 4}, {12, 4}, {16, 8}};
     memcpy(other, whole, n_whole);
     for (int i = 0; i < 3; i++) {
@@ -222,7 +218,6 @@ TEST(a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name) {
     struct checkpoint read;
     assert_int_equal(checkpoint_read(arena, &read, path), STATUS_FILE);
     if (!strstr(status_message(), "written on a machine with another byte order")) fail_msg("%s", status_message());
-    free(other);
     school_ok(durable_replace(path, previous, whole, n_whole));
 }
 

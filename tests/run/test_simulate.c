@@ -190,13 +190,13 @@ static void run_into(const char *text, const struct simulate_options *options, e
     assert_int_equal(status, want);
 }
 
-/* An attribute of a result; the caller frees the text. */
-static char *read_attribute(const char *path, const char *name) {
+/* An attribute of a result, until the end of the test. */
+static const char *read_attribute(const char *path, const char *name) {
     int file;
     size_t n;
     assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
     assert_int_equal(nc_inq_attlen(file, NC_GLOBAL, name, &n), NC_NOERR);
-    char *const text = calloc(n + 1, 1);
+    char *const text = arena_new(test_arena(), n + 1, 1);
     assert_int_equal(nc_get_att_text(file, NC_GLOBAL, name, text), NC_NOERR);
     nc_close(file);
     return text;
@@ -207,23 +207,19 @@ TEST(notes_of_a_run_count_the_vortices_of_all_fish) {
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
     run_into(TIME "wake: {merge: 0.01}\nfish: [{}, {start: {position: [0, 2]}}, {start: {position: [0, 4]}}]\n",
              &options, STATUS_OK);
-    char *const text = read_attribute(path, "merged_vortices");
     // 25 events of three fish
-    assert_string_equal(text, "0 merged with a neighbour; 75 vortices in the wakes at the end");
-    free(text);
+    assert_string_equal(read_attribute(path, "merged_vortices"),
+                        "0 merged with a neighbour; 75 vortices in the wakes at the end");
     // nothing is said of what does not happen
     run_into(TIME "fish: [{}]\n", &options, STATUS_OK);
-    char *const none = read_attribute(path, "merged_vortices");
+    const char *const none = read_attribute(path, "merged_vortices");
     assert_int_equal(strspn(none, " "), strlen(none));
-    free(none);
 }
 
 /* The checkpoint of a result, with an ending. */
 static const char *checkpoint_of(const char *result, const char *ending) {
     static char path[128];
-    struct arena *const arena = arena_create(NULL, "a test");
-    snprintf(path, sizeof path, "%s%s", checkpoints_path(arena, result), ending);
-    arena_free(arena);
+    snprintf(path, sizeof path, "%s%s", checkpoints_path(test_arena(), result), ending);
     return path;
 }
 
@@ -232,9 +228,7 @@ TEST(the_times_of_checkpoints_are_a_list_in_the_result) {
     const struct simulate_options options = {
         .path = path, .overwrite = 1, .command = "test", .checkpoint_at = "0.04,0.1,0.5"};
     run_into(TIME "fish: [{}]\n", &options, STATUS_OK);
-    char *const text = read_attribute(path, "checkpoint_at");
-    assert_string_equal(text, "0.04,0.1,0.5");
-    free(text);
+    assert_string_equal(read_attribute(path, "checkpoint_at"), "0.04,0.1,0.5");
     unlink(checkpoint_of(path, ""));
     unlink(checkpoint_of(path, ".previous"));
 }
@@ -390,11 +384,9 @@ TEST(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one) {
         run_into(text, &options, STATUS_STOPPED);
         n_until_signal = -1;
         struct checkpoint checkpoint;
-        struct arena *const arena = arena_create(NULL, "a test");
-        school_ok(checkpoint_read(arena, &checkpoint, path));
+        school_ok(checkpoint_read(test_arena(), &checkpoint, path));
         NEAR(checkpoint.t, undisturbed->state->t, 0, 0);
         assert_memory_equal(&checkpoint.totals, &undisturbed->totals, sizeof checkpoint.totals);
-        arena_free(arena);
         assert_int_equal(unlink(path), 0);
     }
 }
@@ -430,11 +422,8 @@ TEST(a_run_that_diverges_ends_with_its_last_finite_row) {
              "fish: [{wave: {amplitude: 0}, motion: {prescribed: all, heave: 0.7, frequency: 50}}]\n",
              &options, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "has diverged at t = 0."));
-    char *const status = read_attribute(path, "run_status"), *const warnings = read_attribute(path, "warnings");
-    assert_non_null(strstr(status, "failed: the run has diverged"));
-    assert_non_null(strstr(warnings, "fish1 has diverged: at t = "));
-    free(status);
-    free(warnings);
+    assert_non_null(strstr(read_attribute(path, "run_status"), "failed: the run has diverged"));
+    assert_non_null(strstr(read_attribute(path, "warnings"), "fish1 has diverged: at t = "));
 
     int file, time, energy, momentum;
     size_t n_rows;

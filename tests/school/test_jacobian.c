@@ -68,8 +68,7 @@ TEST(couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks) {
     struct setup setup;
     build(&setup, FIVE(1));
     const int n = setup.school->n_unknowns;
-    double *const dense = school_dense_jacobian(setup.jacobian), *const vector = calloc(2 * (size_t)n, sizeof *vector);
-    assert_non_null(vector);
+    double *const dense = school_dense_jacobian(test_arena(), setup.jacobian), *const vector = test_array(2 * n);
     for (int i = 0; i < n; i++) vector[i] = school_random(&setup);
     double *const product = vector + n, largest = 0;
     for (int f = 0; f < 5; f++) {
@@ -86,8 +85,6 @@ TEST(couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks) {
         }
     }
     ABOVE(largest, 1e-2);
-    free(dense);
-    free(vector);
 }
 
 TEST(masked_rows_have_no_couplings) {
@@ -109,7 +106,7 @@ TEST(masked_rows_have_no_couplings) {
 TEST(threads_change_no_bit) {
     struct setup one, more;
     build(&one, FIVE(1));
-    double *const want = school_dense_jacobian(one.jacobian);
+    double *const want = school_dense_jacobian(test_arena(), one.jacobian);
     const size_t size = (size_t)one.school->n_unknowns * (size_t)one.school->n_unknowns * sizeof *want;
     const char *const texts[] = {FIVE(2), FIVE(3)};
     for (int i = 0; i < 2; i++) {
@@ -118,11 +115,9 @@ TEST(threads_change_no_bit) {
         AT_LEAST(more.school->n_unknowns, PARALLEL_MATRICES);
         // recorded, then replayed
         for (int pass = 0; pass < 2; pass++) {
-            double *const got = school_dense_jacobian(more.jacobian);
+            double *const got = school_dense_jacobian(test_arena(), more.jacobian);
             assert_memory_equal(got, want, size);
-            free(got);
             school_ok(residual_jacobian(more.residual, &residual_run, more.t, 37, more.state->y, more.jacobian));
         }
     }
-    free(want);
 }

@@ -295,11 +295,10 @@ TEST(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else) {
     const size_t n = (size_t)setup.school->n_unknowns;
     assert_int_equal(setup.residual->couplings.coupled[1], 0);
     school_ok(residual_jacobian(setup.residual, &residual_run, 0, 1, setup.state->y, setup.jacobian));
-    double *dense = school_dense_jacobian(setup.jacobian);
+    double *dense = school_dense_jacobian(test_arena(), setup.jacobian);
     for (int row = a->x; row < a->end; row++) {
         for (int column = b->x; column < b->end; column++) NEAR(dense[(size_t)row * n + (size_t)column], 0, 0, 0);
     }
-    free(dense);
     // closer by 0.5: coupled, which is another pattern; asked again nothing has changed
     for (int k = 0; k < 7; k++) setup.state->y[b->y + k] -= 0.5;
     const unsigned pattern = setup.residual->couplings.pattern;
@@ -308,9 +307,8 @@ TEST(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else) {
     residual_couple(&setup.residual->couplings, setup.state->y);
     assert_int_equal(setup.residual->couplings.pattern, pattern + 1);
     school_ok(residual_jacobian(setup.residual, &residual_run, 0, 1, setup.state->y, setup.jacobian));
-    dense = school_dense_jacobian(setup.jacobian);
+    dense = school_dense_jacobian(test_arena(), setup.jacobian);
     ABOVE(fabs(dense[(size_t)a->gamma * n + (size_t)b->gamma]), 1e-4);
-    free(dense);
 }
 
 TEST(unknowns_have_names_kinds_and_scales) {

@@ -220,13 +220,12 @@ static void stiffness(struct configurations *both, int f, const double *y, doubl
     sparse_begin(matrix);
     rod_jacobian(fish, &at_rest, y, matrix);
     sparse_end(matrix);
-    double *const all = school_dense(matrix);
+    double *const all = school_dense(test_arena(), matrix);
     for (int row = 0; row < 2 * fish->n_nodes; row++) {
         for (int column = 0; column < 2 * fish->n_nodes; column++) {
             dense[row * 2 * MAX_NODES + column] = all[(fish->at.ax + row) * both->n + fish->at.x + column];
         }
     }
-    free(all);
 }
 
 // K becomes T K T^-1
@@ -234,8 +233,7 @@ static void map_stiffness(const struct configurations *both, int f, double *dens
     const struct fish *fish = &both->setup.school->fish[f];
     const int n = 2 * fish->n_nodes;
     double result[2 * MAX_NODES * 2 * MAX_NODES];
-    double *const vector = calloc((size_t)both->n, sizeof *vector);
-    assert_non_null(vector);
+    double *const vector = test_array(both->n);
     for (int column = 0; column < n; column++) {
         for (int i = 0; i < n; i++) vector[fish->at.x + i] = i == column;
         corotation_map(both->corotation, true, vector);
@@ -248,7 +246,6 @@ static void map_stiffness(const struct configurations *both, int f, double *dens
         corotation_map(both->corotation, false, vector);
         for (int row = 0; row < n; row++) result[row * 2 * MAX_NODES + column] = vector[fish->at.ax + row];
     }
-    free(vector);
     memcpy(dense, result, sizeof result);
 }
 

@@ -16,9 +16,7 @@ static double number(void) {
 // swaps would lose all digits
 static double error_of_order(int n, int tiny_diagonal) {
     struct dense_factors factors = dense_factors_create(test_arena(), n);
-    double *const x = calloc(2 * (size_t)n, sizeof *x), *const want = x + n;
-    assert_non_null(x);
-
+    double *const x = test_array(2 * n), *const want = x + n;
     for (int k = 0; k < n; k++) {
         want[k] = number();
         for (int r = 0; r < n; r++) {
@@ -31,7 +29,6 @@ static double error_of_order(int n, int tiny_diagonal) {
     dense_factors_solve(&factors, x);
     double error = 0;
     for (int k = 0; k < n; k++) error = fmax(error, fabs(x[k] - want[k]));
-    free(x);
     return error;
 }
 

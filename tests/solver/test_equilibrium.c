@@ -49,13 +49,12 @@ TEST(the_equations_of_a_run_hold_at_rest) {
     school_ok(equilibrium_solve(rig.equilibrium));
     AT_MOST(equilibrium_residual(rig.equilibrium), 1e-10);
     // every equation of the school, not only those that have been solved, and with Kelvin's theorem
-    double *const value = calloc((size_t)school->n_unknowns, sizeof *value);
+    double *const value = test_array(school->n_unknowns);
     value_of(&rig, &residual_run, value);
     for (int i = 0; i < school->n_unknowns; i++) {
         const enum unknown kind = residual_place(school, i).kind;
         NEAR(value[i], 0, kind == UNKNOWN_AX || kind == UNKNOWN_AY ? 1e-6 : 1e-9, 0);
     }
-    free(value);
     for (int f = 0; f < 2; f++) {
         const double shed = rig.simulation->state->y[school->fish[f].at.circulation];
         ABOVE(fabs(shed), 0.1);

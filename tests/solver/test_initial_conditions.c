@@ -42,8 +42,7 @@ static const char uncoupled[] =
 static void check_residual(struct setup *setup, double t, const char *text) {
     const int n = setup->school->n_unknowns;
     school_ok(residual_evaluate(setup->residual, &residual_run, t, setup->state->y, setup->state->yp, setup->value));
-    double *const kind = calloc((size_t)n, sizeof *kind);
-    assert_non_null(kind);
+    double *const kind = test_array(n);
     residual_kinds(setup->residual, &residual_run, kind);
     for (int i = 0; i < n; i++) {
         const struct unknown_place place = residual_place(setup->school, i);
@@ -56,7 +55,6 @@ static void check_residual(struct setup *setup, double t, const char *text) {
                     setup->value[i]);
         fail();
     }
-    free(kind);
 }
 
 TEST(all_equations_hold_at_the_start_for_every_option) {
@@ -86,11 +84,8 @@ TEST(all_equations_hold_again_from_any_state) {
 
 TEST(differential_unknowns_stay_as_they_are) {
     struct setup setup = setup_stirred(TIME "sheet: {kutta: rate}\n" FISH);
-    double *const kind = calloc((size_t)setup.school->n_unknowns, sizeof *kind);
-    double *const before = calloc((size_t)setup.school->n_unknowns, sizeof *before);
-    assert_non_null(kind);
-    assert_non_null(before);
-    memcpy(before, setup.state->y, (size_t)setup.school->n_unknowns * sizeof *before);
+    double *const kind = test_array(setup.school->n_unknowns);
+    double *const before = test_copy(setup.school->n_unknowns, setup.state->y);
     residual_kinds(setup.residual, &residual_run, kind);
     struct initial_conditions *const solver = school_consistent(&setup, setup.t);
     int n_differential = 0;
@@ -101,8 +96,6 @@ TEST(differential_unknowns_stay_as_they_are) {
     // x, v of seven nodes, and the circulation shed
     assert_int_equal(n_differential, 29);
     AT_LEAST(initial_conditions_iterations(solver), 1);
-    free(kind);
-    free(before);
 }
 
 // places and velocities at the start, later places and momenta; the prescribed node has its motion at all times
@@ -163,13 +156,10 @@ TEST(light_bodies_take_no_iterations_either) {
 TEST(a_second_solution_changes_nothing) {
     struct setup setup = setup_stirred(TIME FISH);
     struct initial_conditions *const solver = school_consistent(&setup, setup.t);
-    double *const before = calloc((size_t)setup.school->n_unknowns, sizeof *before);
-    assert_non_null(before);
-    memcpy(before, setup.state->y, (size_t)setup.school->n_unknowns * sizeof *before);
+    double *const before = test_copy(setup.school->n_unknowns, setup.state->y);
     school_ok(initial_conditions_solve(solver, &residual_run, setup.t, setup.state->y, setup.state->yp));
     // rounding of accelerations of a stiff body
     NEAR_ARRAY(setup.school->n_unknowns, setup.state->y, before, 1e-11, 1e-11);
-    free(before);
 }
 
 TEST(a_state_that_is_not_a_number_is_refused_and_kept) {

@@ -122,18 +122,14 @@ static void solve_dense(int n, double *a, double *b) {
 
 // the distance of x from the solution with the dense matrix, over the size of that; each in units of the scales
 static double error_of(const struct system *system) {
-    double *const dense = school_dense_jacobian(system->setup.jacobian);
-    double *const want = calloc((size_t)system->n, sizeof *want);
-    assert_non_null(want);
-    memcpy(want, system->b, (size_t)system->n * sizeof *want);
-    solve_dense(system->n, dense, want);
+    ARENA(arena, NULL, "a dense matrix");
+    double *const want = test_copy(system->n, system->b);
+    solve_dense(system->n, school_dense_jacobian(arena, system->setup.jacobian), want);
     double size = 0, error = 0;
     for (int i = 0; i < system->n; i++) {
         size = fmax(size, fabs(want[i]) / system->scale[i]);
         error = fmax(error, fabs(system->x[i] - want[i]) / system->scale[i]);
     }
-    free(dense);
-    free(want);
     return error / size;
 }
 
@@ -322,8 +318,7 @@ TEST(the_column_of_the_circulation_shed_can_be_updated) {
         school_ok(linear_solve(system.linear, system.b, system.x));
         BELOW(error_of(&system), 1e-9);
         // twice: an update takes the place of the last one
-        double *const by_shed = calloc((size_t)system.n, sizeof *by_shed);
-        assert_non_null(by_shed);
+        double *const by_shed = test_array(system.n);
         for (int i = 0; i < 2; i++) {
             setup->t += setup->school->interval / 4;
             school_ok(residual_evaluate(setup->residual, &residual_run, setup->t, setup->state->y, setup->state->yp,
@@ -343,7 +338,6 @@ TEST(the_column_of_the_circulation_shed_can_be_updated) {
         school_ok(linear_setup(system.linear));
         school_ok(linear_solve(system.linear, system.b, system.x));
         BELOW(error_of(&system), 1e-9);
-        free(by_shed);
     }
 }
 
@@ -534,12 +528,7 @@ TEST(threads_change_no_bit) {
             school_ok(linear_solve(system.linear, system.b, system.x));
         }
         ABOVE(linear_count(system.linear).iterations, 4);
-        if (!first) {
-            first = malloc((size_t)system.n * sizeof *first);
-            assert_non_null(first);
-            memcpy(first, system.x, (size_t)system.n * sizeof *first);
-        }
+        if (!first) first = test_copy(system.n, system.x);
         assert_memory_equal(system.x, first, (size_t)system.n * sizeof *first);
     }
-    free(first);
 }

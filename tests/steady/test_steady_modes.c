@@ -206,16 +206,13 @@ TEST(the_simulation_stays_where_it_is) {
     found.values.omega = found.omega;
     school_ok(steady_static_find(found.simulation, NULL, &found.values));
     const int n = found.simulation->school->n_unknowns;
-    double *const before = malloc((size_t)n * sizeof *before);
-    assert_non_null(before);
-    memcpy(before, found.simulation->state->y, (size_t)n * sizeof *before);
+    double *const before = test_copy(n, found.simulation->state->y);
     const double reach = found.simulation->residual->couplings.reach;
     school_ok(steady_modes_find(found.simulation, &found.values));
     NEAR(found.simulation->residual->couplings.reach, reach, 0, 0);
     assert_memory_equal(before, found.simulation->state->y, (size_t)n * sizeof *before);
     assert_int_equal(found.simulation->state->event, 0);
     assert_int_equal(found.simulation->state->wake[0].n_vortex, 0);
-    free(before);
 }
 
 TEST(multipliers_become_exponents) {
