@@ -33,7 +33,6 @@ static struct steered steer(const char *law, double modulus, const char *solver,
         result.phi0 = y[fish->at.phi0];
     }
     memcpy(result.place, y + fish->at.x, sizeof result.place);
-    simulate_free(simulation);
     return result;
 }
 
@@ -81,7 +80,6 @@ static void waypoints(void) {
     verify_value("law course, default fish: waypoints reached", "[-4, 1], [-8, -1], [-12, 0]; arrival 0.5 L", 3,
                  state->control[0].waypoint, 0);
     verify_show("law course, default fish: all reached at, s", "from rest", t);
-    simulate_free(simulation);
 }
 
 static void course_in_a_wake(void) {
@@ -97,7 +95,6 @@ static void course_in_a_wake(void) {
         most = fmax(most, fabs(simulation->diagnostics->fish[1].heading_error));
     }
     verify_zero("law course, in the wake of another: error, degree", "10 to 20 s, one-beat means", most, 2);
-    simulate_free(simulation);
 }
 
 void verify_control(void) {

@@ -93,7 +93,6 @@ static void added_masses(void) {
                             "positive; the number is the prototype's", cases[i].least, smallest_eigenvalue(simulation),
                             0.05);
         }
-        simulate_free(simulation);
     }
 }
 
@@ -127,7 +126,6 @@ static void impulses(void) {
     verify_run(simulation, 0.002);
     verify_relative("stream of 0.1 starts at once: velocity of a stiff plate, m = 0.1", "0.1 mu/(m + mu)",
                     stream * added / (0.1 + added), mean_velocity(simulation), 1e-3);
-    simulate_free(simulation);
     // the velocity falls to 0 at both ends like a square root, within the last edges
     const double masses[] = {0.1, 1};
     for (int i = 0; i < 2; i++) {
@@ -139,7 +137,6 @@ static void impulses(void) {
             error[n] = mean_velocity(simulation) / exact - 1;
             verify_show(verify_text("relative error of a limp plate, m = %g, N = %d", masses[i], limp.nodes),
                         "sine series of the impulse", error[n]);
-            simulate_free(simulation);
         }
         verify_order(verify_text("mean velocity of a limp plate, m = %g, in the nodes", masses[i]),
                      "sine series of the impulse", verify_order_of_errors(error[0], error[2]) / 2, 0.8, 3);
@@ -182,7 +179,6 @@ static double swim(int nodes, double interval) {
                 "rtol 1e-5", of->energy_balance / of->actuation_work, 1e-3);
     verify_zero(verify_text("free fish, N = %d, Dt = %g: total circulation", nodes, interval), "Kelvin",
                 simulation->diagnostics->total_circulation, 1e-10);
-    simulate_free(simulation);
     return speed;
 }
 
@@ -207,7 +203,6 @@ static void free_fish(void) {
         const struct diagnostics_fish *of = simulation->diagnostics->fish;
         verify_zero(verify_text("free fish: energy balance over the work of the muscle, rtol %g", rtols[i]),
                     "the prototype's bound", of->energy_balance / of->actuation_work, bounds[i]);
-        simulate_free(simulation);
     }
 }
 
@@ -221,7 +216,6 @@ static void followers(void) {
                         "the prototype's", speeds[i], simulation->diagnostics->fish[1].speed, 0.03);
         verify_zero(verify_text("both, smoothing %g L: total circulation", smoothings[i]), "Kelvin",
                     simulation->diagnostics->total_circulation, 1e-10);
-        simulate_free(simulation);
     }
 }
 

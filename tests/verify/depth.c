@@ -37,7 +37,6 @@ static void check_slender(void) {
     const struct diagnostics_fish *const of = simulation->diagnostics->fish;
     verify_relative("plate in heave, w/L = 0.25: mean thrust", "Lighthill", mass * square / 2, of->mean_thrust, 0.03);
     verify_relative("plate in heave, w/L = 0.25: mean power", "Lighthill", mass * square, of->mean_power, 0.03);
-    simulate_free(simulation);
 }
 
 /* Steady lift over that of two dimensions, pi rho U^2 w L alpha, at a small incidence, D lengths after the start. */
@@ -56,7 +55,6 @@ static double lift_part(double depth, int n_sheet, double interval, double end) 
     const struct pressure_forces *const of = &simulation->diagnostics->fish[0].pressure;
     const double force[2] = {of->pressure[0] + of->suction[0], of->pressure[1] + of->suction[1]};
     const double lift = force[1] * cos(angle) - force[0] * sin(angle), speed = 1 / cos(angle);
-    simulate_free(simulation);
     return lift / (pi * speed * speed * depth * angle);
 }
 
@@ -78,7 +76,6 @@ static double added_mass_part(double depth, int n_sheet) {
     verify_ok(initial_conditions_create(simulation->arena, &initial, residual));
     verify_ok(initial_conditions_solve(initial, &start, 0, y, simulation->state->yp));
     for (int k = 0; k < fish->n_nodes; k++) mass += residual->pressure[0]->momentum[fish->n_nodes + k];
-    simulate_free(simulation);
     return mass / (pi / 4 * depth);
 }
 
@@ -123,7 +120,6 @@ static void check_surface(void) {
                      wings[i].power);
         verify_ratio(verify_text("plate in heave, w/L = %g: mean thrust", w), source, thrust, of->mean_thrust / unit,
                      0.99, wings[i].thrust);
-        simulate_free(simulation);
         i++;
     }
     fclose(file);
@@ -149,7 +145,6 @@ static void check_energy(const char *name, const char *walls, double end) {
     const struct diagnostics_fish *const of = simulation->diagnostics->fish;
     verify_zero(verify_text("%s: energy balance after %g s over work", name, end), "first law",
                 of->energy_balance / of->actuation_work, 3e-5);
-    simulate_free(simulation);
 }
 
 // the largest difference of the circulation shed, over the circulation
@@ -163,8 +158,6 @@ static double shed_difference(struct simulation *one, struct simulation *other) 
         most = fmax(most, fabs(one->state->y[shed] - other->state->y[shed]));
         largest = fmax(largest, fabs(other->state->y[shed]));
     }
-    simulate_free(one);
-    simulate_free(other);
     return most / largest;
 }
 
@@ -249,8 +242,6 @@ static void check_channel_fish(void) {
                 1e-9);
     verify_zero("a fish in a channel, w/H = 0.25: momentum lost", "momentum of bodies and rings", most / momentum,
                 1e-3);
-    simulate_free(one);
-    simulate_free(mirrored);
 }
 
 // the momentum of a fish, and of two of different depth, is found in the fluid
@@ -274,7 +265,6 @@ static void check_momentum(const char *name, const char *fish, double bound) {
         momentum = fmax(momentum, sum);
     }
     verify_zero(name, "momentum of bodies and rings", most / momentum, bound);
-    simulate_free(simulation);
 }
 
 // The wake of a slow slender fish stays at the tail. A strip that is not rolled up there breaks up: labels grow to 6
@@ -292,7 +282,6 @@ static void check_slow_start(void) {
         shed = fmax(shed, fabs(simulation->state->y[simulation->school->fish[0].at.circulation]));
     }
     verify_ratio("a fish from rest, w/L = 0.05: largest label of the wake", "circulation shed", shed, label, 0, 1.5);
-    simulate_free(simulation);
 }
 
 void verify_depth(void) {

@@ -54,7 +54,6 @@ static void follow_tail(struct simulation *simulation, int n, double *tail) {
         verify_run(simulation, (i + 1.0) / N_FRACTION);
         tail[i] = height(simulation, simulation->school->fish[0].n_nodes - 1) - height(simulation, 0);
     }
-    simulate_free(simulation);
 }
 
 // ---- flutter
@@ -70,7 +69,6 @@ static double growth_of(int n_nodes, double mass_ratio, double speed, double *fr
     struct steady_values found = {.fish = &fish, .rate = rate, .omega = omega};
     verify_ok(steady_static_find(simulation, NULL, &found));
     verify_ok(steady_modes_find(simulation, &found));
-    simulate_free(simulation);
     int best = -1;
     for (int i = 0; i < found.n_exponents; i++) {
         const double here = fabs(omega[i] / (2 * pi) - *frequency);
@@ -173,7 +171,6 @@ static struct driven drive(const struct setting *setting, double amplitude, int 
         add_event(simulation, 1.0 / N_FRACTION, &driven);
     }
     driven.efficiency = simulation->diagnostics->fish[0].efficiency;
-    simulate_free(simulation);
     driven.lift /= amplitude;
     driven.thrust /= amplitude * amplitude;
     driven.power /= amplitude * amplitude;

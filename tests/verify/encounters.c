@@ -52,7 +52,6 @@ static struct response sine(double k, int n_sheet, int per_period, int n_periods
         response.lift += force[1] * 2 / per_period * cexp(-I * omega * simulation->state->t) / (pi * amplitude);
         response.thrust -= force[0] / per_period / (pi * amplitude * amplitude / 2);
     }
-    simulate_free(simulation);
     return response;
 }
 
@@ -91,7 +90,6 @@ static void kuessner(void) {
         verify_relative(verify_text("step gust: lift over the final value, s = %g", s[i]), "Kuessner (1936)",
                         linear_theory_kuessner(s[i]), force[1] / (pi * amplitude), 0.01);
     }
-    simulate_free(simulation);
 }
 
 // ---- a vortex street
@@ -116,7 +114,6 @@ static double street_speed(int n, double interval) {
         }
         verify_run(simulation, end);
     }
-    simulate_free(simulation);
     return -sum / end;
 }
 
@@ -163,7 +160,6 @@ static void drift(void) {
     }
     verify_relative("plate in a street, free along the stream: mean acceleration", "Sears (1941), the suction",
                     -thrust / mass, (speed[1] - speed[0]) / (to - from), 0.01);
-    simulate_free(simulation);
 }
 
 /* A free rigid plate meets a weak street: heave y and pitch p (slope of the plate) of linear theory, integrated in time
@@ -261,7 +257,6 @@ static void free_plate(void) {
         verify_relative(verify_text("free plate in a street: pitch after %g s", t), "Wagner, integrated in time",
                         plate.pitch[0], y[fish->at.y + fish->n_nodes - 1] - y[fish->at.y], 0.005);
     }
-    simulate_free(simulation);
 }
 
 void verify_encounters(void) {

@@ -48,7 +48,6 @@ static void whole_case(const char *name, const char *more, double end, double bo
     snprintf(quantity, sizeof quantity, "%s%s%s: energy balance after %g s over work", name, more[0] ? ", " : "", more,
              end);
     verify_zero(quantity, source, balance, bound);
-    simulate_free(simulation);
 }
 
 // the energy balance of single_free at time end with another tolerance and order, and the mean step
@@ -60,9 +59,7 @@ static double balance_with(double rtol, int order, double end, double *step) {
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);
     *step = end / (double)counts.steps;
-    const double balance = relative_balance(simulation);
-    simulate_free(simulation);
-    return balance;
+    return relative_balance(simulation);
 }
 
 // second order in the mean step as the tolerance falls: the tolerance controls the error of a step, not of the run
@@ -136,7 +133,6 @@ static struct beat last_beat(double speed, int n_beats) {
     }
     beat.stored += body_energy(fish);
     beat.speed = fish->speed;
-    simulate_free(simulation);
     return beat;
 }
 

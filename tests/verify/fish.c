@@ -20,9 +20,7 @@ static struct swim steady_swim(const char *school, const char *keys) {
     verify_ok(steady_search_run(&search.problem));
     const struct steady_beat *const beat = &search.problem.map.last[0];
     const double mass = search.simulation->school->fish[0].total_mass;
-    const struct swim swim = {beat->speed, beat->actuation / mass / beat->speed};
-    verify_search_close(&search);
-    return swim;
+    return (struct swim){beat->speed, beat->actuation / mass / beat->speed};
 }
 
 // the body for which the first version of the model was measured
@@ -110,7 +108,6 @@ static double cost_from_rest(double modulus, double rtol) {
     verify_zero(verify_text("%.0e Pa, rtol %.0e: energy balance over work", modulus, rtol), "residual after 8 s",
                 fish->energy_balance / fish->actuation_work, 1e-3);
     verify_point("fish_stiffness", "cost [m/s2]", modulus, cost);
-    simulate_free(simulation);
     return cost;
 }
 

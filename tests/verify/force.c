@@ -53,7 +53,6 @@ static double most_gained(uint64_t *seed, int flux, double end, double *speed) {
         *speed = fmax(*speed, fish->speed);
     }
     most /= fabs(measured(simulation)->actuation_work);
-    simulate_free(simulation);
     return most;
 }
 
@@ -91,7 +90,6 @@ static double lost(double rtol, double *step) {
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);
     *step = 2.0 / (double)counts.steps;
-    simulate_free(simulation);
     return most / largest;
 }
 
@@ -142,8 +140,6 @@ static void reversal(void) {
     // the method's error, (omega step)^4 with omega the fastest motion of a soft body
     verify_zero("the wave reversed: final less initial position of the nodes", "over the distance before the reversal",
                 missed / went, 1e-9);
-    simulate_free(there);
-    simulate_free(back);
 }
 
 // ---- plates
@@ -184,7 +180,6 @@ static void force_on_plate(const char *motion, double t, double force[2], double
         *moment += (y[edge_place(fish, 0, k)] - y[fish->at.x]) * at_node[1] -
                    (y[edge_place(fish, 1, k)] - y[fish->at.y]) * at_node[0];
     }
-    simulate_free(simulation);
 }
 
 static void towed_plate(void) {

@@ -57,7 +57,6 @@ static void run_fish(const struct variant *variant, double interval, struct path
         path->tail[i][1] = y[fish->at.y + last];
         path->shed[i] = y[fish->at.circulation];
     }
-    simulate_free(simulation);
 }
 
 // the root mean square over the run

@@ -66,7 +66,6 @@ static struct found find(const struct run *run) {
             found.force[i] = found.since_beat[i] / (run->end - 1);
         }
     }
-    simulate_free(simulation);
     found.part = largest / found.size;
     found.part_at_end = hypot(found.balance[0], found.balance[1]) / found.size;
     found.of_momentum = largest / momentum;

@@ -87,9 +87,7 @@ static struct linear_theory_load run_oscillation(struct oscillation of) {
         17,    of.n_sheet, period / of.per_period, of.n_periods * period, of.is_uniform ? 1e-4 : 0.1, of.is_uniform,
         motion};
     struct simulation *const simulation = open_plate(&plate);
-    const struct linear_theory_load load = oscillate(simulation, omega, of.n_periods, of.per_period);
-    simulate_free(simulation);
-    return load;
+    return oscillate(simulation, omega, of.n_periods, of.per_period);
 }
 
 static void heave(void) {
@@ -213,7 +211,6 @@ static void wagner(void) {
                         "Wagner (1925)", growth.circulation,
                         -simulation->diagnostics->fish[0].shed_circulation / (pi * sin(alpha)), cases[i].circulation);
     }
-    simulate_free(simulation);
 }
 
 static void steady(void) {
@@ -230,7 +227,6 @@ static void steady(void) {
                      tan(angles[i]), fabs(of->pressure.leading_edge_a0), 0.012 * tan(angles[i]));
         verify_zero(verify_text("plate at %g rad: drag over suction", angles[i]), "d'Alembert",
                     load.force[0] / hypot(of->pressure.suction[0], of->pressure.suction[1]), 0.011);
-        simulate_free(simulation);
     }
 }
 
@@ -260,7 +256,6 @@ static void self_propelled(double amplitude, const char *wake, int per_period, i
     verify_relative(verify_text("heaving plate that swims, A = %g%s: efficiency", amplitude, which),
                     "Garrick (1936), |C|^2/Re C", cabs(c) * cabs(c) / creal(c),
                     simulation->diagnostics->fish[0].efficiency, 0.018);
-    simulate_free(simulation);
 }
 
 void verify_pressure(void) {

@@ -53,9 +53,7 @@ static double deflection(int nodes, double load) {
                     nodes, "mean", thin, modulus_of(thin), 0.4, load * stiffness);
     verify_run(simulation, 12);
     const struct fish *const fish = simulation->school->fish;
-    const double w = simulation->state->y[fish->at.y + nodes - 1];
-    simulate_free(simulation);
-    return w;
+    return simulation->state->y[fish->at.y + nodes - 1];
 }
 
 // errors fall as lbar^2, from the free ends and the lumped masses of the chain. The bound on the finest chain is half
@@ -161,7 +159,6 @@ static void wave_numbers(int nodes, const char *section, int clamped, double bet
     // a free rod may be shifted and turned
     for (int i = 0; i < 3; i++) beta[i] = pow(matrix[i + (clamped ? 0 : 2)], 0.25);
     free(matrix);
-    simulate_free(simulation);
 }
 
 static void frequencies(int clamped) {
@@ -245,7 +242,6 @@ static void polygon(void) {
     verify_zero("regular polygon: sides less L/4, m", source, side, 1e-9);
     verify_zero("regular polygon: from nose to tail less sqrt(3) L/4, m", source,
                 fabs(distance(simulation, 0, 4) - sqrt(3) / 4), 1e-9);
-    simulate_free(simulation);
 }
 
 // the natural curvature of the default wave, frozen, with a bias of 1/2, 1/m; 1/6 m is the reference edge
@@ -282,7 +278,6 @@ static void natural_shape(void) {
         }
         error[level] = distance(simulation, 0, n - 1) - chord;
         verify_point("natural shape", "chord", n, fabs(error[level] / chord));
-        simulate_free(simulation);
     }
     const double edge = 1.0 / (nodes_of[n_levels - 1] - 1);
     verify_zero("natural shape: turning angles less the joints' own, rad", "kappa = kbar at every joint", worst, 1e-9);
@@ -334,7 +329,6 @@ static struct invariants drift(double thickness, double rtol, int order, double 
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);
     *step = 2.0 / (double)counts.steps;
-    simulate_free(simulation);
     const double change[2] = {after.momentum[0] - before.momentum[0], after.momentum[1] - before.momentum[1]};
     return (struct invariants){
         .momentum = {hypot(change[0], change[1]) / hypot(before.momentum[0], before.momentum[1])},

@@ -109,9 +109,7 @@ static struct simulation *open_school(const struct variant *variant) {
 static struct ends run_school(const struct variant *variant) {
     struct simulation *simulation = open_school(variant);
     verify_run(simulation, variant->end);
-    const struct ends ends = ends_of(simulation, variant->shed_at);
-    simulate_free(simulation);
-    return ends;
+    return ends_of(simulation, variant->shed_at);
 }
 
 // one fish of the usual kind, with further keys of the fish
@@ -121,9 +119,7 @@ static struct ends run_fish(double rtol, int order, const char *sheets, const ch
         "wake: {lifetime: 4}\n%ssolver: {rtol: %.17g, order: %d}\nfish:\n  - {name: fish%s}\n",
         end_time, end_time, sheets, rtol, order, keys);
     verify_run(simulation, end_time);
-    const struct ends ends = ends_of(simulation, label);
-    simulate_free(simulation);
-    return ends;
+    return ends_of(simulation, label);
 }
 
 // the order from the last three of n runs, each refined by a factor of two
@@ -417,9 +413,7 @@ static struct ends run_explicit(const struct variant *variant, int steps_per_eve
         fprintf(stderr, "verify school: the explicit method failed: %s\n", status_message());
         exit(1);
     }
-    const struct ends ends = ends_of(simulation, variant->shed_at);
-    simulate_free(simulation);
-    return ends;
+    return ends_of(simulation, variant->shed_at);
 }
 
 static void check_explicit(void) {

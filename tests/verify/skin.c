@@ -94,7 +94,6 @@ static void check_passing_vortex(void) {
                          is_fast ? 5e-4 : 5e-5);
         }
     }
-    simulate_free(simulation);
 }
 
 // ---- a plate in an oscillating stream
@@ -126,7 +125,6 @@ static void check_gust(double k, double bound) {
             mean[i] += (sensor[1][i] + sensor[0][i]) / 2 * wave;
         }
     }
-    simulate_free(simulation);
 
     for (int i = 0; i < 3; i++) {
         const double theta = acos(1 - 2 * place[i]);
@@ -176,7 +174,6 @@ static void check_friction_at_rest(void) {
         const struct frictions mean = mean_friction(simulation, 0, 0.02);
         verify_relative(verify_text("%s at Reynolds number 1000: friction of both sides", bodies[i].name),
                         bodies[i].source, bodies[i].reference, 2 * mean.sides, bodies[i].bound);
-        simulate_free(simulation);
     }
 }
 
@@ -189,14 +186,12 @@ static void check_friction_in_motion(void) {
                  of_foil.sides / pressure, 1.3, 1.6);
     verify_ratio("heave of an ellipse at Re 1000: friction of the law", "Navier-Stokes, about 0.06", 0.06,
                  of_foil.law / pressure, 1.9, 2.2);
-    simulate_free(foil);
 
     struct simulation *const swimmer = verify_open_case("swimmer_navier_stokes.yaml", 0, NULL);
     verify_run(swimmer, 6);
     const struct frictions of_swimmer = mean_friction(swimmer, 6, 1);
     verify_ratio("swimmer: friction of both sides over the law", "law that acts", of_swimmer.law, of_swimmer.sides,
                  0.78, 0.88);
-    simulate_free(swimmer);
 }
 
 void verify_skin(void) {

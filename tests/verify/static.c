@@ -57,7 +57,6 @@ static void find(struct found *found, const struct body *body) {
 static struct steady_fish find_fish(const struct body *body) {
     struct found found;
     find(&found, body);
-    simulate_free(found.simulation);
     return found.fish;
 }
 
@@ -88,7 +87,6 @@ static void stiff_plate(void) {
                     found.fish.drag / found.fish.lift, 1e-4);
         verify_zero(verify_text("stiff plate at %d degrees: moment about L/4 over lift", angles[i]), airfoils,
                     quarter_moment(&found) / found.fish.lift, 5e-4);
-        simulate_free(found.simulation);
     }
 }
 
@@ -173,7 +171,6 @@ static void flexible_foil(void) {
 static double stiffness_of(int n_nodes, double speed) {
     struct found found;
     find(&found, &(struct body){n_nodes, speed, 180, 0.02, 1, "head", slender, 0, 0});
-    simulate_free(found.simulation);
     return found.values.stiffness;
 }
 
@@ -281,10 +278,7 @@ static double distance_of_run(const struct body *body) {
     find(&found, body);
     struct simulation *const run = open_body(body);
     verify_run(run, body->end);
-    const double most = distance_of(found.simulation, run);
-    simulate_free(found.simulation);
-    simulate_free(run);
-    return most;
+    return distance_of(found.simulation, run);
 }
 
 static void ends_of_runs(void) {
@@ -327,8 +321,6 @@ static void finite_span(void) {
     find(&other, &deep);
     verify_zero("foil at 6 degrees, E I = 0.05, w/L = 10000: places less those in two dimensions", "two dimensions",
                 distance_of(one.simulation, other.simulation), 1e-5);
-    simulate_free(one.simulation);
-    simulate_free(other.simulation);
 }
 
 void verify_static(void) {

@@ -43,7 +43,6 @@ static struct found search_for(const char *text) {
     found.cost = problem->map.last[0].actuation + problem->map.last[0].driving;
     verify_ok(steady_multipliers_find(problem, real, imaginary, way, &n_beats));
     found.multiplier = hypot(real[0], imaginary[0]);
-    verify_search_close(&search);
     return found;
 }
 
@@ -56,9 +55,7 @@ static double run_long(const char *text, double speed[BRUTE_BEATS + 1]) {
         verify_ok(steady_map_beat(&map, NULL, NULL));
         speed[i] = map.last[0].speed;
     }
-    const double power = map.last[0].actuation + map.last[0].driving;
-    simulate_free(simulation);
-    return power;
+    return map.last[0].actuation + map.last[0].driving;
 }
 
 // the first beat from which on all speeds are right to 1e-4
@@ -152,8 +149,6 @@ static void circle(const char *name, const char *text) {
     // one more beat has been taken for the means
     verify_zero(verify_text("%s: beats of the search", name), "about a tenth of the run's",
                 found.problem.map.n_beats - 1, 24);
-    verify_search_close(&run);
-    verify_search_close(&found);
 }
 
 static void circles(void) {
@@ -183,8 +178,6 @@ static void formation(void) {
     verify_zero("two free fish: largest multiplier", "stable: below 1", multiplier, 1);
     verify_show("two free fish: beats of the search", "speeds, slips, turns, headings, a place",
                 found.problem.map.n_beats);
-    verify_search_close(&run);
-    verify_search_close(&found);
 }
 
 void verify_steady(void) {

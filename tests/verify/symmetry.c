@@ -136,8 +136,6 @@ static void compare_with_usual(const struct view_point *view, double *bodies, do
     plain.second = view->second;
     struct simulation *one = run(&plain), *seen = run(view);
     compare(one, seen, view, bodies, wakes);
-    simulate_free(one);
-    simulate_free(seen);
 }
 
 // With a smooth start of the muscle the first error estimates are round-off, and round-off determines the first steps.
@@ -293,10 +291,8 @@ static void check_far_apart(void) {
         for (int k = fish->at.x; k < fish->at.vx; k++) {
             moved[i] = largest(moved[i], fabs(pair->state->y[k] - alone->state->y[k]));
         }
-        simulate_free(pair);
         verify_point("symmetry_far", "change of position", apart[i], moved[i]);
     }
-    simulate_free(alone);
     verify_order("far apart: decay of the change with distance",
                  "no net circulation: a dipole's velocity, distance^-2; 16 against 32 lengths",
                  verify_order_of_errors(moved[2], moved[3]), 1.8, 2.2);

@@ -100,7 +100,6 @@ static struct found find(const struct pair *pair, int n_fish, int is_stability_w
         found.wander = wander(problem);
         found.growth = growth(problem, kept);
     }
-    verify_search_close(&search);
     return found;
 }
 
@@ -247,7 +246,6 @@ static double thrust_over_leaders(const struct pair *pair) {
         simulate_measure(simulation);
         for (int f = 0; f < 2; f++) thrust[f] -= simulation->diagnostics->fish[f].pressure.suction[0];
     }
-    simulate_free(simulation);
     return thrust[1] / thrust[0];
 }
 

@@ -81,7 +81,6 @@ static struct period run_case(const char *name, int n_periods, int n_assignments
     period.separation_share = of->separation_share;
     period.edge = of->leading_edge_most;
     period.imbalance = of->energy_balance / (n_periods * of->mean_power);
-    simulate_free(simulation);
     return period;
 }
 
@@ -276,7 +275,6 @@ static double gait_stride(const struct gait *gait, double length, double frequen
         verify_ok(steady_search_run(&search.problem));
         stride = search.problem.map.last[0].speed / (length * frequency);
         amplitude *= gait->excursion / (search.simulation->diagnostics->fish[0].strouhal * stride);
-        verify_search_close(&search);
     }
     return stride;
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+static struct arena *arena; /* of the simulations of the section */
 static int fast, n_checks, n_missed;
 static FILE *table;
 static const char *section;
@@ -150,6 +151,13 @@ void verify_ok(enum status status) {
     if (status != STATUS_OK) give_up();
 }
 
+static struct simulation *start(struct case_values *values) {
+    struct simulation *simulation;
+    if (simulate_start(arena, &simulation, values, NULL) != STATUS_OK) give_up();
+    case_free(values);
+    return simulation;
+}
+
 struct simulation *verify_open(const char *format, ...) {
     static const char include[] = "include: [tests/data/small.yaml]\n";
     char text[16384] = "";
@@ -165,33 +173,23 @@ struct simulation *verify_open(const char *format, ...) {
         length += (int)strlen(include);
     }
     struct case_values values;
-    struct simulation *simulation;
     if (case_parse(&values, text, (size_t)length, "verify", is_case ? "cases" : ".", 0, NULL) != STATUS_OK) give_up();
-    if (simulate_start(NULL, &simulation, &values, NULL) != STATUS_OK) give_up();
-    case_free(&values);
-    return simulation;
+    return start(&values);
 }
 
 struct simulation *verify_open_case(const char *name, int n, const char *const *assignments) {
     char path[256];
     struct case_values values;
-    struct simulation *simulation;
     snprintf(path, sizeof path, "cases/%s", name);
     if (case_read(&values, path, n, assignments) != STATUS_OK) give_up();
-    if (simulate_start(NULL, &simulation, &values, NULL) != STATUS_OK) give_up();
-    case_free(&values);
-    return simulation;
+    return start(&values);
 }
 
 void verify_search_open(struct verify_search *search, const char *text) {
     search->simulation = verify_open("%s", text);
     verify_ok(case_parse(&search->values, text, strlen(text), "verify", ".", 0, NULL));
+    arena_move(search->values.arena, arena);
     verify_ok(steady_problem_create(&search->problem, &search->values.steady, search->simulation));
-}
-
-void verify_search_close(struct verify_search *search) {
-    simulate_free(search->simulation);
-    case_free(&search->values);
 }
 
 void verify_run(struct simulation *simulation, double t) {
@@ -216,7 +214,9 @@ int main(int argc, char **argv) {
         fprintf(stderr, "usage: verify SECTION [--fast] [-o TABLE]\n");
         return 2;
     }
+    arena = arena_create(NULL, "a section");
     run();
+    arena_free(arena);
     if (table) fclose(table);
     printf("%s: %d checks, %d missed\n", section, n_checks, n_missed);
     return n_missed > 0 ? 3 : 0;

@@ -79,7 +79,8 @@ const char *verify_text(const char *format, ...) __attribute__((format(printf, 1
 #define VERIFY_ATTACHED "force: pressure, pressure: {span: infinite, suction_limit: 0}, drag: {skin: laminar}"
 
 /* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_DEFAULTS or a preset with the
- * defaults of the article's model (tests/data/small.yaml); the section ends with the message where that fails. */
+ * defaults of the article's model (tests/data/small.yaml); the section ends with the message where that fails. The
+ * simulation lives until the end of the section; where there are many, simulate_free releases each earlier. */
 struct simulation *verify_open(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Open a case of cases/, with n assignments "path=value". */
@@ -94,7 +95,6 @@ struct verify_search {
 
 /* Open a case given as text, as verify_open, for steady_search_run. */
 void verify_search_open(struct verify_search *search, const char *text);
-void verify_search_close(struct verify_search *search);
 
 /* The section ends with the message unless the status is STATUS_OK. */
 void verify_ok(enum status status);

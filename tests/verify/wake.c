@@ -62,7 +62,6 @@ static void opposite_pair(void) {
                     (mean[0] * along[0] + mean[1] * along[1]) / (n * interval), 1e-12);
     verify_zero("pair +-G: drift across, in distances d", "0, by symmetry",
                 (mean[0] * across[0] + mean[1] * across[1]) / distance, 1e-12);
-    simulate_free(simulation);
 }
 
 /* The angle by which two equal vortices have turned after the time 10 s, about three turns. */
@@ -77,7 +76,6 @@ static double turned(int n) {
         const double now = atan2(wake->y[0] - wake->y[1], wake->x[0] - wake->x[1]);
         angle += remainder(now - angle, 2 * pi);
     }
-    simulate_free(simulation);
     return angle;
 }
 
@@ -126,7 +124,6 @@ static struct invariants change(int n) {
     const struct invariants before = invariants(wake);
     steps(simulation, n);
     const struct invariants after = invariants(wake);
-    simulate_free(simulation);
     return (struct invariants){.circulation = after.circulation - before.circulation,
                                .impulse = {after.impulse[0] - before.impulse[0], after.impulse[1] - before.impulse[1]},
                                .angular = after.angular - before.angular,
@@ -168,7 +165,6 @@ static void removed_vortices(void) {
     verify_value("a thousand vortices, half grown old: number removed", "ages beyond the lifetime", 501, removed, 0);
     verify_zero("the same: change of circulation including removed vortices, m2/s", "constant",
                 invariants(wake).circulation + wake->removed - sum, 1e-10);
-    simulate_free(simulation);
 }
 
 // ---- a row of vortices
@@ -211,7 +207,6 @@ static double height(int n, double t, int n_images, double amplitude) {
     }
     double sum = 0;
     for (int i = 0; i < PER_WAVE; i++) sum += 2.0 / PER_WAVE * wake->y[i] * sin(kappa * ((i + 0.5) / PER_WAVE - 0.5));
-    simulate_free(simulation);
     return sum;
 }
 

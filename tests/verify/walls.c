@@ -28,7 +28,6 @@ static double circulation_between(double distance) {
     // a vortex at the distance x acts like exp(-pi x/H); the circulation approaches the limit like exp(-0.7 U t/H)
     verify_run(simulation, 12 * distance);
     const double circulation = bound_sheet_circulation(&simulation->school->fish[0], simulation->state->y);
-    simulate_free(simulation);
     return fabs(circulation) / (pi * sin(angle));
 }
 
@@ -75,9 +74,6 @@ static void check_mirror(const char *force, double bound) {
                 difference(wall, alone));
     verify_zero(verify_text("%s: the same less the result beside the mirror image, L", force), "two fish, rtol 1e-10",
                 difference(wall, pair), bound);
-    simulate_free(wall);
-    simulate_free(pair);
-    simulate_free(alone);
 }
 
 // ---- against the wall
@@ -105,7 +101,6 @@ static void check_energy(const char *force) {
     verify_zero(verify_text("%s: energy balance over the largest kinetic energy, rtol 1e-5", force), "conservation",
                 imbalance / energy, 2e-3);
     verify_zero(verify_text("%s: total circulation, m2/s", force), "Kelvin", circulation, 1e-12);
-    simulate_free(simulation);
 }
 
 // ---- a dipole at a wall
@@ -135,7 +130,6 @@ static double dipole_error(double interval, double *parted) {
         }
     }
 
-    simulate_free(simulation);
     return most;
 }
 
