@@ -1,10 +1,6 @@
 /* fuzz_checkpoint.c: any bytes as a checkpoint: it is refused, or read into the state of the case in it. Few changes
  * get past the checksums, so every input is tried a second time with checksums that fit. */
-#include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include "case/case.h"
@@ -22,22 +18,6 @@ enum {
     SECTION = SECTIONS_NAME + 8, /* the header of a section */
     CHECK = 4
 };
-
-static char path[64];
-
-static void remove_file(void) {
-    unlink(path);
-}
-
-// a file of this process in memory
-static void write_file(const uint8_t *bytes, size_t n) {
-    if (!*path) {
-        snprintf(path, sizeof path, "/dev/shm/shoal-fuzz-%ld.ckpt", (long)getpid());
-        atexit(remove_file);
-    }
-    const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    if (file < 0 || write(file, bytes, n) != (ssize_t)n || close(file) != 0) abort();
-}
 
 static void set_check(uint8_t *bytes, size_t n) {
     const uint32_t check = (uint32_t)crc32_z(0, bytes, n);
@@ -61,13 +41,6 @@ static void repair(uint8_t *bytes, size_t n) {
     }
 }
 
-// refused, if at all, as a file or for the case in it
-static void demand_refusal(enum status status) {
-    if (status == STATUS_OK || status == STATUS_FILE || status == STATUS_CASE) return;
-    fprintf(stderr, "refused with status %d: %s\n", status, status_message());
-    abort();
-}
-
 static int is_small(const struct school_parameters *school) {
     int n = 0;
     for (int f = 0; f < school->n_fish; f++) n += school->fish[f].nodes + school->fish[f].sheet_points;
@@ -79,7 +52,7 @@ static void read_state(const struct checkpoint *checkpoint) {
     struct case_values values;
     const char *const text = checkpoint->effective;
     enum status status = case_parse(&values, text, strlen(text), "fuzz", NULL, 0, NULL);
-    demand_refusal(status);
+    fuzz_demand_refusal(status);
     if (status != STATUS_OK) return;
     struct school *school = NULL;
     struct state *state = NULL;
@@ -87,24 +60,21 @@ static void read_state(const struct checkpoint *checkpoint) {
         state = state_create(NULL, school);
         status = checkpoint_set_state(checkpoint, state, school);
     }
-    demand_refusal(status);
+    fuzz_demand_refusal(status);
     state_free(state);
     fish_school_free(school);
     case_free(&values);
 }
 
 static void try(const uint8_t *bytes, size_t n) {
-    static FILE *nowhere;
-    if (!nowhere) nowhere = fopen("/dev/null", "w");
-    if (!nowhere) abort();
-    write_file(bytes, n);
+    fuzz_write(bytes, n);
     struct arena *const arena = arena_create(NULL, "a test");
-    demand_refusal(checkpoint_info(arena, path, false, nowhere));
+    fuzz_demand_refusal(checkpoint_info(arena, fuzz_path, false, fuzz_nowhere()));
     struct checkpoint checkpoint;
-    const enum status status = checkpoint_read(arena, &checkpoint, path);
-    demand_refusal(status);
+    const enum status status = checkpoint_read(arena, &checkpoint, fuzz_path);
+    fuzz_demand_refusal(status);
     if (status == STATUS_OK) {
-        demand_refusal(checkpoint_check_program(&checkpoint));
+        fuzz_demand_refusal(checkpoint_check_program(&checkpoint));
         read_state(&checkpoint);
     }
     arena_free(arena);
