@@ -10,10 +10,8 @@
 #define TIME "time: {end: 3, shedding_interval: 0.01}\n"
 
 static double slowest_mode(const char *fish) {
-    char text[512];
     const char *const sheet = strstr(fish, "pressure") ? "wake: {shedding: sheet}\nsheet: {curve: smooth}\n" : "";
-    snprintf(text, sizeof text, TIME "%sfish: [{%s}]\n", sheet, fish);
-    struct setup setup = setup_of(text);
+    struct setup setup = setup_with(TIME "%sfish: [{%s}]\n", sheet, fish);
     return bending_mode_frequency(&setup.school->fish[0], test_array(setup.school->n_unknowns));
 }
 

@@ -261,9 +261,8 @@ static double rate_of_energy(struct setup *setup) {
 TEST(what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes) {
     const char *const bodies[] = {BODY, STRAIN};
     for (int i = 0; i < 2; i++) {
-        char text[256];
-        snprintf(text, sizeof text, TIME "fish: [{%s}]\n", bodies[i]);
-        struct setup setup = setup_stirred(text);
+        struct setup setup = setup_with(TIME "fish: [{%s}]\n", bodies[i]);
+        school_stir(&setup);
         const struct fish *fish = setup.school->fish;
         const double *const y = setup.state->y;
         rod_residual(fish, &muscle, y, setup.value);

@@ -97,9 +97,8 @@ TEST(stresses_ahead_of_prescribed_nodes_stay) {
                  {"prescribed: head, heave: 0.1, frequency: 1", 0, 1},
                  {"prescribed: all, heave: 0.1, frequency: 1", 5, 6}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[256];
-        snprintf(text, sizeof text, TIME "fish: [{nodes: 7, motion: {%s}}]\n", cases[i].motion);
-        struct setup setup = setup_stirred(text);
+        struct setup setup = setup_with(TIME "fish: [{nodes: 7, motion: {%s}}]\n", cases[i].motion);
+        school_stir(&setup);
         const struct fish *fish = setup.school->fish;
         double before[STRAINS], after[STRAINS];
         stresses(fish, setup.state->y, before);

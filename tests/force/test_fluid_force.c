@@ -125,13 +125,12 @@ TEST(forces_on_a_plate_are_the_formulas) {
 TEST(powers_are_those_of_the_forces) {
     const char *const forces[] = {"published", "reactive"};
     for (int i = 0; i < 2; i++) {
-        char text[256];
-        snprintf(text, sizeof text,
-                 TIME
-                 "fluid: {shear: 0.5, velocity: [0, 0.3]}\n"
-                 "fish: [{sheet_points: 9, force: %s, drag: {tangential: 0.3}, added_mass: {extent: depth}}]\n",
-                 forces[i]);
-        struct setup setup = setup_stirred(text);
+        struct setup setup =
+            setup_with(TIME
+                       "fluid: {shear: 0.5, velocity: [0, 0.3]}\n"
+                       "fish: [{sheet_points: 9, force: %s, drag: {tangential: 0.3}, added_mass: {extent: depth}}]\n",
+                       forces[i]);
+        school_stir(&setup);
         school_flow(&setup, setup.state->y);
         const struct fish *fish = setup.school->fish;
         const struct flow_at_body flow = flow_at_body(setup.residual->flow, 0);

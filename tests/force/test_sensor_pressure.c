@@ -195,15 +195,13 @@ TEST(both_sides_differ_by_the_jump) {
 TEST(mirrored_fish_exchange_left_and_right) {
     struct simulation *two[2];
     for (int i = 0; i < 2; i++) {
-        char text[600];
-        snprintf(text, sizeof text,
-                 SCHOOL_DEFAULTS
-                 "time: {end: 1}\n"
-                 "defaults: {fish: {force: pressure, pressure: {span: finite}, nodes: 9, start: {speed: 0.5}}}\n"
-                 "fish: [{sensors: [0.1, 0.7], wave: {phase: %d, ramp: 0.3}},\n"
-                 "       {start: {position: [0.2, %g]}, wave: {phase: %d, ramp: 0.3}}]\n",
-                 i == 0 ? 0 : 180, i == 0 ? 0.4 : -0.4, i == 0 ? 60 : 240);
-        two[i] = school_simulation(text);
+        two[i] = school_simulation_of(
+            SCHOOL_DEFAULTS
+            "time: {end: 1}\n"
+            "defaults: {fish: {force: pressure, pressure: {span: finite}, nodes: 9, start: {speed: 0.5}}}\n"
+            "fish: [{sensors: [0.1, 0.7], wave: {phase: %d, ramp: 0.3}},\n"
+            "       {start: {position: [0.2, %g]}, wave: {phase: %d, ramp: 0.3}}]\n",
+            i == 0 ? 0 : 180, i == 0 ? 0.4 : -0.4, i == 0 ? 60 : 240);
         school_measure(two[i], 0.5);
     }
     for (int i = 0; i < 2; i++) {

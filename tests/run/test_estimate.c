@@ -89,7 +89,6 @@ TEST(a_wake_that_grows_costs_more_than_its_first_events) {
         snprintf(text, sizeof text, long_run, i == 0 ? 1 : 100);
         seconds[i] = estimate_of(text, 0.05).seconds;
     }
-    print_message("%.3g s with wakes of 50 vortices, %.3g s with 5000\n", seconds[0], seconds[1]);
     ABOVE(seconds[1], 5 * seconds[0]);
 }
 
@@ -151,7 +150,6 @@ TEST(a_first_event_that_is_stopped_is_estimated_from_its_part) {
     school_ok(estimate_run(simulation, 0.1, &part));
     assert_int_equal(part.n_events, 0);
     const struct estimate whole = estimate_of(text, 0.1);
-    print_message("%.3g s, %.3g s\n", part.seconds, whole.seconds);
     ABOVE(part.seconds, 0);
     BELOW(part.seconds, 20 * whole.seconds);
 }

@@ -372,12 +372,10 @@ TEST(speed_and_strouhal_number_are_those_of_a_driven_plate) {
 TEST(means_are_those_of_the_way_through_the_water) {
     struct diagnostics_fish of[2];
     for (int i = 0; i < 2; i++) {
-        char text[256];
         // over ground the initial velocity of the nodes includes the stream
-        snprintf(text, sizeof text,
-                 TIME "fluid: {velocity: [%g, 0]}\nfish: [{body: {modulus: 1.0e+5}, start: {speed: %g}}]\n", 0.6 * i,
-                 1 - 0.6 * i);
-        struct simulation *const simulation = school_simulation(text);
+        struct simulation *const simulation = school_simulation_of(
+            TIME "fluid: {velocity: [%g, 0]}\nfish: [{body: {modulus: 1.0e+5}, start: {speed: %g}}]\n", 0.6 * i,
+            1 - 0.6 * i);
         school_measure(simulation, 1.6);
         of[i] = simulation->diagnostics->fish[0];
     }

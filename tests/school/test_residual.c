@@ -253,14 +253,13 @@ TEST(jacobian_agrees_with_differences_where_the_suction_ends) {
 
 // The newest markers lie beside the bodies, ahead of their tails; in a channel, with a second fish.
 static void compare_overtaken(const char *keys, int with_legs) {
-    char text[1024];
-    snprintf(text, sizeof text,
-             TIME FAR
-             "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
-             "fluid: {walls: [-1.2, 1.3]}\ndefaults: {fish: {nodes: 5, %s, force: pressure}}\n"
-             "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n",
-             keys);
-    struct setup setup = setup_stirred(text);
+    struct setup setup =
+        setup_with(TIME FAR
+                   "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
+                   "fluid: {walls: [-1.2, 1.3]}\ndefaults: {fish: {nodes: 5, %s, force: pressure}}\n"
+                   "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n",
+                   keys);
+    school_stir(&setup);
     for (int f = 0; f < 2; f++) {
         const struct fish *const fish = &setup.school->fish[f];
         struct wake *const wake = &setup.state->wake[f];

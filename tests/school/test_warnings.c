@@ -513,17 +513,16 @@ TEST(a_balance_that_is_not_finite_is_open_and_no_row) {
 
 // a plate with the motion of cases/foil_anderson.yaml and this largest speed of the tail by pitch, over its speed
 static int warns_of_pitch(double ratio, const char *motion) {
-    char text[512], line[WARNING_BYTES];
+    char line[WARNING_BYTES];
     // the pivot is two thirds of the chord before the tail
     const double pitch = ratio * 5.392165 / (2 * M_PI * 2 / 3) * 180 / M_PI;
-    snprintf(text, sizeof text,
-             SCHOOL_DEFAULTS
-             "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1.348e-4}\n"
-             "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 5.392165}, wave: {amplitude: 0, "
-             "frequency: 0},\n  body: {profile: uniform, thickness: 0.12}, motion: {%s, pitch: %.17g, "
-             "pivot: 0.333333333, frequency: 1}}]\n",
-             motion, pitch);
-    struct simulation *const simulation = school_simulation(text);
+    struct simulation *const simulation = school_simulation_of(
+        SCHOOL_DEFAULTS
+        "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1.348e-4}\n"
+        "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 5.392165}, wave: {amplitude: 0, "
+        "frequency: 0},\n  body: {profile: uniform, thickness: 0.12}, motion: {%s, pitch: %.17g, "
+        "pivot: 0.333333333, frequency: 1}}]\n",
+        motion, pitch);
     school_measure(simulation, 0.02);
     const int warns = line_of(simulation, WARNING_PITCH, line);
     if (warns) assert_non_null(strstr(line, "0.6"));

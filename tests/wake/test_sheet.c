@@ -75,9 +75,8 @@ TEST(a_marker_of_a_tail_that_moves_backwards_stays_at_the_tail) {
 TEST(every_view_has_the_same_circulation) {
     static const char *const fish[] = {SPAN("infinite"), SPAN("finite")};
     for (int k = 0; k < 2; k++) {
-        char text[512];
-        snprintf(text, sizeof text, TIME SHEET "%s", fish[k]);
-        struct setup setup = setup_stirred(text);
+        struct setup setup = setup_with(TIME SHEET "%s", fish[k]);
+        school_stir(&setup);
         setup.t = setup.state->t;
         school_flow(&setup, setup.state->y);
         const struct wake *const wake = &setup.state->wake[0];
