@@ -50,6 +50,14 @@ TEST(all_equations_hold_for_the_computed_unknowns) {
             residual_evaluate(setup.residual, &residual_run, setup.t, setup.state->y, setup.state->yp, setup.value));
         // rounding of forces per mass of the order of 1e5 m s-2
         for (int k = 0; k < setup.school->n_unknowns; k++) NEAR(setup.value[k], 0, 1e-9, 0);
+        // and algebraic unknowns have no rates
+        for (int f = 0; f < setup.school->n_fish; f++) {
+            const struct fish *const fish = &setup.school->fish[f];
+            const double *const yp = setup.state->yp;
+            for (int k = 0; k < 2 * fish->n_nodes; k++) NEAR(yp[fish->at.ax + k], 0, 0, 0);
+            for (int j = 0; j < fish->n_sheet; j++) NEAR(yp[fish->at.gamma + j], 0, 0, 0);
+            NEAR(yp[fish->at.phi0], 0, 0, 0);
+        }
     }
 }
 
