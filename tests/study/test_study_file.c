@@ -114,6 +114,7 @@ TEST(orders_are_kept_in_study_nc) {
             NEAR(value_of(file, "difference_speed", g, f, 2), e, 0, 1e-9);
         }
     }
+    for (size_t m = 0; m < 6; m++) NEAR(value_of(file, "member", m, 0, 0), (double)m, 0, 0);
     NEAR(value_of(file, "level_value", 0, 0, 0), 0.1, 0, 0);
     NEAR(value_of(file, "level_size", 2, 0, 0), 0.025, 0, 0);
     char unit[8] = "";
