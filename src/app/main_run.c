@@ -135,7 +135,8 @@ enum status main_demo(const struct request *request) {
     fflush(NULL);
     const pid_t child = fork();
     if (child == 0) {
-        execl("/usr/bin/python3", "python3", script, demo.output, "demo.png", (char *)NULL);
+        // Python looks for its library beside its name
+        execl("/usr/bin/python3", "/usr/bin/python3", script, demo.output, "demo.png", (char *)NULL);
         _exit(127);
     }
     int outcome = -1;
