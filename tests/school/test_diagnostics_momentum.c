@@ -107,7 +107,8 @@ TEST(the_balance_is_closed_with_every_external_force) {
          "drag: {skin: laminar}, start: {position: [0.5, 0.4], speed: 0.5}, body: {depth: 0.4}}]\n"},
         {"finite span, a depth for every edge",
          "fish: [{force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 65, wave: {ramp: 0.5}, drag: "
-         "{skin: laminar}, start: {speed: 0.5}, body: {profile: table, thickness_table: [0.05, 0.1, 0.1, 0.1, 0.08, "
+         "{skin: laminar}, start: {speed: 0.5, position: [1, -2], heading: 140}, body: {profile: table, "
+         "thickness_table: [0.05, 0.1, 0.1, 0.1, 0.08, "
          "0.06, 0.04, 0.02], depth_table: [0.12, 0.2, 0.24, 0.24, 0.2, 0.16, 0.18, 0.22]}}]\n"},
         {"finite span, a plate that surges",
          "fish: [{force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
