@@ -53,6 +53,18 @@ TEST(added_mass_takes_the_mean_square_of_the_thickness) {
     }
 }
 
+TEST(the_outline_of_another_fish_serves_for_the_same_section) {
+    struct setup setup =
+        setup_of(TIME
+                 "fish: [{body: {section: mean}}, {start: {position: [0, 2]}, body: {section: nodes}}, "
+                 "{start: {position: [0, 4]}, body: {section: mean}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    double most = 0;
+    for (int k = 0; k < fish->n_edges; k++) most = fmax(most, fabs(fish[0].thickness[k] - fish[1].thickness[k]));
+    ABOVE(most, 1e-3 * fish->length);
+    NEAR_ARRAY(fish->n_edges, fish[2].thickness, fish[0].thickness, 0, 0);
+}
+
 TEST(second_moments_are_the_two_formulas) {
     const char *const texts[] = {
         TIME "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5}}]\n", TIME

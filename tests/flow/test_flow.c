@@ -109,6 +109,11 @@ TEST(external_flow_is_stream_plus_shear_plus_gust) {
     flow_external(setup.school, t, 0, 2, &u, &v);
     NEAR(u, 0.1 + 0.6 - gust * 0.2 / stream, 1e-15, 0);
     NEAR(v, 0.2 + gust * 0.1 / stream, 1e-15, 0);
+    // a gust along x
+    setup.school->gust[1] = 0;
+    flow_external(setup.school, t, 0, 2, &u, &v);
+    NEAR(u, 0.1 + 0.6 - gust * 0.2 / stream, 1e-15, 0);
+    NEAR(v, 0.2, 0, 0);
 }
 
 // a gust of unit amplitude across a stream along (3, 4)/5

@@ -90,6 +90,17 @@ TEST(all_that_is_written_is_read) {
     state_free(fresh);
 }
 
+TEST(info_sums_up_the_run) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *const stream = open_memstream(&text, &size);
+    school_ok(checkpoint_info(arena, path, false, stream));
+    fclose(stream);
+    assert_non_null(strstr(text, ": a run at t = 0.6 s; the result is run.nc, with 12 rows up to this time\n"));
+    assert_non_null(strstr(text, "so far     1 steps, 2 residuals, 4 Jacobians in 1e+05 s\n"));
+    free(text);
+}
+
 TEST(every_bit_that_flips_is_noticed) {
     school_ok(sections_check(whole, n_whole));
     for (size_t byte = 0; byte < n_whole; byte++) {

@@ -278,7 +278,9 @@ TEST(a_run_shorter_than_two_beats_has_no_means_of_a_cycle) {
                           "start: {position: [0, 2]}}]\n");
     expect_line(simulation, WARNING_BEATS, NULL);  // no run
     school_run(simulation, 0.15);
-    expect_line(simulation, WARNING_BEATS, "the run has 1.5 beats of fish2: means and powers are not those of a cycle");
+    expect_line(simulation, WARNING_BEATS,
+                "the run has 1.5 beats of fish2: means and powers are not those of a cycle; "
+                "increase time.end to at least 0.2 s");
     school_run(simulation, 0.2);
     expect_line(simulation, WARNING_BEATS, NULL);
 

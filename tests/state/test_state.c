@@ -38,6 +38,15 @@ TEST(a_fish_without_a_beat_remembers_one_sample) {
     }
 }
 
+TEST(a_beat_of_whole_intervals_is_rounded_to_them) {
+    // 0.3/0.1 is below 3
+    struct setup setup = setup_of(
+        "time: {end: 1, shedding_interval: 0.1, output_interval: 0.1}\nfish: [{wave: {frequency: "
+        "3.3333333333333335}}]\n");
+    BELOW(setup.school->fish[0].period / setup.school->interval, 3);
+    assert_int_equal(setup.state->history[0].capacity, 4);
+}
+
 TEST(samples_take_memory_for_the_events_of_the_run) {
     // a beat of 1e6 s has 1e8 events of 0.01 s, of which a run has twenty
     struct setup setup = setup_of(

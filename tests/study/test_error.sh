@@ -200,6 +200,7 @@ check members_at_once_take_the_time_of_the_longest awk '/^(fish|solver)/ { for (
     / at once/ { ok = $13 == most && $14 == "s" && $16 == 64 } END { exit !ok }' out
 run study five.yaml -q -o five
 check a_missed_expectation_at_points_gives_exit_code_3 test "$code" = 3
+check a_single_one_has_no_others has err "expect[0]: speed: expectation not met: see the output"
 run gather five
 check each_row_has_values_of_its_point test "$(awk '$1 ~ /^[0-3]$/ && $5 == $2 && $2 == int($1 / 2) + 1 &&
     $3 == $1 % 2 + 1 && $4 ~ /^[a-d]$/ && $6 < 1e-9 && $7 < 1e-7 && $8 > 3 && $NF == "rtol"' out | wc -l)" = 16

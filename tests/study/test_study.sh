@@ -111,7 +111,9 @@ check the_results_wait_for_the_members eval 'grep -qE "members: job 1; results: 
 echo mine >alone/array.sbatch
 refused scripts_of_others_are_kept 4 'was not written by shoal study --slurm' study small.yaml --slurm -o alone
 # the actions of a task, without Slurm
-for task in 0 1; do SLURM_ARRAY_TASK_ID=$task sh cluster/array.sbatch >/dev/null 2>&1; done
+SLURM_ARRAY_TASK_ID=0 sh cluster/array.sbatch >/dev/null 2>&1
+check a_task_runs_the_members_of_its_bundle test -e cluster/member-0003.nc -a ! -e cluster/member-0004.nc
+SLURM_ARRAY_TASK_ID=1 sh cluster/array.sbatch >/dev/null 2>&1
 check the_tasks_run_all_members test -e cluster/member-0003.nc -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
 sh cluster/gather.sbatch >out 2>err
 check their_results_are_those_of_the_study grep -q '2 of 6 members in .*/cluster' err
