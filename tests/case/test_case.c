@@ -260,6 +260,16 @@ TEST(errors_of_all_stages_are_listed_together) {
     assert_non_null(strstr(status_message(), "fish[1].nodes: must be from 4"));
 }
 
+TEST(characters_that_end_a_line_are_refused_in_strings) {
+    // next line, line separator, paragraph separator, escape, delete
+    static const char *const escapes[] = {"N", "L", "P", "e", "x7F"};
+    for (int i = 0; i < 5; i++) {
+        char text[80];
+        snprintf(text, sizeof text, "format: 1\nname: \"a\\%sb\"\ntime: {end: 1}\nfish: [{}]\n", escapes[i]);
+        is_refused(text, "name: must be one line without control characters");
+    }
+}
+
 TEST(turns_of_a_fine_body_are_those_of_its_reference) {
     const char *const format =
         "format: 1\ntime: {end: 1}\nfish: [{nodes: 13, reference_nodes: 7, wave: {linear: 1, quadratic: 0, "

@@ -128,6 +128,9 @@ TEST(forces_on_a_carried_body_are_those_in_the_relative_stream) {
     }
     ABOVE(fabs(found[0].fish[0].force[1]), 0.1);
     for (int k = 0; k < 2; k++) NEAR(found[1].fish[0].force[k], found[0].fish[0].force[k], 1e-9, 1e-9);
+    NEAR(found[1].fish[0].drag, found[0].fish[0].drag, 1e-9, 1e-9);
+    NEAR(found[1].fish[0].lift, found[0].fish[0].lift, 1e-9, 1e-9);
+    NEAR(found[1].fish[0].fluid_power, found[0].fish[0].fluid_power, 1e-9, 1e-9);
     const struct flow_fish *rings = &found[1].simulation->residual->flow->fish[0];
     NEAR(rings->downstream[0], 1 / hypot(1, 0.4), 1e-14, 0);
     NEAR(rings->downstream[1], -0.4 / hypot(1, 0.4), 1e-14, 0);
