@@ -121,6 +121,7 @@ TEST(a_restart_begins_like_a_new_solver) {
     const struct integrator_counts before = counts_of(run[0]);
     ABOVE(before.error_test_failures, 0);
     ABOVE(before.convergence_failures, 0);
+    ABOVE(before.convergence_failures, before.error_test_failures);  // stiff at a large tolerance
     school_ok(run[0]->integrator->restart(run[0]->solver));
     const struct integrator_counts after = counts_of(run[0]);
     assert_memory_equal(&after, &before, offsetof(struct integrator_counts, step_size));
