@@ -343,7 +343,7 @@ while True:
     got += more
 os.waitpid(child, 0)
 lines = got.decode().replace("\x1b[K", "").replace("\r\n", "\n")
-progress = re.compile(r"t +[0-9.]+ s  |beat +[0-9]+|[0-9]+ of [0-9]+ members")
+progress = re.compile(r"t +[0-9.]+ s(?:  |$)|beat +[0-9]+|[0-9]+ of [0-9]+ members")
 drawn = [part for line in lines.split("\n") for part in line.split("\r") if progress.match(part)]
 assert drawn, lines  # a fast machine draws few
 assert max(map(len, drawn)) < int(sys.argv[1]), drawn
