@@ -133,12 +133,10 @@ TEST(an_interval_divides_the_beat_or_the_run) {
     levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 1 / 13.0}, 0.02);
     // all times are multiples of it
     for (int m = 0; m < sweep_n_members(study.study); m++) {
-        struct case_values member;
-        assert_int_equal(case_member(&member, study.study, m), STATUS_OK);
+        const struct case_values member = member_of(study.study, m);
         const double times[] = {member.time.end, member.time.output_interval, member.time.checkpoint_interval,
                                 member.output.wake_interval};
         for (int i = 0; i < 4; i++) NEAR(remainder(times[i], member.school.shedding_interval), 0, 1e-12, 0);
-        case_free(&member);
     }
     // a search ends after whole beats, no earlier than the case
     study = open_study("format: 1\ntime: {end: 4.5, shedding_interval: 0.02, output_interval: 0.1}\nfish: [{}]\n",
