@@ -124,6 +124,17 @@ static const struct run {
     {"changed", TIME STREAM
      "wake: {lifetime: 0.25, decay: 0.1, spare_vortices: 9}\nfish: [{" SLENDER ", start: {heading: 170, speed: 0.8}},\n"
      "    {" FISH ", force: pressure, pressure: {span: infinite}, start: {position: [0.2, 0.7], speed: 0.6}}]\n"},
+    {"tapered", TIME
+     "fluid: {velocity: [0.3, -0.1]}\nwake: {lifetime: 0.15, decay: 0.07, taper: 0.3, taper_beside: 0.2}\n"
+     "contact: {range: 0.16}\noutput: {forces: edges}\n"
+     "fish: [{nodes: 6, sheet_points: 51, wave: {frequency: 4}, start: {heading: 190, speed: 0.6}, control: {law: "
+     "course,\n     desired_heading: 170}, body: {profile: table, thickness_table: [0.06, 0.11, 0.09, 0.06, 0.04],\n"
+     "     depth_table: [0.12, 0.2, 0.18, 0.16, 0.24], damping: curvature}, sensors: [0.2, 0.7]},\n"
+     "    {nodes: 5, sheet_points: 57, length: 1.2, start: {position: [-0.1, 0.24], speed: 0.9}, wave: {frequency: 3},\n"
+     "     body: {profile: table, thickness_table: [0.05, 0.1, 0.09, 0.04], depth_table: [0.22, 0.3, 0.2, 0.13]},\n"
+     "     drag: {normal: 0.5, waving: 1.2, form: 1.3, transition: 1e5}, load: {tip: [2, -3]}},\n"
+     "    {nodes: 5, sheet_points: 53, start: {position: [0.1, -0.6]}, motion: {prescribed: head, surge: free, heave: "
+     "0.06,\n     pitch: 15, pitch_phase: 70, frequency: 4, pivot: 0.2}, body: {depth: 0.15}}]\n"},
     // names with "steady": steady states
     {"steady_equilibrium",
      "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n" BODY
@@ -143,8 +154,20 @@ static const struct run {
      "fluid: {velocity: [0.9, 0.1]}\nsteady: {tolerance: 1e-6}\n"
      "fish: [{nodes: 6, sheet_points: 17, force: pressure, pressure: {span: infinite}, wave: {amplitude: 0.1},\n"
      "     motion: {prescribed: head, heave: 0.1, pitch: 12, pitch_phase: 80, frequency: 1}}]\n"},
+    {"steady_tapered",
+     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n"
+     "fluid: {density: 20, velocity: [0.9, -0.3]}\nwake: {lifetime: 2, decay: 0.5}\n"
+     "fish: [{nodes: 6, sheet_points: 51, wave: {amplitude: 0, constant: 0.5, frequency: 0}, motion: {prescribed: head},\n"
+     "     start: {heading: 170}, body: {profile: table, thickness_table: [0.06, 0.08, 0.06, 0.04, 0.03], depth_table: "
+     "[0.12,\n     0.2, 0.18, 0.16, 0.24], modulus: 1e5}}]\n"},
+    {"steady_rate",
+     "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n" BODY
+     "fluid: {density: 100, velocity: [0.9, 0.1]}\nwake: {shedding: continuous, lifetime: 2, decay: 0.5}\n"
+     "sheet: {kutta: rate, kutta_ramp: 0.05}\n"
+     "fish: [{force: reactive, nodes: 5, sheet_points: 17, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: head}, "
+     "body: {modulus: 1e5}}]\n"},
 };
-enum { N_RUNS = sizeof runs / sizeof *runs, MAX_VARIABLES = 200, MAX_ROWS = 400 };
+enum { N_RUNS = sizeof runs / sizeof *runs, MAX_VARIABLES = 200, MAX_ROWS = 500 };
 
 /* The values of a variable, as one number: a sum with weights that differ, and the sum of the magnitudes. NaN counts as
  * a number of its own. */
@@ -339,24 +362,28 @@ TEST(results_of_short_runs_stay) {
 
 // ---- every key
 
-/* Two intervals of a school in which most keys act. In place of %s: the forces on fish 0, 1 and 2, and what only some
- * forces allow. */
+/* Two intervals of a school in which most keys act. In place of %: sheet points and forces of fish 0, 1 and 2, and
+ * what only some forces allow. */
 static const char school[] =
     "format: 1\ntime: {end: 0.02, shedding_interval: 0.01}\nsolver: {rtol: 1e-8}\n" BODY
     "fluid: {velocity: [0.2, -0.1]%s}\nwake: {lifetime: 0.3, decay: 0.295}\noutput: {forces: edges}\n"
-    "fish: [{nodes: 5, sheet_points: 25, wave: {phase: 20, ramp: 0}, start: {heading: 170, speed: 0.8}%s},\n"
-    "    {nodes: 6, sheet_points: 27, length: 0.8, wave: {frequency: 2, phase: 50, ramp: 0.1},\n"
+    "fish: [{nodes: 5, sheet_points: %d, wave: {phase: 20, ramp: 0}, start: {heading: 170, speed: 0.8}%s},\n"
+    "    {nodes: 6, sheet_points: %d, length: 0.8, wave: {frequency: 2, phase: 50, ramp: 0.1},\n"
     "     start: {position: [0.2, 0.6], speed: 0.6}%s},\n"
-    "    {nodes: 5, sheet_points: 23, start: {position: [0.1, -0.7], heading: 180, speed: 0.5}, wave: {frequency: 3},\n"
+    "    {nodes: 5, sheet_points: %d, start: {position: [0.1, -0.7], heading: 180, speed: 0.5}, wave: {frequency: 3},\n"
     "     motion: {prescribed: head, heave: 0.05, pitch: 8, pitch_phase: 80, frequency: 3, phase: 20, pivot: "
     "0.1}%s}]\n";
 #define REACTIVE ", force: reactive"
 #define PLANE ", force: pressure, pressure: {span: infinite}"
+#define TAPERED(thicknesses, depths) ", body: {profile: table, thickness_table: " thicknesses ", depth_table: " depths "}"
 static const char *const school_parts[][4] = {
     {", viscosity: 2e-6, gust: {amplitude: 0.15, frequency: 2.2}", REACTIVE, PLANE ", sensors: [0.2, 0.7]", REACTIVE},
-    // the rows that begin with r, p
+    // the rows that begin with r, p, f
     {"", REACTIVE, REACTIVE, REACTIVE},
     {"", PLANE, PLANE, PLANE},
+    {"", TAPERED("[0.06, 0.11, 0.08, 0.04]", "[0.12, 0.2, 0.18, 0.24]"),
+     TAPERED("[0.05, 0.1, 0.09, 0.07, 0.04]", "[0.22, 0.3, 0.25, 0.2, 0.1]") ", sensors: [0.2, 0.7]",
+     TAPERED("[0.08, 0.09, 0.07, 0.05]", "[0.1, 0.15, 0.25, 0.2]")},
 };
 
 #define RATE "sheet.kutta=rate; sheet.kutta_ramp=0.05"
@@ -509,6 +536,43 @@ static const char *const assignments[] = {
     "fish[0].control.waypoints=[[-1, -1], [-2, -3]]; fish[0].control.acceptance_radius=3",
     "fish[0].control.bias=0.2",
     "r preset=published; fish[*].force=published",
+    "f ",
+    "f fluid.density=900; fluid.viscosity=3e-6",
+    "f fluid.velocity=[0.3, 0.2]",
+    "f fluid.velocity=[1.5, 0.6]",
+    "f fluid.velocity=[-1.2, 0.1]",
+    "f fluid.velocity=[0.2, 0]; fluid.walls=[-1.2, 1.4]",
+    "f fluid.shear=0.5; fish[1].sensors=[]",
+    "f fluid.gust.amplitude=0.2; fluid.gust.frequency=3",
+    "f " SINE "; fluid.gust.speed=0.5; fish[1].sensors=[]",
+    "f " STEP "; fluid.gust.speed=0.5; fish[1].sensors=[]",
+    "f fish[1].start.position=[0.05, 0.16]",
+    "f wake.lifetime=0.02; wake.decay=0.015",
+    "f fish[1].start.position=[0.05, 0.16]; contact.range=0.1",
+    "f fish[1].start.position=[0.05, 0.16]; contact.range=0.1; fluid.velocity=[0.2, 0]; fluid.walls=[-1.2, 0.27]",
+    "f solver.method=trapezoid; solver.step=2.5e-3",
+    "f solver.method=implicit_euler; solver.step=2.5e-3",
+    "f solver.method=dormand_prince; fish[*].body.modulus=1e4",
+    "f solver.method=rk4; solver.step=5e-4; fish[*].body.modulus=1e4",
+    "f fish[1].length=0.9; fish[0].sheet_points=57",
+    "f fish[1].body.depth_table=[0.22, 0.3, 0.25, 0.2, 0.15]",
+    "f fish[1].body.depth_table=[0.26, 0.3, 0.25, 0.2, 0.1]",
+    "f fish[1].body.section=nodes; fish[1].body.density=1100",
+    "f fish[1].body.damping=curvature; fish[1].body.bending_damping=0.3",
+    "f fish[1].force=reactive; fish[1].sensors=[]",
+    "f fish[1].force=reactive; fish[1].sensors=[]; fish[1].drag.normal=0.6; fish[1].added_mass.coefficient=1.2",
+    "f fish[*].pressure.span=infinite",
+    "f fish[0].pressure.suction=0.7; fish[1].pressure.suction_limit=0.03",
+    "f fish[1].drag.skin=laminar",
+    "f fish[1].drag.skin=boundary_layer; fish[1].drag.transition=1e5",
+    "f fish[1].drag.waving=1.2; fish[1].drag.form=1.3; fish[1].drag.normal=0.4",
+    "f fish[*].start.heading=40",
+    "f fish[*].start.heading=200; fish[0].start.speed=-0.4; fish[1].start.speed=1.5",
+    "f fish[0].wave.constant=1; fish[0].wave.amplitude=0.8; fish[1].load.tip=[0.3, -0.4]",
+    "f " ALL,
+    "f fish[2].motion.surge=free; fish[2].motion.pivot=0.3; fish[2].motion.pitch=30",
+    "f " COURSE "; fish[0].control.limit=0.2",
+    "f fish[0].control.bias=0.4; fish[1].control.law=heading; fish[1].control.desired_heading=100",
 };
 enum { N_ASSIGNMENTS = sizeof assignments / sizeof *assignments, MAX_ASSIGNED = 6 };
 
@@ -520,18 +584,20 @@ static const char keys_elsewhere[] =
     "steady.formation steady.multipliers defaults fish.name fish.control.damping fish.control.slow "
     "fish.control.course_filter fish.control.ramp sweep expect error ";
 
-/* The kind of the school of a row: 1 and 2 for rows that begin with r and p, else 0. */
+/* The kind of the school of a row: 1, 2 and 3 for rows that begin with r, p and f, else 0. */
 static int school_kind(const char *row) {
-    return strncmp(row, "r ", 2) == 0 ? 1 : strncmp(row, "p ", 2) == 0 ? 2 : 0;
+    const char *const letter = row[1] == ' ' ? strchr("rpf", row[0]) : NULL;
+    return letter ? (int)(letter - "rpf") + 1 : 0;
 }
 
 /* Sums over all variables at the start and after two intervals. Each variable is divided by its scale, so that each
  * counts as much as any other; without scales the sizes of the variables become the scales. */
 static void sum_variables(const char *row, double scale[MAX_VARIABLES][2], int finds_scales, double sum[2]) {
     char words[500], text[2000], *list[MAX_ASSIGNED], *rest = words;
-    const char *const *const part = school_parts[school_kind(row)];
-    snprintf(text, sizeof text, school, part[0], part[1], part[2], part[3]);
-    snprintf(words, sizeof words, "%s", row + (school_kind(row) > 0 ? 2 : 0));
+    const int kind = school_kind(row), more = kind == 3 ? 28 : 0;  // a finite span needs more points
+    const char *const *const part = school_parts[kind];
+    snprintf(text, sizeof text, school, part[0], 25 + more, part[1], 27 + more, part[2], 23 + more, part[3]);
+    snprintf(words, sizeof words, "%s", row + (kind > 0 ? 2 : 0));
     int n = 0;
     for (char *word; (word = strtok_r(rest, ";", &rest));) {
         assert_in_range(n, 0, MAX_ASSIGNED - 1);
@@ -562,10 +628,10 @@ static void sum_variables(const char *row, double scale[MAX_VARIABLES][2], int f
 }
 
 static void sum_assignments(double sum[N_ASSIGNMENTS][2]) {
-    static double scale[3][MAX_VARIABLES][2];
-    static const char *const unchanged[] = {"", "r ", "p "};
+    static double scale[4][MAX_VARIABLES][2];
+    static const char *const unchanged[] = {"", "r ", "p ", "f "};
     double unused[2];
-    for (int kind = 0; kind < 3; kind++) sum_variables(unchanged[kind], scale[kind], 1, unused);
+    for (int kind = 0; kind < 4; kind++) sum_variables(unchanged[kind], scale[kind], 1, unused);
     for (int i = 0; i < N_ASSIGNMENTS; i++)
         sum_variables(assignments[i], scale[school_kind(assignments[i])], 0, sum[i]);
 }
