@@ -12,7 +12,8 @@ struct modes {
 };
 
 // The momentum of body and fluid for the normal node velocities w of a straight body. The jump of the potential of a
-// straight sheet without shedding is L sum (2/(pi n)) (int w sin(theta) sin(n theta) dtheta) sin(n theta).
+// straight sheet without shedding is L sum (2/(pi n)) (int w sin(theta) sin(n theta) dtheta) sin(n theta). Where the depth
+// varies, two strips act on each other with the geometric mean of their depths: the fluid then has an energy.
 static void momentum_load(const struct modes *modes, const double *w, double *load) {
     const struct fish *const fish = modes->fish;
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -33,16 +34,17 @@ static void momentum_load(const struct modes *modes, const double *w, double *lo
             const double along = fish->n_edges * (1 - cosine) / 2;
             const int node = along < fish->n_edges ? (int)along : fish->n_edges - 1;
             const double part = along - node, here = (1 - part) * w[node] + part * w[node + 1];
+            const double root = sqrt(fish->depth[node]);
             double sine = first, before = 0, jump = 0;
             for (int n = 0; n < n_terms; n++) {
                 if (add) jump += fish->length * 2 / (M_PI * (n + 1)) * term[n] * sine;
-                if (!add) term[n] += step * here * first * sine;
+                if (!add) term[n] += step * root * here * first * sine;
                 const double next = 2 * cosine * sine - before;
                 before = sine;
                 sine = next;
             }
 
-            const double size = fish->fluid_density * fish->depth[node] * jump * fish->length / 2 * first * step;
+            const double size = fish->fluid_density * root * jump * fish->length / 2 * first * step;
             load[node] += (1 - part) * size;
             load[node + 1] += part * size;
         }

@@ -77,6 +77,21 @@ TEST(the_pressure_of_a_sheet_makes_the_mode_of_a_light_plate) {
     NEAR(found, 8.9060824 * sqrt(stiffness / (1000 * d)) / (2 * M_PI), 0, 0.003);
 }
 
+TEST(a_body_and_its_mirror_image_have_the_same_modes) {
+    // thickness and depth from the nose to the tail and back, alone and in the fluid
+    static const char *const forces[] = {"reactive", "pressure, pressure: {span: infinite}, sheet_points: 21"};
+    for (int i = 0; i < 2; i++) {
+        double frequency[2];
+        for (int back = 0; back < 2; back++) {
+            frequency[back] = slowest_mode(arena_text(
+                test_arena(), "nodes: 7, force: %s, body: {profile: table, thickness_table: %s, depth_table: %s}",
+                forces[i], back ? "[.03, .05, .06, .07, .08, .06]" : "[.06, .08, .07, .06, .05, .03]",
+                back ? "[.4, .35, .3, .2, .15, .1]" : "[.1, .15, .2, .3, .35, .4]"));
+        }
+        NEAR(frequency[1], frequency[0], 0, 1e-6);
+    }
+}
+
 TEST(frequency_grows_with_the_root_of_the_modulus) {
     const double soft = slowest_mode("body: {modulus: 1e5}"), stiff = slowest_mode("body: {modulus: 9e5}");
     NEAR(stiff / soft, 3, 0, 1e-12);
