@@ -32,9 +32,11 @@ TEST(control_characters_are_printed_as_numbers) {
     FILE *const stream = fmemopen(text, sizeof text - 1, "w");
     text_print_clean(stream,
                      "a\x1b[31m\a\b\r\x7f\n\tb\xc2\x9b"
-                     "1m \xc3\xa9 \xe2\x82\xac \xc2\xa0 \xff");
+                     "1m \xc2\x80 \xc2\x9f \xc3\xa9 \xe2\x82\xac \xc2\xa0 \xff");
     fclose(stream);
-    assert_string_equal(text, "a\\x1b[31m\\x07\\x08\\x0d\\x7f\n\tb\\xc2\\x9b1m \xc3\xa9 \xe2\x82\xac \xc2\xa0 \xff");
+    assert_string_equal(text,
+                        "a\\x1b[31m\\x07\\x08\\x0d\\x7f\n\tb\\xc2\\x9b1m \\xc2\\x80 \\xc2\\x9f \xc3\xa9 "
+                        "\xe2\x82\xac \xc2\xa0 \xff");
 }
 
 TEST(a_written_number_reads_back_bit_for_bit) {

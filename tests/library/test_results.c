@@ -130,7 +130,8 @@ static const struct run {
      "fish: [{nodes: 6, sheet_points: 51, wave: {frequency: 4}, start: {heading: 190, speed: 0.6}, control: {law: "
      "course,\n     desired_heading: 170}, body: {profile: table, thickness_table: [0.06, 0.11, 0.09, 0.06, 0.04],\n"
      "     depth_table: [0.12, 0.2, 0.18, 0.16, 0.24], damping: curvature}, sensors: [0.2, 0.7]},\n"
-     "    {nodes: 5, sheet_points: 57, length: 1.2, start: {position: [-0.1, 0.24], speed: 0.9}, wave: {frequency: 3},\n"
+     "    {nodes: 5, sheet_points: 57, length: 1.2, start: {position: [-0.1, 0.24], speed: 0.9}, wave: {frequency: "
+     "3},\n"
      "     body: {profile: table, thickness_table: [0.05, 0.1, 0.09, 0.04], depth_table: [0.22, 0.3, 0.2, 0.13]},\n"
      "     drag: {normal: 0.5, waving: 1.2, form: 1.3, transition: 1e5}, load: {tip: [2, -3]}},\n"
      "    {nodes: 5, sheet_points: 53, start: {position: [0.1, -0.6]}, motion: {prescribed: head, surge: free, heave: "
@@ -157,14 +158,16 @@ static const struct run {
     {"steady_tapered",
      "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n"
      "fluid: {density: 20, velocity: [0.9, -0.3]}\nwake: {lifetime: 2, decay: 0.5}\n"
-     "fish: [{nodes: 6, sheet_points: 51, wave: {amplitude: 0, constant: 0.5, frequency: 0}, motion: {prescribed: head},\n"
+     "fish: [{nodes: 6, sheet_points: 51, wave: {amplitude: 0, constant: 0.5, frequency: 0}, motion: {prescribed: "
+     "head},\n"
      "     start: {heading: 170}, body: {profile: table, thickness_table: [0.06, 0.08, 0.06, 0.04, 0.03], depth_table: "
      "[0.12,\n     0.2, 0.18, 0.16, 0.24], modulus: 1e5}}]\n"},
     {"steady_rate",
      "format: 1\ntime: {end: 1, shedding_interval: 0.05}\nsolver: {rtol: 1e-8}\n" BODY
      "fluid: {density: 100, velocity: [0.9, 0.1]}\nwake: {shedding: continuous, lifetime: 2, decay: 0.5}\n"
      "sheet: {kutta: rate, kutta_ramp: 0.05}\n"
-     "fish: [{force: reactive, nodes: 5, sheet_points: 17, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: head}, "
+     "fish: [{force: reactive, nodes: 5, sheet_points: 17, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: "
+     "head}, "
      "body: {modulus: 1e5}}]\n"},
 };
 enum { N_RUNS = sizeof runs / sizeof *runs, MAX_VARIABLES = 200, MAX_ROWS = 500 };
@@ -375,7 +378,8 @@ static const char school[] =
     "0.1}%s}]\n";
 #define REACTIVE ", force: reactive"
 #define PLANE ", force: pressure, pressure: {span: infinite}"
-#define TAPERED(thicknesses, depths) ", body: {profile: table, thickness_table: " thicknesses ", depth_table: " depths "}"
+#define TAPERED(thicknesses, depths) \
+    ", body: {profile: table, thickness_table: " thicknesses ", depth_table: " depths "}"
 static const char *const school_parts[][4] = {
     {", viscosity: 2e-6, gust: {amplitude: 0.15, frequency: 2.2}", REACTIVE, PLANE ", sensors: [0.2, 0.7]", REACTIVE},
     // the rows that begin with r, p, f

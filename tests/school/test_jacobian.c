@@ -54,7 +54,7 @@ TEST(contact_couples) {
     struct setup setup = setup_of(TIME
                                   "solver: {coupling_distance: 0}\n"
                                   "defaults: {fish: {sheet_points: 9, body: {profile: uniform, thickness: 0.1}}}\n"
-                                  "fish: [{}, {start: {position: [0, 0.3]}}]\n");
+                                  "fish: [{}, {start: {position: [0, 0.3]}}, {start: {position: [0, 9]}}]\n");
     for (int are_near = 0; are_near < 2; are_near++) {
         const struct fish *const fish = &setup.school->fish[1];
         for (int k = 0; k < fish->n_nodes && are_near; k++) setup.state->y[fish->at.y + k] -= 0.185;

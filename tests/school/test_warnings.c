@@ -513,21 +513,29 @@ TEST(a_balance_that_is_not_finite_is_open_and_no_row) {
     expect_line(unequal, WARNING_MOMENTUM, NULL);
 }
 
-// a plate with the motion of cases/foil_anderson.yaml and this largest speed of the tail by pitch, over its speed
-static int warns_of_pitch(double ratio, const char *motion) {
+// a plate with the motion of cases/foil_anderson.yaml and this largest speed of the tail by pitch, over its speed through
+// the water: at rest, and in a stream that carries it along its way or back
+static int warns_of_pitch_in(const char *stream, double heading, double speed, double ratio, const char *motion) {
     char line[WARNING_BYTES];
     // the pivot is two thirds of the chord before the tail
     const double pitch = ratio * 5.392165 / (2 * M_PI * 2 / 3) * 180 / M_PI;
     struct simulation *const simulation = school_simulation_of(
         SCHOOL_DEFAULTS
-        "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1.348e-4}\n"
-        "fish: [{force: pressure, pressure: {span: infinite}, start: {speed: 5.392165}, wave: {amplitude: 0, "
+        "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1.348e-4, velocity: %s}\n"
+        "fish: [{force: pressure, pressure: {span: infinite}, start: {heading: %g, speed: %.8g}, wave: {amplitude: 0, "
         "frequency: 0},\n  body: {profile: uniform, thickness: 0.12}, motion: {%s, pitch: %.17g, "
         "pivot: 0.333333333, frequency: 1}}]\n",
-        motion, pitch);
+        stream, heading, speed, motion, pitch);
     school_measure(simulation, 0.02);
     const int warns = line_of(simulation, WARNING_PITCH, line);
     if (warns) assert_non_null(strstr(line, "0.6"));
+    return warns;
+}
+
+static int warns_of_pitch(double ratio, const char *motion) {
+    const int warns = warns_of_pitch_in("[0, 0]", 180, 5.392165, ratio, motion);
+    if (!strstr(motion, "surge")) assert_int_equal(warns_of_pitch_in("[0, 2]", 90, 7.392165, ratio, motion), warns);
+    assert_int_equal(warns_of_pitch_in("[2, 0]", 180, 3.392165, ratio, motion), warns);
     return warns;
 }
 

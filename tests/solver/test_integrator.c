@@ -105,3 +105,27 @@ TEST(all_methods_agree_and_report_their_order) {
         }
     }
 }
+
+// from event to event, over restarts by impulses too
+TEST(counts_of_a_run_only_grow) {
+    static const char *const methods[] = {"ida", "dormand_prince", "trapezoid"};
+    for (int i = 0; i < 3; i++) {
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 1, shedding_interval: 0.02}\nwake: {shedding: impulsive}\nsolver: {method: %s, rtol: 1e-6%s}\n"
+            "fish: [{nodes: 25, body: {modulus: 1e4}}]\n",
+            methods[i], i < 2 ? "" : ", step: 0.002");
+        struct integrator_counts before = {0};
+        for (int n = 0; n < 20; n++) {
+            school_ok(simulate_step(simulation));
+            const struct integrator_counts now = school_counts(simulation);
+            ABOVE(now.steps, before.steps);
+            ABOVE(now.residual_evaluations, before.residual_evaluations);
+            AT_LEAST(now.newton_iterations, before.newton_iterations);
+            AT_LEAST(now.jacobian_evaluations, before.jacobian_evaluations);
+            AT_LEAST(now.error_test_failures, before.error_test_failures);
+            AT_LEAST(now.convergence_failures, before.convergence_failures);
+            before = now;
+        }
+        if (i < 2) ABOVE(before.error_test_failures, 0);
+    }
+}

@@ -151,6 +151,16 @@ TEST(an_interval_divides_the_beat_or_the_run) {
     levels_are(&study, "solver.step", 4, (double[]){0.0025, 0.005, 0.01, 0.02}, 0.005);
     assert_null(key_of(&study, "solver.rtol"));
     NEAR(setting(&study, key_of(&study, "time.shedding_interval")->member[2], "solver.step"), 0.005, 0, 1e-12);
+    // and are none longer than that of the case: 0.01/0.003 = 3.3
+    study = open_study(
+        "format: 1\ntime: {end: 0.96, shedding_interval: 0.03}\nsolver: {method: rk4, step: 0.003}\n"
+        "fish: [{}]\n",
+        "{of: speed, keys: [shedding_interval]}");
+    for (int m = 0; m < sweep_n_members(study.study); m++) {
+        const struct case_values member = member_of(study.study, m);
+        AT_MOST(member.solver.step, 0.003 * (1 + 1e-12));
+        NEAR(remainder(member.school.shedding_interval, member.solver.step), 0, 1e-12, 0);
+    }
 }
 
 TEST(a_duration_keeps_the_unit_of_the_case) {
