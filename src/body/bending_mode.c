@@ -12,8 +12,8 @@ struct modes {
 };
 
 // The momentum of body and fluid for the normal node velocities w of a straight body. The jump of the potential of a
-// straight sheet without shedding is L sum (2/(pi n)) (int w sin(theta) sin(n theta) dtheta) sin(n theta). Where the depth
-// varies, two strips act on each other with the geometric mean of their depths: the fluid then has an energy.
+// straight sheet without shedding is L sum (2/(pi n)) (int w sin(theta) sin(n theta) dtheta) sin(n theta). Where the
+// depth varies, two strips act on each other with the geometric mean of their depths: the fluid then has an energy.
 static void momentum_load(const struct modes *modes, const double *w, double *load) {
     const struct fish *const fish = modes->fish;
     for (int k = 0; k < fish->n_nodes; k++) {

@@ -513,8 +513,8 @@ TEST(a_balance_that_is_not_finite_is_open_and_no_row) {
     expect_line(unequal, WARNING_MOMENTUM, NULL);
 }
 
-// a plate with the motion of cases/foil_anderson.yaml and this largest speed of the tail by pitch, over its speed through
-// the water: at rest, and in a stream that carries it along its way or back
+// a plate with the motion of cases/foil_anderson.yaml and this largest speed of the tail by pitch, over its speed
+// through the water: at rest, and in a stream that carries it along its way or back
 static int warns_of_pitch_in(const char *stream, double heading, double speed, double ratio, const char *motion) {
     char line[WARNING_BYTES];
     // the pivot is two thirds of the chord before the tail
