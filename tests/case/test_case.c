@@ -387,6 +387,9 @@ TEST(a_star_assigns_to_every_fish) {
     }
     NEAR(s.school.fish[2].wave.phase, 3, 0, 0);  // a map is merged
     NEAR(s.school.fish[2].wave.frequency, 2, 0, 0);
+    // each fish has its own map, which later assignments change
+    s = parse_with(text, "fish[*].body={modulus: 2e5}", "fish[1].body.modulus=3e5", "fish[2].body.modulus=4e5");
+    for (int i = 0; i < 3; i++) NEAR(s.school.fish[i].body.modulus, 2e5 + i * 1e5, 0, 0);
 }
 
 TEST(assignments_reach_defaults_preset_and_sections) {

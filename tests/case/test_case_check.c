@@ -324,6 +324,10 @@ TEST(limits_are_where_the_messages_say) {
          SHORT "fish: [{nodes: 7, control: {bias: 2.1}, wave: {amplitude: 0.5, constant: 1, linear: 0, quadratic: 0, "
                "table: [[12.8, -1], [1, 1]]}}]\n",
          "turns a joint by up to 3.18 rad"},
+        {SHORT
+         "fish: [{nodes: 7, control: {bias: 1}, wave: {amplitude: 1.55, constant: 1, linear: 0, quadratic: 0}}]\n",
+         SHORT "fish: [{nodes: 7, control: {bias: 1}, wave: {amplitude: 1.6, constant: 1, linear: 0, quadratic: 0}}]\n",
+         "turns a joint by up to 3.2 rad"},
         {FINITE("26"), FINITE("25"), "a span of 0.2 lengths needs at least 26 points"},
         {SHORT "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite}}]\n",
          SHORT "fish: [{nodes: 9, sheet_points: 16, force: pressure, pressure: {span: infinite}}]\n",

@@ -128,6 +128,14 @@ TEST(a_bias_that_moves_across_impulses_keeps_the_balance) {
                                                    "fish: [{control: {law: averaged_heading, desired_heading: 150}}]\n",
                                                    0.5);
     AT_MOST(published.worst, 0.01 * published.put_in);
+    // a waypoint that is passed moves the bias in the same event
+    const struct audit_result passing =
+        audit_of(TIME
+                 "wake: {shedding: impulsive}\nsolver: {rtol: 1.0e-6}\n"
+                 "fish: [{start: {speed: 1}, control: {law: heading, waypoints: [[-1, 0.2], [-3, 0]],\n"
+                 "        acceptance_radius: 0.5}}]\n",
+                 2);
+    AT_MOST(passing.worst, 30 * 1e-6 * passing.put_in);
 }
 
 TEST(after_a_jump_the_balance_goes_on_from_the_powers_of_then) {

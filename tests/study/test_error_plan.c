@@ -163,6 +163,17 @@ TEST(an_interval_divides_the_beat_or_the_run) {
     }
 }
 
+TEST(the_interval_has_the_order_of_the_shedding) {
+    static const char *const words[] = {"sheet", "impulsive", "continuous"};
+    for (int i = 0; i < 3; i++) {
+        struct case_values values = parse(arena_text(
+            test_arena(), "format: 1\ntime: {end: 1}\nwake: {shedding: %s}\nfish: [{force: reactive}]\n", words[i]));
+        NEAR(sweep_error_order(&values, sweep_error_find("time.shedding_interval")), i == 2 ? 2 : 1, 0, 0);
+        NEAR(sweep_error_order(&values, sweep_error_find("fish.nodes")), 2, 0, 0);
+        case_free(&values);
+    }
+}
+
 TEST(a_duration_keeps_the_unit_of_the_case) {
     static const struct {
         const char *wake, *unit, *longest, *fade;
