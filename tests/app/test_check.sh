@@ -49,6 +49,8 @@ estimates() {
     one=$(estimated s)
     run check "$demo" --set 'fish[0].nodes=7' --set 'sweep=[{key: solver.max_steps, values: [1, 1, 500, 1, 1, 1, 1, 1]}]'
     check "members that fail take no time" is_below "$(estimated s)" "$(awk -v one="$one" 'BEGIN { print 5 * one }')"
+    run check "$demo" --set 'fish[0].nodes=7' --set 'sweep=[{key: name, values: [a, b, c, d, e, f, g, h]}]'
+    check "and members that run take the time of each" is_below "$(awk -v one="$one" 'BEGIN { print 3 * one }')" "$(estimated s)"
     run check "$demo" -q
     check "-q says nothing" silent
 }

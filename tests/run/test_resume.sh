@@ -107,6 +107,13 @@ refused no_checkpoint 4 'nothing.ckpt: cannot be read' resume nothing.ckpt
 refused a_result 4 'run.nc: cannot be used: not a checkpoint of shoal' resume run.nc
 refused no_event 2 "--checkpoint-at: '0.333' is not the time of an event" run small.yaml --checkpoint-at 0.3,0.333
 refused no_time 2 '--max-wall 5: expects HH:MM:SS' run small.yaml --max-wall 5
+printf '%s\n' '#include <stdio.h>' 'unsigned alarm(unsigned n) { fprintf(stderr, "alarm %u", n); return 0; }' >alarm.c
+if "${CC:-cc}" -shared -fPIC -o alarm.so alarm.c 2>/dev/null; then
+    LD_PRELOAD=./alarm.so ASAN_OPTIONS=verify_asan_link_order=0 run run small.yaml -q -o timed.nc --max-wall 2:03:04
+    check hours_minutes_and_seconds has err "alarm $((2 * 3600 + 3 * 60 + 4))"
+else
+    skip hours_minutes_and_seconds "no C compiler"
+fi
 refused no_multiple 2 'time.checkpoint_interval: 0.015 s is not an integer multiple' check small.yaml \
     --set time.checkpoint_interval=0.015
 run info run.ckpt
