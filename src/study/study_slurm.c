@@ -122,7 +122,8 @@ enum status study_slurm(struct arena *arena, const struct case_values *study, co
             "printf '%%s\\n' \"members: job $array; results: job $gather, $folder/study.txt and study.nc\"\n",
             place);
     TRY(plain_file_close(&script.file, STATUS_OK));
-    fprintf(stream, "%d members in %d tasks; start them with %s/submit.sh\n", n, n_tasks, folder);
+    fprintf(stream, "%d member%s in %d task%s; start them with %s/submit.sh\n", n, n == 1 ? "" : "s", n_tasks,
+            n_tasks == 1 ? "" : "s", folder);
 
     return STATUS_OK;
 }
