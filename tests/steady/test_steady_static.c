@@ -159,9 +159,9 @@ TEST(it_diverges_where_a_column_does) {
     }
 }
 
-/* The stream exerts a force along the tail and none across it: E I d4w/ds4 + m U^2 d2w/ds2 = 0, where both d2w/ds2 and
- * d3w/ds3 vanish there, has no solution, whatever U, and the determinant stays 1. Beyond m U^2 L^2 = 20 E I, the load of Beck,
- * pairs of eigenvalues are complex. */
+/* The stream exerts a force along the tail and none across it: E I d4w/ds4 + m U^2 d2w/ds2 = 0 with second and third
+ * derivatives that vanish at the tail has no solution, whatever U, and the determinant stays 1. Beyond Beck's load,
+ * m U^2 L^2 = 20 E I, pairs of eigenvalues are complex. */
 TEST(a_plate_held_at_its_leading_edge_does_not_diverge) {
     double off[2];
     for (int i = 0; i < 2; i++) {
