@@ -135,6 +135,8 @@ enum status main_demo(const struct request *request) {
     fflush(NULL);
     const pid_t child = fork();
     if (child == 0) {
+        // the script prints the name of the picture
+        if (request->quiet && !freopen("/dev/null", "w", stdout)) _exit(127);
         // Python looks for its library beside its name
         execl("/usr/bin/python3", "/usr/bin/python3", script, demo.output, "demo.png", (char *)NULL);
         _exit(127);

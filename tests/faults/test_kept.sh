@@ -109,7 +109,7 @@ if [[ -e $here/cases/demo.yaml ]]; then
         rm -r demo
     done
     (mkdir demo && cd demo && "$program" demo -q >../out 2>../err)
-    check demo_works_in_an_empty_folder test $? = 0 -a -s demo/demo.html
+    check demo_works_in_an_empty_folder_and_quietly test $? = 0 -a ! -s out -a -s demo/demo.html
     (cd demo && ! "$program" demo -q >../out 2>../err)
     check demo_does_not_replace_its_own_files_unless_told test $? = 0
     (cd demo && "$program" demo -q --force >../out 2>../err)
