@@ -24,6 +24,7 @@
 #include "result/durable.h"
 #include "result/target.h"
 #include "run/checkpoints.h"
+#include "run/simulate.h"
 #include "run/simulate_run.h"
 #include "steady/steady.h"
 #include "study/study_folder.h"
@@ -315,9 +316,8 @@ static enum status plan_and_run(struct study *study) {
     }
 
     if (!is_stopped(study)) return STATUS_OK;
-    return status_fail(STATUS_STOPPED,
-                       "stopped by a signal: %d of %d members are finished; repeat the command to continue",
-                       study->progress.n_done, study->progress.n_members);
+    return status_fail(STATUS_STOPPED, "stopped %s: %d of %d members are finished; repeat the command to continue",
+                       simulate_stopped_by(study->options->stop), study->progress.n_done, study->progress.n_members);
 }
 
 enum status study_run(const struct case_values *values, const struct study_options *options, int *n_failed) {

@@ -172,6 +172,8 @@ refused processes_of_words 2 '-j two: expects an integer' study small.yaml -o pa
 refused run_refuses_a_sweep 2 'use `shoal study`' run small.yaml -o never.nc
 run study small.yaml --limit 0.4 -o slow --set time.end=2000 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
 check a_member_that_takes_too_long_has_failed eval 'test "$code" = 1 && has out "member 0 failed: too slow: at t = "'
+refused max_wall_stops_a_study 75 'stopped after --max-wall: 0 of 1 members are finished; repeat the command to continue' \
+    study small.yaml --max-wall 0:00:01 -o timed --set time.end=2000 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
 refused limit_of_nothing 2 '--limit 0: expects a number above 0' study small.yaml --limit 0
 run study small.yaml --set 'sweep=[]' -o single
 check without_a_sweep_there_is_one_member test "$code" = 0 -a -e single/member-0000.nc -a ! -e single/member-0001.nc
