@@ -51,8 +51,6 @@ estimates() {
     check "members that fail take no time" is_below "$(estimated s)" "$(awk -v one="$one" 'BEGIN { print 5 * one }')"
     run check "$demo" --set 'fish[0].nodes=7' --set 'sweep=[{key: name, values: [a, b, c, d, e, f, g, h]}]'
     check "and members that run take the time of each" is_below "$(awk -v one="$one" 'BEGIN { print 3 * one }')" "$(estimated s)"
-    run check "$demo" -q
-    check "-q says nothing" silent
 }
 
 one_verdict() {
@@ -62,6 +60,8 @@ one_verdict() {
     check "with the message of the run" grep -q 'solver.max_steps' err
     run check "$demo" --set solver.max_steps=1 -q
     check "nor is it with -q" ended 1
+    run check "$demo" --set 'sweep=[{key: solver.max_steps, values: [1, 2]}]'
+    check "without a member that does not fail there is no estimate" has out "no estimate of the run time: all estimated members failed"
     # member 10 of 11 goes wrong at once: a result of the study
     run check "$cases/studies/vibration.yaml"
     check "members that fail are results of a study" ended 0
@@ -82,11 +82,14 @@ before_the_first_step() {
         '  start: {position: [0, 0.115]}}]' >near.yaml
     run check near.yaml
     check "bodies that begin near each other" has err "shoal: warning: fish1 and fish2 come within"
+
+    run run "$demo" --set time.end=0.1 -o demo.nc -q
     # few members of few nodes, so that a slow machine examines all members
     run check "$demo" --set 'fish[0].nodes=9' --set 'sweep=[{key: "fish[0].body.modulus", values: [1e5, 9e4, 1e7]}]'
     check "a study says which members" has err "shoal: warning: member 0 and 1 other: the slowest bending mode"
-
-    run run "$demo" --set time.end=0.1 -o demo.nc -q
+    check "and nothing of a result that is there" eval '! has err "demo.nc"'
+    run check "$demo" -q --set 'fish[0].start.heading=3.14159'
+    check "-q says nothing: no verdict, no note" silent
     run check "$demo"
     check "a result that is there: no error" ended 0
     check "a result that is there: a note" has err "shoal: note: demo.nc"
@@ -123,6 +126,7 @@ any_number_of_fish() {
     run check fish10000.yaml
     check "10000 fish, of which two overlap" has err "fish[0] (fish1) and fish[9999] (fish10000) overlap at the start"
     check "5000 nodes" spends 2500 "$demo" --set 'fish[0].nodes=5000'
+    check "5000 nodes: no estimate" has out "no estimate of the run time: the first evaluation takes too long"
 }
 
 # At 1500 nodes the set-up takes over ten seconds. A signal ends the loops of the set-up.
