@@ -60,6 +60,7 @@ wrong_words() {
     done <<EOF_OF_TABLE
 2|unknown command 'rnu'; did you mean 'run'?|rnu $demo
 2|unknown command 'heys'; did you mean 'keys'?|heys
+2|unknown command 'xw'; see shoal --help|xw
 2|unexpected argument 'here'|demo here
 2|unknown option '--colour'; see shoal run --help|run --colour $demo
 2|option '-o' needs a value|run -o
@@ -200,7 +201,7 @@ warnings() {
     check "info: the closest approach" grep -q 'closest approach .*0.0000 m between a and b' out
     run run crossing.yaml -q --force --strict
     check "--strict: exit 3" ended 3
-    check "--strict: the warning and what made it an error" grep -q 'with --strict' err
+    check "--strict: the warning and what made it an error" says 'crossing.nc: with --strict its 1 warning is an error'
     check "--strict: the result is complete" status_is crossing.nc complete
     run run "$demo" -q --strict --set "$short" --set 'fish[0].wave.amplitude=0' -o strict.nc
     check "--strict without a warning: exit 0" ended 0
