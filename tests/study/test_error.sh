@@ -120,6 +120,8 @@ check each_choice_is_listed grep -qE '^choices.*fish.force \(pressure \[reactive
 check the_table_has_the_range test "$(grep -cE ',(lowest|highest),[a-z_.]+ [a-z0-9.+]+,nan,' models/error.csv)" = 2
 check so_has_the_file test "$(ncdump -v lowest_steady_speed models/study.nc | sed -n 's/^ lowest_steady_speed = \(.*\) ;/\1/p' | cut -c 1-6)" = \
     "$(sed -n 's/^"fish",steady_speed,m s-1,\([0-9.]*\),lowest.*/\1/p' models/error.csv | cut -c 1-6)"
+refused strict_counts_warnings 3 '1 warning about the stated value, with --strict' error swimmer.yaml --of speed --no-confirm --strict
+refused and_quietly 3 '1 warning about the stated value, with --strict' error swimmer.yaml --of speed --no-confirm --strict -q
 run error swimmer.yaml --of speed --no-confirm
 check a_run_has_its_error grep -qE '^speed of fish: [0-9.]+ \+- [0-9.]+ m s-1' out
 check levels_are_fewer_without_confirm grep -qE '^fish.nodes +5 6 \[9\] .* 3 levels' out
@@ -151,7 +153,10 @@ refused seventeen_quantities 2 'error.of: more than 16 quantities' error foil.ya
     towed_efficiency mean_thrust mean_power energy_balance steps newton_iterations residual_evaluations time)
 refused two_kinds 2 'speed is of a run and steady_lift of a steady state' error foil.yaml --of steady_lift --of speed
 refused a_bound_of_words 2 '--within few: expects a number above 0' error foil.yaml --of steady_lift --within few
-refused a_plan_runs_no_member 2 'exclude each other' study swimmer.yaml --plan --members 0 -o planned
+for pair in '--plan --members 0' '--slurm --members 0' '--plan --slurm'; do
+    # shellcheck disable=SC2086 # options
+    refused "$pair" 2 'exclude each other' study swimmer.yaml $pair -o planned
+done
 refused a_bundle_without_slurm 2 '--bundle 2: members of a task of Slurm: add --slurm' study swimmer.yaml --bundle 2
 refused a_plan_of_a_sweep 2 '--plan: the case has no `error`' study foil.yaml --plan --set 'sweep=[]'
 refused a_bound_with_a_sweep 2 'error.within: refines one case' study foil.yaml \
