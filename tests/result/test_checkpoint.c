@@ -97,6 +97,7 @@ TEST(info_sums_up_the_run) {
     school_ok(checkpoint_info(arena, path, false, stream));
     fclose(stream);
     assert_non_null(strstr(text, ": a run at t = 0.6 s; the result is run.nc, with 12 rows up to this time\n"));
+    assert_non_null(strstr(text, "\nplaces     --checkpoint-at 0.3,1.25\n"));
     assert_non_null(strstr(text, "so far     1 steps, 2 residuals, 4 Jacobians in 1e+05 s\n"));
     free(text);
 }
@@ -182,6 +183,8 @@ TEST(what_no_run_has_written_is_refused) {
     crafted("y", "12345678", 8, "section 'y' is invalid");
     crafted("wake.n_vortex", many, sizeof many, "section 'wake.n_vortex' is invalid");
     crafted("wake.n_vortex", negative, sizeof negative, "section 'wake.n_vortex' is invalid");
+    crafted("history.n_slots", many, sizeof many, "section 'history.n_slots' is invalid");
+    crafted("history.n_slots", negative, sizeof negative, "section 'history.n_slots' is invalid");
     crafted("wake.n_vortex", few, sizeof few, "section 'wake.x' is invalid");
     crafted("history.last", (const int[]){large, large}, 8, "the state does not fit this case");
     crafted("balance.n", (const int[]){3, 3}, 8, "the state does not fit this case");

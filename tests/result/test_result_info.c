@@ -53,6 +53,14 @@ TEST_WITH(info_sums_up, set_up, tear_down) {
                                  "28.00 s   0.0357 times real time"};
     has_lines(printed, sizeof parts / sizeof *parts, parts);
     assert_null(strstr(printed, "nan"));
+
+    // the size in kB up to 1 MB; bytes behind the rows are no rows
+    static const char *const sizes[] = {"size        1000.0 kB\n", "size        1.0 MB\n", "size        2.5 MB\n"};
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(truncate(f->path, (off_t[]){999999, 1000000, 2500000}[i]), 0);
+        assert_int_equal(print_info(f, false), STATUS_OK);
+        has_lines(printed, 1, &sizes[i]);
+    }
 }
 
 /* The summary of a steady state, on a page of its own. */

@@ -55,6 +55,12 @@ static void put_attribute(const struct fixture *f, const char *name, int value) 
 TEST_WITH(the_reader_refuses_other_files, set_up, tear_down) {
     struct fixture *f = *state;
     cannot_be_read(f->path, "No such file");
+    struct netcdf_rows rows;
+    write_file(f, 3);
+    assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
+    assert_int_equal(truncate(f->path, (off_t)(rows.begin_of_rows + rows.bytes / 2)), 0);
+    cannot_be_read(f->path, "none of the 3 rows is complete: copy the file again");
+    unlink(f->path);
     write_file(f, 0);
     cannot_be_read(f->path, "has not written a row yet");
     put_attribute(f, "shoal_schema", RESULT_SCHEMA + 1);
