@@ -322,7 +322,7 @@ TEST(arrays_that_are_not_there_are_refused) {
     refuses(shoal_flow(run, 1, NULL, x, x), "points is NULL");
     refuses(shoal_flow(run, 1, x, NULL, x), "velocity is NULL");
     refuses(shoal_flow(run, -1, x, x, x), "-1 points");
-    refuses(shoal_flow(run, 1, (double[]){0, NAN}, x, x), "not finite");
+    refuses(shoal_flow(run, 2, (double[]){0, 1, 0.5, NAN}, x, x), "point 1, (0.5, nan), is not finite");
     refuses(shoal_write(run, NULL, 0), "path is NULL");
 }
 
@@ -397,7 +397,7 @@ TEST(a_run_advances_to_the_event_at_or_after_a_time) {
     NEAR(shoal_time(run), 0.06, 0, 0);
     refuses(shoal_advance(run, 0.04), "before the last event, at 0.06 s");
     refuses(shoal_advance(run, -1), "before the last event, at 0.06 s");
-    refuses(shoal_advance(run, 0.11), "after the end of the case");
+    refuses(shoal_advance(run, 0.11), "t = 0.11 s is after the end of the case, 0.1 s");
     refuses(shoal_advance(run, NAN), "not finite");
     NEAR(shoal_time(run), 0.06, 0, 0);
 }
