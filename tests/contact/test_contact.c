@@ -586,8 +586,13 @@ TEST(stop_ends_the_run_at_the_time_and_with_the_names) {
     for (int i = 0; i < 50 && status == STATUS_OK; i++) status = simulate_step(simulation);
     assert_int_equal(status, STATUS_CONTACT);
     assert_int_equal(status_exit_code(status), 3);
-    assert_non_null(strstr(status_message(), "contact of quick and lazy at t = "));
-    BELOW(simulation->state->closest->distance, 0.02);
+    const struct closest *const closest = simulation->state->closest;
+    char message[200];
+    snprintf(message, sizeof message,
+             "contact of quick and lazy at t = %.10g s: %.4g m between their outlines, less than contact.range, 0.02 m",
+             closest->t, closest->distance);
+    assert_non_null(strstr(status_message(), message));
+    BELOW(closest->distance, 0.02);
 }
 
 TEST(stop_does_not_wait_until_bodies_touch) {

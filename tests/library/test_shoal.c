@@ -1037,6 +1037,7 @@ TEST(a_state_that_no_body_can_have_is_refused) {
     assert_int_equal(shoal_set_state(run, 0, wrong, NULL), SHOAL_USAGE);
     assert_non_null(strstr(shoal_message(), "the position of node 1, nan, is not finite"));
     assert_int_equal(shoal_set_state(run, 0, NULL, wrong), SHOAL_USAGE);
+    assert_non_null(strstr(shoal_message(), "the velocity of node 1, nan, is not finite"));
     // the last edge is shortened and lengthened to less and more than the limits, with 5 per cent for its strain
     static const double ratio[4] = {0.45, 0.55, 1.9, 2.1};
     for (int i = 0; i < 4; i++) {

@@ -226,7 +226,7 @@ TEST_WITH(walls_are_there_where_the_case_has_them, set_up, tear_down) {
 TEST_WITH(sensors_are_there_where_the_case_has_them, set_up, tear_down) {
     struct fixture *f = *state;
     double place[2] = {0.25, 0.5};
-    struct fish *const fish = &f->school->fish[1];
+    struct fish *const fish = &f->school->fish[0];
     for (int n = 0; n <= 2; n += 2) {
         fish->n_sensors = n;
         fish->sensor = place;
@@ -237,8 +237,8 @@ TEST_WITH(sensors_are_there_where_the_case_has_them, set_up, tear_down) {
         assert_int_equal(nc_inq_varid(file, "sensor_pressure_left", &number), n > 0 ? NC_NOERR : NC_ENOTVAR);
         assert_int_equal(nc_inq_dimid(file, "sensor", &number), n > 0 ? NC_NOERR : NC_EBADDIM);
         for (size_t i = 0; i < (size_t)n; i++) {
-            NEAR(value_at(file, "sensor_place", 1, i, 0, 0), place[i], 0, 0);
-            assert_true(isnan(value_at(file, "sensor_place", 0, i, 0, 0)));
+            NEAR(value_at(file, "sensor_place", 0, i, 0, 0), place[i], 0, 0);
+            assert_true(isnan(value_at(file, "sensor_place", 1, i, 0, 0)));
             assert_true(isnan(value_at(file, "sensor_pressure_right", 0, 1, i, 0)));
         }
         unlink(f->path);
@@ -475,8 +475,12 @@ TEST_WITH(a_checksum_goes_on_where_it_ended, set_up, tear_down) {
 TEST_WITH(too_many_vortices_are_refused, set_up, tear_down) {
     struct fixture *f = *state;
     struct result_file *result = create(f);
-    for (int i = 0; i <= wake_most(f->school, 10); i++) wake_release(&f->state->wake[0], 0, 0, 0, 0);
-    assert_int_equal(append(f, result, 0, 1), STATUS_FILE);
-    assert_message("room for");
+    const int most = wake_most(f->school, 10);
+    char message[80];
+    for (int i = 0; i <= most; i++) wake_release(&f->state->wake[1], 0, 0, 0, 0);
+    assert_int_equal(append(f, result, 0.25, 1), STATUS_FILE);
+    snprintf(message, sizeof message, "%d vortices of suédois at t = 0.25 s, but the file has room for %d", 1 + most,
+             most);
+    assert_message(message);
     assert_int_equal(result_file_close(result, "failed"), STATUS_OK);
 }

@@ -98,11 +98,14 @@ run run small.yaml --set solver.method=dormand_prince --set time.checkpoint_inte
     -o reference.nc --checkpoint-at "$(places run.nc)" --force
 check an_extended_run_is_the_longer_run same run.nc reference.nc
 # a checkpoint between two rows, behind a row with a wake
-between=(--force -q --set time.checkpoint_interval=0.05 --set output.wake_interval=0.02)
-run run small.yaml "${between[@]}" -o between.nc --set time.end=0.06
-run resume between.ckpt -q --end 0.12
-run run small.yaml "${between[@]}" -o reference.nc --set time.end=0.12
-check with_all_wakes_before_the_checkpoint same between.nc reference.nc
+# and a checkpoint at the end, whose row has a wake only because the row is the last
+for at in 0.05 0.06; do
+    between=(--force -q --set time.checkpoint_interval=$at --set output.wake_interval=$([[ $at = 0.05 ]] && echo 0.02 || echo 0.1))
+    run run small.yaml "${between[@]}" -o between.nc --set time.end=0.06
+    run resume between.ckpt -q --end 0.12
+    run run small.yaml "${between[@]}" -o reference.nc --set time.end=0.12
+    check "the wakes of the longer run, with a checkpoint at $at s" same between.nc reference.nc
+done
 refused no_checkpoint 4 'nothing.ckpt: cannot be read' resume nothing.ckpt
 refused a_result 4 'run.nc: cannot be used: not a checkpoint of shoal' resume run.nc
 refused no_event 2 "--checkpoint-at: '0.333' is not the time of an event" run small.yaml --checkpoint-at 0.3,0.333
