@@ -65,7 +65,8 @@ run compare case.yaml --set 'fish[0].body.modulus=1e9' --methods rk4,ida2 --step
 check a_step_too_large_is_unstable grep -q '^rk4, step 0.01 failed: unstable at t = ' out
 check its_row_says_so test "$(value rk4 0.01 14)" = failed
 run compare case.yaml --set 'fish[0].body.modulus=1e8' --set solver.max_steps=150 --methods euler,ida2 --rtol 1e-2 \
-    --repeats 1 -o failed.nc
+    --repeats 1 --reference-rtol 1e-6 -o failed.nc
+check ten_times_the_tolerance_of_the_reference has out 'ida5, rtol 1e-06; difference of ida5, rtol 1e-05: '
 check a_limit_of_steps_is_no_instability grep -q '^euler, rtol 1e-2 failed: limited by solver.max_steps at t = ' out
 check that_is_no_failure_of_the_comparison test "$code" = 0
 run compare case.yaml --set time.end=40 --set 'fish[0].body.modulus=1e8' --methods euler --rtol 1e-3 --repeats 1 \
