@@ -451,7 +451,7 @@ TEST(speed_and_slip_are_those_through_the_water) {
 
 TEST(what_can_have_no_steady_state_is_refused_with_the_reason) {
     steady_setup_fails(COARSE "fish: [{" FISH ", wave: {frequency: 1.01}}]\n", STATUS_CASE,
-                       "set time.shedding_interval to 0.0495049505, and");
+                       "has 19.802 events, not an integer: set time.shedding_interval to 0.0495049505, and");
     steady_setup_fails(COARSE "fish: [{" FISH ", wave: {frequency: 0, amplitude: 0}}]\n", STATUS_CASE, "no fish beats");
     steady_setup_fails(COARSE "defaults: {fish: {" FISH
                               ", motion: {prescribed: all}}}\n"

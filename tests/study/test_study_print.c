@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "case/case.h"
+#include "case_fixture.h"
 #include "near.h"
 #include "study/member_file.h"
 #include "study/study_print.h"
@@ -59,6 +60,79 @@ static void check(const char *statement, const char *status_of_the_last, enum st
     if (status != want || !strstr(printed, line) || strncmp(printed, "\nExpected:\n", 11) != 0) {
         fail_msg("%s: status %d, want %d; '%s' in:\n%s", statement, status, want, line, printed);
     }
+    free(printed);
+}
+
+TEST(the_first_statement_that_is_missed_is_named_with_its_first_quantity) {
+    static const char *const cases[][2] = {
+        {"{of: speed, least: 2}, {of: nose, fish: b, spread: 5}, {of: [nose, tail], fish: b, spread: 4}",
+         "expect[2]: nose: expectation not met: see the output"},
+        {"{of: speed, least: 2}, {of: [lateral_drift, speed], least: 5}, {fails: unstable}, {of: speed, most: 4}",
+         "expect[1]: speed: expectation not met, and others: see the output"},
+        {"{of: speed, least: 2}, {fails: unstable}", "expect[1]: failures: expectation not met: see the output"},
+    };
+    for (int i = 0; i < 3; i++) {
+        check(cases[i][0], "complete", STATUS_MISSED, "MISSED");
+        assert_string_equal(status_message(), cases[i][1]);
+    }
+}
+
+TEST(the_table_of_members_is_printed_whole) {
+    static const char names[] =
+        "time\0speed\0mean_heading\0cost_of_transport\0strouhal\0mean_thrust\0mean_power\0"
+        "efficiency\0lateral_drift\0shed_circulation\0energy_balance\0steps\0wall_time\0"
+        "residual_evaluations\0";
+    static const char table[] =
+        "member  [1]phase  length  fish  t    speed  heading   cost  Strouhal  thrust  power  efficiency"
+        "   growth    drift      shed  balance  steps  evaluations   wall  status\n"
+        "          degree       m        s    m s-1   degree  m s-2                 N      W            "
+        "      s-1        m    m2 s-1        J                          s\n"
+        "     0        10       2     a  1  2.00000    3.000      4    5.0000       6      7     8.00000"
+        "        -  9.00000  10.00000  1.1e+01     12           14  13.00  complete\n"
+        "     0        10       2     b  1  2.25000    3.250   4.25    5.2500    6.25   7.25     8.25000"
+        "        -  9.25000  10.25000  1.1e+01     12           14  13.00  complete\n"
+        "     1        20       3     a  -        -        -      -         -       -      -           -"
+        "  +0.2500        -         -        -      -            -      -  failed\n"
+        "     1        20       3     b  -        -        -      -         -       -      -           -"
+        "  +0.2500        -         -        -      -            -      -  failed\nmember 1 failed: unstable: t = 1\n";
+    for (int i = 0; i < 2; i++) {
+        char text[512], *printed;
+        snprintf(text, sizeof text,
+                 "format: 1\ntime: {end: 1}\nfish: [{name: a}, {name: b, start: {position: [0, 3]}, motion: "
+                 "{prescribed: head, surge: %s}}]\n"
+                 "sweep: [{keys: [\"fish[1].wave.phase\", \"fish[*].length\"], values: [[10, 2], [20, 3]]}]\n",
+                 i == 0 ? "given" : "free");
+        const struct case_values study = parse(text);
+        struct member_file member[] = {{.status = "complete"}, {.number = 1, .status = "failed: unstable: t = 1"}};
+        for (int m = 0; m < 2; m++) member_file_create_values(test_arena(), &member[m], N_FISH);
+        int k = 1;
+        for (const char *name = names; *name; name += strlen(name) + 1, k++) {
+            for (int f = 0; f < N_FISH; f++) set(&member[0], name, f, 0, k + 0.25 * f);
+        }
+        set(&member[1], "steady_growth", 0, 0, 0.25);
+        size_t size;
+        FILE *const stream = open_memstream(&printed, &size);
+        study_print(test_arena(), &study, member, stream);
+        fclose(stream);
+        if (i == 0) assert_string_equal(printed, table);
+        assert_true((!strstr(printed, "thrust") && !strstr(printed, " power") && !strstr(printed, "eff")) == i);
+        free(printed);
+    }
+}
+
+TEST(warnings_that_differ_in_numbers_are_of_one_kind) {
+    static const char *const warnings[] = {"a is 4e+03 m", "a is 27 m\nb is 27 m", "", "a is 2.7e-1 m", "b is 28 m",
+                                           "a is 27 mm"};
+    struct member_file member[6];
+    for (int m = 0; m < 6; m++) member[m] = (struct member_file){.warnings = warnings[m]};
+    char *printed;
+    size_t size;
+    FILE *const stream = open_memstream(&printed, &size);
+    assert_int_equal(study_print_warnings(test_arena(), member, 6, stream), 6);
+    fclose(stream);
+    assert_string_equal(printed,
+                        "members 0-1, 3: warning: a is 4e+03 m (numbers of member 0)\n"
+                        "members 1, 4: warning: b is 27 m (numbers of member 1)\nmember 5: warning: a is 27 mm\n");
     free(printed);
 }
 
