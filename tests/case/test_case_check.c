@@ -19,7 +19,9 @@ TEST(a_usual_case_has_no_notes) {
     notes_are("fish[0].start.heading=3", "");
     notes_are("fish[0].start.heading=0", "");
     notes_are("fish[0].body.modulus=1e4", "");
-    notes_are("fish[0].length=30", "");
+    notes_are("fish[0]={length: 30, body: {modulus: 1e3}}", "");
+    notes_are("fish[0]={length: 1e-3, body: {modulus: 1e12}}", "");
+    notes_are("fish[0].start.heading=6.545", "");  // 25/12 pi is more than a turn
     // a fish that is towed has no wave
     notes_are("fish[0]={wave: {number: 6, frequency: 0}, body: {relaxation_time: 0}}", "");
 }
@@ -89,6 +91,8 @@ TEST(an_angle_in_radians_is_noted) {
               "meant, write 180");
     notes_are("fish[0].start.heading=-1.571", "write -90");
     notes_are("fish[0].wave.phase=0.7854", "write 45");
+    notes_are("fish[0].wave.phase=0.2618", "write 15");
+    notes_are("fish[0].wave.phase=-1.0472", "write -60");
     notes_are("fish[0].motion={prescribed: head, pitch: 0.5236, frequency: 1}",
               "fish[0].motion.pitch: 0.5236 is in degrees");
     notes_are("fish[0].motion={prescribed: head, pitch: 5, frequency: 1, pitch_phase: 1.5708}", "write 90");
@@ -107,6 +111,7 @@ TEST(a_fluid_without_friction_is_noted) {
     notes_are("fluid.viscosity=0",
               "--set fluid.viscosity=0: note: fluid.viscosity: 0 removes the friction of the skin");
     notes_are("fluid.viscosity=1e-9", "");
+    notes_are("fluid={density: 0, viscosity: 0}", "");
 }
 
 TEST(few_nodes_under_pressure_are_noted) {
@@ -276,6 +281,21 @@ TEST(limits_are_where_the_messages_say) {
 #define GUST(gust) \
     SHORT "fluid: {velocity: [1, 0], gust: {amplitude: 0.1, profile: " gust "}}\nfish: [{sensors: [0.5]}]\n"
 #define WITHOUT_BEAT(keys) SHORT "fish: [{wave: {frequency: 0}, " keys "}]\n"
+#define STEPPED(step) SHORT "solver: {method: rk4, step: " step "}\nfish: [{}]\n"
+#define BENT(keys) SHORT "fish: [{nodes: 7, " keys ", quadratic: 0}}]\n"
+#define FLUID(keys) SHORT "fluid: {" keys "}\nfish: [{}]\n"
+#define RIPPLE(points)                                                                        \
+    SHORT                                                                                     \
+        "fluid: {velocity: [1, 0], gust: {amplitude: 0.1, profile: sine, wavelength: 0.2}}\n" \
+        "fish: [{length: 0.5, nodes: 9, sheet_points: " points ", pressure: {span: infinite}}]\n"
+#define PAIR(keys, first, second) SHORT keys "\nfish: [{" first "}, {start: {position: [0, 2]}, " second "}]\n"
+#define LAW(law) SHORT "fish: [{control: {law: " law "}}]\n"
+#define SWEPT(axis) SHORT "fish: [{}]\nsweep: [{" axis "}]\n"
+#define TEN ", values: [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]}"
+#define TENS                                                                                                 \
+    SHORT "fish: [{}]\nsweep: [{key: solver.order" TEN ", {key: solver.max_steps" TEN ", {key: time.end" TEN \
+          ", {key: wake.lifetime" TEN ", {key: 'fish[0].length'" TEN
+#define EXPECTED(of) SWEPT("key: solver.order, values: [1, 2]") "expect: [{of: " of "}]\n"
     static const struct {
         const char *inside, *outside, *message;
     } limits[] = {
@@ -360,7 +380,55 @@ TEST(limits_are_where_the_messages_say) {
          "the first time must be at least 0 s"},
         {SHORT "fish: [{control: {law: heading, desired_heading: [[0, 10], [1, 20]]}}]\n",
          SHORT "fish: [{control: {law: heading, desired_heading: [[1, 10], [1, 20]]}}]\n",
-         "the times must increase; 1 follows 1"}};
+         "the times must increase; 1 follows 1"},
+        {STEPPED("0.01"), STEPPED("0.03"), "the nearest divisor is 0.01"},
+        {STEPPED("0.003333333333333"), STEPPED("0.0033334"), "0.0033334 s does not divide"},
+        {BENT("control: {bias: -1}, wave: {amplitude: -1.55, constant: 1, linear: 0"),
+         BENT("control: {bias: -1}, wave: {amplitude: -1.6, constant: 1, linear: 0"), "turns a joint by up to 3.2 rad"},
+        {BENT("control: {law: heading, limit: 1}, wave: {amplitude: 1.55, constant: 1, linear: 0"),
+         BENT("control: {law: heading, limit: 1}, wave: {amplitude: 1.6, constant: 1, linear: 0"), "up to 3.2 rad"},
+        {SHORT "fish: [{nodes: 7, wave: {amplitude: 4.5, constant: 0, linear: 0, quadratic: 1}}]\n",
+         SHORT "fish: [{nodes: 7, wave: {amplitude: 4.55, constant: 0, linear: 0, quadratic: 1}}]\n", "up to 3.16 rad"},
+        {SHORT "fish: [{start: {heading: 180}, motion: {prescribed: all, heave: 0.1, frequency: 1, surge: free}}]\n",
+         SHORT "fish: [{start: {heading: 90}, motion: {prescribed: all, heave: 0.1, frequency: 1, surge: free}}]\n",
+         "0 or 180 degrees, not 90"},
+        {FLUID("walls: [-1], velocity: [-0.5, 0]"), FLUID("walls: [-1], velocity: [0.5, -1e-9]"), "flows through"},
+        {FLUID("walls: [-1], gust: {amplitude: 0}"), FLUID("walls: [-1], gust: {amplitude: -1, frequency: 1}"),
+         "the gust flows through fluid.walls"},
+        {FLUID("gust: {profile: sine, speed: -10, wavelength: 1.01e-8}"),
+         FLUID("gust: {profile: sine, speed: -10, wavelength: 0.99e-8}"),
+         "fluid.gust.wavelength: 1.0101e+09 cycles until time.end"},
+        {RIPPLE("31"), RIPPLE("30"), "changes within 0.1 m needs at least 31 points, not 30"},
+        {PAIR("fluid: {gust: {amplitude: 0, profile: step, speed: 1}}", "force: reactive", "force: reactive"),
+         PAIR("fluid: {gust: {amplitude: 1, profile: step, speed: 1}}", "", "force: reactive"), "needs a gust that is"},
+        {PAIR("wake: {vortices: [[9, 9, 1]]}", "pressure: {span: infinite}", "force: reactive"),
+         PAIR("wake: {vortices: [[9, 9, 1]]}", "force: reactive", "pressure: {span: infinite}"), "of the first fish"},
+        {PAIR("wake: {vortices: [[9, 9, 1]]}", "pressure: {span: infinite}", "pressure: {span: infinite}"),
+         PAIR("wake: {vortices: [[9, 9, 1]]}", "pressure: {span: infinite}", "pressure: {span: finite}"), "not a ring"},
+        {PAIR("", "force: reactive", "pressure: {span: finite}}, {start: {position: [0, 4]}, pressure: {span: finite}"),
+         PAIR("", "force: reactive",
+              "pressure: {span: finite}}, {start: {position: [0, 4]}, pressure: {span: infinite}"),
+         "fish[2].pressure.span: fish[1] has another span"},
+        {LAW("course, slow: 2"), LAW("heading, slow: 2"), "control.slow: has no effect with 'law: heading'"},
+        {LAW("course, course_filter: 3"), LAW("heading, course_filter: 3"), "course_filter: has no effect with"},
+        {LAW("averaged_heading, rate: 3"), LAW("heading, rate: 3"), "rate: has no effect with"},
+        {WITHOUT_BEAT("control: {law: heading}"), WITHOUT_BEAT("control: {law: averaged_heading}"), "needs wave.freq"},
+        {SHORT "fish: [{motion: {prescribed: head, frequency: 1}}]\n",
+         SHORT "fish: [{motion: {prescribed: head, frequency: 1.0e-310}}]\n",
+         "fish[0].motion.frequency: the default of wake.lifetime would be inf"},
+        {SHORT "fish: [{nodes: 4, body: {profile: table, thickness_table: [1, 1, 1], depth_table: [1, 1, 1]}}]\n",
+         SHORT "fish: [{nodes: 4, body: {profile: table, thickness_table: [1, 1, 1], depth_table: [1e-6, 1, 1]}}]\n",
+         "fish[0].body.depth_table: the default of fish.sheet_points would be"},
+        {SWEPT("key: solver.order, values: [1]"), SWEPT("key: format, values: [1]"), "'format' cannot be swept"},
+        {SWEPT("key: 'fish[*].nodes', values: [9, 13, 17], refine: true"),
+         SWEPT("key: 'fish[*].drag.normal', values: [1, 2, 3], refine: true"), "drag.normal' is not a resolution"},
+        {TENS "]\n", TENS ", {key: 'fish[0].nodes', values: [9, 13]}]\n", "sweep: 200000 members or more"},
+        {EXPECTED("speed, spread: 0, ratio: 1"), EXPECTED("speed, spread: 0, ratio: 0.999"),
+         "ratio: expects a number from 1"},
+        {EXPECTED("speed, least: 1"), EXPECTED("nose, least: 1"), "nose is a point"},
+        {EXPECTED("speed, ratio: 1"), EXPECTED("nose, ratio: 1"), "nose is a point"},
+        {SHORT "fish: [{}]\nerror: {of: speed, keys: [nodes, rtol]}\n",
+         SHORT "fish: [{}]\nerror: {of: speed, keys: [nodes, rtol, rtol]}\n", "'solver.rtol' is there twice"}};
     for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
         is_refused(limits[i].inside, NULL);
         is_refused(limits[i].outside, limits[i].message);
