@@ -39,6 +39,13 @@ const struct sweep_error_key *sweep_error_find(const char *path) {
     return NULL;
 }
 
+/* The last word of the path of a key; the whole path if the row before has this word. */
+static const char *short_name(const struct sweep_error_key *key) {
+    const char *const last = strrchr(key->path, '.') + 1;
+    const bool is_taken = key > sweep_error_keys && strcmp(strrchr(key[-1].path, '.') + 1, last) == 0;
+    return is_taken ? key->path : last;
+}
+
 double sweep_error_order(const struct case_values *values, const struct sweep_error_key *key) {
     if (strcmp(key->path, "solver.step") == 0) return methods_table[values->solver.method].order;
 
@@ -104,10 +111,7 @@ static void read_keys(struct arena *arena, struct sweep_error *error, const stru
             const bool is_of_every = strncmp(path, "fish.", 5) == 0 && strncmp(name, "fish[*].", 8) == 0;
             const bool is_last = strcmp(is_of_every ? name + 8 : name, last) == 0;
             if (is_last || strcmp(name, path) == 0) key = &sweep_error_keys[k];
-
-            // a name that stands for the key before needs its section
-            const bool is_taken = k > 0 && strcmp(strrchr(sweep_error_keys[k - 1].path, '.') + 1, last) == 0;
-            text_add(&known, "%s%s", k > 0 ? ", " : "", is_taken ? path : last);
+            text_add(&known, "%s%s", k > 0 ? ", " : "", short_name(&sweep_error_keys[k]));
         }
         if (!key) {
             yaml_errors_add(errors, is_map ? entry->mark : entry->value->mark,
@@ -194,7 +198,7 @@ void sweep_error_write(struct text *text, const struct sweep_error *error) {
     if (!error->confirm) text_add(text, ", confirm: false");
     if (error->models) text_add(text, ", models: true");
     for (int i = 0; i < error->n_keys; i++) {
-        text_add(text, "%s%s: ", i == 0 ? ", keys: {" : ", ", strrchr(error->levels[i].key->path, '.') + 1);
+        text_add(text, "%s%s: ", i == 0 ? ", keys: {" : ", ", short_name(error->levels[i].key));
         if (error->levels[i].n == 0) text_add(text, "default");
         for (int k = 0; k < error->levels[i].n; k++) {
             text_add(text, k > 0 ? ", " : "[");

@@ -134,3 +134,16 @@ TEST(a_key_of_an_error_has_at_most_nine_levels) {
     assert_int_equal(case_parse(&s, text, strlen(text), "x.yaml", NULL, 1, &levels[1]), STATUS_CASE);
     assert_non_null(strstr(status_message(), "more than 9 levels of 'fish.nodes'"));
 }
+
+TEST(an_error_is_shown_as_it_is_written) {
+    // a word that two keys share has its section
+    static const char error[] =
+        "error: {of: [speed, nose], within: 0.01, most: 5, confirm: false, models: true, keys: {nodes: [9, 13], rtol: "
+        "default, sheet.smoothing: [0.1, 0.2]}}";
+    char text[400];
+    snprintf(text, sizeof text, "format: 1\ntime: {end: 1}\nfish: [{}]\n%s\n", error);
+    struct case_values s = parse(text);
+    assert_non_null(strstr(case_show(s.arena, &s), error));
+    s = parse_with(minimal, "error={of: speed, keys: [smoothing]}", NULL, NULL);
+    assert_non_null(strstr(case_show(s.arena, &s), "error: {of: [speed], keys: {smoothing: default}}"));
+}
