@@ -60,9 +60,10 @@ __attribute__((format(printf, 4, 5))) static void complain_if(bool condition, co
 static void check_multiple(const struct check *check, const char *path, double time, const char *name, double unit) {
     const double n = round(time / unit), below = floor(time / unit);
     if (!(fabs(time - n * unit) > 1e-9 * time)) return;  // not a number: reported when the value was read
-    complain_if(n < 1, check, path, "%g s is less than %s, %g s", time, name, unit);
-    complain_if(n >= 1, check, path, "%.9g s is not an integer multiple of %s, %.9g s; the nearest are %.9g and %.9g",
-                time, name, unit, (below < 1 ? 1 : below) * unit, (below + 1) * unit);
+    complain_if(below < 1, check, path, "%g s is less than %s, %g s", time, name, unit);
+    complain_if(below >= 1, check, path,
+                "%.9g s is not an integer multiple of %s, %.9g s; the nearest are %.9g and %.9g", time, name, unit,
+                below * unit, (below + 1) * unit);
 }
 
 static void check_time(const struct check *check) {

@@ -284,10 +284,10 @@ TEST(limits_are_where_the_messages_say) {
 #define STEPPED(step) SHORT "solver: {method: rk4, step: " step "}\nfish: [{}]\n"
 #define BENT(keys) SHORT "fish: [{nodes: 7, " keys ", quadratic: 0}}]\n"
 #define FLUID(keys) SHORT "fluid: {" keys "}\nfish: [{}]\n"
-#define RIPPLE(points)                                                                        \
-    SHORT                                                                                     \
-        "fluid: {velocity: [1, 0], gust: {amplitude: 0.1, profile: sine, wavelength: 0.2}}\n" \
-        "fish: [{length: 0.5, nodes: 9, sheet_points: " points ", pressure: {span: infinite}}]\n"
+#define RIPPLE(points)                                                                    \
+    SHORT                                                                                 \
+    "fluid: {velocity: [1, 0], gust: {amplitude: 0.1, profile: sine, wavelength: 0.2}}\n" \
+    "fish: [{length: 0.5, nodes: 9, sheet_points: " points ", pressure: {span: infinite}}]\n"
 #define PAIR(keys, first, second) SHORT keys "\nfish: [{" first "}, {start: {position: [0, 2]}, " second "}]\n"
 #define LAW(law) SHORT "fish: [{control: {law: " law "}}]\n"
 #define SWEPT(axis) SHORT "fish: [{}]\nsweep: [{" axis "}]\n"
@@ -382,6 +382,8 @@ TEST(limits_are_where_the_messages_say) {
          SHORT "fish: [{control: {law: heading, desired_heading: [[1, 10], [1, 20]]}}]\n",
          "the times must increase; 1 follows 1"},
         {STEPPED("0.01"), STEPPED("0.03"), "the nearest divisor is 0.01"},
+        {"time: {end: 0.01, shedding_interval: 0.01}\nfish: [{}]\n",
+         "time: {end: 0.0099, shedding_interval: 0.01}\nfish: [{}]\n", "0.0099 s is less than time.shedding_interval"},
         {STEPPED("0.003333333333333"), STEPPED("0.0033334"), "0.0033334 s does not divide"},
         {BENT("control: {bias: -1}, wave: {amplitude: -1.55, constant: 1, linear: 0"),
          BENT("control: {bias: -1}, wave: {amplitude: -1.6, constant: 1, linear: 0"), "turns a joint by up to 3.2 rad"},
