@@ -49,7 +49,7 @@ static void derive_case_name(const struct key_place *at) {
     const char *const slash = strrchr(at->origin, '/'), *const from = slash ? slash + 1 : at->origin;
     const char *const dot = strrchr(from, '.');
     const size_t length = dot && dot > from ? (size_t)(dot - from) : strlen(from);
-    at->values->name = arena_text(at->values->arena, "%.*s", (int)length, length > 0 ? from : "case");
+    at->values->name = length > 0 ? arena_text(at->values->arena, "%.*s", (int)length, from) : "case";
 }
 
 /* Round a time to a multiple of a unit, up or to the nearest; false if the time is a multiple already. */

@@ -146,6 +146,36 @@ TEST(derived_defaults_follow_what_they_derive_from) {
     NEAR(s.school.fish[0].control.desired_heading.value[1], 30, 0, 0);
 }
 
+TEST(defaults_of_a_gust_a_street_and_a_beat) {
+    struct case_values s = parse(
+        "format: 1\ntime: {end: 1}\nfluid: {velocity: [3, -4], gust: {profile: step, amplitude: 0.1}}\n"
+        "wake: {street: {vortices: 2, spacing: 2, circulation: 1}}\ndefaults: {fish: {pressure: {span: infinite}}}\n"
+        "fish: [{nodes: 18, wave: {frequency: 4, wavelength: 2}}, {nodes: 17, wave: {frequency: 0}},\n"
+        "  {nodes: 25, length: 2, body: {depth: 1}, motion: {prescribed: all, frequency: 0.5}}]\n");
+    NEAR(s.school.fluid.gust_speed, 5, 0, 1e-15);
+    NEAR(s.school.fluid.gust_gradient_distance, 2.0 / 5, 0, 1e-15);
+    NEAR(pow(cosh(M_PI * s.school.wake.street.row_distance / 2), 2), 2, 0, 1e-11);
+    static const double want[][6] = {
+        {35, 0.005, -M_PI, 0.25, 0.0625, 0.125}, {33, 0, 0, 0, 0, 1}, {49, 0.04, 0, 1, 0.25, 0.5}};
+    for (int f = 0; f < 3; f++) {
+        const struct fish_parameters *const fish = &s.school.fish[f];
+        const double got[] = {fish->sheet_points, fish->body.relaxation_time,  f > 0 ? 0 : fish->wave.number,
+                              fish->wave.ramp,    fish->control.course_filter, fish->control.ramp};
+        for (int k = 0; k < 6; k++) NEAR(got[k], want[f][k], 0, 1e-15);
+    }
+}
+
+TEST(a_case_is_named_after_its_file) {
+    static const char *const names[][2] = {
+        {"a.b/eel.v2.yaml", "eel.v2"}, {"a.b/eel", "eel"}, {".yaml", ".yaml"}, {"a.b/", "case"}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        struct case_values s;
+        assert_int_equal(case_parse(&s, minimal, strlen(minimal), names[i][0], ".", 0, NULL), STATUS_OK);
+        assert_string_equal(s.name, names[i][1]);
+        case_free(&s);
+    }
+}
+
 // 170 events a second: other intervals are rounded to the nearest multiple, that of the wake to ten of them
 TEST(intervals_are_rounded_to_events) {
     struct case_values s = parse(
