@@ -44,6 +44,9 @@ class Runs(unittest.TestCase):
             self.assertEqual(list(run["n_nodes"]), [11, 9])
         self.assertEqual(by_path["x"].tobytes(), by_dict["x"].tobytes())
 
+    def test_the_cases_beside_the_library_can_be_included(self):
+        self.assertEqual(shoal.Run({"include": ["demo.yaml"], "time": {"end": 0.25}}).names, ["fish"])
+
     def test_a_view_has_shape_names_and_unit_and_is_no_copy(self):
         run = shoal.Run(PAIR)
         run.step()
