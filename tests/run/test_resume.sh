@@ -106,6 +106,9 @@ for at in 0.05 0.06; do
     run run small.yaml "${between[@]}" -o reference.nc --set time.end=0.12
     check "the wakes of the longer run, with a checkpoint at $at s" same between.nc reference.nc
 done
+run run small.yaml -q -o placed.nc --set time.checkpoint_interval=0 --set time.end=0.06 --checkpoint-at 0.04
+run resume placed.ckpt -q --end 0.12
+check a_place_is_noted_once test "$(places placed.nc)" = 0.04
 refused no_checkpoint 4 'nothing.ckpt: cannot be read' resume nothing.ckpt
 refused a_result 4 'run.nc: cannot be used: not a checkpoint of shoal' resume run.nc
 refused no_event 2 "--checkpoint-at: '0.333' is not the time of an event" run small.yaml --checkpoint-at 0.3,0.333
