@@ -17,7 +17,7 @@ end
 start() {  # folder, options...
     env --default-signal=TERM "$program" study study.yaml -q -o "$@" >"$1.out" 2>"$1.err" </dev/null &
     pid=$!
-    wait_for test -s "$1/member-0000.nc"
+    wait_for compgen -G "$1/member-*.nc"
 }
 end() {
     kill -TERM $pid
@@ -38,7 +38,7 @@ check the_first_one_has_been_stopped_and_not_failed test "$code" = 75 -a ! -e al
 run study study.yaml -q -o all --members 1 --force --set time.end=0.1
 check then_it_may_be_run test "$code" = 0
 
-start part --members 0 -j 1
+start part --members 1 -j 1
 env --default-signal=TERM "$program" study study.yaml -q -o part --members 2 -j 1 >out 2>err </dev/null &
 other=$!
 wait_for test -s part/member-0002.nc
