@@ -90,6 +90,7 @@ stopped explicit TERM small.yaml --set solver.method=dormand_prince --set time.c
 # ---- complete and incomplete results
 
 refused complete 2 'run.nc is complete: give a later --end to extend the result' resume run.ckpt
+refused and_so_with_threads 2 'run.nc is complete: give a later --end to extend the result' resume run.ckpt --threads 2
 refused end_before_the_checkpoint 2 '--end 0.5: the checkpoint is at t = 1 s already' resume run.ckpt --end 0.5
 refused no_end 2 'time.end: 2.003 s is not an integer multiple' resume run.ckpt --end 2.003
 run resume run.ckpt -q --end 1.2

@@ -560,4 +560,8 @@ TEST(the_balance_of_momentum_begins_with_the_rows_and_is_kept) {
     beat_balance(map, again);
     // to the tolerance of the solver
     NEAR_ARRAY(3, again, first, 1e-6, 0);
+    // a search takes the memory of one state, however often it saves
+    const struct state *const one = kept;
+    steady_map_save(simulation->arena, simulation, &kept);
+    assert_ptr_equal(kept, one);
 }
