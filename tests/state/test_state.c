@@ -255,6 +255,14 @@ TEST(every_field_has_a_row) {
     assert_int_equal(n_fields, state_table_n);
 }
 
+TEST(all_but_the_memory_is_kept) {
+    static const char memory[] = " arena wake.arena wake.version wake.capacity history.capacity ";
+    for (int i = 0; i < state_table_n; i++) {
+        const char *const name = arena_text(test_arena(), " %s ", state_table[i].name);
+        assert_int_equal(state_table[i].type == STATE_UNKEPT, strstr(memory, name) != NULL);
+    }
+}
+
 TEST(the_rows_cover_every_byte) {
     for (int i = 0; i < N_OWNERS; i++) {
         unsigned char is_covered[sizeof(struct state) + sizeof(struct wake) + sizeof(struct control_memory)] = {0};
