@@ -590,8 +590,9 @@ static const char keys_elsewhere[] =
 
 /* The kind of the school of a row: 1, 2 and 3 for rows that begin with r, p and f, else 0. */
 static int school_kind(const char *row) {
-    const char *const letter = row[1] == ' ' ? strchr("rpf", row[0]) : NULL;
-    return letter ? (int)(letter - "rpf") + 1 : 0;
+    static const char letters[] = "rpf";
+    const char *const letter = *row && row[1] == ' ' ? strchr(letters, *row) : NULL;
+    return letter ? (int)(letter - letters) + 1 : 0;
 }
 
 /* Sums over all variables at the start and after two intervals. Each variable is divided by its scale, so that each
