@@ -127,7 +127,7 @@ enum status compare_create(struct arena *arena, struct case_values **study, cons
     text_add(&sweep, "sweep=[{keys: [solver.method, solver.order, solver.rtol, solver.step], values: [");
     for (int i = 0; i < COMPARE_N_REFERENCES; i++) {
         struct text number = {.arena = arena};
-        text_add(&number, "%.15g", (i == 0 ? 1 : 10) * options->reference_rtol);
+        text_add_number(&number, text_round((i == 0 ? 1 : 10) * options->reference_rtol));
         sweep_add_member(&sweep, METHOD_IDA, methods_table[METHOD_IDA].order, number.text, "0");
     }
 
