@@ -142,7 +142,7 @@ python_modules = $(shell $(PYTHON) -c 'import site, sys; \
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers figures site soak fuzz fuzz-programs mutants bench size style format docs install uninstall clean deps help FORCE
+.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers figures site soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -218,9 +218,6 @@ bench: $(program) $(bench_programs) $(program_before)  ## measure: inner loops, 
 $(program_before):
 	@mkdir -p $(B)/before && git archive $(commit_before) | tar -x -C $(B)/before
 	@$(MAKE) -C $(B)/before B=build build/shoal
-
-size:  ## print lines, files and functions of src, lines of tests, words of the documents (doc/architecture.md)
-	@scripts/size.py
 
 clean:  ## remove everything that was built
 	$(quiet)rm -rf build build-sanitize build-sanitize-clang build-sanitize-thread build-fuzzer
