@@ -131,6 +131,7 @@ CHAPTERS = [
 # Figures of README.md and the other documents: name, commands of which the last one draws it.
 STUDY = "cases/studies/"
 FIGURES = {
+    **{f"model_{name}": [f"scripts/drawings.py {name} model_{name}.png"] for name in ("rod", "curvature", "outline", "sheet", "ring")},
     "demo": ["shoal run cases/demo.yaml -q -o demo.nc", "plot.py swim demo.nc demo.png"],
     "gait": ["shoal run cases/gait.yaml -q -o gait.nc", "plot.py gait gait.nc gait.png --shapes 20"],
     "single_turn": ["shoal run cases/single_turn.yaml -q -o single_turn.nc",
