@@ -7,6 +7,7 @@
 # Any other TEST is a cmocka program. The scripts take longest and begin; one more runs at a time than there are
 # processors, since some of them wait. The report has the whole output of what failed. A test that crashes, exits early,
 # runs longer than the limit or tests nothing has failed. The limit grows with the load of the machine.
+# Each test has a line with its wall and CPU time, and the ten that take most are named at the end.
 # The last line printed is the sum: "N passed, N failed, N skipped".
 set -euo pipefail
 
@@ -72,8 +73,21 @@ start() {
     read -r load _ </proc/loadavg
     limits[$1]=$((time_limit * (at_once + ${load%.*}) / at_once))
     started[$1]=$EPOCHREALTIME
-    TIME_LIMIT=${limits[$1]} timeout --kill-after=10 "${limits[$1]}" "${command[@]}" >"$folder/$1" 2>&1 </dev/null &
+    (
+        trap 'kill "$child" 2>/dev/null' TERM
+        TIME_LIMIT=${limits[$1]} timeout --kill-after=10 "${limits[$1]}" "${command[@]}" >"$folder/$1" 2>&1 </dev/null &
+        child=$! code=0
+        wait "$child" || code=$?
+        times >"$folder/$1.times"
+        exit "$code"
+    ) &
     number_of[$!]=$1
+}
+
+# CPU seconds, user and system, of test number $1 with all its processes: the second line of the shell's `times`.
+cpu_seconds() {
+    awk 'NR == 2 { gsub("s", ""); for (i = 1; i <= NF; i++) { split($i, t, "m"); sum += 60 * t[1] + t[2] } }
+         END { printf "%.1f", sum }' "$folder/$1.times" 2>/dev/null || echo 0
 }
 
 # Print the line of test number $1, and the output of a failed test; add to the sums.
@@ -95,15 +109,16 @@ report() {
     if [[ -n $note ]] && ((failed == 0)); then failed=1; fi
 
     ((failed == 0)) || sed 's/^/    /' "$folder/$1"
-    printf '%-34s %4d passed %3d failed %3d skipped %7s s%s\n' "${name##*/}" "$passed" "$failed" "$skipped" \
-        "${seconds[$1]}" "${note:+  $note}"
+    cpu[$1]=$(cpu_seconds "$1")
+    printf '%-34s %4d passed %3d failed %3d skipped %7s s %7s s CPU%s\n' "${name##*/}" "$passed" "$failed" "$skipped" \
+        "${seconds[$1]}" "${cpu[$1]}" "${note:+  $note}"
     all_passed=$((all_passed + passed))
     all_failed=$((all_failed + failed))
     all_skipped=$((all_skipped + skipped))
 }
 
 declare -A number_of
-limits=() started=() exit_code=() seconds=()
+limits=() started=() exit_code=() seconds=() cpu=()
 all_passed=0 all_failed=0 all_skipped=0
 next=0 shown=0 running=0
 while ((shown < ${#tests[@]})); do
@@ -127,6 +142,11 @@ while ((shown < ${#tests[@]})); do
     done
 done
 
+if ((${#tests[@]} > 10)); then
+    for i in "${!tests[@]}"; do echo "${cpu[i]} ${tests[i]##*/}"; done | sort -rn |
+        awk -v n="${#tests[@]}" '{ sum += $1; if (NR <= 10) slowest = slowest (NR > 1 ? ", " : "") $2 " " $1 }
+            END { printf "CPU seconds: %.0f for %d programs, most for %s\n", sum, n, slowest }'
+fi
 if ((all_passed + all_failed + all_skipped == 0)); then
     echo "no test was found" >&2
     all_failed=1
