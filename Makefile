@@ -107,7 +107,9 @@ library_objects = $(patsubst src/%.c,$(B)/%.o,$(wildcard $(patsubst %,src/%/*.c,
 
 test_names   = $(or $(TEST),*)
 c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/*/test_%.c)))
-shell_tests  = $(filter-out tests/slurm/%,$(wildcard $(test_names:%=tests/*/test_%.sh)))
+# tests/extra needs further packages, and tests/slurm a cluster: they belong to make test-all, or are named with TEST
+shell_tests  = $(filter-out $(if $(TEST),,tests/extra/%) tests/slurm/%,$(wildcard $(test_names:%=tests/*/test_%.sh)))
+extra_tests  = $(wildcard $(test_names:%=tests/extra/test_%.sh))
 # C tests of more than three seconds, not in make check
 long_c_tests = contact diagnostics diagnostics_momentum estimate flow_at_markers flow_sources sensor_pressure simulate steady steady_formation take_up tree warnings
 quick_c_tests = $(filter-out $(foreach test,$(long_c_tests),%/test_$(test)),$(c_tests))
@@ -125,8 +127,8 @@ manual         = $(B)/doc/shoal.1 $(B)/doc/shoal-case.5 $(B)/doc/shoal-output.5
 completion     = $(B)/doc/completion
 c_files        = $(wildcard src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
 
-# packages for tests beyond scripts/install-deps.sh: a browser, readers of VTK's files, of schemas, of manual pages, and pip
-test_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils python3-pip python3-venv python3-setuptools python3-wheel $(site_packages)
+# packages of `make test-extra`: a browser, readers of VTK's files, of schemas, of manual pages, and pip
+extra_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils python3-pip python3-venv python3-setuptools python3-wheel $(site_packages)
 
 # packages of `make site`
 site_packages = python3-sphinx python3-myst-parser furo doxygen python3-breathe jupyter-nbconvert python3-ipykernel
@@ -142,7 +144,7 @@ python_modules = $(shell $(PYTHON) -c 'import site, sys; \
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers figures site soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo deb check test test-extra test-all test-c test-platforms test-slurm tests valgrind verify numbers figures site soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -152,10 +154,20 @@ demo: deps  ## install what is missing, build, swim: demo.nc, demo.png and demo.
 	@$(parallel) all
 	@$(program) demo --force
 
-test:  ## install what is missing, build, run every test
-	@scripts/install-deps.sh $(test_packages)
+test: deps  ## install what is missing, build, test the program (minutes)
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
+
+test-extra: deps  ## test documents, site, notebook, pages in a browser, files of VTK, manual and packages
+	@scripts/install-deps.sh $(extra_packages)
+	@$(parallel) tests
+	@scripts/run-tests.sh $(program) $(extra_tests)
+
+test-all:  ## all of it: make test and test-extra, Slurm, and the tests in C on Debian 13 (as root; half an hour)
+	@$(MAKE) --no-print-directory test
+	@$(MAKE) --no-print-directory test-extra
+	@$(MAKE) --no-print-directory test-slurm
+	@scripts/platforms.sh debian13-gcc:c_tests
 
 check: deps style  ## what to run before a commit: style, and the tests in C that take at most three seconds
 	@$(parallel) tests

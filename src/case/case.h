@@ -37,7 +37,7 @@ enum status case_member(struct case_values *values, const struct case_values *st
 char *case_show(struct arena *arena, const struct case_values *values);
 
 /* case_keys.c: print path, type, default, range, unit and meaning of every key, as text or as JSON (the source of
- * doc/cases.md and doc/case.schema.json). Tested by tests/app/test_command.sh and tests/app/test_manual.sh. With a
+ * doc/cases.md and doc/case.schema.json). Tested by tests/app/test_command.sh and tests/extra/test_manual.sh. With a
  * word, print only the keys with the word in path, synonyms, words or meaning (NULL: all keys). Returns the number of
  * printed keys. */
 int case_keys(struct arena *arena, FILE *stream, bool as_json, const char *word);

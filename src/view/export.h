@@ -1,5 +1,5 @@
 /* export.h: a run for other programs. page.c: a run as one page of HTML: page.html with the data. Tested by
- * tests/view/test_page.c and, in a browser, tests/app/test_view.sh.
+ * tests/view/test_page.c and, in a browser, tests/extra/test_view.sh.
  *
  * The page stays below 8 MB: for a long run the page has every n-th row, and for long wakes every m-th vortex, with a
  * note. */
@@ -16,7 +16,7 @@
 enum status page_write(struct arena *arena, const char *from, const char *to, bool overwrite);
 
 // ---- vtk.c: a run as VTK files for ParaView: a list of times with two or three files for each row. Tested by
-// tests/app/test_export.sh, which reads the files with VTK.
+// tests/extra/test_export.sh, which reads the files with VTK.
 //
 //     FOLDER/NAME.pvd              the times; open this one
 //     FOLDER/NAME-bodies-0000.vtp  each fish as a line of its bound vortices and as an outline

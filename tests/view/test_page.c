@@ -1,5 +1,5 @@
 /* test_page.c: the page of a result, and the reader of results under it. What the page shows is tested by
- * tests/app/test_view.sh. */
+ * tests/extra/test_view.sh. */
 #include <sys/stat.h>
 
 #include "crafted_file.h"

@@ -2,7 +2,7 @@
 # Output of commands in README.md and doc/*.md is the output of these commands now, as far as they take seconds, within
 # what the tolerance of the solver allows; `make numbers` compares digits. scripts/documents.py finds output that is not.
 #
-#   tests/app/test_documents.sh PROGRAM
+#   tests/extra/test_documents.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

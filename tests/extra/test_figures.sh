@@ -2,7 +2,7 @@
 # scripts/figures.py knows every figure of the documents, draws figures by their commands, and says which are older than
 # which of their inputs.
 #
-#   tests/app/test_figures.sh PROGRAM
+#   tests/extra/test_figures.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Files for other programs: VTK reads the files and finds the numbers of the result.
 #
-#   tests/app/test_export.sh PROGRAM
+#   tests/extra/test_export.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

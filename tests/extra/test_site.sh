@@ -2,7 +2,7 @@
 # The documentation site builds without a warning (a broken link is one), and its pages have the words of the interfaces;
 # every cell of the notebook runs.
 #
-#   tests/app/test_site.sh PROGRAM
+#   tests/extra/test_site.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

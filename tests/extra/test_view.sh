@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The page of a run: the numbers equal the result, and a browser draws the page without an error.
 #
-#   tests/app/test_view.sh PROGRAM
+#   tests/extra/test_view.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Documents from the tables of the program: manual pages, completion, the schema of cases.
 #
-#   tests/app/test_manual.sh PROGRAM
+#   tests/extra/test_manual.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Every case, command and script of doc/tutorial.md works, in order, in an empty folder. Runs are shortened.
 #
-#   tests/app/test_tutorial.sh PROGRAM
+#   tests/extra/test_tutorial.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
