@@ -48,10 +48,9 @@ done
 grep -noE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"[^"]+"' src/*/*.[ch] >"$folder/headers"
 sed -E 's/^src\/([^:]*)\.[ch]:([0-9]+):.*"([^"]+)\.h"/\1 \3 src\/\1/' "$folder/headers" >"$folder/includes"
 # by symbols: definitions and uses
-for object in $(printf "$build/%s/*.o " "${rooms[@]}"); do
-    module=${object#"$build"/}
-    nm --extern-only --format=posix "$object" | awk -v module="${module%.o}" '{ print module, $1, $2 }'
-done >"$folder/symbols"
+# shellcheck disable=SC2046 # one pattern for each room
+nm -A --extern-only --format=posix $(printf "$build/%s/*.o " "${rooms[@]}") |
+    awk -v build="$build/" '{ sub(/\.o:$/, "", $1); print substr($1, length(build) + 1), $2, $3 }' >"$folder/symbols"
 awk '$3 != "U" && $3 != "w" { print $2, $1 }' "$folder/symbols" >"$folder/defined"
 awk 'NR == FNR { owner[$1] = $2; next } $3 == "U" && ($2 in owner) { print $1, owner[$2], $2 }' \
     "$folder/defined" "$folder/symbols" >"$folder/uses"

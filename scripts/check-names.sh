@@ -25,22 +25,23 @@ declare -A beginnings=(
     [reactive]='reactive_|tail_flux_' [clearance]='clearance_|neighbours_|self_crossing' [control]='control_|lead_' [durable]='durable_|plain_file_'
 )
 
-# Names with a dot or two leading underscores are the compiler's own.
+# Names with a dot or two leading underscores are the compiler's own. One nm reads all objects: "OBJECT: NAME TYPE ...".
+objects=()
 for source in src/*/*.c; do
-    stem=$(basename "$source" .c)
-    object=${source#src/}
-    object=$build/${object%.c}.o
-    if [[ ! -e $object ]]; then
-        complain "$source: error: there is no $object: run 'make' first"
-        continue
-    fi
+    object=$build/${source#src/}
+    object=${object%.c}.o
+    if [[ -e $object ]]; then objects+=("$object"); else complain "$source: error: there is no $object: run 'make' first"; fi
+done
+while read -r object name; do
+    source=src/${object#"$build"/}
+    source=${source%.o:}.c
+    stem=${source##*/}
+    stem=${stem%.c}
     prefix=${stem%%_*}_
     [[ $stem != main ]] || prefix=main
-    while read -r name; do
-        [[ $name =~ ^(${beginnings[$stem]-$prefix}) ]] ||
-            complain "$source: error: '$name' is shared and does not begin with '$prefix': rename it or make it static"
-    done < <(nm --defined-only --extern-only --format=posix "$object" | awk '$1 !~ /\.|^__/ { print $1 }')
-done
+    [[ $name =~ ^(${beginnings[$stem]-$prefix}) ]] ||
+        complain "$source: error: '$name' is shared and does not begin with '$prefix': rename it or make it static"
+done < <(nm -A --defined-only --extern-only --format=posix "${objects[@]}" | awk '$2 !~ /\.|^__/ { print $1, $2 }')
 
 while read -r name; do
     complain "$build/libshoal.a: error: '$name' is global and does not begin with shoal_"
