@@ -57,17 +57,28 @@ static char *text_of(const struct error_study *study, const struct key *key, dou
     return text.text;
 }
 
-// the columns of further fish follow
-int error_plan_column(const struct error_study *study, const char *path) {
+/* The fish of a column; -1: of all fish, or of the whole case. */
+static int fish_of(const struct sweep_key *column) {
+    const bool is_of_one = strncmp(column->path, "fish[", 5) == 0 && column->path[5] != '*';
+    return is_of_one ? atoi(column->path + 5) : -1;
+}
+
+// of several columns, the last one sets the key; a swept column serves like any other
+int error_plan_column(const struct error_study *study, const char *path, int fish) {
     const struct sweep_axis *const axis = &study->study->sweep[0];
-    for (int c = study->sweep->n_swept; c < axis->n_keys; c++) {
-        if (strcmp(axis->key[c].row, path) == 0) return c;
+    for (int c = axis->n_keys - 1; c >= 0; c--) {
+        const int of = fish_of(&axis->key[c]);
+        if (strcmp(axis->key[c].row, path) == 0 && (of < 0 || of == fish)) return c;
     }
     return -1;
 }
 
-/* Whether a column of the axis is of all fish: the fish have equal values at every point. */
+/* Whether one column serves all fish: the fish have equal values at every point, and no single fish is swept. */
 static bool is_of_all_fish(const struct error_sweep *sweep, const char *path) {
+    const struct sweep_axis *const axis = &sweep->study.sweep[0];
+    for (int c = 0; c < axis->n_keys; c++) {
+        if (strcmp(axis->key[c].row, path) == 0 && fish_of(&axis->key[c]) >= 0) return false;
+    }
     for (int p = 0; p < sweep->n_points; p++) {
         const struct case_values *const values = sweep->point[p].values;
         for (int f = 1; f < n_owners(values, path); f++) {
@@ -78,16 +89,17 @@ static bool is_of_all_fish(const struct error_sweep *sweep, const char *path) {
     return true;
 }
 
-/* Add a key to the axis, per fish if the fish differ: "fish[*].nodes", or "fish[2].nodes". */
+/* Add a key to the axis, per fish if the fish differ: "fish[*].nodes", or "fish[2].nodes"; unless the axis has it. */
 static void add_columns(struct error_sweep *sweep, const char *path) {
     struct arena *const arena = sweep->arena;
     struct sweep_axis *const axis = &sweep->study.sweep[0];
     const struct key *const key = case_table_row(path);
     const bool is_of_all = is_of_all_fish(sweep, path);
     const int n = is_of_all ? 1 : n_owners(&sweep->study, path);
-    if (error_plan_column(&sweep->point[0], path) >= 0) return;
     GROW(arena, axis->key, axis->n_keys + n);
     for (int f = 0; f < n; f++) {
+        const int column = error_plan_column(&sweep->point[0], path, f);
+        if (column >= 0 && (is_of_all || !case_table_is_of_fish(key) || fish_of(&axis->key[column]) == f)) continue;
         axis->key[axis->n_keys++] =
             (struct sweep_key){.path = !case_table_is_of_fish(key) ? arena_text(arena, "%s", path)
                                        : is_of_all                 ? arena_text(arena, "fish[*]%s", path + 4)
@@ -109,9 +121,8 @@ struct row {
 
 static void row_set(const struct row *row, const char *path, int fish, double value) {
     const struct error_study *const study = row->study;
-    const int column = error_plan_column(study, path);
-    if (column < 0) return;
-    const int c = is_of_all_fish(study->sweep, path) ? column : column + fish;
+    const int c = error_plan_column(study, path, fish);
+    if (c < 0) return;
 
     // if two refined keys set the same points, the finer value counts
     double now;
@@ -187,7 +198,7 @@ static int row_append(struct error_sweep *sweep, char *const *value, int before)
 int error_plan_member(struct error_study *study, int n, const struct error_plan_change *changes, int before,
                       bool *is_new) {
     const struct sweep_axis *const axis = &study->study->sweep[0];
-    const int ignored = error_plan_column(study, "steady.multipliers");
+    const int ignored = error_plan_column(study, "steady.multipliers", 0);
     const struct row row = make_row(study, n, changes);
 
     // a member with the same values, except for multipliers
@@ -391,7 +402,7 @@ static void add_all_columns(struct error_study *study) {
         add_columns(sweep, "output.wake_interval");
     }
 
-    if (error_plan_column(study, "time.shedding_interval") >= 0 && values->solver.step > 0) {
+    if (error_plan_column(study, "time.shedding_interval", 0) >= 0 && values->solver.step > 0) {
         add_columns(sweep, "solver.step");
     }
     if (study->is_steady) add_columns(sweep, "steady.multipliers");
@@ -571,7 +582,7 @@ enum status error_plan_create(struct arena *arena, struct error_sweep **plan, co
         struct error_study *const point = &sweep->point[p];
         for (int c = 0; c < axis->n_keys; c++) {
             const char *const path = axis->key[c].row;
-            const int f = strncmp(axis->key[c].path, "fish[", 5) == 0 ? atoi(axis->key[c].path + 5) : 0;
+            const int f = fish_of(&axis->key[c]) < 0 ? 0 : fish_of(&axis->key[c]);
             const struct sweep_error_key *const row = sweep_error_find(path);
             const bool is_choice = row && row->n_levels > 0;
             value[c] = c < sweep->n_swept ? swept[p * sweep->n_swept + c]

@@ -90,8 +90,8 @@ enum status error_plan_create(struct arena *arena, struct error_sweep **plan, co
 /* The index of a quantity of a fish in part, value and error. */
 int error_plan_place(const struct error_study *study, int quantity, int fish);
 
-/* The column of the axis that sets a key, for the first fish; -1: not varied. */
-int error_plan_column(const struct error_study *study, const char *path);
+/* The column of the axis that sets a key of a fish; -1: none. */
+int error_plan_column(const struct error_study *study, const char *path, int fish);
 
 /* The grid spacing of a level. */
 double error_plan_size(const struct sweep_error_key *row, double value);

@@ -751,6 +751,12 @@ static void print_points(const struct error_sweep *sweep, const struct member_fi
         fprintf(stream, "The first %d of %d fish; error.csv and study.nc have all.\n", n_shown, first->n_fish);
     }
 
+    // a numerical key of the sweep has a value at every point, and no levels
+    for (int c = 0; c < sweep->n_swept; c++) {
+        const struct sweep_error_key *const row = sweep_error_find(axis->key[c].row);
+        if (!row || row->kind == SWEEP_MODEL) continue;
+        fprintf(stream, "%s is swept: the errors do not include it\n", axis->key[c].path);
+    }
     bool are_shared = false;
     for (int p = 0; p < sweep->n_points; p++) are_shared |= !sweep->point[p].is_full;
     if (are_shared) {

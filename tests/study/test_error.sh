@@ -127,6 +127,10 @@ check a_run_has_its_error grep -qE '^speed of fish: [0-9.]+ \+- [0-9.]+ m s-1' o
 check levels_are_fewer_without_confirm grep -qE '^fish.nodes +5 6 \[9\] .* 3 levels' out
 run error swimmer.yaml --of speed --no-confirm -o few --sweep solver.order=3,5 --set 'expect=[{of: speed, least: 0}]'
 check a_sweep_may_have_expectations_and_fewer_points_than_keys eval 'test "$code-$(grep -cE "^ +[01] +[35] |^  met  " out)" = 0-3'
+run error swimmer.yaml --of speed --no-confirm -o numerical --sweep time.shedding_interval=0.02,0.05 --sweep time.end=0.5,1
+check a_swept_numerical_key_is_named_as_missing_from_the_errors grep -qx \
+    'time.shedding_interval is swept: the errors do not include it' out
+check a_swept_key_may_be_one_that_the_levels_set test "$code" = 0 -a -s numerical/study.nc -a -s numerical/error.csv
 mkdir parts
 run study swimmer.yaml --members 0-1 -o parts
 check a_part_of_the_members test -e parts/member-0001.nc -a ! -e parts/member-0002.nc -a ! -e parts/study.nc
