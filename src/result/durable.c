@@ -61,6 +61,17 @@ int durable_lock(int descriptor, uint64_t first, uint64_t n) {
 #endif
 }
 
+/* Unlock a file. A fork of the process shares the descriptor: closing the descriptor here would leave the lock to the
+ * fork. */
+static void unlock(int descriptor) {
+#ifdef F_OFD_SETLK
+    struct flock whole = {.l_type = F_UNLCK, .l_whence = SEEK_SET};
+    fcntl(descriptor, F_OFD_SETLK, &whole);
+#else
+    flock(descriptor, LOCK_UN);
+#endif
+}
+
 bool durable_has_name(int descriptor, const char *path) {
     struct stat open_file, named;
     return fstat(descriptor, &open_file) == 0 && lstat(path, &named) == 0 && open_file.st_ino == named.st_ino &&
@@ -198,6 +209,7 @@ void durable_claim_release(struct durable_claim *claim) {
     if (is_mine && durable_has_name(claim->descriptor[0], claim->part)) unlink(claim->part);
 
     for (int i = 0; i < 2; i++) {
+        if (is_mine && claim->descriptor[i] >= 0) unlock(claim->descriptor[i]);
         if (claim->descriptor[i] >= 0) close(claim->descriptor[i]);
         claim->descriptor[i] = -1;
     }

@@ -246,6 +246,38 @@ TEST(a_fork_does_not_release_a_claim) {
     assert_int_equal(n_files(), 0);
 }
 
+TEST(a_fork_that_lives_on_does_not_keep_a_released_claim) {
+    struct durable_claim one, other;
+    struct durable_part part;
+
+    // a new result, then one that replaces it: the claim covers both files
+    for (int exists = 0; exists < 2; exists++) {
+        int end[2];
+        ok(durable_claim_take(&one, path));
+        assert_int_equal(durable_begin(&part, path, 0666), 0);
+        assert_int_equal(durable_write(part.descriptor, "CDF", 3), 0);
+        assert_int_equal(durable_publish(&part, true), 0);
+        durable_end(&part);
+        assert_int_equal(pipe(end), 0);
+        const pid_t child = fork();
+        if (child == 0) {
+            // until the parent closes the pipe
+            char byte;
+            close(end[1]);
+            _exit(read(end[0], &byte, 1) == 0 ? 0 : 1);
+        }
+        durable_claim_release(&one);
+        ok(durable_claim_take(&other, path));
+        durable_claim_release(&other);
+        close(end[0]);
+        close(end[1]);
+        int outcome;
+        assert_int_equal(waitpid(child, &outcome, 0), child);
+        assert_int_equal(outcome, 0);
+    }
+    unlink(path);
+}
+
 TEST(a_process_that_a_library_ends_gives_up_its_claim) {
     struct durable_claim one, other;
     ok(durable_claim_take(&one, path));
