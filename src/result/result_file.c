@@ -405,6 +405,18 @@ enum status result_file_continue(struct arena *arena, struct result_file **resul
     return status;
 }
 
+/* Whether the name of the file is another file's, or nobody's: the rows then are in a file that nobody finds. */
+static bool file_has_lost_name(const struct result_file *result) {
+    const struct durable_part *const part = &result->writer.part;
+    return part->name[0] == '\0' && !durable_has_name(part->descriptor, part->target);
+}
+
+static enum status file_refuse_lost_name(const struct result_file *result) {
+    if (!file_has_lost_name(result)) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: was removed or replaced during the run: run the case again",
+                       result->writer.path);
+}
+
 enum status result_file_row(struct result_file *result, const struct result_row *row) {
     const char *const path = result->writer.path;
     const double t = row->state->t;
@@ -415,7 +427,7 @@ enum status result_file_row(struct result_file *result, const struct result_row 
     write_variables(result, ROW, row);
     result->n_rows++;
     netcdf_sync(&result->writer, false);
-    if (result->writer.code == 0) return STATUS_OK;
+    if (result->writer.code == 0) return file_refuse_lost_name(result);
     return status_fail(
         STATUS_FILE, "%s: cannot be written at t = %g s (%s): make room or choose another place with -o%s", path, t,
         netcdf_reason(result->writer.code), *result->writer.part.name ? "" : "; the rows before are good");
@@ -427,6 +439,7 @@ enum status result_file_mark(struct result_file *result, struct result_mark *mar
         return status_fail(STATUS_FILE, "%s: cannot be written (%s): make room or choose another place with -o",
                            result->writer.path, netcdf_reason(result->writer.code));
     }
+    TRY(file_refuse_lost_name(result));
     const char *const part = result->writer.part.name, *const path = *part ? part : result->writer.path;
     return result_mark_take(path, (long)result->n_rows, &result->checksum, mark);
 }
@@ -439,13 +452,14 @@ enum status result_file_close(struct result_file *result, const char *run_status
     // the rows are safe before the file says how the run has ended
     if (is_published) netcdf_sync(writer, true);
 
-    // after a failed write the buffer of NetCDF cannot be written
-    if (is_published && writer->code != 0) netcdf_reopen(writer);
+    // after a failed write the buffer of NetCDF cannot be written; another file of the name is not ours
+    const bool is_lost = file_has_lost_name(result);
+    if (is_published && !is_lost && writer->code != 0) netcdf_reopen(writer);
     result_file_note(result, RESULT_STATUS, run_status);
     netcdf_sync(writer, true);
-    enum status status = STATUS_OK;
+    enum status status = file_refuse_lost_name(result);
 
-    if (is_published && writer->code != 0) {
+    if (is_published && !is_lost && writer->code != 0) {
         status = status_fail(STATUS_FILE, "%s: cannot be closed (%s): the last rows may be missing", writer->path,
                              netcdf_reason(writer->code));
         netcdf_reopen(writer);

@@ -95,10 +95,11 @@ enum status result_file_publish(struct result_file *result, const char *run_stat
  * run_status is "running" again. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
 enum status result_file_continue(struct arena *arena, struct result_file **result, const struct result_origin *origin);
 
-/* Flush all rows to disk, and mark the rows. Fails with STATUS_FILE. */
+/* Flush all rows to disk, and mark the rows. Fails with STATUS_FILE, also if the published file has lost its name. */
 enum status result_file_mark(struct result_file *result, struct result_mark *mark);
 
-/* Append one row, visible to readers at once; a power cut loses the rows of the last second. Fails with STATUS_FILE. */
+/* Append one row, visible to readers at once; a power cut loses the rows of the last second. Fails with STATUS_FILE,
+ * also if somebody has removed, replaced or renamed the published file. */
 enum status result_file_row(struct result_file *result, const struct result_row *row);
 
 /* Set an attribute with reserved space, before closing: run_status, warnings (a line each), closest_approach ("1.2 m
@@ -111,7 +112,7 @@ void result_file_note(struct result_file *result, enum result_note note, const c
 void result_file_abandon(struct result_file *result);
 
 /* Set the attribute run_status ("complete", "failed: why", "stopped") and close. Accepts NULL. Fails with
- * STATUS_FILE. */
+ * STATUS_FILE, also if the published file has lost its name; another file of this name is not changed. */
 enum status result_file_close(struct result_file *result, const char *run_status);
 
 #endif

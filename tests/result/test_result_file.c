@@ -381,6 +381,37 @@ TEST_WITH(a_file_without_its_name_leaves_nothing, set_up, tear_down) {
     assert_int_equal(number_of_rows(f), 3);
 }
 
+/* Remove the file, replace it by another one, or rename it, while it is written. */
+static void take_name(struct fixture *f, int how, char renamed[80]) {
+    snprintf(renamed, 80, "%s/renamed.nc", f->folder);
+    assert_int_equal(how == 2 ? rename(f->path, renamed) : unlink(f->path), 0);
+    if (how != 1) return;
+    FILE *const other = fopen(f->path, "w");
+    fputs("other", other);
+    fclose(other);
+}
+
+TEST_WITH(a_file_that_loses_its_name_is_an_error, set_up, tear_down) {
+    struct fixture *f = *state;
+    char renamed[80];
+    for (int how = 0; how < 3; how++) {
+        // noticed by the next row, by a mark, and when the file is closed
+        struct result_file *result = create(f);
+        struct result_mark mark;
+        assert_int_equal(append(f, result, 0, 1), STATUS_OK);
+        take_name(f, how, renamed);
+        assert_int_equal(append(f, result, 1, 1), STATUS_FILE);
+        assert_message(f->path);
+        assert_message("was removed or replaced during the run");
+        assert_int_equal(result_file_mark(result, &mark), STATUS_FILE);
+        assert_message("was removed or replaced during the run");
+        assert_int_equal(result_file_close(result, "failed: for a reason"), STATUS_FILE);
+        assert_message("was removed or replaced during the run");
+        unlink(f->path);
+        unlink(renamed);
+    }
+}
+
 /* What another program, or a user, has made is not replaced, however the file begins. */
 TEST_WITH(existing_file_of_another_program_is_never_replaced, set_up, tear_down) {
     struct fixture *f = *state;
