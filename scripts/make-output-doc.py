@@ -81,7 +81,8 @@ Every command and script refuses a truncated file; a study runs such a member ag
 ## Repeating a run
 
 Attribute `case_effective` is the complete case, after includes, preset and `--set`; `case_text` is the original file.
-`source` names the program, the commit and the libraries, `history` the time and the command.
+`source` names the program, the commit and the libraries, `history` the time and the command, `method` the method of
+integration.
 
     shoal info --case demo.nc > again.yaml
     shoal run again.yaml

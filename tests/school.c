@@ -358,7 +358,7 @@ void school_measure(struct simulation *simulation, double t) {
 
 struct integrator_counts school_counts(const struct simulation *simulation) {
     struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
+    simulate_count(simulation, &counts);
     return counts;
 }
 

@@ -19,6 +19,9 @@ enum method {
     METHOD_VERLET
 };
 
+/* No method has a higher order. */
+enum { METHODS_MAX_ORDER = 5 };
+
 /* The Butcher tableau of an explicit Runge-Kutta method. The embedded method, of another order, gives the error of a
  * step; a tableau for fixed steps only has embedded NULL and embedded_order 0.
  *

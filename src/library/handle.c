@@ -154,7 +154,7 @@ enum status handle_renew(struct shoal *run) {
     run->has_row = false;
 
     // a restart that ran out of memory leaves no solver
-    if (run->simulation->solver) run->simulation->integrator->count(run->simulation->solver, &run->when_reached);
+    if (run->simulation->solver) simulate_count(run->simulation, &run->when_reached);
 
     const enum status status = handle_call(run, renew_simulation, NULL);
     run->is_renewed = status == STATUS_OK;

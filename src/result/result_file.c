@@ -21,6 +21,7 @@ void result_values_lengths(const struct school *school, int n_vortices, size_t l
     length[FISH] = (size_t)school->n_fish;
     length[VORTEX] = (size_t)n_vortices;
     length[XY] = 2;
+    length[ORDER] = METHODS_MAX_ORDER;
     length[SENSOR] = 0;
     length[WALL] = (size_t)school->walls.n;
     length[MULTIPLIER] = STEADY_QUANTITIES * (size_t)school->n_fish;
@@ -343,6 +344,7 @@ enum status result_file_create(struct arena *arena, struct result_file **result,
             netcdf_write_integer(writer, NETCDF_GLOBAL, "study_member", values->member);
         }
         netcdf_write_string(writer, NETCDF_GLOBAL, "case_effective", origin->effective);
+        netcdf_write_string(writer, NETCDF_GLOBAL, "method", methods_table[values->solver.method].word);
         netcdf_end_definitions(writer);
 
         // the constants

@@ -94,17 +94,71 @@ static enum status info_print_table(const struct info *info) {
     return STATUS_OK;
 }
 
-/* The school, the steady state, and the effort of the solver. */
-static enum status print_last_row(const struct info *info) {
+/* The method with its orders, the size of the systems, and the totals of the solver. */
+static enum status print_solver(const struct info *info) {
     static const char *const totals[] = {"steps",
                                          "residual_evaluations",
                                          "newton_iterations",
                                          "jacobian_evaluations",
+                                         "klu_analyses",
+                                         "klu_factorisations",
+                                         "klu_refactorisations",
+                                         "gmres_iterations",
                                          "error_test_failures",
-                                         "convergence_failures"};
+                                         "convergence_failures",
+                                         "initial_iterations"};
     FILE *const stream = info->stream;
     const long last = (long)info->n_rows - 1;
-    double circulation, distance, polarisation, balance[2], t, interval, wall;
+    double t, interval, wall, steps[METHODS_MAX_ORDER], unknowns[2] = {0}, non_zeros[2];
+    char *method;
+    TRY(info_read(info, last, NO_FISH, "time", &t));
+    TRY(info_read(info, last, NO_FISH, "wall_time", &wall));
+    TRY(info_read(info, NO_ROW, NO_FISH, "shedding_interval", &interval));
+    const double n_events = t / interval;
+
+    // the method, and the steps of each order
+    TRY(netcdf_attribute(info->reader, "method", &method));
+    const struct netcdf_slice orders[] = {{"time", (size_t)last, 1}, {"order_of_step", 0, METHODS_MAX_ORDER}, {NULL}};
+    TRY(netcdf_read_doubles(info->reader, "steps_of_order", orders, steps));
+    fprintf(stream, "\n  %-20s  %11s", "method", method);
+    const char *before = "   steps of order ";
+    for (int i = 0; i < METHODS_MAX_ORDER; i++) {
+        if (!(steps[i] > 0)) continue;
+        fprintf(stream, "%s%d: %.0f", before, i + 1, steps[i]);
+        before = ", ";
+    }
+
+    // the size of the systems
+    for (long f = 0; f < (long)info->n_fish; f++) {
+        double n[2];
+        TRY(info_read(info, NO_ROW, f, "differential_unknowns", &n[0]));
+        TRY(info_read(info, NO_ROW, f, "algebraic_unknowns", &n[1]));
+        for (int i = 0; i < 2; i++) unknowns[i] += n[i];
+    }
+    TRY(info_read(info, last, NO_FISH, "jacobian_non_zeros", &non_zeros[0]));
+    TRY(info_read(info, last, NO_FISH, "factor_non_zeros", &non_zeros[1]));
+    fprintf(stream, "\n  %-20s  %11.0f   differential, and %.0f algebraic\n", "unknowns", unknowns[0], unknowns[1]);
+    if (non_zeros[0] > 0) {
+        fprintf(stream, "  %-20s  %11.0f   of the Jacobian, and %.0f of its factors\n", "non-zeros", non_zeros[0],
+                non_zeros[1]);
+    }
+
+    for (size_t i = 0; i < sizeof totals / sizeof *totals; i++) {
+        double total;
+        TRY(info_read(info, last, NO_FISH, totals[i], &total));
+        fprintf(stream, "  %-20s  %11.0f", totals[i], total);
+        if (n_events >= 1) fprintf(stream, "   %.2f per event", total / n_events);
+        fprintf(stream, "\n");
+    }
+    fprintf(stream, "  %-20s  %11.2f s   %.3g times real time\n", "wall_time", wall, t / wall);
+    return STATUS_OK;
+}
+
+/* The school, the steady state, and the effort of the solver. */
+static enum status print_last_row(const struct info *info) {
+    FILE *const stream = info->stream;
+    const long last = (long)info->n_rows - 1;
+    double circulation, distance, polarisation, balance[2];
     TRY(info_read(info, last, NO_FISH, "total_circulation", &circulation));
     TRY(info_read(info, last, NO_FISH, "least_distance", &distance));
     TRY(info_read(info, last, NO_FISH, "polarisation", &polarisation));
@@ -117,21 +171,7 @@ static enum status print_last_row(const struct info *info) {
     }
 
     TRY(result_info_steady(info->reader, stream));
-
-    TRY(info_read(info, last, NO_FISH, "time", &t));
-    TRY(info_read(info, last, NO_FISH, "wall_time", &wall));
-    TRY(info_read(info, NO_ROW, NO_FISH, "shedding_interval", &interval));
-    const double n_events = t / interval;
-    fprintf(stream, "\n");
-    for (size_t i = 0; i < sizeof totals / sizeof *totals; i++) {
-        double total;
-        TRY(info_read(info, last, NO_FISH, totals[i], &total));
-        fprintf(stream, "  %-20s  %11.0f", totals[i], total);
-        if (n_events >= 1) fprintf(stream, "   %.2f per event", total / n_events);
-        fprintf(stream, "\n");
-    }
-    fprintf(stream, "  %-20s  %11.2f s   %.3g times real time\n", "wall_time", wall, t / wall);
-    return STATUS_OK;
+    return print_solver(info);
 }
 
 enum status result_info(const struct netcdf_reader *reader, FILE *stream) {

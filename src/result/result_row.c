@@ -122,6 +122,15 @@ void result_row_edges(const struct result_row *row, int f, enum result_part part
     }
 }
 
+void result_row_equations(const struct result_row *row, int f, enum result_part part, double *slots) {
+    const struct layout *const at = &row->school->fish[f].at;
+    int n = 0;
+    for (int i = at->x; i < at->end; i++) {
+        n += residual_is_differential(row->school, &residual_run, i) == (part == PART_DIFFERENTIAL);
+    }
+    slots[0] = n;
+}
+
 void result_row_steady(const struct result_row *row, int f, enum result_part part, double *slots) {
     (void)f;
     const struct steady_values *const steady = row->steady;

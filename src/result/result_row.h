@@ -85,18 +85,22 @@ enum result_part {
     PART_EDGE_RESISTIVE_FORCE,
     PART_EDGE_REACTIVE_FORCE,
     PART_EDGE_PRESSURE_FORCE,
+    PART_DIFFERENTIAL,
+    PART_ALGEBRAIC,
     PART_MULTIPLIER,
     PART_EXPONENT
 };
 
 /* Write a part of fish f to the slots of f, in the order of the file. Unused slots are unchanged, as are all slots of
  * the wake in a row without wake. Units and meanings: result/result_table.c. The functions compute the parts of the
- * body, of the bound sheet, of the wake, of friction by side, of forces on the edges, and of a steady state. */
+ * body, of the bound sheet, of the wake, of friction by side, of forces on the edges, of the equations, and
+ * of a steady state. */
 void result_row_body(const struct result_row *row, int f, enum result_part part, double *slots);
 void result_row_sheet(const struct result_row *row, int f, enum result_part part, double *slots);
 void result_row_wake(const struct result_row *row, int f, enum result_part part, double *slots);
 void result_row_sides(const struct result_row *row, int f, enum result_part part, double *slots);
 void result_row_edges(const struct result_row *row, int f, enum result_part part, double *slots);
+void result_row_equations(const struct result_row *row, int f, enum result_part part, double *slots);
 void result_row_steady(const struct result_row *row, int f, enum result_part part, double *slots);
 
 #endif

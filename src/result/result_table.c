@@ -21,6 +21,7 @@
 #define OF_WAKES(name) .gather = result_row_wake, .part = PART_##name
 #define OF_SIDES(name) .gather = result_row_sides, .part = PART_##name
 #define OF_EDGES(name) .gather = result_row_edges, .part = PART_##name
+#define OF_EQUATIONS(name) .gather = result_row_equations, .part = PART_##name
 #define OF_STEADY_STATE(name) .gather = result_row_steady, .part = PART_##name
 
 // clang-format off
@@ -383,18 +384,38 @@ const struct result_variable result_table[] = {
      .long_name = "smallest distance between two bodies"},
     {"polarisation",          {TIME},                 RESULT_REAL,    "1",      IN_DIAGNOSTICS(polarisation),
      .long_name = "length of the mean unit vector of the headings"},
+    {"differential_unknowns", {FISH},                 RESULT_REAL,    "1",      OF_EQUATIONS(DIFFERENTIAL),
+     .long_name = "number of unknowns whose rates occur in the equations"},
+    {"algebraic_unknowns",    {FISH},                 RESULT_REAL,    "1",      OF_EQUATIONS(ALGEBRAIC),
+     .long_name = "number of all other unknowns"},
     {"steps",                 {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(steps),
      .long_name = "steps of the integrator since the start"},
+    {"steps_of_order",        {TIME, ORDER},          RESULT_COUNT,   "1",      IN_COUNTS(steps_of_order),
+     .long_name = "steps of order 1, 2, ... since the start"},
     {"residual_evaluations",  {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(residual_evaluations),
      .long_name = "evaluations of the residual since the start"},
     {"newton_iterations",     {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(newton_iterations),
      .long_name = "Newton iterations since the start"},
     {"jacobian_evaluations",  {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(jacobian_evaluations),
      .long_name = "evaluations of the Jacobian since the start"},
+    {"klu_analyses",          {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(klu_analyses),
+     .long_name = "sparsity patterns analysed by KLU since the start"},
+    {"klu_factorisations",    {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(klu_factorisations),
+     .long_name = "factorisations by KLU with new pivots since the start"},
+    {"klu_refactorisations",  {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(klu_refactorisations),
+     .long_name = "factorisations by KLU with the pivots of an earlier one since the start"},
+    {"gmres_iterations",      {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(gmres_iterations),
+     .long_name = "iterations of GMRES for coupled fish since the start"},
     {"error_test_failures",   {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(error_test_failures),
      .long_name = "steps rejected by the error test since the start"},
     {"convergence_failures",  {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(convergence_failures),
      .long_name = "steps rejected by Newton's iteration since the start"},
+    {"initial_iterations",    {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(initial_iterations),
+     .long_name = "iterations of KINSOL for consistent states since the start, each with a Jacobian and its factors"},
+    {"jacobian_non_zeros",    {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(jacobian_non_zeros),
+     .long_name = "entries of the last Jacobian, with the couplings of fish"},
+    {"factor_non_zeros",      {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(factor_non_zeros),
+     .long_name = "entries of the factors of the last Jacobian"},
     {"step_size",             {TIME},                 RESULT_REAL,    "s",      IN_COUNTS(step_size),
      .long_name = "size of the last step of the integrator"},
     {"order",                 {TIME},                 RESULT_INTEGER, "1",      IN_COUNTS(order),
@@ -411,8 +432,9 @@ _Static_assert(sizeof result_table / sizeof *result_table <= RESULT_TABLE_MAX, "
 // ---- look-ups ----
 
 const char *result_table_dimension(enum result_dimension dimension) {
-    static const char *const name[] = {"",        "time",   "fish", "node", "edge",       "joint", "sheet",
-                                       "control", "vortex", "xy",   "name", "multiplier", "wall",  "sensor"};
+    static const char *const name[] = {"",      "time",       "fish",    "node",   "edge",
+                                       "joint", "sheet",      "control", "vortex", "xy",
+                                       "name",  "multiplier", "wall",    "sensor", "order_of_step"};
     return name[dimension];
 }
 

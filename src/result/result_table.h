@@ -12,7 +12,7 @@
 
 enum {
     RESULT_SCHEMA = 1,     /* attribute shoal_schema; grows when a reader of the files has to change */
-    RESULT_TABLE_MAX = 176 /* no more variables than these */
+    RESULT_TABLE_MAX = 192 /* no more variables than these */
 };
 
 /* Dimensions; NONE ends a list of dimensions. Unused slots of a fish are NaN. A dimension of length 0 and variables
@@ -32,6 +32,7 @@ enum result_dimension {
     MULTIPLIER,
     WALL,
     SENSOR,
+    ORDER,
     RESULT_N_DIMENSIONS
 };
 enum { RESULT_MAX_DIMENSIONS = 4 };

@@ -76,7 +76,7 @@ static enum status measure_first_events(struct simulation *simulation, double pa
     if (n == 0) {
         // extrapolate from the completed part of the first event
         struct integrator_counts now;
-        simulation->integrator->count(simulation->solver, &now);
+        simulate_count(simulation, &now);
         *seconds = (clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start) *
                    fmax(1, usual_evaluations / fmax(1, (double)now.residual_evaluations));
         return STATUS_OK;

@@ -183,7 +183,7 @@ enum status simulate_step(struct simulation *simulation) {
     if (status == STATUS_OK) {
         int jumped = 0;
         status = event_next(state, simulation->residual, simulation->consistent, &jumped);
-        if (status == STATUS_OK) integrator->count(simulation->solver, &simulation->totals);
+        if (status == STATUS_OK) simulate_count(simulation, &simulation->totals);
         if (status == STATUS_OK && jumped && integrator->restart) status = integrator->restart(simulation->solver);
     }
 
@@ -194,12 +194,17 @@ void simulate_measure(struct simulation *simulation) {
     diagnostics_event(simulation->residual, simulation->state, simulation->diagnostics);
 }
 
+void simulate_count(const struct simulation *simulation, struct integrator_counts *counts) {
+    simulation->integrator->count(simulation->solver, counts);
+    counts->initial_iterations += initial_conditions_iterations(simulation->consistent);
+}
+
 double simulate_wall_time(const struct simulation *simulation) {
     return clock_seconds(CLOCK_MONOTONIC) - simulation->started;
 }
 
 void simulate_row(struct simulation *simulation, struct integrator_counts *counts, struct result_row *row) {
-    simulation->integrator->count(simulation->solver, counts);
+    simulate_count(simulation, counts);
     simulate_measure(simulation);
     *row = (struct result_row){.school = simulation->school,
                                .state = simulation->state,

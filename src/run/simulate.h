@@ -67,6 +67,9 @@ void simulate_measure(struct simulation *simulation);
  * the wake. */
 void simulate_row(struct simulation *simulation, struct integrator_counts *counts, struct result_row *row);
 
+/* The totals of the integrator and of the consistent states, with the last step. */
+void simulate_count(const struct simulation *simulation, struct integrator_counts *counts);
+
 /* Wall time since the creation of the simulation, plus the wall time before the checkpoint of a resumed run, s. */
 double simulate_wall_time(const struct simulation *simulation);
 

@@ -75,7 +75,7 @@ static enum status run_loop(struct run *run) {
         // report
         if (!options->progress) continue;
         struct integrator_counts counts;
-        simulation->integrator->count(simulation->solver, &counts);
+        simulate_count(simulation, &counts);
         struct simulate_progress progress = {.t = simulation->state->t,
                                              .end = run->values->time.end,
                                              .event = simulation->state->event,

@@ -66,6 +66,15 @@ void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const d
     }
 }
 
+long jacobian_non_zeros(const struct jacobian *jacobian) {
+    long n = 0;
+    for (int f = 0; f < jacobian->school->n_fish; f++) n += (long)jacobian->own[f]->n_nonzeros;
+    for (int i = 0; i < jacobian->n_couplings; i++) {
+        n += (long)jacobian->coupling[i].rows.n_rows * jacobian->coupling[i].rows.n_columns;
+    }
+    return n;
+}
+
 void jacobian_add(const struct jacobian *jacobian, double factor, int n, const int *row_number,
                   const int *column_number, double *matrix) {
     const struct school *const school = jacobian->school;

@@ -41,6 +41,9 @@ void jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, un
 /* product = couplings of fish f times unknowns (n_unknowns): the rows of fish f from ax to the end. */
 void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const double *unknowns, double *product);
 
+/* Number of entries in all blocks. */
+long jacobian_non_zeros(const struct jacobian *jacobian);
+
 /* Add factor times the Jacobian to a full matrix of order n, column after column; row_number, column_number: place of
  * each equation and unknown in the matrix, -1: none (n_unknowns). */
 void jacobian_add(const struct jacobian *jacobian, double factor, int n, const int *row_number,

@@ -200,14 +200,17 @@ struct residual *residual_create(struct arena *arena, const struct school *schoo
     return new;
 }
 
-enum bound_sheet_law residual_sheet_law(const struct residual *residual, const struct residual_mode *mode) {
-    const struct school *school = residual->school;
+static enum bound_sheet_law sheet_law(const struct school *school, const struct residual_mode *mode) {
     if (mode->shed == SHED_IS_GIVEN) return BOUND_SHEET_FROZEN;
     if (mode->shed == SHED_IS_FAR) return BOUND_SHEET_EDGE;
     if (school->shedding == SHEDDING_IMPULSIVE && !(mode->shed == SHED_BY_IMPULSE && school->kutta == KUTTA_EDGE)) {
         return BOUND_SHEET_FROZEN;
     }
     return school->kutta == KUTTA_EDGE ? BOUND_SHEET_EDGE : BOUND_SHEET_RATE;
+}
+
+enum bound_sheet_law residual_sheet_law(const struct residual *residual, const struct residual_mode *mode) {
+    return sheet_law(residual->school, mode);
 }
 
 int residual_shed_is_algebraic(const struct residual *residual) {
@@ -357,26 +360,26 @@ void residual_reaction(const struct residual *residual, int f, const double *y, 
     for (int i = 0; i < 2 * fish->n_nodes; i++) value[fish->at.ax + i] += pressure->momentum_rate[i];
 }
 
+bool residual_is_differential(const struct school *school, const struct residual_mode *mode, int i) {
+    const struct unknown_place place = residual_place(school, i);
+    const struct fish *fish = &school->fish[place.fish];
+    const bool is_given = fish_is_prescribed(fish, place.index, place.component);
+
+    // of a free node positions and velocities, or positions and momenta, are differential
+    switch (place.kind) {
+        case UNKNOWN_X:
+        case UNKNOWN_Y: return !is_given;
+        case UNKNOWN_VX:
+        case UNKNOWN_VY: return !is_given && (!fish_has_momentum(fish) || mode->velocities_are_given);
+        case UNKNOWN_PX:
+        case UNKNOWN_PY: return !is_given && !mode->velocities_are_given;
+        case UNKNOWN_CIRCULATION: return sheet_law(school, mode) != BOUND_SHEET_EDGE;
+        default: return false;
+    }
+}
+
 void residual_kinds(const struct residual *residual, const struct residual_mode *mode, double *kind) {
     for (int i = 0; i < residual->school->n_unknowns; i++) {
-        const struct unknown_place place = residual_place(residual->school, i);
-        const struct fish *fish = &residual->school->fish[place.fish];
-        const bool is_given = fish_is_prescribed(fish, place.index, place.component);
-
-        // of a free node positions and velocities, or positions and momenta, are differential
-        bool is_differential = false;
-        switch (place.kind) {
-            case UNKNOWN_X:
-            case UNKNOWN_Y: is_differential = !is_given; break;
-            case UNKNOWN_VX:
-            case UNKNOWN_VY:
-                is_differential = !is_given && (!fish_has_momentum(fish) || mode->velocities_are_given);
-                break;
-            case UNKNOWN_PX:
-            case UNKNOWN_PY: is_differential = !is_given && !mode->velocities_are_given; break;
-            case UNKNOWN_CIRCULATION: is_differential = residual_sheet_law(residual, mode) != BOUND_SHEET_EDGE; break;
-            default: break;
-        }
-        kind[i] = is_differential;
+        kind[i] = residual_is_differential(residual->school, mode, i);
     }
 }

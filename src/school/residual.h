@@ -142,6 +142,9 @@ double residual_shed_rate(const struct residual *residual, const struct residual
 /* Removed circulation that is dropped from the Kelvin equation of fish f, m2 s-1. */
 double residual_lost(const struct residual *residual, int f, double t);
 
+/* Whether unknown i is differential: whether its rate occurs in the equations. */
+bool residual_is_differential(const struct school *school, const struct residual_mode *mode, int i);
+
 /* kind[i] = 1 if unknown i is differential, 0 if algebraic                                      (n_unknowns) */
 void residual_kinds(const struct residual *residual, const struct residual_mode *mode, double *kind);
 

@@ -368,3 +368,12 @@ void fish_factors_count(const struct fish_factors *factors, struct fish_factors_
         counts->refactorisations += parts[i]->counts.refactorisations;
     }
 }
+
+long fish_factors_non_zeros(const struct fish_factors *factors) {
+    const struct sparse_factors *const sparse = factors->in_parts ? factors->a : factors->whole;
+    const klu_l_numeric *const numeric = sparse->numeric;
+    if (!factors->was_factorised || !numeric) return 0;
+    const long full = factors->in_parts ? (long)factors->n_sheet * factors->n_sheet : 0;
+    // KLU counts the ones on the diagonal of L
+    return (long)numeric->lnz + (long)numeric->unz + (long)numeric->nzoff - (long)sparse->n + full;
+}

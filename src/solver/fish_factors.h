@@ -47,6 +47,9 @@ void fish_factors_solve(struct fish_factors *factors, double *x);
 /* Add the totals of KLU to counts. */
 void fish_factors_count(const struct fish_factors *factors, struct fish_factors_counts *counts);
 
+/* Stored entries of the factors of the last set-up: those of KLU, and the full matrix of the sheet; 0: no factors. */
+long fish_factors_non_zeros(const struct fish_factors *factors);
+
 // ---- dense_factors.c: factors of a full matrix by Gaussian elimination with row pivoting. Every operation is rounded
 // as written: the same bits for any vector width. Tested by tests/solver/test_dense_factors.c.
 //

@@ -1,6 +1,7 @@
 /* ida.c: IDA applied to the residual of the school. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "body/rod.h"
 #include "school/diagnostics_energy.h"
@@ -54,6 +55,7 @@ struct ida {
     struct integrator_rates *algebraic_rates;
     struct integrator_counts before; /* totals up to the last restart, which resets the totals of IDA */
     long jacobians; /* evaluations so far: IDA resets the total of evaluations only some time after a restart */
+    long steps_of_order[METHODS_MAX_ORDER]; /* so far */
 };
 
 static int residual_callback(sunrealtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
@@ -130,6 +132,7 @@ static enum status ida_create(struct arena *arena, void **created, struct residu
     solver->options = *options;
     solver->before = options->before;
     solver->jacobians = options->before.jacobian_evaluations;
+    memcpy(solver->steps_of_order, options->before.steps_of_order, sizeof solver->steps_of_order);
 
     // tolerances and kinds of the unknowns
     NEW(arena, solver->tolerance, n);
@@ -196,6 +199,9 @@ static void ida_count(const void *data, struct integrator_counts *counts) {
     counts->residual_evaluations += evaluations;
     counts->newton_iterations += iterations;
     counts->jacobian_evaluations = solver->jacobians;
+    memcpy(counts->steps_of_order, solver->steps_of_order, sizeof counts->steps_of_order);
+    const struct linear_counts linear = linear_count(solver->linear.linear);
+    integrator_count_linear(counts, &solver->options.before, &linear);
     counts->error_test_failures += error_failures;
     counts->convergence_failures += convergence_failures;
     counts->step_size = last_step;
@@ -311,6 +317,9 @@ static enum status ida_advance(void *data, double t, const volatile sig_atomic_t
         if (solver->failure == STATUS_STOPPED) return STATUS_STOPPED;
         if (code < 0) return ida_failed(solver, code, steps);
         if (code == IDA_TSTOP_RETURN) reached = end;
+        int order;
+        IDAGetLastOrder(solver->ida, &order);
+        solver->steps_of_order[order - 1]++;
         integrator_rates_step(solver->algebraic_rates, reached, state);
         diagnostics_step(solver->residual, state, reached, state->y);
     }

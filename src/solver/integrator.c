@@ -1,7 +1,23 @@
-/* integrator.c: rates of the bound strengths by divided differences of the last three steps. */
+/* integrator.c: totals of the linear solver; rates of the bound strengths by divided differences of the last three
+ * steps. */
 #include "solver/integrator.h"
 
 #include <string.h>
+
+#include "solver/linear.h"
+
+void integrator_count_linear(struct integrator_counts *counts, const struct integrator_counts *before,
+                             const struct linear_counts *linear) {
+    counts->klu_analyses = before->klu_analyses + linear->klu.analyses;
+    counts->klu_factorisations = before->klu_factorisations + linear->klu.factorisations;
+    counts->klu_refactorisations = before->klu_refactorisations + linear->klu.refactorisations;
+    counts->gmres_iterations = before->gmres_iterations + linear->iterations;
+
+    // a solver without a factorisation has no size yet
+    const bool is_set_up = linear->factor_non_zeros > 0;
+    counts->jacobian_non_zeros = is_set_up ? linear->jacobian_non_zeros : before->jacobian_non_zeros;
+    counts->factor_non_zeros = is_set_up ? linear->factor_non_zeros : before->factor_non_zeros;
+}
 
 enum { N_KEPT = 2 };
 

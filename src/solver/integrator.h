@@ -11,11 +11,18 @@
 #include "school/residual.h"
 #include "state/state.h"
 
-/* Totals since the start, and the last step. */
+/* Totals since the start, then the size of the linear systems, then the last step. */
 struct integrator_counts {
-    long steps, residual_evaluations, newton_iterations, jacobian_evaluations;
+    long steps, steps_of_order[METHODS_MAX_ORDER]; /* of order 1, 2, ... */
+    long residual_evaluations, newton_iterations, jacobian_evaluations;
+    long klu_analyses;         /* of sparsity patterns */
+    long klu_factorisations;   /* with new pivots */
+    long klu_refactorisations; /* with the pivots of the last factorisation */
+    long gmres_iterations;
     long error_test_failures, convergence_failures;
-    double step_size; /* s */
+    long initial_iterations;                   /* of KINSOL for consistent states, each with a Jacobian and factors */
+    long jacobian_non_zeros, factor_non_zeros; /* of the last factorisation */
+    double step_size;                          /* s */
     int order;
 };
 
@@ -87,6 +94,12 @@ static inline const struct integrator *integrator_of(enum method method) {
     if (method == METHOD_IDA) return &ida_integrator;
     return method == METHOD_VERLET ? &one_step_verlet : &one_step_integrator;
 }
+
+struct linear_counts; /* solver/linear.h */
+
+/* Set the totals and sizes of the linear solver: those before the solver was created, and the counts since. */
+void integrator_count_linear(struct integrator_counts *counts, const struct integrator_counts *before,
+                             const struct linear_counts *linear);
 
 /* ---- rates of the bound strengths after a step
  *

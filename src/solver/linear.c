@@ -240,7 +240,9 @@ struct linear_counts linear_count(const struct linear *linear) {
     struct linear_counts counts = {.solves = linear->solves, .iterations = linear->iterations};
     for (int f = 0; f < linear->jacobian->school->n_fish; f++) {
         fish_factors_count(linear->block[f].factors, &counts.klu);
+        counts.factor_non_zeros += fish_factors_non_zeros(linear->block[f].factors);
     }
+    if (counts.factor_non_zeros > 0) counts.jacobian_non_zeros = jacobian_non_zeros(linear->jacobian);
     return counts;
 }
 

@@ -17,6 +17,8 @@ struct linear;
 struct linear_counts {
     struct fish_factors_counts klu; /* over all fish */
     long solves, iterations;        /* iterations: of GMRES */
+    /* at the last set-up, 0 before: entries of the Jacobian with its couplings, and of all factors */
+    long jacobian_non_zeros, factor_non_zeros;
 };
 
 /* Convergence of GMRES. The norm of the preconditioned residual is the root mean square over all unknowns in units of

@@ -73,7 +73,10 @@ static enum status one_step_create(struct arena *arena, void **created, struct r
 }
 
 static void one_step_count(const void *data, struct integrator_counts *counts) {
-    *counts = ((const struct one_step *)data)->counts;
+    const struct one_step *const solver = data;
+    const struct linear_counts linear = linear_count(solver->linear);
+    *counts = solver->counts;
+    integrator_count_linear(counts, &solver->options.before, &linear);
 }
 
 // the history: the Jacobian, and of imex the forces and unknowns before
@@ -214,6 +217,7 @@ static enum status one_step_advance(void *data, double t, const volatile sig_ato
         TRY(status);
         one_step_rates(solver, h);
         solver->counts.steps++;
+        solver->counts.steps_of_order[solver->counts.order - 1]++;
         integrator_rates_step(solver->algebraic_rates, end, state);
         diagnostics_step(solver->residual, state, end, state->y);
     }
@@ -304,6 +308,7 @@ static enum status verlet_advance(void *data, double t, const volatile sig_atomi
             }
         }
         solver->counts.steps++;
+        solver->counts.steps_of_order[solver->counts.order - 1]++;
         solver->counts.residual_evaluations++;
 
         // at the event also the sheets and the rates of the differential unknowns

@@ -145,6 +145,7 @@ static void runge_kutta_count(const void *data, struct integrator_counts *counts
     counts->error_test_failures += error_failures;
     if (last_step > 0) counts->step_size = last_step;
     counts->order = methods_table[solver->options.method].order;
+    counts->steps_of_order[counts->order - 1] = counts->steps;
 }
 
 static enum status runge_kutta_restart(void *data) {

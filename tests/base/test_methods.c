@@ -55,6 +55,7 @@ static void check_tableau(const struct butcher_tableau *t, int order) {
 TEST(tableaux_have_the_orders_of_their_methods) {
     for (int i = 0; i < methods_n; i++) {
         const struct method_properties *const method = &methods_table[i];
+        assert_in_range(method->order, 1, METHODS_MAX_ORDER);
         if (method->fixed) check_tableau(method->fixed, method->order);
         if (method->adaptive) check_tableau(method->adaptive, method->order);
         if (method->adaptive) assert_non_null(method->adaptive->embedded);

@@ -203,6 +203,9 @@ TEST_WITH(derived_quantities_have_their_names, set_up, tear_down) {
     NEAR(value_at(file, "polarisation", 1, 0, 0, 0), 13, 0, 0);
     NEAR(value_at(file, "steps", 1, 0, 0, 0), 21, 0, 0);
     NEAR(value_at(file, "jacobian_evaluations", 1, 0, 0, 0), 24, 0, 0);
+    NEAR(value_at(file, "steps_of_order", 1, 1, 0, 0), 20, 0, 0);
+    NEAR(value_at(file, "klu_refactorisations", 1, 0, 0, 0), 33, 0, 0);
+    NEAR(value_at(file, "factor_non_zeros", 1, 0, 0, 0), 37, 0, 0);
     NEAR(value_at(file, "order", 1, 0, 0, 0), 2, 0, 0);
     NEAR(value_at(file, "wall_time", 1, 0, 0, 0), 28, 0, 0);
 }

@@ -118,12 +118,21 @@ TEST_WITH(info_is_printed_whole, set_up, tear_down) {
                "suédois      7      5       2         0  0.2469   -24.69  0.0247  -2.469e-03"
                "       -1.14   46.91  69.14  -9.1e-05\n\n  total circulation         1.1e+01 m2 s-1\n"
                "  momentum balance          5.0e-03 N s\n  least distance            12.0000 m\n"
-               "  polarisation              13.0000\n\n  steps                          21   1.40 per event\n"
+               "  polarisation              13.0000\n\n"
+               "  method                        ida   steps of order 1: 1, 2: 20\n"
+               "  unknowns                       48   differential, and 40 algebraic\n"
+               "  non-zeros                      36   of the Jacobian, and 37 of its factors\n"
+               "  steps                          21   1.40 per event\n"
                "  residual_evaluations           22   1.47 per event\n"
                "  newton_iterations              23   1.53 per event\n"
                "  jacobian_evaluations           24   1.60 per event\n"
+               "  klu_analyses                   31   2.07 per event\n"
+               "  klu_factorisations             32   2.13 per event\n"
+               "  klu_refactorisations           33   2.20 per event\n"
+               "  gmres_iterations               34   2.27 per event\n"
                "  error_test_failures            25   1.67 per event\n"
                "  convergence_failures           26   1.73 per event\n"
+               "  initial_iterations             35   2.33 per event\n"
                "  wall_time                   28.00 s   0.0536 times real time\n");
 }
 
@@ -166,9 +175,15 @@ TEST_WITH(a_steady_state_is_printed_whole, set_up, tear_down) {
                "power to the fluid          1.7284    4.1975  W\npower of muscle and drive   1.8518     4.321  W\n"
                "cost of transport          1.97530   4.44442  m s-2\nefficiency                 2.09875   4.56787\n"
                "towed efficiency           2.22221   4.69133\nStrouhal number            2.34566   4.81478\n\n"
+               "  method                        ida   steps of order 1: 1, 2: 20\n"
+               "  unknowns                       48   differential, and 40 algebraic\n"
+               "  non-zeros                      36   of the Jacobian, and 37 of its factors\n"
                "  steps                          21\n  residual_evaluations           22\n"
                "  newton_iterations              23\n  jacobian_evaluations           24\n"
+               "  klu_analyses                   31\n  klu_factorisations             32\n"
+               "  klu_refactorisations           33\n  gmres_iterations               34\n"
                "  error_test_failures            25\n  convergence_failures           26\n"
+               "  initial_iterations             35\n"
                "  wall_time                   28.00 s   0 times real time\n");
 }
 

@@ -56,6 +56,41 @@ TEST(continuous_events_cost_no_restart) {
     AT_LEAST(impulsive.jacobian_evaluations, 100);
 }
 
+TEST(the_totals_of_the_solver_fit_together) {
+    // alone, and with a neighbour, which GMRES couples
+    const char *const texts[] = {
+        "time: {end: 1, shedding_interval: 0.02}\nfish: [{}]\n",
+        "time: {end: 1, shedding_interval: 0.02}\nfish: [{}, {start: {position: [0, 0.3]}}]\n"};
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation = school_simulation(texts[i]);
+        const int n_fish = simulation->school->n_fish;
+        school_run(simulation, 0.4);
+        const struct integrator_counts counts = counts_of(simulation);
+        long steps = 0;
+        for (int order = 1; order <= METHODS_MAX_ORDER; order++) {
+            const long n = counts.steps_of_order[order - 1];
+            if (order > simulation->options.order) assert_int_equal(n, 0);
+            steps += n;
+        }
+        assert_int_equal(steps, counts.steps);
+
+        // one pattern of each fish; every Jacobian is factorised once, fish by fish
+        assert_int_equal(counts.klu_analyses, n_fish);
+        assert_int_equal(counts.klu_factorisations + counts.klu_refactorisations, n_fish * counts.jacobian_evaluations);
+        if (n_fish == 1) assert_int_equal(counts.gmres_iterations, 0);
+        if (n_fish > 1) AT_LEAST(counts.gmres_iterations, counts.newton_iterations);
+
+        // the start is one solution of KINSOL, which lasts
+        AT_LEAST(counts.initial_iterations, 1);
+        const double n = simulation->school->n_unknowns;
+        assert_in_range(counts.jacobian_non_zeros, n, n * n);
+        assert_in_range(counts.factor_non_zeros, n, n * n);
+        school_ok(simulate_renew(simulation));
+        const struct integrator_counts renewed = counts_of(simulation);
+        assert_memory_equal(&renewed, &counts, offsetof(struct integrator_counts, step_size));
+    }
+}
+
 TEST(steps_divide_the_interval_and_keep_the_jacobian) {
     struct simulation *const simulation = school_simulation("time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n");
     school_run(simulation, 0.5);

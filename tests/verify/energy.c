@@ -57,7 +57,7 @@ static double balance_with(double rtol, int order, double end, double *step) {
     struct simulation *const simulation = open_case("cases/single_free.yaml", more);
     verify_run(simulation, end);
     struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
+    simulate_count(simulation, &counts);
     *step = end / (double)counts.steps;
     return relative_balance(simulation);
 }

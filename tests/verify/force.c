@@ -88,7 +88,7 @@ static double lost(double rtol, double *step) {
         largest = fmax(largest, energy);
     }
     struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
+    simulate_count(simulation, &counts);
     *step = 2.0 / (double)counts.steps;
     return most / largest;
 }

@@ -327,7 +327,7 @@ static struct invariants drift(double thickness, double rtol, int order, double 
     verify_run(simulation, 2);
     const struct invariants after = invariants_of(simulation);
     struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
+    simulate_count(simulation, &counts);
     *step = 2.0 / (double)counts.steps;
     const double change[2] = {after.momentum[0] - before.momentum[0], after.momentum[1] - before.momentum[1]};
     return (struct invariants){
