@@ -7,6 +7,7 @@
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 #define WAVE                                                                                                         \
     "fish: [{wave: {frequency: 1.2, phase: 35, amplitude: 0.5, constant: 0.1, linear: 0.8, quadratic: 0.4, number: " \
     "-5}}]\n"
@@ -25,7 +26,7 @@ static void ask(const struct setup *setup, double t, double phi0, double phi0_ra
 }
 
 TEST(curvature_is_the_formula_of_the_model) {
-    struct setup setup = setup_of(TIME WAVE);
+    struct setup setup = setup_of(SMALL WAVE);
     struct asked asked;
     for (double t = 0; t < 1.5; t += 0.3) {
         ask(&setup, t, 0.2, 0, &asked);
@@ -59,16 +60,16 @@ static void derivatives_agree(const char *text) {
 }
 
 TEST(derivatives_agree_with_differences) {
-    derivatives_agree(TIME WAVE);
-    derivatives_agree(TIME
+    derivatives_agree(SMALL WAVE);
+    derivatives_agree(SMALL
                       "fish: [{wave: {frequency: 1.2, phase: 35, constant: 0.3,\n"
                       "  table: [[0, 1, -1, 0.4], [2, -3, 1, 1], [1, 0, -2, 5]]}}]\n");
 }
 
 TEST(a_wavelength_is_another_word_for_the_number) {
     struct setup setup[2];
-    school_build(&setup[0], TIME "fish: [{wave: {wavelength: 0.8}}]\n");
-    school_build(&setup[1], TIME "fish: [{wave: {number: -7.853981633974483}}]\n");
+    school_build(&setup[0], SMALL "fish: [{wave: {wavelength: 0.8}}]\n");
+    school_build(&setup[1], SMALL "fish: [{wave: {number: -7.853981633974483}}]\n");
     NEAR_ARRAY(5, setup[0].school->fish[0].wave_phase, setup[1].school->fish[0].wave_phase, 0, 1e-15);
 }
 
@@ -76,8 +77,8 @@ TEST(a_table_of_a_wave_is_that_wave) {
     struct setup setup[2];
     // 0.5 (0.2 + 0.8 q) sin(2 pi t + phase), equal at all positions: linear in q like the table; six lengths of l_ref
     school_build(&setup[0],
-                 TIME "fish: [{wave: {amplitude: 0.5, constant: 0.2, linear: 0.8, quadratic: 0, number: 0}}]\n");
-    school_build(&setup[1], TIME
+                 SMALL "fish: [{wave: {amplitude: 0.5, constant: 0.2, linear: 0.8, quadratic: 0, number: 0}}]\n");
+    school_build(&setup[1], SMALL
                  "fish: [{wave: {amplitude: 0.5, constant: 0.2, linear: 0.8, quadratic: 0,\n"
                  "  table: [[0, 0.6, 0, -0.6], [0, 3, 0, -3]]}}]\n");
     for (double t = 0.1; t < 2; t += 0.3) {
@@ -147,7 +148,7 @@ TEST(wave_travels_from_head_to_tail) {
 }
 
 TEST(ramp_starts_from_a_straight_body_and_no_ramp_does_not) {
-    const char *const texts[] = {TIME "fish: [{}]\n", TIME "fish: [{wave: {ramp: 0}}]\n"};
+    const char *const texts[] = {SMALL "fish: [{}]\n", SMALL "fish: [{wave: {ramp: 0}}]\n"};
     for (int i = 0; i < 2; i++) {
         struct setup setup = setup_of(texts[i]);
         struct asked asked;
@@ -161,7 +162,8 @@ TEST(ramp_starts_from_a_straight_body_and_no_ramp_does_not) {
 
 TEST(turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes) {
     double total[2];
-    const char *const texts[] = {TIME "fish: [{nodes: 121}]\n", TIME "fish: [{nodes: 241}]\n"};
+    const char *const texts[] = {TIME "fish: [{nodes: 121, force: reactive, sheet_points: 33}]\n",
+                                 TIME "fish: [{nodes: 241, force: reactive, sheet_points: 33}]\n"};
     for (int i = 0; i < 2; i++) {
         struct setup setup = setup_of(texts[i]);
         struct asked asked;

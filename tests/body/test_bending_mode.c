@@ -7,17 +7,17 @@
 #include "body/rod.h"
 #include "school.h"
 
-#define TIME "time: {end: 3, shedding_interval: 0.01}\n"
+#define SMALL "time: {end: 3, shedding_interval: 0.01}\ndefaults: {fish: {nodes: 7}}\n"
 
 static double slowest_mode(const char *fish) {
-    const char *const sheet = strstr(fish, "pressure") ? "wake: {shedding: sheet}\nsheet: {curve: smooth}\n" : "";
-    struct setup setup = setup_with(TIME "%sfish: [{%s}]\n", sheet, fish);
+    struct setup setup = setup_with(SMALL "fish: [{%s}]\n", fish);
     return bending_mode_frequency(&setup.school->fish[0], test_array(setup.school->n_unknowns));
 }
 
-#define UNIFORM                                                                                                 \
-    "nodes: 81, length: 2, added_mass: {coefficient: 0}, body: {profile: uniform, thickness: 0.1, depth: 0.2, " \
-    "density: 800, "                                                                                            \
+#define UNIFORM                                                                                                      \
+    "nodes: 81, length: 2, force: reactive, added_mass: {coefficient: 0}, body: {profile: uniform, thickness: 0.1, " \
+    "depth: 0.2, "                                                                                                   \
+    "density: 800, "                                                                                                 \
     "modulus: 2e6, second_moment: ellipse}"
 
 // of an elliptic section of 0.2 m by 0.4 m: the radius of gyration is a quarter of the thickness
@@ -38,8 +38,8 @@ TEST(slowest_mode_is_that_of_the_matrices) {
     static const char *const motions[] = {"none", "head"};
     for (int fixed = 0; fixed < 2; fixed++) {
         char fish[128];
-        snprintf(fish, sizeof fish, "nodes: %d, motion: {prescribed: %s}", N, motions[fixed]);
-        struct setup setup = setup_of(arena_text(test_arena(), TIME "fish: [{%s}]\n", fish));
+        snprintf(fish, sizeof fish, "nodes: %d, force: reactive, motion: {prescribed: %s}", N, motions[fixed]);
+        struct setup setup = setup_of(arena_text(test_arena(), SMALL "fish: [{%s}]\n", fish));
         const struct fish *const of = setup.school->fish;
         double stiffness[N][N] = {{0}}, mass[N][N] = {{0}}, square[N];
         static const double turn[] = {1, -2, 1};
@@ -62,7 +62,7 @@ TEST(the_accelerated_fluid_makes_modes_slower) {
     // with added mass pi/4 rho w^2 per length on pi/4 rho_b h w: a factor sqrt(1 + 1000/800*0.4/0.2)
     const double dry = slowest_mode(UNIFORM);
     const double wet = slowest_mode(
-        "nodes: 81, length: 2, added_mass: {coefficient: 1, extent: depth}, body: {profile: uniform, "
+        "nodes: 81, length: 2, force: reactive, added_mass: {coefficient: 1, extent: depth}, body: {profile: uniform, "
         "thickness: 0.1, depth: 0.2, density: 800, modulus: 2e6, second_moment: ellipse}");
     NEAR(dry / wet, sqrt(1 + 1000.0 / 800 * 2), 0, 0.02);
 }

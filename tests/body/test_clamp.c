@@ -8,6 +8,7 @@
 #include "school/residual.h"
 
 #define TIME "time: {end: 2, shedding_interval: 0.01}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 #define HEAD "motion: {prescribed: head, heave: 0.1, pitch: 20, pitch_phase: 70, frequency: 1.2}"
 
 static const double pi = 3.14159265358979323846;
@@ -27,9 +28,9 @@ static void jacobian_of_clamp(struct setup *setup, double cj, const double *y, s
 }
 
 TEST(jacobian_agrees_with_differences) {
-    const char *const texts[] = {TIME "fish: [{body: {section: mean}, " HEAD "}]\n",
-                                 TIME "fish: [{body: {section: mean, relaxation_time: 0.1, bending_damping: 2}, " HEAD
-                                      "}]\n"};
+    const char *const texts[] = {SMALL "fish: [{body: {section: mean}, " HEAD "}]\n",
+                                 SMALL "fish: [{body: {section: mean, relaxation_time: 0.1, bending_damping: 2}, " HEAD
+                                       "}]\n"};
     for (int i = 0; i < 2; i++) {
         struct setup setup = setup_stirred(texts[i]);
         school_compare(&setup, value_of_clamp, jacobian_of_clamp, texts[i]);
@@ -38,7 +39,7 @@ TEST(jacobian_agrees_with_differences) {
 
 TEST(force_is_minus_the_gradient_of_the_energy) {
     struct setup setup =
-        setup_stirred(TIME "fish: [{body: {section: mean, bending_damping: 0, relaxation_time: 0}, " HEAD "}]\n");
+        setup_stirred(SMALL "fish: [{body: {section: mean, bending_damping: 0, relaxation_time: 0}, " HEAD "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     rod_clamp_residual(fish, setup.t, y, setup.value);
@@ -57,7 +58,7 @@ TEST(force_is_minus_the_gradient_of_the_energy) {
 }
 
 TEST(powers_are_what_the_energy_and_the_nodes_do_not_take_up) {
-    struct setup setup = setup_stirred(TIME "fish: [{body: {section: mean, relaxation_time: 0.01}, " HEAD "}]\n");
+    struct setup setup = setup_stirred(SMALL "fish: [{body: {section: mean, relaxation_time: 0.01}, " HEAD "}]\n");
     const struct fish *fish = setup.school->fish;
     const double *const y = setup.state->y, h = 1e-5;
     double moved[2][256], power = 0;
@@ -78,9 +79,14 @@ TEST(powers_are_what_the_energy_and_the_nodes_do_not_take_up) {
 }
 
 TEST(energy_audit_of_a_clamped_fish_closes) {
-    const char *const texts[] = {
-        TIME "fish: [{body: {section: mean, modulus: 1.0e+5}, wave: {amplitude: 0}, " HEAD "}]\n",
-        TIME "fish: [{force: reactive, body: {section: mean, modulus: 1.0e+5, relaxation_time: 0.01}, " HEAD "}]\n"};
+    const char *const texts[] = {SMALL
+                                 "solver: {rtol: 1e-5}\n"
+                                 "fish: [{force: reactive, start: {speed: 1}, body: {section: mean, modulus: 1.0e+6}, "
+                                 "wave: {amplitude: 0}, " HEAD "}]\n",
+                                 SMALL
+                                 "solver: {rtol: 1e-5}\n"
+                                 "fish: [{force: reactive, start: {speed: 1}, body: {section: mean, modulus: 1.0e+6, "
+                                 "relaxation_time: 0.01}, " HEAD "}]\n"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation(texts[i]);
         double worst = 0, most = 0;
@@ -97,9 +103,9 @@ TEST(energy_audit_of_a_clamped_fish_closes) {
 }
 
 TEST(head_has_one_prescribed_node_and_published_sections_two) {
-    struct setup setup = setup_of(TIME "fish: [{body: {section: mean}, " HEAD
-                                       "}, {start: {position: [0, 2]}, body: {section: "
-                                       "nodes}, " HEAD "}, {start: {position: [0, 4]}, body: {section: mean}}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{body: {section: mean}, " HEAD
+                                        "}, {start: {position: [0, 2]}, body: {section: "
+                                        "nodes}, " HEAD "}, {start: {position: [0, 4]}, body: {section: mean}}]\n");
     const struct fish *fish = setup.school->fish;
     const int n[] = {1, 2, 0}, has_clamp[] = {1, 0, 0};
     for (int f = 0; f < 3; f++) {
@@ -121,7 +127,7 @@ TEST(clamp_is_the_joint_of_half_a_cell) {
 }
 
 TEST(given_direction_is_that_of_the_prescribed_nodes) {
-    struct setup setup = setup_of(TIME "fish: [{start: {heading: 25}, " HEAD "}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{start: {heading: 25}, " HEAD "}]\n");
     const struct fish *fish = setup.school->fish;
     const double h = 1e-5;
     double a[2], b[2], direction[3][2], rate, ignored[2];
@@ -154,12 +160,11 @@ static void eliminate(int n, double *a, double *b) {
 // beta L of the lowest mode of a uniform beam with EI/(rho A L^4) = 1 s-2, clamped at its nose: by inverse iteration
 // with the Jacobian's matrix of lateral motion, K/m
 static double lowest_mode(int nodes) {
-    struct setup setup =
-        setup_with(TIME
-                   "fluid: {density: 0}\nfish: [{nodes: %d, sheet_points: 5, start: {speed: 0}, wave: {amplitude: 0},\n"
-                   "  body: {section: mean, profile: uniform, thickness: 0.001, modulus: 3.2e+10},\n"
-                   "  motion: {prescribed: head, speed: 0}}]\n",
-                   nodes);
+    struct setup setup = setup_with(TIME
+                                    "fluid: {density: 0}\nfish: [{nodes: %d, wave: {amplitude: 0},\n"
+                                    "  body: {section: mean, profile: uniform, thickness: 0.001, modulus: 1.6e+10},\n"
+                                    "  motion: {prescribed: head}}]\n",
+                                    nodes);
     const struct fish *fish = setup.school->fish;
     school_ok(residual_jacobian(setup.residual, &residual_run, 0, 0, setup.state->y, setup.jacobian));
     double *const dense = school_dense_jacobian(test_arena(), setup.jacobian);
@@ -187,10 +192,10 @@ TEST(frequency_of_a_clamped_beam_is_of_second_order_in_its_whole_length) {
 }
 
 TEST(moment_of_a_tilt_is_that_of_half_a_cell) {
-    struct setup setup = setup_of(
-        TIME
-        "fish: [{body: {section: mean, profile: uniform, thickness: 0.1, modulus: 1.0e+5, bending_damping: 0.5},\n"
-        "        start: {heading: 180}, motion: {prescribed: head}}]\n");
+    struct setup setup = setup_of(SMALL
+                                  "fish: [{body: {section: mean, profile: uniform, thickness: 0.1, depth: 0.25, "
+                                  "modulus: 1.0e+5, bending_damping: 0.5, relaxation_time: 0},\n"
+                                  "        start: {heading: 180}, motion: {prescribed: head}}]\n");
     const struct fish *fish = setup.school->fish;
     const double stiffness = 2 * 1e5 * pi * 0.25 * 1e-3 / 64 * 6;
     NEAR(fish->clamp_stiffness, stiffness, 0, 1e-13);

@@ -7,7 +7,8 @@
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-#define BODY "body: {modulus: 1.0e+5, bending_damping: 0.7, stretching_damping: 30}"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
+#define BODY "body: {modulus: 1.0e+5, damping: curvature, bending_damping: 0.7, stretching_damping: 30}"
 #define STRAIN \
     "body: {modulus: 1.0e+5, damping: strain, bending_damping: 0.7, stretching_damping: 30, relaxation_time: 0.1}"
 
@@ -65,10 +66,10 @@ static void jacobian_of_rod(struct setup *setup, double cj, const double *y, str
 }
 
 TEST(derivatives_agree_with_differences) {
-    const char *const texts[] = {TIME "fish: [{" BODY "}]\n", TIME "fish: [{body: {second_moment: published}}]\n",
-                                 TIME "fish: [{body: {modulus: 1.0e+9}}]\n",
-                                 TIME "fish: [{body: {relaxation_time: 0.1, profile: uniform}}]\n",
-                                 TIME "fish: [{" STRAIN "}]\n"};
+    const char *const texts[] = {SMALL "fish: [{" BODY "}]\n", SMALL "fish: [{body: {second_moment: published}}]\n",
+                                 SMALL "fish: [{body: {modulus: 1.0e+9}}]\n",
+                                 SMALL "fish: [{body: {relaxation_time: 0.1, profile: uniform}}]\n",
+                                 SMALL "fish: [{" STRAIN "}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup = setup_stirred(texts[i]);
         school_compare(&setup, value_of_rod, jacobian_of_rod, texts[i]);
@@ -80,7 +81,7 @@ static double elastic_energy(const struct fish *fish, const double *y) {
 }
 
 TEST(elastic_force_is_minus_the_gradient_of_the_energy) {
-    struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
+    struct setup setup = setup_stirred(SMALL "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     // nodes at rest: no damping
@@ -100,7 +101,7 @@ TEST(elastic_force_is_minus_the_gradient_of_the_energy) {
 }
 
 TEST(internal_forces_have_no_sum_and_no_moment) {
-    struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
+    struct setup setup = setup_stirred(SMALL "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     const double *const y = setup.state->y;
     rod_residual(fish, &muscle, y, setup.value);
@@ -119,7 +120,7 @@ TEST(internal_forces_have_no_sum_and_no_moment) {
 }
 
 TEST(damping_power_is_that_of_the_damping_forces_and_never_positive) {
-    struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
+    struct setup setup = setup_stirred(SMALL "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     double *const elastic = test_array(fish->at.end);
@@ -144,7 +145,7 @@ TEST(damping_power_is_that_of_the_damping_forces_and_never_positive) {
 }
 
 TEST(rigid_motion_is_not_damped) {
-    struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
+    struct setup setup = setup_stirred(SMALL "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -168,7 +169,8 @@ static void bend(struct setup *setup, double angle, double stretch) {
 }
 
 TEST(energies_of_a_regular_polygon_are_exact) {
-    struct setup setup = setup_of(TIME "fish: [{body: {profile: uniform, thickness: 0.1, modulus: 2.0e+5}}]\n");
+    struct setup setup =
+        setup_of(SMALL "fish: [{body: {profile: uniform, thickness: 0.1, depth: 0.25, modulus: 2.0e+5}}]\n");
     const struct fish *fish = setup.school->fish;
     const double angle = 0.3, stretch = 1.05, pi = acos(-1);
     bend(&setup, angle, stretch);
@@ -182,8 +184,9 @@ TEST(energies_of_a_regular_polygon_are_exact) {
 }
 
 TEST(energy_of_a_circular_arc_converges_to_that_of_the_continuum) {
-    const char *const texts[] = {TIME "fish: [{nodes: 21, body: {profile: uniform, thickness: 0.1}}]\n",
-                                 TIME "fish: [{nodes: 41, body: {profile: uniform, thickness: 0.1}}]\n"};
+    const char *const texts[] = {
+        TIME "fish: [{nodes: 21, body: {profile: uniform, thickness: 0.1, depth: 0.25, modulus: 1e6}}]\n",
+        TIME "fish: [{nodes: 41, body: {profile: uniform, thickness: 0.1, depth: 0.25, modulus: 1e6}}]\n"};
     double error[2];
     for (int i = 0; i < 2; i++) {
         struct setup setup = setup_of(texts[i]);
@@ -200,7 +203,7 @@ TEST(energy_of_a_circular_arc_converges_to_that_of_the_continuum) {
 }
 
 TEST(polygon_of_the_natural_curvature_is_at_rest) {
-    struct setup setup = setup_of(TIME "fish: [{" BODY "}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     const double angle = 0.4, kappa = 2 * tan(0.2);
     double curvature[5] = {kappa, kappa, kappa, kappa, kappa};
@@ -213,7 +216,7 @@ TEST(polygon_of_the_natural_curvature_is_at_rest) {
 }
 
 TEST(turning_angles_keep_their_sign_in_every_direction) {
-    struct setup setup = setup_of(TIME "fish: [{}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{}]\n");
     double curvature[5];
     // the body turns by 1.2 rad at each of five joints: almost once round, through the cut of the arc tangent
     for (int sign = -1; sign <= 1; sign += 2) {
@@ -224,7 +227,7 @@ TEST(turning_angles_keep_their_sign_in_every_direction) {
 }
 
 TEST(muscle_power_is_the_change_of_energy_at_a_fixed_shape) {
-    struct setup setup = setup_stirred(TIME "fish: [{" BODY "}]\n");
+    struct setup setup = setup_stirred(SMALL "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
     const double h = 1e-4;
     double low[5], high[5];
@@ -261,7 +264,7 @@ static double rate_of_energy(struct setup *setup) {
 TEST(what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes) {
     const char *const bodies[] = {BODY, STRAIN};
     for (int i = 0; i < 2; i++) {
-        struct setup setup = setup_with(TIME "fish: [{%s}]\n", bodies[i]);
+        struct setup setup = setup_with(SMALL "fish: [{%s}]\n", bodies[i]);
         school_stir(&setup);
         const struct fish *fish = setup.school->fish;
         const double *const y = setup.state->y;
@@ -276,7 +279,7 @@ TEST(what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes) {
 }
 
 TEST(a_body_that_does_what_its_muscle_asks_is_not_damped) {
-    struct setup setup = setup_stirred(TIME "fish: [{" STRAIN "}]\n");
+    struct setup setup = setup_stirred(SMALL "fish: [{" STRAIN "}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     // edge lengths are constant; edge k turns at the sum of the rates of the joints before it

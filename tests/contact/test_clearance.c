@@ -8,6 +8,7 @@
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 // two straight bodies of thickness at most 0.2: one from x = 0 (nose) to 1 at y = 0, the other at a given position
 #define PAIR(x, y)                                                                                                  \
@@ -43,7 +44,7 @@ static const struct closest *step(struct pair *pair, int f, double dx, double dy
 // many pairs at the same distance, and enough fish for several threads
 TEST(of_pairs_at_the_same_distance_the_first_one_counts) {
     enum { N_FISH = 30 };
-    char text[4096] = TIME "defaults: {fish: {wave: {amplitude: 0}}}\nfish: [{}";
+    char text[4096] = TIME "defaults: {fish: {nodes: 7, wave: {amplitude: 0}}}\nfish: [{}";
     for (int f = 1; f < N_FISH; f++) {
         snprintf(text + strlen(text), sizeof text - strlen(text), ", {start: {position: [0, %d]}}", f);
     }
@@ -72,7 +73,7 @@ TEST(of_pairs_at_the_same_distance_the_first_one_counts) {
 }
 
 TEST(one_fish_is_close_to_none) {
-    struct pair pair = place(TIME "fish: [{}]\n");
+    struct pair pair = place(SMALL "fish: [{}]\n");
     NEAR(step(&pair, 0, 1, 0, 0.1)->distance, INFINITY, 0, 0);
 }
 
@@ -191,7 +192,7 @@ static double of_all_pairs(const struct pair *pair, const double *before) {
 TEST(the_record_of_a_school_is_that_of_all_pairs) {
     enum { FISH = 20, STEPS = 30 };
     char text[2048];
-    int length = snprintf(text, sizeof text, TIME "defaults: {fish: {body: {thickness: 0.05}}}\nfish:\n");
+    int length = snprintf(text, sizeof text, TIME "defaults: {fish: {nodes: 7, body: {thickness: 0.05}}}\nfish:\n");
     for (int f = 0; f < FISH; f++) {
         length += snprintf(text + length, sizeof text - (size_t)length, "  - {start: {position: [%d, %d]}}\n",
                            2 * (f % 5), f / 5);

@@ -10,9 +10,10 @@
 #include "school/diagnostics_energy.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 // bodies at rest, of uniform thickness: two bodies with the given gap
-#define STRAIGHT "defaults: {fish: {sheet_points: 9, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"
+#define STRAIGHT "defaults: {fish: {nodes: 7, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"
 #define BESIDE(y) STRAIGHT "fish: [{}, {start: {position: [0, " y "]}}]\n"
 
 TEST(nobody_repels_what_is_farther_than_the_range) {
@@ -71,10 +72,10 @@ static double energy_of_school(struct setup *setup, const double *y) {
     return energy;
 }
 
-#define NEAR_ANOTHER                                                                                                   \
-    TIME "contact: {range: 0.5}\n"                                                                                     \
-         "fish: [{sheet_points: 9}, {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.35], heading: " \
-         "190}}, {nodes: 9, sheet_points: 11, start: {position: [0.1, -0.35], heading: 170}}]\n"
+#define NEAR_ANOTHER                                                                           \
+    TIME "contact: {range: 0.5}\n"                                                             \
+         "fish: [{nodes: 7}, {nodes: 5, length: 0.7, start: {position: [0.2, 0.35], heading: " \
+         "190}}, {nodes: 9, start: {position: [0.1, -0.35], heading: 170}}]\n"
 
 TEST(forces_are_the_gradient_of_the_energy) {
     struct setup setup = setup_stirred(NEAR_ANOTHER);
@@ -130,11 +131,10 @@ TEST(forces_and_powers_of_all_add_up_to_nothing) {
 }
 
 TEST(walls_push_with_the_gradient_of_the_energy) {
-    struct setup setup =
-        setup_stirred(TIME
-                      "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5, action: warn}\n"
-                      "fish: [{sheet_points: 9}, {nodes: 5, sheet_points: 7, length: 0.7, start: {position: "
-                      "[0.2, 0.3], heading: 190}}]\n");
+    struct setup setup = setup_stirred(SMALL
+                                       "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5, action: warn}\n"
+                                       "fish: [{nodes: 7}, {nodes: 5, length: 0.7, start: {position: "
+                                       "[0.2, 0.3], heading: 190}}]\n");
     double *const y = setup.state->y, h = 1e-5;
     const struct contact *const contact = setup.residual->contact;
     school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
@@ -192,7 +192,7 @@ TEST(a_wall_is_a_spring_that_stiffens) {
 // doc/model.md, section 16: half of phi of every end of each edge above each wall
 TEST(the_energy_above_walls_is_that_of_all_ends) {
     struct setup setup =
-        setup_stirred(TIME "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5}\nfish: [{sheet_points: 9}]\n");
+        setup_stirred(SMALL "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5}\nfish: [{nodes: 7}]\n");
     const struct fish *const fish = &setup.school->fish[0];
     const double *const y = setup.state->y, r = setup.school->contact_range;
     double want = 0;
@@ -214,11 +214,12 @@ TEST(two_bodies_with_given_motions_pass_through_each_other) {
     static const char *const motions[][2] = {
         {"all", "all"}, {"head", "all"}, {"all, surge: free", "all"}, {"all", "all, surge: free"}};
     for (int i = 0; i < 4; i++) {
-        struct setup setup = setup_with(
-            TIME
-            "defaults: {fish: {sheet_points: 9, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"
-            "fish: [{motion: {prescribed: %s}}, {start: {position: [0, 0.2]}, motion: {prescribed: %s}}]\n",
-            motions[i][0], motions[i][1]);
+        struct setup setup =
+            setup_with(TIME
+                       "defaults: {fish: {nodes: 7, wave: {amplitude: 0}, body: {profile: uniform, "
+                       "thickness: 0.1}}}\n"
+                       "fish: [{motion: {prescribed: %s}}, {start: {position: [0, 0.2]}, motion: {prescribed: %s}}]\n",
+                       motions[i][0], motions[i][1]);
         double *const y = setup.state->y;
         const struct fish *const fish = &setup.school->fish[1];
         for (int k = 0; k < fish->n_nodes; k++) y[fish->at.y + k] -= 0.15;
@@ -277,8 +278,8 @@ static double momentum(const struct simulation *simulation, int n_fish, double s
     return scale;
 }
 
-#define VACUUM TIME "fluid: {density: 0}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
-#define PASSIVE "nodes: 5, sheet_points: 5, wave: {amplitude: 0}"
+#define VACUUM TIME "fluid: {density: 0}\n"
+#define PASSIVE "nodes: 5, sheet_points: 26, wave: {amplitude: 0}"
 #define HEAD_ON(speed)                                                                                             \
     VACUUM "defaults: {fish: {" PASSIVE ", start: {speed: " speed                                                  \
            "}}}\nfish: [{start: {position: [-0.2, 0.01], heading: 0}}, {length: 0.8, start: {position: [0.2, 0], " \
@@ -344,7 +345,7 @@ TEST(bodies_that_meet_do_not_cross) {
 // Two plates heave and swim in line; the faster plate behind pushes the plate in front and does not pass through.
 TEST(plates_that_swim_in_line_do_not_cross) {
     struct simulation *const simulation =
-        school_simulation(SCHOOL_DEFAULTS TIME
+        school_simulation(TIME
                           "defaults: {fish: {nodes: 5, sheet_points: 17, force: pressure, pressure: {span: infinite}, "
                           "wave: {amplitude: 0, frequency: 0}, body: {profile: uniform, thickness: 0.05, depth: 1, "
                           "density: 2000}, motion: {prescribed: all, surge: free, heave: 0.05, frequency: 1}}}\n"
@@ -365,10 +366,9 @@ TEST(plates_that_swim_in_line_do_not_cross) {
     BELOW(simulation->diagnostics->fish[0].com[0], simulation->diagnostics->fish[1].com[0]);
 }
 
-#define AT_A_WALL(height, speed)                                                                                 \
-    TIME "solver: {rtol: 1.0e-6}\nfluid: {density: 0, walls: [0]}\nwake: {shedding: continuous, taper: 0, "      \
-         "taper_beside: 0}\nfish: [{" PASSIVE ", start: {position: [0, " height "], heading: 280, speed: " speed \
-         "}}]\n"
+#define AT_A_WALL(height, speed)                                                                                       \
+    TIME "solver: {rtol: 1.0e-6}\nfluid: {density: 0, walls: [0]}\nfish: [{" PASSIVE ", start: {position: [0, " height \
+         "], heading: 280, speed: " speed "}}]\n"
 
 TEST(walls_throw_bodies_back) {
     meet("at a wall, 1 m/s", AT_A_WALL("0.15", "1"), 0.4, 5e-3);
@@ -376,7 +376,7 @@ TEST(walls_throw_bodies_back) {
     meet("at a wall, 15 m/s", AT_A_WALL("0.25", "15"), 0.05, 5e-3);
     meet("two between walls",
          "solver: {rtol: 1.0e-6}\n" TIME
-         "fluid: {density: 0, walls: [-0.42, 0.62]}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
+         "fluid: {density: 0, walls: [-0.42, 0.62]}\n"
          "defaults: {fish: {" PASSIVE
          ", start: {speed: 4}}}\nfish: [{start: {heading: 160}}, {start: {position: [0.1, 0.2], heading: 200}}]\n",
          0.3, 5e-3);
@@ -386,7 +386,7 @@ TEST(walls_throw_bodies_back) {
 // includes every power.
 TEST(bodies_under_pressure_throw_each_other_back) {
     struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS TIME
+        TIME
         "solver: {rtol: 1.0e-6}\n"
         "defaults: {fish: {nodes: 9, sheet_points: 17, force: pressure, pressure: {span: infinite, suction_limit: 0},\n"
         "                  drag: {skin: laminar}, wave: {amplitude: 0}, body: {relaxation_time: 0.02},\n"
@@ -432,7 +432,7 @@ TEST(bodies_that_are_thrown_back_go_on_tail_first) {
     const size_t n_cases = sizeof cases / sizeof *cases;
     for (size_t i = 0; i < 2 * n_cases; i++) {
         struct simulation *const simulation = school_simulation_of(
-            SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, pressure: {span: %s}, sheet_points: 33, %s}}\n%s",
+            TIME "defaults: {fish: {force: pressure, pressure: {span: %s}, sheet_points: 33, %s}}\n%s",
             i < n_cases ? "infinite" : "finite", cases[i % n_cases].defaults, cases[i % n_cases].text);
         double stored = 0;
         while (simulation->state->t < 0.6) {
@@ -473,10 +473,9 @@ TEST(a_fixed_step_that_is_too_long_fails_and_says_so) {
 }
 
 // a body that is sent at an angle into a wall, which it reaches in 0.05 s
-#define INTO_WALL(walls, y, heading)                                                                                 \
-    TIME "solver: {max_steps: 20}\nfluid: {density: 0, walls: " walls                                                \
-         "}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\nfish: [{" PASSIVE ", start: {position: [0, " y \
-         "], heading: " heading ", speed: 5}}]\n"
+#define INTO_WALL(walls, y, heading)                                                        \
+    TIME "solver: {max_steps: 20}\nfluid: {density: 0, walls: " walls "}\nfish: [{" PASSIVE \
+         ", start: {position: [0, " y "], heading: " heading ", speed: 5}}]\n"
 
 TEST(a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap) {
     static const struct {
@@ -489,7 +488,7 @@ TEST(a_failure_in_contact_names_both_bodies_or_the_wall_and_the_gap) {
         {INTO_WALL("[-2, 0.5]", "0.35", "80"), "; fish1 was in contact with the upper wall at y = 0.5, with a gap of ",
          " m"},
         // bodies apart: no contact in the message
-        {"solver: {max_steps: 1}\n" TIME "fish: [{}, {start: {position: [0, 1]}}]\n", NULL, NULL}};
+        {"solver: {max_steps: 1}\n" SMALL "fish: [{}, {start: {position: [0, 1]}}]\n", NULL, NULL}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct simulation *const simulation = school_simulation(cases[i].text);
         enum status status = STATUS_OK;
@@ -517,7 +516,7 @@ TEST(of_many_contacts_the_least_gap_is_named) {
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation_of(
             "time: {end: 1, shedding_interval: 0.02}\nfluid: {walls: [0]}\nsolver: {max_steps: 1}\n"
-            "contact: {range: 0.1}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\ndefaults: {fish: {" PASSIVE
+            "contact: {range: 0.1}\ndefaults: {fish: {" PASSIVE
             ", body: {profile: uniform, thickness: 0.1}}}\n"
             "fish: [{name: a, start: {position: [0, 0.13]}}, {name: b, start: {position: [5, 0.09]}},\n"
             "    {name: c, start: {position: [10, 0.11]}}, {name: d, start: {position: [15, 1]}},\n"
@@ -534,10 +533,11 @@ enum { CROWD = 256 };
 static char *crowd(void) {
     enum { BYTES = 40000 };
     char *const text = arena_new(test_arena(), BYTES, 1);
-    size_t used = (size_t)snprintf(text, BYTES,
-                                   "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-                                   "fluid: {density: 0}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
-                                   "defaults: {fish: {nodes: 4, sheet_points: 5, wave: {amplitude: 0}}}\nfish:\n");
+    size_t used = (size_t)snprintf(
+        text, BYTES,
+        "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+        "fluid: {density: 0}\n"
+        "defaults: {fish: {nodes: 4, force: reactive, sheet_points: 5, wave: {amplitude: 0}}}\nfish:\n");
     for (int i = 0; i < CROWD; i++) {
         const int pair = i / 2, column = pair % 16, row = pair / 16;
         const double heading = 7.3 * pair + 180 * (i % 2), angle = heading * acos(-1) / 180,
@@ -581,7 +581,7 @@ TEST(of_256_fish_no_two_get_through_each_other) {
 TEST(stop_ends_the_run_at_the_time_and_with_the_names) {
     struct simulation *const simulation = school_simulation(
         "contact: {action: stop}\n" TIME STRAIGHT
-        "fish: [{name: quick, start: {position: [0, 0.16], speed: 1, heading: 190}}, {name: lazy}]\n");
+        "fish: [{name: quick, start: {position: [0.5, 0.25], speed: 1, heading: 200}}, {name: lazy}]\n");
     enum status status = STATUS_OK;
     for (int i = 0; i < 50 && status == STATUS_OK; i++) status = simulate_step(simulation);
     assert_int_equal(status, STATUS_CONTACT);

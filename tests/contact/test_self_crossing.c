@@ -10,8 +10,7 @@
 // A body of 41 nodes, 1 m long, of uniform thickness.
 static void build(struct setup *setup, double thickness) {
     char text[256];
-    snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "fish: [{nodes: 41, body: {profile: uniform, thickness: %g}}]\n",
-             thickness);
+    snprintf(text, sizeof text, TIME "fish: [{nodes: 41, body: {profile: uniform, thickness: %g}}]\n", thickness);
     school_build(setup, text);
 }
 
@@ -96,8 +95,7 @@ TEST(a_tail_that_enters_the_right_side_of_the_nose_crosses_the_outline) {
     // only the closing segment of the outline, from the last point to the nose, is crossed
     const double x[] = {0, 0.2, 0.2, -0.1, -0.1, 0.1, 0.1}, y_of_tail[] = {-0.005, -0.002, 0.002};
     double y[] = {0, 0, 0.2, 0.2, -0.2, -0.2, 0};
-    struct setup setup =
-        setup_of(SCHOOL_DEFAULTS TIME "fish: [{nodes: 7, body: {profile: uniform, thickness: 0.02}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{nodes: 7, body: {profile: uniform, thickness: 0.02}}]\n");
     const struct fish *const fish = setup.school->fish;
     double *const to = setup.state->y;
     for (int i = 0; i < 3; i++) {
@@ -119,7 +117,7 @@ TEST(a_bend_sharper_than_half_the_thickness_is_folded) {
 TEST(a_run_remembers_the_first_fish_and_when) {
     // the second body is limp, and only the muscle bends the body: the body curls up
     struct simulation *const simulation = school_simulation(
-        SCHOOL_DEFAULTS TIME
+        TIME
         "fluid: {density: 0}\nfish: [{}, {start: {position: [0, 3]}, wave: {amplitude: 0.4, constant: 3, linear: 0,"
         " quadratic: 0, number: 0, ramp: 1}, body: {modulus: 1e5}}]\n");
     const struct state *const now = simulation->state;

@@ -5,11 +5,12 @@
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 static const double pi = 3.14159265358979323846;
 
 TEST(heading_points_from_a_third_of_the_length_to_the_nose) {
-    struct setup setup = setup_of(TIME "fish: [{start: {heading: 130}}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{start: {heading: 130}}]\n");
     const struct fish *fish = setup.school->fish;
     NEAR(control_heading(fish, setup.state->y), 130 * pi / 180, 1e-14, 0);
     // node 2 of 7 stands at a third
@@ -20,7 +21,7 @@ TEST(heading_points_from_a_third_of_the_length_to_the_nose) {
 
 TEST(headings_in_time_are_linear_between_their_times) {
     struct setup setup =
-        setup_of(TIME "fish: [{control: {law: heading, desired_heading: [[1, 180], [2, 120], [4, 160]]}}]\n");
+        setup_of(SMALL "fish: [{control: {law: heading, desired_heading: [[1, 180], [2, 120], [4, 160]]}}]\n");
     const struct fish *fish = setup.school->fish;
     const double times[] = {0, 1, 1.5, 2, 3.5, 4, 9}, want[] = {180, 180, 150, 120, 150, 160, 160};
     for (int i = 0; i < 7; i++) {
@@ -31,7 +32,7 @@ TEST(headings_in_time_are_linear_between_their_times) {
 
 TEST(law_turns_towards_the_desired_heading_the_short_way) {
     struct setup setup =
-        setup_of(TIME "fish: [{control: {law: heading, desired_heading: 170, gain: 3, limit: 0.4}}]\n");
+        setup_of(SMALL "fish: [{control: {law: heading, desired_heading: 170, gain: 3, limit: 0.4}}]\n");
     const struct fish *fish = setup.school->fish;
     const struct control_memory *memory = &setup.state->control[0];
     // heading -175 = 185 degrees: 15 degrees too far left, so the bias is positive and turns right
@@ -41,7 +42,7 @@ TEST(law_turns_towards_the_desired_heading_the_short_way) {
 }
 
 TEST(without_a_law_the_bias_is_the_given_one) {
-    struct setup setup = setup_of(TIME "fish: [{control: {bias: 0.25}}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{control: {bias: 0.25}}]\n");
     const struct fish *fish = setup.school->fish;
     setup.state->y[fish->at.phi0] = 0.3;
     control_residual(fish, &setup.state->control[0], 1, 0.01, setup.state->y, setup.value);
@@ -50,7 +51,7 @@ TEST(without_a_law_the_bias_is_the_given_one) {
 
 TEST(waypoints_are_visited_in_order_and_the_last_course_is_held) {
     struct setup setup =
-        setup_of(TIME "fish: [{control: {law: heading, waypoints: [[-2, 0], [-2, 3]], acceptance_radius: 0.4}}]\n");
+        setup_of(SMALL "fish: [{control: {law: heading, waypoints: [[-2, 0], [-2, 3]], acceptance_radius: 0.4}}]\n");
     const struct fish *fish = setup.school->fish;
     struct control_memory *memory = &setup.state->control[0];
     double *const y = setup.state->y;
@@ -79,9 +80,10 @@ TEST(the_course_that_is_held_is_that_of_the_last_leg) {
         const char *text;
         int waypoint; /* the last */
         double x, y, course;
-    } examples[] = {{TIME "fish: [{control: {law: heading, waypoints: [[-2, 1], [-3, 4]]}}]\n", 1, -3, 4, atan2(3, -1)},
-                    {TIME "fish: [{start: {position: [1, 2]}, control: {law: heading, waypoints: [[-1, 5]]}}]\n", 0, -1,
-                     5, atan2(3, -2)}};
+    } examples[] = {
+        {SMALL "fish: [{control: {law: heading, waypoints: [[-2, 1], [-3, 4]]}}]\n", 1, -3, 4, atan2(3, -1)},
+        {SMALL "fish: [{start: {position: [1, 2]}, control: {law: heading, waypoints: [[-1, 5]]}}]\n", 0, -1, 5,
+         atan2(3, -2)}};
     for (int i = 0; i < 2; i++) {
         struct setup setup = setup_of(examples[i].text);
         const struct fish *fish = setup.school->fish;
@@ -97,7 +99,7 @@ TEST(the_course_that_is_held_is_that_of_the_last_leg) {
 
 TEST(waypoints_close_together_are_passed_at_one_event) {
     struct setup setup =
-        setup_of(TIME "fish: [{control: {law: heading, waypoints: [[-0.1, 0], [-0.2, 0], [-3, 0]]}}]\n");
+        setup_of(SMALL "fish: [{control: {law: heading, waypoints: [[-0.1, 0], [-0.2, 0], [-3, 0]]}}]\n");
     const struct control_view view = {.t = 0.1, .interval = 0.02};
     assert_int_equal(control_event(setup.school->fish, &setup.state->control[0], &view, setup.state->y), 1);
     assert_int_equal(setup.state->control[0].waypoint, 2);
@@ -105,7 +107,7 @@ TEST(waypoints_close_together_are_passed_at_one_event) {
 
 TEST(averaged_heading_moves_the_bias_with_bounded_rate) {
     struct setup setup =
-        setup_of(TIME "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 2, limit: 0.5}}]\n");
+        setup_of(SMALL "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 2, limit: 0.5}}]\n");
     const struct fish *fish = setup.school->fish;
     struct control_memory *memory = &setup.state->control[0];
     const double interval = 0.02, heading = pi, target = 0.5 * tanh(2 * pi / 2);
@@ -138,7 +140,8 @@ static double moment_seen(struct setup *setup, double since) {
 }
 
 TEST(feedforward_acts_through_a_moving_mean) {
-    struct setup setup = setup_of(TIME "fish: [{control: {law: heading, feedforward: 1, filter: 0.4}}]\n");
+    struct setup setup =
+        setup_of(SMALL "fish: [{force: reactive, control: {law: heading, feedforward: 1, filter: 0.4}}]\n");
     const struct fish *fish = setup.school->fish;
     struct control_memory *memory = &setup.state->control[0];
     const double interval = 0.02, share = 1 - exp(-interval / 0.4), tau[] = {0.3, -0.2, 0.5};
@@ -154,15 +157,17 @@ TEST(feedforward_acts_through_a_moving_mean) {
         before = after;
     }
     // the default is one period; without time constant the mean is the newest value
-    school_build(&setup, TIME "fish: [{wave: {frequency: 2}, control: {law: heading, feedforward: 1}}]\n");
+    school_build(&setup,
+                 SMALL "fish: [{force: reactive, wave: {frequency: 2}, control: {law: heading, feedforward: 1}}]\n");
     NEAR(setup.school->fish[0].control.filter_share, 1 - exp(-0.04), 1e-15, 0);
-    school_build(&setup, TIME "fish: [{control: {law: heading, feedforward: 1, filter: 0}}]\n");
+    school_build(&setup, SMALL "fish: [{force: reactive, control: {law: heading, feedforward: 1, filter: 0}}]\n");
     NEAR(setup.school->fish[0].control.filter_share, 1, 0, 0);
 }
 
 TEST(averaged_heading_takes_the_newest_mean_of_the_moment) {
-    struct setup setup =
-        setup_of(TIME "fish: [{control: {law: averaged_heading, rate: 1.0e+9, feedforward: 0.7, filter: 0.4}}]\n");
+    struct setup setup = setup_of(
+        SMALL
+        "fish: [{force: reactive, control: {law: averaged_heading, rate: 1.0e+9, feedforward: 0.7, filter: 0.4}}]\n");
     const struct fish *fish = setup.school->fish;
     struct control_memory *memory = &setup.state->control[0];
     const struct control_view view = {.interval = 0.02, .moment = 0.3, .mean_heading = pi};
@@ -173,7 +178,7 @@ TEST(averaged_heading_takes_the_newest_mean_of_the_moment) {
 
 TEST(course_is_damped_and_waits_for_a_whole_period) {
     struct setup setup =
-        setup_of(TIME
+        setup_of(SMALL
                  "fish: [{wave: {frequency: 2}, control: {law: course, desired_heading: 90, gain: 0.7, damping: 1.5,\n"
                  "        rate: 1.0e+9, limit: 0.4, slow: 0, course_filter: 0}}]\n");
     const struct fish *fish = setup.school->fish;
@@ -202,7 +207,7 @@ TEST(course_is_damped_and_waits_for_a_whole_period) {
 // u_0 = slow L/T, e by a filter with the time constant T_c: first e, then phi0
 TEST(course_weighs_slow_motion_and_filters_its_rate) {
     struct setup setup =
-        setup_of(TIME
+        setup_of(SMALL
                  "fish: [{length: 0.8, wave: {frequency: 2},\n"
                  "        control: {law: course, desired_heading: 90, gain: 0.7, damping: 1.5, limit: 0.4, rate: 1e9,\n"
                  "                  slow: 0.25, course_filter: 0.05}}]\n");
@@ -233,11 +238,11 @@ TEST(course_weighs_slow_motion_and_filters_its_rate) {
 
 TEST(rate_is_that_of_the_bias_of_a_moving_fish) {
     const char *const texts[] = {
-        TIME "fish: [{control: {bias: 0.2}}]\n",
-        TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150, feedforward: 2}}]\n",
-        TIME "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n",
-        TIME "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n",
-        TIME "fish: [{control: {law: averaged_heading}}]\n",
+        SMALL "fish: [{control: {bias: 0.2}}]\n",
+        TIME "fish: [{nodes: 8, force: reactive, control: {law: heading, desired_heading: 150, feedforward: 2}}]\n",
+        SMALL "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n",
+        SMALL "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n",
+        SMALL "fish: [{control: {law: averaged_heading}}]\n",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup = setup_stirred(texts[i]);
@@ -260,7 +265,7 @@ TEST(rate_is_that_of_the_bias_of_a_moving_fish) {
 }
 
 TEST(the_rate_of_a_table_is_that_of_what_follows) {
-    struct setup setup = setup_of(TIME
+    struct setup setup = setup_of(SMALL
                                   "fish: [{start: {heading: 150}, control: {law: heading, "
                                   "desired_heading: [[1, 150], [2, 160], [4, 150]]}}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -276,7 +281,7 @@ TEST(the_rate_of_a_table_is_that_of_what_follows) {
 
 TEST(a_law_falls_as_fast_as_it_rises) {
     struct setup setup =
-        setup_of(TIME "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 2, limit: 0.5}}]\n");
+        setup_of(SMALL "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 2, limit: 0.5}}]\n");
     struct control_memory *const memory = &setup.state->control[0];
     for (int side = -1; side <= 1; side += 2) {
         memory->phi0 = 0;
@@ -297,11 +302,11 @@ static void jacobian_of_control(struct setup *setup, double cj, const double *y,
 }
 
 TEST(derivatives_agree_with_differences) {
-    const char *const texts[] = {TIME "fish: [{control: {bias: 0.2}}]\n",
+    const char *const texts[] = {SMALL "fish: [{control: {bias: 0.2}}]\n",
                                  TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150}}]\n",
-                                 TIME "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n",
-                                 TIME "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n",
-                                 TIME "fish: [{control: {law: averaged_heading, waypoints: [[-3, 1]]}}]\n"};
+                                 SMALL "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n",
+                                 SMALL "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n",
+                                 SMALL "fish: [{control: {law: averaged_heading, waypoints: [[-3, 1]]}}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup = setup_stirred(texts[i]);
         school_compare(&setup, value_of_control, jacobian_of_control, texts[i]);
@@ -409,7 +414,7 @@ TEST(it_can_begin_with_a_value_and_a_rate) {
 
 TEST(values_that_are_set_are_reached_after_the_ramp) {
     struct setup setup =
-        setup_of(TIME "fish: [{wave: {amplitude: 0.8, frequency: 1.5}, control: {bias: 0.2, ramp: 0.5}}]\n");
+        setup_of(SMALL "fish: [{wave: {amplitude: 0.8, frequency: 1.5}, control: {bias: 0.2, ramp: 0.5}}]\n");
     const struct fish *const fish = setup.school->fish;
     struct control_memory *const memory = &setup.state->control[0];
     control_set(fish, memory, CONTROL_SET_AMPLITUDE, 3, 0.6);
@@ -437,7 +442,7 @@ TEST(values_that_are_set_are_reached_after_the_ramp) {
 
 TEST(rates_of_a_gait_that_changes_are_those_of_its_values) {
     // during the ramp of the start, too
-    struct setup setup = setup_of(TIME "fish: [{wave: {amplitude: 0.8, ramp: 6}, control: {ramp: 0.5}}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{wave: {amplitude: 0.8, ramp: 6}, control: {ramp: 0.5}}]\n");
     const struct fish *const fish = setup.school->fish;
     struct control_memory *const memory = &setup.state->control[0];
     control_set(fish, memory, CONTROL_SET_AMPLITUDE, 3, 0.4);
@@ -452,7 +457,7 @@ TEST(rates_of_a_gait_that_changes_are_those_of_its_values) {
 }
 
 TEST(a_heading_that_is_set_is_reached_the_short_way) {
-    struct setup setup = setup_of(TIME
+    struct setup setup = setup_of(SMALL
                                   "fish: [{control: {law: heading, ramp: 0.5, limit: 0.3, "
                                   "desired_heading: [[0, 100], [10, 200]]}}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -472,7 +477,7 @@ TEST(a_heading_that_is_set_is_reached_the_short_way) {
 
 TEST(waypoints_that_are_set_begin_where_the_fish_is) {
     struct setup setup =
-        setup_of(TIME "fish: [{control: {law: heading, waypoints: [[-2, 0], [-3, 0]], acceptance_radius: 0.4}}]\n");
+        setup_of(SMALL "fish: [{control: {law: heading, waypoints: [[-2, 0], [-3, 0]], acceptance_radius: 0.4}}]\n");
     const struct fish *const fish = setup.school->fish;
     struct control_memory *const memory = &setup.state->control[0];
     double *const y = setup.state->y;
@@ -494,11 +499,10 @@ TEST(waypoints_that_are_set_begin_where_the_fish_is) {
 TEST(work_of_a_stiff_fish_from_rest_has_a_limit_in_the_interval) {
     double work[2];
     for (int i = 0; i < 2; i++) {
-        struct simulation *const simulation =
-            school_simulation_of(SCHOOL_DEFAULTS
-                                 "time: {end: 6, shedding_interval: %g}\n"
-                                 "fish: [{body: {modulus: 1e8}, control: {law: course}}]\n",
-                                 i == 0 ? 0.02 : 0.01);
+        struct simulation *const simulation = school_simulation_of(
+            "time: {end: 6, shedding_interval: %g}\n"
+            "fish: [{body: {modulus: 1e8}, control: {law: course}}]\n",
+            i == 0 ? 0.02 : 0.01);
         school_measure(simulation, 6);
         work[i] = simulation->diagnostics->fish[0].actuation_work;
     }

@@ -7,6 +7,7 @@
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 static const double pi = 3.14159265358979323846;
 
@@ -16,8 +17,10 @@ static double sum(int n, const double *value) {
     return total;
 }
 
+#define FOIL "thickness: 0.2, tail_thickness: 0, depth: 0.25"
+
 TEST(joukowski_body_has_the_mass_of_the_reference) {
-    struct setup setup = setup_of(TIME "fish: [{}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{body: {" FOIL ", section: nodes, density: 2000}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     // an independent program's mass of the same body
     NEAR(fish->total_mass, 57.50243756590633, 1e-10, 0);
@@ -25,7 +28,7 @@ TEST(joukowski_body_has_the_mass_of_the_reference) {
 }
 
 TEST(mean_sections_give_the_mass_and_the_stiffness_of_the_foil) {
-    struct setup setup = setup_of(TIME "fish: [{nodes: 17, body: {section: mean, density: 1000, modulus: 1}}]\n");
+    struct setup setup = setup_of(TIME "fish: [{nodes: 17, body: {" FOIL ", modulus: 1}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     // an independent program's mass of the same body
     NEAR(fish->total_mass, 30.842513753404223, 1e-9, 0);
@@ -40,22 +43,24 @@ TEST(mean_sections_give_the_mass_and_the_stiffness_of_the_foil) {
 }
 
 TEST(added_mass_takes_the_mean_square_of_the_thickness) {
-    struct setup setup = setup_of(TIME
-                                  "fish: [{body: {section: mean}}, {start: {position: [0, 2]}, body: {section: mean}, "
-                                  "added_mass: {extent: depth}}]\n");
+    struct setup setup =
+        setup_of(TIME
+                 "defaults: {fish: {nodes: 7, force: reactive, drag: {normal: 0.5}}}\n"
+                 "fish: [{added_mass: {coefficient: 1.5, extent: thickness}}, {start: {position: [0, 2]}, "
+                 "added_mass: {coefficient: 1.5, extent: depth}}]\n");
     const struct fish *thick = &setup.school->fish[0], *wide = &setup.school->fish[1];
     for (int k = 0; k < thick->n_edges; k++) {
         const double h = thick->thickness[k], l = 1.0 / 6;
         ABOVE(thick->square[k], 1);
         NEAR(thick->added_mass[k], pi * 1000 * 1.5 * h * h * thick->square[k] * l / 4, 0, 1e-14);
         NEAR(thick->drag_normal[k], 1000 * 0.5 * l * h / 2, 0, 1e-14);
-        NEAR(wide->added_mass[k], pi * 1000 * 1.5 * 0.25 * 0.25 * l / 4, 0, 1e-14);
+        NEAR(wide->added_mass[k], pi * 1000 * 1.5 * 0.2 * 0.2 * l / 4, 0, 1e-14);
     }
 }
 
 TEST(the_outline_of_another_fish_serves_for_the_same_section) {
     struct setup setup =
-        setup_of(TIME
+        setup_of(SMALL
                  "fish: [{body: {section: mean}}, {start: {position: [0, 2]}, body: {section: nodes}}, "
                  "{start: {position: [0, 4]}, body: {section: mean}}]\n");
     const struct fish *const fish = setup.school->fish;
@@ -67,8 +72,11 @@ TEST(the_outline_of_another_fish_serves_for_the_same_section) {
 
 TEST(second_moments_are_the_two_formulas) {
     const char *const texts[] = {
-        TIME "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5}}]\n", TIME
-        "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5, second_moment: published}}]\n"};
+        TIME
+        "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, depth: 0.25, density: 2000, modulus: 3.0e+5}}]\n",
+        TIME
+        "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, depth: 0.25, density: 2000, modulus: 3.0e+5, "
+        "second_moment: published}}]\n"};
     const double h = 0.1, w = 0.25, area = pi * h * w / 4;
     const double moment[] = {pi * w * h * h * h / 64, 2000 * area * w * w / 12 / 6};
     for (int i = 0; i < 2; i++) {
@@ -101,9 +109,9 @@ TEST(damping_and_wave_scale_with_refinement) {
 }
 
 TEST(table_of_heights_is_taken_as_it_is) {
-    struct setup setup = setup_of(
-        TIME
-        "fish: [{nodes: 4, body: {profile: table, thickness_table: [0.1, 0.2, 0.3], depth_table: [0.3, 0.2, 0.1]}}]\n");
+    struct setup setup = setup_of(TIME
+                                  "fish: [{nodes: 4, body: {profile: table, density: 2000, thickness_table: [0.1, 0.2, "
+                                  "0.3], depth_table: [0.3, 0.2, 0.1]}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     const double h[] = {0.1, 0.2, 0.3}, w[] = {0.3, 0.2, 0.1};
     NEAR_ARRAY(3, fish->thickness, h, 0, 0);
@@ -116,12 +124,14 @@ TEST(table_of_heights_is_taken_as_it_is) {
 TEST(drag_coefficients_follow_the_extent) {
     struct setup setup;
     for (int wide = 0; wide < 2; wide++) {
-        school_build(&setup, wide ? TIME
-                                 "fish: [{body: {profile: uniform, thickness: 0.1}, added_mass: {extent: depth}}]\n"
-                                  : TIME "fish: [{body: {profile: uniform, thickness: 0.1}}]\n");
+        setup =
+            setup_with(TIME
+                       "fish: [{nodes: 7, force: reactive, body: {profile: uniform, thickness: 0.1, depth: 0.25},\n"
+                       "        drag: {tangential: 1e-3, normal: 0.5}, added_mass: {coefficient: 1.5, extent: %s}}]\n",
+                       wide ? "depth" : "thickness");
         const struct fish *fish = &setup.school->fish[0];
         const double l = 1.0 / 6, h = 0.1, w = 0.25, across = wide ? w : h;
-        NEAR(fish->drag_tangential[2], 1000 * pi * 1e-3 * l * (h + w) / 8, 0, 1e-14);
+        NEAR(fish->drag_tangential[2], 1000 * pi * 1e-3 * l * (h + w) / 4, 0, 1e-14);
         NEAR(fish->drag_normal[2], 1000 * 0.5 * l * across / 2, 0, 1e-14);
         NEAR(fish->added_mass[2], pi * 1000 * 1.5 * across * across * l / 4, 0, 1e-14);
     }
@@ -133,7 +143,8 @@ static double arc_of(const struct fish *fish, const struct stencil *point) {
 }
 
 TEST(sheet_points_are_cosine_points_and_weights_add_up_to_the_length) {
-    struct setup setup = setup_of(TIME "fish: [{sheet_points: 11, length: 1.2}]\n");
+    struct setup setup =
+        setup_of(SMALL "sheet: {curve: polygon}\nfish: [{force: reactive, sheet_points: 11, length: 1.2}]\n");
     const struct fish *fish = &setup.school->fish[0];
     NEAR(sum(11, fish->sheet_weight), 1.2, 0, 1e-14);
     for (int j = 0; j < 11; j++) {
@@ -145,12 +156,14 @@ TEST(sheet_points_are_cosine_points_and_weights_add_up_to_the_length) {
 }
 
 TEST(control_points_are_chebyshev_points_or_midpoints_of_chords) {
-    struct setup setup = setup_of(TIME "fish: [{sheet_points: 11}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{force: reactive, sheet_points: 11}]\n");
     for (int c = 0; c < 10; c++) {
         NEAR(arc_of(setup.school->fish, &setup.school->fish[0].control_point[c]), (1 - cos(pi * (c + 0.5) / 10)) / 2,
              1e-15, 0);
     }
-    school_build(&setup, TIME "sheet: {collocation: midpoint}\nfish: [{sheet_points: 11}]\n");
+    school_build(
+        &setup, SMALL
+        "wake: {shedding: continuous}\nsheet: {collocation: midpoint}\nfish: [{force: reactive, sheet_points: 11}]\n");
     const struct fish *fish = &setup.school->fish[0];
     for (int c = 0; c < 10; c++) {
         NEAR(arc_of(fish, &fish->control_point[c]),
@@ -164,10 +177,12 @@ TEST(control_points_are_chebyshev_points_or_midpoints_of_chords) {
 TEST(smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature) {
     struct setup smooth, polygon;
     for (int midpoint = 0; midpoint < 2; midpoint++) {
-        char text[2][200];
+        char text[2][256];
         for (int i = 0; i < 2; i++) {
             snprintf(text[i], sizeof text[i],
-                     TIME "sheet: {curve: %s, collocation: %s}\nfish: [{sheet_points: 11, length: 1.2}]\n",
+                     SMALL
+                     "wake: {shedding: continuous}\nsheet: {curve: %s, collocation: %s}\nfish: [{force: reactive, "
+                     "sheet_points: 11, length: 1.2}]\n",
                      i == 0 ? "smooth" : "polygon", midpoint ? "midpoint" : "chebyshev");
         }
         school_build(&smooth, text[0]);
@@ -182,7 +197,7 @@ TEST(smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature) {
 }
 
 TEST(start_is_straight_behind_the_nose_with_one_velocity) {
-    struct setup setup = setup_of(TIME "fish: [{start: {position: [2, 3], heading: 30, speed: 0.7}}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{start: {position: [2, 3], heading: 30, speed: 0.7}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     const double *const y = setup.state->y;
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -194,7 +209,7 @@ TEST(start_is_straight_behind_the_nose_with_one_velocity) {
 }
 
 TEST(start_without_ramp_has_the_natural_shape) {
-    struct setup setup = setup_of(TIME "fish: [{wave: {ramp: 0, phase: 40}, control: {bias: 0.3}}]\n");
+    struct setup setup = setup_of(SMALL "fish: [{wave: {ramp: 0, phase: 40}, control: {bias: 0.3}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     const double *const x = setup.state->y + fish->at.x, *const y = setup.state->y + fish->at.y;
     double before = atan2(y[1] - y[0], x[1] - x[0]);
@@ -212,7 +227,7 @@ TEST(overlapping_fish_are_refused) {
         char text[512];
         snprintf(text, sizeof text,
                  TIME
-                 "defaults: {fish: {start: {position: [0, 0]}}}\n"
+                 "defaults: {fish: {nodes: 7, start: {position: [0, 0]}}}\n"
                  "fish: [{start: {position: [%g, 0.04]}}, {start: {position: [%g, 0]}}, {}, "
                  "{start: {position: [%g, 0.02]}}, {start: {position: [%g, 0.02]}}]\n",
                  side * 1.2, side * 9.0, side * 0.6, side * 9.1);
@@ -238,11 +253,12 @@ TEST(fish_that_begin_beyond_a_wall_are_refused) {
                  {"[1, 2]", "[{}]", STATUS_CASE}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[512];
-        snprintf(text, sizeof text,
-                 TIME
-                 "fluid: {walls: %s}\ndefaults: {fish: {wave: {amplitude: 0}, body: {profile: uniform, thickness: "
-                 "0.1}}}\nfish: %s\n",
-                 cases[i].walls, cases[i].fish);
+        snprintf(
+            text, sizeof text,
+            TIME
+            "fluid: {walls: %s}\ndefaults: {fish: {nodes: 7, wave: {amplitude: 0}, body: {profile: uniform, thickness: "
+            "0.1}}}\nfish: %s\n",
+            cases[i].walls, cases[i].fish);
         const struct case_values values = school_values(text);
         struct school *school;
         assert_int_equal(fish_school_create(test_arena(), &school, &values.school), cases[i].status);
@@ -251,8 +267,9 @@ TEST(fish_that_begin_beyond_a_wall_are_refused) {
 }
 
 TEST(unknowns_stand_fish_after_fish_in_the_documented_order) {
-    struct setup setup =
-        setup_of(TIME "fish: [{nodes: 5, sheet_points: 6}, {nodes: 4, sheet_points: 5, start: {position: [0, 2]}}]\n");
+    struct setup setup = setup_of(TIME
+                                  "defaults: {fish: {force: reactive}}\nfish: [{nodes: 5, sheet_points: 6}, {nodes: 4, "
+                                  "sheet_points: 5, start: {position: [0, 2]}}]\n");
     const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
     const int first[] = {a->x, a->y, a->vx, a->vy, a->ax, a->ay, a->gamma, a->circulation, a->phi0, a->end};
     const int want[] = {0, 5, 10, 15, 20, 25, 30, 36, 37, 38};
@@ -263,7 +280,8 @@ TEST(unknowns_stand_fish_after_fish_in_the_documented_order) {
 }
 
 TEST(gust_blows_across_the_stream) {
-    struct setup setup = setup_of(TIME "fluid: {velocity: [3, 4], gust: {amplitude: 0.5, frequency: 2}}\nfish: [{}]\n");
+    struct setup setup =
+        setup_of(SMALL "fluid: {velocity: [3, 4], gust: {amplitude: 0.5, frequency: 2}}\nfish: [{}]\n");
     NEAR(setup.school->gust[0], -0.4, 1e-15, 0);
     NEAR(setup.school->gust[1], 0.3, 1e-15, 0);
     NEAR(setup.school->gust_omega, 4 * pi, 0, 1e-15);
@@ -280,7 +298,8 @@ TEST(a_wave_has_an_amplitude_a_frequency_and_a_free_body) {
                  {"motion: {prescribed: head, heave: 0.1, frequency: 1}", 1},
                  {"motion: {prescribed: all, heave: 0.1, frequency: 1}", 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct setup setup = setup_with("time: {end: 1, shedding_interval: 0.02}\nfish: [{%s}]\n", cases[i].fish);
+        struct setup setup =
+            setup_with("time: {end: 1, shedding_interval: 0.02}\nfish: [{nodes: 7, %s}]\n", cases[i].fish);
         const struct fish *const fish = setup.school->fish;
         assert_int_equal(fish_has_wave(fish), cases[i].has_wave);
         // the friction of a body on which a wave travels
@@ -294,7 +313,7 @@ TEST(a_wave_has_an_amplitude_a_frequency_and_a_free_body) {
 
 TEST(distance_is_that_of_the_outlines) {
     struct setup setup = setup_of(TIME
-                                  "defaults: {fish: {body: {profile: uniform, thickness: 0.1}}}\n"
+                                  "defaults: {fish: {nodes: 7, body: {profile: uniform, thickness: 0.1}}}\n"
                                   "fish: [{}, {start: {position: [0, 0.5]}}, {start: {position: [1.5, 0]}}]\n");
     const struct fish *fish = setup.school->fish;
     NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, INFINITY), 0.4, 1e-14, 0);
@@ -323,7 +342,7 @@ double __wrap_hypot(double x, double y) {
 
 TEST(bodies_in_boxes_apart_are_not_compared_edge_by_edge) {
     enum { ROWS = 6, COLUMNS = 5 };
-    char text[4000] = TIME "fish:\n";
+    char text[4000] = SMALL "fish:\n";
     for (int i = 0; i < ROWS * COLUMNS; i++) {
         const size_t used = strlen(text);
         snprintf(text + used, sizeof text - used, "  - {start: {position: [%g, %g]}}\n", 1.5 * (i % COLUMNS),
@@ -356,10 +375,10 @@ static double sampled_distance(const struct fish *a, const struct fish *b, const
 }
 
 TEST(distance_of_bent_bodies_is_the_least_of_their_points) {
-    struct setup setup =
-        setup_of(TIME
-                 "defaults: {fish: {nodes: 4, sheet_points: 5, body: {profile: uniform, thickness: 0.02}}}\n"
-                 "fish: [{}, {length: 0.7, start: {position: [0, 0.5]}}]\n");
+    struct setup setup = setup_of(
+        TIME
+        "defaults: {fish: {nodes: 4, force: reactive, sheet_points: 5, body: {profile: uniform, thickness: 0.02}}}\n"
+        "fish: [{}, {length: 0.7, start: {position: [0, 0.5]}}]\n");
     const struct fish *a = &setup.school->fish[0], *b = &setup.school->fish[1];
     double *const y = setup.state->y;
     int n_touching = 0;
@@ -400,7 +419,7 @@ TEST(distance_from_a_wall_counts_the_thicker_edge_of_a_node) {
 
 TEST(a_street_has_two_staggered_rows_along_the_stream) {
     struct setup setup =
-        setup_of(TIME
+        setup_of(SMALL
                  "fluid: {velocity: [0, 2]}\nwake: {vortices: [[7, 8, 9]],\n"
                  "       street: {vortices: 3, spacing: 0.8, row_distance: 0.3, circulation: 5, position: [1, 2]}}\n"
                  "fish: [{force: published}]\n");
@@ -411,7 +430,7 @@ TEST(a_street_has_two_staggered_rows_along_the_stream) {
 
     // von Karman's ratio
     school_build(&setup,
-                 TIME "wake: {street: {vortices: 2, spacing: 2, circulation: 1}}\nfish: [{force: published}]\n");
+                 SMALL "wake: {street: {vortices: 2, spacing: 2, circulation: 1}}\nfish: [{force: published}]\n");
     NEAR(setup.school->vortices[1] - setup.school->vortices[4], 2 * 0.28055, 1e-5, 0);
 }
 

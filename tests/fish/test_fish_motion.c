@@ -3,12 +3,13 @@
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define SMALL TIME "defaults: {fish: {nodes: 7}}\n"
 
 static const double pi = 3.14159265358979323846;
 
 TEST(prescribed_velocity_and_acceleration_are_derivatives) {
     struct setup setup =
-        setup_of(TIME
+        setup_of(SMALL
                  "fish: [{start: {heading: 20}, motion: {prescribed: all, speed: 0.6, heave: 0.2, pitch: 25, "
                  "pitch_phase: 70, frequency: 1.3, phase: 15, pivot: 0.3}}]\n");
     const struct fish *fish = &setup.school->fish[0];
@@ -45,7 +46,7 @@ TEST(prescribed_body_is_straight_and_turns_about_its_pivot) {
 
 TEST(pitch_is_its_phase_before_heave) {
     struct setup setup =
-        setup_of(TIME
+        setup_of(SMALL
                  "fish: [{start: {heading: 0}, motion: {prescribed: all, heave: 0.2, pitch: 25, pitch_phase: 90, "
                  "frequency: 1}}]\n");
     const struct fish *fish = setup.school->fish;

@@ -9,6 +9,8 @@
 #include "flow/flow_derivative.h"
 #include "school.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define TWO_FISH                                         \
     "fish:\n"                                            \

@@ -9,6 +9,8 @@
 #include "school.h"
 #include "third_kernel.h"
 
+const bool school_small = true;
+
 #define TIME SCHOOL_DEFAULTS "time: {end: 1, shedding_interval: 0.02}\ncontact: {action: warn}\n"
 #define ONE "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: %s}}]\n"
 #define TWO                                                                                \

@@ -6,6 +6,8 @@
 #include "flow/others.h"
 #include "school.h"
 
+const bool school_small = true;
+
 /* The stream gives bodies strengths from the start on. */
 #define TIME SCHOOL_DEFAULTS "time: {end: 2, shedding_interval: 0.02}\nfluid: {velocity: [0, 0.1]}\n"
 

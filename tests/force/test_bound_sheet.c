@@ -6,6 +6,8 @@
 #include "force/bound_sheet.h"
 #include "school.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define FAR "solver: {coupling_distance: 100}\n"
 

@@ -5,6 +5,8 @@
 #include "force/drag.h"
 #include "school.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 static const double *flow_u(const struct setup *setup, int f) {

@@ -8,6 +8,8 @@
 #include "force/fluid_force.h"
 #include "school.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define FAR "solver: {coupling_distance: 100}\n"
 

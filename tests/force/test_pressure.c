@@ -9,6 +9,8 @@
 #include "force/pressure.h"
 #include "school.h"
 
+const bool school_small = true;
+
 static const double pi = 3.14159265358979323846;
 
 enum { MAX_NODES = 33 };

@@ -9,6 +9,8 @@
 #include "force/reactive.h"
 #include "school.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 60, shedding_interval: 0.05}\n"
 // free vortices with this smoothing induce velocities of 1e-12 m/s: the fluid is still
 #define STILL "wake: {smoothing: 1.0e+6}\n"

@@ -4,6 +4,8 @@
 #include "force/pressure.h"
 #include "school.h"
 
+const bool school_small = true;
+
 static const double pi = 3.14159265358979323846;
 
 // a straight body in steady motion: p = U^2/2 (1 - s/(s + r/2)), the pressure of a stagnation point at the nose

@@ -6,6 +6,8 @@
 #include "force/reactive.h"
 #include "school.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 4, shedding_interval: 0.02}\n"
 #define WIDE "body: {depth: 0.3}, added_mass: {extent: depth, coefficient: 1}"
 

@@ -5,6 +5,8 @@
 #include "force/thwaites.h"
 #include "school.h"
 
+const bool school_small = true;
+
 static const double pi = 3.14159265358979323846;
 static const double viscosity = 1e-5;
 

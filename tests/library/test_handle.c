@@ -6,6 +6,8 @@
 #include "library/handle.h"
 #include "school.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 2, shedding_interval: 0.02}\n"
 
 static void set(const struct simulation *simulation, const char *key, double value) {

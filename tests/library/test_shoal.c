@@ -18,6 +18,8 @@
 #include "school.h"
 #include "shoal.h"
 
+const bool school_small = true;
+
 // two fish with different sizes and positions
 static const char case_text[] =
     "format: 1\nname: two\ntime: {end: 0.1, shedding_interval: 0.02}\n"

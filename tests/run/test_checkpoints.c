@@ -7,6 +7,8 @@
 #include "run/checkpoints.h"
 #include "school.h"
 
+const bool school_small = true;
+
 #define SCHOOL "time: {end: 1, shedding_interval: 0.02, checkpoint_interval: 0.2}\nfish: [{}]\n"
 
 // the checkpoints of a run with places to write them, and the result at a path that no file has

@@ -5,6 +5,8 @@
 #include "school.h"
 #include "solver/fish_factors.h"
 
+const bool school_small = true;
+
 struct cost {
     double steps, iterations, jacobians, failures; /* the last: convergence failures */
 };

@@ -8,6 +8,8 @@
 #include "run/simulate.h"
 #include "school.h"
 
+const bool school_small = true;
+
 /* The sanitizers change the cost of a loop by its memory, so that the parts of a run no longer add up. An emulator
  * translates the first passes of a loop: a short measurement has no relation to a long run. scripts/platforms.sh sets
  * EMULATED. */

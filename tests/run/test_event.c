@@ -9,6 +9,8 @@
 #include "school.h"
 #include "school/diagnostics_energy.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 TEST(events_are_at_the_multiples_that_a_decimal_names) {

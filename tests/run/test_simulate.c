@@ -12,6 +12,8 @@
 #include "school.h"
 #include "solver/sundials.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 0.5, shedding_interval: 0.02}\n"
 #define TIGHT "solver: {rtol: 1.0e-8, order: 2, coupling_distance: 100}\n"
 

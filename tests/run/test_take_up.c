@@ -6,6 +6,8 @@
 #include "school.h"
 #include "state/state.h"
 
+const bool school_small = true;
+
 /* A short lifetime, so that vortices decay and are removed too. */
 #define TIME "time: {end: 1, shedding_interval: 0.02}\n"
 #define BOTH "fish: [{name: a}, {name: b, nodes: 6, sheet_points: 15, length: 0.8, start: {position: [0.2, 0.5]}}]\n"

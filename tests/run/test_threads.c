@@ -6,6 +6,8 @@
 #include "base/parallel.h"
 #include "school.h"
 
+const bool school_small = true;
+
 /* Pairs of fish that meet head on between two walls; every third fish has another force model, some fish have a
  * control law. The number of unknowns is large enough for parallel loops over fish. */
 enum { N_PAIRS = 9 };

@@ -9,6 +9,8 @@
 #include "school/diagnostics.h"
 #include "school/diagnostics_energy.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 2, shedding_interval: 0.01}\n"
 
 static double total_energy(const struct diagnostics_fish *fish) {

@@ -7,6 +7,8 @@
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define SWIMMER \
     "force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, start: {speed: 0.5}, "

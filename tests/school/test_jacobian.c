@@ -7,6 +7,8 @@
 #include "school/jacobian.h"
 #include "school/residual.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 /* Five fish: the first three close together, of different size, one of them with a prescribed head, two far away. */

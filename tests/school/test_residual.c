@@ -6,6 +6,8 @@
 #include "school.h"
 #include "school/residual.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 // stirred bodies may cross
 #define FAR "solver: {coupling_distance: 100}\ncontact: {action: warn}\n"

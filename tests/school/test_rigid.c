@@ -4,6 +4,8 @@
 #include "school.h"
 #include "school/rigid.h"
 
+const bool school_small = true;
+
 static const char *const text =
     "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
     "fish: [{}, {start: {position: [2, 1], heading: 70}}]\n";

@@ -8,6 +8,8 @@
 #include "school/diagnostics_energy.h"
 #include "school/warnings.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 3, shedding_interval: 0.01}\n"
 
 // ---- which warnings a run has

@@ -6,6 +6,8 @@
 #include "school.h"
 #include "solver/corotation.h"
 
+const bool school_small = true;
+
 static const char *const text =
     "time: {end: 1}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\nfish:\n  - {nodes: 6, sheet_points: 7}\n"
     "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"

@@ -6,6 +6,8 @@
 #include "school.h"
 #include "solver/equilibrium.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.1}\n"
 #define STREAM TIME "fluid: {density: 1, velocity: [1, 0.2], viscosity: 0}\n"
 #define PLATE                                                                                                      \

@@ -7,6 +7,8 @@
 #include "school.h"
 #include "solver/integrator.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 static struct integrator_counts counts_of(const struct simulation *simulation) {

@@ -4,6 +4,8 @@
 #include "school.h"
 #include "solver/ida_newton.h"
 
+const bool school_small = true;
+
 /* The equations y - root + bend (y - root)^2 = 0 for each unknown by itself; the Jacobian that the solver gets is that
  * at the last set-up, times 1 / (1 - wrong): each iteration leaves the fraction wrong of the error. */
 struct problem {

@@ -6,6 +6,8 @@
 #include "fish/fish_motion.h"
 #include "school.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define FISH "fish: [{sheet_points: 11}]\n"
 

@@ -4,6 +4,8 @@
 #include "school.h"
 #include "solver/integrator.h"
 
+const bool school_small = true;
+
 static const char two_fish[] =
     "time: {end: 1}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\n"
     "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {span: infinite}}, {nodes: 5, sheet_points: 9, "

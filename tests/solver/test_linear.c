@@ -10,6 +10,8 @@
 #include "solver/fish_factors.h"
 #include "solver/linear.h"
 
+const bool school_small = true;
+
 // stirred bodies may cross
 #define TIME "contact: {action: warn}\ntime: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 

@@ -4,6 +4,8 @@
 #include "school.h"
 #include "solver/ode_rhs.h"
 
+const bool school_small = true;
+
 // one fish, and three different ones in an external flow; both Kutta conditions and lines of the sheet, a prescribed
 // head, all control laws
 static const char *const cases[] = {

@@ -6,6 +6,8 @@
 #include "school.h"
 #include "solver/integrator.h"
 
+const bool school_small = true;
+
 #define FISH "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4}, drag: {normal: 0, tangential: 0}}]\n"
 
 // one fish; coupled fish; a prescribed head; circulation as a differential unknown; jumps

@@ -6,6 +6,8 @@
 #include "solver/integrator.h"
 #include "solver/ode_rhs.h"
 
+const bool school_small = true;
+
 // without drag: v|v| has a kink in its derivative, at which no method keeps an order above three
 static const char soft[] =
     "time: {end: 0.4, shedding_interval: 0.02}\nsolver: {method: %s, step: %.9g, rtol: %.3g, order: 5}\n"

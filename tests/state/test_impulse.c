@@ -4,6 +4,8 @@
 #include "school.h"
 #include "state/state.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 TEST(impulses_are_those_of_point_vortices) {

@@ -7,6 +7,8 @@
 #include "school.h"
 #include "state/state.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 TEST(state_before_the_start_is_placed_and_empty) {

@@ -7,6 +7,8 @@
 #include "state/state.h"
 #include "wake/sheet.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\n"
 #define TWO "fish: [{}, {start: {position: [9, -3]}}]\n"
 

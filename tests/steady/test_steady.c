@@ -8,6 +8,8 @@
 #include "school/rigid.h"
 #include "steady_setup.h"
 
+const bool school_small = true;
+
 // mean speed, and change of the heading, over the last of some beats of a run
 struct brute {
     double speed, turn; /* m s-1, rad */

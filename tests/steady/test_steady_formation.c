@@ -1,6 +1,8 @@
 /* test_steady_formation.c: stable places of fish in a formation. doc/steady.md. */
 #include "steady_setup.h"
 
+const bool school_small = true;
+
 // two heaving plates, from this initial place of the follower
 #define PLATES                                                                                                   \
     SCHOOL_DEFAULTS                                                                                              \

@@ -7,6 +7,8 @@
 #include "school.h"
 #include "steady/steady_problem.h"
 
+const bool school_small = true;
+
 enum { MOST = 2 * STEADY_QUANTITIES };
 
 struct found {

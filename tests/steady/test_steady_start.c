@@ -9,6 +9,8 @@
 #include "school.h"
 #include "steady/steady_problem.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02}\n"
 enum { N_FISH = 2, N_NODES = 5 };
 

@@ -9,6 +9,8 @@
 #include "school.h"
 #include "steady/steady_problem.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
 #define PLATE                              \
     "wave: {amplitude: 0, frequency: 0}, " \

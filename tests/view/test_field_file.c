@@ -10,6 +10,8 @@
 #include "school.h"
 #include "view/field_file.h"
 
+const bool school_small = true;
+
 enum { N_POINTS = 60 };
 
 static char folder[] = "/tmp/test_field.XXXXXX", path[64], field_path[64];

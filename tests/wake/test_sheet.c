@@ -6,6 +6,8 @@
 #include "school.h"
 #include "wake/sheet.h"
 
+const bool school_small = true;
+
 #define SHEET "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 

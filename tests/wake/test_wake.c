@@ -5,6 +5,8 @@
 #include "school.h"
 #include "wake/wake.h"
 
+const bool school_small = true;
+
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 static void at_time(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
