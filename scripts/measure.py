@@ -807,6 +807,37 @@ def merge(bench):
                f"{bench.seconds(case, f'wake.merge={limit}') / seconds:.2f}")
 
 
+# Swims for the table leg_impulse: a case or a text, and keys.
+TWO = """\
+format: 1
+time: {{end: 12, shedding_interval: 0.02, output_interval: 0.1}}
+defaults: {{fish: {{start: {{speed: 0.8}}, control: {{law: course}}}}}}
+fish:
+  - {{name: first}}
+  - {{name: second, {}}}
+"""
+LEG_CASES = (
+    ("one fish ([swim](../cases/swim.yaml))", "swim", ()),
+    ("depth 0.1 L", "swim", ("fish[0].body.depth=0.1",)),
+    ("depth 0.5 L", "swim", ("fish[0].body.depth=0.5",)),
+    ("a pair in antiphase, 0.4 L apart", TWO.format("start: {position: [0, 0.4]}, wave: {phase: 180}"), ()),
+    ("a leader, and a follower 1.5 L behind", TWO.format("start: {position: [1.5, 0.1]}"), ()),
+)
+
+
+@table("case", "drag [N s]", "`leg_impulse` [N s]", "over drag", "balance over drag")
+def leg_impulse(bench):
+    """momentum that the growing lengths of legs take in a beat, along the course"""
+    for name, case, keys in LEG_CASES:
+        run = bench.run(case, *keys)
+        first = run.nearest(run.time[-1] - 1)
+        ahead = run["com"][-1] - run["com"][first]
+        ahead /= np.linalg.norm(ahead, axis=1)[:, None]
+        drag, legs = (abs(float(np.sum((run[key][-1] - run[key][first]) * ahead))) for key in ("external_impulse", "leg_impulse"))
+        balance = float(np.linalg.norm(run["momentum_balance"][-1] - run["momentum_balance"][first]))
+        yield name, f"{drag:.3f}", f"{legs:.3f}", f"{legs / drag:.2f}", short(balance / drag)
+
+
 def last_beat(results, name, fish=0):
     """Mean of a variable over the last second of a run of 1 Hz."""
     n = int(round(1 / (results.time[-1] - results.time[-2])))

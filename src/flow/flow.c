@@ -120,9 +120,9 @@ struct flow *flow_create(struct arena *arena, const struct school *school) {
     flow_find_classes(flow);
     NEW(arena, flow->by_tree, 4 * flow->n_classes * flow->n_classes);
 
-    double **const at_points[] = {&flow->x,       &flow->y,       &flow->u,         &flow->v,          &flow->u_x,
-                                  &flow->u_y,     &flow->v_x,     &flow->div,       &flow->div_x,      &flow->div_y,
-                                  &flow->image_u, &flow->image_v, &flow->image_div, &flow->image_leg_v};
+    double **const at_points[] = {&flow->x,       &flow->y,       &flow->u,        &flow->v,     &flow->u_x,
+                                  &flow->u_y,     &flow->v_x,     &flow->div,      &flow->div_x, &flow->div_y,
+                                  &flow->image_u, &flow->image_v, &flow->image_div};
     for (size_t i = 0; i < sizeof at_points / sizeof *at_points; i++) NEW(arena, *at_points[i], flow->n_points);
     NEW(arena, flow->edge, 2 * flow->n_points);
     NEW(arena, flow->edge_gradient, 4 * flow->n_points);

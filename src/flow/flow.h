@@ -42,6 +42,8 @@ struct flow_fish {
     double downstream[2]; /* direction of the legs of a steady wake; 0 without a stream */
     struct sources markers; /* markers, or queue and nascent vortex, at the last event */
     struct sources body_image, wake_image, markers_image;
+    struct box *leg_box; /* around the body, then around every 64 markers              (n_leg_boxes) */
+    int n_leg_boxes, leg_box_capacity;
 };
 
 /* Points of one fish that a thread evaluates at once. */
@@ -79,21 +81,20 @@ struct flow {
     double *u_x, *u_y, *v_x; /* gradient, after flow_gradient, s-1                 (n_points) */
     /* div u, gradient of div u; a of the edge force, gradient of a, one component after the other       (n_points) */
     double *div, *div_x, *div_y, *edge, *edge_gradient;
-    /* of all images, after flow_images: velocity, div u, the part of legs in v                  (n_points) */
-    double *image_u, *image_v, *image_div, *image_leg_v;
-    double *legs[N_LEG_SUMS]; /* workspace: velocities of legs at control points (n_points) */
+    double *image_u, *image_v, *image_div; /* of all images, after flow_images: velocity, div u (n_points) */
+    double *legs[N_LEG_SUMS];              /* workspace: velocities of legs at control points (n_points) */
 
     struct flow_fish *fish; /* (n_fish) */
     int n_images;
     struct image *image; /* of every source in the walls                               (n_images) */
 
-    /* at markers or vortices of all wakes, after flow_at_wake: velocity and div u, of all sources, of images, of legs
-     * of all fish; the part of legs in v of images; rates of labels                               (n_markers) */
+    /* at markers or vortices of all wakes, after flow_at_wake: velocity and div u, of all sources, of images, of the
+     * legs of the same fish; rates of labels                                                      (n_markers) */
     struct range *wake_range; /* of each fish                                                  (n_fish) */
     int n_markers, wake_capacity;
     double *wake_u, *wake_v, *wake_div, *wake_image_u, *wake_image_v, *wake_image_div;
-    double *wake_leg_u, *wake_leg_v, *wake_leg_div, *wake_image_leg_v, *wake_rate;
-    bool has_all_legs; /* unless sums at wakes are by the tree: then only a fish's own legs */
+    double *wake_leg_u, *wake_leg_v, *wake_leg_div, *wake_rate;
+    bool is_in_pairs; /* wakes act on each other in pairs: no sum at wakes is by the tree */
 
     /* sums of many fish by the tree: sources and targets of one sum; whether the sum of bodies or of wakes of one class
      * or of the images at another class is by the tree, in this evaluation (2, 2, n_classes, n_classes) */
@@ -179,11 +180,16 @@ void flow_external_acceleration(const struct school *school, double t, double ac
 /* Set wake_range, wake_u, wake_v and all arrays at markers for the event of the state. */
 void flow_at_wake(struct flow *flow, const struct state *state);
 
-/* Rate of momentum of a fish from the interaction of legs at different lengths s, over density and depth: x, y, about
- * the origin; of legs of its own, of other fish, and the part along walls of those of images. Of its own only where a
- * sum at wakes is by the tree. At the event of the state, after flow_at_wake, and with walls after flow_images. 0
- * without legs. */
-void flow_leg_rate(const struct flow *flow, int f, double rate[3], double image[3]);
+// ---- flow_leg_rate.c: the momentum that legs take because their lengths s change along a wake. doc/model.md, section
+// 18. Tested by tests/flow/test_flow_leg_rate.c.
+
+/* Set the boxes of all legs, after flow_at_wake, for flow_leg_rate. */
+void flow_leg_boxes(struct flow *flow);
+
+/* Rate R at which fish f and its wake lose momentum because legs of different lengths s act on each other, over density
+ * and depth, m4 s-2: x, y, about the origin, m5 s-2; rate: by the legs of all fish, image: along walls by the images of
+ * legs. At the event of the state, after flow_at_wake. 0 without legs. */
+void flow_leg_rate(const struct flow *flow, const struct state *state, int f, double rate[3], double image[3]);
 
 // ---- images.c: the images of sources in impermeable straight walls along x. doc/model.md, section 17. Tested by
 // tests/flow/test_images.c.

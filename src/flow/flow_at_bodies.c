@@ -282,13 +282,11 @@ void flow_images(struct flow *flow, const struct state *state) {
                                 .y = flow->y,
                                 .u = flow->image_u,
                                 .v = flow->image_v,
-                                .leg_v = flow->image_leg_v,
                                 .div = flow->image_div};
     flow_place(flow, state, state->t, state->y);
     memset(flow->image_u, 0, size);
     memset(flow->image_v, 0, size);
     memset(flow->image_div, 0, size);
-    memset(flow->image_leg_v, 0, size);
 
     for (int f = 0; f < n_fish; f++) {
         const struct targets at = points_of(flow, &all, f, flow->points[f]);

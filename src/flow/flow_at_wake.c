@@ -31,9 +31,9 @@ static void wakes_place(struct flow *flow, const struct state *state) {
 
     if (flow->n_markers <= flow->wake_capacity) return;
     flow->wake_capacity = flow->n_markers + flow->n_markers / 2;
-    double **const all[] = {&flow->wake_u,         &flow->wake_v,     &flow->wake_div,        &flow->wake_image_u,
-                            &flow->wake_image_v,   &flow->wake_leg_u, &flow->wake_leg_v,      &flow->wake_leg_div,
-                            &flow->wake_image_div, &flow->wake_rate,  &flow->wake_image_leg_v};
+    double **const all[] = {&flow->wake_u,         &flow->wake_v,     &flow->wake_div,   &flow->wake_image_u,
+                            &flow->wake_image_v,   &flow->wake_leg_u, &flow->wake_leg_v, &flow->wake_leg_div,
+                            &flow->wake_image_div, &flow->wake_rate};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) GROW(flow->arena, *all[i], flow->wake_capacity);
 }
 
@@ -102,8 +102,9 @@ static void induce_own_body(const struct flow *flow, const struct state *state, 
 // add the velocities that the wakes of two fish cause at each other
 static void induce_pair_of_wakes(const struct flow *flow, int f, int g) {
     const struct flow_sum wake = {WAKE_AT_WAKE, false};
-    const struct targets at_f = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
-    const struct targets at_g = markers_of(flow, g, (struct range){0, flow->wake_range[g].n});
+    struct targets at_f = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
+    struct targets at_g = markers_of(flow, g, (struct range){0, flow->wake_range[g].n});
+    at_f.leg_u = at_f.leg_v = at_g.leg_u = at_g.leg_v = NULL;
     const struct kernel_pair pair = flow_pair_of(flow, f, g, &wake), back = flow_pair_of(flow, g, f, &wake);
     if (!(fabs(pair.span - back.span) + fabs(pair.square - back.square) > 0)) {
         kernel_induce_mutual(&pair, &flow->fish[f].markers, &at_f, &flow->fish[g].markers, &at_g);
@@ -117,7 +118,7 @@ static void induce_pair_of_wakes(const struct flow *flow, int f, int g) {
 static void induce_at_markers(const struct flow *flow, const struct state *state, int f, struct range which) {
     const struct school *const school = flow->school;
     const int first = flow->wake_range[f].first + which.first;
-    struct targets at = markers_of(flow, f, which);
+    struct targets at = markers_of(flow, f, which), own = at;
     for (int i = 0; i < which.n; i++) {
         double u, v;
         flow_external(school, flow->t, at.x[i], at.y[i], &u, &v);
@@ -125,20 +126,18 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
         at.v[i] += v;
     }
 
-    induce_own_body(flow, state, f, which, &at);
-    if (!flow->has_all_legs) {
-        memcpy(flow->wake_leg_div + first, at.div, (size_t)which.n * sizeof *at.div);
-        at.leg_u = at.leg_v = NULL;
-    }
+    own.div = flow->wake_leg_div + first;
+    induce_own_body(flow, state, f, which, &own);
+    for (int i = 0; i < which.n; i++) at.div[i] += own.div[i];
+    at.leg_u = at.leg_v = NULL;
 
     // other fish
     for (int g = 0; g < school->n_fish; g++) {
         const struct flow_sum body = {BODY_AT_WAKE, false}, wake = {WAKE_AT_WAKE, false};
         flow_induce_other(flow, f, g, &body, g == f, &at);
-        const bool is_done = g != f ? flow->has_all_legs : own_is_in_tree(flow, f);
+        const bool is_done = g != f ? flow->is_in_pairs : own_is_in_tree(flow, f);
         if (!is_done) flow_induce_other(flow, f, g, &wake, g == f, &at);
     }
-    if (flow->has_all_legs) memcpy(flow->wake_leg_div + first, at.div, (size_t)which.n * sizeof *at.div);
     if (school->walls.n == 0) return;
 
     // images
@@ -146,9 +145,7 @@ static void induce_at_markers(const struct flow *flow, const struct state *state
     image.u = flow->wake_image_u + first;
     image.v = flow->wake_image_v + first;
     image.div = flow->wake_image_div + first;
-    image.leg_u = NULL;
-    image.leg_v = flow->wake_image_leg_v + first;
-    for (int i = 0; i < which.n; i++) image.u[i] = image.v[i] = image.div[i] = image.leg_v[i] = 0;
+    for (int i = 0; i < which.n; i++) image.u[i] = image.v[i] = image.div[i] = 0;
     for (int g = 0; g < school->n_fish; g++) {
         flow_induce_other(flow, f, g, &(struct flow_sum){BODY_AT_WAKE, true}, false, &image);
         flow_induce_other(flow, f, g, &(struct flow_sum){WAKE_AT_WAKE, true}, false, &image);
@@ -210,8 +207,8 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
     const double work = (double)flow->kernel->cost * flow->n_markers * flow->n_markers * (1 + flow->n_images);
     const int threads = parallel_threads(school->threads, n_chunks, work, PARALLEL_INTERACTIONS);
     flow_select_by_tree(flow, true, flow->wake_range);
-    flow->has_all_legs = true;
-    for (int i = 0; i < 4 * flow->n_classes * flow->n_classes; i++) flow->has_all_legs &= !flow->by_tree[i];
+    flow->is_in_pairs = true;
+    for (int i = 0; i < 4 * flow->n_classes * flow->n_classes; i++) flow->is_in_pairs &= !flow->by_tree[i];
 
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
@@ -220,15 +217,16 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
         const struct flow_class *const class = &flow->class[flow->class_of[f]];
         const struct kernel_pair smooth =
             flow->kernel->own(school->fish[f].strip_depth, flow_square(flow, WAKE_AT_WAKE, class, class));
-        const struct targets at = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
-        double *const sums[] = {at.u, at.v, at.leg_u, at.leg_v, at.div};
+        struct targets at = markers_of(flow, f, (struct range){0, flow->wake_range[f].n});
+        double *const sums[] = {at.u, at.v, at.leg_u, at.leg_v, at.div, flow->wake_leg_div + flow->wake_range[f].first};
+        at.div = sums[5];
         for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) memset(sums[i], 0, (size_t)at.n * sizeof **sums);
         const struct sources *const own = &flow->fish[f].markers;
         if (!own_is_in_tree(flow, f)) kernel_induce_mutual(&smooth, own, &at, own, &at);
     }
     // without a tree wakes act on each other in pairs; in a round of a tournament no fish is in two pairs
     const int n_rounds = school->n_fish - 1 + school->n_fish % 2;
-    for (int round = 0; round < n_rounds && flow->has_all_legs; round++) {
+    for (int round = 0; round < n_rounds && flow->is_in_pairs; round++) {
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
         for (int i = 0; i <= n_rounds / 2; i++) {
             const int f = (round + i) % n_rounds, g = i == 0 ? n_rounds : (round + n_rounds - i) % n_rounds;
@@ -268,70 +266,4 @@ void flow_at_wake(struct flow *flow, const struct state *state) {
             flow->wake_rate[first + i] = -label[i] * flow->wake_div[first + i];
         }
     }
-}
-
-// ---- momentum
-
-// add the momentum rate of sources in the velocity of legs: sum of q E3 u + div E3 d, and its moment; u NULL: of x only
-static void add_rate(const struct sources *sources, const double *u, const double *v, const double *div,
-                     double rate[3]) {
-    for (int i = 0; i < sources->n; i++) {
-        const double x = -sources->q[i] * v[i] - div[i] * sources->dy[i];
-        const double y = u ? sources->q[i] * u[i] + div[i] * sources->dx[i] : 0;
-        rate[0] += x;
-        rate[1] += y;
-        rate[2] += sources->x[i] * y - sources->y[i] * x;
-    }
-}
-
-void flow_leg_rate(const struct flow *flow, int f, double rate[3], double image[3]) {
-    const struct fish *const fish = &flow->school->fish[f];
-    const struct flow_fish *const of = &flow->fish[f];
-    const struct kernel_pair exact = flow->kernel->own(fish->strip_depth, 0);
-    const int wake = flow->wake_range[f].first, n = fish->n_control;
-    for (int i = 0; i < 3; i++) rate[i] = image[i] = 0;
-    if (!flow->kernel->has_legs) return;
-
-    // u and v contain all parts; only the parts of the legs are used
-    double *sum[N_LEG_SUMS];
-    for (int i = 0; i < N_LEG_SUMS; i++) sum[i] = flow->legs[i] + flow->points[f].first;
-    struct targets at = {.n = n,
-                         .x = of->body.x,
-                         .y = of->body.y,
-                         .half = of->body.half,
-                         .u = sum[0],
-                         .v = sum[1],
-                         .leg_u = sum[2],
-                         .leg_v = sum[3],
-                         .div = sum[4],
-                         .edge = fish->depth_varies ? sum[5] : NULL,
-                         .edge_stride = (int)(sum[6] - sum[5])};
-
-    for (int i = 0; i < N_LEG_SUMS; i++) memset(sum[i], 0, (size_t)n * sizeof(double));
-    kernel_induce(&exact, &of->body, (struct range){0, of->body.n}, &at);
-    kernel_induce(&exact, &of->markers, (struct range){0, of->markers.n}, &at);
-    at.edge = NULL;
-    for (int g = 0; g < flow->school->n_fish && flow->has_all_legs; g++) {
-        const struct kernel_pair other = flow->kernel->other(flow->school->fish[g].strip_depth, 0);
-        const struct sources *const all[] = {&flow->fish[g].body, &flow->fish[g].markers};
-        for (int i = 0; i < 2 && g != f; i++) kernel_induce(&other, all[i], (struct range){0, all[i]->n}, &at);
-    }
-    add_rate(&of->body, at.leg_u, at.leg_v, at.div, rate);
-    add_rate(&of->markers, flow->wake_leg_u + wake, flow->wake_leg_v + wake, flow->wake_leg_div + wake, rate);
-
-    // exclude the force along the side edges, which acts on the body
-    for (int c = 0; c < n && fish->depth_varies; c++) {
-        const double square = of->line[0][c] * of->line[0][c] + of->line[1][c] * of->line[1][c];
-        const double along = (of->body.dx[c] * of->line[0][c] + of->body.dy[c] * of->line[1][c]) / square;
-        const double size = along * fish->control_widening[c] * fish->control_interval[c];
-        rate[0] -= size * sum[5][c];
-        rate[1] -= size * sum[6][c];
-        rate[2] -= size * (of->body.x[c] * sum[6][c] - of->body.y[c] * sum[5][c]);
-    }
-
-    // the part along walls in the legs of images
-    const int point = flow->points[f].first;
-    if (flow->school->walls.n == 0 || !flow->has_all_legs) return;
-    add_rate(&of->body, NULL, flow->image_leg_v + point, flow->image_div + point, image);
-    add_rate(&of->markers, NULL, flow->wake_image_leg_v + wake, flow->wake_image_div + wake, image);
 }

@@ -200,7 +200,7 @@ void kernel_induce(const struct kernel_pair *pair, const struct sources *sources
         fill_block(&block, pair, at, first, n);
 
         const struct kernel_loops *const loops = pair->kernel->loops(0);
-        (at->u_x ? loops->gradient : loops->velocity)(&block, &from);
+        if (at->u) (at->u_x ? loops->gradient : loops->velocity)(&block, &from);
         if (at->edge && pair->kernel->edge) pair->kernel->edge(&block, &from);
         add_block(&block, pair, at, first, n);
     }

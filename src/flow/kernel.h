@@ -24,9 +24,9 @@
 #include "base/parallel.h"
 #include "wake/sources.h"
 
-/* Targets; all arrays (n). Values are added to arrays that are not NULL: u and v always; of the gradient either no
- * array, or u_x, u_y, v_x and any others. v_y = div - u_x. Without legs the arrays of legs, div and edge are
- * unchanged. */
+/* Targets; all arrays (n). Values are added to arrays that are not NULL: u and v, or neither and then `edge` alone; of
+ * the gradient either no array, or u_x, u_y, v_x and any others. v_y = div - u_x. Without legs the arrays of legs, div
+ * and edge are unchanged. */
 struct targets {
     int n;
     const double *x, *y;               /* m */

@@ -260,26 +260,26 @@ void diagnostics_momentum_event(struct residual *residual, struct state *state) 
     const bool has_walls = school->walls.n > 0, has_gust = school->gust_profile != GUST_UNIFORM;
     if (!has_reaction || !(school->density > 0)) return;
     if (has_walls) flow_images(flow, state);
+    if (flow->kernel->has_legs) flow_leg_boxes(flow);
     const double work = (double)flow->kernel->cost * flow->n_points * flow->n_markers;
     const int threads = parallel_threads(school->threads, school->n_fish, work, PARALLEL_INTERACTIONS);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         if (!diagnostics_has_reaction(school, &school->fish[f])) continue;
 
-        // the momentum lost by legs of different lengths s, by trapezoids; from impulse to sums of circulation times x,
-        // y and |x|^2
+        // the momentum that legs of different lengths s take, by trapezoids
         struct momentum_balance *const momentum = &state->momentum[f];
+        const double factor = school->density * impulse_depth(&school->fish[f]);
         double rate[3], image[3];
-        flow_leg_rate(flow, f, rate, image);
-        const double lost[3] = {-rate[1] - image[1], rate[0] + image[0], -2 * (rate[2] + image[2])};
-        for (int i = 0; i < 3 && flow->kernel->has_legs; i++) {
-            if (state->event > 0) momentum->lost[i] += half * (momentum->legs[i] + lost[i]);
-            momentum->legs[i] = lost[i];
+        flow_leg_rate(flow, state, f, rate, image);
+        for (int i = 0; i < 3; i++) {
+            const double taken = factor * (rate[i] + image[i]);
+            if (state->event > 0) momentum->legs[i] += half * (momentum->leg_rate[i] + taken);
+            momentum->leg_rate[i] = taken;
         }
         if (!has_walls && !has_gust) continue;
 
         // the force of images, or of a travelling gust, on the sheet and the wake of the fish
-        const double factor = school->density * impulse_depth(&school->fish[f]);
         const struct sources *const all[] = {&flow->fish[f].body, &flow->fish[f].markers};
         const int point = flow->points[f].first, marker = flow->wake_range[f].first;
         double now[3] = {0};
@@ -326,6 +326,7 @@ void diagnostics_momentum_start(struct residual *residual, struct state *state) 
     for (int f = 0; f < residual->school->n_fish; f++) {
         struct momentum_balance *const momentum = &state->momentum[f];
         memset(momentum->lost, 0, sizeof momentum->lost);
+        memset(momentum->legs, 0, sizeof momentum->legs);
         memset(momentum->external, 0, sizeof momentum->external);
         if (!diagnostics_has_reaction(residual->school, &residual->school->fish[f])) continue;
 
@@ -370,10 +371,12 @@ void diagnostics_momentum(struct residual *residual, const struct state *state, 
         for (int i = 0; i < 3; i++) {
             to->fluid_impulse[i] = of.fluid[i] + lost[i];
             to->lost_impulse[i] = lost[i];
+            to->leg_impulse[i] = has_reaction ? momentum->legs[i] : NAN;
             to->external_impulse[i] =
                 has_reaction ? momentum->external[i] + of.given[i] - momentum->first_given[i] : NAN;
             of.fluid[i] -= momentum->first_fluid[i];
-            balance[i] += of.body[i] - momentum->first_body[i] + of.fluid[i] + lost[i] - to->external_impulse[i];
+            balance[i] += of.body[i] - momentum->first_body[i] + of.fluid[i] + lost[i] + momentum->legs[i] -
+                          to->external_impulse[i];
         }
         of_bodies += hypot(of.body[0], of.body[1]);
         of_fluid += hypot(of.fluid[0], of.fluid[1]);

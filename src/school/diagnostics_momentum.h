@@ -37,8 +37,8 @@ struct diagnostics_fish {
     double resistive_force[2], friction_force[2], cross_flow_force[2], reactive_force[2], constraint_force[2];
     double contact_force[2]; /* force of all bodies in contact, N */
     /* x, y, N s, and angular about the origin, N m s: impulse of all vortices including lost vortices; impulse of lost
-     * vortices; impulse of the external forces */
-    double fluid_impulse[3], lost_impulse[3], external_impulse[3];
+     * vortices; momentum taken by the lengths s of legs; impulse of the external forces */
+    double fluid_impulse[3], lost_impulse[3], leg_impulse[3], external_impulse[3];
     double resistive_moment, friction_moment, reactive_moment, constraint_moment;
     struct pressure_forces pressure; /* force: pressure, else 0 */
     double leading_edge_most;        /* largest magnitude of A_0 over the last period; NaN unless force: pressure */
@@ -89,8 +89,8 @@ struct pressure_forces diagnostics_pressure(struct residual *residual, int f, co
 void diagnostics_momentum_step(struct residual *residual, struct state *state, int f, double t, const double *y, int n,
                                const double times[3]);
 
-/* Add the impulse of images in walls, and the loss by legs of rings, since the event before. Call at every event, after
- * the velocities of all wakes and the residual have been evaluated. */
+/* Add the impulse of images in walls, and the momentum taken by legs of rings, since the event before. Call at every
+ * event, after the velocities of all wakes and the residual have been evaluated. */
 void diagnostics_momentum_event(struct residual *residual, struct state *state);
 
 /* Start all momentum balances with the present state. */

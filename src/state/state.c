@@ -209,6 +209,7 @@ const struct state_row state_table[] = {
     {"momentum.force", OF_MOMENTUM(STATE_REAL, force), STATE_NO_ARRAY},
     {"momentum.images", OF_MOMENTUM(STATE_REAL, images), STATE_NO_ARRAY},
     {"momentum.legs", OF_MOMENTUM(STATE_REAL, legs), STATE_NO_ARRAY},
+    {"momentum.leg_rate", OF_MOMENTUM(STATE_REAL, leg_rate), STATE_NO_ARRAY},
     {"momentum.first_body", OF_MOMENTUM(STATE_REAL, first_body), STATE_NO_ARRAY},
     {"momentum.first_fluid", OF_MOMENTUM(STATE_REAL, first_fluid), STATE_NO_ARRAY},
     {"momentum.first_given", OF_MOMENTUM(STATE_REAL, first_given), STATE_NO_ARRAY},

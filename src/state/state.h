@@ -53,7 +53,8 @@ struct momentum_balance {
     double external[3];    /* impulse of the external forces since the start, N s, N m s */
     double force[2][3];    /* external forces at the times energy_balance.t, N, N m */
     double images[3];      /* forces of images in walls, or of a travelling gust, at the last event, N, N m */
-    double legs[3];        /* loss rate by the lengths s of legs at the last event; units of lost, per s */
+    double legs[3];        /* momentum that the lengths s of legs have taken since the start, N s, N m s */
+    double leg_rate[3];    /* the rate of this loss at the last event, N, N m */
     double first_body[3];  /* momentum of the body at the start, N s, N m s */
     double first_fluid[3]; /* impulse of the vortices at the start, N s, N m s */
     double first_given[3]; /* momentum of the prescribed nodes with added mass at the start, N s, N m s */
