@@ -234,9 +234,6 @@ static enum status change_memory(const struct fish *fish, const struct state *st
             if (law != CONTROL_COURSE && law != CONTROL_AVERAGED_HEADING) {
                 return status_fail(STATUS_CASE, "%s: %s needs 'law: course', which has a continuous bias", key, name);
             }
-            if (n % 2 != 0 || n > 2 * CONTROL_MAX_WAYPOINTS) {
-                return status_fail(STATUS_CASE, "%s: %d numbers: give 1 to %d pairs", key, n, CONTROL_MAX_WAYPOINTS);
-            }
             control_set_waypoints(fish, memory, n / 2, values, state->y);
     }
     return STATUS_OK;
@@ -252,8 +249,10 @@ enum status handle_set_key(const struct simulation *simulation, int fish, const 
                            "control.desired_heading and control.waypoints can",
                            key);
     }
-    if (n < 1 || (keys[found].is_number && n > 1)) {
-        return status_fail(STATUS_CASE, "%s: %d numbers: give %s", key, n, keys[found].is_number ? "one" : "pairs");
+    const bool is_number = keys[found].is_number;
+    if (is_number && n != 1) return status_fail(STATUS_CASE, "%s: %d numbers: give one", key, n);
+    if (!is_number && (n < 1 || n % 2 != 0 || n > 2 * CONTROL_MAX_WAYPOINTS)) {
+        return status_fail(STATUS_CASE, "%s: %d numbers: give 1 to %d pairs", key, n, CONTROL_MAX_WAYPOINTS);
     }
     for (int i = 0; i < n; i++) {
         if (!isfinite(values[i])) return status_fail(STATUS_CASE, "%s: %g is not finite", key, values[i]);

@@ -138,5 +138,8 @@ TEST(what_has_no_use_is_refused) {
     refused(simulation, "control.desired_heading", 1, 90, "follows waypoints");
     refused(simulation, "control.waypoints", 3, 1, "3 numbers: give 1 to 32 pairs");
     refused(simulation, "control.waypoints", 66, 1, "66 numbers: give 1 to 32 pairs");
+    refused(simulation, "control.waypoints", 0, 1, "0 numbers: give 1 to 32 pairs");
+    // the numbers are counted before any is read
+    refused(simulation, "control.waypoints", 1 << 30, 1, "1073741824 numbers: give 1 to 32 pairs");
     school_ok(handle_set_key(simulation, 0, "control.waypoints", 64, test_array(64)));
 }
