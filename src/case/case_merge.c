@@ -44,16 +44,15 @@ static enum status read_file(struct case_tree *tree, struct yaml_source *source,
 
     // a FIFO that nobody writes to is empty, and not waited for
     const int file = open(source->name, O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    struct stat facts;
+    struct stat facts = {0};
     enum status status = STATUS_OK;
     if (file < 0 || fstat(file, &facts) != 0) {
         status = status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
     } else if (S_ISDIR(facts.st_mode)) {
         status = status_fail(STATUS_FILE, "is a folder, not a case file");
-    } else {
+    } else if (!S_ISREG(facts.st_mode) || facts.st_size > 0) {
+        // a regular file of size 0 is empty, or belongs to the kernel and may block, as /proc/kmsg does: not read
         fcntl(file, F_SETFL, 0);
-        self->device = facts.st_dev;
-        self->inode = facts.st_ino;
         ssize_t n;
         do {
             n = read(file, text + source->length, CAPACITY - source->length);
@@ -62,7 +61,11 @@ static enum status read_file(struct case_tree *tree, struct yaml_source *source,
         if (n < 0) status = status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
     }
 
-    if (file >= 0) close(file);
+    if (file >= 0) {
+        self->device = facts.st_dev;
+        self->inode = facts.st_ino;
+        close(file);
+    }
     source->text = GROW(tree->arena, text, source->length + 1);
     return status;
 }

@@ -373,6 +373,11 @@ static void header_read(struct header *header, int version, struct netcdf_rows *
     if (n_growing == 1) rows->bytes = last_bytes;
 }
 
+static enum status not_netcdf(const char *path) {
+    return status_fail(STATUS_FILE,
+                       "%s: cannot be read: not a NetCDF file of a classic format: name a file that shoal wrote", path);
+}
+
 enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows) {
     char magic[4] = "";
     uint64_t end, end_of_row;
@@ -392,11 +397,7 @@ enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows) {
     header.size = (uint64_t)ftello(file);
     fclose(file);
 
-    if (!is_netcdf) {
-        return status_fail(STATUS_FILE,
-                           "%s: cannot be read: not a NetCDF file of a classic format: name a file that shoal wrote",
-                           path);
-    }
+    if (!is_netcdf) return not_netcdf(path);
     if (header.is_damaged) return status_fail(STATUS_FILE, "%s: cannot be read: the header is damaged", path);
     if (end > header.size) {
         return status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
@@ -449,6 +450,9 @@ enum status netcdf_open(struct arena *arena, struct netcdf_reader *reader, const
     if (stat(path, &facts) != 0) return cannot_read(path, errno);
     if (S_ISDIR(facts.st_mode)) return status_fail(STATUS_FILE, "%s is a folder: name a file that shoal wrote", path);
     if (!S_ISREG(facts.st_mode)) return status_fail(STATUS_FILE, "%s: cannot be read: not an ordinary file", path);
+
+    // a file of the kernel has size 0 and may block
+    if (facts.st_size == 0) return not_netcdf(path);
     TRY(netcdf_read_rows(path, &rows));
     reader->n_rows = rows.n;
     reader->n_missing = rows.n_counted - rows.n;

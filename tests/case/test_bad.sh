@@ -110,6 +110,8 @@ fi
 : >empty.yaml
 expect empty_file 2 'empty.yaml:1:1: error: the file is empty; a case needs at least format, time and fish' empty.yaml
 expect no_bytes_ever 2 'the file is empty' /dev/null
+printf 'include: [/proc/kmsg]\nformat: 1\n' >include_kernel.yaml
+expect a_file_of_the_kernel_is_not_waited_for 2 '/proc/kmsg' include_kernel.yaml
 printf 'format: 1\nname: "\0\1\2"\n' >binary.yaml
 expect binary_file 2 'binary.yaml:2:8: error: not a text file (control character 0x00); is this a case file?' binary.yaml
 printf 'format: 1\nname: caf\351\n' >latin1.yaml
