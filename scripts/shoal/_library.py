@@ -169,7 +169,12 @@ def version() -> str:
 
 def kind(value) -> str:
     """What a message says of a value of a wrong type."""
-    return f"{type(value).__name__} {value!r}" if len(repr(value)) < 60 else type(value).__name__
+    name = type(value).__name__
+    try:
+        shown = repr(value)
+    except RecursionError:  # nested too deep
+        return name
+    return f"{name} {shown}" if len(shown) < 60 else name
 
 
 def text_of(value, what: str) -> bytes:

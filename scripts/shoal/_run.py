@@ -42,6 +42,8 @@ def yaml_of(value) -> str:
         return json.dumps(value, default=_plain, allow_nan=False)
     except ValueError as error:
         raise CaseError(f"a case cannot hold {kind(value)}: {error}") from error
+    except RecursionError:
+        raise CaseError(f"a case cannot hold {kind(value)}: nested too deep") from None
 
 
 def text_of_case(case: Mapping) -> str:

@@ -2,6 +2,7 @@
 """test_python.py: the module shoal. Run by test_python.sh in a folder of its own; ends with the line of a shell test."""
 
 import copy
+import functools
 import gc
 import importlib.util
 import json
@@ -283,6 +284,7 @@ MISUSE = [
     ("CaseError: .*zero byte", "run.set(0, 'wave.amplitude\\0', 1)"),
     ("TypeError: set: wave.amplitude: numbers", "run.set(0, 'wave.amplitude', 'large')"),
     ("TypeError: set: wave.amplitude: numbers", "run.set(0, 'wave.amplitude', 1j)"),
+    (".*Error: set: wave.amplitude: ", "run.set(0, 'wave.amplitude', functools.reduce(lambda inner, _: [inner], range(10**5), []))"),
     ("CaseError: .*0 numbers: give one", "run.set(0, 'wave.amplitude', [])"),
     ("CaseError: .*cannot be set: only wave.amplitude, wave.frequency", "run.set(0, 'wave.phase', 1)"),
     ("CaseError: set: control.waypoints: ", "run.set(0, 'control.waypoints', [[1, 2], [3]])"),
@@ -290,6 +292,10 @@ MISUSE = [
     ("CaseError: .* too many", "run.set(0, 'control.waypoints', np.zeros(2**21))"),
     ("TypeError: a case is the path of a case file or a dict, not int 0", "shoal.Run(0)"),
     ("TypeError: a case is the path", "shoal.Run(None)"),
+    ("CaseError: a case cannot hold dict: nested too deep",
+     "shoal.Run(functools.reduce(lambda inner, _: {'fish': inner}, range(10**5), {}))"),
+    ("CaseError: a case cannot hold list: nested too deep",
+     "shoal.Run(PAIR, {'fish': functools.reduce(lambda inner, _: [inner], range(10**5), [])})"),
     ("TypeError: assignments are a dict", "shoal.Run(PAIR, 'time.end=2')"),
     ("TypeError: an assignment is a string", "shoal.Run(PAIR, [1])"),
     ("TypeError: an assignment is a string", "shoal.Run(PAIR, [None])"),
