@@ -127,6 +127,12 @@ TEST(the_cost_at_equal_error_is_that_of_a_power_law) {
     const char *const rough = print(&study, members);
     assert_has(rough, "Cost at an error of 1e-02 in nose, tail (lengths) and power (part), known to 3.0e-04:");
     assert_has(rough, "\n  ida2       100   0    1.000      -  at most: error 4.0e-03 with rtol 1e-3\n");
+    // a setting has the common error, 1e-3: the reference, off by 1e-5, may make it cheaper by 1000 (1 - 1.01^-(1/2))
+    *at(&members[1], "actuation_work", 0, 0) = 5 * (1 - 1e-5);
+    *at(&members[2], "nose", 0, 0) = 3 + 1e-3;
+    *at(&members[3], "actuation_work", 0, 0) = 5 * (1 - 0.1);
+    compare_fill_errors(&study, members);
+    assert_has(print(&study, members), "\n  ida2      1000   5   10.000  0.050  between rtol 1e-5 and rtol 1e-3\n");
 }
 
 /* One method with fixed steps, twice, and with adaptive steps: two rows of costs. The bar of the wall time has half the
