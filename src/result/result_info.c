@@ -272,6 +272,11 @@ static enum status print_stability(const struct netcdf_reader *reader, FILE *str
         }
         TRY(read_pair(reader, "steady_exponent", n, 0, pair, &exists));
         memcpy(first, pair, sizeof first);
+        if (!exists) {
+            fprintf(stream,
+                    "  growth of disturbances: not computed: needs steady.multipliers, pressure.span infinite, and a\n"
+                    "  stream that carries a wake away (wake.shedding other than impulsive)\n");
+        }
         for (size_t i = 0; exists;) {
             fprintf(stream, "%s %+.4f s-1 at %.4g Hz", i == 0 ? "  growth of disturbances:" : ",",
                     fabs(pair[0]) < still ? 0 : pair[0], pair[1] / (2 * M_PI));

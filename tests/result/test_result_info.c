@@ -250,6 +250,13 @@ TEST_WITH(info_says_how_bodies_without_a_beat_lose_their_stability, set_up, tear
                                              .fish = fish};
         has_lines(steady_summary(f, &values), 2, of[i].line);
     }
+
+    // without modes, the reasons that are possible
+    struct steady_fish fish[N_FISH] = {{.speed = 1}, {.speed = 1}};
+    const struct steady_values values = {.stiffness = NAN, .residual = 1e-9, .fish = fish};
+    static const char *const reasons[] = {
+        "  growth of disturbances: not computed: needs steady.multipliers, pressure.span infinite, and a\n"};
+    has_lines(steady_summary(f, &values), 1, reasons);
 }
 
 TEST_WITH(info_of_a_file_without_rows_says_so, set_up, tear_down) {
