@@ -23,6 +23,7 @@ struct checked {
     const struct case_values *values;
     bool is_study;
     int n_members;          /* 1 without a sweep */
+    int n_checked;          /* members whose cases have been checked, a sample of a long sweep */
     int n_fish, n_unknowns; /* of the last school; n_unknowns 0: no school yet */
     int n_estimated, n_failed, n_warned[N_WARNINGS], first_warned[N_WARNINGS], first_failed;
     double seconds, bytes; /* sum and maximum over the estimated members */
@@ -90,10 +91,11 @@ static void print_findings(const struct checked *checked) {
     if (checked->n_unknowns > 0) printf("%d unknowns, ", checked->n_unknowns);
     printf("%.6g s in %ld events", values->time.end, lround(values->time.end / values->school.shedding_interval));
     if (checked->is_study) printf("; %d members", checked->n_members);
+    if (checked->n_checked < checked->n_members) printf(", of which a sample of %d is checked", checked->n_checked);
     printf("\n");
     if (checked->n_failed > 0) {
         say_line(stdout, "    %d of %d members %s in the first events; member %d: %s\n", checked->n_failed,
-                 checked->n_members, checked->n_failed == 1 ? "fails" : "fail", checked->first_failed,
+                 checked->n_checked, checked->n_failed == 1 ? "fails" : "fail", checked->first_failed,
                  checked->failure);
     }
     if (checked->n_estimated == 0) {
@@ -128,10 +130,13 @@ enum status main_check(const struct request *request) {
         TRY(check_start(&checked, 0, &values));
     }
 
-    // check all members in steps of the golden ratio, so that the first members sample the entire sweep
+    // check the members in steps of the golden ratio, so that those within the time limit sample the entire sweep
     int step = (int)fmax(1, round(0.618 * n));
     while (common_divisor(n, step) > 1) step++;
-    for (int i = 0, m = 0; i < n && checked.is_study; i++, m = (m + step) % n) {
+    checked.n_checked = !checked.is_study;
+    for (int m = 0; checked.is_study && checked.n_checked < n; m = (m + step) % n) {
+        if (checked.n_checked > 0 && *main_stop_signal()) break;
+        checked.n_checked++;
         struct case_values member;
         TRY(case_member(&member, &values, m));
         const enum status status = check_start(&checked, m, &member);

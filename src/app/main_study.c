@@ -104,6 +104,20 @@ static enum status run_study(const struct case_values *values, const struct requ
                        options.last - options.first + 1, folder);
 }
 
+/* Write the scripts of an array job. */
+static enum status write_scripts(const struct case_values *values, const struct request *request, const char *folder,
+                                 int bundle) {
+    struct progress progress;
+    struct study_options options;
+    struct say_page page;
+    say_progress_start(&progress);
+    TRY(study_options_from(request, folder, &progress, &options));
+    TRY(say_begin(&page));
+    const enum status status = study_slurm(request->arena, values, &options, bundle, request->strict, page.stream);
+    say_progress_end(&progress);
+    return say_end(&page, request->quiet ? NULL : stdout, status);
+}
+
 /* Estimate the errors of a case: run all members, run some members of the first plan, or write the scripts. */
 static enum status run_errors(const struct case_values *values, const struct request *request, const char *folder,
                               int bundle) {
@@ -129,8 +143,8 @@ static enum status run_errors(const struct case_values *values, const struct req
     }
 
     struct error_sweep *sweep;
-    TRY(error_plan_create(request->arena, &sweep, values));
-    return request->slurm ? study_slurm(request->arena, &sweep->study, folder, bundle, stdout)
+    TRY(error_plan_create(request->arena, &sweep, values, NULL));
+    return request->slurm ? write_scripts(&sweep->study, request, folder, bundle)
                           : run_study(&sweep->study, request, folder);
 }
 
@@ -149,15 +163,17 @@ static enum status study_run_in_folder(const struct case_values *values, const s
     if (request->bundle && !request->slurm) {
         return status_fail(STATUS_CASE, "--bundle %s: members of a task of Slurm: add --slurm", request->bundle);
     }
+    if (request->slurm && request->max_wall) {
+        return status_fail(STATUS_CASE,
+                           "--max-wall %s: a task of Slurm stops a minute before its time limit: give submit.sh --time",
+                           request->max_wall);
+    }
     if (request->bundle) TRY(read_count("--bundle", request->bundle, &bundle));
     if (values->error) return run_errors(values, request, place, bundle);
     if (request->plan) {
         return status_fail(STATUS_CASE, "--plan: the case has no `error`; `shoal check` estimates a sweep");
     }
-    if (!request->slurm) return run_study(values, request, place);
-    struct say_page page;
-    TRY(say_begin(&page));
-    return say_end(&page, stdout, study_slurm(request->arena, values, place, bundle, page.stream));
+    return request->slurm ? write_scripts(values, request, place, bundle) : run_study(values, request, place);
 }
 
 enum status main_study(const struct request *request) {

@@ -116,12 +116,19 @@ void say_progress_steady(const struct steady_progress *now, void *data) {
 
 void say_progress_study(const struct study_progress *now, void *data) {
     struct progress *const progress = data;
-    if (progress->terminal && now->n_running == 0) {
+    if (progress->terminal && now->n_running == 0 && !now->checked) {
         say_progress_end(progress);  // a report follows
         return;
     }
+    if (progress->checked != now->checked) progress->tenth = 0;
+    progress->checked = now->checked;
     if (!progress_is_due(progress, now->part, now->wall_time)) return;
     char part[5][PART_BYTES];
+    if (now->checked) {
+        snprintf(part[0], PART_BYTES, "%d of %d members %s", now->n_checked, now->n_members, now->checked);
+        progress_print(progress, 1, part);
+        return;
+    }
     snprintf(part[0], PART_BYTES, "%d of %d members done", now->n_done, now->n_members);
     snprintf(part[1], PART_BYTES, "%3.0f %%", 100 * now->part);
     snprintf(part[2], PART_BYTES, "%.0f s left", now->part > 0 ? now->wall_time * (1 - now->part) / now->part : 0);

@@ -30,10 +30,11 @@ enum status say_end(struct say_page *page, FILE *stream, enum status status);
 /* Progress of a run or a study on stderr: on a terminal one line, redrawn and not wider than the terminal; in a log one
  * line per tenth. */
 struct progress {
-    int terminal;    /* stderr is a terminal */
-    double drawn_at; /* wall time of the run when the line was last drawn, s */
-    int tenth;       /* of the run, as last reported in a log */
-    int drawn;       /* the terminal shows a line */
+    int terminal;        /* stderr is a terminal */
+    double drawn_at;     /* wall time of the run when the line was last drawn, s */
+    int tenth;           /* of the run, as last reported in a log */
+    int drawn;           /* the terminal shows a line */
+    const char *checked; /* study_progress.checked of the last report */
 };
 
 /* Start a run. */

@@ -494,7 +494,7 @@ int error_plan_members(struct error_study *study) {
 
 /* Create the points of the sweep, and the axis of the members in place of the axes of the sweep. *swept: the values of
  * the swept keys (n_points, n_swept) */
-static enum status create_points(struct error_sweep *sweep, char ***swept) {
+static enum status create_points(struct error_sweep *sweep, char ***swept, const struct study_options *options) {
     struct arena *const arena = sweep->arena;
     struct case_values *const study = &sweep->study;
     const int n_axes = study->n_axes;
@@ -510,9 +510,11 @@ static enum status create_points(struct error_sweep *sweep, char ***swept) {
         for (int k = 0; k < from[a].n_keys; k++) axis->key[axis->n_keys++] = from[a].key[k];
     }
 
+    struct study_watch watch = {.options = options, .what = "read", .n = sweep->n_points};
     for (int p = 0; p < sweep->n_points; p++) {
         struct error_study *const point = &sweep->point[p];
         struct case_values *values;
+        TRY(study_folder_watch(&watch, p + 1));
         TRY(study_folder_case(arena, &values, study, p));
         *point = (struct error_study){
             .sweep = sweep, .study = study, .values = values, .is_full = true, .n_fish = values->school.n_fish};
@@ -545,7 +547,8 @@ static enum status create_points(struct error_sweep *sweep, char ***swept) {
     return STATUS_OK;
 }
 
-enum status error_plan_create(struct arena *arena, struct error_sweep **plan, const struct case_values *values) {
+enum status error_plan_create(struct arena *arena, struct error_sweep **plan, const struct case_values *values,
+                              const struct study_options *options) {
     struct error_sweep *sweep;
     struct case_values *parsed;
     NEW(arena, sweep, 1);
@@ -556,10 +559,12 @@ enum status error_plan_create(struct arena *arena, struct error_sweep **plan, co
 
     // the keys of each point
     char **swept = NULL, **value;
-    TRY(create_points(sweep, &swept));
+    TRY(create_points(sweep, &swept, options));
+    struct study_watch watch = {.options = options, .what = "checked", .n = sweep->n_points};
     for (int p = 0; p < sweep->n_points; p++) {
         struct error_study *const point = &sweep->point[p];
         struct school *school;
+        TRY(study_folder_watch(&watch, p + 1));
         TRY(fish_school_create(arena, &school, &point->values->school));
         for (int f = point->n_fish - 1; f >= 0; f--) {
             if (school->fish[f].period > 0) point->beat = school->fish[f].period;
@@ -592,9 +597,11 @@ enum status error_plan_create(struct arena *arena, struct error_sweep **plan, co
         point->base = point->stated = row_append(sweep, value, p - 1);
     }
 
+    watch = (struct study_watch){.options = options, .what = "planned", .n = sweep->n_points};
     for (int p = 0; p < sweep->n_points; p++) {
         TRY(choose_levels(&sweep->point[p]));
         error_plan_members(&sweep->point[p]);
+        TRY(study_folder_watch(&watch, p + 1));
     }
     *plan = sweep;
     return STATUS_OK;

@@ -26,6 +26,7 @@
 #include "case/sweep_error.h"
 #include "study/convergence.h"
 #include "study/member_file.h"
+#include "study/study.h"
 
 enum { ERROR_STUDY_LEVELS = 1 + SWEEP_ERROR_LEVELS, ERROR_STUDY_QUANTITIES = 16 };
 
@@ -83,9 +84,10 @@ struct error_sweep {
     struct error_study *point; /* (n_points) */
 };
 
-/* Plan the members of a case with `error`. Fails with STATUS_CASE: an unknown quantity, a quantity of runs beside one
- * of steady states, or no key. */
-enum status error_plan_create(struct arena *arena, struct error_sweep **plan, const struct case_values *values);
+/* Plan the members of a case with `error`. options: for progress and stop; NULL: none. Fails with STATUS_CASE (an
+ * unknown quantity, a quantity of runs beside one of steady states, or no key) or STATUS_STOPPED. */
+enum status error_plan_create(struct arena *arena, struct error_sweep **plan, const struct case_values *values,
+                              const struct study_options *options);
 
 /* The index of a quantity of a fish in part, value and error. */
 int error_plan_place(const struct error_study *study, int quantity, int fish);

@@ -283,8 +283,7 @@ static enum status plan_and_run(struct study *study) {
     // a refused plan creates no folder
     const bool exists = access(options->folder, F_OK) == 0;
     if (exists) TRY(lock_members(study));
-    TRY(study_plan_create(study->arena, &study->plan, study->values, options->folder, options->first, options->last,
-                          options->force));
+    TRY(study_plan_create(study->arena, &study->plan, study->values, options));
     study->progress.n_members = study->plan.n_members;
     study->progress.n_done = study->plan.n_done;
     if (!exists) TRY(lock_members(study));

@@ -16,8 +16,10 @@
 
 /* Progress of a study. */
 struct study_progress {
-    int n_members; /* members requested by this call */
-    int n_done;    /* finished members, including earlier calls */
+    int n_members;       /* members requested by this call */
+    const char *checked; /* "checked" or "planned", before any member runs; NULL: the members run */
+    int n_checked;       /* members so far */
+    int n_done;          /* finished members, including earlier calls */
     int n_failed, n_running;
     double part;      /* completed part of the work of this call, 0 to 1 */
     double wall_time; /* of this call, s */
@@ -43,8 +45,10 @@ enum status study_run(const struct case_values *values, const struct study_optio
 
 /* study_slurm.c: write the files of an array job of Slurm into the folder: study.yaml (the whole study in one file),
  * array.sbatch (the members, bundle members per task; bundle 0: the fewest members per task with at most 1000 tasks),
- * gather.sbatch, and submit.sh, which submits both jobs. Fails with STATUS_CASE or STATUS_FILE. */
-enum status study_slurm(struct arena *arena, const struct case_values *study, const char *folder, int bundle,
-                        FILE *stream);
+ * gather.sbatch, and submit.sh, which submits both jobs. The tasks take n_processes, limit and force of the options,
+ * the job that gathers takes strict. A folder that study_plan_create refuses gets no script. Fails with STATUS_CASE,
+ * STATUS_FILE or STATUS_STOPPED. */
+enum status study_slurm(struct arena *arena, const struct case_values *study, const struct study_options *options,
+                        int bundle, bool strict, FILE *stream);
 
 #endif

@@ -719,10 +719,10 @@ enum status study_errors(const struct case_values *values, const struct study_op
     ARENA(arena, NULL, owner);
     MEMORY_BOUNDARY(STATUS_MEMORY);
     struct error_sweep *sweep;
-    TRY(error_plan_create(arena, &sweep, values));
+    TRY(error_plan_create(arena, &sweep, values, options));
     if (plan > 0) {
         const int n = options->n_processes > 0 ? options->n_processes : omp_get_num_procs() / values->school.threads;
-        TRY(study_print_plan(sweep, n < 1 ? 1 : n, stream));
+        TRY(study_print_plan(sweep, n < 1 ? 1 : n, options, stream));
     }
     if (plan == 2) return STATUS_OK;
     fflush(stream);
@@ -740,7 +740,7 @@ enum status study_gather(const char *folder, const char *command, bool strict, F
     TRY(study_folder_parse(arena, &study, text, folder, 0, NULL));
     if (!study->error) return study_report(study, folder, NULL, command, strict, stream, warnings);
     struct error_sweep *sweep;
-    TRY(error_plan_create(arena, &sweep, study));
+    TRY(error_plan_create(arena, &sweep, study, NULL));
     return refine_and_report(arena, sweep, folder, NULL, command, strict, stream, warnings);
 }
 
@@ -767,7 +767,7 @@ enum status study_info(const struct netcdf_reader *reader, FILE *stream) {
     if (study->error) {
         // refine up to the members of the file
         struct error_sweep *sweep;
-        TRY(error_plan_create(arena, &sweep, study));
+        TRY(error_plan_create(arena, &sweep, study, NULL));
         if (sweep_n_members(&sweep->study) > n) {
             return status_fail(STATUS_FILE,
                                "the file has %d members, expected %d: write study.nc again with `shoal gather`", n,

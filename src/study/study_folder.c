@@ -10,12 +10,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/parallel.h"
 #include "base/version.h"
 #include "case/case.h"
 #include "case/sweep.h"
 #include "result/durable.h"
 #include "result/netcdf.h"
 #include "result/target.h"
+#include "run/simulate.h"
 
 enum status study_folder_create(const char *folder) {
     struct stat facts;
@@ -141,6 +143,29 @@ enum status study_folder_find_study(struct arena *arena, const char *folder, con
 
 // ---- the plan
 
+/* Wall time between two reports of a plan, s. A plan that takes less time has no report. */
+static const double between_reports = 1;
+
+enum status study_folder_watch(struct study_watch *watch, int n_checked) {
+    const struct study_options *const options = watch->options;
+    const double now = clock_seconds(CLOCK_MONOTONIC);
+    if (n_checked == 1) watch->started = watch->reported = now;
+    if (!options) return STATUS_OK;
+    if (options->stop && *options->stop) {
+        return status_fail(STATUS_STOPPED, "stopped %s while the members were %s: none of them has run",
+                           simulate_stopped_by(options->stop), watch->what);
+    }
+    if (!options->progress || now < watch->reported + between_reports) return STATUS_OK;
+    const struct study_progress progress = {.n_members = watch->n,
+                                            .checked = watch->what,
+                                            .n_checked = n_checked,
+                                            .part = (double)n_checked / watch->n,
+                                            .wall_time = now - watch->started};
+    options->progress(&progress, options->data);
+    watch->reported = now;
+    return STATUS_OK;
+}
+
 /* Check the case and an existing result of a member; list the member unless finished. arena: scratch */
 static enum status plan_member(struct arena *arena, struct study_plan *plan, const struct case_values *study,
                                const char *folder, int number, bool force) {
@@ -179,22 +204,55 @@ static enum status plan_member(struct arena *arena, struct study_plan *plan, con
     return STATUS_OK;
 }
 
+/* Remove the files of members of another study from number n on, or refuse them without force. Members that an error
+ * study with refinement has added belong to the study. arena: scratch */
+static enum status clear_surplus(struct arena *arena, const struct case_values *study, const char *folder, int n,
+                                 bool force) {
+    DIR *const entries = opendir(folder);
+    if (!entries) return STATUS_OK;
+    arena_defer(arena, entries_close, entries);
+    for (const struct dirent *entry; (entry = readdir(entries));) {
+        int number, length = 0;
+        if (sscanf(entry->d_name, "member-%d%n", &number, &length) != 1 || number < n) continue;
+        const char *const ending = entry->d_name + length, *const path =
+                                                               study_folder_path(arena, folder, entry->d_name);
+        const bool is_result = strcmp(ending, ".nc") == 0;
+        const bool is_beside =
+            strcmp(ending, ".failed") == 0 || (strcmp(ending, ".ckpt") == 0 && target_is(path, TARGET_CHECKPOINT));
+        struct member_file member;
+        if (study->error && (is_beside || is_result)) {
+            const char *const result = study_folder_member(arena, folder, number, ".nc");
+            const enum status status = member_file_read(arena, &member, result);
+            if (status == STATUS_MEMORY) return status;
+            if (status == STATUS_OK && strcmp(member.study, study->merged) == 0) continue;
+        }
+        if (is_beside && force) unlink(path);
+        if (!is_result || (force && target_is(path, TARGET_NETCDF) && unlink(path) == 0)) continue;
+        return status_fail(STATUS_FILE,
+                           "%s is a result of another study: choose another folder with -o, or remove the file%s", path,
+                           force ? "" : " with --force");
+    }
+    return STATUS_OK;
+}
+
 enum status study_plan_create(struct arena *arena, struct study_plan *plan, const struct case_values *study,
-                              const char *folder, int first, int last, bool force) {
-    const int n = sweep_n_members(study);
-    const bool is_part = last >= 0;
+                              const struct study_options *options) {
+    const char *const folder = options->folder;
+    const bool is_part = options->last >= 0, force = options->force;
+    const int n = sweep_n_members(study), first = options->first, last = is_part ? options->last : n - 1;
     *plan = (struct study_plan){.max_threads = 1};
-    if (!is_part) last = n - 1;
     if (first < 0 || first > last || last >= n) {
         return status_fail(STATUS_CASE, "--members %d-%d: the study has members 0 to %d", first, last, n - 1);
     }
 
     plan->n_members = last - first + 1;
     NEW(arena, plan->member, plan->n_members);
+    struct study_watch watch = {.options = options, .what = "checked", .n = plan->n_members};
     for (int number = first; number <= last; number++) {
         struct arena *const scratch = arena_create(arena, "the plan of a study");
         TRY(plan_member(scratch, plan, study, folder, number, force));
         arena_free(scratch);
+        TRY(study_folder_watch(&watch, number - first + 1));
     }
 
     if (is_part) return STATUS_OK;
@@ -220,19 +278,7 @@ enum status study_plan_create(struct arena *arena, struct study_plan *plan, cons
         }
     }
 
-    // remove results of other studies beyond the last member; members that an error study with refinement has added
-    // belong to the study
-    for (int number = n;; number++) {
-        const char *const path = study_folder_member(scratch, folder, number, ".nc");
-        if (access(path, F_OK) != 0) break;
-        struct member_file member;
-        const bool is_member = study->error && member_file_read(scratch, &member, path) == STATUS_OK &&
-                               strcmp(member.study, study->merged) == 0;
-        if (is_member || (force && target_is(path, TARGET_NETCDF) && unlink(path) == 0)) continue;
-        return status_fail(STATUS_FILE,
-                           "%s is a result of another study: choose another folder with -o, or remove the file%s", path,
-                           force ? "" : " with --force");
-    }
+    TRY(clear_surplus(scratch, study, folder, n, force));
     arena_free(scratch);
     return STATUS_OK;
 }

@@ -13,6 +13,7 @@
 #include "base/status.h"
 #include "case/case_values.h"
 #include "study/member_file.h"
+#include "study/study.h"
 
 /* Create the folder unless the folder exists. Fails with STATUS_FILE. */
 enum status study_folder_create(const char *folder);
@@ -52,10 +53,22 @@ struct study_plan {
     int max_threads;       /* largest number of threads of an unfinished member */
 };
 
-/* Check all members from first to last (last -1: all) and list the unfinished members. force: accept results of another
- * study in the folder, and remove such results beyond the last member. Fails with STATUS_CASE (no such members, or a
- * member is not a valid case) or STATUS_FILE (the folder contains results of another study). */
+/* A loop over members before any of them runs: its progress, and the request to stop. */
+struct study_watch {
+    const struct study_options *options; /* NULL: neither */
+    const char *what;                    /* is done to the members: "checked" */
+    int n;                               /* members of the loop */
+    double started, reported;            /* by CLOCK_MONOTONIC, s */
+};
+
+/* After each member of the loop: report, or fail with STATUS_STOPPED. */
+enum status study_folder_watch(struct study_watch *watch, int n_checked);
+
+/* Check all members from options->first to options->last (-1: all) and list the unfinished members. options->force:
+ * accept results of another study in the folder, and remove such results beyond the last member. Other fields in use:
+ * folder, progress, stop. Fails with STATUS_CASE (no such members, or a member is not a valid case), STATUS_FILE (the
+ * folder contains results of another study) or STATUS_STOPPED. */
 enum status study_plan_create(struct arena *arena, struct study_plan *plan, const struct case_values *study,
-                              const char *folder, int first, int last, bool force);
+                              const struct study_options *options);
 
 #endif

@@ -43,14 +43,33 @@ static const struct shown {
 };
 enum { N_SHOWN = sizeof shown / sizeof *shown };
 
-/* Add the column of a swept key: "modulus" for fish[*].body.modulus, "[1]phase" for fish[1].wave.phase. */
-static void add_key_column(struct table *table, const struct sweep_key *key) {
-    const char *const dot = strrchr(key->path, '.');
-    const bool is_one = strncmp(key->path, "fish[", 5) == 0 && key->path[5] != '*';
-    char head[128];
-    snprintf(head, sizeof head, "%.*s%s", is_one ? (int)strcspn(key->path + 4, ".") : 0, is_one ? key->path + 4 : "",
-             dot ? dot + 1 : key->path);
-    table_column(table, head, key->unit);
+/* The last word of a path. */
+static const char *last_word(const char *path) {
+    const char *const dot = strrchr(path, '.');
+    return dot ? dot + 1 : path;
+}
+
+/* Add the columns of the first n_keys swept keys of an axis: "modulus" for fish[*].body.modulus, "[1]phase" for
+ * fish[1].wave.phase, and "wake.smoothing" if another key of the study ends in the same word. */
+static void add_key_columns(struct table *table, const struct case_values *study, const struct sweep_axis *axis,
+                            int n_keys) {
+    for (const struct sweep_key *key = axis->key; key < axis->key + n_keys; key++) {
+        const char *const path = key->path;
+        const bool is_of_fish = strncmp(path, "fish[", 5) == 0, is_one = is_of_fish && path[5] != '*';
+        bool is_shared = false;
+        for (int a = 0; a < study->n_axes; a++) {
+            const struct sweep_axis *const other = &study->sweep[a];
+            for (int k = 0; k < (other == axis ? n_keys : other->n_keys); k++) {
+                const bool is_same_word = strcmp(last_word(other->key[k].path), last_word(path)) == 0;
+                is_shared |= is_same_word && strcmp(other->key[k].row, key->row) != 0;
+            }
+        }
+        const char *const all = is_of_fish && strchr(path, '.') ? strchr(path, '.') + 1 : path;
+        char head[128];
+        snprintf(head, sizeof head, "%.*s%s", is_one ? (int)strcspn(path + 4, ".") : 0, is_one ? path + 4 : "",
+                 is_shared ? all : last_word(path));
+        table_column(table, head, key->unit);
+    }
 }
 
 void study_print(struct arena *arena, const struct case_values *study, const struct member_file *members,
@@ -60,7 +79,7 @@ void study_print(struct arena *arena, const struct case_values *study, const str
     struct table *const table = table_create(arena, 0);
     table_column(table, "member", "");
     for (int a = 0; a < study->n_axes; a++) {
-        for (int k = 0; k < study->sweep[a].n_keys; k++) add_key_column(table, &study->sweep[a].key[k]);
+        add_key_columns(table, study, &study->sweep[a], study->sweep[a].n_keys);
     }
     if (n_fish > 1) table_column(table, "fish", NULL);
 
@@ -433,15 +452,18 @@ static enum status estimate_member(const struct error_sweep *sweep, int m, doubl
     return status == STATUS_SOLVER ? STATUS_OK : status;
 }
 
-enum status study_print_plan(const struct error_sweep *sweep, int n_processes, FILE *stream) {
+enum status study_print_plan(const struct error_sweep *sweep, int n_processes, const struct study_options *options,
+                             FILE *stream) {
     const int n = sweep_n_members(&sweep->study);
     double sum = 0, longest = 0, *duration;
     NEW(sweep->arena, duration, n);
+    struct study_watch watch = {.options = options, .what = "estimated", .n = n};
     for (int m = 0; m < n; m++) {
         // the time of an equilibrium is negligible
         if (!sweep->point[0].is_static) TRY(estimate_member(sweep, m, patience / n, &duration[m]));
         sum += duration[m];
         longest = fmax(longest, duration[m]);
+        TRY(study_folder_watch(&watch, m + 1));
     }
 
     struct table *const table = table_create(sweep->arena, 3);
@@ -694,7 +716,7 @@ static void print_points(const struct error_sweep *sweep, const struct member_fi
     const bool has_models = sweep->study.error->models;
     struct table *const table = table_create(sweep->arena, 0);
     table_column(table, "point", "");
-    for (int c = 0; c < sweep->n_swept; c++) add_key_column(table, &axis->key[c]);
+    add_key_columns(table, &sweep->study, axis, sweep->n_swept);
     if (n_shown > 1) table_column(table, "fish", NULL);
     for (int q = 0; q < first->n_asked; q++) {
         const char *const unit = quantity_of(first, q)->unit;

@@ -31,8 +31,9 @@ enum status study_print_orders(struct arena *arena, const struct case_values *st
 // ---- an error study: doc/studies.md, "Error bars"
 
 /* Print keys, levels and number of members; estimate the time of n_processes simultaneous members from a few events of
- * each member. Fails as simulate_start. */
-enum status study_print_plan(const struct error_sweep *sweep, int n_processes, FILE *stream);
+ * each member. options: for progress and stop. Fails as simulate_start. */
+enum status study_print_plan(const struct error_sweep *sweep, int n_processes, const struct study_options *options,
+                             FILE *stream);
 
 /* Print the values with the errors of one point and, for each fish, the share of each key; in a sweep, a row of values
  * and errors for each point. Fails with STATUS_MISSED and an estimate of the required refinement if the errors of one

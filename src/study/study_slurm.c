@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "case/case.h"
 #include "case/sweep.h"
 #include "result/durable.h"
@@ -37,8 +38,26 @@ static enum status script_open(struct script *script, const char *folder, const 
     return STATUS_OK;
 }
 
-static enum status study_slurm_write_array(const struct case_values *study, const char *folder, const char *program,
-                                           int n_tasks, int bundle) {
+/* A path in a pattern of sbatch: each % twice. */
+static char *pattern_of(struct arena *arena, const char *path) {
+    struct text text = {.arena = arena};
+    for (const char *c = path; *c; c++) text_add(&text, *c == '%' ? "%%%%" : "%c", *c);
+    return text.text;
+}
+
+/* options: with the full path of the folder */
+static enum status study_slurm_write_array(struct arena *arena, const struct case_values *study,
+                                           const struct study_options *options, const char *program, int n_tasks,
+                                           int bundle) {
+    const char *const folder = options->folder;
+    const int n_processes = options->n_processes > 0 ? options->n_processes : 1;
+    struct text more = {.arena = arena};
+    text_add(&more, "-j %d", n_processes);
+    if (options->limit > 0) {
+        text_add(&more, " --limit ");
+        text_add_number(&more, options->limit);
+    }
+    if (options->force) text_add(&more, " --force");
     struct script script;
     TRY(script_open(&script, folder, "array.sbatch", true));
     fprintf(
@@ -56,7 +75,7 @@ static enum status study_slurm_write_array(const struct case_values *study, cons
         "first=$((SLURM_ARRAY_TASK_ID * %d))\n"
         "last=$((first + %d))\n"
         "[ $last -lt %d ] || last=%d\n"
-        "'%s' study '%s/study.yaml' -o '%s' --members $first-$last -j 1 &\n"
+        "'%s' study '%s/study.yaml' -o '%s' --members $first-$last %s &\n"
         "process=$!\n"
         "trap 'kill -TERM $process' TERM\n"
         "code=0\n"
@@ -65,23 +84,21 @@ static enum status study_slurm_write_array(const struct case_values *study, cons
         "while kill -0 $process 2>/dev/null; do code=0; wait $process || code=$?; done\n"
         "[ $code -ne 75 ] || scontrol requeue $SLURM_JOB_ID\n"
         "exit $code\n",
-        study->name, n_tasks - 1, study->school.threads, folder, bundle, sweep_n_members(study), bundle, bundle - 1,
-        sweep_n_members(study), sweep_n_members(study) - 1, program, folder, folder);
+        study->name, n_tasks - 1, n_processes * study->school.threads, pattern_of(arena, folder), bundle,
+        sweep_n_members(study), bundle, bundle - 1, sweep_n_members(study), sweep_n_members(study) - 1, program, folder,
+        folder, more.text);
 
     return plain_file_close(&script.file, STATUS_OK);
 }
 
-enum status study_slurm(struct arena *arena, const struct case_values *study, const char *folder, int bundle,
-                        FILE *stream) {
+enum status study_slurm(struct arena *arena, const struct case_values *study, const struct study_options *options,
+                        int bundle, bool strict, FILE *stream) {
+    const char *const folder = options->folder;
     const int n = sweep_n_members(study);
     if (bundle < 1) bundle = (n + MAX_TASKS - 1) / MAX_TASKS;
     const int n_tasks = (n + bundle - 1) / bundle;
-    for (int m = 0; m < n; m++) {
-        struct arena *const scratch = arena_create(arena, "a member of a study");
-        struct case_values *member;
-        TRY(study_folder_case(scratch, &member, study, m));
-        arena_free(scratch);
-    }
+    struct study_plan plan;
+    TRY(study_plan_create(arena, &plan, study, options));
 
     char place[PATH_MAX], program[PATH_MAX];
     TRY(study_folder_create(folder));
@@ -89,11 +106,12 @@ enum status study_slurm(struct arena *arena, const struct case_values *study, co
         return status_fail(STATUS_FILE, "%s: cannot resolve the full path: %s", folder, strerror(errno));
     }
 
-    if (strpbrk(place, "'\n\"") || strpbrk(program, "'\n\"") || strpbrk(study->name, "'\n\"")) {
+    static const char special[] = "'\n\"\\";
+    if (strpbrk(place, special) || strpbrk(program, special) || strpbrk(study->name, special)) {
         return status_fail(
             STATUS_CASE,
-            "%s: the path of the folder, the path of the program and the name of the case must not contain quotes or "
-            "line breaks",
+            "%s: the path of the folder, the path of the program and the name of the case must not contain quotes, "
+            "backslashes or line breaks",
             place);
     }
 
@@ -101,7 +119,9 @@ enum status study_slurm(struct arena *arena, const struct case_values *study, co
     TRY(script_open(&script, place, "study.yaml", false));
     fputs(study->merged, script.file.stream);
     TRY(plain_file_close(&script.file, STATUS_OK));
-    TRY(study_slurm_write_array(study, place, program, n_tasks, bundle));
+    struct study_options of_tasks = *options;
+    of_tasks.folder = place;
+    TRY(study_slurm_write_array(arena, study, &of_tasks, program, n_tasks, bundle));
 
     // the job that gathers the results, and the script that submits both jobs
     TRY(script_open(&script, place, "gather.sbatch", true));
@@ -109,8 +129,8 @@ enum status study_slurm(struct arena *arena, const struct case_values *study, co
             "#SBATCH --job-name='%s-gather'\n"
             "#SBATCH --ntasks=1\n"
             "#SBATCH --output='%s/study.txt'\n"
-            "exec '%s' gather '%s'\n",
-            study->name, place, program, place);
+            "exec '%s' gather '%s'%s\n",
+            study->name, pattern_of(arena, place), program, place, strict ? " --strict" : "");
     TRY(plain_file_close(&script.file, STATUS_OK));
     TRY(script_open(&script, place, "submit.sh", true));
     fprintf(script.file.stream,
@@ -122,6 +142,7 @@ enum status study_slurm(struct arena *arena, const struct case_values *study, co
             "printf '%%s\\n' \"members: job $array; results: job $gather, $folder/study.txt and study.nc\"\n",
             place);
     TRY(plain_file_close(&script.file, STATUS_OK));
+    if (plan.n_done > 0) fprintf(stream, "%d members are finished and will not run again; ", plan.n_done);
     fprintf(stream, "%d member%s in %d task%s; start them with %s/submit.sh\n", n, n == 1 ? "" : "s", n_tasks,
             n_tasks == 1 ? "" : "s", folder);
 

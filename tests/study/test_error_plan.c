@@ -24,7 +24,7 @@ static struct error_study open_study(const char *text, const char *error) {
     struct error_sweep *sweep;
     snprintf(all, sizeof all, "%serror: %s\n", text, error);
     struct case_values values = parse(all);
-    assert_int_equal(error_plan_create(test_arena(), &sweep, &values), STATUS_OK);
+    assert_int_equal(error_plan_create(test_arena(), &sweep, &values, NULL), STATUS_OK);
     case_free(&values);
     return sweep->point[0];
 }
@@ -291,7 +291,7 @@ TEST(quantities_that_are_not_known_are_refused) {
         struct error_sweep *sweep;
         snprintf(text, sizeof text, UNIFORM "error: %s\n", examples[i].error);
         const struct case_values values = parse(text);
-        assert_int_equal(error_plan_create(test_arena(), &sweep, &values), STATUS_CASE);
+        assert_int_equal(error_plan_create(test_arena(), &sweep, &values, NULL), STATUS_CASE);
         if (!strstr(status_message(), examples[i].message)) fail_msg("%s", status_message());
     }
 }
@@ -385,7 +385,7 @@ TEST(every_key_can_be_swept) {
             if (strcmp(value, written(key, &values)) == 0) continue;
             if (case_parse(&study, text, strlen(text), "x.yaml", NULL, 2, sweeps) != STATUS_OK) continue;
             kept(study);
-            if (error_plan_create(test_arena(), &sweep, &study) != STATUS_OK) continue;
+            if (error_plan_create(test_arena(), &sweep, &study, NULL) != STATUS_OK) continue;
             struct member_file *members;
             const int n = sweep_n_members(&sweep->study);
             NEW(test_arena(), members, n);

@@ -118,6 +118,18 @@ check the_tasks_run_all_members test -e cluster/member-0003.nc -a -e cluster/mem
 sh cluster/gather.sbatch >out 2>err
 check their_results_are_those_of_the_study grep -q '2 of 6 members in .*/cluster' err
 refused no_quotes_in_scripts 2 'must not contain quotes' study small.yaml --slurm -o "it's"
+refused no_backslashes_in_scripts 2 'backslashes' study small.yaml --slurm -o 'a\b'
+run study small.yaml --slurm -o '50%a' --limit 30 --strict --force -j 2 --threads 3
+check the_tasks_take_the_options test "$(grep -c -- '--members $first-$last -j 2 --limit 30 --force &' 50%a/array.sbatch)" = 1
+check each_task_has_processors_for_its_processes has 50%a/array.sbatch '--cpus-per-task=6'
+check the_results_are_judged_strictly grep -qE "^exec .* gather '.*/50%a' --strict$" 50%a/gather.sbatch
+check a_percent_sign_is_no_pattern eval 'grep -qE "output=.*/50%%a/task-%a.log.$" 50%a/array.sbatch &&
+    grep -qE "output=.*/50%%a/study.txt.$" 50%a/gather.sbatch'
+refused what_has_no_meaning_in_a_task_is_refused 2 '--max-wall 01:00:00: a task of Slurm stops a minute before its time limit' \
+    study small.yaml --slurm -o cluster --max-wall 01:00:00
+refused no_script_beside_members_of_another_study 4 'is a result of another study' \
+    study small.yaml --set fish[0].nodes=13 --slurm -o small-study
+check nor_any_script test ! -e small-study/array.sbatch
 refused bundles_of_nothing 2 '--bundle 0: expects an integer above 0' study small.yaml --slurm --bundle 0 -o cluster
 refused bundles_of_words 2 '--bundle few: expects an integer' study small.yaml --slurm --bundle few -o cluster
 
@@ -134,6 +146,15 @@ refused a_member_of_no_study_is_refused 4 'choose another folder with -o, or rem
 run study shorter.yaml -o small-study --force
 check force_replaces_it has out 'euler'
 check force_removes_the_rest test ! -e small-study/member-0003.nc
+
+# members beyond the last, with a gap in their numbers, and what belongs to them
+mkdir gap
+cp alone/member-0004.nc gap/member-0007.nc
+touch gap/member-0002.failed gap/member-0009.failed gap/member-0009.txt
+refused members_beyond_a_gap_are_refused 4 'gap/member-0007.nc is a result of another study' study shorter.yaml -q -o gap
+run study shorter.yaml -o gap -q --force
+check force_removes_members_beyond_a_gap test "$(cd gap && ls | sort | xargs)" = \
+    'member-0000.nc member-0001.nc member-0002.failed member-0002.nc member-0009.txt study.nc'
 cp alone/member-0001.nc small-study/
 refused gather_of_two_studies 4 'is a result of another study' gather small-study
 mkdir gathered
@@ -147,6 +168,26 @@ refused gather_of_nothing 4 'empty contains no readable member of a study' gathe
 refused gather_of_no_folder 4 'nowhere: cannot be read: No such file or directory' gather nowhere
 refused folder_is_a_file 4 'small.yaml: cannot create this folder' study small.yaml -o small.yaml
 refused folder_in_no_folder 4 'no/where: cannot create this folder' study small.yaml -o no/where
+
+# ---- a long sweep
+
+seq -s, 100000 119999 >values
+{ sed '/^sweep/,$d' small.yaml; echo "sweep: [{key: \"fish[*].body.modulus\", values: [$(<values)]}]"; } >long.yaml
+run check long.yaml
+check check_takes_a_sample_of_a_long_sweep grep -qE '; 20000 members, of which a sample of [0-9]{1,4} is checked$' out
+for command in study 'error --of speed --no-confirm'; do
+    "$program" $command long.yaml -o long >out 2>err </dev/null &
+    pid=$!
+    check "the members that are checked are counted: $command" wait_for grep -qE '^[0-9]+ of 20000 members (read|checked)' err
+    kill -TERM "$pid"
+    code=0
+    wait "$pid" || code=$?
+    check "a signal ends the checks: $command" eval 'test "$code" = 75 && grep -qE "while the members were (read|checked|planned): none of them has run" err'
+    check "before anything runs: $command" test ! -e long
+done
+run study small.yaml -o heads --set time.end=0.02 \
+    --set 'sweep=[{key: wake.smoothing, values: [0.1, 0.05]}, {key: sheet.smoothing, values: [0.1, 0.05]}]'
+check two_keys_of_the_same_word_have_two_heads grep -qE '^member +wake.smoothing +sheet.smoothing +t ' out
 
 # ---- wrong input
 

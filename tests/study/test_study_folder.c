@@ -54,10 +54,16 @@ static void set_attribute(const char *path, const char *name, const char *text) 
     assert_int_equal(nc_close(file), NC_NOERR);
 }
 
+static enum status create_plan(const struct fixture *f, struct study_plan *plan, const struct case_values *study,
+                               int first, int last, bool force) {
+    const struct study_options options = {.folder = f->folder, .first = first, .last = last, .force = force};
+    return study_plan_create(f->arena, plan, study, &options);
+}
+
 /* Member 1 alone is to be run. */
 static void assert_one_to_run(const struct fixture *f) {
     struct study_plan plan;
-    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 0), STATUS_OK);
+    assert_int_equal(create_plan(f, &plan, &f->study, 0, -1, 0), STATUS_OK);
     assert_int_equal(plan.n_members, 3);
     assert_int_equal(plan.n_done, 2);
     assert_int_equal(plan.n, 1);
@@ -66,14 +72,14 @@ static void assert_one_to_run(const struct fixture *f) {
 
 static void assert_refused(const struct fixture *f, const struct case_values *study, const char *words) {
     struct study_plan plan;
-    assert_int_equal(study_plan_create(f->arena, &plan, study, f->folder, 0, -1, 0), STATUS_FILE);
+    assert_int_equal(create_plan(f, &plan, study, 0, -1, 0), STATUS_FILE);
     if (!strstr(status_message(), words)) fail_msg("'%s' is not in '%s'", words, status_message());
 }
 
 TEST_WITH(finished_members_are_not_run_again, set_up, tear_down) {
     const struct fixture *const f = *state;
     struct study_plan plan;
-    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 0), STATUS_OK);
+    assert_int_equal(create_plan(f, &plan, &f->study, 0, -1, 0), STATUS_OK);
     assert_int_equal(plan.n, 0);
     assert_int_equal(plan.n_done, 3);
 }
@@ -104,7 +110,7 @@ TEST_WITH(members_of_another_study_are_refused_unless_forced, set_up, tear_down)
     set_attribute(f->member[1], "study_case", "format: 1\n");
     assert_refused(f, &f->study, f->member[1]);
     struct study_plan plan;
-    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 1), STATUS_OK);
+    assert_int_equal(create_plan(f, &plan, &f->study, 0, -1, 1), STATUS_OK);
     assert_int_equal(plan.n, 1);
     assert_int_equal(plan.member[0], 1);
 }
@@ -114,7 +120,7 @@ TEST_WITH(force_runs_the_members_of_another_program_again, set_up, tear_down) {
     struct study_plan plan;
     set_attribute(f->member[1], "source", "shoal 0.0.1 (commit 0123456789ab), SUNDIALS 6.4.1");
     for (int force = 0; force < 2; force++) {
-        assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, force), STATUS_OK);
+        assert_int_equal(create_plan(f, &plan, &f->study, 0, -1, force), STATUS_OK);
         assert_int_equal(plan.n, force);
         assert_int_equal(plan.n_done, 3 - force);
         if (force) assert_int_equal(plan.member[0], 1);
@@ -137,13 +143,13 @@ TEST_WITH(members_beyond_the_last_are_refused_or_removed, set_up, tear_down) {
     write_bytes(path, 4, "else");
     assert_refused(f, &f->study, path);
     // a file that shoal did not write stays
-    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 1), STATUS_FILE);
+    assert_int_equal(create_plan(f, &plan, &f->study, 0, -1, 1), STATUS_FILE);
     assert_int_equal(access(path, F_OK), 0);
     size_t n;
     char *const bytes = read_bytes(f->member[0], &n);
     write_bytes(path, n, bytes);
     assert_refused(f, &f->study, path);
-    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 0, -1, 1), STATUS_OK);
+    assert_int_equal(create_plan(f, &plan, &f->study, 0, -1, 1), STATUS_OK);
     assert_int_not_equal(access(path, F_OK), 0);
     assert_int_equal(access(f->member[2], F_OK), 0);
 }
@@ -153,14 +159,13 @@ TEST_WITH(a_part_is_about_its_members_only, set_up, tear_down) {
     assert_int_equal(unlink(f->member[0]), 0);
     assert_int_equal(unlink(f->member[2]), 0);
     struct study_plan plan;
-    assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, 1, 2, 0), STATUS_OK);
+    assert_int_equal(create_plan(f, &plan, &f->study, 1, 2, 0), STATUS_OK);
     assert_int_equal(plan.n_members, 2);
     assert_int_equal(plan.n, 1);
     assert_int_equal(plan.member[0], 2);
     const int wrong[][2] = {{-1, 1}, {2, 1}, {0, 3}};
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(study_plan_create(f->arena, &plan, &f->study, f->folder, wrong[i][0], wrong[i][1], 0),
-                         STATUS_CASE);
+        assert_int_equal(create_plan(f, &plan, &f->study, wrong[i][0], wrong[i][1], 0), STATUS_CASE);
         assert_non_null(strstr(status_message(), "the study has members 0 to 2"));
     }
 }
